@@ -1,0 +1,74 @@
+// The camera: what [camera] says (CameraParams) and the resolved double-precision camera made of it.
+// Camera space: x right, y up, looking along -z.
+#pragma once
+
+#include <filesystem>
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+
+#include "core/bounds.h"
+
+namespace astrosplat {
+
+enum class Projection { perspective, orthographic, fisheye, equirectangular };
+
+struct CameraParams {
+    Projection projection = Projection::perspective;
+    std::optional<glm::dvec3> position;  // empty: frame all visible layers from 35 degrees above +z
+    glm::dvec3 target{0.0};
+    glm::dvec3 up{0.0, 1.0, 0.0};
+    std::optional<glm::dvec4> rotation;  // quaternion x y z w, world from camera; replaces target, up and roll
+    double roll = 0.0;                   // degrees
+    double fov = 45.0;                   // degrees, vertical
+    double focal_length = 0.0;           // mm; > 0 replaces fov, with film_width
+    double film_width = 36.0;            // mm
+    double fisheye_fov = 180.0;          // degrees, full cone
+    double height = 10.0;                // scene units, orthographic
+    double near = 0.01;                  // scene units
+    double far = 0.0;                    // scene units; 0: none
+    double near_fade = 0.0;              // scene units; 0: one radius of the splat
+    std::filesystem::path file;
+};
+
+struct Camera {
+    Projection projection = Projection::perspective;
+    glm::dvec3 eye{0.0};
+    glm::dmat3 world_from_camera{1.0};  // rotation only; columns are the camera's x, y, z axes in world space
+    double focal_px = 1.0;              // perspective: px per unit of x/z; orthographic: px per scene unit
+    double center_x_px = 0.0, center_y_px = 0.0;  // where the optical axis meets the picture (y down)
+    double near = 0.01, far = 0.0, near_fade = 0.0;
+    double aspect = 1.0;  // width / height
+};
+
+/// Resolves the parameters for a picture of width x height px. `scene_box` (may be empty) is what a camera without
+/// position frames. Throws InputError for projections that a later release brings, a zero view direction, camera
+/// files.
+Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box);
+
+/// Unit direction in world space through a point of the picture (px, y down) -- for environments. Orthographic
+/// cameras give the view axis.
+glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px);
+
+/// Position and target that frame a box from 35 degrees above +z with the given vertical field of view.
+struct Framing {
+    glm::dvec3 position, target;
+    double height;  // orthographic height that frames the same
+};
+Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect);
+
+/// 4x4 row-major matrices as OpenEXR defines them (row vectors: p * M).
+struct ExrMatrices {
+    float world_to_camera[16];
+    float world_to_ndc[16];
+};
+ExrMatrices exr_matrices(const Camera& camera, double width_px, double height_px);
+
+/// Rotation matrix from a unit quaternion (x y z w); rotation about x, then y, then z by degrees; with the engine's
+/// own trigonometry.
+glm::dmat3 rotation_from_quaternion(const glm::dvec4& q);
+glm::dmat3 rotation_from_degrees(const glm::dvec3& degrees);
+
+}  // namespace astrosplat

@@ -1,0 +1,27 @@
+// An axis-aligned box in double precision.
+#pragma once
+
+#include <glm/common.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+
+namespace astrosplat {
+
+struct Bounds {
+    glm::dvec3 lo{std::numeric_limits<double>::infinity()};
+    glm::dvec3 hi{-std::numeric_limits<double>::infinity()};
+
+    bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+    glm::dvec3 extent() const { return hi - lo; }
+    glm::dvec3 center() const { return (lo + hi) * 0.5; }
+    void add(const glm::dvec3& p) {
+        lo = glm::min(lo, p);
+        hi = glm::max(hi, p);
+    }
+    void add(const Bounds& b) {
+        lo = glm::min(lo, b.lo);
+        hi = glm::max(hi, b.hi);
+    }
+};
+
+}  // namespace astrosplat

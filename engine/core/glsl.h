@@ -1,0 +1,42 @@
+// GLSL's names for C++, so that shaders/shared compiles here as it does in a shader. Include inside no namespace; the
+// shared files are included inside a namespace that says `using namespace astrosplat::glsl;`.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace astrosplat::glsl {
+
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+using glm::ivec2;
+using uint = std::uint32_t;
+
+inline float intBitsToFloat(int bits) {
+    float f;
+    std::memcpy(&f, &bits, sizeof f);
+    return f;
+}
+inline int floatBitsToInt(float f) {
+    int bits;
+    std::memcpy(&bits, &f, sizeof bits);
+    return bits;
+}
+inline float floor(float x) { return std::floor(x); }
+inline float sqrt(float x) { return std::sqrt(x); }
+inline float abs(float x) { return std::fabs(x); }
+inline float min(float a, float b) { return b < a ? b : a; }
+inline float max(float a, float b) { return a < b ? b : a; }
+inline int min(int a, int b) { return b < a ? b : a; }
+inline int max(int a, int b) { return a < b ? b : a; }
+inline float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
+inline float mix(float a, float b, float t) { return a * (1.0f - t) + b * t; }
+inline vec3 mix(vec3 a, vec3 b, float t) { return a * (1.0f - t) + b * t; }
+inline float dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+}  // namespace astrosplat::glsl

@@ -1,0 +1,26 @@
+// Messages to the person at the terminal (stderr) or, later, to the viewer's message bar. Results go to stdout
+// elsewhere; nothing here reaches a pixel or a file.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace astrosplat {
+
+enum class LogLevel { error, warning, info, detail };
+
+/// Messages above this level are dropped; `-q` sets warning, `-v` sets detail. Default: info.
+void set_log_level(LogLevel level);
+
+/// Replaces the place messages go to (default: stderr, prefixed "astrosplat: "). Pass nullptr to restore it.
+void set_log_sink(std::function<void(LogLevel, const std::string&)> sink);
+
+/// One line, without a newline. Thread-safe.
+void log_info(const std::string& line);
+void log_detail(const std::string& line);
+
+/// Odd but usable input. The same line is printed once; `flush_warning_counts` tells how often it came again.
+void log_warning(const std::string& line);
+void flush_warning_counts();
+
+}  // namespace astrosplat

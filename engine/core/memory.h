@@ -1,0 +1,23 @@
+// Memory is estimated and announced before it is taken.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace astrosplat {
+
+/// "1.25 GiB", "312 MiB", "4 KiB".
+std::string human_bytes(double bytes);
+/// "12.4 M", "3.1 k", "812".
+std::string human_count(double count);
+
+/// Bytes this process may still take: free memory of the machine or of its cgroup, whichever is less.
+std::int64_t available_memory_bytes();
+/// Largest resident size of this process so far.
+std::int64_t peak_memory_bytes();
+
+/// Announces `bytes` for `what` (at detail level), and throws InputError with one line that states both figures
+/// when they exceed available_memory_bytes().
+void claim_memory(std::int64_t bytes, const std::string& what);
+
+}  // namespace astrosplat

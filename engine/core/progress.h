@@ -1,0 +1,21 @@
+// How long work reports how far it is and learns that it should stop. Copied by value; an empty one does nothing.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+namespace astrosplat {
+
+struct Progress {
+    std::function<void(double fraction)> report;     // fraction of the work done, 0..1; called from any thread
+    const std::atomic<bool>* cancelled = nullptr;    // set by another thread or a signal handler
+
+    void at(double fraction) const {
+        if (report) report(fraction);
+    }
+    bool stop() const { return cancelled && cancelled->load(std::memory_order_relaxed); }
+    /// Throws Cancelled when somebody asked to stop.
+    void check() const;
+};
+
+}  // namespace astrosplat

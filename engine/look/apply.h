@@ -1,0 +1,39 @@
+// The seven operators of DESIGN 5, in order: SplatSet + Look -> ShadedSplats. The arithmetic of one splat is
+// shaders/shared/look.glsl, which the preview compiles too; this prepares its uniforms and runs it over the set.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "core/image.h"
+#include "core/progress.h"
+#include "look/look.h"
+#include "splats/shaded_splats.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+/// How a column of splats adds up, so that vertical matching can undo it: the blend, as a plain number.
+enum class ColumnLaw { transmittance, sum, maximum };  // over, screen, hybrid | add | lighten
+
+/// What the look needs from elsewhere, as plain values.
+struct LookInputs {
+    glm::vec3 axis{0.0f, 1.0f, 0.0f};   // the layer's thin direction, layer space
+    std::uint32_t seed = 1;             // of the layer, never 0 (see resolved_seed)
+    double falloff_integral = 1.0;      // of the layer's falloff over the unit disc
+    ColumnLaw column = ColumnLaw::transmittance;
+    const Image* thickness_map = nullptr;  // raw values; must be there when look.thickness.map is set
+};
+
+struct LookStatistics {
+    std::int64_t kept = 0;
+    double seconds = 0.0;
+};
+
+/// Deterministic for any thread count and instruction set. Throws InputError when the look cannot be applied to the
+/// set (no radius known, match without spacing, thickness map without uv). A look at its defaults on a set read from
+/// a file passes the splats through unchanged.
+ShadedSplats apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
+                        const Progress& progress = {}, LookStatistics* statistics = nullptr);
+
+}  // namespace astrosplat

@@ -1,0 +1,53 @@
+// Frame files: EXR, TIFF, PNG with the alpha rule, view transform, dither and metadata of DESIGN 7-9, written
+// atomically (temporary name, fsync, rename).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/image.h"
+#include "render/render.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// What goes into a frame's header.
+struct FrameMetadata {
+    std::int64_t frame = 1;
+    double fps = 24.0;
+    std::string frame_hash;  // hex
+    std::string pixel_hash;  // hex
+    std::uint32_t seed = 0;
+    ProvenanceParams provenance;
+    std::optional<ExrMatrices> matrices;
+};
+
+/// Writes one frame; the ending of `file` chooses the format. `layer_names` name frame.layers. `whole` is the size of
+/// the whole picture and `region` the part rendered (EXR: display and data window). Throws OutputError.
+void write_frame(const std::filesystem::path& file, const RenderedFrame& frame,
+                 const std::vector<std::string>& layer_names, const OutputParams& output, std::int64_t whole_width,
+                 std::int64_t whole_height, const Region& region, const FrameMetadata& metadata);
+
+/// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits").
+void check_output(const OutputParams& output);
+
+/// frame_hash and pixel_hash stored in a frame file, empty when there are none or the file is damaged.
+std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::path& file);
+
+/// True when the file can be read to its last pixel.
+bool frame_is_whole(const std::filesystem::path& file);
+
+/// "frames/shot.####.exr" with frame 12 gives "frames/shot.0012.exr"; also %04d and {frame:04}. Negative frames keep
+/// the width with a minus sign in front. `has_frame_token` tells whether there is anything to replace.
+std::string frame_file(const std::string& pattern, std::int64_t frame);
+bool has_frame_token(const std::string& pattern);
+
+/// sha256 of the pixels' float bytes (beauty, row by row, RGBA).
+std::string pixel_hash(const Image& image);
+
+}  // namespace astrosplat

@@ -1,0 +1,46 @@
+// The whole flow: sources -> SplatSets -> look -> ShadedSplats -> render -> RenderedFrame.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "render/render.h"
+#include "scene/scene.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+struct LayerStatistics {
+    std::string name;
+    std::int64_t test_positions = 0, kept = 0, zero_alpha = 0;
+    std::int64_t drawn = 0;  // shaded splats after the look, in the last frame
+    double generate_seconds = 0.0, look_seconds = 0.0;
+    bool cached = false;
+};
+
+/// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats of each layer.
+class Pipeline {
+  public:
+    /// Loads or generates the set of every layer that is visible at some frame. Throws InputError, Cancelled.
+    explicit Pipeline(const Scene& scene, const Progress& progress = {});
+    ~Pipeline();
+
+    /// Renders one frame of the scene this was made of.
+    RenderedFrame frame(double frame, const RenderSettings& settings, const Progress& progress = {});
+
+    /// Render settings as the scene's [output] has them.
+    RenderSettings settings(double frame) const;
+    Camera camera(double frame, const RenderSettings& settings) const;
+    const std::vector<LayerStatistics>& statistics() const;
+    /// Names of the layers visible at a frame, in file order: those of RenderedFrame::layers.
+    std::vector<std::string> layer_names(double frame) const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,39 @@
+// The environment behind everything: an equirectangular picture or six cube faces, as mip-mapped linear light.
+// In: EnvironmentParams. Out: colour along a direction.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/image.h"
+
+namespace astrosplat {
+
+struct EnvironmentParams {
+    std::filesystem::path image;              // equirectangular; empty: none
+    std::vector<std::filesystem::path> cube;  // or six: +x -x +y -y +z -z
+    float gain = 1.0f;
+    glm::dvec3 rotation{0.0};  // degrees about x, then y, then z
+    bool visible = true;
+};
+
+struct Environment {
+    std::vector<std::vector<Image>> faces;  // [face][mip level]: 1 face (equirectangular) or 6; RGB, linear
+    glm::dmat3 environment_from_world{1.0};
+    float gain = 1.0f;
+    float largest = 0.0f;  // largest channel value of the pictures times gain
+};
+
+/// Loads the pictures and builds their mip levels (box filter). Throws InputError. The picture part is independent
+/// of gain and rotation, which may be animated: see set_environment_params.
+Environment load_environment(const EnvironmentParams& params);
+void set_environment_params(Environment& environment, const EnvironmentParams& params);
+
+/// Colour seen along a unit direction in world space; `spread` is the angle in radians between neighbouring pixels,
+/// which picks the mip level (trilinear).
+glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& direction, double spread);
+
+}  // namespace astrosplat

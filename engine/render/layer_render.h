@@ -1,0 +1,35 @@
+// What [layer.render] says: dot profile, mixing, level of detail. Plain values; SCENE.md's defaults.
+#pragma once
+
+namespace astrosplat {
+
+/// Profile of a dot: w(t), t = distance / radius; w(0) = 1, zero from t = 1 on (DESIGN 7).
+struct Falloff {
+    enum class Shape { constant, linear, trapezoid, gaussian, exponential };
+    Shape shape = Shape::gaussian;
+    float core = 0.5f;       // trapezoid: fraction of the radius that is flat
+    float sharpness = 4.5f;  // gaussian e^(-sharpness t^2), exponential e^(-sharpness t), shifted and scaled
+    bool operator==(const Falloff&) const = default;
+};
+
+enum class Blend { over, add, screen, lighten, hybrid };
+
+struct LevelOfDetail {
+    float max_px = 0.0f;      // projected diameter at 1080 lines above which a splat is split; 0: off
+    int max_children = 4096;  // largest number of children
+    bool operator==(const LevelOfDetail&) const = default;
+};
+
+struct LayerRender {
+    Falloff falloff;
+    Blend blend = Blend::over;
+    float opacity = 1.0f;
+    float hybrid_from_deg = 30.0f;  // over up to here
+    float hybrid_to_deg = 80.0f;    // screen from here on
+    LevelOfDetail lod;
+    bool holdout = false;
+    bool isolate = false;
+    bool operator==(const LayerRender&) const = default;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,31 @@
+// Scene files (TOML) to Scene values. Precedence: defaults < preset < scene < --set. Every error is one line with
+// file, line and the nearest known key; nothing half-loaded is ever returned.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// One `--set KEY=VALUE`; VALUE is TOML (a bare word is taken as a string).
+struct Assignment {
+    std::string key, value;
+};
+Assignment parse_assignment(const std::string& text);
+
+/// Loads a scene and applies the assignments. Paths inside the file are resolved against its folder, those of
+/// assignments against the working directory; ${NAME} is an environment variable. Throws InputError.
+Scene load_scene(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
+
+/// The same from text in memory; `file` names it in messages and resolves its paths.
+Scene parse_scene(const std::string& toml, const std::filesystem::path& file,
+                  std::span<const Assignment> assignments = {});
+
+/// Frames of "1-100,120,200-300x2" (x or : is the step; negative numbers allowed), ascending, each once. Throws
+/// InputError naming `place`.
+std::vector<std::int64_t> parse_frames(const std::string& text, const std::string& place);
+
+}  // namespace astrosplat

@@ -1,0 +1,79 @@
+// A scene: sources + looks + layers + camera + environment + animation + output, as plain values (SCENE.md).
+// load.h reads it from TOML, save.h writes it back, describe.h lists every parameter, animate.h evaluates frame k.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "camera/camera.h"
+#include "camera/path.h"
+#include "look/look.h"
+#include "render/environment.h"
+#include "render/layer_render.h"
+#include "source/source.h"
+
+namespace astrosplat {
+
+struct OutputParams {
+    enum class Depth { automatic, half_float, float32, uint16, uint8 };
+    enum class Compression { automatic, zip, zips, piz, dwaa, deflate, lzw, none };
+    enum class Alpha { automatic, premultiplied, straight, none };
+    enum class View { automatic, linear, srgb, soft };
+    std::int64_t width = 1920, height = 1080;  // resolution, px
+    std::string frames = "1-240";
+    double fps = 24.0;
+    std::string path = "frames/shot.####.exr";  // pattern, relative to the scene's folder
+    Depth depth = Depth::automatic;
+    Compression compression = Compression::automatic;
+    Alpha alpha = Alpha::automatic;
+    std::vector<std::string> aovs;  // of "depth" "coverage" "count" "layers"
+    View view = View::automatic;
+    double exposure = 0.0;      // stops
+    double pixel_filter = 0.5;  // px
+};
+
+struct ProvenanceParams {
+    std::string title, credit, type = "Artwork";
+};
+
+struct LayerTransform {
+    glm::dvec3 translate{0.0};
+    glm::dvec3 rotate{0.0};  // degrees about x, then y, then z
+    double scale = 1.0;
+};
+
+struct LayerParams {
+    std::string name;
+    bool visible = true;
+    glm::dvec3 axis{0.0, 1.0, 0.0};
+    std::filesystem::path preset;
+    LayerTransform transform;
+    SourceParams source;
+    Look look;
+    LayerRender render;
+};
+
+/// One animated key path, as in the file. Values are kept as numbers per component: scalars 1, colours and vectors 3,
+/// rotations 4; booleans 0 or 1; choices by their index.
+struct Track {
+    std::string key;  // "camera.position", "layer.stars.render.core"
+    std::vector<Key<std::vector<double>>> keys;
+    Interpolation interpolation = Interpolation::linear;  // the default of keys that do not say
+    Ends ends = Ends::ease;
+    bool constant_speed = false;
+};
+
+struct Scene {
+    std::filesystem::path file;  // where it was loaded from; paths in it are already resolved against its folder
+    OutputParams output;
+    CameraParams camera;
+    EnvironmentParams environment;
+    ProvenanceParams provenance;
+    std::vector<LayerParams> layers;
+    std::vector<Track> animation;
+};
+
+}  // namespace astrosplat

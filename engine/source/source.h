@@ -1,0 +1,60 @@
+// What [layer.source] of a scene file says, as plain values. SCENE.md's defaults are the defaults here.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace astrosplat {
+
+enum class SourceKind { mesh, splats, stars };
+
+/// How a picture file becomes linear, premultiplied colour.
+struct TextureSettings {
+    enum class Colorspace { automatic, srgb, linear };
+    enum class Alpha { automatic, file, luminance, max, one };
+    enum class Unpremultiply { automatic, yes, no };
+    enum class Stretch { automatic, linear, asinh, log };
+    enum class Wrap { automatic, repeat, clamp, black };
+    enum class Filter { bilinear, nearest, area };
+    Colorspace colorspace = Colorspace::automatic;
+    Alpha alpha = Alpha::automatic;
+    Unpremultiply unpremultiply = Unpremultiply::automatic;
+    std::string hdu = "auto";  // FITS: "auto", a number or an EXTNAME
+    int plane = 0;             // FITS cubes: plane, from 0
+    Stretch stretch = Stretch::automatic;
+    std::optional<double> black;  // data value shown as 0; empty: the 0.25 percentile of finite pixels
+    std::optional<double> white;  // data value shown as 1; empty: the 99.75 percentile
+    double softening = 0.1;       // asinh(x/s)/asinh(1/s)
+    Filter filter = Filter::bilinear;
+    Wrap wrap = Wrap::automatic;
+};
+
+/// One mesh of a layer with its picture. `mesh` is a file or "plane", "relief", "disk", "sphere".
+struct MeshInput {
+    std::filesystem::path mesh;
+    std::vector<std::filesystem::path> texture;  // empty: the mesh's own map_Kd; three: one picture from r, g, b
+    double relief = 0.15;                        // "relief": height as a fraction of the plane's width
+};
+
+enum class UvMode { mesh, planar_xy, planar_xz, planar_yz };
+
+struct SourceParams {
+    SourceKind kind = SourceKind::mesh;
+    std::vector<MeshInput> meshes;
+    TextureSettings texture;
+    std::optional<glm::dvec3> buffer;         // scene units; empty: max_distance
+    std::optional<glm::i64vec3> voxels;       // empty: from voxel_size, or automatic
+    double voxel_size = 0.0;                  // scene units; 0: from voxels, or automatic
+    std::int64_t count = 2000000;             // positions kept by automatic voxels, about
+    double jitter = 1.0;                      // 0..1 of half a voxel
+    double max_distance = 0.0;                // scene units; 0: 2 % of the longest side of the meshes' box
+    UvMode uv = UvMode::mesh;
+    std::uint32_t seed = 0;  // 0: derived from the layer's name
+    std::filesystem::path file;  // kind splats
+};
+
+}  // namespace astrosplat

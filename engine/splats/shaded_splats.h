@@ -1,0 +1,21 @@
+// A layer's splats after the look: what is drawn, still in layer space. In ascending order of id.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "core/buffer.h"
+
+namespace astrosplat {
+
+struct ShadedSplats {
+    Buffer<glm::vec3> position;  // scene units, layer space
+    Buffer<glm::vec3> color;     // linear light, straight, >= 0
+    Buffer<float> alpha;         // 0..1
+    Buffer<float> radius;        // scene units, where the falloff reaches zero
+    Buffer<std::uint64_t> id;
+
+    std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
+};
+
+}  // namespace astrosplat
