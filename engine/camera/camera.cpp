@@ -1,0 +1,214 @@
+// CameraParams -> Camera: the axes from target, up and roll or from a quaternion, the focal length in pixels,
+// and the position that frames a box. Everything in double, with the engine's own trigonometry.
+#include "camera/camera.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "core/error.h"
+#include "core/real.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double framing_elevation_deg = 35.0;
+constexpr double framing_fill = 0.9;    // share of the picture's width or height a framed box fills
+constexpr double parallel_sine = 1e-9;  // below this sine two directions count as parallel
+
+const char* name_of(Projection projection) {
+    switch (projection) {
+        case Projection::perspective:
+            return "perspective";
+        case Projection::orthographic:
+            return "orthographic";
+        case Projection::fisheye:
+            return "fisheye";
+        case Projection::equirectangular:
+            return "equirectangular";
+    }
+    return "";
+}
+
+void expect(bool good, const char* key, const char* expected, double found) {
+    if (!good) throw InputError(fmt::format("{}: expected {}, found {}", key, expected, found));
+}
+
+// The negated comparisons of `expect` refuse NaN as well.
+void check(const CameraParams& params) {
+    if (!params.file.empty())
+        throw InputError(
+            fmt::format("camera.file: expected no file (camera paths can be imported from a later release "
+                        "on), found '{}'",
+                        params.file.string()));
+    bool flat = params.projection == Projection::perspective || params.projection == Projection::orthographic;
+    if (!flat)
+        throw InputError(
+            fmt::format("camera.projection: expected perspective or orthographic (other projections come "
+                        "with a later release), "
+                        "found {}",
+                        name_of(params.projection)));
+    if (params.projection == Projection::orthographic) {
+        expect(params.height > 0.0, "camera.height", "more than 0 scene units", params.height);
+    } else {
+        expect(params.near > 0.0, "camera.near", "more than 0 scene units", params.near);
+        expect(params.fov > 0.0 && params.fov < 180.0, "camera.fov", "degrees between 0 and 180", params.fov);
+        expect(params.focal_length >= 0.0, "camera.focal_length", "0 or more mm", params.focal_length);
+        expect(params.film_width > 0.0, "camera.film_width", "more than 0 mm", params.film_width);
+    }
+    expect(params.far == 0.0 || params.far > params.near, "camera.far", "0, or more than camera.near",
+           params.far);
+}
+
+bool parallel(const glm::dvec3& a, const glm::dvec3& b) {
+    return !(glm::length(glm::cross(a, b)) > parallel_sine * glm::length(a) * glm::length(b));
+}
+
+// Columns x right, y up, z backwards; roll turns x and y about the viewing direction.
+glm::dmat3 look_along(const glm::dvec3& view, glm::dvec3 up, double roll_deg) {
+    if (parallel(view, up)) up = glm::dvec3(0.0, 0.0, -1.0);
+    if (parallel(view, up)) up = glm::dvec3(1.0, 0.0, 0.0);
+    glm::dvec3 back = -glm::normalize(view);
+    glm::dvec3 right = glm::normalize(glm::cross(up, back));
+    glm::dvec3 above = glm::cross(back, right);
+    double c = real::cos(real::radians(roll_deg)), s = real::sin(real::radians(roll_deg));
+    return glm::dmat3(right * c - above * s, right * s + above * c, back);
+}
+
+// Half the picture's height at distance 1.
+double half_height(const CameraParams& params, double aspect) {
+    if (params.focal_length > 0.0) return 0.5 * params.film_width / params.focal_length / aspect;
+    return real::tan(real::radians(params.fov) * 0.5);
+}
+
+Framing frame_box_within(const Bounds& box, double tan_y, double aspect) {
+    Bounds framed = box;
+    if (framed.empty()) framed.add(glm::dvec3(0.0));
+    if (glm::length(framed.extent()) == 0.0) {
+        framed.lo -= 0.5;
+        framed.hi += 0.5;
+    }
+    double elevation = real::radians(framing_elevation_deg);
+    glm::dvec3 back(0.0, real::sin(elevation), real::cos(elevation));
+    glm::dvec3 above(0.0, back.z, -back.y);
+    Framing framing{{}, framed.center(), 0.0};
+    double distance = 0.0;
+    for (int corner = 0; corner < 8; ++corner) {
+        glm::dvec3 p(corner & 1 ? framed.hi.x : framed.lo.x, corner & 2 ? framed.hi.y : framed.lo.y,
+                     corner & 4 ? framed.hi.z : framed.lo.z);
+        p -= framing.target;
+        // The frame's height that just holds this corner, at the corner's own depth.
+        double height =
+            2.0 * std::fmax(std::fabs(p.x) / aspect, std::fabs(glm::dot(above, p))) / framing_fill;
+        framing.height = std::fmax(framing.height, height);
+        distance = std::fmax(distance, glm::dot(back, p) + 0.5 * height / tan_y);
+    }
+    framing.position = framing.target + back * distance;
+    return framing;
+}
+
+glm::dmat3 orientation(const CameraParams& params, const glm::dvec3& position, const glm::dvec3& target) {
+    if (params.rotation) return rotation_from_quaternion(*params.rotation);
+    glm::dvec3 view = target - position;
+    if (!(glm::length(view) > 0.0))
+        throw InputError(
+            fmt::format("camera.target: expected a point other than camera.position, found [{}, {}, {}]",
+                        target.x, target.y, target.z));
+    if (!(glm::length(params.up) > 0.0)) throw InputError("camera.up: expected a direction, found [0, 0, 0]");
+    return look_along(view, params.up, params.roll);
+}
+
+}  // namespace
+
+Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box) {
+    check(params);
+    Camera camera;
+    camera.projection = params.projection;
+    camera.aspect = width_px / height_px;
+    double tan_y = half_height(params, camera.aspect);
+    double height = params.height;
+    glm::dvec3 target = params.target;
+    if (params.position) {
+        camera.eye = *params.position;
+    } else {
+        Framing framing = frame_box_within(scene_box, tan_y, camera.aspect);
+        camera.eye = framing.position;
+        target = framing.target;
+        height = framing.height;
+    }
+    camera.world_from_camera = orientation(params, camera.eye, target);
+    bool orthographic = params.projection == Projection::orthographic;
+    camera.focal_px = orthographic ? height_px / height : 0.5 * height_px / tan_y;
+    camera.center_x_px = 0.5 * width_px;
+    camera.center_y_px = 0.5 * height_px;
+    camera.near = params.near;
+    camera.far = params.far;
+    camera.near_fade = params.near_fade;
+    return camera;
+}
+
+glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px) {
+    if (camera.projection == Projection::orthographic) return -camera.world_from_camera[2];
+    glm::dvec3 ray((x_px - camera.center_x_px) / camera.focal_px,
+                   (camera.center_y_px - y_px) / camera.focal_px, -1.0);
+    return glm::normalize(camera.world_from_camera * ray);
+}
+
+Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect) {
+    return frame_box_within(box, real::tan(real::radians(vertical_fov_deg) * 0.5), aspect);
+}
+
+// OpenEXR's camera space is left-handed, z forward; its NDC has (0, 0) at the display window's upper left
+// corner and (1, 1) at the lower right one (OpenEXR, Standard Attributes: worldToCamera, worldToNDC).
+ExrMatrices exr_matrices(const Camera& camera, double width_px, double height_px) {
+    std::array<glm::dvec3, 3> axes = {camera.world_from_camera[0], camera.world_from_camera[1],
+                                      -camera.world_from_camera[2]};
+    std::array<glm::dvec4, 4> column;  // of world_to_camera: coordinate = dot(column, (p, 1))
+    for (std::size_t i = 0; i < 3; ++i) column[i] = glm::dvec4(axes[i], -glm::dot(axes[i], camera.eye));
+    column[3] = glm::dvec4(0.0, 0.0, 0.0, 1.0);
+
+    bool orthographic = camera.projection == Projection::orthographic;
+    double depth_scale = camera.far > 0.0 ? 1.0 / (camera.far - camera.near) : 1.0;
+    if (!orthographic && camera.far > 0.0) depth_scale *= camera.far;
+    const glm::dvec4& w = orthographic ? column[3] : column[2];
+    std::array<glm::dvec4, 4> ndc = {
+        (column[0] * camera.focal_px + w * camera.center_x_px) / width_px,
+        (column[1] * -camera.focal_px + w * camera.center_y_px) / height_px,
+        (column[2] - column[3] * camera.near) * depth_scale,  // 0 at near, 1 at far; readers discard it
+        w,
+    };
+    ExrMatrices result{};
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c) {
+            result.world_to_camera[4 * r + c] = static_cast<float>(column[static_cast<std::size_t>(c)][r]);
+            result.world_to_ndc[4 * r + c] = static_cast<float>(ndc[static_cast<std::size_t>(c)][r]);
+        }
+    return result;
+}
+
+glm::dmat3 rotation_from_quaternion(const glm::dvec4& q) {
+    double length = glm::length(q);
+    if (!(length > 0.0))
+        throw InputError(fmt::format(
+            "camera.rotation: expected a quaternion x y z w that is not zero, found [{}, {}, {}, {}]", q.x,
+            q.y, q.z, q.w));
+    double x = q.x / length, y = q.y / length, z = q.z / length, w = q.w / length;
+    return glm::dmat3(1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y),  //
+                      2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x),  //
+                      2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y));
+}
+
+glm::dmat3 rotation_from_degrees(const glm::dvec3& degrees) {
+    double cx = real::cos(real::radians(degrees.x)), sx = real::sin(real::radians(degrees.x));
+    double cy = real::cos(real::radians(degrees.y)), sy = real::sin(real::radians(degrees.y));
+    double cz = real::cos(real::radians(degrees.z)), sz = real::sin(real::radians(degrees.z));
+    glm::dmat3 about_x(1.0, 0.0, 0.0, 0.0, cx, sx, 0.0, -sx, cx);
+    glm::dmat3 about_y(cy, 0.0, -sy, 0.0, 1.0, 0.0, sy, 0.0, cy);
+    glm::dmat3 about_z(cz, sz, 0.0, -sz, cz, 0.0, 0.0, 0.0, 1.0);
+    return about_z * about_y * about_x;
+}
+
+}  // namespace astrosplat
