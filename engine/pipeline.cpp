@@ -1,1 +1,248 @@
 #include "pipeline.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <optional>
+
+#include "core/log.h"
+#include "look/apply.h"
+#include "render/falloff.h"
+#include "scene/animate.h"
+#include "splats/generate.h"
+
+namespace astrosplat {
+namespace {
+
+/// All that reaches apply_look beside the set: while it stays equal, the shaded splats stay.
+struct ShadingKey {
+    Look look;
+    glm::vec3 axis{0.0f};
+    double falloff_integral = 0.0;
+    ColumnLaw column = ColumnLaw::transmittance;
+    bool operator==(const ShadingKey&) const = default;
+};
+
+/// One layer between frames; the index is that of Scene::layers.
+struct LayerState {
+    bool used = false;  // visible at some frame
+    SplatSet set;
+    Bounds box;  // of the set, layer space
+    std::filesystem::path thickness_file;
+    Image thickness_map;
+    std::optional<ShadingKey> key;  // what `shaded` was made with
+    ShadedSplats shaded;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+ColumnLaw column_law(Blend blend) {
+    switch (blend) {
+        case Blend::add:
+            return ColumnLaw::sum;
+        case Blend::lighten:
+            return ColumnLaw::maximum;
+        case Blend::over:
+        case Blend::screen:
+        case Blend::hybrid:
+            return ColumnLaw::transmittance;
+    }
+    return ColumnLaw::transmittance;
+}
+
+/// Visible as it stands, or switched on by a key of the animation.
+bool ever_visible(const Scene& scene, const LayerParams& layer) {
+    const std::string key = "layer." + layer.name + ".visible";
+    for (const Track& track : scene.animation) {
+        if (track.key != key) continue;
+        return std::any_of(track.keys.begin(), track.keys.end(),
+                           [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
+    }
+    return layer.visible;
+}
+
+/// Bounds of a layer in world space: of the eight corners of its box, so that no splat lies outside.
+Bounds world_bounds(const Bounds& box, const RenderLayer& layer) {
+    Bounds result;
+    if (box.empty()) return result;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                           corner & 4 ? box.hi.z : box.lo.z);
+        result.add(layer.world_from_layer * (layer.scale * p) + layer.translate);
+    }
+    return result;
+}
+
+RenderLayer render_layer(const LayerParams& params) {
+    RenderLayer layer;
+    layer.name = params.name;
+    layer.render = params.render;
+    layer.world_from_layer = rotation_from_degrees(params.transform.rotate);
+    layer.scale = params.transform.scale;
+    layer.translate = params.transform.translate;
+    layer.axis = params.axis;
+    layer.seed = resolved_seed(params.source.seed, params.name);
+    return layer;
+}
+
+bool has_environment(const EnvironmentParams& params) {
+    return !params.image.empty() || !params.cube.empty();
+}
+
+}  // namespace
+
+struct Pipeline::State {
+    Scene scene;
+    std::vector<LayerState> layers;
+    std::vector<LayerStatistics> statistics;
+    std::optional<Environment> environment;
+
+    void load_layer(std::size_t index, const Progress& progress);
+    void shade(std::size_t index, const LayerParams& params, const Progress& progress);
+    std::vector<RenderLayer> visible_layers(const Scene& now) const;
+    Camera camera(const Scene& now, const RenderSettings& settings) const;
+    const Environment* environment_at(const Scene& now);
+};
+
+void Pipeline::State::load_layer(std::size_t index, const Progress& progress) {
+    const LayerParams& params = scene.layers[index];
+    LayerState& layer = layers[index];
+    LayerStatistics& counts = statistics[index];
+    counts.name = params.name;
+    layer.used = ever_visible(scene, params);
+    if (!layer.used) return;
+    const auto start = std::chrono::steady_clock::now();
+    layer.set = load_source(params.source, params.name, progress);
+    layer.box = bounds(layer.set);
+    counts.test_positions = layer.set.test_positions;
+    counts.kept = layer.set.size();
+    counts.zero_alpha = layer.set.zero_alpha;
+    counts.generate_seconds = seconds_since(start);
+}
+
+/// Applies the look where anything that it depends on has changed since the last frame.
+void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Progress& progress) {
+    LayerState& layer = layers[index];
+    const ShadingKey key{params.look, glm::vec3(params.axis), falloff_integral(params.render.falloff),
+                         column_law(params.render.blend)};
+    if (layer.key == key) return;
+    if (layer.thickness_file != params.look.thickness.map) {
+        layer.thickness_file = params.look.thickness.map;
+        layer.thickness_map = layer.thickness_file.empty() ? Image{} : load_raw_image(layer.thickness_file);
+    }
+    LookInputs inputs;
+    inputs.axis = key.axis;
+    inputs.seed = resolved_seed(params.source.seed, params.name);
+    inputs.falloff_integral = key.falloff_integral;
+    inputs.column = key.column;
+    inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
+    layer.key.reset();  // an exception below must not leave old splats under a new key
+    LookStatistics counts;
+    layer.shaded = apply_look(layer.set, key.look, inputs, progress, &counts);
+    layer.key = key;
+    statistics[index].drawn = layer.shaded.size();
+    statistics[index].look_seconds += counts.seconds;
+}
+
+/// The layers to draw at a frame, in file order.
+std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const {
+    std::vector<RenderLayer> visible;
+    for (std::size_t i = 0; i < now.layers.size(); ++i) {
+        if (!now.layers[i].visible) continue;
+        assert(layers[i].used);
+        visible.push_back(render_layer(now.layers[i]));
+        visible.back().splats = &layers[i].shaded;
+    }
+    return visible;
+}
+
+Camera Pipeline::State::camera(const Scene& now, const RenderSettings& settings) const {
+    Bounds box;
+    for (std::size_t i = 0; i < now.layers.size(); ++i) {
+        if (now.layers[i].visible) box.add(world_bounds(layers[i].box, render_layer(now.layers[i])));
+    }
+    return make_camera(now.camera, static_cast<double>(settings.width), static_cast<double>(settings.height),
+                       box);
+}
+
+const Environment* Pipeline::State::environment_at(const Scene& now) {
+    if (!environment || !now.environment.visible) return nullptr;
+    set_environment_params(*environment, now.environment);
+    return &*environment;
+}
+
+Pipeline::Pipeline(const Scene& scene, const Progress& progress) : state_(std::make_unique<State>()) {
+    state_->scene = scene;
+    state_->layers.resize(scene.layers.size());
+    state_->statistics.resize(scene.layers.size());
+    const double count = static_cast<double>(std::max<std::size_t>(1, scene.layers.size()));
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        Progress part = progress;
+        if (progress.report) {
+            part.report = [&progress, i, count](double f) {
+                progress.report((static_cast<double>(i) + f) / count);
+            };
+        }
+        state_->load_layer(i, part);
+    }
+    if (has_environment(scene.environment)) state_->environment = load_environment(scene.environment);
+}
+
+Pipeline::~Pipeline() = default;
+
+RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, const Progress& progress) {
+    const Scene now = scene_at(state_->scene, frame);
+    for (std::size_t i = 0; i < now.layers.size(); ++i) {
+        progress.check();
+        if (now.layers[i].visible) state_->shade(i, now.layers[i], progress);
+    }
+    return render(state_->visible_layers(now), state_->camera(now, settings), state_->environment_at(now),
+                  settings, progress);
+}
+
+RenderSettings Pipeline::settings(double frame) const {
+    const OutputParams output = scene_at(state_->scene, frame).output;
+    const auto has = [&](const char* aov) {
+        return std::find(output.aovs.begin(), output.aovs.end(), aov) != output.aovs.end();
+    };
+    RenderSettings settings;
+    settings.width = output.width;
+    settings.height = output.height;
+    settings.pixel_filter = static_cast<float>(output.pixel_filter);
+    settings.exposure = static_cast<float>(output.exposure);
+    settings.aov_depth = has("depth");
+    settings.aov_coverage = has("coverage");
+    settings.aov_count = has("count");
+    settings.aov_layers = has("layers");
+    return settings;
+}
+
+Camera Pipeline::camera(double frame, const RenderSettings& settings) const {
+    return state_->camera(scene_at(state_->scene, frame), settings);
+}
+
+const std::vector<LayerStatistics>& Pipeline::statistics() const { return state_->statistics; }
+
+std::vector<std::string> Pipeline::layer_names(double frame) const {
+    std::vector<std::string> names;
+    for (const LayerParams& layer : scene_at(state_->scene, frame).layers) {
+        if (layer.visible) names.push_back(layer.name);
+    }
+    return names;
+}
+
+std::string Pipeline::input_credit() const {
+    std::vector<std::string> credits;
+    std::string joined;
+    for (const LayerState& layer : state_->layers) {
+        const std::string& credit = layer.set.credit;
+        if (credit.empty() || std::find(credits.begin(), credits.end(), credit) != credits.end()) continue;
+        credits.push_back(credit);
+        joined += (joined.empty() ? "" : "; ") + credit;
+    }
+    return joined;
+}
+
+}  // namespace astrosplat

@@ -1,7 +1,7 @@
 // The whole flow: sources -> SplatSets -> look -> ShadedSplats -> render -> RenderedFrame.
 #pragma once
 
-#include <map>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,7 +21,8 @@ struct LayerStatistics {
     bool cached = false;
 };
 
-/// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats of each layer.
+/// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats of each
+/// layer.
 class Pipeline {
   public:
     /// Loads or generates the set of every layer that is visible at some frame. Throws InputError, Cancelled.
@@ -37,6 +38,8 @@ class Pipeline {
     const std::vector<LayerStatistics>& statistics() const;
     /// Names of the layers visible at a frame, in file order: those of RenderedFrame::layers.
     std::vector<std::string> layer_names(double frame) const;
+    /// Credits of all pictures and splat files in use, each once, joined with "; ".
+    std::string input_credit() const;
 
   private:
     struct State;
