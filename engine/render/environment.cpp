@@ -1,0 +1,262 @@
+// Environment pictures: loading, mip levels and filtered lookup along a direction. Every face is kept with a
+// border of one texel taken from its neighbours (round the seam, over the poles, across the cube's edges), so
+// that bilinear lookup never shows where a picture ends.
+#include "render/environment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "camera/camera.h"
+#include "core/error.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/real.h"
+#include "source/texture.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int border = 1;  // texels around every stored level
+
+/// A place on a face, in texels of its level without the border: (0, 0) is the upper left corner.
+struct Place {
+    std::size_t face;
+    double x, y;
+};
+
+/// A cube face as seen from the origin: where it lies and what is to the right and up in its picture. +y and
+/// -y are seen tilting the head from -z.
+struct CubeAxes {
+    glm::dvec3 forward, right, up;
+};
+const std::array<CubeAxes, 6> cube_axes = {{
+    {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+    {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
+    {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+    {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
+    {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},
+    {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}},
+}};
+
+std::int64_t inner(std::int64_t stored) { return stored - 2 * border; }
+
+// OpenEXR's latlong: latitude +pi/2 on top, longitude +pi on the left, 0 towards +z, pi/2 towards +x.
+Place latlong_place(const glm::dvec3& d, double width, double height) {
+    double longitude = real::atan2(d.x, d.z), latitude = real::asin(d.y);
+    return {0, (0.5 - longitude / (2.0 * real::pi)) * width, (0.5 - latitude / real::pi) * height};
+}
+
+Place cube_place(const glm::dvec3& d, double size) {
+    glm::dvec3 a = glm::abs(d);
+    std::size_t axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
+    double along = axis == 0 ? d.x : (axis == 1 ? d.y : d.z);
+    std::size_t face = 2 * axis + (along < 0.0 ? 1 : 0);
+    const CubeAxes& axes = cube_axes[face];
+    double scale = 0.5 / std::fabs(along);
+    return {face, (0.5 + glm::dot(axes.right, d) * scale) * size,
+            (0.5 - glm::dot(axes.up, d) * scale) * size};
+}
+
+glm::vec3 texel(const Image& level, std::int64_t x, std::int64_t y) {
+    const float* p = level.at(x + border, y + border);
+    return {p[0], p[1], p[2]};
+}
+
+void set_texel(Image& level, std::int64_t x, std::int64_t y, const glm::vec3& color) {
+    float* p = level.at(x + border, y + border);
+    p[0] = color.r, p[1] = color.g, p[2] = color.b;
+}
+
+// x, y in [0, inner size]; texel centres at halves.
+glm::vec3 bilinear(const Image& level, double x, double y) {
+    double fx = std::floor(x - 0.5), fy = std::floor(y - 0.5);
+    auto u = static_cast<float>(x - 0.5 - fx), v = static_cast<float>(y - 0.5 - fy);
+    auto ix = std::clamp<std::int64_t>(static_cast<std::int64_t>(fx), -border, inner(level.width) - 1);
+    auto iy = std::clamp<std::int64_t>(static_cast<std::int64_t>(fy), -border, inner(level.height) - 1);
+    glm::vec3 top = texel(level, ix, iy) * (1.0f - u) + texel(level, ix + 1, iy) * u;
+    glm::vec3 bottom = texel(level, ix, iy + 1) * (1.0f - u) + texel(level, ix + 1, iy + 1) * u;
+    return top * (1.0f - v) + bottom * v;
+}
+
+// Round the seam in x; beyond a pole the picture goes on at the opposite longitude.
+void fill_latlong_border(Image& level) {
+    std::int64_t w = inner(level.width), h = inner(level.height);
+    for (std::int64_t x = 0; x < w; ++x) {
+        std::int64_t opposite = (x + w / 2) % w;
+        set_texel(level, x, -1, texel(level, opposite, 0));
+        set_texel(level, x, h, texel(level, opposite, h - 1));
+    }
+    for (std::int64_t y = -1; y <= h; ++y) {
+        set_texel(level, -1, y, texel(level, w - 1, y));
+        set_texel(level, w, y, texel(level, 0, y));
+    }
+}
+
+// A border texel is the nearest inner texel of the face its direction meets; a corner, where three faces
+// meet, is the mean of the three texels there.
+void fill_cube_border(std::array<Image*, 6> level) {
+    std::int64_t n = inner(level[0]->width);
+    auto size = static_cast<double>(n);
+    auto neighbour = [&](std::size_t face, std::int64_t x, std::int64_t y) {
+        const CubeAxes& axes = cube_axes[face];
+        double s = (static_cast<double>(x) + 0.5) / size * 2.0 - 1.0,
+               t = 1.0 - (static_cast<double>(y) + 0.5) / size * 2.0;
+        Place place = cube_place(glm::normalize(axes.forward + axes.right * s + axes.up * t), size);
+        auto at = [n](double c) {
+            return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(c)), 0, n - 1);
+        };
+        return texel(*level[place.face], at(place.x), at(place.y));
+    };
+    for (std::size_t face = 0; face < 6; ++face) {
+        Image& image = *level[face];
+        for (std::int64_t k = 0; k < n; ++k) {
+            set_texel(image, k, -1, neighbour(face, k, -1));
+            set_texel(image, k, n, neighbour(face, k, n));
+            set_texel(image, -1, k, neighbour(face, -1, k));
+            set_texel(image, n, k, neighbour(face, n, k));
+        }
+        for (std::int64_t y : {std::int64_t{-1}, n})
+            for (std::int64_t x : {std::int64_t{-1}, n}) {
+                std::int64_t ix = std::clamp<std::int64_t>(x, 0, n - 1),
+                             iy = std::clamp<std::int64_t>(y, 0, n - 1);
+                set_texel(image, x, y,
+                          (texel(image, ix, iy) + texel(image, x, iy) + texel(image, ix, y)) / 3.0f);
+            }
+    }
+}
+
+// Half the size (rounded up), each texel the mean of the area it covers.
+Image half_size(const Image& image) {
+    std::int64_t w = inner(image.width), h = inner(image.height);
+    std::int64_t half_w = (w + 1) / 2, half_h = (h + 1) / 2;
+    Image result = make_image(half_w + 2 * border, half_h + 2 * border, 3);
+    auto rate_x = static_cast<double>(w) / static_cast<double>(half_w);
+    auto rate_y = static_cast<double>(h) / static_cast<double>(half_h);
+    auto share = [](double rate, std::int64_t to,
+                    std::int64_t from) {  // of texel `from` in the span of texel `to`
+        double lo = std::fmax(rate * static_cast<double>(to), static_cast<double>(from));
+        double hi = std::fmin(rate * static_cast<double>(to + 1), static_cast<double>(from + 1));
+        return std::fmax(hi - lo, 0.0) / rate;
+    };
+    parallel_for(half_h, [&](std::int64_t y, int) {
+        for (std::int64_t x = 0; x < half_w; ++x) {
+            glm::dvec3 sum(0.0);
+            auto x0 = static_cast<std::int64_t>(rate_x * static_cast<double>(x));
+            auto y0 = static_cast<std::int64_t>(rate_y * static_cast<double>(y));
+            for (std::int64_t j = y0; j < std::min(y0 + 3, h); ++j)
+                for (std::int64_t i = x0; i < std::min(x0 + 3, w); ++i)
+                    sum += glm::dvec3(texel(image, i, j)) * (share(rate_x, x, i) * share(rate_y, y, j));
+            set_texel(result, x, y, glm::vec3(sum));
+        }
+    });
+    return result;
+}
+
+// RGB with room for the border; colour over black where the picture has alpha (it is premultiplied).
+Image with_border(const Image& picture) {
+    std::int64_t texels = (picture.width + 2 * border) * (picture.height + 2 * border);
+    claim_memory(texels * 3 * static_cast<std::int64_t>(sizeof(float)) * 4 / 3,
+                 "environment picture and its mip levels");
+    Image result = make_image(picture.width + 2 * border, picture.height + 2 * border, 3);
+    for (std::int64_t y = 0; y < picture.height; ++y)
+        for (std::int64_t x = 0; x < picture.width; ++x) {
+            const float* p = picture.at(x, y);
+            set_texel(result, x, y, {p[0], p[1], p[2]});
+        }
+    return result;
+}
+
+float largest_value(const Image& image) {
+    return image.pixels.empty() ? 0.0f : *std::max_element(image.pixels.begin(), image.pixels.end());
+}
+
+void fill_borders(std::vector<std::vector<Image>>& faces, std::size_t level) {
+    if (faces.size() == 1) return fill_latlong_border(faces[0][level]);
+    std::array<Image*, 6> images{};
+    for (std::size_t face = 0; face < 6; ++face) images[face] = &faces[face][level];
+    fill_cube_border(images);
+}
+
+void build_levels(std::vector<std::vector<Image>>& faces) {
+    fill_borders(faces, 0);
+    for (std::size_t level = 0; inner(faces[0][level].width) > 1 || inner(faces[0][level].height) > 1;
+         ++level) {
+        for (std::vector<Image>& face : faces) face.push_back(half_size(face[level]));
+        fill_borders(faces, level + 1);
+    }
+}
+
+void check_cube(const std::vector<std::filesystem::path>& files,
+                const std::vector<std::vector<Image>>& faces) {
+    std::int64_t n = inner(faces[0][0].width);
+    for (std::size_t face = 0; face < 6; ++face) {
+        std::int64_t w = inner(faces[face][0].width), h = inner(faces[face][0].height);
+        if (w != n || h != n)
+            bad_input(files[face].string(), "environment.cube",
+                      fmt::format("{} x {} pixels, as the first picture's width", n, n),
+                      fmt::format("{} x {}", w, h));
+    }
+}
+
+glm::vec3 sample_level(const std::vector<std::vector<Image>>& faces, std::size_t level, const glm::dvec3& d) {
+    const Image& first = faces[0][level];
+    auto w = static_cast<double>(inner(first.width)), h = static_cast<double>(inner(first.height));
+    Place place = faces.size() == 1 ? latlong_place(d, w, h) : cube_place(d, w);
+    return bilinear(faces[place.face][level], place.x, place.y);
+}
+
+// Texels of level 0 per `spread` radians: along the equator of a latlong, at the centre of a cube's face.
+double texels_per_spread(const Environment& environment, double spread) {
+    const Image& first = environment.faces[0][0];
+    auto w = static_cast<double>(inner(first.width)), h = static_cast<double>(inner(first.height));
+    return spread * (environment.faces.size() == 1 ? std::fmax(w / (2.0 * real::pi), h / real::pi) : 0.5 * w);
+}
+
+}  // namespace
+
+Environment load_environment(const EnvironmentParams& params) {
+    if (!params.cube.empty() && params.cube.size() != 6)
+        throw InputError(fmt::format("environment.cube: expected six pictures (+x -x +y -y +z -z), found {}",
+                                     params.cube.size()));
+    if (!params.cube.empty() && !params.image.empty())
+        throw InputError("environment: expected image or cube, found both");
+    std::vector<std::filesystem::path> files = params.cube;
+    if (files.empty() && !params.image.empty()) files.push_back(params.image);
+    Environment environment;
+    for (const std::filesystem::path& file : files) {
+        Image picture = load_linear_image(file);
+        environment.faces.emplace_back();
+        environment.faces.back().push_back(with_border(picture));
+    }
+    if (files.size() == 6) check_cube(files, environment.faces);
+    if (!files.empty()) build_levels(environment.faces);
+    set_environment_params(environment, params);
+    return environment;
+}
+
+void set_environment_params(Environment& environment, const EnvironmentParams& params) {
+    environment.environment_from_world = glm::transpose(rotation_from_degrees(params.rotation));
+    environment.gain = params.gain;
+    environment.largest = 0.0f;
+    for (const std::vector<Image>& face : environment.faces)
+        environment.largest = std::max(environment.largest, largest_value(face[0]) * params.gain);
+}
+
+glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& direction, double spread) {
+    if (environment.faces.empty()) return glm::vec3(0.0f);
+    glm::dvec3 d = environment.environment_from_world * direction;
+    double levels = static_cast<double>(environment.faces[0].size() - 1);
+    double texels = texels_per_spread(environment, spread);
+    double level = texels > 1.0 ? std::fmin(real::log(texels) * (1.0 / real::log(2.0)), levels) : 0.0;
+    auto fine = static_cast<std::size_t>(level);
+    auto blend = static_cast<float>(level - static_cast<double>(fine));
+    glm::vec3 color = sample_level(environment.faces, fine, d);
+    if (blend > 0.0f) color = color * (1.0f - blend) + sample_level(environment.faces, fine + 1, d) * blend;
+    return color * environment.gain;
+}
+
+}  // namespace astrosplat
