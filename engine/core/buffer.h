@@ -1,16 +1,18 @@
-// Large arrays. Buffer<T> is std::vector without the zero-fill: resize() leaves new elements uninitialised, so that
-// the thread that first writes a page is the one that faults it in. Big blocks are aligned to and advised for 2 MiB
-// pages, because page faults cost as much as projecting a splat.
+// Large arrays. Buffer<T> is std::vector without the zero-fill: resize() leaves new elements uninitialised,
+// so that the thread that first writes a page is the one that faults it in. Big blocks are aligned to and
+// advised for 2 MiB pages, because page faults cost as much as projecting a splat.
 #pragma once
 
 #include <cstddef>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace astrosplat {
 
-/// Raw memory, 64-byte aligned; 2 MiB aligned and advised for huge pages from 4 MiB on. Throws std::bad_alloc.
+/// Raw memory, 64-byte aligned; 2 MiB aligned and advised for huge pages from 4 MiB on. Throws
+/// std::bad_alloc.
 void* allocate_pages(std::size_t bytes);
 void free_pages(void* memory, std::size_t bytes) noexcept;
 

@@ -1,5 +1,5 @@
-// Errors a person can meet. Bad input is one line that names file, place, what was expected and what was found;
-// it ends the program with exit code 2. Our own mistakes are asserts, never exceptions.
+// Errors a person can meet. Bad input is one line that names file, place, what was expected and what was
+// found; it ends the program with exit code 2. Our own mistakes are asserts, never exceptions.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,8 @@
 
 namespace astrosplat {
 
-/// Bad input: a file, a key or an argument that cannot be used. `what()` is one line, without a trailing newline.
+/// Bad input: a file, a key or an argument that cannot be used. `what()` is one line, without a trailing
+/// newline.
 struct InputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -23,8 +24,8 @@ struct Cancelled : std::runtime_error {
     Cancelled() : std::runtime_error("cancelled") {}
 };
 
-/// Throws InputError with the line "FILE:PLACE: expected EXPECTED, found FOUND". `place` may be empty (then it is
-/// left out, with its colon); it is usually a line number, "line 12" or a key.
+/// Throws InputError with the line "FILE:PLACE: expected EXPECTED, found FOUND". `place` may be empty (then
+/// it is left out, with its colon); it is usually a line number, "line 12" or a key.
 [[noreturn]] void bad_input(std::string_view file, std::string_view place, std::string_view expected,
                             std::string_view found);
 

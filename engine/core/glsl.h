@@ -1,5 +1,5 @@
-// GLSL's names for C++, so that shaders/shared compiles here as it does in a shader. Include inside no namespace; the
-// shared files are included inside a namespace that says `using namespace astrosplat::glsl;`.
+// GLSL's names for C++, so that shaders/shared compiles here as it does in a shader. Include inside no
+// namespace; the shared files are included inside a namespace that says `using namespace astrosplat::glsl;`.
 #pragma once
 
 #include <cmath>
@@ -11,10 +11,10 @@
 
 namespace astrosplat::glsl {
 
+using glm::ivec2;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
-using glm::ivec2;
 using uint = std::uint32_t;
 
 inline float intBitsToFloat(int bits) {

@@ -1,5 +1,5 @@
-// A picture in memory: rows from the top, interleaved float channels. Unless a comment says otherwise: linear light,
-// Rec. 709 primaries, premultiplied by alpha.
+// A picture in memory: rows from the top, interleaved float channels. Unless a comment says otherwise: linear
+// light, Rec. 709 primaries, premultiplied by alpha.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Messages to the person at the terminal (stderr) or, later, to the viewer's message bar. Results go to stdout
-// elsewhere; nothing here reaches a pixel or a file.
+// Messages to the person at the terminal (stderr) or, later, to the viewer's message bar. Results go to
+// stdout elsewhere; nothing here reaches a pixel or a file.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,17 @@ enum class LogLevel { error, warning, info, detail };
 void set_log_level(LogLevel level);
 
 /// Replaces the place messages go to (default: stderr, prefixed "astrosplat: "). Pass nullptr to restore it.
+/// The sink is called by one thread at a time and must not log itself.
 void set_log_sink(std::function<void(LogLevel, const std::string&)> sink);
 
 /// One line, without a newline. Thread-safe.
+void log_line(LogLevel level, const std::string& line);
+void log_error(const std::string& line);
 void log_info(const std::string& line);
 void log_detail(const std::string& line);
 
-/// Odd but usable input. The same line is printed once; `flush_warning_counts` tells how often it came again.
+/// Odd but usable input. The same line is printed once; `flush_warning_counts` tells how often it came
+/// in all, and starts afresh.
 void log_warning(const std::string& line);
 void flush_warning_counts();
 

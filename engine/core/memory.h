@@ -16,8 +16,8 @@ std::int64_t available_memory_bytes();
 /// Largest resident size of this process so far.
 std::int64_t peak_memory_bytes();
 
-/// Announces `bytes` for `what` (at detail level), and throws InputError with one line that states both figures
-/// when they exceed available_memory_bytes().
+/// Announces `bytes` for `what` (at detail level), and throws InputError with one line that states both
+/// figures when they exceed available_memory_bytes().
 void claim_memory(std::int64_t bytes, const std::string& what);
 
 }  // namespace astrosplat

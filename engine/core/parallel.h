@@ -1,5 +1,5 @@
-// One small thread pool and the loops that run on it. Work is handed out dynamically, so results must not depend on
-// which thread does what: every loop body writes only what its own index names.
+// One small thread pool and the loops that run on it. Work is handed out dynamically, so results must not
+// depend on which thread does what: every loop body writes only what its own index names.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,10 @@ int available_threads();
 void set_thread_count(int threads);
 int thread_count();
 
-/// Calls body(begin, end, worker) for consecutive chunks of [0, count) of at most `chunk` items, in any order, on
-/// worker = 0 .. thread_count()-1. The chunk boundaries depend on count and chunk alone, never on the threads. The
-/// first exception thrown by a body stops the hand-out and is rethrown here. A nested call runs in its caller.
+/// Calls body(begin, end, worker) for consecutive chunks of [0, count) of at most `chunk` items, in any
+/// order, on worker = 0 .. thread_count()-1. The chunk boundaries depend on count and chunk alone, never on
+/// the threads. The first exception thrown by a body stops the hand-out and is rethrown here. A nested call
+/// runs in its caller.
 void parallel_chunks(std::int64_t count, std::int64_t chunk,
                      const std::function<void(std::int64_t begin, std::int64_t end, int worker)>& body);
 

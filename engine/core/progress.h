@@ -1,4 +1,5 @@
-// How long work reports how far it is and learns that it should stop. Copied by value; an empty one does nothing.
+// How long work reports how far it is and learns that it should stop. Copied by value; an empty one does
+// nothing.
 #pragma once
 
 #include <atomic>
@@ -7,8 +8,8 @@
 namespace astrosplat {
 
 struct Progress {
-    std::function<void(double fraction)> report;     // fraction of the work done, 0..1; called from any thread
-    const std::atomic<bool>* cancelled = nullptr;    // set by another thread or a signal handler
+    std::function<void(double fraction)> report;   // fraction of the work done, 0..1; called from any thread
+    const std::atomic<bool>* cancelled = nullptr;  // set by another thread or a signal handler
 
     void at(double fraction) const {
         if (report) report(fraction);

@@ -1,7 +1,7 @@
-// Elementary functions in double whose bits are the same on every machine: the C library picks FMA variants at load
-// time, so anything that reaches a splat or a pixel uses these. Accurate to 2 ulp or better in the ranges stated.
-// (sqrt, fabs, floor, ceil, fmod are exact by IEEE 754 and may come from <cmath>.) The float versions that the
-// shaders share are in shaders/shared/maths.glsl.
+// Elementary functions in double whose bits are the same on every machine: the C library picks FMA variants
+// at load time, so anything that reaches a splat or a pixel uses these. Accurate to 2 ulp or better in the
+// ranges stated. (sqrt, fabs, floor, ceil, fmod are exact by IEEE 754 and may come from <cmath>.) The float
+// versions that the shaders share are in shaders/shared/maths.glsl.
 #pragma once
 
 namespace astrosplat::real {
@@ -17,7 +17,7 @@ double atan(double x);
 double atan2(double y, double x);  // (0, 0) gives 0
 double exp(double x);              // overflows to infinity, underflows to 0
 double log(double x);              // log(0) = -infinity, negative: NaN
-double pow(double x, double y);    // x >= 0; x = 0: 0 for y > 0, 1 for y = 0
+double pow(double x, double y);    // x >= 0; x = 0: 0 for y > 0, 1 for y = 0, infinity for y < 0
 double asinh(double x);
 
 inline double radians(double degrees) { return degrees * (pi / 180.0); }

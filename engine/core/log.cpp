@@ -1,0 +1,76 @@
+// Messages: a level, a sink and the counts of repeated warnings, behind one mutex.
+#include "core/log.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <utility>
+
+namespace astrosplat {
+namespace {
+
+struct Log {
+    std::mutex mutex;
+    LogLevel level = LogLevel::info;
+    std::function<void(LogLevel, const std::string&)> sink;
+    std::map<std::string, std::int64_t> warnings;  // line -> how often it came
+};
+
+Log& the_log() {
+    static Log log;
+    return log;
+}
+
+// Called with the mutex held, so that lines of several threads never mix.
+void emit(Log& log, LogLevel level, const std::string& line) {
+    if (level > log.level) return;
+    if (log.sink) {
+        log.sink(level, line);
+        return;
+    }
+    const char* kind = level == LogLevel::warning ? "warning: " : level == LogLevel::error ? "error: " : "";
+    fmt::print(stderr, "astrosplat: {}{}\n", kind, line);
+}
+
+}  // namespace
+
+void set_log_level(LogLevel level) {
+    Log& log = the_log();
+    const std::lock_guard lock(log.mutex);
+    log.level = level;
+}
+
+void set_log_sink(std::function<void(LogLevel, const std::string&)> sink) {
+    Log& log = the_log();
+    const std::lock_guard lock(log.mutex);
+    log.sink = std::move(sink);
+}
+
+void log_line(LogLevel level, const std::string& line) {
+    Log& log = the_log();
+    const std::lock_guard lock(log.mutex);
+    emit(log, level, line);
+}
+
+void log_error(const std::string& line) { log_line(LogLevel::error, line); }
+void log_info(const std::string& line) { log_line(LogLevel::info, line); }
+void log_detail(const std::string& line) { log_line(LogLevel::detail, line); }
+
+void log_warning(const std::string& line) {
+    Log& log = the_log();
+    const std::lock_guard lock(log.mutex);
+    if (++log.warnings[line] == 1) emit(log, LogLevel::warning, line);
+}
+
+void flush_warning_counts() {
+    Log& log = the_log();
+    const std::lock_guard lock(log.mutex);
+    for (const auto& [line, count] : log.warnings)
+        if (count > 1) emit(log, LogLevel::warning, fmt::format("{} ({} times)", line, count));
+    log.warnings.clear();
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,105 @@
+// How much memory there is, and how it is spoken about.
+#include "core/memory.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "core/cgroup.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
+
+// Three significant digits, without trailing zeros after the point: 1.25, 12.4, 312, 4.
+std::string three_digits(double value) {
+    const int decimals = value < 9.995 ? 2 : value < 99.95 ? 1 : 0;
+    std::string text = fmt::format("{:.{}f}", value, decimals);
+    if (decimals == 0) return text;
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
+}
+
+std::string human(double value, double step, const char* const (&units)[5]) {
+    int unit = 0;
+    while (unit < 4 && std::fabs(value) >= step * 0.9995) {
+        value /= step;
+        ++unit;
+    }
+    const std::string text = three_digits(value);
+    return *units[unit] ? text + " " + units[unit] : text;
+}
+
+// Finds "key   123" at the start of a line; -1 without it.
+std::int64_t field(const std::string& text, const std::string& key) {
+    std::size_t at = text.rfind(key, 0) == 0 ? 0 : text.find("\n" + key);
+    if (at == std::string::npos) return -1;
+    at = text.find_first_of("0123456789", at);
+    if (at == std::string::npos) return -1;
+    const std::size_t end = text.find_first_not_of("0123456789", at);
+    return parse_int64(std::string_view(text).substr(at, end == std::string::npos ? end : end - at))
+        .value_or(-1);
+}
+
+std::int64_t machine_available_bytes() {
+    std::ifstream in("/proc/meminfo");
+    const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    const std::int64_t kib = field(text, "MemAvailable:");
+    return kib < 0 ? unlimited : kib * 1024;
+}
+
+// The least room in this group and those above it. Cached file pages count as used there, but are given up on
+// demand.
+std::int64_t group_available_bytes(const char* limit_file, const char* usage_file, const char* cache_key) {
+    const auto limits = cgroup_values("memory", limit_file);
+    const auto usages = cgroup_values("memory", usage_file);
+    const auto stats = cgroup_values("memory", "memory.stat");
+    std::int64_t least = unlimited;
+    for (std::size_t i = 0; i < std::min(limits.size(), usages.size()); ++i) {
+        const std::optional<std::int64_t> limit = parse_int64(trim(limits[i]));  // "max" when there is none
+        const std::optional<std::int64_t> usage = parse_int64(trim(usages[i]));
+        if (!limit || !usage) continue;
+        const std::int64_t cache =
+            i < stats.size() ? std::max<std::int64_t>(0, field(stats[i], cache_key)) : 0;
+        least = std::min(least, std::max<std::int64_t>(0, *limit - *usage + cache));
+    }
+    return least;
+}
+
+}  // namespace
+
+std::string human_bytes(double bytes) { return human(bytes, 1024.0, {"B", "KiB", "MiB", "GiB", "TiB"}); }
+std::string human_count(double count) { return human(count, 1000.0, {"", "k", "M", "G", "T"}); }
+
+std::int64_t available_memory_bytes() {
+    const std::int64_t v2 = group_available_bytes("memory.max", "memory.current", "inactive_file");
+    const std::int64_t v1 =
+        group_available_bytes("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file");
+    return std::min({machine_available_bytes(), v2, v1});
+}
+
+std::int64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+}
+
+void claim_memory(std::int64_t bytes, const std::string& what) {
+    const std::string need = human_bytes(static_cast<double>(bytes));
+    const std::int64_t available = available_memory_bytes();
+    if (bytes > available)
+        throw InputError(fmt::format("{} needs {} of memory, but only {} are available", what, need,
+                                     human_bytes(static_cast<double>(available))));
+    log_detail(fmt::format("{} takes {} of memory", what, need));
+}
+
+}  // namespace astrosplat

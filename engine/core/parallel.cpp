@@ -1,0 +1,201 @@
+// The thread pool: jobs in a list, chunks handed out by an atomic counter. Every thread that calls a loop
+// works on its own job as worker 0, and the pool's threads (worker 1, 2, ...) help whoever has chunks left,
+// so that loops called from several threads at once share the pool and none waits for another.
+#include "core/parallel.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/cgroup.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+using Body = std::function<void(std::int64_t, std::int64_t, int)>;
+
+struct Job {
+    std::int64_t count;
+    std::int64_t chunk;
+    const Body& body;
+    std::atomic<std::int64_t> next{0};  // first item not handed out
+    int helpers = 0;                    // pool threads inside; guarded by the pool's mutex
+    std::exception_ptr error{};         // guarded by the pool's mutex
+
+    bool exhausted() const { return next.load(std::memory_order_relaxed) >= count; }
+};
+
+// The worker number of a thread that is inside a loop, -1 outside.
+thread_local int current_worker = -1;
+
+class Pool {
+  public:
+    ~Pool() { stop(); }
+
+    int size() {
+        const std::lock_guard lock(mutex_);
+        if (size_ == 0) size_ = available_threads();
+        return size_;
+    }
+
+    void resize(int threads) {
+        stop();
+        const std::lock_guard lock(mutex_);
+        size_ = threads;
+    }
+
+    void run(Job& job) {
+        start();
+        {
+            const std::lock_guard lock(mutex_);
+            jobs_.push_back(&job);
+        }
+        wake_.notify_all();
+        work(job, 0);
+        std::unique_lock lock(mutex_);
+        jobs_.erase(std::find(jobs_.begin(), jobs_.end(), &job));
+        idle_.wait(lock, [&] { return job.helpers == 0; });
+        if (job.error) std::rethrow_exception(job.error);
+    }
+
+  private:
+    void start() {
+        const std::lock_guard lock(mutex_);
+        while (static_cast<int>(threads_.size()) + 1 < size_) {
+            const int worker = static_cast<int>(threads_.size()) + 1;
+            threads_.emplace_back([this, worker] { serve(worker); });
+        }
+    }
+
+    void stop() {
+        {
+            const std::lock_guard lock(mutex_);
+            stopping_ = true;
+        }
+        wake_.notify_all();
+        for (std::thread& thread : threads_) thread.join();
+        threads_.clear();
+        stopping_ = false;
+    }
+
+    // Called with the mutex held: the open job with the fewest helpers.
+    Job* pick() {
+        Job* best = nullptr;
+        for (Job* job : jobs_)
+            if (!job->exhausted() && (!best || job->helpers < best->helpers)) best = job;
+        return best;
+    }
+
+    void serve(int worker) {
+        std::unique_lock lock(mutex_);
+        for (;;) {
+            Job* job = nullptr;
+            wake_.wait(lock, [&] { return stopping_ || (job = pick()) != nullptr; });
+            if (stopping_) return;
+            ++job->helpers;
+            lock.unlock();
+            work(*job, worker);
+            lock.lock();
+            if (--job->helpers == 0) idle_.notify_all();
+        }
+    }
+
+    void work(Job& job, int worker) {
+        current_worker = worker;
+        try {
+            for (;;) {
+                const std::int64_t begin = job.next.fetch_add(job.chunk, std::memory_order_relaxed);
+                if (begin >= job.count) break;
+                job.body(begin, std::min(begin + job.chunk, job.count), worker);
+            }
+        } catch (...) {
+            job.next.store(job.count, std::memory_order_relaxed);
+            const std::lock_guard lock(mutex_);
+            if (!job.error) job.error = std::current_exception();
+        }
+        current_worker = -1;
+    }
+
+    std::mutex mutex_;
+    std::condition_variable wake_;  // a job was added, or stop
+    std::condition_variable idle_;  // a job lost its last helper
+    std::vector<Job*> jobs_;
+    std::vector<std::thread> threads_;
+    int size_ = 0;  // callers included; 0: not yet asked for
+    bool stopping_ = false;
+};
+
+Pool& pool() {
+    static Pool the_pool;
+    return the_pool;
+}
+
+int affinity_threads() {
+    for (int cpus = 1024; cpus <= (1 << 20); cpus *= 2) {  // the kernel's mask may be wider than cpu_set_t
+        cpu_set_t* set = CPU_ALLOC(cpus);
+        if (!set) break;
+        const std::size_t size = CPU_ALLOC_SIZE(cpus);
+        const bool got = sched_getaffinity(0, size, set) == 0;
+        const int count = got ? CPU_COUNT_S(size, set) : 0;
+        CPU_FREE(set);
+        if (got) return count;
+    }
+    return static_cast<int>(std::thread::hardware_concurrency());
+}
+
+// Cores granted by "QUOTA PERIOD" in microseconds, rounded up; `most` without a limit ("max", -1).
+int quota_threads(std::string_view quota, std::string_view period, int most) {
+    const auto granted = parse_int64(trim(quota));
+    const auto per = parse_int64(trim(period));
+    if (!granted || !per || *granted <= 0 || *per <= 0) return most;
+    return static_cast<int>(std::clamp<std::int64_t>((*granted + *per - 1) / *per, 1, most));
+}
+
+int quota_of_groups(int most) {
+    for (const std::string& value : cgroup_values("cpu", "cpu.max")) {
+        const std::size_t blank = value.find(' ');
+        if (blank != std::string::npos)
+            most = quota_threads(value.substr(0, blank), value.substr(blank), most);
+    }
+    const std::vector<std::string> quotas = cgroup_values("cpu", "cpu.cfs_quota_us");
+    const std::vector<std::string> periods = cgroup_values("cpu", "cpu.cfs_period_us");
+    for (std::size_t i = 0; i < std::min(quotas.size(), periods.size()); ++i)
+        most = quota_threads(quotas[i], periods[i], most);
+    return most;
+}
+
+void run_alone(std::int64_t count, std::int64_t chunk, const Body& body, int worker) {
+    for (std::int64_t begin = 0; begin < count; begin += chunk)
+        body(begin, std::min(begin + chunk, count), worker);
+}
+
+}  // namespace
+
+int available_threads() { return std::max(1, quota_of_groups(std::max(1, affinity_threads()))); }
+
+void set_thread_count(int threads) { pool().resize(std::max(0, threads)); }
+
+int thread_count() { return pool().size(); }
+
+void parallel_chunks(std::int64_t count, std::int64_t chunk, const Body& body) {
+    if (count <= 0) return;
+    chunk = std::clamp<std::int64_t>(chunk, 1, count);
+    if (current_worker >= 0) return run_alone(count, chunk, body, current_worker);
+    if (count <= chunk || pool().size() == 1) return run_alone(count, chunk, body, 0);
+    Job job{count, chunk, body};
+    pool().run(job);
+}
+
+void parallel_for(std::int64_t count, const std::function<void(std::int64_t, int)>& body) {
+    parallel_chunks(count, 1, [&](std::int64_t begin, std::int64_t, int worker) { body(begin, worker); });
+}
+
+}  // namespace astrosplat

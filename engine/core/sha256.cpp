@@ -1,0 +1,57 @@
+// SHA-256 by OpenSSL's EVP interface.
+#include "core/sha256.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <cassert>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <vector>
+
+#include "core/error.h"
+
+namespace astrosplat {
+
+struct Sha256::State {
+    EVP_MD_CTX* context = EVP_MD_CTX_new();
+    ~State() { EVP_MD_CTX_free(context); }
+};
+
+Sha256::Sha256() : state_(std::make_unique<State>()) {
+    if (!state_->context || EVP_DigestInit_ex(state_->context, EVP_sha256(), nullptr) != 1)
+        throw std::bad_alloc();
+}
+
+Sha256::~Sha256() = default;
+
+Sha256& Sha256::add(const void* bytes, std::size_t size) {
+    EVP_DigestUpdate(state_->context, bytes, size);
+    return *this;
+}
+
+std::string Sha256::hex() {
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned int size = 0;
+    [[maybe_unused]] const int done = EVP_DigestFinal_ex(state_->context, digest, &size);
+    assert(done == 1);
+    std::string text;
+    for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
+    return text;
+}
+
+std::string sha256_of_file(const std::filesystem::path& file) {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
+    if (!in) throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+    Sha256 hash;
+    std::vector<char> block(std::size_t{1} << 20);
+    std::size_t got = 0;
+    while ((got = std::fread(block.data(), 1, block.size(), in.get())) > 0) hash.add(block.data(), got);
+    if (std::ferror(in.get()))
+        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+    return hash.hex();
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,32 @@
+// Numbers and names as text, the same in every locale.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace astrosplat {
+
+/// `text` without spaces, tabs and line ends at both ends.
+std::string_view trim(std::string_view text);
+
+/// The whole of `text` as a number, with '.' as the decimal point; a leading '+' is allowed. Empty for
+/// anything else, and for values too large for a double. "inf" and "nan" are numbers here: callers that need
+/// finite ones check.
+std::optional<double> parse_double(std::string_view text);
+std::optional<std::int64_t> parse_int64(std::string_view text);
+
+/// The shortest decimal that reads back as the same bits.
+std::string shortest(double value);
+std::string shortest(float value);
+
+/// Fewest insertions, deletions and replacements of single bytes that turn `a` into `b` (Levenshtein).
+int edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate a misspelt `name` most probably meant, "" when none is near (more than a third of it wrong).
+/// Dotted names are also compared with the ends of the candidates: alpha.powr means layer.look.alpha.power.
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+
+}  // namespace astrosplat
