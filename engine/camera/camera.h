@@ -31,6 +31,7 @@ struct CameraParams {
     double far = 0.0;                    // scene units; 0: none
     double near_fade = 0.0;              // scene units; 0: one radius of the splat
     std::filesystem::path file;
+    bool operator==(const CameraParams&) const = default;
 };
 
 struct Camera {

@@ -18,6 +18,7 @@ struct EnvironmentParams {
     float gain = 1.0f;
     glm::dvec3 rotation{0.0};  // degrees about x, then y, then z
     bool visible = true;
+    bool operator==(const EnvironmentParams&) const = default;
 };
 
 struct Environment {

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <glm/vec3.hpp>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -33,16 +32,19 @@ struct OutputParams {
     View view = View::automatic;
     double exposure = 0.0;      // stops
     double pixel_filter = 0.5;  // px
+    bool operator==(const OutputParams&) const = default;
 };
 
 struct ProvenanceParams {
     std::string title, credit, type = "Artwork";
+    bool operator==(const ProvenanceParams&) const = default;
 };
 
 struct LayerTransform {
     glm::dvec3 translate{0.0};
     glm::dvec3 rotate{0.0};  // degrees about x, then y, then z
     double scale = 1.0;
+    bool operator==(const LayerTransform&) const = default;
 };
 
 struct LayerParams {
@@ -54,6 +56,7 @@ struct LayerParams {
     SourceParams source;
     Look look;
     LayerRender render;
+    bool operator==(const LayerParams&) const = default;
 };
 
 /// One animated key path, as in the file. Values are kept as numbers per component: scalars 1, colours and vectors 3,
@@ -64,6 +67,7 @@ struct Track {
     Interpolation interpolation = Interpolation::linear;  // the default of keys that do not say
     Ends ends = Ends::ease;
     bool constant_speed = false;
+    bool operator==(const Track&) const = default;
 };
 
 struct Scene {
@@ -74,6 +78,7 @@ struct Scene {
     ProvenanceParams provenance;
     std::vector<LayerParams> layers;
     std::vector<Track> animation;
+    bool operator==(const Scene&) const = default;
 };
 
 }  // namespace astrosplat

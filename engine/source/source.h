@@ -31,6 +31,7 @@ struct TextureSettings {
     double softening = 0.1;       // asinh(x/s)/asinh(1/s)
     Filter filter = Filter::bilinear;
     Wrap wrap = Wrap::automatic;
+    bool operator==(const TextureSettings&) const = default;
 };
 
 /// One mesh of a layer with its picture. `mesh` is a file or "plane", "relief", "disk", "sphere".
@@ -38,6 +39,19 @@ struct MeshInput {
     std::filesystem::path mesh;
     std::vector<std::filesystem::path> texture;  // empty: the mesh's own map_Kd; three: one picture from r, g, b
     double relief = 0.15;                        // "relief": height as a fraction of the plane's width
+    bool operator==(const MeshInput&) const = default;
+};
+
+/// kind stars: a catalogue, or `SourceParams::count` random stars along something.
+struct StarsParams {
+    std::filesystem::path catalogue;
+    double unit = 1.0;        // scene units per parsec
+    double limit = 12.0;      // faintest magnitude
+    double zero_point = 4.0;  // magnitude of flux 1
+    std::string along;        // "camera": random stars around the camera's path; empty: the catalogue
+    double spread = 10.0;     // scene units around the path
+    double psf = 1.0;         // px, standard deviation
+    bool operator==(const StarsParams&) const = default;
 };
 
 enum class UvMode { mesh, planar_xy, planar_xz, planar_yz };
@@ -55,6 +69,8 @@ struct SourceParams {
     UvMode uv = UvMode::mesh;
     std::uint32_t seed = 0;  // 0: derived from the layer's name
     std::filesystem::path file;  // kind splats
+    StarsParams stars;           // kind stars
+    bool operator==(const SourceParams&) const = default;
 };
 
 }  // namespace astrosplat
