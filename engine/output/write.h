@@ -27,11 +27,13 @@ struct FrameMetadata {
     std::optional<ExrMatrices> matrices;
 };
 
-/// Writes one frame; the ending of `file` chooses the format. `layer_names` name frame.layers. `whole` is the size of
-/// the whole picture and `region` the part rendered (EXR: display and data window). Throws OutputError.
+/// Writes one frame; the ending of `file` chooses the format. `layer_names` name frame.layers. `whole` is the
+/// size of the whole picture and `region` the part rendered (EXR: display and data window). Throws
+/// OutputError.
 void write_frame(const std::filesystem::path& file, const RenderedFrame& frame,
-                 const std::vector<std::string>& layer_names, const OutputParams& output, std::int64_t whole_width,
-                 std::int64_t whole_height, const Region& region, const FrameMetadata& metadata);
+                 const std::vector<std::string>& layer_names, const OutputParams& output,
+                 std::int64_t whole_width, std::int64_t whole_height, const Region& region,
+                 const FrameMetadata& metadata);
 
 /// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits").
 void check_output(const OutputParams& output);
@@ -42,8 +44,9 @@ std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::pat
 /// True when the file can be read to its last pixel.
 bool frame_is_whole(const std::filesystem::path& file);
 
-/// "frames/shot.####.exr" with frame 12 gives "frames/shot.0012.exr"; also %04d and {frame:04}. Negative frames keep
-/// the width with a minus sign in front. `has_frame_token` tells whether there is anything to replace.
+/// "frames/shot.####.exr" with frame 12 gives "frames/shot.0012.exr"; also %04d and {frame:04}. Negative
+/// frames keep the width with a minus sign in front. `has_frame_token` tells whether there is anything to
+/// replace.
 std::string frame_file(const std::string& pattern, std::int64_t frame);
 bool has_frame_token(const std::string& pattern);
 

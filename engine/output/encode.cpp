@@ -1,0 +1,139 @@
+// Alpha rule, exposure, view transform, dither and rounding of frame files.
+#include "output/encode.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/real.h"
+
+namespace astrosplat {
+namespace {
+
+using Alpha = OutputParams::Alpha;
+using View = OutputParams::View;
+
+constexpr int table_steps = 4096;
+
+// The power part of the sRGB curve over s = sqrt(x), where it is so smooth that straight lines between 4097
+// points are within 1e-7 of it; a pow for each of six million channels would take longer than the rest of the
+// encoding.
+std::array<float, table_steps + 2> make_srgb_table() {
+    std::array<float, table_steps + 2> table{};
+    for (int i = 0; i <= table_steps + 1; ++i) {
+        double s = static_cast<double>(i) / table_steps;
+        table[static_cast<std::size_t>(i)] = static_cast<float>(1.055 * real::pow(s, 2.0 / 2.4) - 0.055);
+    }
+    return table;
+}
+
+// IEC 61966-2-1 of x in [0, 1].
+float srgb_curve(float x) {
+    static const std::array<float, table_steps + 2> table = make_srgb_table();
+    if (x <= 0.0031308f) return x * 12.92f;
+    float at = std::sqrt(x) * static_cast<float>(table_steps);
+    float below = std::floor(at);
+    auto i = static_cast<std::size_t>(below);
+    return table[i] + (table[i + 1] - table[i]) * (at - below);
+}
+
+float clamp01(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
+
+float soft_curve(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
+
+float gain_of(const FrameFormat& format) { return static_cast<float>(real::pow(2.0, format.exposure)); }
+
+// Calls row(y) for every row of a picture, on all threads.
+template <class Row>
+void for_rows(const Image& image, const Row& row) {
+    parallel_chunks(image.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t y = begin; y < end; ++y) row(y);
+    });
+}
+
+}  // namespace
+
+float apply_view(View view, float value) {
+    if (!(value > 0.0f)) return 0.0f;
+    // Beyond 1e6 the soft curve has long met its limit; its squares would overflow.
+    float x = view == View::soft ? soft_curve(std::fmin(value, 1e6f)) : value;
+    return view == View::linear ? clamp01(x) : srgb_curve(clamp01(x));
+}
+
+float dither(std::int64_t x, std::int64_t y, int channel) {
+    // 2^32 over the plastic number and over its square: M. Roberts, "The unreasonable effectiveness of
+    // quasirandom sequences" (2018). The third factor, 2^32 over the golden ratio, takes the channels apart.
+    std::uint32_t lattice = static_cast<std::uint32_t>(x) * 0xC13FA9A9u +
+                            static_cast<std::uint32_t>(y) * 0x91E10DA5u +
+                            static_cast<std::uint32_t>(channel) * 0x9E3779B9u;
+    // 255 levels at -127/256 .. 127/256: a value that is a multiple of 1/255 can never be rounded to another
+    // one.
+    return (static_cast<float>((lattice >> 8) % 255u) - 127.0f) / 256.0f;
+}
+
+int stored_channels(const FrameFormat& format) { return format.alpha == Alpha::none ? 3 : 4; }
+
+void encode_pixel(const FrameFormat& format, float gain, const float* rgba, float* stored) {
+    bool view = format.holds_view(), none = format.alpha == Alpha::none;
+    float alpha = view ? clamp01(rgba[3]) : rgba[3];
+    bool divide = !none && (view || format.alpha == Alpha::straight);
+    for (int c = 0; c < 3; ++c) {
+        float light = rgba[c];
+        if (divide) light = rgba[3] > 0.0f ? light / rgba[3] : 0.0f;
+        if (view) light = apply_view(format.view, light * gain);
+        if (view && format.alpha == Alpha::premultiplied) light *= alpha;
+        stored[c] = light;
+    }
+    if (!none) stored[3] = alpha;
+}
+
+std::vector<std::uint8_t> encode_8bit(const FrameFormat& format, const Image& image, std::int64_t x0,
+                                      std::int64_t y0) {
+    int channels = stored_channels(format);
+    float gain = gain_of(format);
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(image.width * image.height * channels));
+    for_rows(image, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            float stored[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+            encode_pixel(format, gain, image.at(x, y), stored);
+            std::uint8_t* out = bytes.data() + (y * image.width + x) * channels;
+            for (int c = 0; c < channels; ++c) {
+                float code = std::floor(stored[c] * 255.0f + 0.5f + dither(x0 + x, y0 + y, c));
+                out[c] = static_cast<std::uint8_t>(std::clamp(code, 0.0f, 255.0f));
+            }
+            if (format.alpha == Alpha::premultiplied)
+                for (int c = 0; c < 3; ++c) out[c] = std::min(out[c], out[3]);
+        }
+    });
+    return bytes;
+}
+
+std::vector<std::uint16_t> encode_16bit(const FrameFormat& format, const Image& image) {
+    int channels = stored_channels(format);
+    float gain = gain_of(format);
+    std::vector<std::uint16_t> words(static_cast<std::size_t>(image.width * image.height * channels));
+    for_rows(image, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            float stored[4];
+            encode_pixel(format, gain, image.at(x, y), stored);
+            std::uint16_t* out = words.data() + (y * image.width + x) * channels;
+            for (int c = 0; c < channels; ++c)
+                out[c] = static_cast<std::uint16_t>(stored[c] * 65535.0f + 0.5f);
+        }
+    });
+    return words;
+}
+
+Image encode_float(const FrameFormat& format, const Image& image) {
+    int channels = stored_channels(format);
+    Image result{image.width, image.height, channels, {}};
+    result.pixels.resize(static_cast<std::size_t>(image.width * image.height * channels));
+    for_rows(image, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x)
+            encode_pixel(format, 1.0f, image.at(x, y), result.at(x, y));
+    });
+    return result;
+}
+
+}  // namespace astrosplat

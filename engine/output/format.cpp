@@ -1,0 +1,133 @@
+// The rules of which depth, compression and extra channels each file format knows, as one table.
+#include "output/format.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "output/write.h"
+
+namespace astrosplat {
+namespace {
+
+using Depth = OutputParams::Depth;
+using Compression = OutputParams::Compression;
+using Alpha = OutputParams::Alpha;
+using View = OutputParams::View;
+
+struct KindRules {
+    FileKind kind;
+    const char* name;
+    std::vector<const char*> endings;
+    std::vector<Depth> depths;              // the first is "auto"
+    std::vector<Compression> compressions;  // the first is "auto"
+    Alpha automatic_alpha;
+    const char* depths_text;
+    const char* compressions_text;
+};
+
+const std::array<KindRules, 3>& rules() {
+    static const std::array<KindRules, 3> table = {{
+        {FileKind::exr,
+         "exr",
+         {".exr"},
+         {Depth::half_float, Depth::float32},
+         {Compression::zip, Compression::zips, Compression::piz, Compression::dwaa, Compression::none},
+         Alpha::premultiplied,
+         "half or float",
+         "zip, zips, piz, dwaa or none"},
+        {FileKind::tif,
+         "tif",
+         {".tif", ".tiff"},
+         {Depth::uint16, Depth::uint8, Depth::float32},
+         {Compression::deflate, Compression::lzw, Compression::none},
+         Alpha::premultiplied,
+         "8, 16 or float",
+         "deflate, lzw or none"},
+        {FileKind::png,
+         "png",
+         {".png"},
+         {Depth::uint8, Depth::uint16},
+         {Compression::deflate},
+         Alpha::none,
+         "8 or 16",
+         "auto"},
+    }};
+    return table;
+}
+
+const char* name_of(Depth depth) {
+    constexpr std::array<const char*, 5> names = {"auto", "half", "float", "16", "8"};
+    return names[static_cast<std::size_t>(depth)];
+}
+
+const char* name_of(Compression compression) {
+    constexpr std::array<const char*, 8> names = {"auto", "zip",     "zips", "piz",
+                                                  "dwaa", "deflate", "lzw",  "none"};
+    return names[static_cast<std::size_t>(compression)];
+}
+
+const KindRules& rules_for(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    for (const KindRules& rule : rules())
+        for (const char* known : rule.endings)
+            if (ending == known) return rule;
+    throw InputError(
+        fmt::format("output.path: expected a file ending in .exr, .tif or .png, found '{}'", file.string()));
+}
+
+template <class T>
+bool contains(const std::vector<T>& list, T value) {
+    return std::find(list.begin(), list.end(), value) != list.end();
+}
+
+void check_aovs(const OutputParams& output, const KindRules& rule) {
+    static const std::vector<std::string> known = {"depth", "coverage", "count", "layers"};
+    for (const std::string& aov : output.aovs)
+        if (!contains(known, aov))
+            throw InputError(
+                fmt::format("output.aovs: expected depth, coverage, count or layers, found '{}'", aov));
+    if (!output.aovs.empty() && rule.kind != FileKind::exr)
+        throw InputError(
+            fmt::format("output.aovs: expected none in {} files (extra channels need exr), found '{}'",
+                        rule.name, output.aovs.front()));
+}
+
+}  // namespace
+
+FrameFormat resolve_format(const OutputParams& output, const std::filesystem::path& file) {
+    const KindRules& rule = rules_for(file);
+    FrameFormat format;
+    format.kind = rule.kind;
+    format.depth = output.depth == Depth::automatic ? rule.depths.front() : output.depth;
+    if (!contains(rule.depths, format.depth))
+        throw InputError(fmt::format("output.depth: expected {} in {} files, found {}", rule.depths_text,
+                                     rule.name, name_of(output.depth)));
+    bool automatic = output.compression == Compression::automatic;
+    format.compression = automatic ? rule.compressions.front() : output.compression;
+    if (!contains(rule.compressions, format.compression))
+        throw InputError(fmt::format("output.compression: expected {} in {} files, found {}",
+                                     rule.compressions_text, rule.name, name_of(output.compression)));
+    check_aovs(output, rule);
+    format.alpha = output.alpha == Alpha::automatic ? rule.automatic_alpha : output.alpha;
+    if (format.holds_view()) {
+        format.view = output.view == View::automatic ? View::srgb : output.view;
+        format.exposure = output.exposure;
+    }
+    return format;
+}
+
+void check_output(const OutputParams& output) {
+    if (output.width < 1 || output.height < 1)
+        throw InputError(fmt::format("output.resolution: expected at least 1 x 1 px, found {} x {}",
+                                     output.width, output.height));
+    resolve_format(output, frame_file(output.path, 1));
+}
+
+}  // namespace astrosplat

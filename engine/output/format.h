@@ -1,0 +1,29 @@
+// What a frame file will be: [output] with every "auto" resolved for the file's ending.
+#pragma once
+
+#include <filesystem>
+
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+enum class FileKind { exr, tif, png };
+
+struct FrameFormat {
+    FileKind kind = FileKind::exr;
+    OutputParams::Depth depth = OutputParams::Depth::half_float;             // never automatic
+    OutputParams::Compression compression = OutputParams::Compression::zip;  // never automatic; unused by png
+    OutputParams::Alpha alpha = OutputParams::Alpha::premultiplied;          // never automatic
+    OutputParams::View view = OutputParams::View::linear;                    // never automatic
+    double exposure = 0.0;  // stops; 0 in files that hold scene light
+
+    /// 8 and 16 bit files hold a view of the scene; exr and float tif hold the scene's own light.
+    bool holds_view() const {
+        return depth == OutputParams::Depth::uint8 || depth == OutputParams::Depth::uint16;
+    }
+};
+
+/// Throws InputError, one line, when ending, depth, compression, alpha or aovs do not fit together.
+FrameFormat resolve_format(const OutputParams& output, const std::filesystem::path& file);
+
+}  // namespace astrosplat

@@ -1,0 +1,67 @@
+// Frame metadata as text.
+#include "output/metadata.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+// The value on one line, so that it cannot be mistaken for the next entry.
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+    return text;
+}
+
+}  // namespace
+
+MetadataEntries metadata_entries(const FrameMetadata& metadata) {
+    MetadataEntries entries = {
+        {"astrosplat/version", ASTROSPLAT_VERSION},
+        {"astrosplat/frameHash", metadata.frame_hash},
+        {"astrosplat/pixelHash", metadata.pixel_hash},
+        {"astrosplat/seed", std::to_string(metadata.seed)},
+        {"astrosplat/frame", std::to_string(metadata.frame)},
+        {"astrosplat/fps", shortest(metadata.fps)},
+    };
+    auto add = [&](const char* key, const std::string& value) {
+        if (!value.empty()) entries.emplace_back(key, one_line(value));
+    };
+    add("astrosplat/title", metadata.provenance.title);
+    add("astrosplat/credit", metadata.provenance.credit);
+    add("astrosplat/type", metadata.provenance.type);
+    return entries;
+}
+
+std::string metadata_lines(const MetadataEntries& entries) {
+    std::string lines;
+    for (const auto& [key, value] : entries) lines += fmt::format("{}={}\n", key, value);
+    return lines;
+}
+
+std::string find_metadata_line(const std::string& lines, const std::string& key) {
+    std::string wanted = key + "=";
+    for (std::size_t begin = 0; begin < lines.size();) {
+        std::size_t end = std::min(lines.find('\n', begin), lines.size());
+        if (lines.compare(begin, wanted.size(), wanted) == 0)
+            return lines.substr(begin + wanted.size(), end - begin - wanted.size());
+        begin = end + 1;
+    }
+    return "";
+}
+
+Rational rational_fps(double fps) {
+    double ntsc = std::round(fps * 1.001);
+    if (std::fabs(ntsc * 1000.0 / 1001.0 - fps) < 0.0005 && std::fabs(ntsc - fps) > 0.0005)
+        return {static_cast<int>(ntsc) * 1000, 1001};
+    int thousandths = static_cast<int>(std::round(std::fmin(fps, 1e6) * 1000.0));
+    int common = std::gcd(thousandths, 1000);
+    return {thousandths / common, 1000 / common};
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,30 @@
+// The header of a frame file, as text pairs that every format can hold: no host, user or clock.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "output/write.h"
+
+namespace astrosplat {
+
+using MetadataEntries = std::vector<std::pair<std::string, std::string>>;
+
+/// "astrosplat/version", "/frameHash", "/pixelHash", "/seed", "/frame", "/fps" and, where not empty,
+/// "/title",
+/// "/credit", "/type".
+MetadataEntries metadata_entries(const FrameMetadata& metadata);
+
+/// The entries as lines "key=value" (line breaks in values become spaces): TIFF's ImageDescription.
+std::string metadata_lines(const MetadataEntries& entries);
+/// The value of `key` in such lines, "" when absent.
+std::string find_metadata_line(const std::string& lines, const std::string& key);
+
+/// Frames per second as a fraction: 24 is 24/1, 23.976 is 24000/1001; others to a thousandth.
+struct Rational {
+    int numerator, denominator;
+};
+Rational rational_fps(double fps);
+
+}  // namespace astrosplat

@@ -1,0 +1,52 @@
+// What --resume asks of a frame file that lies there already: its hashes, and whether it is whole.
+#include <fmt/format.h>
+// fmt first: OpenImageIO brings a copy of it with other settings.
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "output/metadata.h"
+#include "output/write.h"
+
+namespace astrosplat {
+namespace {
+
+std::string entry(const OIIO::ImageSpec& spec, const char* key) {
+    std::string value = spec.get_string_attribute(key);
+    if (!value.empty()) return value;
+    return find_metadata_line(spec.get_string_attribute("ImageDescription"), key);
+}
+
+}  // namespace
+
+std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::path& file) {
+    auto in = OIIO::ImageInput::open(file.string());
+    if (!in) {
+        (void)OIIO::geterror();  // a message left behind would be printed at exit
+        return {};
+    }
+    return {entry(in->spec(), "astrosplat/frameHash"), entry(in->spec(), "astrosplat/pixelHash")};
+}
+
+bool frame_is_whole(const std::filesystem::path& file) {
+    auto in = OIIO::ImageInput::open(file.string());
+    if (!in) {
+        (void)OIIO::geterror();
+        return false;
+    }
+    const OIIO::ImageSpec& spec = in->spec();
+    constexpr int rows = 256;
+    std::vector<unsigned char> band(spec.scanline_bytes(true) * rows);
+    for (int y = 0; y < spec.height; y += rows) {
+        int end = std::min(y + rows, spec.height);
+        if (in->read_scanlines(0, 0, spec.y + y, spec.y + end, 0, 0, spec.nchannels, OIIO::TypeUnknown,
+                               band.data()))
+            continue;
+        (void)in->geterror();
+        return false;
+    }
+    return true;
+}
+
+}  // namespace astrosplat
