@@ -1,0 +1,36 @@
+// The program's own splat files (.splats): everything a SplatSet holds, bit for bit. In and out: SplatSet.
+// Memory mapped, checked by block, and in an order that keeps neighbours together.
+//
+// Format version 1, all little-endian, checksums XXH64 (checksum.h):
+//   header   0  8 bytes  89 'S' 'P' 'L' 'A' 'T' 0d 0a
+//            8  u32      version, 1
+//           12  u32      flags: 1 generated, 2 divided, 4 uv, 8 normal, 16 mesh, 32 radius are present
+//           16  u64      splats
+//           24  u32      splats in a block (the last block may hold fewer)
+//           28  u32      bytes of the credit
+//           32  3 f64    spacing             56  f64  max_distance
+//           64  i64      test positions      72  i64  positions dropped for zero alpha
+//           80           credit (UTF-8), zeros up to 8 bytes before a multiple of 64, u64 checksum of all
+//           before it
+//   blocks  one after the other, in each: position 3 f32, colour 3 f32, alpha f32, distance f32, id u64, and
+//   where
+//           present uv 2 f32, normal 3 f32, mesh u32, radius f32, every array whole before the next
+//   table   for each block: lowest and highest x y z of its positions (6 f32), u64 checksum of its bytes
+//           then u64 checksum of the table
+#pragma once
+
+#include <filesystem>
+
+#include "core/progress.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+/// Rows come back in the file's order (spatial_order.h); sort_by_id brings back that of the ids. Every length
+/// is checked before memory is taken or touched, every block against its checksum. Throws InputError.
+SplatSet read_native(const std::filesystem::path& file, const Progress& progress = {});
+
+/// The same bytes for any thread count. Throws OutputError.
+void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {});
+
+}  // namespace astrosplat

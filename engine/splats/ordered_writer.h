@@ -1,0 +1,27 @@
+// Writes a file whose rows are formatted in parallel and come out in order: a thread formats a chunk of rows
+// into its own memory, waits for its turn, and appends it. The file's bytes do not depend on the threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "core/progress.h"
+
+namespace astrosplat {
+
+/// Writes rows [begin, end) to `out` and returns the end of what it wrote.
+using FormatRows = std::function<char*(std::int64_t begin, std::int64_t end, char* out)>;
+/// What follows the rows; asked for once all of them are formatted.
+using Footer = std::function<std::string()>;
+
+/// `header`, then `count` rows in chunks of `chunk`, each row at most `row_bytes` long. Atomic: the file
+/// appears whole or not at all. Throws OutputError, Cancelled.
+void write_ordered(const std::filesystem::path& file, std::string_view header, std::int64_t count,
+                   std::int64_t chunk, std::size_t row_bytes, const Progress& progress,
+                   const FormatRows& format, const Footer& footer = {});
+
+}  // namespace astrosplat
