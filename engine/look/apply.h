@@ -1,5 +1,6 @@
 // The seven operators of DESIGN 5, in order: SplatSet + Look -> ShadedSplats. The arithmetic of one splat is
-// shaders/shared/look.glsl, which the preview compiles too; this prepares its uniforms and runs it over the set.
+// shaders/shared/look.glsl, which the preview compiles too; this prepares its uniforms and runs it over the
+// set.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +19,9 @@ enum class ColumnLaw { transmittance, sum, maximum };  // over, screen, hybrid |
 
 /// What the look needs from elsewhere, as plain values.
 struct LookInputs {
-    glm::vec3 axis{0.0f, 1.0f, 0.0f};   // the layer's thin direction, layer space
-    std::uint32_t seed = 1;             // of the layer, never 0 (see resolved_seed)
-    double falloff_integral = 1.0;      // of the layer's falloff over the unit disc
+    glm::vec3 axis{0.0f, 1.0f, 0.0f};  // the layer's thin direction, layer space
+    std::uint32_t seed = 1;            // of the layer, never 0 (see resolved_seed)
+    double falloff_integral = 1.0;     // of the layer's falloff over the unit disc
     ColumnLaw column = ColumnLaw::transmittance;
     const Image* thickness_map = nullptr;  // raw values; must be there when look.thickness.map is set
 };
@@ -30,10 +31,14 @@ struct LookStatistics {
     double seconds = 0.0;
 };
 
-/// Deterministic for any thread count and instruction set. Throws InputError when the look cannot be applied to the
-/// set (no radius known, match without spacing, thickness map without uv). A look at its defaults on a set read from
-/// a file passes the splats through unchanged.
+/// Deterministic for any thread count and instruction set. Throws InputError when the look cannot be applied
+/// to the set (no radius known, match without spacing, thickness map without uv). A look at its defaults on a
+/// set read from a file passes the splats through unchanged.
 ShadedSplats apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
                         const Progress& progress = {}, LookStatistics* statistics = nullptr);
+
+/// The same into arrays of an earlier call, whose memory is used again.
+void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs, ShadedSplats& shaded,
+                const Progress& progress = {}, LookStatistics* statistics = nullptr);
 
 }  // namespace astrosplat

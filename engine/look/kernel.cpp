@@ -1,0 +1,519 @@
+// shaders/shared/look.glsl over blocks of splats, one step at a time: each step is a plain loop over arrays
+// that the compiler turns into vectors, once per instruction set (Highway's foreach_target includes this file
+// again for each). What a look does not use is skipped for a whole block, and nothing is worked out for
+// splats already dropped; the bits are those of look_splat (a test compares them).
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "look/kernel.cpp"
+#include <hwy/foreach_target.h>
+// after foreach_target
+#include <hwy/highway.h>
+
+#include <cstring>
+
+#include "look/kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace astrosplat {
+namespace HWY_NAMESPACE {
+namespace {
+
+using namespace astrosplat::shared_types;
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include "maths.glsl"
+// after maths
+#include "noise.glsl"
+// after noise
+#include "look.glsl"
+#pragma GCC diagnostic pop
+
+// Every loop calls shared functions; flatten inlines them all, without which nothing becomes a vector.
+#define ASTROSPLAT_LOOP HWY_FLATTEN void
+
+constexpr int block_size = 256;
+using Lane = float[block_size];
+
+// Splats on their way through the steps: first those read, from `compact` on those kept. 40 kB.
+struct Block {
+    int count;
+    int from[block_size];  // index within the block's part of the set
+    uint id_low[block_size], id_high[block_size];
+    Lane px, py, pz;  // position; read where noise is used
+    Lane distance, x, reach, column;
+    Lane n[LOOK_MAX_NOISES];          // noise values
+    Lane weight[LOOK_MAX_KEYS], sum;  // of the thickness keys
+    Lane r, g, b;                     // map value, later colour
+    Lane probability, bites;
+    Lane alpha, alpha_factor, color_factor, radius_factor, radius, f;
+    int keep[block_size];
+};
+
+bool any(const LookUniforms& u, float LookNoise::*amount) {
+    for (int j = 0; j < u.noise_count; ++j)
+        if (u.noises[j].*amount != 0.0f) return true;
+    return false;
+}
+
+ASTROSPLAT_LOOP fill(float* HWY_RESTRICT y, float value, int count) {
+    for (int i = 0; i < count; ++i) y[i] = value;
+}
+
+// --- reading ---
+
+ASTROSPLAT_LOOP read_ids(const std::uint64_t* HWY_RESTRICT id, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        b.id_low[i] = uint(id[i]);
+        b.id_high[i] = uint(id[i] >> 32);
+    }
+}
+
+ASTROSPLAT_LOOP read_positions(const glm::vec3* HWY_RESTRICT position, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        b.px[i] = position[i].x;
+        b.py[i] = position[i].y;
+        b.pz[i] = position[i].z;
+    }
+}
+
+// One channel, or the first three; what lies beyond the third is not read.
+void read_map(const Image& map, const glm::vec2* uv, Block& b) {
+    const int width = int(map.width), height = int(map.height);
+    const int green = map.channels >= 3 ? 1 : 0, blue = map.channels >= 3 ? 2 : 0;
+    for (int i = 0; i < b.count; ++i) {
+        const float x = look_texel(uv[i].x, width), y = look_texel(1.0f - uv[i].y, height);
+        const int x0 = int(x), y0 = int(y);
+        const int x1 = min(x0 + 1, width - 1), y1 = min(y0 + 1, height - 1);
+        const float tx = x - floor(x), ty = y - floor(y);
+        const float *c00 = map.at(x0, y0), *c10 = map.at(x1, y0), *c01 = map.at(x0, y1),
+                    *c11 = map.at(x1, y1);
+        b.r[i] = look_bilinear(c00[0], c10[0], c01[0], c11[0], tx, ty);
+        b.g[i] = look_bilinear(c00[green], c10[green], c01[green], c11[green], tx, ty);
+        b.b[i] = look_bilinear(c00[blue], c10[blue], c01[blue], c11[blue], tx, ty);
+    }
+}
+
+// --- noise ---
+
+ASTROSPLAT_LOOP add_octave(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
+                           const float* HWY_RESTRICT z, float* HWY_RESTRICT sum, float amplitude,
+                           float frequency, uint seed, int octave, int count) {
+    for (int i = 0; i < count; ++i)
+        sum[i] = sum[i] + amplitude * as_noise_octave(x[i], y[i], z[i], frequency, seed, octave);
+}
+
+// as_fbm with its two loops exchanged.
+void fbm(const LookNoise& noise, const float* x, const float* y, const float* z, float* sum, int count) {
+    float amplitude = noise.scale, frequency = noise.frequency;
+    fill(sum, 0.0f, count);
+    for (int i = 0; i < noise.octaves; ++i) {
+        add_octave(x, y, z, sum, amplitude, frequency, noise.seed, i, count);
+        amplitude = amplitude * noise.gain;
+        frequency = frequency * noise.lacunarity;
+    }
+}
+
+ASTROSPLAT_LOOP positions_across(const Block& b, vec3 axis, float* HWY_RESTRICT x, float* HWY_RESTRICT y,
+                                 float* HWY_RESTRICT z) {
+    for (int i = 0; i < b.count; ++i) {
+        const vec3 p = look_across(vec3(b.px[i], b.py[i], b.pz[i]), axis);
+        x[i] = p.x;
+        y[i] = p.y;
+        z[i] = p.z;
+    }
+}
+
+ASTROSPLAT_LOOP bite(float amount, const float* HWY_RESTRICT n, float* HWY_RESTRICT factor, int count) {
+    for (int i = 0; i < count; ++i) factor[i] = factor[i] * look_bite(amount, n[i]);
+}
+
+ASTROSPLAT_LOOP vary(float amount, const float* HWY_RESTRICT n, float* HWY_RESTRICT factor, int count) {
+    for (int i = 0; i < count; ++i) factor[i] = factor[i] * look_vary(amount, n[i]);
+}
+
+// --- profiles ---
+
+template <int shape>
+ASTROSPLAT_LOOP formula(float rate, const float* HWY_RESTRICT x, float* HWY_RESTRICT y, int count) {
+    for (int i = 0; i < count; ++i) y[i] = look_formula(shape, rate, x[i]);
+}
+
+// look_curve with its two loops exchanged.
+ASTROSPLAT_LOOP curve_piece(vec4 first, vec4 second, const float* HWY_RESTRICT x, float* HWY_RESTRICT y,
+                            int count) {
+    for (int i = 0; i < count; ++i) {
+        const float value = look_curve_piece(first, second, x[i]);
+        y[i] = x[i] >= first.x ? value : y[i];
+    }
+}
+
+void curve(const LookCurve& c, const float* x, float* y, int count) {
+    fill(y, c.knots[0].y, count);
+    for (int k = 0; k + 1 < c.count; ++k) curve_piece(c.knots[k], c.knots[k + 1], x, y, count);
+}
+
+void profile(const LookProfile& p, const float* x, float* y, int count) {
+    switch (p.shape) {
+        case PROFILE_CONSTANT:
+            return formula<PROFILE_CONSTANT>(p.rate, x, y, count);
+        case PROFILE_LINEAR:
+            return formula<PROFILE_LINEAR>(p.rate, x, y, count);
+        case PROFILE_QUADRATIC:
+            return formula<PROFILE_QUADRATIC>(p.rate, x, y, count);
+        case PROFILE_EXPONENTIAL:
+            return formula<PROFILE_EXPONENTIAL>(p.rate, x, y, count);
+        case PROFILE_GAUSSIAN:
+            return formula<PROFILE_GAUSSIAN>(p.rate, x, y, count);
+        case PROFILE_SMOOTH:
+            return formula<PROFILE_SMOOTH>(p.rate, x, y, count);
+        case PROFILE_S106:
+            return formula<PROFILE_S106>(p.rate, x, y, count);
+        default:
+            return curve(p.curve, x, y, count);
+    }
+}
+
+// --- 1: thickness ---
+
+ASTROSPLAT_LOOP weigh(Block& b, vec3 color, float* HWY_RESTRICT weight) {
+    for (int i = 0; i < b.count; ++i) weight[i] = look_weight(b.r[i], b.g[i], b.b[i], color);
+}
+
+ASTROSPLAT_LOOP add(const float* HWY_RESTRICT term, float* HWY_RESTRICT sum, int count) {
+    for (int i = 0; i < count; ++i) sum[i] = sum[i] + term[i];
+}
+
+ASTROSPLAT_LOOP add_scaled(float scale, const float* HWY_RESTRICT term, float* HWY_RESTRICT sum, int count) {
+    for (int i = 0; i < count; ++i) sum[i] = sum[i] + term[i] * scale;
+}
+
+ASTROSPLAT_LOOP add_product(const float* HWY_RESTRICT a, const float* HWY_RESTRICT c, float* HWY_RESTRICT sum,
+                            int count) {
+    for (int i = 0; i < count; ++i) sum[i] = sum[i] + a[i] * c[i];
+}
+
+ASTROSPLAT_LOOP divide(float* HWY_RESTRICT y, const float* HWY_RESTRICT by, int count) {
+    for (int i = 0; i < count; ++i) y[i] = y[i] / by[i];
+}
+
+void weigh_keys(const LookUniforms& u, Block& b) {
+    fill(b.sum, 0.0f, b.count);
+    for (int k = 0; k < u.key_count; ++k) {
+        weigh(b, u.keys[k].color, b.weight[k]);
+        add(b.weight[k], b.sum, b.count);
+    }
+    fill(b.reach, 0.0f, b.count);
+    fill(b.column, 0.0f, b.count);
+    for (int k = 0; k < u.key_count; ++k) {
+        divide(b.weight[k], b.sum, b.count);
+        add_scaled(u.keys[k].scale, b.weight[k], b.reach, b.count);
+        add_scaled(u.keys[k].column, b.weight[k], b.column, b.count);
+    }
+}
+
+ASTROSPLAT_LOOP finish_reach(float reach, const float* HWY_RESTRICT bites, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        b.reach[i] = reach * b.reach[i] * bites[i];
+        b.x[i] = look_x(b.distance[i], b.reach[i]);
+    }
+}
+
+void thickness(const LookRun& run, std::int64_t begin, Block& b) {
+    const LookUniforms& u = run.uniforms;
+    if (u.key_count > 1) {
+        read_map(*run.map, run.set.uv.data() + begin, b);
+        weigh_keys(u, b);
+    } else {
+        fill(b.reach, u.keys[0].scale, b.count);
+        fill(b.column, u.keys[0].column, b.count);
+    }
+    fill(b.bites, 1.0f, b.count);
+    for (int j = 0; j < u.noise_count; ++j) {
+        const LookNoise& noise = u.noises[j];
+        if (noise.silhouette == 0.0f) continue;
+        // Colour arrays are free until colours are read.
+        positions_across(b, u.axis, b.r, b.g, b.b);
+        fbm(noise, b.r, b.g, b.b, b.n[j], b.count);
+        bite(noise.silhouette, b.n[j], b.bites, b.count);
+    }
+    finish_reach(u.reach, b.bites, b);
+}
+
+// --- 2: density ---
+
+void probabilities(const LookUniforms& u, Block& b) {
+    if (u.key_count == 1) {
+        profile(u.keys[0].pdf, b.x, b.probability, b.count);
+    } else {
+        fill(b.probability, 0.0f, b.count);
+        for (int k = 0; k < u.key_count; ++k) {
+            profile(u.keys[k].pdf, b.x, b.f, b.count);
+            add_product(b.weight[k], b.f, b.probability, b.count);
+        }
+    }
+    fill(b.bites, 1.0f, b.count);
+    for (int j = 0; j < u.noise_count; ++j) {
+        if (u.noises[j].cull == 0.0f) continue;
+        fbm(u.noises[j], b.px, b.py, b.pz, b.n[j], b.count);
+        bite(u.noises[j].cull, b.n[j], b.bites, b.count);
+    }
+}
+
+ASTROSPLAT_LOOP decide(Block& b, float density, uint seed) {
+    for (int i = 0; i < b.count; ++i) {
+        const float probability = density * b.probability[i] * b.bites[i];
+        b.keep[i] = look_keep(b.x[i], probability, seed, b.id_low[i], b.id_high[i]) ? 1 : 0;
+    }
+}
+
+template <class T>
+void gather(T* values, const int* from, int count) {
+    for (int i = 0; i < count; ++i) values[i] = values[from[i]];  // from[i] >= i
+}
+
+// Moves the kept splats to the front of every array that is still needed.
+void compact(const LookUniforms& u, bool positions, Block& b) {
+    int kept = 0;
+    for (int i = 0; i < b.count; ++i) {
+        b.from[kept] = i;
+        kept += b.keep[i];
+    }
+    const bool all = kept == b.count;
+    b.count = kept;
+    if (all) return;
+    gather(b.id_low, b.from, kept);
+    gather(b.id_high, b.from, kept);
+    gather(b.distance, b.from, kept);
+    gather(b.x, b.from, kept);
+    gather(b.reach, b.from, kept);
+    gather(b.column, b.from, kept);
+    if (!positions) return;
+    gather(b.px, b.from, kept);
+    gather(b.py, b.from, kept);
+    gather(b.pz, b.from, kept);
+    for (int j = 0; j < u.noise_count; ++j)
+        if (u.noises[j].cull != 0.0f) gather(b.n[j], b.from, kept);
+}
+
+// Noise that the density did not need, for the splats that are left.
+void remaining_noise(const LookUniforms& u, Block& b) {
+    for (int j = 0; j < u.noise_count; ++j) {
+        const LookNoise& noise = u.noises[j];
+        const bool used = noise.jitter != 0.0f || noise.alpha != 0.0f || noise.brightness != 0.0f;
+        if (used && noise.cull == 0.0f) fbm(noise, b.px, b.py, b.pz, b.n[j], b.count);
+    }
+}
+
+// --- 3: jitter ---
+
+ASTROSPLAT_LOOP move_along(const Block& b, vec3 axis, const float* HWY_RESTRICT along,
+                           glm::vec3* HWY_RESTRICT out) {
+    for (int i = 0; i < b.count; ++i) {
+        const vec3 p = vec3(b.px[i], b.py[i], b.pz[i]) + axis * along[i];
+        out[i].x = p.x;
+        out[i].y = p.y;
+        out[i].z = p.z;
+    }
+}
+
+void jitter(const LookUniforms& u, Block& b, glm::vec3* out) {
+    float* along = b.bites;
+    fill(along, 0.0f, b.count);
+    for (int j = 0; j < u.noise_count; ++j)
+        if (u.noises[j].jitter != 0.0f) add_scaled(u.noises[j].jitter, b.n[j], along, b.count);
+    move_along(b, u.axis, along, out);
+}
+
+// --- 4, 5: alpha ---
+
+ASTROSPLAT_LOOP horizontal_power(Block& b, float threshold, float power, float gain) {
+    for (int i = 0; i < b.count; ++i) b.alpha[i] = look_horizontal(b.alpha[i], threshold, power, gain);
+}
+
+ASTROSPLAT_LOOP horizontal_gain(Block& b, float gain) {
+    for (int i = 0; i < b.count; ++i) b.alpha[i] = clamp(b.alpha[i] * gain, 0.0f, 1.0f);
+}
+
+ASTROSPLAT_LOOP horizontal_radius(Block& b, float horizontal_scale) {
+    for (int i = 0; i < b.count; ++i)
+        b.radius_factor[i] = look_horizontal_radius(b.alpha[i], horizontal_scale);
+}
+
+ASTROSPLAT_LOOP own_vertical_x(const Block& b, float reach, float* HWY_RESTRICT x) {
+    for (int i = 0; i < b.count; ++i) x[i] = b.distance[i] / reach;
+}
+
+template <int match>
+ASTROSPLAT_LOOP matched(Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        const float mean = look_column(match, b.column[i], b.reach[i], b.radius_factor[i]);
+        b.alpha[i] = look_matched(match, b.alpha[i], b.f[i], mean);
+    }
+}
+
+ASTROSPLAT_LOOP finish_alpha(const Block& b, float* HWY_RESTRICT out) {
+    for (int i = 0; i < b.count; ++i) out[i] = clamp(b.alpha[i] * b.alpha_factor[i], 0.0f, 1.0f);
+}
+
+void alphas(const LookUniforms& u, Block& b, float* out) {
+    if (u.alpha_power != 1.0f) {
+        horizontal_power(b, u.alpha_threshold, u.alpha_power, u.alpha_gain);
+    } else {
+        horizontal_gain(b, u.alpha_gain);
+    }
+    horizontal_radius(b, u.horizontal_scale);
+    if (u.vertical_reach > 0.0f) {
+        own_vertical_x(b, u.vertical_reach, b.sum);
+        profile(u.vertical, b.sum, b.f, b.count);
+    } else {
+        profile(u.vertical, b.x, b.f, b.count);
+    }
+    if (u.match == MATCH_NONE) matched<MATCH_NONE>(b);
+    if (u.match == MATCH_PLANES) matched<MATCH_PLANES>(b);
+    if (u.match == MATCH_LIGHT) matched<MATCH_LIGHT>(b);
+    if (u.match == MATCH_TRANSMITTANCE) matched<MATCH_TRANSMITTANCE>(b);
+    fill(b.alpha_factor, 1.0f, b.count);
+    for (int j = 0; j < u.noise_count; ++j)
+        if (u.noises[j].alpha != 0.0f) vary(u.noises[j].alpha, b.n[j], b.alpha_factor, b.count);
+    finish_alpha(b, out);
+}
+
+// --- 6: radius ---
+
+ASTROSPLAT_LOOP uniform_radii(Block& b, float radius_min, float radius_max, uint seed) {
+    for (int i = 0; i < b.count; ++i)
+        b.radius[i] = look_uniform_radius(radius_min, radius_max, seed, b.id_low[i], b.id_high[i]);
+}
+
+ASTROSPLAT_LOOP finish_radii(const Block& b, float vertical_scale, float* HWY_RESTRICT out) {
+    for (int i = 0; i < b.count; ++i)
+        out[i] = b.radius[i] * b.radius_factor[i] * look_vertical_radius(b.x[i], vertical_scale);
+}
+
+void radii(const LookRun& run, std::int64_t begin, Block& b, float* out) {
+    const LookUniforms& u = run.uniforms;
+    if (u.own_radius) {
+        for (int i = 0; i < b.count; ++i) b.radius[i] = run.set.radius[std::size_t(begin + b.from[i])];
+    } else if (u.radius_min == u.radius_max) {
+        fill(b.radius, u.radius_min, b.count);
+    } else {
+        uniform_radii(b, u.radius_min, u.radius_max, u.seed);
+    }
+    finish_radii(b, u.vertical_scale, out);
+}
+
+// --- 7: colour ---
+
+ASTROSPLAT_LOOP unpremultiply(Block& b, float threshold) {
+    for (int i = 0; i < b.count; ++i) {
+        const float undo = look_unpremultiply(b.alpha[i], threshold);
+        b.r[i] = b.r[i] * undo;
+        b.g[i] = b.g[i] * undo;
+        b.b[i] = b.b[i] * undo;
+    }
+}
+
+ASTROSPLAT_LOOP levels(Block& b, float black, vec3 tint) {
+    for (int i = 0; i < b.count; ++i) {
+        b.r[i] = look_levels(b.r[i] * b.color_factor[i], black) * tint.x;
+        b.g[i] = look_levels(b.g[i] * b.color_factor[i], black) * tint.y;
+        b.b[i] = look_levels(b.b[i] * b.color_factor[i], black) * tint.z;
+    }
+}
+
+ASTROSPLAT_LOOP saturate_and_bend(Block& b, float saturation, float inverse_gamma) {
+    for (int i = 0; i < b.count; ++i) {
+        const float luminance = look_luminance(b.r[i], b.g[i], b.b[i]);
+        b.r[i] = look_finish(b.r[i], luminance, saturation, inverse_gamma);
+        b.g[i] = look_finish(b.g[i], luminance, saturation, inverse_gamma);
+        b.b[i] = look_finish(b.b[i], luminance, saturation, inverse_gamma);
+    }
+}
+
+ASTROSPLAT_LOOP write_colors(const Block& b, glm::vec3* HWY_RESTRICT out) {
+    for (int i = 0; i < b.count; ++i) {
+        out[i].x = b.r[i];
+        out[i].y = b.g[i];
+        out[i].z = b.b[i];
+    }
+}
+
+void read_colors(const glm::vec3* color, const float* alpha, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        const glm::vec3 c = color[b.from[i]];
+        b.r[i] = c.x;
+        b.g[i] = c.y;
+        b.b[i] = c.z;
+        b.alpha[i] = alpha[b.from[i]];
+    }
+}
+
+void colors(const LookUniforms& u, Block& b, glm::vec3* out) {
+    if (u.unpremultiply) unpremultiply(b, u.alpha_threshold);
+    fill(b.color_factor, 1.0f, b.count);
+    for (int j = 0; j < u.noise_count; ++j)
+        if (u.noises[j].brightness != 0.0f) vary(u.noises[j].brightness, b.n[j], b.color_factor, b.count);
+    levels(b, u.black, u.tint);
+    if (u.saturation != 1.0f || u.inverse_gamma != 1.0f) saturate_and_bend(b, u.saturation, u.inverse_gamma);
+    write_colors(b, out);
+}
+
+// --- the whole ---
+
+// Splats [begin, begin + b.count) of the set to out[at], ...; b.count becomes the number kept.
+void shade_block(const LookRun& run, std::int64_t begin, std::int64_t at, Block& b) {
+    const LookUniforms& u = run.uniforms;
+    const bool positions = u.noise_count > 0, moved = any(u, &LookNoise::jitter);
+    read_ids(run.set.id.data() + begin, b);
+    std::memcpy(b.distance, run.set.distance.data() + begin, sizeof(float) * std::size_t(b.count));
+    if (positions) read_positions(run.set.position.data() + begin, b);
+    thickness(run, begin, b);
+    probabilities(u, b);
+    decide(b, u.density, u.seed);
+    compact(u, positions, b);
+    remaining_noise(u, b);
+    read_colors(run.set.color.data() + begin, run.set.alpha.data() + begin, b);
+    ShadedSplats& out = run.out;
+    if (moved) {
+        jitter(u, b, out.position.data() + at);
+    } else {
+        for (int i = 0; i < b.count; ++i)
+            out.position[std::size_t(at + i)] = run.set.position[std::size_t(begin + b.from[i])];
+    }
+    colors(u, b, out.color.data() + at);  // before alphas: step 4 divides by the alpha it finds
+    alphas(u, b, out.alpha.data() + at);
+    radii(run, begin, b, out.radius.data() + at);
+    for (int i = 0; i < b.count; ++i)
+        out.id[std::size_t(at + i)] = std::uint64_t(b.id_high[i]) << 32 | b.id_low[i];
+}
+
+}  // namespace
+
+std::int64_t shade_run_target(const LookRun& run, std::int64_t begin, std::int64_t end) {
+    Block b{};
+    std::int64_t at = begin;
+    for (std::int64_t i = begin; i < end; i += block_size) {
+        b.count = int(end - i < block_size ? end - i : block_size);
+        shade_block(run, i, at, b);
+        at += b.count;
+    }
+    return at - begin;
+}
+
+#undef ASTROSPLAT_LOOP
+
+}  // namespace HWY_NAMESPACE
+}  // namespace astrosplat
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace astrosplat {
+
+HWY_EXPORT(shade_run_target);
+
+std::int64_t shade_run(const LookRun& run, std::int64_t begin, std::int64_t end) {
+    return HWY_DYNAMIC_DISPATCH(shade_run_target)(run, begin, end);
+}
+
+}  // namespace astrosplat
+#endif

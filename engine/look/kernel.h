@@ -1,0 +1,24 @@
+// The look over a run of splats, compiled once per instruction set with the same bits on each.
+#pragma once
+
+#include <cstdint>
+
+#include "core/image.h"
+#include "look/shared_uniforms.h"
+#include "splats/shaded_splats.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+struct LookRun {
+    const SplatSet& set;
+    const LookUniforms& uniforms;
+    const Image* map;   // raw values; read where there are several keys
+    ShadedSplats& out;  // arrays at least as long as the set's
+};
+
+/// Shades splats [begin, end) of the set and writes those kept to out[begin], out[begin + 1], ...; returns
+/// how many.
+std::int64_t shade_run(const LookRun& run, std::int64_t begin, std::int64_t end);
+
+}  // namespace astrosplat

@@ -1,0 +1,258 @@
+// Resolves one group of the look's keys after the other into LookUniforms.
+#include "look/prepare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "core/parallel.h"
+#include "look/columns.h"
+#include "look/curves.h"
+#include "look/shared_look.h"
+
+namespace astrosplat {
+namespace {
+
+using namespace shared_types;
+using Match = VerticalAlpha::Match;
+
+int profile_shape(DensityCurve::Shape shape) {
+    switch (shape) {
+        case DensityCurve::Shape::constant:
+            return PROFILE_CONSTANT;
+        case DensityCurve::Shape::linear:
+            return PROFILE_LINEAR;
+        case DensityCurve::Shape::quadratic:
+            return PROFILE_QUADRATIC;
+        case DensityCurve::Shape::exponential:
+            return PROFILE_EXPONENTIAL;
+        case DensityCurve::Shape::gaussian:
+            return PROFILE_GAUSSIAN;
+        case DensityCurve::Shape::smooth:
+            return PROFILE_SMOOTH;
+        case DensityCurve::Shape::curve:
+            return PROFILE_CURVE;
+    }
+    return PROFILE_CONSTANT;
+}
+
+int profile_shape(VerticalAlpha::Shape shape) {
+    switch (shape) {
+        case VerticalAlpha::Shape::none:
+        case VerticalAlpha::Shape::constant:
+            return PROFILE_CONSTANT;
+        case VerticalAlpha::Shape::linear:
+            return PROFILE_LINEAR;
+        case VerticalAlpha::Shape::exponential:
+            return PROFILE_EXPONENTIAL;
+        case VerticalAlpha::Shape::s106:
+            return PROFILE_S106;
+        case VerticalAlpha::Shape::curve:
+            return PROFILE_CURVE;
+    }
+    return PROFILE_CONSTANT;
+}
+
+LookProfile density_profile(const DensityCurve& pdf, const std::string& key) {
+    LookProfile profile{};
+    profile.shape = profile_shape(pdf.shape);
+    profile.rate = pdf.rate;
+    if (pdf.shape == DensityCurve::Shape::gaussian) {
+        const double sigma = std::max(double(pdf.sigma), 1e-6);
+        profile.rate = float(0.5 / (sigma * sigma));
+    }
+    profile.curve = make_curve(pdf.points, key + ".points");
+    return profile;
+}
+
+LookProfile vertical_profile(const VerticalAlpha& vertical) {
+    LookProfile profile{};
+    profile.shape = profile_shape(vertical.shape);
+    profile.rate = vertical.rate;
+    profile.curve = make_curve(vertical.points, "look.vertical.points");
+    return profile;
+}
+
+vec3 unit_axis(const glm::vec3& axis) {
+    const glm::dvec3 a(axis);
+    const double length = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+    return length > 0.0 ? vec3(a / length) : vec3(0.0f, 1.0f, 0.0f);
+}
+
+// One key with the layer's own pdf unless there is a map whose values can choose between several.
+void prepare_keys(const SplatSet& set, const Look& look, const LookInputs& inputs, LookUniforms& u) {
+    const Thickness& thickness = look.thickness;
+    if (thickness.keys.size() > std::size_t(LOOK_MAX_KEYS))
+        bad_input("look.thickness.keys", "", fmt::format("at most {} keys", LOOK_MAX_KEYS),
+                  fmt::format("{}", thickness.keys.size()));
+    const bool has_map = !thickness.map.empty();
+    if (has_map && set.uv.empty())
+        bad_input("look.thickness.map", "", "splats with texture coordinates", "a set without");
+    assert(!has_map || inputs.thickness_map);
+    (void)inputs;
+    std::vector<ThicknessKey> keys = thickness.keys;
+    if (keys.empty()) keys.push_back({glm::vec3(1.0f), 1.0f, look.pdf});
+    if (!has_map && keys.size() > 1) {
+        log_warning("look.thickness: several keys need a map to choose between them; the first is used");
+        keys.resize(1);
+    }
+    u.key_count = int(keys.size());
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+        const std::string name =
+            thickness.keys.empty() ? "look.pdf" : fmt::format("look.thickness.keys[{}]", k);
+        u.keys[k] = {keys[k].color, keys[k].scale, 0.0f, density_profile(keys[k].pdf, name)};
+    }
+}
+
+bool changes_anything(const Noise& noise) {
+    return noise.cull != 0.0f || noise.silhouette != 0.0f || noise.jitter != 0.0f || noise.alpha != 0.0f ||
+           noise.brightness != 0.0f;
+}
+
+LookNoise prepare_noise(const Noise& noise) {
+    LookNoise n{};
+    n.frequency = noise.frequency;
+    n.lacunarity = noise.lacunarity;
+    n.gain = noise.gain;
+    n.octaves = std::clamp(noise.octaves, 1, shared::AS_NOISE_MAX_OCTAVES);
+    double amplitude = 1.0, sum = 0.0;
+    for (int i = 0; i < n.octaves; ++i) {
+        sum += amplitude;
+        amplitude *= std::fabs(double(noise.gain));
+    }
+    n.scale = float(1.0 / sum);
+    n.seed = uint(noise.seed);
+    n.cull = noise.cull;
+    n.silhouette = noise.silhouette;
+    n.jitter = noise.jitter;
+    n.alpha = noise.alpha;
+    n.brightness = noise.brightness;
+    return n;
+}
+
+void prepare_noises(const Look& look, LookUniforms& u) {
+    for (const Noise& noise : look.noise) {
+        if (!changes_anything(noise)) continue;
+        if (u.noise_count == LOOK_MAX_NOISES)
+            bad_input("look.noise", "", fmt::format("at most {} noises", LOOK_MAX_NOISES),
+                      fmt::format("{}", look.noise.size()));
+        u.noises[u.noise_count++] = prepare_noise(noise);
+    }
+}
+
+void prepare_alpha(const SplatSet& set, const Look& look, LookUniforms& u) {
+    u.unpremultiply = look.alpha.unpremultiply ? 1 : 0;
+    u.alpha_threshold = look.alpha.threshold;
+    u.alpha_power = look.alpha.power;
+    u.alpha_gain = look.alpha.gain;
+    if (look.alpha.unpremultiply && set.divided)
+        log_warning(
+            "look.alpha.unpremultiply: the source has divided the colours by alpha; they are divided again");
+}
+
+void prepare_radius(const SplatSet& set, const Radius& radius, LookUniforms& u) {
+    u.horizontal_scale = radius.horizontal_scale;
+    u.vertical_scale = radius.vertical_scale;
+    u.radius_min = radius.min;
+    u.radius_max = radius.max;
+    if (radius.min != 0.0f || radius.max != 0.0f) return;
+    u.own_radius = set.radius.empty() ? 0 : 1;
+    if (u.own_radius) return;
+    if (!set.generated)
+        bad_input("look.radius", "", "min and max, since the splat file holds no radius", "0 and 0");
+    const glm::dvec3 s = set.spacing;
+    u.radius_min = u.radius_max = float(0.6 * std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z));
+}
+
+void prepare_grade(const Grade& grade, LookUniforms& u) {
+    u.black = grade.black;
+    u.tint = grade.tint * grade.gain;
+    u.saturation = grade.saturation;
+    u.inverse_gamma = float(1.0 / std::max(double(grade.gamma), 1e-6));
+}
+
+// Mean square of the set's own radii, summed in fixed chunks so that threads do not show.
+double own_mean_square(const Buffer<float>& radius) {
+    constexpr std::int64_t chunk = 1 << 16;
+    const auto count = std::int64_t(radius.size());
+    std::vector<double> sums(std::size_t((count + chunk - 1) / chunk));
+    parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        double sum = 0.0;
+        for (std::int64_t i = begin; i < end; ++i) sum += double(radius[i]) * double(radius[i]);
+        sums[std::size_t(begin / chunk)] = sum;
+    });
+    double sum = 0.0;
+    for (double s : sums) sum += s;
+    return count > 0 ? sum / double(count) : 0.0;
+}
+
+int match_kind(Match match, ColumnLaw law) {
+    if (match == Match::none) return MATCH_NONE;
+    if (match == Match::sum) return MATCH_PLANES;
+    if (law == ColumnLaw::maximum) return MATCH_NONE;
+    return law == ColumnLaw::sum ? MATCH_LIGHT : MATCH_TRANSMITTANCE;
+}
+
+// What stands before the integral, per scene unit of reach: splats times their area, or planes per scene
+// unit.
+double column_factor(const SplatSet& set, const LookInputs& inputs, const LookUniforms& u) {
+    const glm::dvec3 s = set.spacing, a(u.axis);
+    if (u.match == MATCH_PLANES) {
+        const glm::dvec3 step = a * s;
+        return 2.0 / std::sqrt(step.x * step.x + step.y * step.y + step.z * step.z);
+    }
+    const double area =
+        u.own_radius ? own_mean_square(set.radius) : mean_square(double(u.radius_min), double(u.radius_max));
+    return 2.0 * (2.0 / (s.x * s.y * s.z)) * inputs.falloff_integral * area;
+}
+
+void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inputs, LookUniforms& u) {
+    u.vertical = vertical_profile(look.vertical);
+    u.vertical_reach = look.vertical.reach;
+    u.match = match_kind(resolved_match(set, look.vertical), inputs.column);
+    if (u.match == MATCH_NONE) return;
+    if (!(set.spacing.x > 0.0 && set.spacing.y > 0.0 && set.spacing.z > 0.0))
+        bad_input("look.vertical.match", "",
+                  "none, since the spacing of the splat file's lattice is not known",
+                  look.vertical.match == Match::sum ? "sum" : "coverage");
+    const double factor = column_factor(set, inputs, u);
+    const double vertical_scale = u.match == MATCH_PLANES ? 1.0 : double(u.vertical_scale);
+    for (int k = 0; k < u.key_count; ++k) {
+        const double reach = double(u.reach) * double(u.keys[k].scale);
+        if (!(reach > 0.0)) continue;
+        Column column{u.keys[k].pdf, u.vertical, double(u.density), 1.0, 1.0};
+        column.end = std::min(1.0, set.max_distance / reach);
+        if (u.vertical_reach > 0.0f) column.vertical_ratio = reach / double(u.vertical_reach);
+        u.keys[k].column = float(factor * column_integral(column, vertical_scale));
+    }
+}
+
+}  // namespace
+
+VerticalAlpha::Match resolved_match(const SplatSet& set, const VerticalAlpha& vertical) {
+    if (vertical.match != Match::automatic) return vertical.match;
+    return set.generated ? Match::coverage : Match::none;
+}
+
+LookUniforms prepare_look(const SplatSet& set, const Look& look, const LookInputs& inputs) {
+    LookUniforms u{};
+    u.seed = inputs.seed;
+    u.axis = unit_axis(inputs.axis);
+    u.reach = look.reach > 0.0f ? look.reach : float(set.max_distance);
+    u.density = look.density;
+    prepare_keys(set, look, inputs, u);
+    prepare_noises(look, u);
+    prepare_alpha(set, look, u);
+    prepare_radius(set, look.radius, u);
+    prepare_grade(look.grade, u);
+    prepare_match(set, look, inputs, u);
+    return u;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,24 @@
+// shaders/shared/noise.glsl and look.glsl as C++, in astrosplat::shared like the maths: the look of one splat
+// as the preview computes it. Each translation unit gets its own copy with internal linkage.
+#pragma once
+
+#include "core/shared_maths.h"
+#include "look/shared_uniforms.h"
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+
+namespace astrosplat::shared {
+using namespace astrosplat::shared_types;
+namespace {
+#include "noise.glsl"
+// after noise
+#include "look.glsl"
+}  // namespace
+}  // namespace astrosplat::shared
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

@@ -1,0 +1,249 @@
+// The look of one splat: the seven steps of the design, value in, value out. look_splat is the whole; the functions
+// before it are its steps, which the engine runs over blocks of splats, one step at a time, to the same bits. Needs
+// maths.glsl, noise.glsl and look_uniforms.glsl.
+
+// --- profiles over x ---
+
+// Published fit of the nebula S106: three straight pieces, 0 from 1 on.
+float look_s106(float x) {
+    float y = x < 0.33f ? 1.0f - 1.515f * x : 0.9f - 1.212f * x;
+    y = x < 0.66f ? y : 0.294f - 0.294f * x;
+    return x < 1.0f ? y : 0.0f;
+}
+
+// Every shape but the curve; x >= 0. Never negative.
+float look_formula(int shape, float rate, float x) {
+    float y = 1.0f;
+    float below = max(0.0f, 1.0f - x);
+    if (shape == PROFILE_LINEAR) y = below;
+    if (shape == PROFILE_QUADRATIC) y = below * below;
+    if (shape == PROFILE_EXPONENTIAL) y = as_exp(-rate * x);
+    if (shape == PROFILE_GAUSSIAN) y = as_exp(-rate * (x * x));
+    if (shape == PROFILE_SMOOTH) y = x < 1.0f ? 1.0f - x * x * (3.0f - 2.0f * x) : 0.0f;
+    if (shape == PROFILE_S106) y = look_s106(x);
+    return y;
+}
+
+// Cubic Hermite piece from knot a to knot b, held between their values so that rounding cannot overshoot.
+float look_curve_piece(vec4 a, vec4 b, float x) {
+    float h = b.x - a.x;
+    float t = h > 0.0f ? clamp((x - a.x) / h, 0.0f, 1.0f) : 0.0f;
+    float s = 1.0f - t;
+    float y = a.y * (s * s * (1.0f + 2.0f * t)) + b.y * (t * t * (3.0f - 2.0f * t));
+    y = y + h * (s * t) * (a.z * s - b.z * t);
+    return clamp(y, min(a.y, b.y), max(a.y, b.y));
+}
+
+float look_curve(LookCurve curve, float x) {
+    vec4 a = curve.knots[0];
+    vec4 b = curve.knots[0];
+    for (int k = 0; k < LOOK_MAX_POINTS - 1; ++k) {
+        bool reached = k + 1 < curve.count && x >= curve.knots[k].x;
+        a = reached ? curve.knots[k] : a;
+        b = reached ? curve.knots[k + 1] : b;
+    }
+    return look_curve_piece(a, b, x);
+}
+
+float look_profile(LookProfile profile, float x) {
+    return profile.shape == PROFILE_CURVE ? look_curve(profile.curve, x) : look_formula(profile.shape, profile.rate, x);
+}
+
+// --- 1: thickness ---
+
+// Texel coordinate along one side of the map for bilinear reading, clamped to the picture: floor is the first texel,
+// the next one (at most size - 1) the second, the fraction its share. Rows count from the top: pass 1 - v.
+float look_texel(float coordinate, int size) {
+    float last = float(size - 1);
+    float t = coordinate * float(size) - 0.5f;
+    t = t > 0.0f ? t : 0.0f;
+    return t < last ? t : last;
+}
+
+float look_bilinear(float c00, float c10, float c01, float c11, float tx, float ty) {
+    return mix(mix(c00, c10, tx), mix(c01, c11, tx), ty);
+}
+
+// Weight of a key before normalisation.
+float look_weight(float r, float g, float b, vec3 key) {
+    float dr = r - key.x;
+    float dg = g - key.y;
+    float db = b - key.z;
+    float d = dr * dr + dg * dg + db * db + 1.0e-4f;
+    return 1.0f / (d * d);
+}
+
+// What noise value n leaves of a quantity it may take `amount` of.
+float look_bite(float amount, float n) { return 1.0f - amount * (0.5f + 0.5f * n); }
+
+// x = distance / reach; a splat on the surface has 0 whatever the reach, one off a surface without reach is outside.
+float look_x(float splat_distance, float reach) {
+    float x = reach > 0.0f ? splat_distance / reach : 2.0f;
+    return splat_distance > 0.0f ? x : 0.0f;
+}
+
+// --- 2: density ---
+
+bool look_keep(float x, float probability, uint seed, uint id_low, uint id_high) {
+    return x <= 1.0f && as_uniform(as_hash(seed, id_low, id_high, PURPOSE_DENSITY)) < probability;
+}
+
+// --- 4: horizontal alpha ---
+
+// What the colour is multiplied by: 1 / alpha where the step applies and there is an alpha to divide by.
+float look_unpremultiply(float alpha, float threshold) {
+    return alpha < threshold && alpha > 0.0f ? 1.0f / alpha : 1.0f;
+}
+
+float look_horizontal(float alpha, float threshold, float power, float gain) {
+    float a = alpha < threshold ? as_pow(alpha, power) : alpha;
+    return clamp(a * gain, 0.0f, 1.0f);
+}
+
+// --- 5: vertical alpha ---
+
+// -ln(1 - min(a, 0.998)), accurate for small a as well: log(u) (1 - u exactly known) scaled by m / (1 - u) (Kahan).
+float look_depth(float alpha) {
+    float m = min(alpha, 0.998f);
+    float u = 1.0f - m;
+    float lost = 1.0f - u;
+    return lost > 0.0f ? -as_log(u) * (m / lost) : m;
+}
+
+// Factor of the radius by the alpha of step 4.
+float look_horizontal_radius(float alpha, float horizontal_scale) {
+    return 1.0f + (horizontal_scale - 1.0f) * (1.0f - alpha);
+}
+
+// The mean of a column of splats whose alpha would be f alone; 0 where nothing can be matched.
+float look_column(int match, float column, float reach, float horizontal_radius) {
+    float area = match == MATCH_PLANES ? 1.0f : horizontal_radius * horizontal_radius;
+    return column * reach * area;
+}
+
+// Alpha after matching: the column of all such splats, seen along the normal, shows `alpha`.
+float look_matched(int match, float alpha, float f, float column) {
+    float a = match == MATCH_TRANSMITTANCE ? look_depth(alpha) : alpha;
+    float y = column > 0.0f ? min(1.0f, a * f / column) : 0.0f;
+    return match == MATCH_NONE ? alpha * f : y;
+}
+
+// --- 6: radius ---
+
+float look_uniform_radius(float radius_min, float radius_max, uint seed, uint id_low, uint id_high) {
+    return radius_min + (radius_max - radius_min) * as_uniform(as_hash(seed, id_low, id_high, PURPOSE_RADIUS));
+}
+
+float look_vertical_radius(float x, float vertical_scale) { return 1.0f + (vertical_scale - 1.0f) * x; }
+
+// --- 7: variation and grade ---
+
+float look_vary(float amount, float n) { return max(0.0f, 1.0f + amount * n); }
+
+float look_levels(float c, float black) { return max(0.0f, (c - black) / max(1.0f - black, 1.0e-6f)); }
+
+float look_luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
+
+float look_finish(float c, float luminance, float saturation, float inverse_gamma) {
+    return as_pow(max(0.0f, c * saturation + luminance * (1.0f - saturation)), inverse_gamma);
+}
+
+// --- the whole ---
+
+struct LookInput {
+    vec3 position;
+    vec3 color;
+    float alpha;
+    float from_surface;  // scene units, >= 0
+    float radius;        // used where own_radius is 1
+    vec3 map_value;      // used where there are several keys
+    uint id_low;
+    uint id_high;
+};
+
+struct LookOutput {
+    bool keep;
+    vec3 position;
+    vec3 color;
+    float alpha;
+    float radius;
+};
+
+float look_noise(LookNoise noise, vec3 p) {
+    return as_fbm(p.x, p.y, p.z, noise.frequency, noise.octaves, noise.lacunarity, noise.gain, noise.scale,
+                  noise.seed);
+}
+
+// The point's projection onto the plane through the origin across the axis.
+vec3 look_across(vec3 p, vec3 axis) { return p - axis * dot(p, axis); }
+
+LookOutput look_splat(LookUniforms u, LookInput s) {
+    float n[LOOK_MAX_NOISES];
+    float scale = 0.0f;
+    float density = 0.0f;
+    float column = 0.0f;
+    float weight_sum = 0.0f;
+    float weight[LOOK_MAX_KEYS];
+    float reach = 1.0f;
+    float culled = 1.0f;
+    float along = 0.0f;
+    float alpha_factor = 1.0f;
+    float color_factor = 1.0f;
+    for (int j = 0; j < LOOK_MAX_NOISES; ++j) {
+        if (j < u.noise_count) {
+            n[j] = look_noise(u.noises[j], s.position);
+            if (u.noises[j].silhouette != 0.0f) {
+                float across = look_noise(u.noises[j], look_across(s.position, u.axis));
+                reach = reach * look_bite(u.noises[j].silhouette, across);
+            }
+            culled = culled * look_bite(u.noises[j].cull, n[j]);
+            along = along + u.noises[j].jitter * n[j];
+            alpha_factor = alpha_factor * look_vary(u.noises[j].alpha, n[j]);
+            color_factor = color_factor * look_vary(u.noises[j].brightness, n[j]);
+        }
+    }
+
+    for (int k = 0; k < LOOK_MAX_KEYS; ++k) {
+        if (k < u.key_count) {
+            weight[k] = look_weight(s.map_value.x, s.map_value.y, s.map_value.z, u.keys[k].color);
+            weight_sum = weight_sum + weight[k];
+        }
+    }
+    for (int k = 0; k < LOOK_MAX_KEYS; ++k) {
+        if (k < u.key_count) {
+            weight[k] = u.key_count > 1 ? weight[k] / weight_sum : 1.0f;
+            scale = scale + weight[k] * u.keys[k].scale;
+            column = column + weight[k] * u.keys[k].column;
+        }
+    }
+    reach = u.reach * scale * reach;
+    float x = look_x(s.from_surface, reach);
+    for (int k = 0; k < LOOK_MAX_KEYS; ++k) {
+        if (k < u.key_count) density = density + weight[k] * look_profile(u.keys[k].pdf, x);
+    }
+
+    LookOutput result;
+    result.keep = look_keep(x, u.density * density * culled, u.seed, s.id_low, s.id_high);
+    result.position = s.position + u.axis * along;
+
+    float undo = u.unpremultiply != 0 ? look_unpremultiply(s.alpha, u.alpha_threshold) : 1.0f;
+    float alpha = look_horizontal(s.alpha, u.alpha_threshold, u.alpha_power, u.alpha_gain);
+    float radius_factor = look_horizontal_radius(alpha, u.horizontal_scale);
+    float vertical_x = u.vertical_reach > 0.0f ? s.from_surface / u.vertical_reach : x;
+    float f = look_profile(u.vertical, vertical_x);
+    float mean = look_column(u.match, column, reach, radius_factor);
+    result.alpha = clamp(look_matched(u.match, alpha, f, mean) * alpha_factor, 0.0f, 1.0f);
+
+    float radius = look_uniform_radius(u.radius_min, u.radius_max, u.seed, s.id_low, s.id_high);
+    radius = u.own_radius != 0 ? s.radius : radius;
+    result.radius = radius * radius_factor * look_vertical_radius(x, u.vertical_scale);
+
+    float r = look_levels(s.color.x * undo * color_factor, u.black) * u.tint.x;
+    float g = look_levels(s.color.y * undo * color_factor, u.black) * u.tint.y;
+    float b = look_levels(s.color.z * undo * color_factor, u.black) * u.tint.z;
+    float luminance = look_luminance(r, g, b);
+    result.color = vec3(look_finish(r, luminance, u.saturation, u.inverse_gamma),
+                        look_finish(g, luminance, u.saturation, u.inverse_gamma),
+                        look_finish(b, luminance, u.saturation, u.inverse_gamma));
+    return result;
+}
