@@ -1,5 +1,5 @@
-// The closest point of a set of meshes: Embree proposes, our own scalar code decides by (distance squared, triangle
-// index), so the answer equals brute force over every triangle on any instruction set (DESIGN 4).
+// The closest point of a set of meshes: Embree proposes, our own scalar code decides by (distance squared,
+// triangle index), so the answer equals brute force over every triangle on any instruction set (DESIGN 4).
 #pragma once
 
 #include <cstdint>
@@ -8,34 +8,65 @@
 #include <memory>
 #include <span>
 
+#include "core/bounds.h"
 #include "source/mesh.h"
 
 namespace astrosplat {
 
 struct ClosestPoint {
-    double distance_squared;   // square scene units
-    std::uint32_t triangle;    // index over all meshes' triangles in order; `none` when nothing is near enough
-    glm::dvec2 barycentric;    // weights of the triangle's second and third corner
+    double distance_squared;  // square scene units
+    std::uint32_t triangle;   // index over all meshes' triangles in order; `none` when nothing is near enough
+    glm::dvec2 barycentric;   // weights of the triangle's second and third corner
     static constexpr std::uint32_t none = 0xffffffffu;
 };
 
-/// Closest point of one triangle (Ericson, Real-Time Collision Detection 5.1.5), in double.
-ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+/// A triangle prepared for closest-point queries: first corner, two edges and their dot products. Scene
+/// units.
+struct TriangleShape {
+    glm::dvec3 a, ab, ac;
+    double ab_ab, ab_ac, ac_ac;
+};
+TriangleShape triangle_shape(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+
+/// Closest point of one triangle (Ericson, Real-Time Collision Detection 5.1.5, with the dot products of the
+/// other two corners derived from the first corner's), in double; `triangle` comes back as 0. Triangles whose
+/// angle at the first corner is below 1e-7 rad or that close to 180 degrees have no usable inside and count
+/// as their three edges.
+ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& shape);
+ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                                 const glm::dvec3& c);
+
+/// The order that decides: smaller distance, then lower triangle index.
+inline bool nearer(const ClosestPoint& a, const ClosestPoint& b) {
+    return a.distance_squared < b.distance_squared ||
+           (a.distance_squared == b.distance_squared && a.triangle < b.triangle);
+}
 
 class ClosestPointIndex {
   public:
-    /// Keeps its own copy of the triangles; meshes are numbered and concatenated in order.
+    /// Keeps its own copy of the triangles; meshes are numbered and concatenated in order. Throws InputError
+    /// for more triangles than 32 bits count.
+    explicit ClosestPointIndex(std::span<const Mesh* const> meshes);
     explicit ClosestPointIndex(std::span<const Mesh> meshes);
     ~ClosestPointIndex();
     ClosestPointIndex(const ClosestPointIndex&) = delete;
     ClosestPointIndex& operator=(const ClosestPointIndex&) = delete;
 
     /// Closest point within `max_distance` (inclusive), ties to the lowest triangle index. Thread-safe.
-    ClosestPoint closest(const glm::dvec3& p, double max_distance) const;
+    /// `hint` is a triangle that is probably near: it makes the search shorter and changes no result.
+    ClosestPoint closest(const glm::dvec3& p, double max_distance,
+                         std::uint32_t hint = ClosestPoint::none) const;
 
     /// The same by trying every triangle: the oracle of the tests.
     ClosestPoint closest_brute_force(const glm::dvec3& p, double max_distance) const;
 
+    /// Writes the triangles that come within `radius` of `center`, in any order, to `found` and returns how
+    /// many there are, or found.size() + 1 as soon as they do not fit. Thread-safe.
+    std::size_t within(const glm::dvec3& center, double radius, std::span<std::uint32_t> found) const;
+
+    /// The closest point of one triangle, numbered.
+    ClosestPoint closest_of(std::uint32_t triangle, const glm::dvec3& p) const;
+    const TriangleShape& shape(std::uint32_t triangle) const;
     std::int64_t triangle_count() const;
 
   private:

@@ -11,23 +11,24 @@
 
 namespace astrosplat {
 
-/// Arrays either have size() entries or are empty ("not known"); position, color, alpha, distance and id are always
-/// there. Splats are in ascending order of id (see sort_by_id), so an index stands for an id in ties.
+/// Arrays either have size() entries or are empty ("not known"); position, color, alpha, distance and id are
+/// always there. Splats are in ascending order of id (see sort_by_id), so an index stands for an id in ties.
 struct SplatSet {
-    Buffer<glm::vec3> position;   // scene units, layer space
-    Buffer<glm::vec3> color;      // linear light, straight
-    Buffer<float> alpha;          // 0..1
-    Buffer<float> distance;       // scene units from the mesh surface, >= 0; 0 where a file has none
-    Buffer<std::uint64_t> id;     // lattice index, or row number of a file
-    Buffer<glm::vec2> uv;         // of the closest point
-    Buffer<glm::vec3> normal;     // unit normal of the closest face
-    Buffer<std::uint32_t> mesh;   // index of the closest mesh
-    Buffer<float> radius;         // scene units; only from files (radiusPP)
+    Buffer<glm::vec3> position;  // scene units, layer space
+    Buffer<glm::vec3> color;     // linear light, straight
+    Buffer<float> alpha;         // 0..1
+    Buffer<float> distance;      // scene units from the mesh surface, >= 0; 0 where a file has none
+    Buffer<std::uint64_t> id;    // lattice index, or row number of a file
+    Buffer<glm::vec2> uv;        // of the closest point
+    Buffer<glm::vec3> normal;    // unit normal of the closest face
+    Buffer<std::uint32_t> mesh;  // index of the closest mesh
+    Buffer<float> radius;        // scene units; only from files (radiusPP)
 
-    glm::dvec3 spacing{0.0};      // scene units between lattice neighbours per axis; 0: unknown
-    double max_distance = 0.0;    // scene units; x = 1 by default: the source's, or the largest distance in a file
-    bool generated = false;       // from meshes; else from a file
-    bool divided = false;         // colours were divided by alpha by the source
+    glm::dvec3 spacing{0.0};  // scene units between lattice neighbours per axis; 0: unknown
+    double max_distance =
+        0.0;                 // scene units; x = 1 by default: the source's, or the largest distance in a file
+    bool generated = false;  // from meshes; else from a file
+    bool divided = false;    // colours were divided by alpha by the source
     std::int64_t test_positions = 0;  // lattice positions looked at, 0 for files
     std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
     std::string credit;               // from the inputs' metadata

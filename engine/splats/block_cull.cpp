@@ -1,0 +1,81 @@
+// The octree over lattice blocks, level by level so that each level is one parallel loop.
+#include "splats/block_cull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <tuple>
+
+#include "core/parallel.h"
+
+namespace astrosplat {
+namespace {
+
+// Blocks of the next finer level that begin inside the lattice; corners reach one cell further than centres.
+std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const Lattice& lattice,
+                                std::int64_t child_cells) {
+    const glm::i64vec3 last = lattice.n / child_cells;
+    std::vector<LatticeBlock> children;
+    children.reserve(parents.size() * 8);
+    for (const LatticeBlock& parent : parents) {
+        for (int child = 0; child < 8; ++child) {
+            const glm::i64vec3 at =
+                parent.at * std::int64_t{2} + glm::i64vec3(child & 1, child >> 1 & 1, child >> 2);
+            if (at.x <= last.x && at.y <= last.y && at.z <= last.z)
+                children.push_back({at, 0.0, parent.nearest});
+        }
+    }
+    return children;
+}
+
+void drop_far(std::vector<LatticeBlock>& blocks, std::int64_t cells, const ClosestPointIndex& index,
+              const Lattice& lattice, const CullSettings& settings) {
+    parallel_chunks(
+        static_cast<std::int64_t>(blocks.size()), 256, [&](std::int64_t begin, std::int64_t end, int) {
+            for (std::int64_t i = begin; i < end; ++i) {
+                LatticeBlock& block = blocks[static_cast<std::size_t>(i)];
+                const BlockBall ball = block_ball(lattice, settings.jitter, block.at * cells, cells);
+                const ClosestPoint closest =
+                    index.closest(ball.center, settings.max_distance + ball.radius, block.nearest);
+                block.nearest = closest.triangle;
+                block.distance = std::sqrt(closest.distance_squared);
+            }
+        });
+    std::erase_if(blocks, [](const LatticeBlock& block) { return block.nearest == ClosestPoint::none; });
+}
+
+}  // namespace
+
+BlockBall block_ball(const Lattice& lattice, double jitter, const glm::i64vec3& first, std::int64_t cells) {
+    const glm::i64vec3 last_corner = glm::min(first + (cells - 1), lattice.n);
+    const glm::i64vec3 last_centre = glm::min(first + (cells - 1), lattice.n - std::int64_t{1});
+    const glm::dvec3 last = glm::max(glm::dvec3(last_corner), glm::dvec3(last_centre) + 0.5);
+    const glm::dvec3 low = glm::dvec3(first) - 0.5 * jitter, high = last + 0.5 * jitter;
+    const glm::dvec3 spacing = lattice.spacing();
+    const glm::dvec3 size = glm::max(glm::abs(lattice.box.lo), glm::abs(lattice.box.hi));
+    const double rounding =
+        1e-14 * (size.x + size.y + size.z);  // of positions and of the middle, many times over
+    return {lattice.box.lo + spacing * ((low + high) * 0.5),
+            glm::length(spacing * ((high - low) * 0.5)) * (1.0 + 1e-9) + rounding};
+}
+
+std::vector<LatticeBlock> blocks_near(const ClosestPointIndex& index, const Lattice& lattice,
+                                      const CullSettings& settings, const Progress& progress) {
+    std::int64_t cells = block_cells;
+    while (cells <= std::max({lattice.n.x, lattice.n.y, lattice.n.z})) cells *= 2;
+    std::vector<LatticeBlock> blocks{{glm::i64vec3(0), 0.0, ClosestPoint::none}};
+    while (true) {
+        progress.check();
+        drop_far(blocks, cells, index, lattice, settings);
+        if (cells == block_cells) break;
+        cells /= 2;
+        blocks = split(blocks, lattice, cells);
+    }
+    std::sort(blocks.begin(), blocks.end(), [](const LatticeBlock& a, const LatticeBlock& b) {
+        return std::tie(a.at.z, a.at.y, a.at.x) < std::tie(b.at.z, b.at.y, b.at.x);
+    });
+    return blocks;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,43 @@
+// Which parts of a lattice can lie near a mesh at all: an octree of lattice blocks, dropped from the top
+// where the closest point of a block's middle is too far away. In: lattice, index, distance. Out: the blocks
+// that are left.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/progress.h"
+#include "splats/closest_point.h"
+#include "splats/lattice.h"
+
+namespace astrosplat {
+
+/// What a cull of a lattice asks for.
+struct CullSettings {
+    double max_distance;  // scene units, >= 0
+    double jitter;        // 0..1 of half a voxel
+    std::uint32_t seed;
+};
+
+/// A block of block_cells^3 cells: the corners and centres whose index divided by block_cells is `at`.
+struct LatticeBlock {
+    glm::i64vec3 at;
+    double distance;        // of the ball's middle from the meshes, scene units
+    std::uint32_t nearest;  // triangle there
+};
+constexpr std::int64_t block_cells = 4;
+
+/// A ball around all positions, after jitter, of the `cells`^3 cells from cell `first` on.
+struct BlockBall {
+    glm::dvec3 center;
+    double radius;
+};
+BlockBall block_ball(const Lattice& lattice, double jitter, const glm::i64vec3& first, std::int64_t cells);
+
+/// The blocks that may hold positions within max_distance, ordered by (z, y, x). Costs time and memory in
+/// proportion to their number.
+std::vector<LatticeBlock> blocks_near(const ClosestPointIndex& index, const Lattice& lattice,
+                                      const CullSettings& settings, const Progress& progress);
+
+}  // namespace astrosplat

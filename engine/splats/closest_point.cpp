@@ -1,0 +1,269 @@
+// Closest points. In: meshes and query points. Out: ClosestPoint. Embree's bounding volumes are built over
+// float copies of the vertices, moved to the middle of their box; every query radius is widened by more than
+// those roundings can amount to, and each triangle Embree proposes is measured in double from the unrounded
+// vertices.
+#include "splats/closest_point.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <memory>
+#include <new>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "core/buffer.h"
+#include "core/error.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::size_t most_triangles = ClosestPoint::none / 3;  // Embree counts corners in 32 bits
+
+double squared(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
+double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+ClosestPoint at(const glm::dvec3& ap, const TriangleShape& s, double v, double w) {
+    return {squared(ap - s.ab * v - s.ac * w), 0, {v, w}};
+}
+
+// Parameter in [0, 1] of the closest point on the segment from the origin along `edge`; 0 for a segment of no
+// length.
+double along(const glm::dvec3& p, const glm::dvec3& edge) {
+    const double length_squared = squared(edge);
+    return length_squared > 0.0 ? std::clamp(dot(p, edge) / length_squared, 0.0, 1.0) : 0.0;
+}
+
+ClosestPoint closest_on_edges(const glm::dvec3& ap, const TriangleShape& s) {
+    const double t_ab = along(ap, s.ab), t_ac = along(ap, s.ac), t_bc = along(ap - s.ab, s.ac - s.ab);
+    ClosestPoint best = at(ap, s, t_ab, 0.0);
+    for (const ClosestPoint& other : {at(ap, s, 0.0, t_ac), at(ap, s, 1.0 - t_bc, t_bc)}) {
+        if (other.distance_squared < best.distance_squared) best = other;
+    }
+    return best;
+}
+
+}  // namespace
+
+TriangleShape triangle_shape(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 ab = b - a, ac = c - a;
+    return {a, ab, ac, squared(ab), dot(ab, ac), squared(ac)};
+}
+
+ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& s) {
+    const glm::dvec3 ap = p - s.a;
+    const double d1 = dot(s.ab, ap), d2 = dot(s.ac, ap);  // from a; from b and c the same dot products follow
+    const double d3 = d1 - s.ab_ab, d4 = d2 - s.ab_ac;
+    const double d5 = d1 - s.ab_ac, d6 = d2 - s.ac_ac;
+    const double area_squared = s.ab_ab * s.ac_ac - s.ab_ac * s.ab_ac;
+    if (!(area_squared > 1e-14 * (s.ab_ab * s.ac_ac))) return closest_on_edges(ap, s);
+    if (d1 <= 0.0 && d2 <= 0.0) return at(ap, s, 0.0, 0.0);
+    if (d3 >= 0.0 && d4 <= d3) return at(ap, s, 1.0, 0.0);
+    if (d6 >= 0.0 && d5 <= d6) return at(ap, s, 0.0, 1.0);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return at(ap, s, d1 / s.ab_ab, 0.0);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return at(ap, s, 0.0, d2 / s.ac_ac);
+    const double va = d3 * d6 - d5 * d4;
+    const double to_c = d4 - d3, to_b = d5 - d6;
+    if (va <= 0.0 && to_c >= 0.0 && to_b >= 0.0) {
+        const double w = to_c / (to_c + to_b);
+        return at(ap, s, 1.0 - w, w);
+    }
+    const double scale = 1.0 / (va + vb + vc);
+    return at(ap, s, vb * scale, vc * scale);
+}
+
+ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                                 const glm::dvec3& c) {
+    return closest_on_triangle(p, triangle_shape(a, b, c));
+}
+
+struct ClosestPointIndex::State {
+    Buffer<TriangleShape> shapes;
+    glm::dvec3 center{0.0};  // Embree's origin, scene units
+    double reach = 0.0;      // largest coordinate of a vertex relative to center
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    State() = default;
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    ~State() {
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+
+    void copy_triangles(std::span<const Mesh* const> meshes);
+    RTCGeometry float_triangles() const;
+    void build();
+    template <class Visit>
+    void query(const glm::dvec3& p, double distance, Visit visit) const;
+
+    // Embree's vertices and its query point are each off by up to 2^-24 of their coordinates, per axis: along
+    // any direction by less than 1.1e-7 of their sum. Four times that also covers Embree's own subtractions,
+    // and the factor in `widened` its squares.
+    double slack(const glm::dvec3& local) const {
+        const glm::dvec3 size = glm::abs(local);
+        return 4e-7 * (reach + std::max({size.x, size.y, size.z}));
+    }
+    static float widened(double distance, double slack) {
+        return static_cast<float>(1.00001 * distance + slack);
+    }
+};
+
+void ClosestPointIndex::State::copy_triangles(std::span<const Mesh* const> meshes) {
+    std::size_t count = 0;
+    for (const Mesh* mesh : meshes) count += mesh->triangles.size();
+    if (count > most_triangles) {
+        bad_input("meshes", "", fmt::format("at most {} triangles", most_triangles),
+                  fmt::format("{}", count));
+    }
+    shapes.resize(count);
+    Bounds box;
+    std::size_t first = 0;
+    for (const Mesh* mesh : meshes) {
+        const auto corner = [&](std::size_t t, std::size_t k) {
+            return glm::dvec3(mesh->positions[mesh->triangles[t].position[k]]);
+        };
+        for (std::size_t t = 0; t < mesh->triangles.size(); ++t) {
+            const glm::dvec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
+            for (const glm::dvec3& p : {a, b, c}) box.add(p);
+            shapes[first + t] = triangle_shape(a, b, c);
+        }
+        first += mesh->triangles.size();
+    }
+    if (box.empty()) return;
+    center = box.center();
+    const glm::dvec3 half = box.extent() * 0.5;
+    reach = std::max({half.x, half.y, half.z});
+}
+
+RTCGeometry ClosestPointIndex::State::float_triangles() const {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::size_t corners = 3 * shapes.size();
+    auto* vertex = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, corners));
+    auto* index = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, shapes.size()));
+    if (!shapes.empty() && (!vertex || !index)) throw std::bad_alloc();
+    for (const TriangleShape& s : shapes) {
+        const glm::dvec3 a = s.a - center;
+        for (const glm::dvec3& p : {a, a + s.ab, a + s.ac}) {
+            for (int axis = 0; axis < 3; ++axis) *vertex++ = static_cast<float>(p[axis]);
+        }
+    }
+    std::iota(index, index + corners, 0u);
+    return geometry;
+}
+
+void ClosestPointIndex::State::build() {
+    device = rtcNewDevice("threads=1");  // keeps Embree off TBB's pool
+    if (!device) throw std::runtime_error("Embree gave no device");
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = float_triangles();
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::bad_alloc();
+}
+
+// Runs Embree around p. `visit(triangle)` is called for at least every triangle within `distance`; it returns
+// the distance that still matters, which may only shrink, or a negative number to stop.
+template <class Visit>
+void ClosestPointIndex::State::query(const glm::dvec3& p, double distance, Visit visit) const {
+    const glm::dvec3 local = p - center;
+    struct Call {
+        Visit visit;
+        double distance, slack;
+    } call{std::move(visit), distance, slack(local)};
+    RTCPointQuery query{};
+    query.x = static_cast<float>(local.x);
+    query.y = static_cast<float>(local.y);
+    query.z = static_cast<float>(local.z);
+    query.radius = widened(distance, call.slack);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    const auto on_triangle = [](RTCPointQueryFunctionArguments* args) {
+        Call& c = *static_cast<Call*>(args->userPtr);
+        const double left = c.visit(args->primID);
+        if (left >= c.distance) return false;
+        c.distance = left;
+        args->query->radius = left < 0.0 ? 0.0f : widened(left, c.slack);
+        return true;
+    };
+    rtcPointQuery(scene, &query, &context, on_triangle, &call);
+}
+
+ClosestPointIndex::ClosestPointIndex(std::span<const Mesh* const> meshes)
+    : state_(std::make_unique<State>()) {
+    state_->copy_triangles(meshes);
+    state_->build();
+}
+
+ClosestPointIndex::ClosestPointIndex(std::span<const Mesh> meshes) : state_(std::make_unique<State>()) {
+    std::vector<const Mesh*> pointers;
+    for (const Mesh& mesh : meshes) pointers.push_back(&mesh);
+    state_->copy_triangles(pointers);
+    state_->build();
+}
+
+ClosestPointIndex::~ClosestPointIndex() = default;
+
+ClosestPoint ClosestPointIndex::closest(const glm::dvec3& p, double max_distance, std::uint32_t hint) const {
+    ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
+    if (hint != ClosestPoint::none) {
+        const ClosestPoint first = closest_of(hint, p);
+        if (nearer(first, best)) best = first;
+    }
+    state_->query(p, std::sqrt(best.distance_squared), [&](std::uint32_t triangle) {
+        const ClosestPoint other = closest_of(triangle, p);
+        if (nearer(other, best)) best = other;
+        return std::sqrt(best.distance_squared);
+    });
+    return best;
+}
+
+ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double max_distance) const {
+    ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
+    for (std::uint32_t triangle = 0; triangle < state_->shapes.size(); ++triangle) {
+        const ClosestPoint other = closest_of(triangle, p);
+        if (nearer(other, best)) best = other;
+    }
+    return best;
+}
+
+std::size_t ClosestPointIndex::within(const glm::dvec3& center, double radius,
+                                      std::span<std::uint32_t> found) const {
+    std::size_t count = 0;
+    state_->query(center, radius, [&](std::uint32_t triangle) {
+        if (count > found.size() || closest_of(triangle, center).distance_squared > radius * radius)
+            return radius;
+        if (count < found.size()) found[count] = triangle;
+        return ++count > found.size() ? -1.0 : radius;
+    });
+    return count;
+}
+
+ClosestPoint ClosestPointIndex::closest_of(std::uint32_t triangle, const glm::dvec3& p) const {
+    ClosestPoint closest = closest_on_triangle(p, state_->shapes[triangle]);
+    closest.triangle = triangle;
+    return closest;
+}
+
+const TriangleShape& ClosestPointIndex::shape(std::uint32_t triangle) const {
+    return state_->shapes[triangle];
+}
+
+std::int64_t ClosestPointIndex::triangle_count() const {
+    return static_cast<std::int64_t>(state_->shapes.size());
+}
+
+}  // namespace astrosplat
