@@ -1,0 +1,219 @@
+// The demo galaxy's pictures: starlight, dust, glowing hydrogen and how thick the disk is, plus a slightly
+// warped disk to put them on. Each picture is painted from the densities in spiral.h and strewn with single
+// stars and clusters.
+#include <algorithm>
+#include <cmath>
+
+#include "assets.h"
+#include "canvas.h"
+#include "core/real.h"
+#include "core/shared_maths.h"
+#include "mesh_file.h"
+#include "noise.h"
+#include "spiral.h"
+
+namespace astrosplat::assets {
+namespace {
+
+constexpr int picture_px = 2048;
+constexpr glm::vec3 old_color(1.0f, 0.78f, 0.50f);
+constexpr glm::vec3 disk_color(1.0f, 0.79f, 0.56f);
+constexpr glm::vec3 young_color(0.36f, 0.58f, 1.0f);
+
+glm::vec2 on_disk(float u, float v) { return {2.0f * u - 1.0f, 2.0f * v - 1.0f}; }
+
+glm::vec2 in_pixels(glm::vec2 p) { return glm::vec2(p.x + 1.0f, 1.0f - p.y) * (0.5f * picture_px); }
+
+// Fades to nothing before the picture's border, irregularly.
+float rim(glm::vec2 p) {
+    const float r = std::sqrt(p.x * p.x + p.y * p.y) + 0.07f * fbm(p * 3.0f, 301, 4);
+    return 1.0f - smoothstep(0.66f, 0.97f, r);
+}
+
+glm::vec3 extinct(glm::vec3 light, float depth) {
+    return {light.x * shared::as_exp(-0.72f * depth), light.y * shared::as_exp(-1.0f * depth),
+            light.z * shared::as_exp(-1.35f * depth)};
+}
+
+glm::vec3 smooth_starlight(glm::vec2 p, const DiskPlace& place) {
+    const float r = std::sqrt(p.x * p.x + p.y * p.y);
+    const float mottle = 1.0f + 0.25f * fbm(p * 14.0f, 311, 5, 0.65f);
+    const float disk = 0.62f * shared::as_exp(-r / 0.165f) * (0.45f + 0.8f * place.broad) * mottle;
+    const float bulge = 3.0f * shared::as_exp(-std::sqrt(r / 0.0060f)) * 4.0f;
+    const float streaks = shared::as_exp(1.25f * along_spiral(place, 18.0f, 40, 3.5f, 321, false));
+    const float patches = shared::as_exp(2.1f * fbm(p * 15.0f, 331, 6, 0.70f));
+    const float reach = shared::as_exp(-r / 0.46f) * smoothstep(0.05f, 0.20f, r);
+    const float young = 1.15f * place.young * streaks * patches * reach;
+    const float haze = 0.05f * place.broad * reach * patches;
+    return disk_color * disk + old_color * bulge + young_color * (young + haze);
+}
+
+// Calls each(place, random index) for points strewn with probability chance(disk place) <= 1.
+template <class Chance, class Each>
+void strew(unsigned seed, unsigned trials, Chance chance, Each each) {
+    for (unsigned i = 0; i < trials; ++i) {
+        const glm::vec2 p = on_disk(uniform(seed, i, 1), uniform(seed, i, 2));
+        if (p.x * p.x + p.y * p.y > 0.94f) continue;
+        const DiskPlace place = disk_place(p);
+        if (uniform(seed, i, 3) < chance(p, place)) each(p, place, i);
+    }
+}
+
+// Power law: N(> flux) ~ flux^-slope, from 1 up to `most`.
+float power_law(float u, float slope, float most) {
+    return std::min(most, shared::as_pow(std::max(u, 1e-6f), -1.0f / slope));
+}
+
+void add_field_stars(Canvas& canvas) {
+    const auto chance = [](glm::vec2 p, const DiskPlace& place) {
+        return rim(p) * shared::as_exp(-place.r / 0.33f) * (0.25f + 0.75f * std::min(1.0f, place.broad));
+    };
+    strew(401, 420000, chance, [&](glm::vec2 p, const DiskPlace& place, unsigned i) {
+        const float flux = 0.028f * power_law(uniform(401, i, 4), 1.5f, 60.0f) * (0.5f + place.r);
+        const float warmth = std::clamp(uniform(401, i, 5) + 0.25f - place.young * 0.7f, 0.0f, 1.0f);
+        add_glow(canvas, in_pixels(p), flux * glm::vec3(shared::mix(young_color, old_color, warmth)), 0.62f);
+    });
+}
+
+void add_blue_clusters(Canvas& canvas) {
+    const auto chance = [](glm::vec2 p, const DiskPlace& place) {
+        const float lumps = smoothstep(-0.25f, 0.7f, fbm(p * 13.0f, 411, 4, 0.6f));
+        return rim(p) * place.young * lumps * smoothstep(0.05f, 0.2f, place.r);
+    };
+    strew(421, 260000, chance, [&](glm::vec2 p, const DiskPlace&, unsigned i) {
+        const float flux = 0.42f * power_law(uniform(421, i, 4), 1.2f, 90.0f);
+        const float sigma = 0.7f + 0.35f * std::sqrt(std::sqrt(flux));
+        const glm::vec3 tint = shared::mix(young_color, glm::vec3(0.85f, 0.9f, 1.0f), uniform(421, i, 5));
+        add_glow(canvas, in_pixels(p), flux * tint, sigma);
+    });
+}
+
+Canvas stars_picture() {
+    Canvas canvas = make_canvas(picture_px, picture_px);
+    paint(canvas, [](float u, float v) {
+        const glm::vec2 p = on_disk(u, v);
+        return glm::vec4(smooth_starlight(p, disk_place(p)) * rim(p), 1.0f);
+    });
+    add_field_stars(canvas);
+    add_blue_clusters(canvas);
+    Canvas out = make_canvas(picture_px, picture_px);
+    paint(out, [&](float u, float v) {
+        const glm::vec2 p = on_disk(u, v);
+        const glm::vec4& c =
+            canvas.at(static_cast<int>(u * picture_px), static_cast<int>((1.0f - v) * picture_px));
+        // Half of the dust is baked in: the part that lies before these stars whichever way one looks.
+        const glm::vec3 light = extinct(glm::vec3(c), 0.55f * dust_depth(p, disk_place(p)));
+        return glm::vec4(asinh_curve(light, 0.40f, 3.4f), 1.0f);
+    });
+    return out;
+}
+
+Canvas dust_picture() {
+    Canvas canvas = make_canvas(1536, 1536);
+    paint(canvas, [](float u, float v) {
+        const glm::vec2 p = on_disk(u, v);
+        const float alpha = 1.0f - shared::as_exp(-dust_depth(p, disk_place(p)) * rim(p));
+        return glm::vec4(0.030f, 0.015f, 0.008f, alpha < 0.012f ? 0.0f : alpha);
+    });
+    return canvas;
+}
+
+// One glowing region: a loose heap of small glows, brightest near its middle.
+void add_region(Canvas& canvas, glm::vec2 p, float flux, unsigned i) {
+    const float size = 0.0017f * shared::as_pow(flux, 0.40f);  // disk radii
+    const unsigned lumps = 2u + static_cast<unsigned>(2.2f * std::sqrt(flux));
+    for (unsigned k = 0; k < lumps; ++k) {
+        const unsigned id = i * 64u + k;
+        const glm::vec2 offset = 1.1f * size * glm::vec2(normal(511, id, 1), normal(511, id, 2));
+        const float share = power_law(uniform(511, id, 5), 1.2f, 8.0f) / (2.2f * static_cast<float>(lumps));
+        const float sigma = std::max(0.7f, size * picture_px * (0.06f + 0.30f * uniform(511, id, 6)));
+        const float heat = uniform(511, id, 7);
+        const glm::vec3 color =
+            shared::mix(glm::vec3(1.0f, 0.10f, 0.20f), glm::vec3(1.0f, 0.36f, 0.50f), heat * heat);
+        add_glow(canvas, in_pixels(p + offset), 3.6f * flux * share * color, sigma);
+    }
+    if (flux > 14.0f)  // oxygen shows in the hot middle of the largest
+        add_glow(canvas, in_pixels(p), 0.7f * flux * glm::vec3(0.45f, 0.8f, 0.95f),
+                 std::max(0.8f, size * 0.12f * picture_px));
+}
+
+Canvas nebulae_picture() {
+    Canvas canvas = make_canvas(picture_px, picture_px);
+    paint(canvas, [](float u, float v) {
+        const glm::vec2 p = on_disk(u, v);
+        const DiskPlace place = disk_place(p);
+        const float threads = ridged(p * 17.0f, 521, 6, 0.6f);
+        const float patches = shared::as_exp(3.0f * fbm(p * 10.0f, 531, 5, 0.6f));
+        const float glow =
+            0.022f * place.ridge * patches * (0.3f + threads) * smoothstep(0.06f, 0.2f, place.r);
+        return glm::vec4(glow * glm::vec3(1.0f, 0.18f, 0.28f), 1.0f);
+    });
+    const auto chance = [](glm::vec2 p, const DiskPlace& place) {
+        const float lumps = smoothstep(-0.05f, 0.5f, fbm(p * 12.0f, 541, 4, 0.7f));
+        return 0.9f * place.ridge * place.ridge * lumps * smoothstep(0.07f, 0.2f, place.r);
+    };
+    strew(501, 190000, chance, [&](glm::vec2 p, const DiskPlace&, unsigned i) {
+        add_region(canvas, p, 1.3f * power_law(uniform(501, i, 4), 1.05f, 26.0f), i);
+    });
+    Canvas out = make_canvas(picture_px, picture_px);
+    paint(out, [&](float u, float v) {
+        const glm::vec2 p = on_disk(u, v);
+        const glm::vec4& c =
+            canvas.at(static_cast<int>(u * picture_px), static_cast<int>((1.0f - v) * picture_px));
+        const float wisps = shared::as_exp(1.6f * fbm(p * 70.0f, 551, 4, 0.65f));
+        return glm::vec4(asinh_curve(glm::vec3(c) * (rim(p) * wisps), 0.22f, 2.6f), 1.0f);
+    });
+    return out;
+}
+
+// Red: the bulge, as high as it is wide. Green: the inner disk. Blue: the thin outer disk.
+Canvas thickness_picture() {
+    Canvas canvas = make_canvas(512, 512);
+    paint(canvas, [](float u, float v) {
+        const glm::vec2 p = on_disk(u, v);
+        const float r = std::sqrt(p.x * p.x + p.y * p.y) * (1.0f + 0.1f * fbm(p * 4.0f, 601, 3));
+        const float bulge = 1.0f - smoothstep(0.02f, 0.24f, r), outer = smoothstep(0.25f, 0.85f, r);
+        return glm::vec4(bulge, (1.0f - bulge) * (1.0f - outer), (1.0f - bulge) * outer, 1.0f);
+    });
+    return canvas;
+}
+
+// The bulge alone, for a layer of its own: brightness is also its height. The picture's half width is a
+// quarter of the disk's.
+Canvas bulge_picture() {
+    Canvas canvas = make_canvas(256, 256);
+    paint(canvas, [](float u, float v) {
+        const glm::vec2 p = on_disk(u, v);
+        const float r = std::sqrt(p.x * p.x + p.y * p.y);
+        const float light =
+            shared::as_exp(-3.2f * std::sqrt(r * r + 0.02f)) * (1.0f - smoothstep(0.45f, 1.0f, r));
+        return glm::vec4(old_color * light, 1.0f);
+    });
+    return canvas;
+}
+
+// A disk of radius 5 whose rim bends up on one side and down on the other, as most real disks do.
+SheetMesh disk_mesh() {
+    return make_sheet(96, 28, true, [](float turn, float out) {
+        const float r = std::sqrt(out), angle = turn * static_cast<float>(2.0 * real::pi);
+        const float c = static_cast<float>(real::cos(static_cast<double>(angle)));
+        const float s = static_cast<float>(real::sin(static_cast<double>(angle)));
+        const float tilt = static_cast<float>(real::sin(static_cast<double>(angle + 2.2f * r)));
+        const float height = 0.17f * smoothstep(0.45f, 1.05f, r) * tilt +
+                             0.02f * noise(glm::vec2(3.0f * r * c, 3.0f * r * s), 611);
+        return SheetPoint{{5.0f * r * c, height, -5.0f * r * s}, {0.5f + 0.5f * r * c, 0.5f + 0.5f * r * s}};
+    });
+}
+
+}  // namespace
+
+void make_whirlpool(const std::filesystem::path& folder) {
+    save_jpeg(stars_picture(), folder / "textures/whirlpool_stars.jpg", 88);
+    save_png(dust_picture(), folder / "textures/whirlpool_dust.png", 4);
+    save_jpeg(nebulae_picture(), folder / "textures/whirlpool_nebulae.jpg", 88);
+    save_png(bulge_picture(), folder / "textures/whirlpool_bulge.png", 3);
+    save_png(thickness_picture(), folder / "textures/whirlpool_thickness.png", 3);
+    save_obj(disk_mesh(), folder / "meshes/whirlpool_disk.obj", "a gently warped disk, radius 5");
+}
+
+}  // namespace astrosplat::assets
