@@ -20,16 +20,17 @@ struct CameraParams {
     std::optional<glm::dvec3> position;  // empty: frame all visible layers from 35 degrees above +z
     glm::dvec3 target{0.0};
     glm::dvec3 up{0.0, 1.0, 0.0};
-    std::optional<glm::dvec4> rotation;  // quaternion x y z w, world from camera; replaces target, up and roll
-    double roll = 0.0;                   // degrees
-    double fov = 45.0;                   // degrees, vertical
-    double focal_length = 0.0;           // mm; > 0 replaces fov, with film_width
-    double film_width = 36.0;            // mm
-    double fisheye_fov = 180.0;          // degrees, full cone
-    double height = 10.0;                // scene units, orthographic
-    double near = 0.01;                  // scene units
-    double far = 0.0;                    // scene units; 0: none
-    double near_fade = 0.0;              // scene units; 0: one radius of the splat
+    std::optional<glm::dvec4>
+        rotation;                // quaternion x y z w, world from camera; replaces target, up and roll
+    double roll = 0.0;           // degrees; > 0 turns the camera clockwise as seen from behind it
+    double fov = 45.0;           // degrees, vertical
+    double focal_length = 0.0;   // mm; > 0 replaces fov, with film_width
+    double film_width = 36.0;    // mm
+    double fisheye_fov = 180.0;  // degrees, full cone
+    double height = 10.0;        // scene units, orthographic
+    double near = 0.01;          // scene units
+    double far = 0.0;            // scene units; 0: none
+    double near_fade = 0.0;      // scene units; 0: one radius of the splat
     std::filesystem::path file;
     bool operator==(const CameraParams&) const = default;
 };
@@ -44,31 +45,36 @@ struct Camera {
     double aspect = 1.0;  // width / height
 };
 
-/// Resolves the parameters for a picture of width x height px. `scene_box` (may be empty) is what a camera without
-/// position frames. Throws InputError for projections that a later release brings, a zero view direction, camera
-/// files.
+/// Resolves the parameters for a picture of width x height px. `scene_box` (may be empty) is what a camera
+/// without position frames: its place, target and (orthographic) height then come from frame_box; a rotation
+/// is kept. Where the view is parallel to up, -z is up, else +x. Throws InputError for values out of range,
+/// projections and camera files that a later release brings, and a zero view direction.
 Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box);
 
-/// Unit direction in world space through a point of the picture (px, y down) -- for environments. Orthographic
-/// cameras give the view axis.
+/// Unit direction in world space through a point of the picture (px, y down) -- for environments.
+/// Orthographic cameras give the view axis.
 glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px);
 
-/// Position and target that frame a box from 35 degrees above +z with the given vertical field of view.
+/// Position and target that frame a box from 35 degrees above +z with the given vertical field of view: its
+/// corners fill 90 % of the picture's width or height. An empty box counts as the origin, a point as a cube
+/// of side 1.
 struct Framing {
     glm::dvec3 position, target;
     double height;  // orthographic height that frames the same
 };
 Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect);
 
-/// 4x4 row-major matrices as OpenEXR defines them (row vectors: p * M).
+/// 4x4 row-major matrices as OpenEXR defines them (row vectors: p * M): camera space is left-handed with z
+/// forward; NDC, after division by w, runs from (0, 0) at the upper left to (1, 1) at the lower right of the
+/// whole picture.
 struct ExrMatrices {
     float world_to_camera[16];
     float world_to_ndc[16];
 };
 ExrMatrices exr_matrices(const Camera& camera, double width_px, double height_px);
 
-/// Rotation matrix from a unit quaternion (x y z w); rotation about x, then y, then z by degrees; with the engine's
-/// own trigonometry.
+/// Rotation matrix from a quaternion x y z w of any length (0: InputError); rotation about x, then y, then z
+/// by degrees. With the engine's own trigonometry.
 glm::dmat3 rotation_from_quaternion(const glm::dvec4& q);
 glm::dmat3 rotation_from_degrees(const glm::dvec3& degrees);
 

@@ -1,0 +1,282 @@
+// The camera against geometry worked out by hand.
+#include "camera/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <string>
+
+#include "core/error.h"
+#include "core/real.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double tiny = 1e-14;
+
+void expect_near(const glm::dvec3& got, const glm::dvec3& expected, double tolerance = tiny) {
+    EXPECT_NEAR(got.x, expected.x, tolerance);
+    EXPECT_NEAR(got.y, expected.y, tolerance);
+    EXPECT_NEAR(got.z, expected.z, tolerance);
+}
+
+CameraParams at(const glm::dvec3& position) {
+    CameraParams params;
+    params.position = position;
+    return params;
+}
+
+Camera made(const CameraParams& params) { return make_camera(params, 1920, 1080, {}); }
+
+// Where a point appears, by the definition: x right, y up, looking along -z.
+glm::dvec3 project(const Camera& camera, const glm::dvec3& point) {
+    glm::dvec3 c = glm::transpose(camera.world_from_camera) * (point - camera.eye);
+    double scale = camera.projection == Projection::orthographic ? camera.focal_px : camera.focal_px / -c.z;
+    return {camera.center_x_px + c.x * scale, camera.center_y_px - c.y * scale, -c.z};
+}
+
+std::string error_of(const CameraParams& params) {
+    try {
+        made(params);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(Camera, LooksAlongMinusZByDefault) {
+    Camera camera = made(at({0, 0, 10}));
+    expect_near(camera.world_from_camera[0], {1, 0, 0});
+    expect_near(camera.world_from_camera[1], {0, 1, 0});
+    expect_near(camera.world_from_camera[2], {0, 0, 1});
+}
+
+TEST(Camera, PictureHasPlusXRightAndPlusYUp) {
+    Camera camera = made(at({0, 0, 10}));
+    EXPECT_GT(project(camera, {1, 0, 0}).x, 960.0);
+    EXPECT_LT(project(camera, {0, 1, 0}).y, 540.0);
+    EXPECT_DOUBLE_EQ(project(camera, {0, 0, 0}).z, 10.0);
+}
+
+TEST(Camera, VerticalFieldOfViewSpansTheHeight) {
+    CameraParams params = at({0, 0, 1});
+    params.fov = 90.0;
+    Camera camera = made(params);
+    EXPECT_NEAR(camera.focal_px, 540.0, 1e-9);
+    EXPECT_NEAR(project(camera, {0, 1, 0}).y, 0.0, 1e-9);
+}
+
+TEST(Camera, FilmWidthSpansTheWidth) {
+    CameraParams params = at({0, 0, 1});
+    params.focal_length = 18.0;  // half the film's width: 45 degrees to each side
+    Camera camera = made(params);
+    EXPECT_NEAR(camera.focal_px, 960.0, 1e-9);
+}
+
+TEST(Camera, OrthographicHeightSpansTheHeight) {
+    CameraParams params = at({0, 0, 10});
+    params.projection = Projection::orthographic;
+    params.height = 4.0;
+    Camera camera = made(params);
+    EXPECT_DOUBLE_EQ(camera.focal_px, 270.0);
+    EXPECT_DOUBLE_EQ(project(camera, {0, 2, -7}).y, 0.0);
+    EXPECT_DOUBLE_EQ(project(camera, {0, -2, 3}).y, 1080.0);
+}
+
+TEST(Camera, PositiveRollTurnsThePictureAnticlockwise) {
+    CameraParams params = at({0, 0, 10});
+    params.roll = 90.0;
+    Camera camera = made(params);
+    EXPECT_LT(project(camera, {1, 0, 0}).y, 540.0 - 1.0);  // what was on the right is on top
+    EXPECT_LT(project(camera, {0, 1, 0}).x, 960.0 - 1.0);  // what was on top is on the left
+}
+
+TEST(Camera, AxesStayRightHandedAndOrthonormal) {
+    CameraParams params = at({3, -2, 7});
+    params.target = {-1, 4, 0.5};
+    params.roll = 33.0;
+    glm::dmat3 m = made(params).world_from_camera;
+    EXPECT_NEAR(glm::determinant(m), 1.0, tiny);
+    EXPECT_NEAR(glm::dot(m[0], m[1]), 0.0, tiny);
+    EXPECT_NEAR(glm::length(m[0]), 1.0, tiny);
+    expect_near(-m[2], glm::normalize(params.target - *params.position));
+}
+
+TEST(Camera, LookingStraightDownHasMinusZUp) {
+    Camera camera = made(at({0, 10, 0}));
+    expect_near(camera.world_from_camera[1], {0, 0, -1});
+    expect_near(camera.world_from_camera[0], {1, 0, 0});
+}
+
+TEST(Camera, LookingAlongUpAndMinusZHasPlusXUp) {
+    CameraParams params = at({0, 0, 10});
+    params.up = {0, 0, 1};
+    expect_near(made(params).world_from_camera[1], {1, 0, 0});
+}
+
+TEST(Camera, QuaternionReplacesTargetUpAndRoll) {
+    CameraParams params = at({0, 0, 10});
+    params.rotation =
+        glm::dvec4(0, 2.0 * std::sqrt(0.5), 0, 2.0 * std::sqrt(0.5));  // 90 degrees about y, not unit
+    params.target = {5, 5, 5};
+    params.roll = 12.0;
+    Camera camera = made(params);
+    expect_near(-camera.world_from_camera[2], {-1, 0, 0});
+    expect_near(camera.world_from_camera[0], {0, 0, -1});
+}
+
+TEST(Camera, QuaternionsAndDegreesAgree) {
+    double h = real::radians(15.0);  // half of 30 degrees
+    struct {
+        glm::dvec4 q;
+        glm::dvec3 degrees;
+    } cases[] = {{{real::sin(h), 0, 0, real::cos(h)}, {30, 0, 0}},
+                 {{0, real::sin(h), 0, real::cos(h)}, {0, 30, 0}},
+                 {{0, 0, real::sin(h), real::cos(h)}, {0, 0, 30}}};
+    for (const auto& c : cases) {
+        glm::dmat3 a = rotation_from_quaternion(c.q), b = rotation_from_degrees(c.degrees);
+        for (int i = 0; i < 3; ++i) expect_near(a[i], b[i]);
+    }
+}
+
+TEST(Camera, DegreesTurnAboutXThenYThenZ) {
+    // x: +y to +z; y: +z to +x; z: +x to +y.
+    expect_near(rotation_from_degrees({90, 90, 90}) * glm::dvec3(0, 1, 0), {0, 1, 0});
+    expect_near(rotation_from_degrees({90, 0, 90}) * glm::dvec3(1, 0, 0), {0, 1, 0});
+}
+
+TEST(Camera, RayThroughAPixelHitsThePointSeenThere) {
+    CameraParams params = at({3, -2, 7});
+    params.target = {-1, 4, 0.5};
+    params.roll = 33.0;
+    Camera camera = made(params);
+    glm::dvec3 point(0.3, 1.2, 1.9);
+    glm::dvec3 seen = project(camera, point);
+    expect_near(ray_direction(camera, seen.x, seen.y), glm::normalize(point - camera.eye));
+    params.projection = Projection::orthographic;
+    expect_near(ray_direction(made(params), 12.0, 800.0), glm::normalize(params.target - *params.position));
+}
+
+// The share of half the picture that the corners of a box reach, as seen by the framing camera.
+double fill_of(const CameraParams& params, const Bounds& box, double width, double height) {
+    Camera camera = make_camera(params, width, height, box);
+    double fill = 0.0;
+    for (int k = 0; k < 8; ++k) {
+        glm::dvec3 seen = project(
+            camera, {k & 1 ? box.hi.x : box.lo.x, k & 2 ? box.hi.y : box.lo.y, k & 4 ? box.hi.z : box.lo.z});
+        EXPECT_GT(seen.z, 0.0);
+        fill = std::fmax(fill, std::fabs(seen.x - width / 2) / (width / 2));
+        fill = std::fmax(fill, std::fabs(seen.y - height / 2) / (height / 2));
+    }
+    return fill;
+}
+
+TEST(Framing, FillsNineTenthsOfWideTallAndDeepPictures) {
+    Bounds boxes[] = {
+        {{-5, -0.1, -3}, {5, 0.1, 3}}, {{10, 20, 30}, {10.5, 28, 31}}, {{-1, -1, -40}, {1, 1, 40}}};
+    for (const Bounds& box : boxes)
+        for (Projection projection : {Projection::perspective, Projection::orthographic}) {
+            CameraParams params;
+            params.projection = projection;
+            EXPECT_NEAR(fill_of(params, box, 1920, 1080), 0.9, 1e-9);
+            EXPECT_NEAR(fill_of(params, box, 600, 1000), 0.9, 1e-9);
+        }
+}
+
+TEST(Framing, LooksFrom35DegreesAboveZ) {
+    Bounds box{{-1, -1, -1}, {3, 1, 1}};
+    Camera camera = make_camera({}, 100, 100, box);
+    glm::dvec3 back = glm::normalize(camera.eye - box.center());
+    expect_near(back, {0.0, std::sin(35.0 * real::pi / 180.0), std::cos(35.0 * real::pi / 180.0)}, 1e-12);
+    expect_near(camera.world_from_camera[2], back, 1e-12);
+    expect_near(frame_box(box, 45.0, 1.0).position, camera.eye, 1e-12);
+}
+
+TEST(Framing, EmptyBoxesAndPointsAreSeenToo) {
+    Bounds point;
+    point.add(glm::dvec3(1, 2, 3));
+    for (const Bounds& box : {Bounds{}, point}) {
+        Camera camera = make_camera({}, 100, 100, box);
+        EXPECT_TRUE(std::isfinite(camera.eye.x + camera.eye.y + camera.eye.z));
+        EXPECT_GT(glm::length(camera.eye - (box.empty() ? glm::dvec3(0.0) : box.center())), 0.5);
+    }
+}
+
+// p * M with OpenEXR's row vectors, divided by w.
+glm::dvec3 transformed(const float* m, const glm::dvec3& p) {
+    double out[4];
+    for (int c = 0; c < 4; ++c) out[c] = p.x * m[c] + p.y * m[4 + c] + p.z * m[8 + c] + m[12 + c];
+    return glm::dvec3(out[0], out[1], out[2]) / out[3];
+}
+
+TEST(ExrMatrices, CameraSpaceIsLeftHandedWithZForward) {
+    ExrMatrices m = exr_matrices(made(at({0, 0, 10})), 1920, 1080);
+    expect_near(transformed(m.world_to_camera, {1, 2, 3}), {1, 2, 7}, 1e-6);
+}
+
+TEST(ExrMatrices, NdcRunsFromTheUpperLeftToTheLowerRightCorner) {
+    for (Projection projection : {Projection::perspective, Projection::orthographic}) {
+        CameraParams params = at({3, -2, 7});
+        params.projection = projection;
+        params.target = {-1, 4, 0.5};
+        params.roll = 20.0;
+        params.far = 100.0;
+        Camera camera = made(params);
+        ExrMatrices m = exr_matrices(camera, 1920, 1080);
+        glm::dvec3 point(0.3, 1.2, 1.9);
+        glm::dvec3 seen = project(camera, point), ndc = transformed(m.world_to_ndc, point);
+        EXPECT_NEAR(ndc.x, seen.x / 1920.0, 1e-6);
+        EXPECT_NEAR(ndc.y, seen.y / 1080.0, 1e-6);
+        glm::dvec3 forward = -camera.world_from_camera[2];
+        EXPECT_NEAR(transformed(m.world_to_ndc, camera.eye + forward * camera.far).z, 1.0, 1e-5);
+    }
+}
+
+TEST(CameraErrors, EachSaysKeyExpectationAndFinding) {
+    auto with = [](auto change) {
+        CameraParams params = at({0, 0, 10});
+        change(params);
+        return error_of(params);
+    };
+    EXPECT_EQ(with([](CameraParams& p) { p.projection = Projection::fisheye; }),
+              "camera.projection: expected perspective or orthographic (other projections come with a later "
+              "release), "
+              "found fisheye");
+    EXPECT_EQ(with([](CameraParams& p) { p.projection = Projection::equirectangular; }),
+              "camera.projection: expected perspective or orthographic (other projections come with a later "
+              "release), "
+              "found equirectangular");
+    EXPECT_EQ(with([](CameraParams& p) { p.file = "move.chan"; }),
+              "camera.file: expected no file (camera paths can be imported from a later release on), found "
+              "'move.chan'");
+    EXPECT_EQ(with([](CameraParams& p) { p.target = *p.position; }),
+              "camera.target: expected a point other than camera.position, found [0, 0, 10]");
+    EXPECT_EQ(with([](CameraParams& p) {
+                  p.up = {0, 0, 0};
+              }),
+              "camera.up: expected a direction, found [0, 0, 0]");
+    EXPECT_EQ(with([](CameraParams& p) { p.rotation = glm::dvec4(0.0); }),
+              "camera.rotation: expected a quaternion x y z w that is not zero, found [0, 0, 0, 0]");
+    EXPECT_EQ(with([](CameraParams& p) { p.fov = 180.0; }),
+              "camera.fov: expected degrees between 0 and 180, found 180");
+    EXPECT_EQ(with([](CameraParams& p) { p.fov = NAN; }),
+              "camera.fov: expected degrees between 0 and 180, found nan");
+    EXPECT_EQ(with([](CameraParams& p) { p.near = 0.0; }),
+              "camera.near: expected more than 0 scene units, found 0");
+    EXPECT_EQ(with([](CameraParams& p) { p.far = 0.005; }),
+              "camera.far: expected 0, or more than camera.near, found 0.005");
+    EXPECT_EQ(with([](CameraParams& p) { p.focal_length = -1.0; }),
+              "camera.focal_length: expected 0 or more mm, found -1");
+    EXPECT_EQ(with([](CameraParams& p) { p.film_width = 0.0; }),
+              "camera.film_width: expected more than 0 mm, found 0");
+    EXPECT_EQ(with([](CameraParams& p) {
+                  p.projection = Projection::orthographic;
+                  p.height = 0.0;
+              }),
+              "camera.height: expected more than 0 scene units, found 0");
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,210 @@
+// Interpolation against values worked out by hand.
+#include "camera/path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/real.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr Interpolation linear = Interpolation::linear, smooth = Interpolation::smooth,
+                        step = Interpolation::step;
+using Scalars = std::vector<Key<double>>;
+using Positions = std::vector<Key<glm::dvec3>>;
+using Rotations = std::vector<Key<glm::dvec4>>;
+
+glm::dvec4 about_y(double degrees) {
+    double h = real::radians(degrees) * 0.5;
+    return {0.0, real::sin(h), 0.0, real::cos(h)};
+}
+double degrees_about_y(const glm::dvec4& q) { return real::degrees(2.0 * real::atan2(q.y, q.w)); }
+
+void expect_near(const glm::dvec3& got, const glm::dvec3& expected, double tolerance) {
+    EXPECT_NEAR(glm::distance(got, expected), 0.0, tolerance)
+        << got.x << " " << got.y << " " << got.z << " instead of " << expected.x << " " << expected.y << " "
+        << expected.z;
+}
+
+TEST(Scalars, HeldOutsideTheKeys) {
+    Scalars keys = {{1, 5.0, smooth}, {3, 7.0, smooth}};
+    EXPECT_EQ(evaluate_scalar(keys, -100, Ends::through), 5.0);
+    EXPECT_EQ(evaluate_scalar(keys, 1, Ends::through), 5.0);
+    EXPECT_EQ(evaluate_scalar(keys, 3, Ends::through), 7.0);
+    EXPECT_EQ(evaluate_scalar(keys, 100, Ends::through), 7.0);
+    EXPECT_EQ(evaluate_scalar(Scalars{{4, 2.5, linear}}, 9, Ends::ease), 2.5);
+}
+
+TEST(Scalars, LinearAndStep) {
+    Scalars keys = {{0, 1.0, linear}, {10, 2.0, step}, {20, 5.0, linear}};
+    EXPECT_DOUBLE_EQ(evaluate_scalar(keys, 2.5, Ends::ease), 1.25);
+    EXPECT_EQ(evaluate_scalar(keys, 10, Ends::ease), 2.0);
+    EXPECT_EQ(evaluate_scalar(keys, 19.999, Ends::ease), 2.0);
+    EXPECT_EQ(evaluate_scalar(keys, 20, Ends::ease), 5.0);
+}
+
+TEST(Scalars, TwoEasedKeysAreSmoothstep) {
+    Scalars keys = {{0, 0.0, smooth}, {10, 1.0, smooth}};
+    for (double u : {0.1, 0.25, 0.5, 0.9})
+        EXPECT_NEAR(evaluate_scalar(keys, 10 * u, Ends::ease), u * u * (3 - 2 * u), 1e-15);
+}
+
+TEST(Scalars, TwoKeysThroughAreALine) {
+    Scalars keys = {{0, 0.0, smooth}, {10, 1.0, smooth}};
+    EXPECT_NEAR(evaluate_scalar(keys, 3, Ends::through), 0.3, 1e-15);
+}
+
+TEST(Scalars, InnerTangentIsTheChordOfTheNeighbours) {
+    // Keys at uneven frames on a line stay on it; its slope is what the tangent rule gives.
+    Scalars line = {{0, 0.0, smooth}, {1, 1.0, smooth}, {5, 5.0, smooth}, {7, 7.0, smooth}};
+    for (double f : {0.3, 2.2, 6.9}) EXPECT_NEAR(evaluate_scalar(line, f, Ends::through), f, 1e-14);
+    // (0, 0) (2, 2) (4, 8): tangent 2 at the middle key; Hermite at frame 1 with one-sided tangent 1 at the
+    // start: h01 * 2 + h10 * 2 * 1 + h11 * 2 * 2 at u = 1/2 = 1 + 0.25 - 0.5.
+    Scalars bend = {{0, 0.0, smooth}, {2, 2.0, smooth}, {4, 8.0, smooth}};
+    EXPECT_NEAR(evaluate_scalar(bend, 1, Ends::through), 0.75, 1e-15);
+}
+
+TEST(Scalars, SmoothNeverLeavesTheRangeOfItsTwoKeys) {
+    Scalars keys = {
+        {0, 0.0, smooth}, {10, 0.0, smooth}, {20, 10.0, smooth}, {30, 10.0, smooth}, {40, -3.0, smooth}};
+    for (int f = 0; f <= 400; ++f) {
+        double v = evaluate_scalar(keys, f * 0.1, Ends::through);
+        auto i = std::min<std::size_t>(static_cast<std::size_t>(f) / 100, 3);
+        EXPECT_GE(v, std::fmin(keys[i].value, keys[i + 1].value));
+        EXPECT_LE(v, std::fmax(keys[i].value, keys[i + 1].value));
+    }
+}
+
+TEST(Positions, PassThroughTheirKeysAtTheirFrames) {
+    Positions keys = {
+        {1, {0, 0, 0}, smooth}, {5, {3, 1, 0}, smooth}, {20, {4, 4, 4}, smooth}, {21, {0, 5, 1}, smooth}};
+    for (Ends ends : {Ends::ease, Ends::through})
+        for (const auto& key : keys)
+            expect_near(evaluate_position(keys, key.frame, ends, false), key.value, 1e-14);
+}
+
+TEST(Positions, CentripetalCurveOfFourKeysMatchesBarryAndGoldman) {
+    // The pyramid of Barry and Goldman (1988) with knots sqrt(distance), an independent form of the same
+    // curve.
+    Positions keys = {
+        {0, {0, 0, 0}, smooth}, {1, {1, 0, 0}, smooth}, {2, {1, 4, 0}, smooth}, {3, {3, 5, 2}, smooth}};
+    double t[4] = {0, 0, 0, 0};
+    for (std::size_t i = 0; i < 3; ++i)
+        t[i + 1] = t[i] + std::sqrt(glm::distance(keys[i].value, keys[i + 1].value));
+    double best = 1e9;
+    glm::dvec3 got = evaluate_position(keys, 1.5, Ends::through, false);
+    for (int k = 0; k <= 100000; ++k) {
+        double s = t[1] + (t[2] - t[1]) * k / 100000.0;
+        auto mix = [&](const glm::dvec3& a, const glm::dvec3& b, double ta, double tb) {
+            return a * ((tb - s) / (tb - ta)) + b * ((s - ta) / (tb - ta));
+        };
+        glm::dvec3 a1 = mix(keys[0].value, keys[1].value, t[0], t[1]),
+                   a2 = mix(keys[1].value, keys[2].value, t[1], t[2]),
+                   a3 = mix(keys[2].value, keys[3].value, t[2], t[3]);
+        glm::dvec3 b1 = mix(a1, a2, t[0], t[2]), b2 = mix(a2, a3, t[1], t[3]);
+        best = std::fmin(best, glm::distance(got, mix(b1, b2, t[1], t[2])));
+    }
+    EXPECT_LT(best, 1e-4);  // half the sampling step along the curve
+}
+
+TEST(Positions, SpeedIsContinuousAtKeysOfUnevenFrames) {
+    Positions keys = {
+        {0, {0, 0, 0}, smooth}, {10, {5, 0, 0}, smooth}, {12, {6, 2, 0}, smooth}, {40, {0, 9, 1}, smooth}};
+    const double h = 1e-5;
+    for (double f : {10.0, 12.0}) {
+        auto at = [&](double frame) { return evaluate_position(keys, frame, Ends::ease, false); };
+        expect_near((at(f) - at(f - h)) / h, (at(f + h) - at(f)) / h, 1e-3);
+    }
+}
+
+TEST(Positions, EvenKeysOnALineMoveEvenly) {
+    Positions keys = {{0, {0, 0, 0}, smooth}, {10, {1, 2, 3}, smooth}, {20, {2, 4, 6}, smooth}};
+    expect_near(evaluate_position(keys, 13, Ends::through, false), glm::dvec3(1.3, 2.6, 3.9), 1e-14);
+}
+
+TEST(Positions, EaseStartsAndEndsAtRest) {
+    Positions keys = {{0, {0, 0, 0}, smooth}, {10, {5, 0, 0}, smooth}, {20, {5, 5, 0}, smooth}};
+    auto moved = [&](double a, double b) {
+        return glm::distance(evaluate_position(keys, a, Ends::ease, false),
+                             evaluate_position(keys, b, Ends::ease, false));
+    };
+    EXPECT_LT(moved(0, 0.01), 1e-4);
+    EXPECT_LT(moved(19.99, 20), 1e-4);
+    EXPECT_GT(moved(9.99, 10), 1e-3);
+}
+
+TEST(Positions, CoincidentKeysRest) {
+    Positions keys = {
+        {0, {0, 0, 0}, smooth}, {10, {1, 1, 0}, smooth}, {20, {1, 1, 0}, smooth}, {30, {4, 0, 0}, smooth}};
+    for (bool constant_speed : {false, true})
+        for (int f = 0; f <= 30; ++f) {
+            glm::dvec3 p = evaluate_position(keys, f, Ends::ease, constant_speed);
+            EXPECT_TRUE(std::isfinite(p.x + p.y + p.z)) << f;
+        }
+    expect_near(evaluate_position(keys, 15, Ends::ease, false), glm::dvec3(1, 1, 0), 0.0);
+    Positions still = {{0, {2, 2, 2}, smooth}, {10, {2, 2, 2}, smooth}};
+    expect_near(evaluate_position(still, 5, Ends::ease, true), glm::dvec3(2, 2, 2), 0.0);
+}
+
+TEST(Positions, ConstantSpeedCoversEqualLengthsInEqualTimes) {
+    Positions keys = {
+        {0, {0, 0, 0}, smooth}, {3, {10, 0, 0}, smooth}, {50, {11, 1, 0}, smooth}, {60, {0, 8, 5}, smooth}};
+    auto at = [&](double f) { return evaluate_position(keys, f, Ends::through, true); };
+    double first = glm::distance(at(0), at(0.01));
+    for (double f : {2.0, 14.0, 37.7, 59.9})
+        EXPECT_NEAR(glm::distance(at(f), at(f + 0.01)), first, 1e-5 * first) << f;
+    expect_near(at(60), keys.back().value, 0.0);
+    expect_near(at(60 - 1e-9), keys.back().value, 1e-8);
+}
+
+TEST(Positions, ConstantSpeedOnALineIsLinear) {
+    Positions keys = {{0, {0, 0, 0}, linear}, {1, {1, 0, 0}, linear}, {10, {10, 0, 0}, linear}};
+    expect_near(evaluate_position(keys, 2.5, Ends::ease, true), glm::dvec3(2.5, 0, 0), 1e-12);
+}
+
+TEST(Positions, ConstantSpeedEasesOverATenthAtEachEnd) {
+    Positions keys = {{0, {0, 0, 0}, smooth}, {100, {90, 0, 0}, smooth}};
+    auto x = [&](double f) { return evaluate_position(keys, f, Ends::ease, true).x; };
+    EXPECT_NEAR(x(10), 5.0, 1e-9);   // half the pace over the ramp
+    EXPECT_NEAR(x(50), 45.0, 1e-9);  // then 1 per frame
+    EXPECT_NEAR(x(60) - x(50), 10.0, 1e-9);
+    EXPECT_NEAR(x(90), 85.0, 1e-9);
+    EXPECT_LT(x(0.01), 1e-6);
+}
+
+TEST(Rotations, LinearTurnsEvenlyTheShorterWay) {
+    Rotations keys = {{0, about_y(0), linear}, {10, -about_y(90), linear}};  // q and -q are the same rotation
+    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keys, 3, Ends::ease)), 27.0, 1e-12);
+    Rotations far = {{0, about_y(170), linear}, {10, about_y(190), linear}};
+    EXPECT_NEAR(std::fabs(degrees_about_y(evaluate_rotation(far, 5, Ends::ease))), 180.0, 1e-12);
+}
+
+TEST(Rotations, StepHolds) {
+    Rotations keys = {{0, about_y(10), step}, {10, about_y(90), linear}};
+    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keys, 9.9, Ends::ease)), 10.0, 1e-12);
+    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keys, 10.0, Ends::ease)), 90.0, 1e-12);
+}
+
+TEST(Rotations, SmoothEasesAndKeepsItsSpeedAtKeys) {
+    Rotations keys = {{0, about_y(0), smooth}, {10, about_y(30), smooth}, {40, about_y(60), smooth}};
+    auto at = [&](double f) { return degrees_about_y(evaluate_rotation(keys, f, Ends::ease)); };
+    EXPECT_LT(at(0.01), 1e-3);
+    EXPECT_NEAR(at(10), 30.0, 1e-12);
+    EXPECT_NEAR((at(10.0) - at(9.999)) / 0.001, (at(10.001) - at(10.0)) / 0.001, 1e-2);
+    Rotations two = {{0, about_y(0), smooth}, {10, about_y(90), smooth}};
+    EXPECT_NEAR(degrees_about_y(evaluate_rotation(two, 2.5, Ends::ease)), 90.0 * 0.15625, 1e-12);
+}
+
+TEST(Rotations, EqualAndUnnormalisedKeysAreSafe) {
+    Rotations keys = {{0, about_y(30) * 2.0, smooth}, {10, about_y(30), smooth}};
+    glm::dvec4 q = evaluate_rotation(keys, 4, Ends::ease);
+    EXPECT_NEAR(glm::length(q), 1.0, 1e-15);
+    EXPECT_NEAR(degrees_about_y(q), 30.0, 1e-12);
+    EXPECT_NEAR(glm::length(evaluate_rotation(keys, -4, Ends::ease)), 1.0, 1e-15);
+}
+
+}  // namespace
+}  // namespace astrosplat
