@@ -1,5 +1,5 @@
-// Triangle meshes: OBJ files through tinyobjloader and the built-in shapes. In: a path or a name. Out: Mesh, with
-// polygons triangulated and negative indices resolved.
+// Triangle meshes: OBJ files (their materials through tinyobjloader) and the built-in shapes. In: a path or a
+// name. Out: Mesh, with polygons triangulated and negative indices resolved.
 #pragma once
 
 #include <array>
@@ -26,13 +26,14 @@ struct Mesh {
     std::vector<glm::vec3> positions;  // scene units
     std::vector<glm::vec2> uvs;        // v = 0 is the bottom row
     std::vector<Triangle> triangles;
-    std::vector<std::filesystem::path> maps;  // map_Kd of each material (empty path: none), resolved to the MTL's folder
-    std::string name;                         // the file, for messages
+    std::vector<std::filesystem::path>
+        maps;          // map_Kd of each material (empty path: none), resolved to the MTL's folder
+    std::string name;  // the file, for messages
 };
 
 /// Reads an OBJ: several objects, quads and polygons, negative indices, map_Kd. Faces keep the file's order.
-/// A missing MTL is a warning. Throws InputError (file, line where known) for unreadable, truncated or empty files,
-/// indices out of range, coordinates that are not finite.
+/// A missing MTL is a warning. Throws InputError (file, line where known) for unreadable, truncated or empty
+/// files, indices out of range, coordinates that are not finite.
 Mesh load_obj(const std::filesystem::path& file);
 
 /// Bounds of all vertices (also of those no face uses).
@@ -41,16 +42,17 @@ Bounds bounds(const Mesh& mesh);
 /// Sum of the triangles' areas, square scene units.
 double surface_area(const Mesh& mesh);
 
-/// Replaces the uvs by a planar projection over `box` (DESIGN 3): planar-xz u to +x, v to -z; planar-xy u to +x,
-/// v to +y; planar-yz u to -z, v to +y. UvMode::mesh leaves the mesh as it is, and throws InputError naming the mesh
-/// when a triangle has no uv.
+/// Replaces the uvs by a planar projection over `box` (DESIGN 3): planar-xz u to +x, v to -z; planar-xy u to
+/// +x, v to +y; planar-yz u to -z, v to +y. UvMode::mesh leaves the mesh as it is, and throws InputError
+/// naming the mesh when a triangle has no uv.
 void apply_uv(Mesh& mesh, UvMode mode, const Bounds& box);
 
 bool is_builtin_mesh(const std::filesystem::path& name);
 
 /// "plane": in xz, centred, longer side 10, `aspect` = width / height of the picture, u to +x, v to -z.
-/// "disk": radius 5 in xz, uv as the plane's. "sphere": radius 5, equirectangular uv, seen from outside right way
-/// round. ("relief" needs a picture: see relief_mesh in texture.h.)
+/// "disk": radius 5 in xz, uv as the plane's, and the largest circle around the middle of the picture.
+/// "sphere": radius 5, equirectangular uv, seen from outside right way round. ("relief" needs a picture: see
+/// relief_mesh in texture.h.)
 Mesh builtin_mesh(const std::string& name, double aspect);
 
 }  // namespace astrosplat

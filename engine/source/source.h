@@ -37,8 +37,9 @@ struct TextureSettings {
 /// One mesh of a layer with its picture. `mesh` is a file or "plane", "relief", "disk", "sphere".
 struct MeshInput {
     std::filesystem::path mesh;
-    std::vector<std::filesystem::path> texture;  // empty: the mesh's own map_Kd; three: one picture from r, g, b
-    double relief = 0.15;                        // "relief": height as a fraction of the plane's width
+    std::vector<std::filesystem::path>
+        texture;           // empty: the mesh's own map_Kd; three: one picture from r, g, b
+    double relief = 0.15;  // "relief": height as a fraction of the plane's width
     bool operator==(const MeshInput&) const = default;
 };
 
@@ -60,14 +61,14 @@ struct SourceParams {
     SourceKind kind = SourceKind::mesh;
     std::vector<MeshInput> meshes;
     TextureSettings texture;
-    std::optional<glm::dvec3> buffer;         // scene units; empty: max_distance
-    std::optional<glm::i64vec3> voxels;       // empty: from voxel_size, or automatic
-    double voxel_size = 0.0;                  // scene units; 0: from voxels, or automatic
-    std::int64_t count = 2000000;             // positions kept by automatic voxels, about
-    double jitter = 1.0;                      // 0..1 of half a voxel
-    double max_distance = 0.0;                // scene units; 0: 2 % of the longest side of the meshes' box
+    std::optional<glm::dvec3> buffer;    // scene units; empty: max_distance
+    std::optional<glm::i64vec3> voxels;  // empty: from voxel_size, or automatic
+    double voxel_size = 0.0;             // scene units; 0: from voxels, or automatic
+    std::int64_t count = 2000000;        // positions kept by automatic voxels, about
+    double jitter = 1.0;                 // 0..1 of half a voxel
+    double max_distance = 0.0;           // scene units; 0: 2 % of the longest side of the meshes' box
     UvMode uv = UvMode::mesh;
-    std::uint32_t seed = 0;  // 0: derived from the layer's name
+    std::uint32_t seed = 0;      // 0: derived from the layer's name
     std::filesystem::path file;  // kind splats
     StarsParams stars;           // kind stars
     bool operator==(const SourceParams&) const = default;

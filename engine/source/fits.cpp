@@ -1,0 +1,199 @@
+// CFITSIO calls, each checked, behind two functions.
+#include "source/fits.h"
+
+#include <fitsio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "core/error.h"
+#include "core/memory.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Close {
+    void operator()(fitsfile* file) const {
+        int status = 0;
+        fits_close_file(file, &status);
+    }
+};
+using Handle = std::unique_ptr<fitsfile, Close>;
+
+[[noreturn]] void fail(const fs::path& file, std::string_view doing, int status) {
+    std::array<char, FLEN_ERRMSG> reason{};
+    fits_get_errstatus(status, reason.data());
+    fits_clear_errmsg();
+    throw InputError(fmt::format("{}: FITS {} failed: {}", file.string(), doing, reason.data()));
+}
+
+// The plain name: brackets and blanks in it mean nothing special.
+Handle open_fits(const fs::path& file) {
+    fitsfile* handle = nullptr;
+    int status = 0;
+    fits_open_diskfile(&handle, file.c_str(), READONLY, &status);
+    if (status != 0) fail(file, "opening", status);
+    return Handle(handle);
+}
+
+std::string text_key(fitsfile* in, const char* key) {
+    std::array<char, FLEN_VALUE> value{};
+    int status = 0;
+    fits_read_key(in, TSTRING, key, value.data(), nullptr, &status);
+    fits_clear_errmsg();
+    return status == 0 ? std::string(trim(value.data())) : std::string();
+}
+
+int hdu_count(const fs::path& file, fitsfile* in) {
+    int count = 0, status = 0;
+    fits_get_num_hdus(in, &count, &status);
+    if (status != 0) fail(file, "reading the headers", status);
+    return count;
+}
+
+// Axes as they matter for pictures: those of length 1 dropped while more than two are left.
+std::vector<std::int64_t> picture_axes(std::vector<std::int64_t> axes) {
+    for (std::size_t i = axes.size(); i-- > 0 && axes.size() > 2;)
+        if (axes[i] == 1) axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(i));
+    return axes;
+}
+
+// Moves there and describes it, without statistics.
+FitsHdu go_to_hdu(const fs::path& file, fitsfile* in, int number) {
+    FitsHdu hdu;
+    hdu.number = number;
+    int type = 0, status = 0;
+    fits_movabs_hdu(in, number + 1, &type, &status);
+    if (status != 0) fail(file, fmt::format("moving to HDU {}", number), status);
+    hdu.name = text_key(in, "EXTNAME");
+    hdu.kind = "table";
+    if (type != IMAGE_HDU) return hdu;
+    int naxis = 0;
+    std::array<LONGLONG, 99> axes{};
+    fits_get_img_paramll(in, static_cast<int>(axes.size()), &hdu.bitpix, &naxis, axes.data(), &status);
+    if (status != 0) fail(file, fmt::format("reading the header of HDU {}", number), status);
+    hdu.axes.assign(axes.begin(), axes.begin() + naxis);
+    const bool empty = naxis == 0 || std::find(hdu.axes.begin(), hdu.axes.end(), 0) != hdu.axes.end();
+    int ignored = 0;
+    hdu.kind = empty ? "empty" : fits_is_compressed_image(in, &ignored) ? "compressed image" : "image";
+    hdu.picture = !empty && naxis >= 2;
+    return hdu;
+}
+
+std::int64_t product(const fs::path& file, const std::vector<std::int64_t>& axes) {
+    std::int64_t count = 1;
+    for (const std::int64_t n : axes)
+        if (n < 0 || __builtin_mul_overflow(count, n, &count))
+            bad_input(file.string(), "", "axes of a picture", fmt::format("{}", fmt::join(axes, " x ")));
+    return count;
+}
+
+// `count` physical values of the current HDU from element `first` (from 0) on; NaN where undefined.
+Buffer<double> read_values(const fs::path& file, fitsfile* in, std::int64_t first, std::int64_t count) {
+    if (count > std::numeric_limits<std::int64_t>::max() / 64)
+        bad_input(file.string(), "", "a picture that fits into memory", fmt::format("{} values", count));
+    claim_memory(count * 24,
+                 fmt::format("reading {}", file.string()));  // and a copy or two for the percentiles
+    Buffer<double> values(static_cast<std::size_t>(count));
+    double undefined = std::numeric_limits<double>::quiet_NaN();
+    int any_undefined = 0, status = 0;
+    fits_read_img(in, TDOUBLE, first + 1, count, &undefined, values.data(), &any_undefined, &status);
+    if (status != 0) fail(file, "reading the pixels", status);
+    return values;
+}
+
+bool same_name(const std::string& a, const std::string& b) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted) {
+    const int count = hdu_count(file, in);
+    const std::optional<std::int64_t> number = parse_int64(wanted);
+    if (number && (*number < 0 || *number >= count))
+        bad_input(file.string(), "", fmt::format("an HDU from 0 to {}", count - 1),
+                  fmt::format("hdu = {}", wanted));
+    for (int i = 0; i < count; ++i) {
+        const FitsHdu hdu = go_to_hdu(file, in, i);
+        const bool asked = wanted == "auto" ? hdu.picture
+                           : number         ? *number == i
+                                            : same_name(hdu.name, wanted);
+        if (!asked) continue;
+        if (!hdu.picture)
+            bad_input(file.string(), fmt::format("HDU {}", i), "a picture", "none (" + hdu.kind + ")");
+        return hdu;
+    }
+    if (wanted == "auto")
+        bad_input(file.string(), "", "an HDU with a picture", fmt::format("none in {} HDUs", count));
+    bad_input(file.string(), "", fmt::format("an HDU named '{}'", wanted),
+              fmt::format("none in {} HDUs", count));
+}
+
+void swap_rows(FitsPlane& plane) {
+    const auto row = [&](std::int64_t y) { return plane.values.begin() + y * plane.width; };
+    for (std::int64_t y = 0; y < plane.height / 2; ++y)
+        std::swap_ranges(row(y), row(y + 1), row(plane.height - 1 - y));
+}
+
+}  // namespace
+
+bool is_fits(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::array<char, 10> start{};
+    in.read(start.data(), start.size());
+    const std::string_view text(start.data(), static_cast<std::size_t>(in.gcount()));
+    if (text.substr(0, 9) == "SIMPLE  =") return true;
+    const std::string inner = file.stem().extension().string();
+    return text.substr(0, 2) == "\x1f\x8b" && file.extension() == ".gz" &&
+           (inner == ".fits" || inner == ".fit" || inner == ".fts");
+}
+
+std::vector<FitsHdu> describe_fits(const fs::path& file) {
+    const Handle in = open_fits(file);
+    std::vector<FitsHdu> hdus;
+    const int count = hdu_count(file, in.get());
+    for (int i = 0; i < count; ++i) {
+        FitsHdu hdu = go_to_hdu(file, in.get(), i);
+        if (hdu.kind == "image" || hdu.kind == "compressed image") {
+            const Buffer<double> values = read_values(file, in.get(), 0, product(file, hdu.axes));
+            hdu.range = value_range(values);
+            hdu.nan_count =
+                std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+        }
+        hdus.push_back(std::move(hdu));
+    }
+    return hdus;
+}
+
+FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane) {
+    const Handle in = open_fits(file);
+    const FitsHdu found = find_hdu(file, in.get(), hdu);
+    const std::vector<std::int64_t> axes = picture_axes(found.axes);
+    const std::int64_t pixels = product(file, {axes[0], axes[1]});
+    const std::int64_t planes = product(file, found.axes) / pixels;
+    if (plane < 0 || plane >= planes)
+        bad_input(file.string(), fmt::format("HDU {}", found.number),
+                  fmt::format("a plane from 0 to {}", planes - 1), fmt::format("plane = {}", plane));
+    FitsPlane result;
+    result.width = axes[0];
+    result.height = axes[1];
+    result.values = read_values(file, in.get(), pixels * plane, pixels);
+    result.hdu = found.number;
+    result.name = found.name;
+    result.credit = text_key(in.get(), "AUTHOR");
+    if (result.credit.empty()) result.credit = text_key(in.get(), "ORIGIN");
+    swap_rows(result);
+    return result;
+}
+
+}  // namespace astrosplat

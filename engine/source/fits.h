@@ -1,0 +1,45 @@
+// FITS through CFITSIO. In: a path. Out: one plane of data values, or what the file holds. (OpenImageIO 2.4's
+// own FITS reader shifts the rows and forgets BSCALE.)
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/buffer.h"
+#include "source/stretch.h"
+
+namespace astrosplat {
+
+/// Judged by content ("SIMPLE  ="), or a gzip file named .fits.gz, .fit.gz or .fts.gz. False for unreadable
+/// files.
+bool is_fits(const std::filesystem::path& file);
+
+struct FitsHdu {
+    int number = 0;                  // 0: the primary HDU
+    std::string name;                // EXTNAME, may be empty
+    std::string kind;                // "image", "compressed image", "table", "empty"
+    int bitpix = 0;                  // of images: 8 16 32 64 -32 -64
+    std::vector<std::int64_t> axes;  // NAXIS1 first
+    bool picture = false;            // has at least two axes (those of length 1 do not count beyond two)
+    ValueRange range;                // of the whole HDU; only for images
+    std::int64_t nan_count = 0;      // undefined values: NaN or BLANK; only for images
+};
+
+/// All HDUs with their statistics. Throws InputError.
+std::vector<FitsHdu> describe_fits(const std::filesystem::path& file);
+
+struct FitsPlane {
+    std::int64_t width = 0, height = 0;  // px
+    Buffer<double> values;  // physical (BSCALE, BZERO applied), row 0 on top; NaN where undefined
+    int hdu = 0;
+    std::string name;    // EXTNAME
+    std::string credit;  // AUTHOR or ORIGIN
+};
+
+/// `hdu`: "auto" (the first with a picture), a number from 0 (the primary HDU), or an EXTNAME in any case.
+/// `plane` counts from 0 over the axes beyond two. Throws InputError.
+FitsPlane read_fits(const std::filesystem::path& file, const std::string& hdu, int plane);
+
+}  // namespace astrosplat

@@ -1,0 +1,288 @@
+// Wavefront OBJ. In: a file. Out: Mesh. tinyobjloader reads the materials; the geometry is read here, because
+// its numbers go through the C library's pow (whose bits depend on the processor), its indices through atoi,
+// and faces it cannot use vanish without a word.
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/log.h"
+#include "core/text.h"
+#include "source/mesh.h"
+#include "source/polygon.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string_view>;
+
+constexpr std::int64_t no_index = -1;
+constexpr std::int64_t max_elements = 0xfffffffe;  // indices are 32 bit, and the last one says "none"
+
+struct Corner {
+    std::int64_t position;  // from 0
+    std::int64_t uv;        // from 0, or no_index
+};
+
+struct Polygon {
+    std::size_t first_triangle;  // of the n - 2 that stand for it
+    std::vector<Corner> corners;
+    std::int64_t line;
+};
+
+// The highest index used and where: faces may come before the vertices they name, so the check waits for the
+// end.
+struct Highest {
+    std::int64_t index = no_index;
+    std::int64_t line = 0;
+
+    void note(std::int64_t i, std::int64_t at_line) {
+        if (i > index) *this = {i, at_line};
+    }
+};
+
+struct Reader {
+    fs::path file;
+    Mesh mesh;
+    std::int64_t line = 0;
+    std::vector<Polygon> polygons;  // those with more than three corners
+    Highest position, uv;
+    std::map<std::string, fs::path> material_maps;  // material -> map_Kd
+    std::map<fs::path, std::uint32_t> map_index;    // map -> place in mesh.maps
+    std::uint32_t material = 0;
+    bool material_chosen = false;
+};
+
+[[noreturn]] void bad_line(const Reader& r, std::string_view expected, std::string_view found) {
+    bad_input(r.file.string(), std::to_string(r.line), expected, found);
+}
+
+void split(std::string_view text, Words& words) {
+    words.clear();
+    for (std::size_t at = 0; (at = text.find_first_not_of(" \t\r", at)) != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(" \t\r", at), text.size());
+        words.push_back(text.substr(at, end - at));
+        at = end;
+    }
+}
+
+float coordinate(const Reader& r, std::string_view word) {
+    const std::optional<double> value = parse_double(word);
+    if (!value || !std::isfinite(static_cast<float>(*value)))
+        bad_line(r, "a finite number", fmt::format("'{}'", word));
+    return static_cast<float>(*value);
+}
+
+void read_position(Reader& r, const Words& words) {
+    if (words.size() < 4) bad_line(r, "three coordinates after 'v'", fmt::format("{}", words.size() - 1));
+    r.mesh.positions.emplace_back(coordinate(r, words[1]), coordinate(r, words[2]), coordinate(r, words[3]));
+}
+
+void read_uv(Reader& r, const Words& words) {
+    if (words.size() < 3)
+        bad_line(r, "two texture coordinates after 'vt'", fmt::format("{}", words.size() - 1));
+    r.mesh.uvs.emplace_back(coordinate(r, words[1]), coordinate(r, words[2]));
+}
+
+// OBJ counts from 1, and from the end with negative numbers.
+std::int64_t resolve(const Reader& r, std::string_view text, std::size_t count, const char* what) {
+    const std::optional<std::int64_t> index = parse_int64(text);
+    if (!index || *index == 0 || *index > max_elements)
+        bad_line(r, fmt::format("the number of a {}", what), fmt::format("'{}'", text));
+    if (*index > 0) return *index - 1;
+    const std::int64_t resolved = static_cast<std::int64_t>(count) + *index;
+    if (resolved < 0)
+        bad_line(r, fmt::format("one of the {} {}s so far", count, what), fmt::format("{}", *index));
+    return resolved;
+}
+
+// position, position/uv, position//normal or position/uv/normal
+Corner read_corner(Reader& r, std::string_view word) {
+    const std::size_t first = word.find('/');
+    Corner corner{resolve(r, word.substr(0, first), r.mesh.positions.size(), "vertex"), no_index};
+    r.position.note(corner.position, r.line);
+    if (first == std::string_view::npos) return corner;
+    const std::size_t second = word.find('/', first + 1);
+    const std::string_view uv =
+        word.substr(first + 1, second == std::string_view::npos ? second : second - first - 1);
+    const bool normal_only = uv.empty() && second != std::string_view::npos;
+    if (!normal_only) {
+        corner.uv = resolve(r, uv, r.mesh.uvs.size(), "texture coordinate");
+        r.uv.note(corner.uv, r.line);
+    }
+    if (second != std::string_view::npos && !parse_int64(word.substr(second + 1)))
+        bad_line(r, "the number of a normal", fmt::format("'{}'", word));
+    return corner;
+}
+
+Mesh::Triangle triangle_of(const Reader& r, const Corner& a, const Corner& b, const Corner& c) {
+    const auto uv = [](const Corner& k) { return k.uv < 0 ? Mesh::no_uv : static_cast<std::uint32_t>(k.uv); };
+    const auto position = [](const Corner& k) { return static_cast<std::uint32_t>(k.position); };
+    return {{position(a), position(b), position(c)}, {uv(a), uv(b), uv(c)}, r.material};
+}
+
+std::uint32_t index_of_map(Reader& r, const fs::path& map) {
+    const auto [found, fresh] = r.map_index.try_emplace(map, static_cast<std::uint32_t>(r.mesh.maps.size()));
+    if (fresh) r.mesh.maps.push_back(map);
+    return found->second;
+}
+
+void read_face(Reader& r, const Words& words) {
+    if (words.size() < 4)
+        bad_line(r, "at least three corners after 'f'", fmt::format("{}", words.size() - 1));
+    std::vector<Corner> corners;
+    for (std::size_t i = 1; i < words.size(); ++i) corners.push_back(read_corner(r, words[i]));
+    for (const Corner& corner : corners)
+        if ((corner.uv < 0) != (corners[0].uv < 0))
+            bad_line(r, "texture coordinates at all corners of a face or at none", "a mixture");
+    if (!r.material_chosen) {
+        r.material = index_of_map(r, {});
+        r.material_chosen = true;
+    }
+    const std::size_t first = r.mesh.triangles.size();
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+        r.mesh.triangles.push_back(triangle_of(r, corners[0], corners[i], corners[i + 1]));
+    if (corners.size() > 3) r.polygons.push_back({first, std::move(corners), r.line});
+}
+
+// The rest of a line behind its first word.
+std::string rest_of(std::string_view text, const Words& words) {
+    return std::string(
+        trim(text.substr(static_cast<std::size_t>(words[0].data() - text.data()) + words[0].size())));
+}
+
+fs::path native(std::string name) {
+    std::replace(name.begin(), name.end(), '\\', '/');
+    return name;
+}
+
+void load_materials(Reader& r, const std::string& name) {
+    const fs::path file = r.file.parent_path() / native(name);
+    std::error_code error;
+    std::ifstream in(file);
+    if (!in || fs::is_directory(file, error)) {
+        log_warning(fmt::format("{}:{}: material library '{}' not found", r.file.string(), r.line, name));
+        return;
+    }
+    std::map<std::string, int> ids;
+    std::vector<tinyobj::material_t> materials;
+    std::string warning, problem;
+    tinyobj::LoadMtl(&ids, &materials, &in, &warning, &problem);
+    for (const auto& [material, id] : ids) {
+        const std::string& map = materials[static_cast<std::size_t>(id)].diffuse_texname;
+        r.material_maps[material] = map.empty() ? fs::path() : file.parent_path() / native(map);
+    }
+}
+
+// The line may hold several names, or one with blanks in it.
+void read_mtllib(Reader& r, std::string_view text, const Words& words) {
+    const std::string whole = rest_of(text, words);
+    std::error_code error;
+    if (words.size() == 2 || fs::exists(r.file.parent_path() / native(whole), error))
+        return load_materials(r, whole);
+    for (std::size_t i = 1; i < words.size(); ++i) load_materials(r, std::string(words[i]));
+}
+
+void use_material(Reader& r, const std::string& name) {
+    const auto found = r.material_maps.find(name);
+    r.material = index_of_map(r, found == r.material_maps.end() ? fs::path() : found->second);
+    r.material_chosen = true;
+}
+
+void read_line(Reader& r, std::string_view text, Words& words) {
+    split(text, words);
+    if (words.empty()) return;
+    if (words[0] == "v") read_position(r, words);
+    if (words[0] == "vt") read_uv(r, words);
+    if (words[0] == "f") read_face(r, words);
+    if (words[0] == "mtllib") read_mtllib(r, text, words);
+    if (words[0] == "usemtl") use_material(r, rest_of(text, words));
+}
+
+// One logical line: a backslash at the end continues it on the next. Advances `text` and the line count.
+std::string_view next_line(std::string_view& text, std::string& joined, std::int64_t& lines) {
+    joined.clear();
+    for (;;) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        ++lines;
+        if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+        const bool continued = !line.empty() && line.back() == '\\' && !text.empty();
+        if (!continued && joined.empty()) return line;
+        joined.append(line.substr(0, line.size() - (continued ? 1 : 0)));
+        if (!continued) return joined;
+        joined.push_back(' ');
+    }
+}
+
+void check_range(Reader& r, const Highest& highest, std::size_t count, const char* what) {
+    if (highest.index < static_cast<std::int64_t>(count)) return;
+    r.line = highest.line;
+    bad_line(r, fmt::format("one of the file's {} {}s", count, what),
+             fmt::format("number {}", highest.index + 1));
+}
+
+// Replaces the fans that stand for polygons, now that all positions are known.
+void triangulate_polygons(Reader& r) {
+    std::vector<glm::vec3> corners;
+    for (const Polygon& polygon : r.polygons) {
+        corners.clear();
+        for (const Corner& c : polygon.corners)
+            corners.push_back(r.mesh.positions[static_cast<std::size_t>(c.position)]);
+        const auto triples = triangulate(corners);
+        r.line = polygon.line;
+        if (triples.empty())
+            bad_line(r, fmt::format("at most {} corners where a face is not convex", max_concave_corners),
+                     fmt::format("{}", corners.size()));
+        for (std::size_t i = 0; i < triples.size(); ++i) {
+            const auto& [a, b, c] = triples[i];
+            Mesh::Triangle& triangle = r.mesh.triangles[polygon.first_triangle + i];
+            r.material = triangle.material;
+            triangle = triangle_of(r, polygon.corners[a], polygon.corners[b], polygon.corners[c]);
+        }
+    }
+}
+
+void check_whole(Reader& r) {
+    const std::string name = r.file.string();
+    if (r.mesh.positions.empty()) bad_input(name, "", "an OBJ mesh with vertices ('v x y z')", "none");
+    if (r.mesh.triangles.empty()) bad_input(name, "", "an OBJ mesh with faces ('f')", "none");
+    const std::size_t most = std::max({r.mesh.positions.size(), r.mesh.uvs.size(), r.mesh.triangles.size()});
+    if (most > static_cast<std::size_t>(max_elements))
+        bad_input(name, "", fmt::format("at most {} vertices and triangles", max_elements),
+                  fmt::format("{}", most));
+    check_range(r, r.position, r.mesh.positions.size(), "vertex");
+    check_range(r, r.uv, r.mesh.uvs.size(), "texture coordinate");
+}
+
+}  // namespace
+
+Mesh load_obj(const fs::path& file) {
+    const std::string content = read_file(file);
+    Reader r;
+    r.file = file;
+    r.mesh.name = file.string();
+    std::string_view text = content;
+    if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // byte order mark
+    Words words;
+    for (std::string joined; !text.empty();) {
+        std::int64_t lines = 0;
+        const std::string_view line = next_line(text, joined, lines);
+        ++r.line;
+        read_line(r, line, words);
+        r.line += lines - 1;
+    }
+    check_whole(r);
+    triangulate_polygons(r);
+    if (r.mesh.maps.size() == 1 && r.mesh.maps[0].empty()) r.mesh.maps.clear();
+    return std::move(r.mesh);
+}
+
+}  // namespace astrosplat

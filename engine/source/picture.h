@@ -1,0 +1,27 @@
+// Picture files as stored, before any colour or alpha treatment: OpenImageIO behind one plain struct.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/image.h"
+
+namespace astrosplat {
+
+struct Picture {
+    Image image;  // 3 channels, or 4 with the file's alpha; integers scaled to 0..1; row 0 on top
+    double max_integer = 0.0;  // largest value of integer files (255, 65535); 0 for float files
+    bool associated = false;   // the colours are already multiplied by the file's alpha
+    bool gray = false;         // one value per pixel, repeated in r, g, b
+    std::string credit;        // may be empty
+    std::string summary;       // "1920x1200 px, uint8"
+
+    bool has_alpha() const { return image.channels == 4; }
+};
+
+/// Reads any file OpenImageIO knows. Gray and single-channel pictures become r = g = b; luminance/chroma EXR
+/// becomes RGB; where an EXR's data window differs from its display window, the display window is filled with
+/// what lies in it (empty elsewhere). Throws InputError.
+Picture read_picture(const std::filesystem::path& file);
+
+}  // namespace astrosplat

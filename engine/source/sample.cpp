@@ -1,0 +1,94 @@
+// Filtered lookup in a texture: premultiplied texels are weighted, then the colour is divided by alpha once.
+#include <algorithm>
+#include <cmath>
+#include <glm/vec4.hpp>
+
+#include "source/texture.h"
+
+namespace astrosplat {
+namespace {
+
+using Wrap = TextureSettings::Wrap;
+
+// The texel that stands for index i of n, -1 where there is none (black).
+std::int64_t wrapped(std::int64_t i, std::int64_t n, Wrap wrap) {
+    if (i >= 0 && i < n) return i;
+    if (wrap == Wrap::repeat) return ((i % n) + n) % n;
+    if (wrap == Wrap::black) return -1;
+    return i < 0 ? 0 : n - 1;
+}
+
+glm::vec4 texel(const Texture& texture, std::int64_t x, std::int64_t y) {
+    x = wrapped(x, texture.image.width, texture.wrap);
+    y = wrapped(y, texture.image.height, texture.wrap);
+    if (x < 0 || y < 0) return glm::vec4(0.0f);
+    const float* p = texture.image.at(x, y);
+    return {p[0], p[1], p[2], p[3]};
+}
+
+// Position along an axis of n texels, whose edges are integers; kept within reach of 64-bit indices.
+double place(double coordinate, std::int64_t n, Wrap wrap) {
+    if (wrap == Wrap::repeat) coordinate -= std::floor(coordinate);
+    return std::clamp(coordinate, -2.0, 3.0) * static_cast<double>(n);
+}
+
+// Exact at both ends, and of equal values exactly that value.
+glm::vec4 mix(const glm::vec4& a, const glm::vec4& b, float t) { return a + (b - a) * t; }
+
+glm::vec4 bilinear(const Texture& texture, double x, double y) {
+    const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
+    const auto i = static_cast<std::int64_t>(left), j = static_cast<std::int64_t>(top);
+    const auto s = static_cast<float>(x - 0.5 - left), t = static_cast<float>(y - 0.5 - top);
+    const Image& image = texture.image;
+    if (i >= 0 && j >= 0 && i + 1 < image.width && j + 1 < image.height) {  // nearly always
+        const float* p = image.at(i, j);
+        const float* q = image.at(i, j + 1);
+        return mix(mix({p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}, s),
+                   mix({q[0], q[1], q[2], q[3]}, {q[4], q[5], q[6], q[7]}, s), t);
+    }
+    return mix(mix(texel(texture, i, j), texel(texture, i + 1, j), s),
+               mix(texel(texture, i, j + 1), texel(texture, i + 1, j + 1), s), t);
+}
+
+// How much of texel i (from i to i + 1) lies between lo and hi.
+double overlap(std::int64_t i, double lo, double hi) {
+    const auto left = static_cast<double>(i);
+    return std::max(0.0, std::min(left + 1.0, hi) - std::max(left, lo));
+}
+
+// Mean over a box centred at (x, y), partly covered texels by their share. At least one texel wide, at most
+// the picture.
+glm::vec4 box_mean(const Texture& texture, double x, double y, glm::vec2 box) {
+    const double w = std::clamp<double>(box.x, 1.0, static_cast<double>(texture.image.width));
+    const double h = std::clamp<double>(box.y, 1.0, static_cast<double>(texture.image.height));
+    const double x0 = x - 0.5 * w, x1 = x + 0.5 * w, y0 = y - 0.5 * h, y1 = y + 0.5 * h;
+    glm::dvec4 sum(0.0);
+    for (auto j = static_cast<std::int64_t>(std::floor(y0)); static_cast<double>(j) < y1; ++j) {
+        glm::dvec4 row(0.0);
+        for (auto i = static_cast<std::int64_t>(std::floor(x0)); static_cast<double>(i) < x1; ++i)
+            row += glm::dvec4(texel(texture, i, j)) * overlap(i, x0, x1);
+        sum += row * overlap(j, y0, y1);
+    }
+    return glm::vec4(sum / ((x1 - x0) * (y1 - y0)));
+}
+
+}  // namespace
+
+TextureSample sample(const Texture& texture, glm::vec2 uv, glm::vec2 box_texels) {
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y) || texture.image.pixels.empty())
+        return {glm::vec3(0.0f), 0.0f};
+    const double x = place(uv.x, texture.image.width, texture.wrap);
+    const double y = place(1.0 - static_cast<double>(uv.y), texture.image.height, texture.wrap);
+    glm::vec4 p;
+    if (texture.filter == TextureSettings::Filter::nearest)
+        p = texel(texture, static_cast<std::int64_t>(std::floor(x)),
+                  static_cast<std::int64_t>(std::floor(y)));
+    else if (texture.filter == TextureSettings::Filter::area)
+        p = box_mean(texture, x, y, box_texels);
+    else
+        p = bilinear(texture, x, y);
+    if (!(p.w > 0.0f)) return {glm::vec3(0.0f), 0.0f};
+    return {glm::vec3(p.x, p.y, p.z) / p.w, std::min(p.w, 1.0f)};
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,77 @@
+// Percentiles by selection, and the three curves with the engine's own functions.
+#include "source/stretch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+#include "core/real.h"
+
+namespace astrosplat {
+namespace {
+
+// Reorders the values.
+double percentile(std::vector<double>& values, double fraction) {
+    const double rank = fraction * static_cast<double>(values.size() - 1);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::floor(rank));
+    std::nth_element(values.begin(), at, values.end());
+    const double part = rank - std::floor(rank);
+    if (part == 0.0) return *at;
+    const double next = *std::min_element(at + 1, values.end());
+    return *at * (1.0 - part) + next * part;
+}
+
+}  // namespace
+
+ValueRange value_range(std::span<const double> values) {
+    std::vector<double> finite;
+    finite.reserve(values.size());
+    std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
+                 [](double v) { return std::isfinite(v); });
+    if (finite.empty()) return {};
+    const auto [min, max] = std::minmax_element(finite.begin(), finite.end());
+    ValueRange range{*min, *max, 0.0, 0.0};
+    range.black = percentile(finite, 0.0025);
+    range.white = percentile(finite, 0.9975);
+    return range;
+}
+
+Limits choose_limits(const ValueRange& range, const TextureSettings& settings, const std::string& file) {
+    Limits limits{settings.black.value_or(range.black), settings.white.value_or(range.white)};
+    const bool set = settings.black || settings.white;
+    if (!set && !(limits.black < limits.white)) limits.white = limits.black + 1.0;
+    if (!std::isfinite(limits.black) || !std::isfinite(limits.white) || !(limits.black < limits.white))
+        bad_input(file, "", "a black point below the white point",
+                  fmt::format("black = {} and white = {}", limits.black, limits.white));
+    return limits;
+}
+
+double stretched(double value, const Limits& limits, TextureSettings::Stretch stretch, double softening) {
+    assert(stretch != TextureSettings::Stretch::automatic);
+    if (std::isnan(value)) return value;
+    const double x = std::clamp((value - limits.black) / (limits.white - limits.black), 0.0, 1.0);
+    if (stretch == TextureSettings::Stretch::asinh)
+        return real::asinh(x / softening) / real::asinh(1.0 / softening);
+    if (stretch == TextureSettings::Stretch::log) return real::log(1000.0 * x + 1.0) / real::log(1001.0);
+    return x;
+}
+
+const char* stretch_name(TextureSettings::Stretch stretch) {
+    switch (stretch) {
+        case TextureSettings::Stretch::automatic:
+            return "auto";
+        case TextureSettings::Stretch::linear:
+            return "linear";
+        case TextureSettings::Stretch::asinh:
+            return "asinh";
+        case TextureSettings::Stretch::log:
+            return "log";
+    }
+    return "";
+}
+
+}  // namespace astrosplat

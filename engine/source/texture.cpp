@@ -1,0 +1,279 @@
+// From stored values to linear, premultiplied colour: stretch (FITS), colour space, alpha, in this order.
+#include "source/texture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "core/color.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "source/fits.h"
+#include "source/picture.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using Settings = TextureSettings;
+
+constexpr std::int64_t rows_per_chunk = 32;
+constexpr float half_max = 65504.0f;  // what an infinite pixel becomes: it overflowed a half float
+
+template <class PerPixel>
+void for_each_pixel(Image& image, const PerPixel& change) {
+    parallel_chunks(image.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        for (float* p = image.at(0, begin); p != image.at(0, end); p += image.channels) change(p);
+    });
+}
+
+// A picture as stored, with what is known about its values.
+struct Stored {
+    Picture picture;
+    bool display_values = false;  // sRGB, when the settings leave the colour space open
+};
+
+Settings::Stretch stretch_of(const Settings& settings) {
+    return settings.stretch == Settings::Stretch::automatic ? Settings::Stretch::asinh : settings.stretch;
+}
+
+Stored read_fits_picture(const fs::path& file, const Settings& settings) {
+    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane);
+    const Limits limits = choose_limits(value_range(plane.values), settings, file.string());
+    const Settings::Stretch stretch = stretch_of(settings);
+    Stored stored;
+    stored.display_values = stretch != Settings::Stretch::linear;
+    stored.picture.gray = true;
+    stored.picture.credit = plane.credit;
+    stored.picture.image = make_image(plane.width, plane.height, 3);
+    parallel_chunks(plane.width * plane.height, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t i = begin; i < end; ++i) {
+            const double value =
+                stretched(plane.values[static_cast<std::size_t>(i)], limits, stretch, settings.softening);
+            std::fill_n(stored.picture.image.pixels.data() + 3 * i, 3, static_cast<float>(value));
+        }
+    });
+    stored.picture.summary = fmt::format("{}x{} px, HDU {}{}{}, {} stretch, black {:.6g}, white {:.6g}",
+                                         plane.width, plane.height, plane.hdu, plane.name.empty() ? "" : " ",
+                                         plane.name, stretch_name(stretch), limits.black, limits.white);
+    return stored;
+}
+
+Stored read_stored(const fs::path& file, const Settings& settings) {
+    if (is_fits(file)) return read_fits_picture(file, settings);
+    Stored stored;
+    stored.picture = read_picture(file);
+    stored.display_values = stored.picture.max_integer > 0.0;
+    return stored;
+}
+
+// Red of the first, green of the second, blue of the third.
+Stored combine(const std::vector<fs::path>& files, const Settings& settings) {
+    Stored first = read_stored(files[0], settings);
+    Image rgb = make_image(first.picture.image.width, first.picture.image.height, 3);
+    for (int c = 0; c < 3; ++c) {
+        const fs::path& file = files[static_cast<std::size_t>(c)];
+        const Stored one = c == 0 ? std::move(first) : read_stored(file, settings);
+        const Image& from = one.picture.image;
+        if (from.width != rgb.width || from.height != rgb.height)
+            bad_input(file.string(), "",
+                      fmt::format("{}x{} px like {}", rgb.width, rgb.height, files[0].string()),
+                      fmt::format("{}x{} px", from.width, from.height));
+        for (std::int64_t i = 0; i < from.width * from.height; ++i)
+            rgb.pixels[static_cast<std::size_t>(3 * i + c)] =
+                from.pixels[static_cast<std::size_t>(i * from.channels + c)];
+        if (c == 0) first.display_values = one.display_values;
+        if (c == 0) first.picture.credit = one.picture.credit;
+        first.picture.summary = (c == 0 ? "" : first.picture.summary + "; ") + one.picture.summary;
+    }
+    first.picture.image = std::move(rgb);
+    first.picture.max_integer = 0.0;
+    first.picture.associated = false;
+    first.picture.gray = false;
+    return first;
+}
+
+// Linear light of each of an integer file's values.
+std::vector<float> linear_table(double max_integer) {
+    std::vector<float> table(static_cast<std::size_t>(max_integer) + 1);
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = static_cast<float>(real::srgb_to_linear(static_cast<double>(i) / max_integer));
+    return table;
+}
+
+// Decodes the sRGB curve of colours that are not multiplied by alpha.
+void linearise(Image& image, double max_integer) {
+    const bool tabled = max_integer > 0.0 && max_integer <= 65535.0;
+    const std::vector<float> table = tabled ? linear_table(max_integer) : std::vector<float>();
+    const float scale = static_cast<float>(max_integer);
+    for_each_pixel(image, [&](float* p) {
+        for (int c = 0; c < 3; ++c) {
+            if (tabled)
+                p[c] = table[static_cast<std::size_t>(std::clamp(p[c], 0.0f, 1.0f) * scale + 0.5f)];
+            else
+                p[c] = static_cast<float>(real::srgb_to_linear(p[c]));
+        }
+    });
+}
+
+// Files with associated alpha and encoded colours multiplied the encoded values: undo that before decoding,
+// redo it in linear light. (Dividing linear values instead darkens soft edges.)
+void linearise_associated(Image& image) {
+    for_each_pixel(image, [](float* p) {
+        const float a = p[3];
+        if (!(a > 0.0f)) return;
+        for (int c = 0; c < 3; ++c) p[c] = a * static_cast<float>(real::srgb_to_linear(p[c] / a));
+    });
+}
+
+// NaN anywhere makes a pixel empty (returns false); light is not negative and not infinite.
+bool make_sane(float* p, int channels) {
+    for (int c = 0; c < channels; ++c)
+        if (std::isnan(p[c])) return false;
+    for (int c = 0; c < 3; ++c) p[c] = std::isinf(p[c]) && p[c] > 0.0f ? half_max : std::max(p[c], 0.0f);
+    return true;
+}
+
+// Whether the stored colours are to be taken as already multiplied by the alpha chosen.
+bool colors_are_premultiplied(const Picture& picture, const Settings& settings, Settings::Alpha alpha) {
+    if (settings.unpremultiply != Settings::Unpremultiply::automatic)
+        return settings.unpremultiply == Settings::Unpremultiply::yes;
+    if (alpha == Settings::Alpha::file) return picture.associated;
+    return alpha == Settings::Alpha::max || alpha == Settings::Alpha::luminance;
+}
+
+float alpha_of(const float* p, Settings::Alpha alpha) {
+    switch (alpha) {
+        case Settings::Alpha::file:
+            return p[3];
+        case Settings::Alpha::luminance:
+            return luminance(p[0], p[1], p[2]);
+        case Settings::Alpha::max:
+            return std::max({p[0], p[1], p[2]});
+        default:
+            return 1.0f;
+    }
+}
+
+Settings::Alpha choose_alpha(const fs::path& file, const Picture& picture, Settings::Alpha wanted) {
+    if (wanted == Settings::Alpha::automatic)
+        return picture.has_alpha() ? Settings::Alpha::file : Settings::Alpha::max;
+    if (wanted == Settings::Alpha::file && !picture.has_alpha())
+        bad_input(file.string(), "", "an alpha channel (alpha = \"file\")", "none");
+    return wanted;
+}
+
+// Linear stored colours -> premultiplied RGBA.
+Image apply_alpha(const Image& stored, Settings::Alpha alpha, bool premultiplied) {
+    Image image = make_image(stored.width, stored.height, 4);
+    std::atomic<std::int64_t> empty{0};
+    parallel_chunks(image.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        std::int64_t nans = 0;
+        for (std::int64_t i = begin * image.width; i < end * image.width; ++i) {
+            float p[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+            std::copy_n(stored.pixels.data() + i * stored.channels, stored.channels, p);
+            if (!make_sane(p, stored.channels)) {
+                ++nans;
+                continue;
+            }
+            const float a = std::clamp(alpha_of(p, alpha), 0.0f, 1.0f);
+            float* to = image.pixels.data() + i * 4;
+            for (int c = 0; c < 3; ++c) to[c] = premultiplied ? p[c] : p[c] * a;
+            to[3] = a;
+        }
+        empty.fetch_add(nans, std::memory_order_relaxed);
+    });
+    if (empty > 0) log_detail(fmt::format("{} pixels without a value (NaN) are empty", empty.load()));
+    return image;
+}
+
+const char* alpha_name(Settings::Alpha alpha) {
+    switch (alpha) {
+        case Settings::Alpha::file:
+            return "the file's alpha";
+        case Settings::Alpha::luminance:
+            return "alpha from luminance";
+        case Settings::Alpha::max:
+            return "alpha from the brightest channel";
+        default:
+            return "no alpha";
+    }
+}
+
+bool is_encoded(const Stored& stored, Settings::Colorspace colorspace) {
+    if (colorspace == Settings::Colorspace::automatic) return stored.display_values;
+    return colorspace == Settings::Colorspace::srgb;
+}
+
+void make_linear(Stored& stored, Settings::Colorspace colorspace, bool premultiplied) {
+    if (!is_encoded(stored, colorspace)) return;
+    if (premultiplied && stored.picture.associated)
+        linearise_associated(stored.picture.image);
+    else
+        linearise(stored.picture.image, stored.picture.max_integer);
+}
+
+}  // namespace
+
+Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& settings,
+                     TextureSettings::Wrap default_wrap) {
+    if (files.size() != 1 && files.size() != 3)
+        throw InputError(
+            fmt::format("expected one texture, or three for red, green and blue, found {}", files.size()));
+    Stored stored = files.size() == 1 ? read_stored(files[0], settings) : combine(files, settings);
+    const Settings::Alpha alpha = choose_alpha(files[0], stored.picture, settings.alpha);
+    const bool premultiplied = colors_are_premultiplied(stored.picture, settings, alpha);
+    make_linear(stored, settings.colorspace, premultiplied);
+    Texture texture;
+    texture.image = apply_alpha(stored.picture.image, alpha, premultiplied);
+    texture.filter = settings.filter;
+    texture.wrap = settings.wrap == Settings::Wrap::automatic ? default_wrap : settings.wrap;
+    texture.divided = premultiplied;
+    texture.credit = stored.picture.credit;
+    texture.summary =
+        fmt::format("{}, {}, {}", stored.picture.summary,
+                    is_encoded(stored, settings.colorspace) ? "sRGB" : "linear", alpha_name(alpha));
+    return texture;
+}
+
+Image load_raw_image(const fs::path& file) {
+    Image image;
+    if (is_fits(file)) {
+        const FitsPlane plane = read_fits(file, "auto", 0);
+        image = make_image(plane.width, plane.height, 3);
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+            const double value = plane.values[i / 3];
+            image.pixels[i] = std::isnan(value) ? 0.0f : static_cast<float>(value);
+        }
+        return image;
+    }
+    const Image stored = read_picture(file).image;
+    image = make_image(stored.width, stored.height, 3);
+    for (std::int64_t i = 0; i < image.width * image.height; ++i)
+        std::copy_n(stored.pixels.data() + i * stored.channels, 3, image.pixels.data() + i * 3);
+    return image;
+}
+
+Image load_linear_image(const fs::path& file) {
+    const Settings settings;
+    Stored stored = read_stored(file, settings);
+    const bool alpha = stored.picture.has_alpha();
+    const bool premultiplied = alpha && stored.picture.associated;
+    make_linear(stored, Settings::Colorspace::automatic, premultiplied);
+    const Image& from = stored.picture.image;
+    Image image = make_image(from.width, from.height, 4, 1.0f);
+    for (std::int64_t i = 0; i < image.width * image.height; ++i) {
+        const float* p = from.pixels.data() + i * from.channels;
+        float* to = image.pixels.data() + i * 4;
+        to[3] = alpha ? p[3] : 1.0f;
+        for (int c = 0; c < 3; ++c) to[c] = alpha && !premultiplied ? p[c] * p[3] : p[c];
+    }
+    return image;
+}
+
+}  // namespace astrosplat
