@@ -1,10 +1,11 @@
-// The offline renderer: shaded layers + camera -> image (DESIGN 7). Tile by tile: project, scatter the projected
-// splats into their tiles, sort inside each tile, fold near to far.
+// The offline renderer: shaded layers + camera -> image (DESIGN 7). Tile by tile: project, scatter the
+// projected splats into their tiles, sort inside each tile, fold near to far.
 #pragma once
 
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,18 +27,18 @@ struct RenderLayer {
     glm::dmat3 world_from_layer{1.0};  // rotation
     double scale = 1.0;                // uniform; scales radii too
     glm::dvec3 translate{0.0};
-    glm::dvec3 axis{0.0, 1.0, 0.0};    // the layer's thin direction, layer space
-    std::uint32_t seed = 1;            // for the children of level of detail
+    glm::dvec3 axis{0.0, 1.0, 0.0};  // the layer's thin direction, layer space
+    std::uint32_t seed = 1;          // for the children of level of detail
 };
 
 struct RenderSettings {
     std::int64_t width = 1920, height = 1080;  // px, the whole picture
-    Region region;                             // part to render; empty: all. The pixels are those of the whole picture
-    float pixel_filter = 0.5f;                 // px, standard deviation
-    float exposure = 0.0f;                     // stops; only tightens the stop rule
+    Region region;              // part to render; empty: all. The pixels are those of the whole picture
+    float pixel_filter = 0.5f;  // px, standard deviation
+    float exposure = 0.0f;      // stops; only tightens the stop rule
     bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
-    int tile_px = 32;                          // 16..128; changes no bit
-    std::int64_t memory_limit_bytes = 0;       // for screen splats; 0: none. Rendered in bands, same bits
+    int tile_px = 32;                     // 16..128; changes no bit
+    std::int64_t memory_limit_bytes = 0;  // for screen splats; 0: none. Rendered in bands, same bits
 };
 
 struct RenderStatistics {
@@ -48,17 +49,29 @@ struct RenderStatistics {
 };
 
 struct RenderedFrame {
-    Image beauty;               // RGBA, linear, premultiplied; region-sized
-    Image depth;                // 1 channel: opacity-weighted mean distance along the view axis, 0 where alpha is 0
-    Image coverage;             // 1 channel: 1 - product of (1 - weight): covered share of the pixel, whatever the opacity
-    Image count;                // 1 channel: splats that reached the pixel
+    Image beauty;  // RGBA, linear, premultiplied; region-sized
+    Image depth;   // 1 channel: opacity-weighted mean distance along the view axis, 0 where alpha is 0
+    Image
+        coverage;  // 1 channel: 1 - product of (1 - weight): covered share of the pixel, whatever the opacity
+    Image count;   // 1 channel: splats that reached the pixel
     std::vector<Image> layers;  // RGBA each, in the order given: the layer's light as it arrives
     RenderStatistics statistics;
 };
 
-/// A pure function of its arguments but for `progress`. Layers in file order; invisible ones are left out by the
-/// caller. `environment` may be null. Throws Cancelled, and InputError when memory does not suffice.
-RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera, const Environment* environment,
-                     const RenderSettings& settings, const Progress& progress = {});
+/// What may stay between frames: big buffers, footprint and level-of-detail tables. Changes no pixel. Not to
+/// be used by two renders at once.
+class RenderCache {
+  public:
+    RenderCache();
+    ~RenderCache();
+    struct State;
+    std::unique_ptr<State> state;
+};
+
+/// A pure function of its arguments but for `progress`. Layers in file order; invisible ones are left out by
+/// the caller. `environment` may be null. Throws Cancelled, and InputError when memory does not suffice.
+RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
+                     const Environment* environment, const RenderSettings& settings,
+                     const Progress& progress = {}, RenderCache* cache = nullptr);
 
 }  // namespace astrosplat

@@ -1,0 +1,318 @@
+#include "render/footprint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "core/parallel.h"
+#include "core/real.h"
+#include "render/falloff.h"
+#include "render/quadrature.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int segments = FootprintNode::segments;
+constexpr int samples = 3 * segments + 1;  // each cubic passes through four equidistant samples
+constexpr int steps_per_octave = 32;       // nodes per octave: the five top bits of the float's mantissa
+constexpr int first_exponent = -6;         // smallest tabulated radius: 2^-6 px
+constexpr int octaves = 16;                // up to 2^10 px
+constexpr double smallest_radius_px = 1.0 / 64.0;
+constexpr double ripple_limit_px = 32.0;  // beyond, the spectrum at one cycle per pixel is below 1e-4
+
+/// Bessel function e^-x I0(x), x >= 0. Abramowitz and Stegun 9.8.1, 9.8.2; error below 2e-7.
+double bessel_i0_scaled(double x) {
+    if (x < 3.75) {
+        const double t = (x / 3.75) * (x / 3.75);
+        const double p =
+            1.0 + t * (3.5156229 +
+                       t * (3.0899424 + t * (1.2067492 + t * (0.2659732 + t * (0.0360768 + t * 0.0045813)))));
+        return p * real::exp(-x);
+    }
+    const double t = 3.75 / x;
+    const double p =
+        0.39894228 +
+        t * (0.01328592 +
+             t * (0.00225319 +
+                  t * (-0.00157565 +
+                       t * (0.00916281 +
+                            t * (-0.02057706 + t * (0.02635537 + t * (-0.01647633 + t * 0.00392377)))))));
+    return p / std::sqrt(x);
+}
+
+/// Bessel function J0(x), x >= 0. Abramowitz and Stegun 9.4.1, 9.4.3; error below 5e-8.
+double bessel_j0(double x) {
+    if (x < 3.0) {
+        const double t = (x / 3.0) * (x / 3.0);
+        return 1.0 +
+               t * (-2.2499997 +
+                    t * (1.2656208 + t * (-0.3163866 + t * (0.0444479 + t * (-0.0039444 + t * 0.0002100)))));
+    }
+    const double t = 3.0 / x;
+    const double f =
+        0.79788456 +
+        t * (-0.00000077 +
+             t * (-0.00552740 + t * (-0.00009512 + t * (0.00137237 + t * (-0.00072805 + t * 0.00014476)))));
+    const double theta =
+        x - 0.78539816 +
+        t * (-0.04166397 +
+             t * (-0.00003954 + t * (0.00262573 + t * (-0.00054125 + t * (-0.00029333 + t * 0.00013558)))));
+    return f * real::cos(theta) / std::sqrt(x);
+}
+
+/// Ends of the panels over which a falloff is smooth, as shares of the radius.
+std::vector<double> panel_ends(const Falloff& falloff) {
+    std::vector<double> ends = {0.0, 0.25, 0.5, 0.75, 1.0};
+    if (falloff.shape == Falloff::Shape::trapezoid) ends.push_back(falloff.core);
+    const bool decays =
+        falloff.shape == Falloff::Shape::gaussian || falloff.shape == Falloff::Shape::exponential;
+    if (decays && falloff.sharpness > 8.0f) ends.insert(ends.end(), {0.005, 0.02, 0.06, 0.12});
+    std::sort(ends.begin(), ends.end());
+    return ends;
+}
+
+/// The convolution of falloff and (untruncated) Gaussian filter at distance d, as a radial integral.
+class Profile {
+  public:
+    Profile(const Falloff& falloff, double radius_px, double sigma_px)
+        : falloff_(falloff), radius_(radius_px), sigma_(sigma_px), ends_(panel_ends(falloff)) {}
+
+    double at(double d) const {
+        const double lo = std::max(0.0, d - 6.0 * sigma_), hi = std::min(radius_, d + 6.0 * sigma_);
+        double sum = 0.0;
+        for (std::size_t i = 0; i + 1 < ends_.size(); ++i) {
+            const double a = std::max(lo, ends_[i] * radius_), b = std::min(hi, ends_[i + 1] * radius_);
+            const int parts = std::max(1, static_cast<int>(std::ceil((b - a) / (2.0 * sigma_))));
+            for (int k = 0; k < parts && b > a; ++k)
+                sum += integrate_panel(a + (b - a) * k / parts, a + (b - a) * (k + 1) / parts,
+                                       [&](double r) { return ring(r, d); });
+        }
+        return sum;
+    }
+
+    /// Spectrum of falloff and filter at `frequency` cycles per px, relative to frequency 0.
+    double relative_spectrum(double frequency, double integral) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i + 1 < ends_.size(); ++i) {
+            const double a = ends_[i], b = ends_[i + 1];
+            const int parts = 1 + static_cast<int>((b - a) * radius_ * frequency);
+            for (int k = 0; k < parts; ++k)
+                sum += integrate_panel(a + (b - a) * k / parts, a + (b - a) * (k + 1) / parts, [&](double t) {
+                    return falloff_value(falloff_, t) * t *
+                           bessel_j0(2.0 * real::pi * frequency * radius_ * t);
+                });
+        }
+        const double filter = 2.0 * real::pi * real::pi * sigma_ * sigma_ * frequency * frequency;
+        return 2.0 * real::pi * sum / integral * real::exp(-filter);
+    }
+
+  private:
+    double ring(double r, double d) const {
+        const double s2 = sigma_ * sigma_;
+        return falloff_value(falloff_, r / radius_) * r / s2 * real::exp(-(r - d) * (r - d) / (2.0 * s2)) *
+               bessel_i0_scaled(r * d / s2);
+    }
+
+    Falloff falloff_;
+    double radius_, sigma_;
+    std::vector<double> ends_;
+};
+
+/// Range of d over which u runs from 0 to 1.
+struct Range {
+    double lo_px, hi_px;
+};
+Range profile_range(const FootprintTable& table, double radius_px) {
+    const double margin = 4.0 * table.pixel_filter_px;
+    return {std::max(0.0, radius_px * table.core - margin), radius_px * table.reach + margin};
+}
+
+double distance_at(const FootprintTable& table, const Range& range, double u) {
+    if (table.linear_in_distance) return range.lo_px + (range.hi_px - range.lo_px) * u;
+    const double lo = range.lo_px * range.lo_px, hi = range.hi_px * range.hi_px;
+    return std::sqrt(lo + (hi - lo) * u);
+}
+
+/// Values of P at the samples, bent by less than 1e-4 so that it ends at exactly 0 and, with a flat inside,
+/// starts at exactly 1: the filter is cut off at four standard deviations.
+std::array<double, samples> sample_profile(const FootprintTable& table, const Falloff& falloff,
+                                           double radius_px) {
+    const Profile profile(falloff, radius_px, table.pixel_filter_px);
+    const Range range = profile_range(table, radius_px);
+    std::array<double, samples> p;
+    for (int i = 0; i < samples; ++i) p[i] = profile.at(distance_at(table, range, double(i) / (samples - 1)));
+    const double excess = p[samples - 1];
+    // Also for the node just below the radius where a flat inside begins: it is interpolated with the next
+    // one.
+    const bool flat_inside =
+        radius_px * (1.0 + 1.0 / steps_per_octave) * table.core > 4.0 * table.pixel_filter_px;
+    const double lack = flat_inside ? 1.0 - p[0] : 0.0;
+    for (int i = 0; i < samples; ++i) {
+        const double u = double(i) / (samples - 1);
+        p[i] = std::clamp(p[i] + lack * (1.0 - u) - excess * u, 0.0, 1.0);
+    }
+    return p;
+}
+
+/// Cubic through four equidistant values on [0, 1], by powers.
+std::array<double, 4> cubic_through(const double* p) {
+    return {p[0], -5.5 * p[0] + 9.0 * p[1] - 4.5 * p[2] + p[3],
+            9.0 * p[0] - 22.5 * p[1] + 18.0 * p[2] - 4.5 * p[3],
+            -4.5 * p[0] + 13.5 * p[1] - 13.5 * p[2] + 4.5 * p[3]};
+}
+
+FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, double radius_px) {
+    FootprintNode node{};
+    const std::array<double, samples> p = sample_profile(table, falloff, radius_px);
+    double moments[4] = {0.0, 0.0, 0.0, 0.0};
+    for (int s = 0; s < segments; ++s) {
+        const std::array<double, 4> c = cubic_through(&p[3 * s]);
+        for (int k = 0; k < 4; ++k) node.cubic[k][s] = static_cast<float>(c[k]);
+        const auto value = [&](double f) {
+            return std::clamp(((c[3] * f + c[2]) * f + c[1]) * f + c[0], 0.0, 1.0);
+        };
+        const auto place = [&](double f) { return (s + f) / segments; };
+        moments[0] += integrate_panel(0.0, 1.0, [&](double f) { return value(f); });
+        moments[1] += integrate_panel(0.0, 1.0, [&](double f) { return value(f) * place(f); });
+        moments[2] += integrate_panel(0.0, 1.0, [&](double f) { return value(f) * (1.0 - value(f)); });
+        moments[3] +=
+            integrate_panel(0.0, 1.0, [&](double f) { return value(f) * (1.0 - value(f)) * place(f); });
+    }
+    node.mean = static_cast<float>(moments[0] / segments);
+    node.first_moment = static_cast<float>(moments[1] / segments);
+    node.edge_mean = static_cast<float>(moments[2] / segments);
+    node.edge_first_moment = static_cast<float>(moments[3] / segments);
+    if (radius_px < ripple_limit_px) {
+        const Profile profile(falloff, radius_px, table.pixel_filter_px);
+        node.ripple_1 = static_cast<float>(profile.relative_spectrum(1.0, table.integral));
+        node.ripple_11 = static_cast<float>(profile.relative_spectrum(std::sqrt(2.0), table.integral));
+        node.ripple_2 = static_cast<float>(profile.relative_spectrum(2.0, table.integral));
+    }
+    return node;
+}
+
+/// cos(2 pi i / 256): splat centres are snapped to 1/256 px.
+std::array<float, 256> make_cosines() {
+    std::array<float, 256> table;
+    for (int i = 0; i < 256; ++i) table[i] = static_cast<float>(real::cos(2.0 * real::pi * i / 256.0));
+    return table;
+}
+
+/// cos of the phase of a snapped coordinate relative to the pixel centres.
+float pixel_cosine(float coordinate_px) {
+    static const std::array<float, 256> cosines = make_cosines();
+    const float fraction = coordinate_px - std::floor(coordinate_px);
+    return -cosines[static_cast<int>(fraction * 256.0f) & 255];
+}
+
+/// Interpolation between two neighbouring nodes.
+struct NodePair {
+    const FootprintNode* a;
+    const FootprintNode* b;
+    float t;
+    float operator()(float FootprintNode::*field) const { return a->*field + (b->*field - a->*field) * t; }
+};
+
+NodePair nodes_at(const FootprintTable& table, float radius_px) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &radius_px, sizeof bits);
+    constexpr std::uint32_t step_bits = 23 - 5;  // steps_per_octave = 2^5
+    const std::int64_t first = std::int64_t{127 + first_exponent} << 5;
+    const std::int64_t index = (bits >> step_bits) - first;
+    if (index < 0) return {&table.nodes.front(), &table.nodes.front(), 0.0f};
+    if (index + 1 >= static_cast<std::int64_t>(table.nodes.size()))
+        return {&table.nodes.back(), &table.nodes.back(), 0.0f};
+    const float t = static_cast<float>(bits & ((1u << step_bits) - 1u)) / static_cast<float>(1u << step_bits);
+    return {&table.nodes[index], &table.nodes[index + 1], t};
+}
+
+float ripple(const NodePair& pair, float x_px, float y_px) {
+    const float r1 = pair(&FootprintNode::ripple_1);
+    if (std::fabs(r1) < 1e-6f) return 0.0f;
+    const float cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
+    const float c2 = (2.0f * cx * cx - 1.0f) + (2.0f * cy * cy - 1.0f);
+    return 2.0f * r1 * (cx + cy) + 4.0f * pair(&FootprintNode::ripple_11) * (cx * cy) +
+           2.0f * pair(&FootprintNode::ripple_2) * c2;
+}
+
+}  // namespace
+
+FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px) {
+    using Shape = Falloff::Shape;
+    FootprintTable table;
+    table.linear_in_distance = falloff.shape != Shape::constant && falloff.shape != Shape::gaussian;
+    table.flat_core = falloff.shape == Shape::constant || falloff.shape == Shape::trapezoid;
+    table.pixel_filter_px = pixel_filter_px;
+    table.core = falloff.shape == Shape::constant    ? 1.0f
+                 : falloff.shape == Shape::trapezoid ? falloff.core
+                                                     : 0.0f;
+    table.integral = static_cast<float>(falloff_integral(falloff));
+    const double exponent = 11.5;  // e^-11.5 = 1e-5
+    if (falloff.shape == Shape::gaussian && falloff.sharpness > exponent)
+        table.reach = static_cast<float>(std::sqrt(exponent / falloff.sharpness));
+    if (falloff.shape == Shape::exponential && falloff.sharpness > exponent)
+        table.reach = static_cast<float>(exponent / falloff.sharpness);
+    table.nodes.resize(octaves * steps_per_octave + 1);
+    parallel_for(static_cast<std::int64_t>(table.nodes.size()), [&](std::int64_t i, int) {
+        const double octave = static_cast<double>(std::uint64_t{1} << (i / steps_per_octave));
+        const double radius_px =
+            smallest_radius_px * octave * (1.0 + double(i % steps_per_octave) / steps_per_octave);
+        table.nodes[i] = make_node(table, falloff, radius_px);
+    });
+    return table;
+}
+
+void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px,
+                  Footprint& footprint) {
+    const NodePair pair = nodes_at(table, radius_px);
+    for (int k = 0; k < 4; ++k)
+        for (int s = 0; s < segments; ++s)
+            footprint.cubic[k][s] =
+                pair.a->cubic[k][s] + (pair.b->cubic[k][s] - pair.a->cubic[k][s]) * pair.t;
+
+    constexpr float pi = static_cast<float>(real::pi);
+    const float smallest = static_cast<float>(smallest_radius_px);
+    const float tabulated_px =
+        std::max(radius_px, smallest);  // below, the shape is the filter's and light is R^2
+    const float shrink = radius_px < smallest ? (radius_px / smallest) * (radius_px / smallest) : 1.0f;
+    const float margin = 4.0f * table.pixel_filter_px;
+    const float lo = std::max(0.0f, tabulated_px * table.core - margin);
+    const float hi = tabulated_px * table.reach + margin;
+    const float mean = pair(&FootprintNode::mean), edge_mean = pair(&FootprintNode::edge_mean);
+    float mass, edge_mass;
+    if (table.linear_in_distance) {
+        const float width = hi - lo;
+        footprint.lo = lo;
+        footprint.scale = static_cast<float>(segments) / width;
+        mass = pi * (lo * lo + 2.0f * width * (lo * mean + width * pair(&FootprintNode::first_moment)));
+        edge_mass = pi * 2.0f * width * (lo * edge_mean + width * pair(&FootprintNode::edge_first_moment));
+    } else {
+        const float width = hi * hi - lo * lo;
+        footprint.lo = lo * lo;
+        footprint.scale = static_cast<float>(segments) / width;
+        mass = pi * (lo * lo + width * mean);
+        edge_mass = pi * width * edge_mean;
+    }
+    // Beyond the table (R > 1024 px) the profile keeps its shape and the pixels sample it finely: nothing to
+    // mend.
+    const bool tabulated = pair.b != &table.nodes.back() || pair.t > 0.0f;
+    const float wanted = table.integral * tabulated_px * tabulated_px;
+    const float gain = tabulated ? wanted / (mass * (1.0f + ripple(pair, x_px, y_px))) : 1.0f;
+    footprint.support_px = table.support_px(tabulated_px);
+    footprint.amplitude = table.flat_core ? shrink : shrink * gain;
+    footprint.edge_gain = table.flat_core ? (gain - 1.0f) * mass / edge_mass : 0.0f;
+}
+
+float footprint_weight(const FootprintTable& table, const Footprint& footprint, float distance_px) {
+    const float place = table.linear_in_distance ? distance_px : distance_px * distance_px;
+    const float u = std::max((place - footprint.lo) * footprint.scale, 0.0f);
+    if (!(u < static_cast<float>(segments))) return 0.0f;
+    const int s = std::min(static_cast<int>(u), segments - 1);
+    const float f = u - static_cast<float>(s);
+    const float(&c)[4][segments] = footprint.cubic;
+    const float p = std::min(1.0f, std::max(0.0f, ((c[3][s] * f + c[2][s]) * f + c[1][s]) * f + c[0][s]));
+    return footprint.amplitude * (p + footprint.edge_gain * (p * (1.0f - p)));
+}
+
+}  // namespace astrosplat

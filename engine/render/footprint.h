@@ -1,0 +1,63 @@
+// Footprints: a falloff convolved with the pixel filter, as a radial profile that the fold evaluates per
+// pixel.
+//
+// For a splat of radius R px the weight of a pixel at distance d from its centre is P(u), a piecewise cubic
+// of 16 segments over u in [0, 1], where u runs linearly over [lo, hi] in d^2 (constant, gaussian) or in d
+// (the others). hi is the edge of the support; below lo the profile is flat and exactly 1. Tables exist for
+// 32 radii per octave and are interpolated linearly in between; sixteen segments because that is one vector
+// permute.
+//
+// Sampling P at pixel centres does not conserve light: by Poisson's formula the sum over all pixels is the
+// integral times 1 + ripple(sub-pixel offset), where ripple is the profile's spectrum at whole frequencies.
+// It is divided out, in closed form, so the flux is right at every radius and offset without summing pixels
+// first.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "render/layer_render.h"
+
+namespace astrosplat {
+
+/// Profile of one radius: cubic coefficients [power][segment], and what normalising needs.
+struct alignas(64) FootprintNode {
+    static constexpr int segments = 16;
+    float cubic[4][segments];
+    float mean, first_moment;             // of P over u: integral P du, integral P u du
+    float edge_mean, edge_first_moment;   // the same of P (1 - P)
+    float ripple_1, ripple_11, ripple_2;  // relative spectrum at frequencies (1,0), (1,1), (2,0) per px
+};
+
+struct FootprintTable {
+    std::vector<FootprintNode> nodes;
+    bool linear_in_distance = false;  // u linear in d, not in d^2
+    bool flat_core = false;           // constant and trapezoid: exactly 1 inside, so only the edge is scaled
+    float pixel_filter_px = 0.5f;
+    float reach = 1.0f;     // share of the radius that carries more than 1e-5 of the peak
+    float core = 0.0f;      // share of the radius that is flat
+    float integral = 1.0f;  // of the falloff over the unit disc
+
+    /// Distance from the centre beyond which all weights are 0.
+    float support_px(float radius_px) const { return radius_px * reach + 4.0f * pixel_filter_px; }
+};
+
+/// Everything the fold needs of one splat's footprint besides its centre.
+struct Footprint {
+    float cubic[4][FootprintNode::segments];
+    float lo = 0.0f, scale = 0.0f;  // segment coordinate = (d or d^2 - lo) * scale, in [0, 16)
+    float amplitude = 1.0f;         // multiplies the weight
+    float edge_gain = 0.0f;         // flat cores: w += edge_gain * w (1 - w)
+    float support_px = 0.0f;
+};
+
+/// Builds the table for every radius from 2^-6 to 2^10 px (larger ones reuse the last shape). About 30 ms.
+FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px);
+
+/// The footprint of one splat; x_px, y_px are its centre, snapped to 1/256 px by the caller.
+void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px, Footprint& footprint);
+
+/// Weight at distance d: what the vector kernels compute, for tests and level of detail.
+float footprint_weight(const FootprintTable& table, const Footprint& footprint, float distance_px);
+
+}  // namespace astrosplat

@@ -1,0 +1,202 @@
+#include "render/lod.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/real.h"
+#include "render/falloff.h"
+#include "render/quadrature.h"
+#include "render/shared_render.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int first_level = 2;  // four children (level 1) would be as large as their parent
+constexpr float fade_span = 1.5f;
+constexpr int alpha_steps = 64;  // table over alpha in [0, 1]
+constexpr int fade_steps = 16;   // table over fade in [0, 1]
+constexpr int radius_steps = 512;
+constexpr double disc_radius = 1.5;  // parent radii; children reach no farther than 1.25
+
+/// (1 - x)^n for x in [0, 1].
+double power_of_rest(double x, double n) { return real::pow(std::max(0.0, 1.0 - x), n); }
+
+/// Radius of the ball that holds the children's centres, in parent radii.
+double centre_ball(int level) { return 1.0 - 0.5 * child_radius_scale(level); }
+
+float lerp(float a, float b, float t) { return a + (b - a) * t; }
+
+}  // namespace
+
+LevelChoice choose_levels(float diameter_px, float limit_px, int max_children) {
+    int finest = 0;
+    while (finest < 12 && children_of_level(finest + 1) <= max_children) ++finest;
+    LevelChoice choice;
+    if (!(limit_px > 0.0f) || !(diameter_px > limit_px) || finest < first_level) return choice;
+    float threshold_px = limit_px;  // above it, level `fine`
+    int fine = first_level;
+    while (diameter_px > 2.0f * threshold_px && fine < finest) {
+        threshold_px *= 2.0f;
+        ++fine;
+    }
+    choice.fine = fine;
+    choice.coarse = fine == first_level ? 0 : fine - 1;
+    choice.fade = std::min(1.0f, (diameter_px / threshold_px - 1.0f) / (fade_span - 1.0f));
+    return choice;
+}
+
+LodTable::LodTable(const Falloff& falloff) : falloff_(falloff) {
+    constexpr int panels = 24;
+    for (int i = 0; i < panels; ++i) {
+        const double center = (i + 0.5) * disc_radius / panels, half = 0.5 * disc_radius / panels;
+        for (int sign = -1; sign <= 1; sign += 2) {
+            for (std::size_t k = 0; k < gauss_nodes.size(); ++k) {
+                const double t = center + sign * half * gauss_nodes[k];
+                nodes_.push_back(t);
+                weights_.push_back(2.0 * real::pi * t * half * gauss_weights[k]);
+            }
+        }
+    }
+    Level parent;
+    for (double t : nodes_) parent.footprint.push_back(falloff_value(falloff_, t));
+    for (int i = 0; i <= alpha_steps; ++i) parent.steady.push_back(double(i) / alpha_steps);
+    levels_.push_back(std::move(parent));
+}
+
+void LodTable::prepare(int finest) {
+    while (static_cast<int>(levels_.size()) <= finest) build(static_cast<int>(levels_.size()));
+}
+
+/// q(t): the weight of a child, averaged over where its centre may lie.
+std::vector<double> LodTable::mean_footprint(int level, const std::vector<double>& centre_density) const {
+    constexpr int polar_steps = 16, azimuth_steps = 24;
+    const double ball = centre_ball(level), child = child_radius_scale(level);
+    const int rings = static_cast<int>(centre_density.size());
+    std::vector<double> azimuth_cosine;
+    for (int k = 0; k < azimuth_steps; ++k)
+        azimuth_cosine.push_back(real::cos(real::pi * (k + 0.5) / azimuth_steps));
+    std::vector<double> q(nodes_.size(), 0.0);
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+        const double t = nodes_[n];
+        for (int i = 0; i < rings; ++i) {
+            const double r = ball * (i + 0.5) / rings;
+            for (int j = 0; j < polar_steps; ++j) {
+                const double mu = (j + 0.5) / polar_steps;
+                const double s = r * std::sqrt(1.0 - mu * mu);
+                if (std::fabs(t - s) >= child) continue;
+                for (double c : azimuth_cosine) {
+                    const double d = std::sqrt(std::max(0.0, t * t + s * s - 2.0 * t * s * c));
+                    q[n] += centre_density[i] * falloff_value(falloff_, d / child);
+                }
+            }
+        }
+        q[n] /= polar_steps * azimuth_steps;
+    }
+    return q;
+}
+
+/// The child alpha for which the light beside `rest` (the share the coarser level lets through) reaches
+/// `target`.
+double LodTable::solve(double target, const std::vector<double>& rest, const Level& level,
+                       double children) const {
+    const auto light = [&](double alpha) {
+        double sum = 0.0;
+        for (std::size_t n = 0; n < nodes_.size(); ++n)
+            sum += weights_[n] * (1.0 - rest[n] * power_of_rest(alpha * level.footprint[n], children));
+        return sum;
+    };
+    double lo = 0.0, hi = 1.0;
+    for (int i = 0; i < 26; ++i) {
+        const double middle = 0.5 * (lo + hi);
+        (light(middle) < target ? lo : hi) = middle;
+    }
+    return 0.5 * (lo + hi);
+}
+
+void LodTable::build(int number) {
+    constexpr int rings = 32;
+    Level level;
+    const double ball = centre_ball(number);
+    std::vector<double> density;  // share of centres in each ring of radius
+    double sum = 0.0;
+    for (int i = 0; i < rings; ++i) {
+        const double r = ball * (i + 0.5) / rings;
+        density.push_back(r * r * falloff_value(falloff_, r));
+        sum += density.back();
+    }
+    for (double& d : density) d /= sum;
+    level.footprint = mean_footprint(number, density);
+
+    std::vector<double> cumulative(1, 0.0);
+    constexpr int fine_rings = 2048;
+    for (int i = 0; i < fine_rings; ++i) {
+        const double r = ball * (i + 0.5) / fine_rings;
+        cumulative.push_back(cumulative.back() + r * r * falloff_value(falloff_, r));
+    }
+    for (int i = 0, k = 0; i <= radius_steps; ++i) {
+        const double wanted = cumulative.back() * i / radius_steps;
+        while (k + 1 < fine_rings && cumulative[k + 1] < wanted) ++k;
+        const double step = cumulative[k + 1] - cumulative[k];
+        const double part = step > 0.0 ? std::clamp((wanted - cumulative[k]) / step, 0.0, 1.0) : 0.0;
+        level.radius_of_u.push_back(static_cast<float>(ball * (k + part) / fine_rings));
+    }
+
+    const Level& parent = levels_[0];
+    const int coarse_number = number <= first_level ? 0 : number - 1;
+    const Level& coarse = levels_[coarse_number];
+    const double parent_light = falloff_integral(falloff_);
+    const double children = static_cast<double>(children_of_level(number));
+    const double coarse_children = static_cast<double>(children_of_level(coarse_number));
+    const std::vector<double> nothing(nodes_.size(), 1.0);
+    for (int i = 0; i <= alpha_steps; ++i) {
+        const double a = parent.steady[i];
+        level.steady.push_back(solve(a * parent_light, nothing, level, children));
+        for (int f = 0; f <= fade_steps; ++f) {
+            const double coarse_alpha = coarse.steady[i] * (1.0 - double(f) / fade_steps);
+            std::vector<double> rest;
+            for (double q : coarse.footprint)
+                rest.push_back(power_of_rest(coarse_alpha * q, coarse_children));
+            level.fading.push_back(static_cast<float>(solve(a * parent_light, rest, level, children)));
+        }
+    }
+    levels_.push_back(std::move(level));
+}
+
+LodTable::Alphas LodTable::alphas(const LevelChoice& choice, float a) const {
+    const Level& fine = levels_[choice.fine];
+    const Level& coarse = levels_[choice.coarse];
+    const float x = std::clamp(a, 0.0f, 1.0f) * alpha_steps, y = choice.fade * fade_steps;
+    const int i = std::min(static_cast<int>(x), alpha_steps - 1),
+              j = std::min(static_cast<int>(y), fade_steps - 1);
+    const float u = x - static_cast<float>(i), v = y - static_cast<float>(j);
+    const float* row = &fine.fading[i * (fade_steps + 1) + j];
+    const float steady = static_cast<float>(coarse.steady[i] + (coarse.steady[i + 1] - coarse.steady[i]) * u);
+    return {steady * (1.0f - choice.fade),
+            lerp(lerp(row[0], row[1], v), lerp(row[fade_steps + 1], row[fade_steps + 2], v), u)};
+}
+
+LodTable::Alphas LodTable::alphas_for_add(const LevelChoice& choice, float a) {
+    // a (R / r)^2 / N with r = 2 R / sqrt(N) is a / 4 at every level.
+    return {(choice.coarse == 0 ? a : 0.25f * a) * (1.0f - choice.fade), 0.25f * a * choice.fade};
+}
+
+glm::vec3 LodTable::child_offset(int level, std::int64_t child, std::uint32_t seed, std::uint64_t id) const {
+    const std::uint32_t key = shared::as_mix(seed + static_cast<std::uint32_t>(child) * 0x9e3779b9u +
+                                             static_cast<std::uint32_t>(level) * 0x85ebca6bu);
+    const auto low = static_cast<std::uint32_t>(id), high = static_cast<std::uint32_t>(id >> 32);
+    const auto uniform = [&](std::uint32_t n) {
+        return shared::as_uniform(shared::as_hash(key, low, high, shared::PURPOSE_CHILD + n));
+    };
+    const float x = uniform(0) * radius_steps;
+    const int i = static_cast<int>(x);
+    const std::vector<float>& radius = levels_[level].radius_of_u;
+    const float r = lerp(radius[i], radius[i + 1], x - static_cast<float>(i));
+    const float z = 1.0f - 2.0f * uniform(1);
+    const float ring = std::sqrt(std::max(0.0f, 1.0f - z * z));
+    const double phi = 2.0 * real::pi * uniform(2);
+    return r *
+           glm::vec3(ring * static_cast<float>(real::cos(phi)), ring * static_cast<float>(real::sin(phi)), z);
+}
+
+}  // namespace astrosplat

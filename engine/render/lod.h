@@ -1,0 +1,74 @@
+// Level of detail: a splat that would be too large on screen becomes N = 4^level smaller ones in its own
+// volume, fixed in layer space, so that a close-up shows a cloud instead of a disc (DESIGN 7). In: projected
+// diameter, alpha, blend. Out: which levels to draw, with which alphas, and where the children lie.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "render/layer_render.h"
+
+namespace astrosplat {
+
+/// Levels to draw for one splat. Level 0 is the splat itself. `fade` is the share of the finer one, in [0,
+/// 1]; when it is 1 only the finer level is drawn, when both levels are 0 the splat is drawn as it is.
+struct LevelChoice {
+    int coarse = 0;
+    int fine = 0;
+    float fade = 0.0f;
+};
+
+/// Level for a projected diameter; `limit_px` is lod.max_px scaled to the picture's height. The finer level
+/// fades in over a factor 1.5 in size.
+LevelChoice choose_levels(float diameter_px, float limit_px, int max_children);
+
+inline std::int64_t children_of_level(int level) { return std::int64_t{1} << (2 * level); }
+/// Radius of the children over that of the parent: 2 / sqrt(N).
+inline float child_radius_scale(int level) {
+    return level == 0 ? 1.0f : 2.0f / static_cast<float>(1 << level);
+}
+
+/// Child alphas and positions for one falloff. Building is lazy and not thread-safe; lookups after prepare()
+/// are.
+class LodTable {
+  public:
+    explicit LodTable(const Falloff& falloff);
+
+    /// Makes lookups for levels up to `finest` possible.
+    void prepare(int finest);
+
+    /// Alphas of the coarse and the fine level's splats which together deposit the light of a parent of alpha
+    /// `a` under over: Integral[1 - (1 - a_coarse q_coarse)^M (1 - a_fine q_fine)^N] = a Integral[w].
+    struct Alphas {
+        float coarse, fine;
+    };
+    Alphas alphas(const LevelChoice& choice, float a) const;
+    /// The same for add, where light is the sum of alphas.
+    static Alphas alphas_for_add(const LevelChoice& choice, float a);
+
+    /// Centre of a child relative to the parent's, in parent radii: density w(|p|) in the ball of radius 1
+    /// less half the child's radius, hashed from (seed, id, level, child).
+    glm::vec3 child_offset(int level, std::int64_t child, std::uint32_t seed, std::uint64_t id) const;
+
+  private:
+    struct Level {
+        std::vector<double> footprint;   // mean child weight q at the integration nodes
+        std::vector<float> radius_of_u;  // inverse of the centres' radial distribution
+        std::vector<double> steady;      // child alpha over parent alpha, when drawn alone
+        std::vector<float>
+            fading;  // child alpha over (parent alpha, fade), while the coarser level fades out
+    };
+    void build(int level);
+    std::vector<double> mean_footprint(int level, const std::vector<double>& centre_density) const;
+    double solve(double target, const std::vector<double>& rest, const Level& level, double children) const;
+
+    Falloff falloff_;
+    std::vector<double> nodes_,
+        weights_;                // integration over the disc of radius 1.5 parent radii: t, 2 pi t dt
+    std::vector<Level> levels_;  // by level; 0 is the parent itself
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,187 @@
+#include "render/project.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "render/shared_render.h"
+
+namespace astrosplat {
+namespace {
+
+/// A splat relative to the camera, still in scene units.
+struct CameraSplat {
+    glm::vec3 position;  // camera space; in front is -z
+    float radius;
+    float alpha;
+    glm::vec3 color;
+};
+
+glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
+    return glm::vec3(layer.camera_from_layer * glm::dvec3(p) + layer.origin_in_camera);
+}
+
+/// Rises from 0 at the near plane to 1 where the splat is a radius (or near_fade) behind it.
+float near_fade(const LayerProjection& layer, float z, float radius) {
+    const float t = std::min(1.0f, (z - layer.near) / std::max(layer.near_fade, radius));
+    return t * t * (3.0f - 2.0f * t);
+}
+
+std::uint16_t hybrid_of(const LayerProjection& layer, const glm::vec3& p) {
+    if (layer.render.blend != Blend::hybrid) return 0;
+    const float along = std::fabs(shared::dot(layer.axis_in_camera, p));
+    const float cosine =
+        layer.orthographic ? std::fabs(layer.axis_in_camera.z) : along / std::sqrt(shared::dot(p, p));
+    const float h = shared::hybrid_amount(cosine, layer.render.hybrid_from_deg, layer.render.hybrid_to_deg);
+    return static_cast<std::uint16_t>(h * 65535.0f + 0.5f);
+}
+
+float snap(float px) { return std::floor(px * 256.0f + 0.5f) * (1.0f / 256.0f); }
+
+/// Projects one splat; false when it does not show.
+bool project_one(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
+                 const ScreenRect& rect, ScreenSplat& out) {
+    const glm::vec3& p = splat.position;
+    const float z = -p.z;
+    if (!(z > layer.near) || (layer.far > 0.0f && z > layer.far) || !(splat.alpha > 0.0f)) return false;
+    const float px_per_unit = layer.orthographic ? layer.focal_px : layer.focal_px / z;
+    out.radius_px = splat.radius * px_per_unit;
+    out.x_px = snap(layer.center_x_px + p.x * px_per_unit);
+    out.y_px = snap(layer.center_y_px - p.y * px_per_unit);
+    const float support_px = out.radius_px * layer.reach + layer.margin_px;
+    if (!(out.x_px + support_px > rect.x0 && out.x_px - support_px < rect.x1 &&
+          out.y_px + support_px > rect.y0 && out.y_px - support_px < rect.y1))
+        return false;
+    out.opacity = splat.alpha * layer.opacity * near_fade(layer, z, splat.radius);
+    out.color[0] = splat.color.x;
+    out.color[1] = splat.color.y;
+    out.color[2] = splat.color.z;
+    out.depth = std::bit_cast<std::uint32_t>(layer.orthographic ? z : shared::dot(p, p));
+    out.index = static_cast<std::uint32_t>(index);
+    out.layer = layer.layer;
+    out.hybrid = hybrid_of(layer, p);
+    return out.opacity > 0.0f;
+}
+
+/// Alpha and colour of the two levels for the layer's blend. Under screen a channel's light depends on s c
+/// alone, so each channel is solved by itself and the colour takes up the difference.
+struct LevelShade {
+    float alpha;
+    glm::vec3 color;
+};
+struct LevelShades {
+    LevelShade coarse, fine;
+};
+LevelShades shade_levels(const LayerProjection& layer, const LevelChoice& choice, const CameraSplat& splat) {
+    const auto plain = [&](const LodTable::Alphas& a) {
+        return LevelShades{{a.coarse, splat.color}, {a.fine, splat.color}};
+    };
+    if (layer.render.blend == Blend::add) return plain(LodTable::alphas_for_add(choice, splat.alpha));
+    const float brightest = std::max({splat.color.x, splat.color.y, splat.color.z});
+    if (layer.render.blend != Blend::screen || layer.render.holdout || brightest <= 0.0f)
+        return plain(layer.lod->alphas(choice, splat.alpha));
+    glm::vec3 coarse, fine;
+    for (int c = 0; c < 3; ++c) {
+        const LodTable::Alphas a = layer.lod->alphas(choice, splat.alpha * splat.color[c]);
+        coarse[c] = a.coarse;
+        fine[c] = a.fine;
+    }
+    const LodTable::Alphas a = layer.lod->alphas(choice, splat.alpha);
+    const auto divided = [](float alpha, const glm::vec3& light) {
+        return LevelShade{alpha, alpha > 0.0f ? light / alpha : glm::vec3(0.0f)};
+    };
+    return {divided(a.coarse, coarse), divided(a.fine, fine)};
+}
+
+void project_level(const LayerProjection& layer, const CameraSplat& parent, std::int64_t index, int level,
+                   const LevelShade& shade, const ScreenRect& rect, std::vector<ScreenSplat>& out) {
+    if (!(shade.alpha > 0.0f)) return;
+    const ShadedSplats& splats = *layer.splats;
+    CameraSplat child{parent.position, parent.radius * child_radius_scale(level), shade.alpha, shade.color};
+    const std::int64_t children = children_of_level(level);
+    for (std::int64_t k = 0; k < children; ++k) {
+        if (level > 0)
+            child.position =
+                to_camera(layer, splats.position[index] +
+                                     splats.radius[index] *
+                                         layer.lod->child_offset(level, k, layer.seed, splats.id[index]));
+        ScreenSplat screen;
+        if (project_one(layer, child, index, rect, screen)) out.push_back(screen);
+    }
+}
+
+/// True when the splat was replaced by children (of which none may show). A splat whose centre has passed the
+/// camera may still have children in front of it, so the size is taken no nearer than the near plane.
+bool project_as_children(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
+                         const ScreenRect& rect, std::vector<ScreenSplat>& out) {
+    const float z = std::max(-splat.position.z, layer.near), reach = splat.radius * 1.25f;
+    const float px_per_unit = layer.orthographic ? layer.focal_px : layer.focal_px / z;
+    const LevelChoice choice =
+        choose_levels(2.0f * splat.radius * px_per_unit, layer.lod_limit_px, layer.render.lod.max_children);
+    if (choice.fine == 0) return false;
+    if (-splat.position.z + reach < layer.near) return true;
+    if (-splat.position.z - reach >
+        layer.near) {  // wholly in front: its children may all lie outside the picture
+        const float nearest =
+            layer.orthographic ? layer.focal_px : layer.focal_px / (-splat.position.z - reach);
+        const float x_px = splat.position.x * px_per_unit, y_px = -splat.position.y * px_per_unit;
+        const float grow = layer.orthographic ? 1.0f : nearest / px_per_unit;
+        const float support_px =
+            reach * nearest + layer.margin_px + (grow - 1.0f) * (std::fabs(x_px) + std::fabs(y_px));
+        if (layer.center_x_px + x_px + support_px < rect.x0 ||
+            layer.center_x_px + x_px - support_px > rect.x1 ||
+            layer.center_y_px + y_px + support_px < rect.y0 ||
+            layer.center_y_px + y_px - support_px > rect.y1)
+            return true;
+    }
+    if (layer.render.falloff.shape == Falloff::Shape::constant && splat.alpha > 0.5f) return false;
+    const LevelShades shades = shade_levels(layer, choice, splat);
+    project_level(layer, splat, index, choice.coarse, shades.coarse, rect, out);
+    project_level(layer, splat, index, choice.fine, shades.fine, rect, out);
+    return true;
+}
+
+}  // namespace
+
+LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,
+                                const RenderSettings& settings) {
+    LayerProjection p;
+    const glm::dmat3 camera_from_world = glm::transpose(camera.world_from_camera);
+    p.splats = layer.splats;
+    p.camera_from_layer = camera_from_world * layer.world_from_layer * layer.scale;
+    p.origin_in_camera = camera_from_world * (layer.translate - camera.eye);
+    const glm::dvec3 axis = camera_from_world * layer.world_from_layer * layer.axis;
+    p.axis_in_camera = glm::vec3(axis / std::sqrt(glm::dot(axis, axis)));
+    p.radius_scale = static_cast<float>(layer.scale);
+    p.opacity = layer.render.opacity;
+    p.focal_px = static_cast<float>(camera.focal_px);
+    p.center_x_px = static_cast<float>(camera.center_x_px);
+    p.center_y_px = static_cast<float>(camera.center_y_px);
+    p.near = static_cast<float>(camera.near);
+    p.far = static_cast<float>(camera.far);
+    p.near_fade = static_cast<float>(camera.near_fade);
+    p.orthographic = camera.projection == Projection::orthographic;
+    p.margin_px = 4.0f * settings.pixel_filter;
+    p.render = layer.render;
+    // Lighten keeps the brightest splat of a pixel: no number of children has the parent's light, so it is
+    // not split.
+    if (layer.render.blend != Blend::lighten)
+        p.lod_limit_px = layer.render.lod.max_px * static_cast<float>(settings.height) / 1080.0f;
+    p.seed = layer.seed;
+    p.layer = number;
+    return p;
+}
+
+void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
+             std::vector<ScreenSplat>& out) {
+    const ShadedSplats& splats = *layer.splats;
+    for (std::int64_t i = begin; i < end; ++i) {
+        const CameraSplat splat{to_camera(layer, splats.position[i]), splats.radius[i] * layer.radius_scale,
+                                splats.alpha[i], splats.color[i]};
+        if (layer.lod && project_as_children(layer, splat, i, rect, out)) continue;
+        ScreenSplat screen;
+        if (project_one(layer, splat, i, rect, screen)) out.push_back(screen);
+    }
+}
+
+}  // namespace astrosplat

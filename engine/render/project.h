@@ -1,0 +1,46 @@
+// Projection: shaded splats of one layer -> 0..n screen splats each, through the camera, with near fade,
+// hybrid angle and level of detail.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "camera/camera.h"
+#include "render/lod.h"
+#include "render/render.h"
+#include "render/screen_splat.h"
+
+namespace astrosplat {
+
+/// Where on the picture splats are wanted, px of the whole picture.
+struct ScreenRect {
+    float x0, y0, x1, y1;
+};
+
+/// One layer's constants for one frame.
+struct LayerProjection {
+    const ShadedSplats* splats = nullptr;
+    glm::dmat3 camera_from_layer{1.0};  // rotation * scale
+    glm::dvec3 origin_in_camera{0.0};   // of layer space
+    glm::vec3 axis_in_camera{0.0f, 1.0f, 0.0f};
+    float radius_scale = 1.0f;
+    float opacity = 1.0f;
+    float focal_px = 1.0f, center_x_px = 0.0f, center_y_px = 0.0f;
+    float near = 0.0f, far = 0.0f, near_fade = 0.0f;
+    float reach = 1.0f, margin_px = 2.0f;  // support = radius * reach + margin
+    float lod_limit_px = 0.0f;
+    bool orthographic = false;
+    LayerRender render;
+    std::uint32_t seed = 1;
+    std::uint16_t layer = 0;
+    const LodTable* lod = nullptr;  // set when lod_limit_px > 0
+};
+
+LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,
+                                const RenderSettings& settings);
+
+/// Appends the screen splats of shaded splats [begin, end) whose support touches `rect`.
+void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
+             std::vector<ScreenSplat>& out);
+
+}  // namespace astrosplat

@@ -1,0 +1,262 @@
+#include "render/render.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "core/error.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/real.h"
+#include "render/fold.h"
+#include "render/lod.h"
+#include "render/project.h"
+#include "render/resolve.h"
+#include "render/scatter.h"
+
+namespace astrosplat {
+namespace {
+
+using FalloffKey = std::tuple<int, float, float>;  // shape, core, sharpness
+using TableKey = std::tuple<FalloffKey, float>;    // and pixel filter
+
+FalloffKey key_of(const Falloff& falloff) {
+    return {static_cast<int>(falloff.shape), falloff.core, falloff.sharpness};
+}
+
+/// Drops all entries when an animated falloff has filled the map, so that a long sequence stays small.
+template <class Map>
+void keep_small(Map& map) {
+    constexpr std::size_t most = 64;
+    if (map.size() > most) map.clear();
+}
+
+/// Finest level of detail a layer can need.
+int finest_level(const LevelOfDetail& lod) {
+    int level = 0;
+    while (level < 12 && children_of_level(level + 1) <= lod.max_children) ++level;
+    return level;
+}
+
+/// The largest light of a single splat: alpha * opacity * brightest channel, over all layers (DESIGN 7's L).
+/// Taken over all splats, seen or not, so that a region renders as the whole does.
+float largest_light(std::span<const RenderLayer> layers) {
+    constexpr std::int64_t chunk = 1 << 18;
+    float largest = 0.0f;
+    for (const RenderLayer& layer : layers) {
+        const ShadedSplats& splats = *layer.splats;
+        std::vector<float> partial(static_cast<std::size_t>((splats.size() + chunk - 1) / chunk), 0.0f);
+        parallel_chunks(splats.size(), chunk, [&](std::int64_t begin, std::int64_t end, int) {
+            float most = 0.0f;
+            for (std::int64_t i = begin; i < end; ++i) {
+                const glm::vec3& c = splats.color[i];
+                most = std::max(most, splats.alpha[i] * std::max({c.x, c.y, c.z}));
+            }
+            partial[static_cast<std::size_t>(begin / chunk)] = most;
+        });
+        for (float p : partial) largest = std::max(largest, p * layer.render.opacity);
+    }
+    return largest;
+}
+
+/// Transmittance below which a pixel is closed.
+float stop_threshold(float largest, float exposure_stops) {
+    const double exposed = largest * real::exp(std::max(0.0f, exposure_stops) * real::log(2.0));
+    return static_cast<float>(0x1p-16 / std::max(1.0, exposed));
+}
+
+RenderedFrame make_frame(std::span<const RenderLayer> layers, const RenderSettings& settings,
+                         const Region& region) {
+    RenderedFrame frame;
+    frame.beauty = make_image(region.width, region.height, 4);
+    if (settings.aov_depth) frame.depth = make_image(region.width, region.height, 1);
+    if (settings.aov_coverage) frame.coverage = make_image(region.width, region.height, 1);
+    if (settings.aov_count) frame.count = make_image(region.width, region.height, 1);
+    if (settings.aov_layers)
+        for (std::size_t i = 0; i < layers.size(); ++i)
+            frame.layers.push_back(make_image(region.width, region.height, 4));
+    for (const RenderLayer& layer : layers) frame.statistics.splats_in += layer.splats->size();
+    return frame;
+}
+
+/// Tile rows of each band so that its records stay within the memory limit.
+std::int64_t rows_per_band(std::int64_t records, std::int64_t limit_bytes, std::int64_t rows) {
+    const std::int64_t bytes = records * static_cast<std::int64_t>(sizeof(ScreenSplat));
+    if (limit_bytes <= 0 || bytes <= limit_bytes) return rows;
+    const std::int64_t bands = (bytes + limit_bytes - 1) / limit_bytes;
+    return std::max<std::int64_t>(1, rows / std::min(rows, bands));
+}
+
+double covered_pixels(const Image& beauty) {
+    double covered = 0.0;
+    for (std::size_t i = 0; i < beauty.pixels.size(); i += 4) {
+        const float* p = &beauty.pixels[i];
+        if (p[0] > 0.0f || p[1] > 0.0f || p[2] > 0.0f || p[3] > 0.0f) covered += 1.0;
+    }
+    return covered;
+}
+
+}  // namespace
+
+struct RenderCache::State {
+    SplatStore store;
+    std::map<TableKey, std::unique_ptr<FootprintTable>> footprints;
+    std::map<FalloffKey, std::unique_ptr<LodTable>> lods;
+
+    const FootprintTable& footprint(const Falloff& falloff, float pixel_filter) {
+        std::unique_ptr<FootprintTable>& table = footprints[{key_of(falloff), pixel_filter}];
+        if (!table) table = std::make_unique<FootprintTable>(make_footprint_table(falloff, pixel_filter));
+        return *table;
+    }
+    const LodTable& lod(const Falloff& falloff, int finest) {
+        std::unique_ptr<LodTable>& table = lods[key_of(falloff)];
+        if (!table) table = std::make_unique<LodTable>(falloff);
+        table->prepare(finest);
+        return *table;
+    }
+};
+
+RenderCache::RenderCache() : state(std::make_unique<State>()) {}
+RenderCache::~RenderCache() = default;
+
+namespace {
+
+/// One frame being rendered: what every band and tile shares.
+struct Job {
+    std::span<const RenderLayer> layers;
+    const Camera& camera;
+    const Environment* environment;
+    const RenderSettings& settings;
+    Region region;
+    std::vector<BlendGroup> groups;
+    std::vector<int> group_of_layer;
+    std::vector<LayerProjection> projections;
+    std::vector<FoldLayer> fold_layers;
+    FoldSettings fold;
+};
+
+Job make_job(std::span<const RenderLayer> layers, const Camera& camera, const Environment* environment,
+             const RenderSettings& settings, RenderCache::State& cache) {
+    Job job{layers, camera, environment, settings, settings.region, {}, {}, {}, {}, {}};
+    if (job.region.width <= 0 || job.region.height <= 0) job.region = {0, 0, settings.width, settings.height};
+    job.fold.aovs = settings.aov_depth || settings.aov_coverage || settings.aov_count || settings.aov_layers;
+    job.groups = make_groups(layers, job.fold.aovs);
+    job.group_of_layer.resize(layers.size());
+    for (std::size_t g = 0; g < job.groups.size(); ++g)
+        for (std::size_t l : job.groups[g].layers) job.group_of_layer[l] = static_cast<int>(g);
+    keep_small(cache.footprints);
+    keep_small(cache.lods);
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+        const LayerRender& render = layers[l].render;
+        const FootprintTable& footprints = cache.footprint(render.falloff, settings.pixel_filter);
+        LayerProjection projection =
+            make_projection(layers[l], static_cast<std::uint16_t>(l), camera, settings);
+        projection.reach = footprints.reach;
+        if (projection.lod_limit_px > 0.0f)
+            projection.lod = &cache.lod(render.falloff, finest_level(render.lod));
+        job.projections.push_back(projection);
+        job.fold_layers.push_back({&footprints, render.blend, render.holdout});
+    }
+    float largest = largest_light(layers);
+    if (environment) largest = std::max(largest, environment->largest);
+    job.fold.stop = stop_threshold(largest, settings.exposure);
+    job.fold.focal_px = static_cast<float>(camera.focal_px);
+    job.fold.center_x_px = static_cast<float>(camera.center_x_px);
+    job.fold.center_y_px = static_cast<float>(camera.center_y_px);
+    job.fold.orthographic = camera.projection == Projection::orthographic;
+    return job;
+}
+
+/// Scratch of one worker.
+struct TileWorker {
+    std::vector<ScreenSplat> splats;
+    SplatSorter sorter;
+    TilePlanes planes;
+    TileResolver resolver;
+};
+
+void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
+                 RenderedFrame& frame) {
+    const TileGrid& grid = bins.grid();
+    const std::int64_t x = grid.x0 + tile % grid.columns() * grid.tile_px;
+    const std::int64_t y = grid.y0 + tile / grid.columns() * grid.tile_px;
+    const int width = static_cast<int>(std::min<std::int64_t>(grid.tile_px, grid.x0 + grid.width - x));
+    const int height = static_cast<int>(std::min<std::int64_t>(grid.tile_px, grid.y0 + grid.height - y));
+    for (std::size_t g = 0; g < std::max<std::size_t>(1, job.groups.size()); ++g) {
+        FoldSettings fold_settings = job.fold;
+        if (g < job.groups.size()) fold_settings.kind = job.groups[g].kind;
+        worker.planes.reset(x, y, width, height, grid.tile_px, fold_settings, job.layers.size());
+        if (g == 0) worker.resolver.begin(worker.planes, job.camera, job.environment);
+        if (g == job.groups.size()) break;  // nothing but the environment
+        bins.collect(tile, static_cast<int>(g), worker.splats);
+        worker.sorter.sort(worker.splats);
+        fold(worker.splats, job.fold_layers, fold_settings, worker.planes);
+        worker.resolver.lay(job.groups[g], worker.planes);
+    }
+    worker.resolver.write(worker.planes, job.region.x, job.region.y, frame);
+}
+
+void render_band(const Job& job, const TileGrid& grid, SplatStore& store, const Progress& progress,
+                 RenderedFrame& frame) {
+    const double before =
+        static_cast<double>(grid.y0 - job.region.y) / static_cast<double>(job.region.height);
+    const double share = static_cast<double>(grid.height) / static_cast<double>(job.region.height);
+    store.clear();
+    TileBins bins(grid, static_cast<int>(job.groups.size()));
+    bins.scatter(job.projections, job.group_of_layer, store, progress);
+    progress.at(before + 0.4 * share);
+    std::vector<TileWorker> workers;
+    for (int i = 0; i < thread_count(); ++i)
+        workers.push_back({{}, {}, {}, TileResolver(job.layers, job.settings)});
+    std::atomic<std::int64_t> done = 0;
+    parallel_for(grid.tiles(), [&](std::int64_t tile, int worker) {
+        progress.check();
+        render_tile(job, bins, tile, workers[static_cast<std::size_t>(worker)], frame);
+        const std::int64_t finished = ++done;
+        if (finished % 64 == 0)
+            progress.at(before + share * (0.4 + 0.6 * static_cast<double>(finished) /
+                                                    static_cast<double>(grid.tiles())));
+    });
+    frame.statistics.splats_drawn += bins.instances();
+    frame.statistics.mean_overlap += bins.footprint_px();
+}
+
+}  // namespace
+
+RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
+                     const Environment* environment, const RenderSettings& settings, const Progress& progress,
+                     RenderCache* cache) {
+    const auto start = std::chrono::steady_clock::now();
+    for (const RenderLayer& layer : layers)
+        if (layer.splats->size() > 0xffffffffLL)
+            throw InputError("layer " + layer.name + ": " +
+                             human_count(static_cast<double>(layer.splats->size())) +
+                             " splats in one layer, at most 4294967295 can be drawn");
+    std::unique_ptr<RenderCache> own = cache ? nullptr : std::make_unique<RenderCache>();
+    RenderCache::State& state = cache ? *cache->state : *own->state;
+    const Job job = make_job(layers, camera, environment, settings, state);
+    const TileGrid grid{job.region.x, job.region.y, job.region.width, job.region.height, settings.tile_px};
+    const std::int64_t records = estimate_records(job.projections, grid);
+    const std::int64_t band_rows = rows_per_band(records, settings.memory_limit_bytes, grid.rows());
+    const std::int64_t bands = (grid.rows() + band_rows - 1) / band_rows;
+    const std::int64_t bytes = records * static_cast<std::int64_t>(sizeof(ScreenSplat)) / bands;
+    if (bytes > state.store.bytes()) claim_memory(bytes - state.store.bytes(), "projected splats");
+    RenderedFrame frame = make_frame(layers, settings, job.region);
+    for (std::int64_t row = 0; row < grid.rows(); row += band_rows) {
+        TileGrid band = grid;
+        band.y0 = grid.y0 + row * grid.tile_px;
+        band.height = std::min(band_rows * grid.tile_px, grid.y0 + grid.height - band.y0);
+        render_band(job, band, state.store, progress, frame);
+    }
+    if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);
+    const double covered = covered_pixels(frame.beauty);
+    frame.statistics.mean_overlap = covered > 0.0 ? frame.statistics.mean_overlap / covered : 0.0;
+    frame.statistics.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return frame;
+}
+
+}  // namespace astrosplat

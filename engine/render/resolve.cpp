@@ -1,0 +1,154 @@
+#include "render/resolve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace astrosplat {
+namespace {
+
+bool is_isolated(const LayerRender& render) { return render.isolate || render.blend == Blend::lighten; }
+
+FoldKind kind_of(std::span<const RenderLayer> layers, const std::vector<std::size_t>& members, bool aovs) {
+    if (members.size() == 1 && layers[members[0]].render.blend == Blend::lighten &&
+        !layers[members[0]].render.holdout)
+        return FoldKind::lighten;
+    const auto all = [&](Blend blend) {
+        return std::all_of(members.begin(), members.end(), [&](std::size_t i) {
+            return layers[i].render.blend == blend && !layers[i].render.holdout;
+        });
+    };
+    if (aovs) return FoldKind::general;
+    return all(Blend::over) ? FoldKind::over : all(Blend::add) ? FoldKind::add : FoldKind::general;
+}
+
+/// What a group shows at one pixel and what it lets through from behind, per channel (3: alpha).
+struct GroupPixel {
+    float color[3], alpha;
+    float through[4];
+};
+
+GroupPixel group_pixel(const BlendGroup& group, const TilePlanes& planes, std::size_t i) {
+    GroupPixel p;
+    for (int k = 0; k < 3; ++k) p.color[k] = planes.color[k][i];
+    p.alpha = planes.alpha[i];
+    for (int k = 0; k < 4; ++k)
+        p.through[k] = group.kind == FoldKind::over  ? planes.transmittance[0][i]
+                       : group.kind == FoldKind::add ? 1.0f
+                                                     : planes.transmittance[k][i];
+    if (!group.isolated || group.holdout) return p;
+    float hidden = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        hidden += std::min(1.0f, p.color[k]);
+        p.through[k] = group.blend == Blend::add      ? 1.0f
+                       : group.blend == Blend::screen ? 1.0f - std::min(1.0f, p.color[k])
+                                                      : 1.0f - p.alpha;
+    }
+    p.through[3] = group.blend == Blend::add      ? 1.0f
+                   : group.blend == Blend::screen ? 1.0f - hidden / 3.0f
+                                                  : 1.0f - p.alpha;
+    if (group.blend == Blend::screen) p.alpha = hidden / 3.0f;
+    return p;
+}
+
+}  // namespace
+
+std::vector<BlendGroup> make_groups(std::span<const RenderLayer> layers, bool aovs) {
+    std::vector<BlendGroup> groups;
+    BlendGroup merged;
+    std::size_t merged_place = 0;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const LayerRender& render = layers[i].render;
+        if (is_isolated(render)) {
+            groups.push_back({{i}, FoldKind::general, true, render.blend, render.holdout});
+        } else {
+            if (merged.layers.empty()) merged_place = groups.size();
+            merged.layers.push_back(i);
+        }
+    }
+    if (!merged.layers.empty())
+        groups.insert(groups.begin() + static_cast<std::ptrdiff_t>(merged_place), merged);
+    for (BlendGroup& group : groups) group.kind = kind_of(layers, group.layers, aovs);
+    return groups;
+}
+
+TileResolver::TileResolver(std::span<const RenderLayer> layers, const RenderSettings& settings)
+    : layer_count_(layers.size()), settings_(settings) {}
+
+void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Environment* environment) {
+    const std::size_t size = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+    pixels_.assign(size, {});
+    environment_ = environment != nullptr;
+    if (settings_.aov_layers) light_.assign(size * layer_count_ * 4, 0.0f);
+    if (!environment) return;
+    const double spread = camera.projection == Projection::orthographic ? 0.0 : 1.0 / camera.focal_px;
+    for (int y = 0; y < tile.height; ++y) {
+        for (int x = 0; x < tile.width; ++x) {
+            PixelState& pixel = pixels_[static_cast<std::size_t>(y * tile.width + x)];
+            const glm::dvec3 ray = ray_direction(camera, static_cast<double>(tile.x0 + x) + 0.5,
+                                                 static_cast<double>(tile.y0 + y) + 0.5);
+            const glm::vec3 color = sample_environment(*environment, ray, spread);
+            for (int k = 0; k < 3; ++k) pixel.color[k] = color[k];
+            pixel.alpha = 1.0f;
+        }
+    }
+}
+
+void TileResolver::lay(const BlendGroup& group, const TilePlanes& planes) {
+    for (int y = 0; y < planes.height; ++y) {
+        for (int x = 0; x < planes.width; ++x) {
+            const std::size_t i = planes.at(x, y), n = static_cast<std::size_t>(y * planes.width + x);
+            PixelState& pixel = pixels_[n];
+            GroupPixel p = group_pixel(group, planes, i);
+            const bool lighten = group.blend == Blend::lighten && group.isolated && !group.holdout;
+            if (lighten)  // the brighter of the two, per channel: the other's light does not arrive
+                for (int k = 0; k < 3; ++k) {
+                    p.through[k] = p.color[k] > pixel.color[k] ? 0.0f : 1.0f;
+                    if (p.through[k] > 0.0f) p.color[k] = 0.0f;
+                }
+            for (int k = 0; k < 3; ++k) pixel.color[k] = p.color[k] + p.through[k] * pixel.color[k];
+            pixel.held = planes.held[i] + p.through[3] * pixel.held;
+            pixel.alpha = environment_ ? 1.0f - pixel.held : p.alpha + p.through[3] * pixel.alpha;
+            if (settings_.aov_depth || settings_.aov_coverage || settings_.aov_count) {
+                pixel.depth_sum = planes.depth_sum[i] + p.through[3] * pixel.depth_sum;
+                pixel.depth_weight = planes.alpha[i] + p.through[3] * pixel.depth_weight;
+                pixel.uncovered *= planes.uncovered[i];
+                pixel.count += planes.count[i];
+            }
+            if (!settings_.aov_layers) continue;
+            float* light = &light_[n * layer_count_ * 4];
+            for (std::size_t l = 0; l < layer_count_; ++l)
+                for (std::size_t k = 0; k < 4; ++k) light[4 * l + k] *= p.through[k];
+            for (std::size_t l : group.layers) {
+                for (std::size_t k = 0; k < 4; ++k)
+                    light[4 * l + k] += group.isolated ? (k < 3           ? p.color[k]
+                                                          : group.holdout ? 0.0f
+                                                                          : p.alpha)
+                                                       : planes.layer_light[4 * l + k][i];
+            }
+        }
+    }
+}
+
+void TileResolver::write(const TilePlanes& tile, std::int64_t x0, std::int64_t y0,
+                         RenderedFrame& frame) const {
+    for (int y = 0; y < tile.height; ++y) {
+        for (int x = 0; x < tile.width; ++x) {
+            const std::size_t n = static_cast<std::size_t>(y * tile.width + x);
+            const PixelState& pixel = pixels_[n];
+            const std::int64_t px = tile.x0 - x0 + x, py = tile.y0 - y0 + y;
+            float* out = frame.beauty.at(px, py);
+            for (int k = 0; k < 3; ++k) out[k] = pixel.color[k];
+            out[3] = std::clamp(pixel.alpha, 0.0f, 1.0f);
+            if (settings_.aov_depth)
+                *frame.depth.at(px, py) =
+                    pixel.depth_weight > 0.0f ? pixel.depth_sum / pixel.depth_weight : 0.0f;
+            if (settings_.aov_coverage) *frame.coverage.at(px, py) = 1.0f - pixel.uncovered;
+            if (settings_.aov_count) *frame.count.at(px, py) = pixel.count;
+            for (std::size_t l = 0; l < frame.layers.size(); ++l)
+                for (std::size_t k = 0; k < 4; ++k)
+                    frame.layers[l].at(px, py)[k] = light_[(n * layer_count_ + l) * 4 + k];
+        }
+    }
+}
+
+}  // namespace astrosplat

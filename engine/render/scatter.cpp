@@ -1,0 +1,217 @@
+#include "render/scatter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/real.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t slab_records = std::int64_t{1} << 20;
+constexpr std::int64_t chunk_splats = 16384;
+constexpr std::size_t flush_records = 65536;  // level of detail may turn a chunk into many more
+
+ScreenRect rect_of(const TileGrid& grid) {
+    return {static_cast<float>(grid.x0), static_cast<float>(grid.y0),
+            static_cast<float>(grid.x0 + grid.width), static_cast<float>(grid.y0 + grid.height)};
+}
+
+float support_of(const LayerProjection& layer, const ScreenSplat& splat) {
+    return splat.radius_px * layer.reach + layer.margin_px;
+}
+
+}  // namespace
+
+ScreenSplat* SplatStore::take(std::int64_t count) {
+    const std::lock_guard lock(mutex_);
+    while (slab_ < slabs_.size() && filled_ + count > static_cast<std::int64_t>(slabs_[slab_].size())) {
+        ++slab_;
+        filled_ = 0;
+    }
+    if (slab_ == slabs_.size()) slabs_.emplace_back(static_cast<std::size_t>(std::max(count, slab_records)));
+    ScreenSplat* place = slabs_[slab_].data() + filled_;
+    filled_ += count;
+    return place;
+}
+
+void SplatStore::clear() {
+    slab_ = 0;
+    filled_ = 0;
+}
+
+void SplatStore::shrink(std::int64_t limit_bytes) {
+    clear();
+    while (!slabs_.empty() && bytes() > limit_bytes) slabs_.pop_back();
+}
+
+std::int64_t SplatStore::bytes() const {
+    std::int64_t sum = 0;
+    for (const Buffer<ScreenSplat>& slab : slabs_)
+        sum += static_cast<std::int64_t>(slab.size() * sizeof(ScreenSplat));
+    return sum;
+}
+
+TileBins::TileBins(const TileGrid& grid, int groups) : grid_(grid), groups_(groups) {
+    std::int64_t columns = grid.columns(), rows = grid.rows();
+    for (;;) {
+        levels_.push_back({bins_per_group_, columns, rows});
+        bins_per_group_ += columns * rows;
+        if (columns == 1 && rows == 1) break;
+        columns = (columns + 1) / 2;
+        rows = (rows + 1) / 2;
+    }
+}
+
+TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px, int group) const {
+    const float tile = static_cast<float>(grid_.tile_px);
+    std::size_t number = 0;
+    float bin_px = tile;
+    while (support_px > bin_px && number + 1 < levels_.size()) {
+        bin_px *= 2.0f;
+        ++number;
+    }
+    const Level& level = levels_[number];
+    const auto bin = [&](float px, std::int64_t origin, std::int64_t count) {
+        const float b = std::floor((px - static_cast<float>(origin)) / bin_px);
+        return static_cast<std::int64_t>(std::clamp(b, 0.0f, static_cast<float>(count - 1)));
+    };
+    return {group * bins_per_group_ + level.first_bin,
+            level.columns,
+            bin(splat.x_px - support_px, grid_.x0, level.columns),
+            bin(splat.y_px - support_px, grid_.y0, level.rows),
+            bin(splat.x_px + support_px, grid_.x0, level.columns),
+            bin(splat.y_px + support_px, grid_.y0, level.rows)};
+}
+
+/// Counting sort of a chunk's splats by bin, straight into the store. Empties `splats`.
+void TileBins::add_segments(std::vector<ScreenSplat>& splats, const LayerProjection& layer, int group,
+                            SplatStore& store, std::vector<Segment>& out) const {
+    if (splats.empty()) return;
+    const auto each_bin = [&](const ScreenSplat& splat, const auto& visit) {
+        const BinRect r = bins_of(splat, support_of(layer, splat), group);
+        for (std::int64_t y = r.y0; y <= r.y1; ++y)
+            for (std::int64_t x = r.x0; x <= r.x1; ++x) visit(r.first_bin + y * r.columns + x);
+    };
+    Segment segment;
+    std::int64_t last_bin = 0;
+    segment.first_bin = static_cast<std::int64_t>(groups_) * bins_per_group_;
+    for (const ScreenSplat& splat : splats) {
+        const BinRect r = bins_of(splat, support_of(layer, splat), group);
+        segment.first_bin = std::min(segment.first_bin, r.first_bin + r.y0 * r.columns + r.x0);
+        last_bin = std::max(last_bin, r.first_bin + r.y1 * r.columns + r.x1);
+        segment.footprint_px += real::pi * splat.radius_px * splat.radius_px;
+    }
+    segment.instances = static_cast<std::int64_t>(splats.size());
+    segment.offsets.assign(static_cast<std::size_t>(last_bin - segment.first_bin + 2), 0);
+    std::vector<std::uint32_t>& offsets = segment.offsets;
+    for (const ScreenSplat& splat : splats)
+        each_bin(splat,
+                 [&](std::int64_t bin) { ++offsets[static_cast<std::size_t>(bin - segment.first_bin + 1)]; });
+    for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+    ScreenSplat* records = store.take(offsets.back());
+    std::vector<std::uint32_t> cursor(offsets.begin(), offsets.end() - 1);
+    for (const ScreenSplat& splat : splats)
+        each_bin(splat, [&](std::int64_t bin) {
+            records[cursor[static_cast<std::size_t>(bin - segment.first_bin)]++] = splat;
+        });
+    segment.records = records;
+    out.push_back(std::move(segment));
+    splats.clear();
+}
+
+void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
+                       SplatStore& store, const Progress& progress) {
+    struct Chunk {
+        std::size_t layer;
+        std::int64_t begin, end;
+    };
+    std::vector<Chunk> chunks;
+    for (std::size_t l = 0; l < layers.size(); ++l)
+        for (std::int64_t begin = 0; begin < layers[l].splats->size(); begin += chunk_splats)
+            chunks.push_back({l, begin, std::min(begin + chunk_splats, layers[l].splats->size())});
+    segments_.assign(chunks.size(), {});
+    std::vector<std::vector<ScreenSplat>> scratch(static_cast<std::size_t>(thread_count()));
+    const ScreenRect rect = rect_of(grid_);
+    parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int worker) {
+        progress.check();
+        const Chunk& chunk = chunks[static_cast<std::size_t>(c)];
+        const LayerProjection& layer = layers[chunk.layer];
+        const int group = group_of_layer[chunk.layer];
+        std::vector<ScreenSplat>& splats = scratch[static_cast<std::size_t>(worker)];
+        splats.clear();
+        const std::int64_t step = layer.lod ? 16 : chunk_splats;  // children are flushed before they pile up
+        for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
+            project(layer, begin, std::min(begin + step, chunk.end), rect, splats);
+            if (splats.size() >= flush_records)
+                add_segments(splats, layer, group, store, segments_[static_cast<std::size_t>(c)]);
+        }
+        add_segments(splats, layer, group, store, segments_[static_cast<std::size_t>(c)]);
+    });
+}
+
+void TileBins::collect(std::int64_t tile, int group, std::vector<ScreenSplat>& out) const {
+    out.clear();
+    const std::int64_t column = tile % grid_.columns(), row = tile / grid_.columns();
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+        const Level& level = levels_[l];
+        const std::int64_t bin =
+            group * bins_per_group_ + level.first_bin + (row >> l) * level.columns + (column >> l);
+        for (const std::vector<Segment>& chunk : segments_) {
+            for (const Segment& segment : chunk) {
+                const std::int64_t i = bin - segment.first_bin;
+                if (i < 0 || i + 1 >= static_cast<std::int64_t>(segment.offsets.size())) continue;
+                out.insert(out.end(), segment.records + segment.offsets[static_cast<std::size_t>(i)],
+                           segment.records + segment.offsets[static_cast<std::size_t>(i + 1)]);
+            }
+        }
+    }
+}
+
+std::int64_t TileBins::records() const {
+    std::int64_t sum = 0;
+    for (const std::vector<Segment>& chunk : segments_)
+        for (const Segment& segment : chunk) sum += segment.offsets.back();
+    return sum;
+}
+
+std::int64_t TileBins::instances() const {
+    std::int64_t sum = 0;
+    for (const std::vector<Segment>& chunk : segments_)
+        for (const Segment& segment : chunk) sum += segment.instances;
+    return sum;
+}
+
+double TileBins::footprint_px() const {
+    double sum = 0.0;
+    for (const std::vector<Segment>& chunk : segments_)
+        for (const Segment& segment : chunk) sum += segment.footprint_px;
+    return sum;
+}
+
+std::int64_t estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid) {
+    constexpr std::int64_t block = 16, stride = 64 * block;
+    const ScreenRect rect = rect_of(grid);
+    double sum = 0.0;
+    std::vector<ScreenSplat> splats;
+    for (const LayerProjection& layer : layers) {
+        std::int64_t sampled = 0;
+        double records = 0.0;
+        for (std::int64_t begin = 0; begin < layer.splats->size(); begin += stride) {
+            const std::int64_t end = std::min(begin + block, layer.splats->size());
+            splats.clear();
+            project(layer, begin, end, rect, splats);
+            sampled += end - begin;
+            for (const ScreenSplat& splat : splats) {
+                const float tiles = 1.0f + 2.0f * support_of(layer, splat) / static_cast<float>(grid.tile_px);
+                records += std::min(9.0f, tiles * tiles);
+            }
+        }
+        if (sampled > 0)
+            sum += records * static_cast<double>(layer.splats->size()) / static_cast<double>(sampled);
+    }
+    return static_cast<std::int64_t>(sum);
+}
+
+}  // namespace astrosplat
