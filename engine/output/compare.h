@@ -1,0 +1,32 @@
+// How far two pictures of one size are apart, in linear light.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/image.h"
+
+namespace astrosplat {
+
+/// Differences are absolute, of linear premultiplied channel values; a pixel's difference is its largest
+/// channel's. NaN against anything but the same bits counts as infinite.
+struct ImageComparison {
+    std::int64_t width = 0, height = 0;  // px
+    std::int64_t differing_pixels = 0;   // with any channel of other bits
+    std::int64_t max_x = 0, max_y = 0;   // px, the first pixel of the largest difference
+    int max_channel = 0;
+    double max_difference = 0.0;
+    double mean_difference = 0.0;  // over all pixels and channels
+    double percentile_999 = 0.0;   // the smallest bound that 99.9 % of the pixels keep
+    double psnr_db = 0.0;          // 10 log10(1 / mean square difference); infinite without difference
+
+    bool identical() const { return differing_pixels == 0; }
+};
+
+/// Both pictures must have the same size and channels (assert).
+ImageComparison compare_images(const Image& a, const Image& b);
+
+/// Reads both as linear light. Throws InputError when one cannot be read or the sizes differ.
+ImageComparison compare_files(const std::filesystem::path& a, const std::filesystem::path& b);
+
+}  // namespace astrosplat
