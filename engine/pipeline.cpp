@@ -52,17 +52,6 @@ ColumnLaw column_law(Blend blend) {
     return ColumnLaw::transmittance;
 }
 
-/// Visible as it stands, or switched on by a key of the animation.
-bool ever_visible(const Scene& scene, const LayerParams& layer) {
-    const std::string key = "layer." + layer.name + ".visible";
-    for (const Track& track : scene.animation) {
-        if (track.key != key) continue;
-        return std::any_of(track.keys.begin(), track.keys.end(),
-                           [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
-    }
-    return layer.visible;
-}
-
 /// Bounds of a layer in world space: of the eight corners of its box, so that no splat lies outside.
 Bounds world_bounds(const Bounds& box, const RenderLayer& layer) {
     Bounds result;
@@ -92,6 +81,16 @@ bool has_environment(const EnvironmentParams& params) {
 }
 
 }  // namespace
+
+bool ever_visible(const Scene& scene, const LayerParams& layer) {
+    const std::string key = "layer." + layer.name + ".visible";
+    for (const Track& track : scene.animation) {
+        if (track.key != key) continue;
+        return std::any_of(track.keys.begin(), track.keys.end(),
+                           [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
+    }
+    return layer.visible;
+}
 
 struct Pipeline::State {
     Scene scene;

@@ -13,6 +13,9 @@
 
 namespace astrosplat {
 
+/// Whether a layer is drawn in some frame: visible as it stands, or switched on by a key of the animation.
+bool ever_visible(const Scene& scene, const LayerParams& layer);
+
 struct LayerStatistics {
     std::string name;
     std::int64_t test_positions = 0, kept = 0, zero_alpha = 0;

@@ -1,0 +1,191 @@
+// The architecture as a test (DESIGN 2): includes point one way, libraries stay behind the files that wrap
+// them, and the top level holds only what was agreed. A rule nobody checks is lost.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path root = ASTROSPLAT_SOURCE_DIR;
+
+struct Include {
+    std::string file;  // relative to the repository
+    std::string name;  // as written
+    bool quoted;
+};
+
+bool is_source(const fs::path& file) { return file.extension() == ".h" || file.extension() == ".cpp"; }
+
+std::vector<Include> includes_below(const std::string& folder) {
+    static const std::regex line_pattern(R"re(^\s*#\s*include\s*(["<])([^">]+)[">])re");
+    std::vector<Include> includes;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+        if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+        std::ifstream in(entry.path());
+        for (std::string line; std::getline(in, line);) {
+            std::smatch match;
+            if (!std::regex_search(line, match, line_pattern)) continue;
+            includes.push_back(
+                {fs::relative(entry.path(), root).generic_string(), match[2], match[1] == "\""});
+        }
+    }
+    return includes;
+}
+
+std::string first_folder(const std::string& path) {
+    const auto slash = path.find('/');
+    return slash == std::string::npos ? "" : path.substr(0, slash);
+}
+
+/// Standard output of a command run in the repository; empty when it fails.
+std::string output_of(const std::string& command) {
+    const std::string line = "cd '" + root.string() + "' && " + command + " 2>/dev/null";
+    FILE* pipe = popen(line.c_str(), "r");
+    if (!pipe) return "";
+    std::string output;
+    std::array<char, 4096> buffer;
+    for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+        output.append(buffer.data(), n);
+    return pclose(pipe) == 0 ? output : "";
+}
+
+std::vector<std::string> tracked_files() {
+    std::istringstream list(output_of("git ls-files"));
+    std::vector<std::string> files;
+    for (std::string file; std::getline(list, file);) {
+        if (fs::exists(root / file)) files.push_back(file);
+    }
+    return files;
+}
+
+TEST(Structure, EngineIncludesPointOneWay) {
+    const std::map<std::string, std::set<std::string>> allowed = {
+        {"core", {"core"}},
+        {"source", {"core", "source"}},
+        {"splats", {"core", "source", "splats"}},
+        {"look", {"core", "source", "splats", "look"}},
+        {"camera", {"core", "camera"}},
+        {"render", {"core", "source", "splats", "camera", "render"}},
+        {"scene", {"core", "source", "splats", "look", "camera", "render", "scene"}},
+        {"output", {"core", "source", "splats", "look", "camera", "render", "scene", "output"}},
+        {"", {"core", "source", "splats", "look", "camera", "render", "scene", "output", ""}},  // pipeline
+    };
+    const std::vector<Include> includes = includes_below("engine");
+    ASSERT_GT(includes.size(), 100u);
+    for (const Include& include : includes) {
+        if (!include.quoted) continue;
+        if (fs::exists(root / "shaders/shared" / include.name)) continue;
+        const std::string from = first_folder(include.file.substr(std::string("engine/").size()));
+        ASSERT_TRUE(allowed.count(from)) << include.file << ": a folder the design does not know";
+        EXPECT_TRUE(allowed.at(from).count(first_folder(include.name)))
+            << include.file << " includes " << include.name;
+        EXPECT_TRUE(fs::exists(root / "engine" / include.name))
+            << include.file << ": write the path from engine/, not " << include.name;
+    }
+}
+
+TEST(Structure, EngineKnowsNoWindow) {
+    const std::regex window("GLFW|glad|imgui|^GL/|^EGL/|^X11/|^CLI/|^GLES");
+    for (const Include& include : includes_below("engine")) {
+        EXPECT_FALSE(std::regex_search(include.name, window)) << include.file << " includes " << include.name;
+    }
+}
+
+TEST(Structure, CommandLineAndBatchKnowNoWindow) {
+    const std::regex window("GLFW|glad|imgui|^GL/|^EGL/|^X11/");
+    for (const Include& include : includes_below("app")) {
+        const std::string folder = first_folder(include.file.substr(std::string("app/").size()));
+        if (!folder.empty()) continue;
+        EXPECT_FALSE(std::regex_search(include.name, window)) << include.file << " includes " << include.name;
+    }
+}
+
+TEST(Structure, PreviewKnowsNoWidgetsAndWidgetsKnowNoGl) {
+    const std::regex widgets("imgui|^gui/"), gl("GLFW|glad|^GL/|^gl/");
+    for (const Include& include : includes_below("app")) {
+        if (include.file.rfind("app/gl/", 0) == 0) {
+            EXPECT_FALSE(std::regex_search(include.name, widgets))
+                << include.file << " includes " << include.name;
+        }
+        if (include.file.rfind("app/gui/", 0) == 0) {
+            EXPECT_FALSE(std::regex_search(include.name, gl)) << include.file << " includes " << include.name;
+        }
+    }
+}
+
+TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
+    const std::vector<std::pair<std::regex, std::regex>> rules = {
+        {std::regex("^OpenImageIO/"), std::regex("^engine/(source|output)/[^/]*\\.cpp$")},
+        {std::regex("^fitsio"), std::regex("^engine/source/[^/]*\\.cpp$")},
+        {std::regex("^openssl/"), std::regex("^engine/core/sha256\\.cpp$")},
+        {std::regex("^embree"), std::regex("^engine/splats/[^/]*\\.cpp$")},
+        {std::regex("^toml"), std::regex("^engine/scene/")},
+        {std::regex("^tiny_obj"), std::regex("^engine/source/[^/]*\\.cpp$")},
+        {std::regex("^CLI/"), std::regex("^app/cli\\.cpp$")},
+    };
+    std::vector<Include> includes = includes_below("engine");
+    for (const Include& include : includes_below("app")) includes.push_back(include);
+    for (const Include& include : includes) {
+        for (const auto& [library, place] : rules) {
+            if (!std::regex_search(include.name, library)) continue;
+            EXPECT_TRUE(std::regex_search(include.file, place))
+                << include.file << " includes " << include.name;
+        }
+    }
+}
+
+TEST(Structure, TopLevelHoldsOnlyWhatWasAgreed) {
+    const std::set<std::string> agreed = {
+        ".ci",     ".clang-format", ".gitignore", "CMakeLists.txt", "CMakePresets.json",
+        "LICENSE", "README.md",     "app",        "assets",         "engine",
+        "shaders", "tests",         "third_party"};
+    const std::vector<std::string> files = tracked_files();
+    if (files.empty()) GTEST_SKIP() << "not a git checkout";
+    for (const std::string& file : files) {
+        const std::string folder = first_folder(file);
+        EXPECT_TRUE(agreed.count(folder.empty() ? file : folder)) << file;
+    }
+}
+
+TEST(Structure, NoFileNamesAFolderOfOneMachine) {
+    const std::vector<std::string> files = tracked_files();
+    if (files.empty()) GTEST_SKIP() << "not a git checkout";
+    const std::set<std::string> texts = {".h",  ".cpp",  ".glsl", ".txt", ".cmake", ".sh",
+                                         ".md", ".toml", ".json", ".py",  ""};
+    const std::regex machine_folder("(^|[^A-Za-z0-9_.}])/(work|home|root|Users)/");
+    for (const std::string& file : files) {
+        if (!texts.count(fs::path(file).extension().string())) continue;
+        std::ifstream in(root / file);
+        int number = 0;
+        for (std::string line; std::getline(in, line);) {
+            ++number;
+            EXPECT_FALSE(std::regex_search(line, machine_folder)) << file << ":" << number << ": " << line;
+        }
+    }
+}
+
+TEST(Structure, CodeIsFormatted) {
+    if (output_of("clang-format --version").find("version 14") == std::string::npos) {
+        GTEST_SKIP() << "clang-format 14 is not installed";
+    }
+    std::string sources;
+    for (const std::string& file : tracked_files()) {
+        if (is_source(file)) sources += " '" + file + "'";
+    }
+    if (sources.empty()) GTEST_SKIP() << "not a git checkout";
+    const std::string command = "clang-format --dry-run -Werror" + sources + " && echo formatted";
+    EXPECT_EQ(output_of(command), "formatted\n") << "run: clang-format -i $(git ls-files '*.h' '*.cpp')";
+}
+
+}  // namespace
