@@ -1,6 +1,7 @@
-// Block queries. All triangles that can be closest to some position of the block are collected once; when
-// they are few, each position looks only at those, nearest boxes first. Otherwise Embree is asked for each
-// position. Either way a search starts from the answer of the position before, which is almost always close.
+// Block queries. All triangles that can be closest to some position of the block are collected once, with
+// boxes; each group of 2 x 2 x 2 cells takes those that can matter to it, and each position measures those
+// whose boxes are nearer than what it has. A search starts from the answer of the position before, which is
+// almost always close. Blocks with too many triangles ask Embree for each position instead.
 #include "splats/block_query.h"
 
 #include <algorithm>
@@ -10,145 +11,146 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::size_t most_candidates = 64;
+constexpr std::int64_t group_cells = 2;
 
-// The triangles of one block: numbers, and float boxes around them for a bound that a vector unit can
-// compute. The boxes are relative to the block's middle and cut to where they can matter, so that float
-// suffices.
-struct Candidates {
-    std::size_t count = 0;  // most_candidates + 1: too many, ask Embree
-    std::array<std::uint32_t, most_candidates> triangle;
-    std::array<float, most_candidates> lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
-    glm::dvec3 middle;
-    double slack;  // scene units; more than the rounding of boxes and of query points
-};
-
-Candidates collect(const ClosestPointIndex& index, const BlockBall& ball, const LatticeBlock& block,
-                   double max_distance) {
-    Candidates c;
-    c.middle = ball.center;
-    // A triangle that is closest to a position p is no farther from the middle than |p - middle| +
-    // distance(p), and distance(p) is at most both max_distance and distance(middle) + |p - middle|.
-    const double radius = ball.radius + std::min(max_distance, block.distance + ball.radius);
-    c.count = index.within(ball.center, radius * (1.0 + 1e-9), c.triangle);
-    if (c.count > most_candidates) return c;
-    c.slack = 1e-6 * (radius + ball.radius);
-    const glm::dvec3 window(2.0 * ball.radius);
-    for (std::size_t i = 0; i < c.count; ++i) {
-        const TriangleShape& s = index.shape(c.triangle[i]);
-        const glm::dvec3 a = s.a - ball.center, b = a + s.ab, d = a + s.ac;
-        const glm::vec3 lo(glm::max(glm::min(glm::min(a, b), d), -window));
-        const glm::vec3 hi(glm::min(glm::max(glm::max(a, b), d), window));
-        c.lo_x[i] = lo.x, c.lo_y[i] = lo.y, c.lo_z[i] = lo.z;
-        c.hi_x[i] = hi.x, c.hi_y[i] = hi.y, c.hi_z[i] = hi.z;
-    }
-    return c;
+float limit_of(double distance, double slack) {
+    const double widened = distance * 1.00001 + slack;
+    return static_cast<float>(widened * widened * 1.00001);
 }
 
-// Squared distances from p to the candidates' boxes; the loop is plain so that the compiler vectorises it.
-void box_distances(const Candidates& c, const glm::vec3& p, std::array<float, most_candidates>& squared) {
-    for (std::size_t i = 0; i < c.count; ++i) {
-        const float x = std::max(std::max(c.lo_x[i] - p.x, p.x - c.hi_x[i]), 0.0f);
-        const float y = std::max(std::max(c.lo_y[i] - p.y, p.y - c.hi_y[i]), 0.0f);
-        const float z = std::max(std::max(c.lo_z[i] - p.z, p.z - c.hi_z[i]), 0.0f);
-        squared[i] = x * x + y * y + z * z;
-    }
+// A triangle that is closest to a position p of the ball is no farther from its middle than |p - middle| +
+// distance(p), and distance(p) is at most both max_distance and distance(middle) + |p - middle|.
+double candidate_radius(const BlockBall& ball, double distance, double max_distance) {
+    return (ball.radius + std::min(max_distance, distance + ball.radius)) * (1.0 + 1e-9);
 }
 
-// A box farther away than this cannot hold anything nearer than `best`.
-float box_limit(const Candidates& c, const ClosestPoint& best) {
-    const double distance = std::sqrt(best.distance_squared) * 1.00001 + c.slack;
-    return static_cast<float>(distance * distance * 1.00001);
-}
-
-ClosestPoint closest_candidate(const ClosestPointIndex& index, const Candidates& c, const glm::dvec3& p,
-                               double max_distance, std::uint32_t hint) {
-    ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
-    const auto offer = [&](std::uint32_t triangle) {
-        const ClosestPoint other = index.closest_of(triangle, p);
-        const bool better = nearer(other, best);
-        if (better) best = other;
-        return better;
-    };
-    offer(hint);
-    std::array<float, most_candidates> squared;
-    box_distances(c, glm::vec3(p - c.middle), squared);
-    float limit = box_limit(c, best);
-    for (std::size_t i = 0; i < c.count; ++i) {
-        if (squared[i] > limit || c.triangle[i] == hint) continue;
-        if (offer(c.triangle[i])) limit = box_limit(c, best);
-    }
-    return best;
-}
-
-struct AxisPlaces {
-    std::array<double, block_cells> at;  // coordinates before jitter
-    std::int64_t count;                  // of them inside the lattice
-};
-
-AxisPlaces places(const Lattice& lattice, int axis, std::int64_t first, bool centres) {
-    AxisPlaces p;
-    const std::int64_t end = lattice.n[axis] + (centres ? 0 : 1);
-    p.count = std::clamp(end - first, std::int64_t{0}, block_cells);
-    for (std::int64_t i = 0; i < p.count; ++i) {
-        const double cells = static_cast<double>(first + i) + (centres ? 0.5 : 0.0);
-        p.at[static_cast<std::size_t>(i)] = lattice_coordinate(lattice, axis, cells);
-    }
-    return p;
-}
-
-struct BlockQuery {
-    const ClosestPointIndex& index;
-    const Lattice& lattice;
-    const CullSettings& settings;
-    glm::i64vec3 first;  // cell
-    Candidates candidates;
-    glm::dvec3 half_range;  // of the jitter
-    std::uint32_t hint;
-
-    FoundPoint answer(const glm::dvec3& p) {
-        const ClosestPoint closest =
-            candidates.count <= most_candidates
-                ? closest_candidate(index, candidates, p, settings.max_distance, hint)
-                : index.closest(p, settings.max_distance, hint);
-        if (closest.triangle != ClosestPoint::none) hint = closest.triangle;
-        return {closest, glm::vec3(p)};
+class BlockQuery {
+  public:
+    BlockQuery(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
+               const LatticeBlock& block, BlockScratch& scratch)
+        : index_(index),
+          lattice_(lattice),
+          settings_(settings),
+          scratch_(scratch),
+          half_range_(lattice.spacing() * (0.5 * settings.jitter)),
+          hint_(block.nearest) {
+        const BlockBall ball = block_ball(lattice, settings.jitter, block.at * block_cells, block_cells);
+        collect(ball, candidate_radius(ball, block.distance, settings.max_distance));
     }
 
-    void run(bool centres, std::array<FoundPoint, block_points>& answers) {
-        for (FoundPoint& found : answers) found.closest.triangle = ClosestPoint::none;
-        const AxisPlaces x = places(lattice, 0, first.x, centres), y = places(lattice, 1, first.y, centres),
-                         z = places(lattice, 2, first.z, centres);
-        for (std::int64_t k = 0; k < z.count; ++k) {
-            for (std::int64_t j = 0; j < y.count; ++j) {
-                const glm::i64vec3 row = first + glm::i64vec3(0, j, k);
-                const std::uint64_t id = centres ? centre_id(lattice, row) : corner_id(lattice, row);
-                const auto to = static_cast<std::size_t>((k * block_cells + j) * block_cells);
-                for (std::size_t i = 0; i < static_cast<std::size_t>(x.count); ++i) {
-                    const glm::dvec3 at(x.at[i], y.at[static_cast<std::size_t>(j)],
-                                        z.at[static_cast<std::size_t>(k)]);
-                    answers[to + i] = answer(at + jitter_offset(id + i, settings.seed, half_range));
+    void run_group(const glm::i64vec3& first, const glm::i64vec3& block_first, Positions kind,
+                   BlockAnswers& answers) {
+        if (listed_ && !collect_group(block_ball(lattice_, settings_.jitter, first, group_cells))) return;
+        const std::int64_t more = kind == Positions::corners ? 1 : 0;
+        const glm::i64vec3 end = glm::min(first + group_cells, lattice_.n + more);
+        for (std::int64_t k = first.z; k < end.z; ++k) {
+            for (std::int64_t j = first.y; j < end.y; ++j) {
+                for (std::int64_t i = first.x; i < end.x; ++i) {
+                    const glm::i64vec3 in_block = glm::i64vec3(i, j, k) - block_first;
+                    const auto place = (in_block.z * block_cells + in_block.y) * block_cells + in_block.x;
+                    answers[static_cast<std::size_t>(place)] = answer(position({i, j, k}, kind));
                 }
             }
         }
     }
+
+  private:
+    // The same sums as in jittered_position.
+    glm::dvec3 position(const glm::i64vec3& at, Positions kind) const {
+        const bool centre = kind == Positions::centres;
+        const glm::dvec3 cells = glm::dvec3(at) + (centre ? 0.5 : 0.0);
+        const std::uint64_t id = centre ? centre_id(lattice_, at) : corner_id(lattice_, at);
+        return glm::dvec3(lattice_coordinate(lattice_, 0, cells.x), lattice_coordinate(lattice_, 1, cells.y),
+                          lattice_coordinate(lattice_, 2, cells.z)) +
+               jitter_offset(id, settings_.seed, half_range_);
+    }
+
+    // Boxes are relative to the block's middle and cut to where they can matter, so that float suffices.
+    void collect(const BlockBall& ball, double radius) {
+        const std::size_t count = index_.within(ball.center, radius, scratch_.triangles);
+        listed_ = count <= BoxList::most;
+        if (!listed_) return;
+        middle_ = ball.center;
+        slack_ = 1e-6 * (radius + ball.radius);
+        const glm::dvec3 window(2.0 * ball.radius);
+        scratch_.block.count = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const TriangleShape& s = index_.shape(scratch_.triangles[i]);
+            const glm::dvec3 a = s.a - middle_, b = a + s.ab, c = a + s.ac;
+            scratch_.block.add(scratch_.triangles[i],
+                               glm::vec3(glm::max(glm::min(glm::min(a, b), c), -window)),
+                               glm::vec3(glm::min(glm::max(glm::max(a, b), c), window)));
+        }
+    }
+
+    // False when the whole group is too far away.
+    bool collect_group(const BlockBall& ball) {
+        const ClosestPoint closest =
+            closest_listed(scratch_.block, ball.center, settings_.max_distance + ball.radius);
+        if (closest.triangle == ClosestPoint::none) return false;
+        hint_ = closest.triangle;
+        const double radius =
+            candidate_radius(ball, std::sqrt(closest.distance_squared), settings_.max_distance);
+        NearBoxes& found = scratch_.near_boxes;
+        find_near_boxes(scratch_.block, glm::vec3(ball.center - middle_), limit_of(radius, slack_), found);
+        scratch_.cell_group.count = 0;
+        for (std::size_t i = 0; i < found.count; ++i) scratch_.cell_group.add(scratch_.block, found.place[i]);
+        return true;
+    }
+
+    FoundPoint answer(const glm::dvec3& p) {
+        const ClosestPoint closest = listed_ ? closest_listed(scratch_.cell_group, p, settings_.max_distance)
+                                             : index_.closest(p, settings_.max_distance, hint_);
+        if (closest.triangle != ClosestPoint::none) hint_ = closest.triangle;
+        return {closest, glm::vec3(p)};
+    }
+
+    ClosestPoint closest_listed(const BoxList& boxes, const glm::dvec3& p, double max_distance) {
+        ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
+        const ClosestPoint hinted = index_.closest_of(hint_, p);
+        if (nearer(hinted, best)) best = hinted;
+        NearBoxes& found = scratch_.near_boxes;
+        float limit = limit_of(std::sqrt(best.distance_squared), slack_);
+        find_near_boxes(boxes, glm::vec3(p - middle_), limit, found);
+        for (std::size_t i = 0; i < found.count; ++i) {
+            const std::uint32_t triangle = boxes.triangle[found.place[i]];
+            if (found.squared[i] > limit || triangle == hint_) continue;
+            const ClosestPoint other = index_.closest_of(triangle, p);
+            if (!nearer(other, best)) continue;
+            best = other;
+            limit = limit_of(std::sqrt(best.distance_squared), slack_);
+        }
+        return best;
+    }
+
+    const ClosestPointIndex& index_;
+    const Lattice& lattice_;
+    const CullSettings& settings_;
+    BlockScratch& scratch_;
+    glm::dvec3 half_range_;  // of the jitter, scene units
+    glm::dvec3 middle_{0.0};
+    double slack_ = 0.0;   // scene units; more than the rounding of boxes and of query points
+    bool listed_ = false;  // else there are too many triangles: ask Embree
+    std::uint32_t hint_;   // a triangle that is probably close
 };
 
 }  // namespace
 
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
-                 const LatticeBlock& block, BlockAnswers& answers) {
+                 const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers) {
+    for (FoundPoint& found : answers) found.closest.triangle = ClosestPoint::none;
+    BlockQuery query(index, lattice, settings, block, scratch);
     const glm::i64vec3 first = block.at * block_cells;
-    const BlockBall ball = block_ball(lattice, settings.jitter, first, block_cells);
-    BlockQuery query{index,
-                     lattice,
-                     settings,
-                     first,
-                     collect(index, ball, block, settings.max_distance),
-                     lattice.spacing() * (0.5 * settings.jitter),
-                     block.nearest};
-    query.run(false, answers.corners);
-    query.run(true, answers.centres);
+    for (std::int64_t z = 0; z < block_cells; z += group_cells) {
+        for (std::int64_t y = 0; y < block_cells; y += group_cells) {
+            for (std::int64_t x = 0; x < block_cells; x += group_cells) {
+                const glm::i64vec3 group = first + glm::i64vec3(x, y, z);
+                const bool inside =
+                    group.x <= lattice.n.x && group.y <= lattice.n.y && group.z <= lattice.n.z;
+                if (inside) query.run_group(group, first, kind, answers);
+            }
+        }
+    }
 }
 
 }  // namespace astrosplat

@@ -7,10 +7,14 @@
 #include <glm/vec3.hpp>
 
 #include "splats/block_cull.h"
+#include "splats/box_scan.h"
 #include "splats/closest_point.h"
 #include "splats/lattice.h"
 
 namespace astrosplat {
+
+/// The two kinds of lattice positions; corners have the lower ids.
+enum class Positions { corners, centres };
 
 /// One position that was looked at. `closest.triangle` is ClosestPoint::none where it is not kept.
 struct FoundPoint {
@@ -18,14 +22,17 @@ struct FoundPoint {
     glm::vec3 position;  // scene units, jittered, rounded
 };
 
-constexpr std::int64_t block_points = block_cells * block_cells * block_cells;  // of each kind
+/// One block's positions of one kind in order (z, y, x); places beyond the lattice's end are not kept.
+using BlockAnswers = std::array<FoundPoint, block_cells * block_cells * block_cells>;
 
-/// Answers in order (z, y, x) of the block's cells; places beyond the lattice's end are not kept.
-struct BlockAnswers {
-    std::array<FoundPoint, block_points> corners, centres;
+/// A thread's working memory.
+struct BlockScratch {
+    BoxList block, cell_group;
+    NearBoxes near_boxes;
+    std::array<std::uint32_t, BoxList::most> triangles;
 };
 
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
-                 const LatticeBlock& block, BlockAnswers& answers);
+                 const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers);
 
 }  // namespace astrosplat

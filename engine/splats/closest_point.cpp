@@ -244,12 +244,10 @@ std::size_t ClosestPointIndex::within(const glm::dvec3& center, double radius,
                                       std::span<std::uint32_t> found) const {
     std::size_t count = 0;
     state_->query(center, radius, [&](std::uint32_t triangle) {
-        if (count > found.size() || closest_of(triangle, center).distance_squared > radius * radius)
-            return radius;
         if (count < found.size()) found[count] = triangle;
         return ++count > found.size() ? -1.0 : radius;
     });
-    return count;
+    return std::min(count, found.size() + 1);
 }
 
 ClosestPoint ClosestPointIndex::closest_of(std::uint32_t triangle, const glm::dvec3& p) const {

@@ -60,8 +60,8 @@ class ClosestPointIndex {
     /// The same by trying every triangle: the oracle of the tests.
     ClosestPoint closest_brute_force(const glm::dvec3& p, double max_distance) const;
 
-    /// Writes the triangles that come within `radius` of `center`, in any order, to `found` and returns how
-    /// many there are, or found.size() + 1 as soon as they do not fit. Thread-safe.
+    /// Writes at least the triangles that come within `radius` of `center`, in any order, to `found` and
+    /// returns how many it wrote, or found.size() + 1 when they do not fit. Thread-safe.
     std::size_t within(const glm::dvec3& center, double radius, std::span<std::uint32_t> found) const;
 
     /// The closest point of one triangle, numbered.

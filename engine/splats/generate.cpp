@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,16 +21,17 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::size_t longest_row = 64;  // blocks: their answers stay in the second-level cache
+constexpr std::size_t longest_row = 64;         // blocks: their answers stay in the second-level cache
+constexpr std::size_t batch_blocks = 1u << 13;  // about this many are kept apart before they join the set
 
-/// Blocks begin .. end-1, neighbours in (y, z) and ascending in x.
-struct BlockRow {
+/// Blocks begin .. end-1: a row has the same (y, z) and ascending x, a batch is whole layers of the same z.
+struct BlockRange {
     std::size_t begin, end;
 };
 
-std::vector<BlockRow> rows_of(const std::vector<LatticeBlock>& blocks) {
-    std::vector<BlockRow> rows;
-    for (std::size_t i = 0; i < blocks.size(); ++i) {
+std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const BlockRange& batch) {
+    std::vector<BlockRange> rows;
+    for (std::size_t i = batch.begin; i < batch.end; ++i) {
         const bool joins = !rows.empty() && i - rows.back().begin < longest_row &&
                            blocks[i - 1].at.y == blocks[i].at.y && blocks[i - 1].at.z == blocks[i].at.z;
         if (!joins) rows.push_back({i, i});
@@ -38,8 +40,21 @@ std::vector<BlockRow> rows_of(const std::vector<LatticeBlock>& blocks) {
     return rows;
 }
 
+// Ids of one batch come before those of the next, because a batch ends where a layer of blocks does.
+std::vector<BlockRange> batches_of(const std::vector<LatticeBlock>& blocks) {
+    std::vector<BlockRange> batches;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const bool new_layer = i == 0 || blocks[i - 1].at.z != blocks[i].at.z;
+        if (batches.empty() || (new_layer && i - batches.back().begin >= batch_blocks))
+            batches.push_back({i, i});
+        batches.back().end = i + 1;
+    }
+    return batches;
+}
+
 struct Worker {
     std::vector<BlockAnswers> answers;
+    std::unique_ptr<BlockScratch> scratch = std::make_unique<BlockScratch>();
     std::int64_t zero_alpha = 0;
 };
 
@@ -49,34 +64,31 @@ class Generator {
               const Lattice& lattice, const CullSettings& settings)
         : index_(index), surface_(surface), lattice_(lattice), settings_(settings) {}
 
-    void run(const LatticeBlock* blocks, std::size_t count, Worker& worker, KeptStore& kept) const {
-        worker.answers.resize(std::max(worker.answers.size(), count));
-        for (std::size_t i = 0; i < count; ++i) {
-            query_block(index_, lattice_, settings_, blocks[i], worker.answers[i]);
+    void run(std::span<const LatticeBlock> row, Positions kind, Worker& worker, KeptStore& kept) const {
+        worker.answers.resize(longest_row);
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            query_block(index_, lattice_, settings_, row[i], kind, *worker.scratch, worker.answers[i]);
         }
-        store(blocks, count, false, worker, kept);
-        store(blocks, count, true, worker, kept);
-    }
-
-  private:
-    // Walks the answers in order of id: lattice rows across all blocks.
-    void store(const LatticeBlock* blocks, std::size_t count, bool centres, Worker& worker,
-               KeptStore& kept) const {
         for (std::int64_t k = 0; k < block_cells; ++k) {
             for (std::int64_t j = 0; j < block_cells; ++j) {
                 kept.begin_run();
-                for (std::size_t b = 0; b < count; ++b) {
-                    const glm::i64vec3 first = blocks[b].at * block_cells + glm::i64vec3(0, j, k);
-                    const std::uint64_t id =
-                        centres ? centre_id(lattice_, first) : corner_id(lattice_, first);
-                    const BlockAnswers& answers = worker.answers[b];
-                    const FoundPoint* found = centres ? answers.centres.data() : answers.corners.data();
-                    found += (k * block_cells + j) * block_cells;
-                    for (std::uint64_t i = 0; i < block_cells; ++i) {
-                        if (found[i].closest.triangle != ClosestPoint::none)
-                            store(found[i], id + i, worker, kept);
-                    }
-                }
+                store_lattice_row(row, glm::i64vec3(0, j, k), kind, worker, kept);
+            }
+        }
+    }
+
+  private:
+    // The answers in order of id: one lattice row across all blocks.
+    void store_lattice_row(std::span<const LatticeBlock> row, const glm::i64vec3& in_block, Positions kind,
+                           Worker& worker, KeptStore& kept) const {
+        for (std::size_t b = 0; b < row.size(); ++b) {
+            const glm::i64vec3 first = row[b].at * block_cells + in_block;
+            const std::uint64_t id =
+                kind == Positions::centres ? centre_id(lattice_, first) : corner_id(lattice_, first);
+            const FoundPoint* found =
+                worker.answers[b].data() + (in_block.z * block_cells + in_block.y) * block_cells;
+            for (std::uint64_t i = 0; i < block_cells; ++i) {
+                if (found[i].closest.triangle != ClosestPoint::none) store(found[i], id + i, worker, kept);
             }
         }
     }
@@ -99,6 +111,32 @@ class Generator {
     const Lattice& lattice_;
     const CullSettings& settings_;
 };
+
+// All corners, then all centres, as their ids ask for; each time batch by batch, so that little is stored
+// twice.
+std::int64_t run_blocks(const Generator& generator, const std::vector<LatticeBlock>& blocks,
+                        const Progress& progress, SplatSet& set) {
+    std::vector<Worker> workers(static_cast<std::size_t>(thread_count()));
+    std::vector<KeptStore> stores(workers.size());
+    std::atomic<std::size_t> done{0};
+    for (const Positions kind : {Positions::corners, Positions::centres}) {
+        for (const BlockRange& batch : batches_of(blocks)) {
+            const std::vector<BlockRange> rows = rows_of(blocks, batch);
+            parallel_for(static_cast<std::int64_t>(rows.size()), [&](std::int64_t row, int worker) {
+                progress.check();
+                const BlockRange& range = rows[static_cast<std::size_t>(row)];
+                const std::size_t count = range.end - range.begin;
+                const auto w = static_cast<std::size_t>(worker);
+                generator.run({&blocks[range.begin], count}, kind, workers[w], stores[w]);
+                progress.at(0.5 * static_cast<double>(done += count) / static_cast<double>(blocks.size()));
+            });
+            append_sorted(stores, set);
+        }
+    }
+    std::int64_t zero_alpha = 0;
+    for (const Worker& worker : workers) zero_alpha += worker.zero_alpha;
+    return zero_alpha;
+}
 
 void describe_set(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
                   SplatSet& set) {
@@ -124,8 +162,7 @@ std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const L
                                    double max_distance) {
     double triangles = 0.0;
     for (const TexturedMesh& m : meshes) triangles += static_cast<double>(m.mesh.triangles.size());
-    const double per_splat =
-        1.25 * static_cast<double>(kept_splat_bytes);  // one array exists twice at the end
+    const double per_splat = 1.02 * static_cast<double>(kept_splat_bytes);  // and a batch that exists twice
     const double per_triangle = sizeof(TriangleShape) + sizeof(SurfaceTriangle) + 200.0;  // and Embree's tree
     const double bytes = expected_kept(lattice, meshes, max_distance) * per_splat + triangles * per_triangle;
     return static_cast<std::int64_t>(std::min(bytes, 9e18));
@@ -140,24 +177,11 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     const std::vector<SurfaceTriangle> surface = surface_triangles(meshes, index, lattice.spacing());
     const CullSettings settings{max_distance, jitter, seed};
     const std::vector<LatticeBlock> blocks = blocks_near(index, lattice, settings, progress);
-    const std::vector<BlockRow> rows = rows_of(blocks);
-
-    const Generator generator(index, surface, lattice, settings);
-    std::vector<Worker> workers(static_cast<std::size_t>(thread_count()));
-    std::vector<KeptStore> stores(workers.size());
-    std::atomic<std::int64_t> done{0};
-    parallel_for(static_cast<std::int64_t>(rows.size()), [&](std::int64_t row, int worker) {
-        progress.check();
-        const auto [begin, end] = rows[static_cast<std::size_t>(row)];
-        const auto w = static_cast<std::size_t>(worker);
-        generator.run(&blocks[begin], end - begin, workers[w], stores[w]);
-        progress.at(static_cast<double>(++done) / static_cast<double>(rows.size()));
-    });
 
     SplatSet set;
-    gather(stores, set);
+    reserve(set, blocks.size() * 2 * BlockAnswers().size());
+    set.zero_alpha = run_blocks(Generator(index, surface, lattice, settings), blocks, progress, set);
     describe_set(meshes, lattice, max_distance, set);
-    for (const Worker& worker : workers) set.zero_alpha += worker.zero_alpha;
     check_consistent(set);
     return set;
 }

@@ -1,9 +1,10 @@
-// Where threads put the splats they keep before anyone knows how many there will be, and how those become one
-// set in ascending order of id. In: splats in runs of ascending ids. Out: the arrays of a SplatSet.
+// Where threads put the splats they keep before anyone knows how many there will be, and how those are
+// appended to a set in ascending order of id. In: splats in runs of ascending ids. Out: the arrays of a
+// SplatSet.
 #pragma once
 
 #include <cstdint>
-#include <list>
+#include <span>
 #include <vector>
 
 #include "splats/splat_set.h"
@@ -21,31 +22,33 @@ struct KeptSplat {
 };
 constexpr std::int64_t kept_splat_bytes = 3 * 12 + 8 + 8 + 2 * 4 + 4;  // in a SplatSet's arrays
 
-/// Splats with ascending ids that lie next to each other in a page; no other run has ids in between.
-struct KeptRun {
-    std::uint64_t first_id;
-    SplatSet* page;
-    std::size_t begin, count;
-};
-
-/// One thread's splats, in pages of fixed size.
+/// One thread's splats. A run has ascending ids, and no other run has ids in between.
 class KeptStore {
   public:
+    struct Run {
+        std::size_t begin, count;
+    };
     void begin_run() { open_ = false; }
-    void add(const KeptSplat& splat);
-    const std::vector<KeptRun>& runs() const { return runs_; }
+    void add(const KeptSplat& splat) {
+        if (!open_) runs_.push_back({splats_.size(), 0});
+        open_ = true;
+        ++runs_.back().count;
+        splats_.push_back(splat);
+    }
+    const std::vector<Run>& runs() const { return runs_; }
+    const KeptSplat* splats() const { return splats_.data(); }
+    void clear();  // keeps the memory for the next splats
 
   private:
-    void open_run(std::uint64_t first_id);
-
-    std::list<SplatSet> pages_;  // addresses stay
-    std::size_t used_ = 0;       // of the last page
-    std::vector<KeptRun> runs_;
+    std::vector<KeptSplat> splats_;
+    std::vector<Run> runs_;
     bool open_ = false;
 };
 
-/// Moves all stores' splats into `set`, ordered by id. The stores are empty afterwards; at most one attribute
-/// exists twice at a time.
-void gather(std::vector<KeptStore>& stores, SplatSet& set);
+/// Address space for `count` splats; memory is taken only where it is written.
+void reserve(SplatSet& set, std::size_t count);
+
+/// Appends all stores' splats to `set`, ordered by id, and clears the stores.
+void append_sorted(std::span<KeptStore> stores, SplatSet& set);
 
 }  // namespace astrosplat
