@@ -1,5 +1,5 @@
-// The look of a layer: every number an artist tunes between a SplatSet and what is drawn (DESIGN 5). Plain values;
-// SCENE.md's defaults are the defaults here. apply.h turns them into ShadedSplats.
+// The look of a layer: every number an artist tunes between a SplatSet and what is drawn (DESIGN 5). Plain
+// values; SCENE.md's defaults are the defaults here. apply.h turns them into ShadedSplats.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,12 @@ struct DensityCurve {
     Shape shape = Shape::constant;
     float rate = 3.0f;              // exponential: e^(-rate x)
     float sigma = 0.35f;            // gaussian: e^(-x^2 / 2 sigma^2), of reach
-    std::vector<glm::vec2> points;  // curve: (x, y), ascending x
+    std::vector<glm::vec2> points;  // curve: (x, y), ascending x, at most 16; none: constant 1
     bool operator==(const DensityCurve&) const = default;
 };
 
+/// Several keys need a map to choose between them; without one the first is used. Without keys there is one
+/// key of scale 1 with the look's own pdf. At most 8.
 struct ThicknessKey {
     glm::vec3 color{1.0f};  // raw map value this key stands for
     float scale = 1.0f;     // of reach
@@ -33,6 +35,10 @@ struct Thickness {
     bool operator==(const Thickness&) const = default;
 };
 
+/// Fractal noise n(p) at the splat's place before jitter (silhouette: at its projection onto the plane across
+/// the axis). In a list the entries work together: what culls, bites the silhouette or varies alpha and
+/// brightness multiplies, jitter adds. At most 4 entries with any amount. `seed` alone makes the field, so
+/// layers may share one.
 struct Noise {
     float frequency = 1.0f;  // per scene unit
     int octaves = 4;
@@ -48,20 +54,24 @@ struct Noise {
 };
 
 struct HorizontalAlpha {
-    float power = 1.0f;
-    float threshold = 0.95f;
-    bool unpremultiply = false;
-    float gain = 1.0f;
+    float power = 1.0f;          // where alpha < threshold
+    float threshold = 0.95f;     // 0..1
+    bool unpremultiply = false;  // where alpha < threshold
+    float gain = 1.0f;  // after the power, on every alpha, clamped to 0..1; so `match` aims at the result
     bool operator==(const HorizontalAlpha&) const = default;
 };
 
+/// f(x) and how it is matched to the picture's alpha. coverage: the blend of a column shows alpha (DESIGN 5).
+/// sum: the alphas of a column, one splat a lattice plane, add up to alpha; planes lie one lattice step apart
+/// along the axis, and the sum is the mean over all places the surface may have between two of them, 2 reach
+/// / step * Integral p f. Both count only where there are splats: up to max_distance, should reach go beyond.
 struct VerticalAlpha {
     enum class Shape { none, constant, linear, exponential, s106, curve };
     enum class Match { automatic, none, sum, coverage };
     Shape shape = Shape::none;
-    float rate = 3.0f;
-    std::vector<glm::vec2> points;
-    float reach = 0.0f;  // scene units; 0: the layer's reach
+    float rate = 3.0f;              // exponential: e^(-rate x)
+    std::vector<glm::vec2> points;  // curve: (x, y), ascending x, at most 16; none: constant 1
+    float reach = 0.0f;             // scene units; 0: the layer's reach
     Match match = Match::automatic;
     bool operator==(const VerticalAlpha&) const = default;
 };

@@ -164,7 +164,7 @@ void prepare_radius(const SplatSet& set, const Radius& radius, LookUniforms& u) 
     if (radius.min != 0.0f || radius.max != 0.0f) return;
     u.own_radius = set.radius.empty() ? 0 : 1;
     if (u.own_radius) return;
-    if (!set.generated)
+    if (!set.generated && set.size() > 0)
         bad_input("look.radius", "", "min and max, since the splat file holds no radius", "0 and 0");
     const glm::dvec3 s = set.spacing;
     u.radius_min = u.radius_max = float(0.6 * std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z));

@@ -1,0 +1,172 @@
+// Shapes over x: published numbers, curves after Fritsch and Carlson, kept fractions, and the integrals of
+// columns.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/real.h"
+#include "look/columns.h"
+#include "look/curves.h"
+#include "unit/look/sets.h"
+
+namespace astrosplat {
+namespace {
+
+using Shape = DensityCurve::Shape;
+using namespace shared_types;
+
+double formula(int shape, double rate, double x) {
+    return double(shared::look_formula(shape, float(rate), float(x)));
+}
+
+TEST(Profile, S106HasThePublishedPieces) {
+    EXPECT_FLOAT_EQ(shared::look_s106(0.0f), 1.0f);
+    EXPECT_NEAR(shared::look_s106(0.2f), 1.0 - 1.515 * 0.2, 1e-6);
+    EXPECT_NEAR(shared::look_s106(0.33f), 0.9 - 1.212 * 0.33, 1e-6);
+    EXPECT_NEAR(shared::look_s106(0.5f), 0.9 - 1.212 * 0.5, 1e-6);
+    EXPECT_NEAR(shared::look_s106(0.66f), 0.294 - 0.294 * 0.66, 1e-6);
+    EXPECT_NEAR(shared::look_s106(0.9f), 0.0294, 1e-6);
+    EXPECT_EQ(shared::look_s106(1.0f), 0.0f);
+    EXPECT_EQ(shared::look_s106(7.0f), 0.0f);
+}
+
+TEST(Profile, FormulasAreThoseOfTheDesign) {
+    for (double x : {0.0, 0.1, 0.25, 0.5, 0.75, 1.0}) {
+        EXPECT_EQ(formula(PROFILE_CONSTANT, 3.0, x), 1.0);
+        EXPECT_NEAR(formula(PROFILE_LINEAR, 3.0, x), 1.0 - x, 1e-6);
+        EXPECT_NEAR(formula(PROFILE_QUADRATIC, 3.0, x), (1.0 - x) * (1.0 - x), 1e-6);
+        EXPECT_NEAR(formula(PROFILE_EXPONENTIAL, 3.0, x), std::exp(-3.0 * x), 1e-6);
+        EXPECT_NEAR(formula(PROFILE_GAUSSIAN, 3.0, x), std::exp(-3.0 * x * x), 1e-6);
+        EXPECT_NEAR(formula(PROFILE_SMOOTH, 3.0, x), 1.0 - x * x * (3.0 - 2.0 * x), 1e-6);
+    }
+}
+
+float at(const LookCurve& curve, double x) { return shared::look_curve(curve, float(x)); }
+
+TEST(Curve, PassesThroughItsPointsAndIsConstantOutside) {
+    const std::vector<glm::vec2> points = {
+        {0.1f, 0.3f}, {0.2f, 0.9f}, {0.5f, 0.85f}, {0.55f, 0.1f}, {0.9f, 0.1f}};
+    const LookCurve curve = make_curve(points, "k");
+    for (const glm::vec2& p : points) EXPECT_EQ(at(curve, double(p.x)), p.y);
+    EXPECT_EQ(at(curve, 0.0), 0.3f);
+    EXPECT_EQ(at(curve, -5.0), 0.3f);
+    EXPECT_EQ(at(curve, 2.0), 0.1f);
+}
+
+TEST(Curve, NeverLeavesTheRangeOfTwoNeighbours) {
+    for (int trial = 0; trial < 200; ++trial) {
+        std::vector<glm::vec2> points;
+        float x = 0.0f;
+        for (int i = 0; i < 9; ++i) {
+            const float step = test::uniform(trial * 9 + i, 30);
+            x += 0.001f + step * step * step;
+            points.push_back({x, test::uniform(trial * 9 + i, 31)});
+        }
+        const LookCurve curve = make_curve(points, "k");
+        for (int i = 0; i + 1 < 9; ++i) {
+            const glm::vec2 a = points[std::size_t(i)], b = points[std::size_t(i) + 1];
+            float before = a.y;
+            for (int k = 0; k <= 50; ++k) {
+                const float y = at(curve, double(a.x) + (double(b.x) - double(a.x)) * k / 50.0);
+                ASSERT_GE(y, std::min(a.y, b.y));
+                ASSERT_LE(y, std::max(a.y, b.y));
+                // Monotone up to the rounding of a float sum.
+                ASSERT_GE((y - before) * (b.y > a.y ? 1.0f : -1.0f), -1e-6f);
+                before = y;
+            }
+        }
+    }
+}
+
+// Interior tangent of y = x^2 at 0, 1, 2 is the mean of the slopes 1 and 3: 2, the true one; on [1, 2] the
+// Hermite cubic through (1, 1), (2, 4) with tangents 2 and 3 is worked out by hand at its middle: 2.5 + (2 -
+// 3) / 8.
+TEST(Curve, TangentsAreMeansOfSlopes) {
+    const std::vector<glm::vec2> points = {{0.0f, 0.0f}, {1.0f, 1.0f}, {2.0f, 4.0f}};
+    const LookCurve curve = make_curve(points, "k");
+    EXPECT_FLOAT_EQ(curve.knots[1].z, 2.0f);
+    EXPECT_FLOAT_EQ(curve.knots[2].z, 3.0f);
+    EXPECT_FLOAT_EQ(at(curve, 1.5), 2.375f);
+}
+
+TEST(Curve, IsStraightThroughPointsOnALine) {
+    const std::vector<glm::vec2> points = {{0.0f, 1.0f}, {0.3f, 0.7f}, {0.4f, 0.6f}, {1.0f, 0.0f}};
+    const LookCurve curve = make_curve(points, "k");
+    for (int i = 0; i <= 100; ++i) EXPECT_NEAR(at(curve, i / 100.0), 1.0 - i / 100.0, 1e-6);
+}
+
+TEST(Curve, WithoutPointsIsOne) { EXPECT_EQ(at(make_curve({}, "k"), 0.4), 1.0f); }
+
+// Kept fraction at known x against p(x), within five standard deviations of the binomial.
+TEST(Density, KeepsWhatEveryPdfSays) {
+    constexpr std::int64_t count = 40000;
+    SplatSet set = test::file_set(count);
+    Look look;
+    look.reach = 2.0f;
+    look.density = 0.9f;
+    look.pdf.rate = 2.0f;
+    look.pdf.sigma = 0.4f;
+    look.pdf.points = {{0.0f, 0.2f}, {0.5f, 0.8f}, {1.0f, 0.1f}};
+    const auto wanted = [&](Shape shape, double x) {
+        if (shape == Shape::linear) return 1.0 - x;
+        if (shape == Shape::quadratic) return (1.0 - x) * (1.0 - x);
+        if (shape == Shape::exponential) return std::exp(-2.0 * x);
+        if (shape == Shape::gaussian) return std::exp(-x * x / (2.0 * 0.4 * 0.4));
+        if (shape == Shape::smooth) return 1.0 - x * x * (3.0 - 2.0 * x);
+        if (shape == Shape::curve) return x == 0.0 ? 0.2 : x == 0.5 ? 0.8 : x == 1.0 ? 0.1 : -1.0;
+        return 1.0;
+    };
+    for (Shape shape : {Shape::constant, Shape::linear, Shape::quadratic, Shape::exponential, Shape::gaussian,
+                        Shape::smooth, Shape::curve})
+        for (double x : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+            const double p = 0.9 * wanted(shape, x);
+            if (p < 0.0) continue;
+            look.pdf.shape = shape;
+            for (float& d : set.distance) d = float(2.0 * x);
+            const double kept = double(apply_look(set, look, {}).size()) / double(count);
+            EXPECT_NEAR(kept, p, 5.0 * std::sqrt(p * (1.0 - p) / double(count)) + 1e-12)
+                << int(shape) << " at " << x;
+        }
+}
+
+Column column_of(int pdf, int vertical) {
+    Column column{};
+    column.pdf.shape = pdf;
+    column.pdf.rate = 3.0f;
+    column.vertical.shape = vertical;
+    column.vertical.rate = 2.0f;
+    column.density = 1.0;
+    column.end = 1.0;
+    column.vertical_ratio = 1.0;
+    return column;
+}
+
+TEST(ColumnIntegral, ClosedForms) {
+    EXPECT_NEAR(column_integral(column_of(PROFILE_CONSTANT, PROFILE_CONSTANT), 1.0), 1.0, 1e-6);
+    EXPECT_NEAR(column_integral(column_of(PROFILE_LINEAR, PROFILE_LINEAR), 1.0), 1.0 / 3.0, 1e-6);
+    EXPECT_NEAR(column_integral(column_of(PROFILE_EXPONENTIAL, PROFILE_EXPONENTIAL), 1.0),
+                (1.0 - std::exp(-5.0)) / 5.0, 1e-6);
+    // v = 1 + x: Integral of (1 + x)^2 = 7/3.
+    EXPECT_NEAR(column_integral(column_of(PROFILE_CONSTANT, PROFILE_CONSTANT), 2.0), 7.0 / 3.0, 1e-6);
+    const double s106 = (0.33 - 1.515 * 0.33 * 0.33 / 2.0) +
+                        (0.9 * 0.33 - 1.212 * (0.66 * 0.66 - 0.33 * 0.33) / 2.0) + 0.294 * 0.34 * 0.34 / 2.0;
+    EXPECT_NEAR(column_integral(column_of(PROFILE_CONSTANT, PROFILE_S106), 1.0), s106, 1e-6);
+    Column half = column_of(PROFILE_CONSTANT, PROFILE_LINEAR);
+    half.vertical_ratio = 2.0;  // 1 - 2x up to 1/2
+    EXPECT_NEAR(column_integral(half, 1.0), 0.25, 1e-6);
+    Column cut = column_of(PROFILE_CONSTANT, PROFILE_LINEAR);
+    cut.end = 0.5;
+    EXPECT_NEAR(column_integral(cut, 1.0), 0.375, 1e-6);
+    Column dense = column_of(PROFILE_LINEAR, PROFILE_CONSTANT);
+    dense.density = 2.0;  // min(1, 2 - 2x)
+    EXPECT_NEAR(column_integral(dense, 1.0), 0.75, 1e-4);
+}
+
+TEST(ColumnIntegral, MeanSquareOfAUniformRadius) {
+    EXPECT_DOUBLE_EQ(mean_square(2.0, 2.0), 4.0);
+    EXPECT_DOUBLE_EQ(mean_square(0.0, 3.0), 3.0);
+}
+
+}  // namespace
+}  // namespace astrosplat

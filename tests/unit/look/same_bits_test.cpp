@@ -1,0 +1,186 @@
+// The same splats to the last bit: a file's at the default look, on any number of threads, on every
+// instruction set, and by look_splat, the function the preview runs.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/vector_target.h"
+#include "look/prepare.h"
+#include "unit/look/sets.h"
+
+namespace astrosplat {
+namespace {
+
+template <class T>
+bool same(const Buffer<T>& a, const Buffer<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same(const ShadedSplats& a, const ShadedSplats& b, const std::string& what) {
+    EXPECT_TRUE(same(a.position, b.position)) << what;
+    EXPECT_TRUE(same(a.color, b.color)) << what;
+    EXPECT_TRUE(same(a.alpha, b.alpha)) << what;
+    EXPECT_TRUE(same(a.radius, b.radius)) << what;
+    EXPECT_TRUE(same(a.id, b.id)) << what;
+}
+
+constexpr std::int64_t count = 70001;  // several chunks, the last one odd
+
+struct Case {
+    std::string name;
+    SplatSet set = test::file_set(count);
+    Image map = make_image(3, 2, 3);
+    Look look;
+    LookInputs inputs;
+};
+
+// Every operator at once.
+void use_everything(Case& c) {
+    for (std::size_t i = 0; i < c.map.pixels.size(); ++i)
+        c.map.pixels[i] = test::uniform(std::int64_t(i), 70);
+    for (std::int64_t i = 0; i < count; ++i) c.set.uv.push_back({test::uniform(i, 71), test::uniform(i, 72)});
+    c.set.spacing = {0.1, 0.1, 0.1};
+    c.inputs.axis = {0.3f, 0.8f, -0.2f};
+    c.look.density = 0.8f;
+    c.look.reach = 1.7f;
+    c.look.thickness.map = "map.exr";
+    c.look.thickness.keys.resize(3);
+    c.look.thickness.keys[0] = {{0.2f, 0.4f, 0.1f}, 1.0f, {}};
+    c.look.thickness.keys[1] = {{0.9f, 0.4f, 0.8f}, 0.6f, {}};
+    c.look.thickness.keys[1].pdf.shape = DensityCurve::Shape::gaussian;
+    c.look.thickness.keys[2].pdf.shape = DensityCurve::Shape::curve;
+    c.look.thickness.keys[2].pdf.points = {{0.1f, 0.9f}, {0.5f, 0.2f}, {0.8f, 0.7f}};
+    c.look.noise = {{1.3f, 4, 2.1f, 0.5f, 3, 0.6f, 0.4f, 0.1f, 0.5f, 0.2f},
+                    {5.3f, 2, 2.0f, 0.7f, 8, 0.0f, 0.0f, 0.05f, 0.3f, 0.4f}};
+    c.look.alpha = {1.7f, 0.9f, true, 1.2f};
+    c.look.vertical.shape = VerticalAlpha::Shape::exponential;
+    c.look.vertical.reach = 0.9f;
+    c.look.vertical.match = VerticalAlpha::Match::coverage;
+    c.look.radius = {0.05f, 0.2f, 1.6f, 0.7f};
+    c.look.grade = {1.3f, {1.0f, 0.8f, 0.9f}, 1.4f, 1.8f, 0.05f};
+}
+
+std::vector<Case> cases() {
+    std::vector<Case> all(4);
+    all[0].name = "everything";
+    use_everything(all[0]);
+    all[1].name = "defaults";
+    all[2].name = "curve, s106, sum";
+    all[2].set.spacing = {0.1, 0.2, 0.1};
+    all[2].look.pdf.shape = DensityCurve::Shape::curve;
+    all[2].look.pdf.points = {{0.1f, 0.9f}, {0.5f, 0.2f}, {0.8f, 0.7f}};
+    all[2].look.vertical.shape = VerticalAlpha::Shape::s106;
+    all[2].look.vertical.match = VerticalAlpha::Match::sum;
+    all[3].name = "one key, culling noise";
+    all[3].look.thickness.keys = {{glm::vec3(1.0f), 0.7f, {}}};
+    all[3].look.thickness.keys[0].pdf.shape = DensityCurve::Shape::smooth;
+    all[3].look.noise = {{2.0f, 3, 2.0f, 0.5f, 1, 0.7f, 0.0f, 0.0f, 0.0f, 0.0f}};
+    return all;
+}
+
+ShadedSplats shade(const Case& c) {
+    LookInputs inputs = c.inputs;
+    inputs.thickness_map = c.look.thickness.map.empty() ? nullptr : &c.map;
+    return apply_look(c.set, c.look, inputs);
+}
+
+TEST(SameBits, DefaultLookLeavesAFileUnchanged) {
+    const SplatSet set = test::file_set(count);
+    ShadedSplats expected;
+    expected.position = set.position;
+    expected.color = set.color;
+    expected.alpha = set.alpha;
+    expected.radius = set.radius;
+    expected.id = set.id;
+    expect_same(apply_look(set, {}, {}), expected, "default");
+    Look inert;
+    inert.noise.resize(1);
+    inert.alpha.threshold = 0.1f;
+    expect_same(apply_look(set, inert, {}), expected, "a noise without amounts");
+}
+
+TEST(SameBits, ForAnyThreadCount) {
+    for (const Case& c : cases()) {
+        set_thread_count(1);
+        const ShadedSplats one = shade(c);
+        ASSERT_GT(one.size(), 0);
+        for (int threads : {2, 3, 7}) {
+            set_thread_count(threads);
+            expect_same(shade(c), one, c.name);
+        }
+        set_thread_count(0);
+    }
+}
+
+TEST(SameBits, OnEveryInstructionSet) {
+    for (const Case& c : cases()) {
+        const ShadedSplats best = shade(c);
+        for (const std::string& target : vector_targets()) {
+            set_vector_target(target);
+            expect_same(shade(c), best, c.name + " on " + target);
+        }
+        set_vector_target("best");
+    }
+}
+
+TEST(SameBits, IntoArraysOfAnEarlierCall) {
+    ShadedSplats used;
+    for (const Case& c : cases()) {
+        LookInputs inputs = c.inputs;
+        inputs.thickness_map = &c.map;
+        apply_look(c.set, c.look, inputs, used);
+        expect_same(used, shade(c), c.name);
+    }
+}
+
+TEST(SameBits, IdsAscend) {
+    for (const Case& c : cases()) {
+        const ShadedSplats shaded = shade(c);
+        for (std::size_t i = 1; i < shaded.id.size(); ++i) ASSERT_LT(shaded.id[i - 1], shaded.id[i]);
+    }
+}
+
+glm::vec3 map_value(const Case& c, glm::vec2 uv) {
+    if (c.look.thickness.map.empty()) return glm::vec3(0.0f);
+    const float x = shared::look_texel(uv.x, 3), y = shared::look_texel(1.0f - uv.y, 2);
+    const int x0 = int(x), y0 = int(y), x1 = std::min(x0 + 1, 2), y1 = std::min(y0 + 1, 1);
+    glm::vec3 value;
+    for (int k = 0; k < 3; ++k)
+        value[k] = shared::look_bilinear(c.map.at(x0, y0)[k], c.map.at(x1, y0)[k], c.map.at(x0, y1)[k],
+                                         c.map.at(x1, y1)[k], x - float(x0), y - float(y0));
+    return value;
+}
+
+TEST(SameBits, AsLookSplatOneByOne) {
+    for (const Case& c : cases()) {
+        const LookUniforms uniforms = prepare_look(
+            c.set, c.look, c.inputs.thickness_map ? c.inputs : [&] {
+                LookInputs inputs = c.inputs;
+                inputs.thickness_map = &c.map;
+                return inputs;
+            }());
+        ShadedSplats expected;
+        for (std::size_t i = 0; i < std::size_t(count); ++i) {
+            const std::uint64_t id = c.set.id[i];
+            const shared::LookInput input{
+                c.set.position[i], c.set.color[i],
+                c.set.alpha[i],    c.set.distance[i],
+                c.set.radius[i],   map_value(c, c.set.uv.empty() ? glm::vec2(0.0f) : c.set.uv[i]),
+                std::uint32_t(id), std::uint32_t(id >> 32)};
+            const shared::LookOutput output = shared::look_splat(uniforms, input);
+            if (!output.keep) continue;
+            expected.position.push_back(output.position);
+            expected.color.push_back(output.color);
+            expected.alpha.push_back(output.alpha);
+            expected.radius.push_back(output.radius);
+            expected.id.push_back(id);
+        }
+        expect_same(shade(c), expected, c.name);
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat
