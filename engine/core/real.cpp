@@ -29,6 +29,11 @@ Pair two_sum(double a, double b) {
     return {hi, (a - (hi - part)) + (b - part)};
 }
 
+Pair difference(Pair a, Pair b) {
+    const Pair d = two_sum(a.hi, -b.hi);
+    return {d.hi, d.lo + (a.lo - b.lo)};
+}
+
 // hi + lo == a * b exactly (Dekker's splitting by 2^27 + 1; |a|, |b| < 2^995).
 Pair two_product(double a, double b) {
     constexpr double splitter = 134217729.0;
@@ -87,7 +92,8 @@ double exp_pair(Pair x) {
     const double k = std::floor(x.hi * 1.4426950408889634 + 0.5);
     const Pair r = two_sum(x.hi - k * ln2_hi, -k * ln2_lo);
     const double tail = r.lo + x.lo;
-    const double p = 1.0 + (r.hi + (tail + r.hi * r.hi * polynomial(c, r.hi)));
+    const double q = r.hi * r.hi * polynomial(c, r.hi);
+    const double p = 1.0 + (r.hi + (q + tail * (1.0 + (r.hi + q))));
     const int half = static_cast<int>(k) / 2;  // two steps: 2^k alone may lie outside the range of doubles
     return p * power_of_two(half) * power_of_two(static_cast<int>(k) - half);
 }
@@ -127,17 +133,17 @@ Reduced reduce(double x) {
     return {rest, static_cast<int>(static_cast<std::int64_t>(k) & 3)};
 }
 
-double sin_series(Pair x) {
+Pair sin_series(Pair x) {
     static constexpr auto c = inverse_factorials<8>(3, 2, -1.0);
     const double z = x.hi * x.hi;
-    return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * polynomial(c, z));
+    return two_sum(x.hi, x.lo * (1.0 - 0.5 * z) - x.hi * z * polynomial(c, z));
 }
 
-double cos_series(Pair x) {
+Pair cos_series(Pair x) {
     static constexpr auto c = inverse_factorials<8>(4, 2, -1.0);
     const double z = x.hi * x.hi;
     const double leading = 1.0 - 0.5 * z;
-    return leading + (((1.0 - leading) - 0.5 * z) + (z * z * polynomial(c, z) - x.hi * x.lo));
+    return two_sum(leading, ((1.0 - leading) - 0.5 * z) + (z * z * polynomial(c, z) - x.hi * x.lo));
 }
 
 // atan(i / 8) to twice the precision of a double.
@@ -164,6 +170,13 @@ Pair atan_ratio(double y, double x) {
     return {sum.hi, sum.lo + (atan_of_eighths[eighth].lo - t * z * polynomial(series, z))};
 }
 
+// a / b, rounded once but for the last correction.
+double quotient(Pair a, Pair b) {
+    const double q = a.hi / b.hi;
+    const Pair back = two_product(q, b.hi);
+    return q + (((a.hi - back.hi) - back.lo) + (a.lo - q * b.lo)) / b.hi;
+}
+
 // ln(1 + x) for x >= 0; the second term restores what rounding 1 + x loses.
 double log1p(double x) {
     const Pair u = two_sum(1.0, x);
@@ -176,18 +189,23 @@ double log1p(double x) {
 double sin(double x) {
     if (!std::isfinite(x)) return nan;
     const Reduced r = reduce(x);
-    const double value = r.quadrant & 1 ? cos_series(r.rest) : sin_series(r.rest);
+    const double value = (r.quadrant & 1 ? cos_series(r.rest) : sin_series(r.rest)).hi;
     return r.quadrant & 2 ? -value : value;
 }
 
 double cos(double x) {
     if (!std::isfinite(x)) return nan;
     const Reduced r = reduce(x);
-    const double value = r.quadrant & 1 ? sin_series(r.rest) : cos_series(r.rest);
+    const double value = (r.quadrant & 1 ? sin_series(r.rest) : cos_series(r.rest)).hi;
     return r.quadrant == 1 || r.quadrant == 2 ? -value : value;
 }
 
-double tan(double x) { return sin(x) / cos(x); }
+double tan(double x) {
+    if (!std::isfinite(x)) return nan;
+    const Reduced r = reduce(x);
+    const Pair s = sin_series(r.rest), c = cos_series(r.rest);
+    return r.quadrant & 1 ? -quotient(c, s) : quotient(s, c);
+}
 
 double atan2(double y, double x) {
     if (std::isnan(x) || std::isnan(y)) return nan;
@@ -197,15 +215,13 @@ double atan2(double y, double x) {
         ax = std::isinf(ax) ? 1.0 : 0.0;
         ay = std::isinf(ay) ? 1.0 : 0.0;
     }
-    const bool steep = ay > ax;
-    Pair angle = steep ? atan_ratio(ax, ay) : atan_ratio(ay, ax);
-    if (steep)
-        angle = {half_pi.hi - angle.hi,
-                 (half_pi.lo - angle.lo) + ((half_pi.hi - (half_pi.hi - angle.hi)) - angle.hi)};
-    if (x < 0.0) {
-        const Pair s = two_sum(2.0 * half_pi.hi, -angle.hi);
-        angle = {s.hi, s.lo + (2.0 * half_pi.lo - angle.lo)};
+    if (std::fmax(ax, ay) > 1e300) {  // sums below must not overflow
+        ax *= 0x1p-60;
+        ay *= 0x1p-60;
     }
+    const bool steep = ay > ax;
+    Pair angle = steep ? difference(half_pi, atan_ratio(ax, ay)) : atan_ratio(ay, ax);
+    if (x < 0.0) angle = difference({2.0 * half_pi.hi, 2.0 * half_pi.lo}, angle);
     const double value = angle.hi + angle.lo;
     return y < 0.0 ? -value : value;
 }

@@ -18,7 +18,7 @@ double atan2(double y, double x);  // (0, 0) gives 0
 double exp(double x);              // overflows to infinity, underflows to 0
 double log(double x);              // log(0) = -infinity, negative: NaN
 double pow(double x, double y);    // x >= 0; x = 0: 0 for y > 0, 1 for y = 0, infinity for y < 0
-double asinh(double x);
+double asinh(double x);            // 3 ulp
 
 inline double radians(double degrees) { return degrees * (pi / 180.0); }
 inline double degrees(double radians) { return radians * (180.0 / pi); }

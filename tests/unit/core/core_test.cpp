@@ -1,0 +1,162 @@
+// Errors, log, text, memory, buffers, hashes, vector targets.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/buffer.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/log.h"
+#include "core/memory.h"
+#include "core/progress.h"
+#include "core/sha256.h"
+#include "core/text.h"
+#include "core/vector_target.h"
+#include "support/errors.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+TEST(Error, LineNamesFilePlaceExpectationAndFinding) {
+    EXPECT_EQ(message_of<InputError>([] { bad_input("a.obj", "12", "three numbers", "two"); }),
+              "a.obj:12: expected three numbers, found two");
+    EXPECT_EQ(message_of<InputError>([] { bad_input("a.obj", "", "faces", "none"); }),
+              "a.obj: expected faces, found none");
+}
+
+TEST(Progress, ThrowsOnlyWhenAskedToStop) {
+    std::atomic<bool> stop{false};
+    Progress progress;
+    EXPECT_NO_THROW(progress.check());
+    progress.cancelled = &stop;
+    EXPECT_NO_THROW(progress.check());
+    stop = true;
+    EXPECT_THROW(progress.check(), Cancelled);
+}
+
+TEST(Log, LevelsAndRepeatedWarnings) {
+    std::vector<std::string> lines;
+    set_log_sink([&](LogLevel, const std::string& line) { lines.push_back(line); });
+    log_detail("hidden");
+    log_info("shown");
+    for (int i = 0; i < 3; ++i) log_warning("odd");
+    flush_warning_counts();
+    log_warning("odd");
+    flush_warning_counts();
+    set_log_sink(nullptr);
+    EXPECT_EQ(lines, (std::vector<std::string>{"shown", "odd", "odd (3 times)", "odd"}));
+}
+
+TEST(Text, NumbersDoNotDependOnTheLocale) {
+    EXPECT_EQ(parse_double("1.5"), 1.5);
+    EXPECT_EQ(parse_double("+1e-3"), 1e-3);
+    EXPECT_EQ(parse_double("-.5"), -0.5);
+    EXPECT_EQ(parse_double("7."), 7.0);
+    for (const char* bad : {"", "+", "1,5", "1.5x", " 1", "+-1", "1e", "1e999"})
+        EXPECT_FALSE(parse_double(bad)) << bad;
+    EXPECT_EQ(parse_int64("-9223372036854775808"), std::numeric_limits<std::int64_t>::min());
+    for (const char* bad : {"", "9223372036854775808", "1.0", "0x10"}) EXPECT_FALSE(parse_int64(bad)) << bad;
+}
+
+TEST(Text, ShortestNumbersReadBack) {
+    EXPECT_EQ(shortest(0.1), "0.1");
+    EXPECT_EQ(shortest(0.1f), "0.1");
+    for (const double value : {1.0 / 3.0, 1e300, -5e-324, 123456789.125})
+        EXPECT_EQ(parse_double(shortest(value)), value);
+}
+
+TEST(Text, EditDistance) {
+    EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+    EXPECT_EQ(edit_distance("", "abc"), 3);
+    EXPECT_EQ(edit_distance("same", "same"), 0);
+}
+
+TEST(Text, NearestName) {
+    const std::vector<std::string> keys{"layer.look.alpha.power", "layer.look.density", "camera.fov"};
+    EXPECT_EQ(nearest_name("camera.fow", keys), "camera.fov");
+    EXPECT_EQ(nearest_name("alpha.powr", keys), "layer.look.alpha.power");
+    EXPECT_EQ(nearest_name("densty", keys), "layer.look.density");
+    EXPECT_EQ(nearest_name("something", keys), "");
+}
+
+TEST(Memory, HumanNumbers) {
+    EXPECT_EQ(human_bytes(1.25 * 1024 * 1024 * 1024), "1.25 GiB");
+    EXPECT_EQ(human_bytes(312.0 * 1024 * 1024), "312 MiB");
+    EXPECT_EQ(human_bytes(4096), "4 KiB");
+    EXPECT_EQ(human_bytes(17), "17 B");
+    EXPECT_EQ(human_count(12.4e6), "12.4 M");
+    EXPECT_EQ(human_count(3100), "3.1 k");
+    EXPECT_EQ(human_count(812), "812");
+    EXPECT_EQ(human_count(999999), "1 M");
+    EXPECT_EQ(human_count(100), "100");
+}
+
+TEST(Memory, ClaimOfTooMuchNamesBothFigures) {
+    EXPECT_GT(available_memory_bytes(), 0);
+    EXPECT_GT(peak_memory_bytes(), 0);
+    EXPECT_NO_THROW(claim_memory(1024, "a test"));
+    const std::string message = message_of<InputError>([] { claim_memory(std::int64_t{1} << 60, "a test"); });
+    EXPECT_EQ(message.find("a test needs 1048576 TiB of memory, but only "), 0u) << message;
+}
+
+TEST(Buffer, BigBlocksAreAlignedAndKeepTheirContents) {
+    for (const std::size_t size : {std::size_t{10}, std::size_t{1} << 20, (std::size_t{5} << 20) + 3}) {
+        Buffer<std::uint8_t> bytes;
+        bytes.resize(size);
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(bytes.data()) % (size >= (4u << 20) ? 2u << 20 : 64u), 0u);
+        bytes.back() = 7;
+        bytes.resize(size * 2);
+        EXPECT_EQ(bytes[size - 1], 7);
+        bytes.shrink_to_fit();
+    }
+}
+
+TEST(Buffer, TooMuchIsBadAlloc) {
+    EXPECT_THROW(allocate_pages(std::numeric_limits<std::size_t>::max()), std::bad_alloc);
+    EXPECT_THROW(allocate_pages(std::size_t{1} << 62), std::bad_alloc);
+}
+
+TEST(Sha256, KnownDigests) {  // FIPS 180-4 examples
+    EXPECT_EQ(Sha256().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    EXPECT_EQ(Sha256().add("a").add("bc").hex(),
+              "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Sha256, OfFiles) {
+    const TempFolder folder;
+    EXPECT_EQ(sha256_of_file(folder.file("a b", "abc")),
+              "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    const std::string missing = (folder / "missing").string();
+    EXPECT_EQ(message_of<InputError>([&] { sha256_of_file(missing); }),
+              missing + ": cannot be read: No such file or directory");
+    EXPECT_NE(message_of<InputError>([&] { sha256_of_file(folder.path()); }), "no error");
+}
+
+TEST(File, ReadsAllBytesOrSaysWhyNot) {
+    const TempFolder folder;
+    EXPECT_EQ(read_file(folder.file("x", std::string("a\0b", 3))), std::string("a\0b", 3));
+    EXPECT_EQ(message_of<InputError>([&] { read_file(folder.path()); }),
+              folder.path().string() + ": cannot be read: it is a folder");
+    EXPECT_EQ(message_of<InputError>([&] { read_file(folder / "no"); }),
+              (folder / "no").string() + ": cannot be read: No such file or directory");
+}
+
+TEST(VectorTarget, EachOfferedOneCanBeChosen) {
+    const std::vector<std::string> targets = vector_targets();
+    ASSERT_FALSE(targets.empty());
+    for (const std::string& target : targets) {
+        set_vector_target(target);
+        EXPECT_EQ(vector_target(), target);
+    }
+    set_vector_target("best");
+    EXPECT_EQ(vector_target(), targets.front());
+    EXPECT_EQ(message_of<InputError>([] { set_vector_target("mmx"); }).find("vector target 'mmx' is unknown"),
+              0u);
+}
+
+}  // namespace
+}  // namespace astrosplat
