@@ -1,0 +1,97 @@
+// The canonical text of a frame, from the description of its parameters.
+#include "output/frame_hash.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "core/sha256.h"
+#include "scene/animate.h"
+#include "scene/describe.h"
+#include "source/mesh.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool starts_with(std::string_view text, std::string_view start) {
+    return text.substr(0, start.size()) == start;
+}
+
+// Reaches no pixel of any frame.
+bool is_elsewhere(const ParameterSpec& spec) {
+    constexpr std::array<std::string_view, 5> keys = {"output.path", "output.frames", "output.fps",
+                                                      "output.compression", "layer.preset"};
+    return std::find(keys.begin(), keys.end(), spec.generic_key) != keys.end() ||
+           starts_with(spec.generic_key, "provenance.");
+}
+
+bool shows(const EnvironmentParams& environment) {
+    return environment.visible && !(environment.image.empty() && environment.cube.empty());
+}
+
+bool is_hidden(const ParameterSpec& spec, const Scene& now) {
+    if (starts_with(spec.generic_key, "environment.")) return !shows(now.environment);
+    return std::any_of(now.layers.begin(), now.layers.end(), [&](const LayerParams& layer) {
+        return !layer.visible && starts_with(spec.key, "layer." + layer.name + ".");
+    });
+}
+
+}  // namespace
+
+// The text itself where nothing lies under that name: "plane", "", or a file whose absence the loader will
+// report.
+std::string FrameHasher::file_text(const fs::path& file) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) return to_toml(file.string());
+    std::string& hash = file_hashes_[file];
+    if (hash.empty()) hash = sha256_of_file(file);
+    return hash;
+}
+
+// Pictures that no key names: a mesh without a texture takes those of its MTL.
+std::string FrameHasher::own_maps(const LayerParams& layer) {
+    std::string text;
+    std::error_code ignored;
+    for (const MeshInput& input : layer.source.meshes) {
+        bool own = input.texture.empty() || (input.texture.size() == 1 && input.texture[0].empty());
+        if (layer.source.kind != SourceKind::mesh || !own || !fs::is_regular_file(input.mesh, ignored))
+            continue;
+        auto [known, added] = map_lists_.try_emplace(input.mesh);
+        if (added)
+            for (const fs::path& map : load_obj(input.mesh).maps) known->second += " " + file_text(map);
+        text += fmt::format("layer.{}.maps ={}\n", layer.name, known->second);
+    }
+    return text;
+}
+
+std::string FrameHasher::canonical_text(std::int64_t frame) {
+    Scene now = scene_at(scene_, static_cast<double>(frame));
+    std::string text = fmt::format("pixels = {}\n", pixel_version);
+    if (region_.width > 0 && region_.height > 0)
+        text += fmt::format("region = {} {} {} {}\n", region_.x, region_.y, region_.width, region_.height);
+    for (const Parameter& parameter : describe(now).parameters) {
+        const ParameterSpec& spec = parameter.spec;
+        if (is_elsewhere(spec) || is_hidden(spec, now)) continue;
+        Value value = parameter.get();
+        bool files = spec.type == ParameterType::file || spec.type == ParameterType::files;
+        text += spec.key + " =";
+        if (!files)
+            text += " " + to_toml(value);
+        else if (const std::string* name = value.text())
+            text += " " + file_text(*name);
+        else if (const Value::List* names = value.list())
+            for (const Value& each : *names) text += " " + file_text(each.text() ? *each.text() : "");
+        text += "\n";
+    }
+    for (const LayerParams& layer : now.layers)
+        if (layer.visible) text += own_maps(layer);
+    return text;
+}
+
+std::string FrameHasher::frame_hash(std::int64_t frame) { return Sha256().add(canonical_text(frame)).hex(); }
+
+}  // namespace astrosplat

@@ -1,0 +1,43 @@
+// The frame hash: one number for all that reaches a frame's pixels, and nothing else (DESIGN 8). Equal hashes
+// mean that rendering again would give the same pixels, so --resume skips the frame.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "core/image.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// Raised whenever the program's own arithmetic changes a pixel of any scene.
+inline constexpr int pixel_version = 1;
+
+/// Hashes frames of one scene; input files are hashed by content, once each.
+class FrameHasher {
+  public:
+    /// `region` as in RenderSettings: the part of the picture that is rendered; empty: all.
+    explicit FrameHasher(const Scene& scene, const Region& region = {}) : scene_(scene), region_(region) {}
+
+    /// 64 hex digits. Throws InputError when an input file exists but cannot be read.
+    std::string frame_hash(std::int64_t frame);
+
+    /// What is hashed: lines "key = value" of every parameter that reaches the frame, evaluated there, files
+    /// as their content's hash. Left out: where and how often frames go (path, frames, fps, compression),
+    /// provenance, presets (their values are in the scene), layers and environments that do not show, and the
+    /// animation's keys.
+    std::string canonical_text(std::int64_t frame);
+
+  private:
+    std::string file_text(const std::filesystem::path& file);
+    std::string own_maps(const LayerParams& layer);
+
+    Scene scene_;
+    Region region_;
+    std::map<std::filesystem::path, std::string> file_hashes_;
+    std::map<std::filesystem::path, std::string> map_lists_;  // of meshes: their MTL's pictures
+};
+
+}  // namespace astrosplat

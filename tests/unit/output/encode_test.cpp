@@ -1,0 +1,172 @@
+// What a pixel becomes in a file: closed forms of view, alpha rule and dither.
+#include "output/encode.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/color.h"
+
+namespace astrosplat {
+namespace {
+
+using Alpha = OutputParams::Alpha;
+using Depth = OutputParams::Depth;
+using View = OutputParams::View;
+
+FrameFormat format_of(Depth depth, Alpha alpha, View view = View::srgb) {
+    FrameFormat format;
+    format.kind = FileKind::tif;
+    format.depth = depth;
+    format.alpha = alpha;
+    format.view = view;
+    return format;
+}
+
+Image flat(std::int64_t width, std::int64_t height, float r, float g, float b, float a) {
+    Image image = make_image(width, height, 4);
+    for (std::int64_t i = 0; i < width * height; ++i) {
+        float* p = image.pixels.data() + 4 * i;
+        p[0] = r, p[1] = g, p[2] = b, p[3] = a;
+    }
+    return image;
+}
+
+TEST(View, SrgbMatchesTheCurve) {
+    for (int i = 0; i <= 100000; ++i) {
+        float x = static_cast<float>(i) / 100000.0f;
+        EXPECT_NEAR(apply_view(View::srgb, x), real::linear_to_srgb(static_cast<double>(x)), 2e-7) << x;
+    }
+    EXPECT_EQ(apply_view(View::srgb, 1.0f), 1.0f);
+    EXPECT_EQ(apply_view(View::srgb, 0.0f), 0.0f);
+}
+
+TEST(View, SoftIsItsFormulaThenSrgb) {
+    for (double x : {0.001, 0.18, 1.0, 4.0, 100.0}) {
+        double soft = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+        EXPECT_NEAR(apply_view(View::soft, static_cast<float>(x)), real::linear_to_srgb(std::fmin(soft, 1.0)),
+                    1e-6);
+    }
+}
+
+TEST(View, EveryValueStaysInRange) {
+    const float odd[] = {
+        -1.0f, -0.0f, 1e30f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(),
+        1e-40f};
+    for (View view : {View::linear, View::srgb, View::soft})
+        for (float x : odd) {
+            float y = apply_view(view, x);
+            EXPECT_TRUE(y >= 0.0f && y <= 1.0f) << x;
+        }
+    EXPECT_EQ(apply_view(View::soft, 1e30f), 1.0f);
+}
+
+TEST(Encode, NoneIsOpaqueOverBlack) {
+    const float rgba[4] = {0.25f, 0.0f, 0.5f, 0.5f};
+    float stored[3];
+    encode_pixel(format_of(Depth::uint8, Alpha::none), 1.0f, rgba, stored);
+    EXPECT_EQ(stored[0], apply_view(View::srgb, 0.25f));
+    EXPECT_EQ(stored[2], apply_view(View::srgb, 0.5f));
+}
+
+TEST(Encode, SoftEdgesKeepTheirColour) {
+    // The same orange at every alpha.
+    for (float a : {1.0f, 0.5f, 0.01f}) {
+        const float rgba[4] = {0.8f * a, 0.4f * a, 0.1f * a, a};
+        float straight[4], premultiplied[4];
+        encode_pixel(format_of(Depth::uint16, Alpha::straight), 1.0f, rgba, straight);
+        encode_pixel(format_of(Depth::uint16, Alpha::premultiplied), 1.0f, rgba, premultiplied);
+        EXPECT_NEAR(straight[0], apply_view(View::srgb, 0.8f), 1e-6f);
+        EXPECT_NEAR(straight[2], apply_view(View::srgb, 0.1f), 1e-6f);
+        EXPECT_EQ(straight[3], a);
+        EXPECT_NEAR(premultiplied[0], apply_view(View::srgb, 0.8f) * a, 1e-6f);
+        EXPECT_EQ(premultiplied[3], a);
+    }
+}
+
+TEST(Encode, SceneLightIsCopiedOrDivided) {
+    const float rgba[4] = {3.0f, -0.25f, 0.5f, 0.5f};
+    float stored[4];
+    encode_pixel(format_of(Depth::float32, Alpha::premultiplied, View::linear), 1.0f, rgba, stored);
+    for (int c = 0; c < 4; ++c) EXPECT_EQ(stored[c], rgba[c]);
+    encode_pixel(format_of(Depth::float32, Alpha::straight, View::linear), 1.0f, rgba, stored);
+    EXPECT_EQ(stored[0], 6.0f);
+    EXPECT_EQ(stored[3], 0.5f);
+}
+
+TEST(Encode, LightWithoutAlphaCannotBeStraight) {
+    const float rgba[4] = {1.0f, 1.0f, 1.0f, 0.0f};
+    float stored[4];
+    for (Depth depth : {Depth::uint8, Depth::float32}) {
+        encode_pixel(format_of(depth, Alpha::straight), 1.0f, rgba, stored);
+        for (float x : stored) EXPECT_EQ(x, 0.0f);
+    }
+}
+
+TEST(Encode, ExposureIsAPowerOfTwoBeforeTheView) {
+    FrameFormat format = format_of(Depth::uint16, Alpha::none);
+    format.exposure = 2.0;
+    const std::uint16_t brighter = encode_16bit(format, flat(1, 1, 0.1f, 0, 0, 1))[0];
+    format.exposure = 0.0;
+    EXPECT_EQ(brighter, encode_16bit(format, flat(1, 1, 0.4f, 0, 0, 1))[0]);
+}
+
+TEST(Encode, SixteenBitCodesSurvive) {
+    FrameFormat format = format_of(Depth::uint16, Alpha::none);
+    for (int code = 0; code <= 65535; ++code) {
+        auto linear = static_cast<float>(real::srgb_to_linear(code / 65535.0));
+        ASSERT_EQ(encode_16bit(format, flat(1, 1, linear, 0, 0, 1))[0], code);
+    }
+}
+
+TEST(Dither, KeepsEveryCodeAtEveryPlace) {
+    FrameFormat format = format_of(Depth::uint8, Alpha::none);
+    for (int code = 0; code <= 255; ++code) {
+        auto linear = static_cast<float>(real::srgb_to_linear(code / 255.0));
+        for (std::uint8_t stored : encode_8bit(format, flat(40, 40, linear, linear, linear, 1), 1000, 77))
+            ASSERT_EQ(stored, code);
+    }
+}
+
+TEST(Dither, KeepsTheMeanBetweenCodes) {
+    FrameFormat format = format_of(Depth::uint8, Alpha::none, View::linear);
+    for (double value : {100.25, 100.5, 100.9, 0.3}) {
+        double sum = 0.0;
+        auto x = static_cast<float>(value / 255.0);
+        std::vector<std::uint8_t> bytes = encode_8bit(format, flat(64, 64, x, x, x, 1), 0, 0);
+        for (std::uint8_t b : bytes) {
+            EXPECT_LE(std::fabs(b - value), 1.0);
+            sum += b;
+        }
+        EXPECT_NEAR(sum / static_cast<double>(bytes.size()), value, 0.01);
+    }
+}
+
+TEST(Dither, BelongsToThePlaceInTheWholePicture) {
+    FrameFormat format = format_of(Depth::uint8, Alpha::none);
+    Image image = flat(32, 32, 0.2f, 0.3f, 0.4f, 1);
+    std::vector<std::uint8_t> whole = encode_8bit(format, image, 0, 0);
+    std::vector<std::uint8_t> part = encode_8bit(format, flat(8, 8, 0.2f, 0.3f, 0.4f, 1), 20, 11);
+    for (std::size_t y = 0; y < 8; ++y)
+        for (std::size_t x = 0; x < 24; ++x) EXPECT_EQ(part[y * 24 + x], whole[(y + 11) * 96 + 60 + x]);
+}
+
+TEST(Dither, StaysWithinHalfACodeAndDiffersByChannel) {
+    int equal = 0;
+    for (std::int64_t x = 0; x < 100; ++x) {
+        EXPECT_LT(std::fabs(dither(x, -x * 3, 2)), 0.5f);
+        equal += dither(x, 5, 0) == dither(x, 5, 1);
+    }
+    EXPECT_LT(equal, 10);
+}
+
+TEST(Dither, PremultipliedColourNeverExceedsAlpha) {
+    FrameFormat format = format_of(Depth::uint8, Alpha::premultiplied);
+    std::vector<std::uint8_t> bytes = encode_8bit(format, flat(64, 64, 0.3f, 0.3f, 0.2f, 0.3f), 0, 0);
+    for (std::size_t i = 0; i < bytes.size(); i += 4)
+        for (std::size_t c = 0; c < 3; ++c) ASSERT_LE(bytes[i + c], bytes[i + 3]);
+}
+
+}  // namespace
+}  // namespace astrosplat
