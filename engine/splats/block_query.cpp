@@ -1,7 +1,7 @@
 // Block queries. All triangles that can be closest to some position of the block are collected once, with
-// boxes; each group of 2 x 2 x 2 cells takes those that can matter to it, and each position measures those
-// whose boxes are nearer than what it has. A search starts from the answer of the position before, which is
-// almost always close. Blocks with too many triangles ask Embree for each position instead.
+// boxes, and each position measures those whose boxes are nearer than what it has. A search starts from the
+// answer of the position before, which is almost always close. Blocks with too many triangles ask Embree for
+// each position instead.
 #include "splats/block_query.h"
 
 #include <algorithm>
@@ -11,143 +11,100 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t group_cells = 2;
-
-float limit_of(double distance, double slack) {
-    const double widened = distance * 1.00001 + slack;
-    return static_cast<float>(widened * widened * 1.00001);
-}
-
-// A triangle that is closest to a position p of the ball is no farther from its middle than |p - middle| +
-// distance(p), and distance(p) is at most both max_distance and distance(middle) + |p - middle|.
-double candidate_radius(const BlockBall& ball, double distance, double max_distance) {
-    return (ball.radius + std::min(max_distance, distance + ball.radius)) * (1.0 + 1e-9);
-}
-
 class BlockQuery {
   public:
-    BlockQuery(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
-               const LatticeBlock& block, BlockScratch& scratch)
-        : index_(index),
-          lattice_(lattice),
-          settings_(settings),
-          scratch_(scratch),
-          half_range_(lattice.spacing() * (0.5 * settings.jitter)),
-          hint_(block.nearest) {
-        const BlockBall ball = block_ball(lattice, settings.jitter, block.at * block_cells, block_cells);
-        collect(ball, candidate_radius(ball, block.distance, settings.max_distance));
+    BlockQuery(const ClosestPointIndex& index, double max_distance, const LatticeBlock& block,
+               const BlockBall& ball, BlockScratch& scratch)
+        : index_(index), max_distance_(max_distance), scratch_(scratch), hint_(block.nearest) {
+        // A triangle that is closest to a position p of the ball is no farther from its middle than |p -
+        // middle| + distance(p), and distance(p) is at most both max_distance and distance(middle) + |p -
+        // middle|.
+        const double radius = ball.radius + std::min(max_distance, block.distance + ball.radius);
+        listed_ = index.collect(ball.center, radius * (1.0 + 1e-9), scratch.candidates);
     }
 
-    void run_group(const glm::i64vec3& first, const glm::i64vec3& block_first, Positions kind,
-                   BlockAnswers& answers) {
-        if (listed_ && !collect_group(block_ball(lattice_, settings_.jitter, first, group_cells))) return;
-        const std::int64_t more = kind == Positions::corners ? 1 : 0;
-        const glm::i64vec3 end = glm::min(first + group_cells, lattice_.n + more);
-        for (std::int64_t k = first.z; k < end.z; ++k) {
-            for (std::int64_t j = first.y; j < end.y; ++j) {
-                for (std::int64_t i = first.x; i < end.x; ++i) {
-                    const glm::i64vec3 in_block = glm::i64vec3(i, j, k) - block_first;
-                    const auto place = (in_block.z * block_cells + in_block.y) * block_cells + in_block.x;
-                    answers[static_cast<std::size_t>(place)] = answer(position({i, j, k}, kind));
-                }
-            }
-        }
+    ClosestPoint closest(const glm::dvec3& p) {
+        const ClosestPoint found = listed_ ? closest_listed(p) : index_.closest(p, max_distance_, hint_);
+        if (found.triangle != ClosestPoint::none) hint_ = found.triangle;
+        return found;
     }
 
   private:
-    // The same sums as in jittered_position.
-    glm::dvec3 position(const glm::i64vec3& at, Positions kind) const {
-        const bool centre = kind == Positions::centres;
-        const glm::dvec3 cells = glm::dvec3(at) + (centre ? 0.5 : 0.0);
-        const std::uint64_t id = centre ? centre_id(lattice_, at) : corner_id(lattice_, at);
-        return glm::dvec3(lattice_coordinate(lattice_, 0, cells.x), lattice_coordinate(lattice_, 1, cells.y),
-                          lattice_coordinate(lattice_, 2, cells.z)) +
-               jitter_offset(id, settings_.seed, half_range_);
-    }
-
-    // Boxes are relative to the block's middle and cut to where they can matter, so that float suffices.
-    void collect(const BlockBall& ball, double radius) {
-        const std::size_t count = index_.within(ball.center, radius, scratch_.triangles);
-        listed_ = count <= BoxList::most;
-        if (!listed_) return;
-        middle_ = ball.center;
-        slack_ = 1e-6 * (radius + ball.radius);
-        const glm::dvec3 window(2.0 * ball.radius);
-        scratch_.block.count = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const TriangleShape& s = index_.shape(scratch_.triangles[i]);
-            const glm::dvec3 a = s.a - middle_, b = a + s.ab, c = a + s.ac;
-            scratch_.block.add(scratch_.triangles[i],
-                               glm::vec3(glm::max(glm::min(glm::min(a, b), c), -window)),
-                               glm::vec3(glm::min(glm::max(glm::max(a, b), c), window)));
+    ClosestPoint closest_listed(const glm::dvec3& p) {
+        ClosestPoint best{max_distance_ * max_distance_, ClosestPoint::none, {}};
+        offer(hint_, p, best);
+        NearBoxes& found = scratch_.near_boxes;
+        float limit = index_.box_limit(p, std::sqrt(best.distance_squared));
+        find_near_boxes(scratch_.candidates, index_.local(p), limit, found);
+        if (found.count == 0) return best;
+        const float* nearest = std::min_element(found.squared.data(), found.squared.data() + found.count);
+        if (offer(number(static_cast<std::size_t>(nearest - found.squared.data())), p, best)) {
+            limit = index_.box_limit(p, std::sqrt(best.distance_squared));
         }
-    }
-
-    // False when the whole group is too far away.
-    bool collect_group(const BlockBall& ball) {
-        const ClosestPoint closest =
-            closest_listed(scratch_.block, ball.center, settings_.max_distance + ball.radius);
-        if (closest.triangle == ClosestPoint::none) return false;
-        hint_ = closest.triangle;
-        const double radius =
-            candidate_radius(ball, std::sqrt(closest.distance_squared), settings_.max_distance);
-        NearBoxes& found = scratch_.near_boxes;
-        find_near_boxes(scratch_.block, glm::vec3(ball.center - middle_), limit_of(radius, slack_), found);
-        scratch_.cell_group.count = 0;
-        for (std::size_t i = 0; i < found.count; ++i) scratch_.cell_group.add(scratch_.block, found.place[i]);
-        return true;
-    }
-
-    FoundPoint answer(const glm::dvec3& p) {
-        const ClosestPoint closest = listed_ ? closest_listed(scratch_.cell_group, p, settings_.max_distance)
-                                             : index_.closest(p, settings_.max_distance, hint_);
-        if (closest.triangle != ClosestPoint::none) hint_ = closest.triangle;
-        return {closest, glm::vec3(p)};
-    }
-
-    ClosestPoint closest_listed(const BoxList& boxes, const glm::dvec3& p, double max_distance) {
-        ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
-        const ClosestPoint hinted = index_.closest_of(hint_, p);
-        if (nearer(hinted, best)) best = hinted;
-        NearBoxes& found = scratch_.near_boxes;
-        float limit = limit_of(std::sqrt(best.distance_squared), slack_);
-        find_near_boxes(boxes, glm::vec3(p - middle_), limit, found);
         for (std::size_t i = 0; i < found.count; ++i) {
-            const std::uint32_t triangle = boxes.triangle[found.place[i]];
-            if (found.squared[i] > limit || triangle == hint_) continue;
-            const ClosestPoint other = index_.closest_of(triangle, p);
-            if (!nearer(other, best)) continue;
-            best = other;
-            limit = limit_of(std::sqrt(best.distance_squared), slack_);
+            if (found.squared[i] > limit || number(i) == best.triangle) continue;
+            if (offer(number(i), p, best)) limit = index_.box_limit(p, std::sqrt(best.distance_squared));
         }
         return best;
     }
 
+    std::uint32_t number(std::size_t found) const {
+        return scratch_.candidates.triangle[scratch_.near_boxes.place[found]];
+    }
+
+    bool offer(std::uint32_t triangle, const glm::dvec3& p, ClosestPoint& best) const {
+        const ClosestPoint other = index_.closest_of(triangle, p);
+        const bool better = nearer(other, best);
+        if (better) best = other;
+        return better;
+    }
+
     const ClosestPointIndex& index_;
-    const Lattice& lattice_;
-    const CullSettings& settings_;
+    const double max_distance_;
     BlockScratch& scratch_;
-    glm::dvec3 half_range_;  // of the jitter, scene units
-    glm::dvec3 middle_{0.0};
-    double slack_ = 0.0;   // scene units; more than the rounding of boxes and of query points
-    bool listed_ = false;  // else there are too many triangles: ask Embree
-    std::uint32_t hint_;   // a triangle that is probably close
+    bool listed_;         // else there are too many triangles: ask Embree
+    std::uint32_t hint_;  // a triangle that is probably close
 };
+
+// Coordinates of a block's positions along one axis, before jitter.
+struct AxisPlaces {
+    std::array<double, block_cells> at;
+    std::size_t count;  // of them inside the lattice
+};
+
+AxisPlaces places(const Lattice& lattice, int axis, std::int64_t first, Positions kind) {
+    const bool centres = kind == Positions::centres;
+    AxisPlaces p;
+    const std::int64_t end = lattice.n[axis] + (centres ? 0 : 1);
+    p.count = static_cast<std::size_t>(std::clamp(end - first, std::int64_t{0}, block_cells));
+    for (std::size_t i = 0; i < p.count; ++i) {
+        const double cells =
+            static_cast<double>(first + static_cast<std::int64_t>(i)) + (centres ? 0.5 : 0.0);
+        p.at[i] = lattice_coordinate(lattice, axis, cells);
+    }
+    return p;
+}
 
 }  // namespace
 
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
                  const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers) {
     for (FoundPoint& found : answers) found.closest.triangle = ClosestPoint::none;
-    BlockQuery query(index, lattice, settings, block, scratch);
     const glm::i64vec3 first = block.at * block_cells;
-    for (std::int64_t z = 0; z < block_cells; z += group_cells) {
-        for (std::int64_t y = 0; y < block_cells; y += group_cells) {
-            for (std::int64_t x = 0; x < block_cells; x += group_cells) {
-                const glm::i64vec3 group = first + glm::i64vec3(x, y, z);
-                const bool inside =
-                    group.x <= lattice.n.x && group.y <= lattice.n.y && group.z <= lattice.n.z;
-                if (inside) query.run_group(group, first, kind, answers);
+    const BlockBall ball = block_ball(lattice, settings.jitter, first, block_cells);
+    BlockQuery query(index, settings.max_distance, block, ball, scratch);
+    const glm::dvec3 half_range = lattice.spacing() * (0.5 * settings.jitter);
+    const AxisPlaces x = places(lattice, 0, first.x, kind), y = places(lattice, 1, first.y, kind),
+                     z = places(lattice, 2, first.z, kind);
+    for (std::size_t k = 0; k < z.count; ++k) {
+        for (std::size_t j = 0; j < y.count; ++j) {
+            const glm::i64vec3 row = first + glm::i64vec3(0, j, k);
+            const std::uint64_t id =
+                kind == Positions::centres ? centre_id(lattice, row) : corner_id(lattice, row);
+            for (std::size_t i = 0; i < x.count; ++i) {
+                const glm::dvec3 p =  // the same sum as in jittered_position
+                    glm::dvec3(x.at[i], y.at[j], z.at[k]) + jitter_offset(id + i, settings.seed, half_range);
+                answers[(k * block_cells + j) * block_cells + i] = {query.closest(p), glm::vec3(p)};
             }
         }
     }

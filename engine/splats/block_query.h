@@ -27,9 +27,8 @@ using BlockAnswers = std::array<FoundPoint, block_cells * block_cells * block_ce
 
 /// A thread's working memory.
 struct BlockScratch {
-    BoxList block, cell_group;
+    BoxList candidates;
     NearBoxes near_boxes;
-    std::array<std::uint32_t, BoxList::most> triangles;
 };
 
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,

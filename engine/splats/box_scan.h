@@ -26,10 +26,6 @@ struct BoxList {
         hi_x[count] = hi.x, hi_y[count] = hi.y, hi_z[count] = hi.z;
         ++count;
     }
-    void add(const BoxList& other, std::size_t i) {
-        add(other.triangle[i], {other.lo_x[i], other.lo_y[i], other.lo_z[i]},
-            {other.hi_x[i], other.hi_y[i], other.hi_z[i]});
-    }
 };
 
 /// Places in a BoxList, ascending, and how far those boxes are.

@@ -25,6 +25,11 @@ namespace {
 
 constexpr std::size_t most_triangles = ClosestPoint::none / 3;  // Embree counts corners in 32 bits
 
+// In float, relative to the middle of all meshes.
+struct FloatBox {
+    glm::vec3 lo, hi;
+};
+
 double squared(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
@@ -86,6 +91,7 @@ ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const
 
 struct ClosestPointIndex::State {
     Buffer<TriangleShape> shapes;
+    Buffer<FloatBox> boxes;
     glm::dvec3 center{0.0};  // Embree's origin, scene units
     double reach = 0.0;      // largest coordinate of a vertex relative to center
     RTCDevice device = nullptr;
@@ -163,6 +169,11 @@ RTCGeometry ClosestPointIndex::State::float_triangles() const {
 }
 
 void ClosestPointIndex::State::build() {
+    boxes.resize(shapes.size());
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const glm::dvec3 a = shapes[i].a - center, b = a + shapes[i].ab, c = a + shapes[i].ac;
+        boxes[i] = {glm::vec3(glm::min(glm::min(a, b), c)), glm::vec3(glm::max(glm::max(a, b), c))};
+    }
     device = rtcNewDevice("threads=1");  // keeps Embree off TBB's pool
     if (!device) throw std::runtime_error("Embree gave no device");
     scene = rtcNewScene(device);
@@ -240,14 +251,23 @@ ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double 
     return best;
 }
 
-std::size_t ClosestPointIndex::within(const glm::dvec3& center, double radius,
-                                      std::span<std::uint32_t> found) const {
-    std::size_t count = 0;
+bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, BoxList& boxes) const {
+    bool fits = true;
+    boxes.count = 0;
     state_->query(center, radius, [&](std::uint32_t triangle) {
-        if (count < found.size()) found[count] = triangle;
-        return ++count > found.size() ? -1.0 : radius;
+        fits = boxes.count < BoxList::most;
+        if (!fits) return -1.0;
+        boxes.add(triangle, state_->boxes[triangle].lo, state_->boxes[triangle].hi);
+        return radius;
     });
-    return std::min(count, found.size() + 1);
+    return fits;
+}
+
+glm::vec3 ClosestPointIndex::local(const glm::dvec3& p) const { return glm::vec3(p - state_->center); }
+
+float ClosestPointIndex::box_limit(const glm::dvec3& p, double distance) const {
+    const float widened = State::widened(distance, state_->slack(p - state_->center));
+    return widened * widened;
 }
 
 ClosestPoint ClosestPointIndex::closest_of(std::uint32_t triangle, const glm::dvec3& p) const {

@@ -10,6 +10,7 @@
 
 #include "core/bounds.h"
 #include "source/mesh.h"
+#include "splats/box_scan.h"
 
 namespace astrosplat {
 
@@ -60,9 +61,14 @@ class ClosestPointIndex {
     /// The same by trying every triangle: the oracle of the tests.
     ClosestPoint closest_brute_force(const glm::dvec3& p, double max_distance) const;
 
-    /// Writes at least the triangles that come within `radius` of `center`, in any order, to `found` and
-    /// returns how many it wrote, or found.size() + 1 when they do not fit. Thread-safe.
-    std::size_t within(const glm::dvec3& center, double radius, std::span<std::uint32_t> found) const;
+    /// Puts at least the triangles that come within `radius` of `center` into `boxes`, in any order; false
+    /// when they do not fit. Thread-safe.
+    bool collect(const glm::dvec3& center, double radius, BoxList& boxes) const;
+
+    /// p in the float coordinates of collect()'s boxes, and the squared distance in them beyond which a box
+    /// holds nothing within `distance` of p.
+    glm::vec3 local(const glm::dvec3& p) const;
+    float box_limit(const glm::dvec3& p, double distance) const;
 
     /// The closest point of one triangle, numbered.
     ClosestPoint closest_of(std::uint32_t triangle, const glm::dvec3& p) const;
