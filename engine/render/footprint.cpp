@@ -19,6 +19,7 @@ constexpr int steps_per_octave = 32;       // nodes per octave: the five top bit
 constexpr int first_exponent = -6;         // smallest tabulated radius: 2^-6 px
 constexpr int octaves = 16;                // up to 2^10 px
 constexpr double smallest_radius_px = 1.0 / 64.0;
+const double lattice_frequencies[3] = {1.0, std::sqrt(2.0), 2.0};  // of the pixel raster, cycles per px
 constexpr double ripple_limit_px = 32.0;  // beyond, the spectrum at one cycle per pixel is below 1e-4
 
 /// Bessel function e^-x I0(x), x >= 0. Abramowitz and Stegun 9.8.1, 9.8.2; error below 2e-7.
@@ -162,6 +163,25 @@ std::array<double, 4> cubic_through(const double* p) {
             -4.5 * p[0] + 13.5 * p[1] - 13.5 * p[2] + 4.5 * p[3]};
 }
 
+/// Spectrum of P (1 - P) at `frequency` cycles per px.
+double edge_spectrum(const FootprintTable& table, const FootprintNode& node, double radius_px,
+                     double frequency) {
+    const Range range = profile_range(table, radius_px);
+    double sum = 0.0;
+    for (int s = 0; s < segments; ++s) {
+        const auto distance = [&](double f) { return distance_at(table, range, (s + f) / segments); };
+        const double d0 = distance(0.0), d1 = distance(1.0);
+        sum += integrate_panel(d0, d1, [&](double d) {
+            const double place =
+                table.linear_in_distance ? (d - d0) / (d1 - d0) : (d * d - d0 * d0) / (d1 * d1 - d0 * d0);
+            const auto c = [&](int k) { return static_cast<double>(node.cubic[k][s]); };
+            const double p = std::clamp(((c(3) * place + c(2)) * place + c(1)) * place + c(0), 0.0, 1.0);
+            return p * (1.0 - p) * d * bessel_j0(2.0 * real::pi * frequency * d);
+        });
+    }
+    return sum;
+}
+
 FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, double radius_px) {
     FootprintNode node{};
     const std::array<double, samples> p = sample_profile(table, falloff, radius_px);
@@ -185,9 +205,14 @@ FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, dou
     node.edge_first_moment = static_cast<float>(moments[3] / segments);
     if (radius_px < ripple_limit_px) {
         const Profile profile(falloff, radius_px, table.pixel_filter_px);
-        node.ripple_1 = static_cast<float>(profile.relative_spectrum(1.0, table.integral));
-        node.ripple_11 = static_cast<float>(profile.relative_spectrum(std::sqrt(2.0), table.integral));
-        node.ripple_2 = static_cast<float>(profile.relative_spectrum(2.0, table.integral));
+        for (int i = 0; i < 3; ++i) {
+            node.ripple[i] =
+                static_cast<float>(profile.relative_spectrum(lattice_frequencies[i], table.integral));
+            if (table.flat_core)
+                node.edge_ripple[i] =
+                    static_cast<float>(edge_spectrum(table, node, radius_px, lattice_frequencies[i]) /
+                                       edge_spectrum(table, node, radius_px, 0.0));
+        }
     }
     return node;
 }
@@ -227,13 +252,16 @@ NodePair nodes_at(const FootprintTable& table, float radius_px) {
     return {&table.nodes[index], &table.nodes[index + 1], t};
 }
 
-float ripple(const NodePair& pair, float x_px, float y_px) {
-    const float r1 = pair(&FootprintNode::ripple_1);
-    if (std::fabs(r1) < 1e-6f) return 0.0f;
+/// Relative excess of the sum over all pixels over the integral, for a spectrum of either kind.
+float ripple(const NodePair& pair, float (FootprintNode::*spectrum)[3], float x_px, float y_px) {
+    const auto at = [&](int i) {
+        const float a = (pair.a->*spectrum)[i], b = (pair.b->*spectrum)[i];
+        return a + (b - a) * pair.t;
+    };
+    if (std::fabs(at(0)) < 1e-6f) return 0.0f;
     const float cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
     const float c2 = (2.0f * cx * cx - 1.0f) + (2.0f * cy * cy - 1.0f);
-    return 2.0f * r1 * (cx + cy) + 4.0f * pair(&FootprintNode::ripple_11) * (cx * cy) +
-           2.0f * pair(&FootprintNode::ripple_2) * c2;
+    return 2.0f * at(0) * (cx + cy) + 4.0f * at(1) * (cx * cy) + 2.0f * at(2) * c2;
 }
 
 }  // namespace
@@ -298,10 +326,15 @@ void footprint_at(const FootprintTable& table, float radius_px, float x_px, floa
     // mend.
     const bool tabulated = pair.b != &table.nodes.back() || pair.t > 0.0f;
     const float wanted = table.integral * tabulated_px * tabulated_px;
-    const float gain = tabulated ? wanted / (mass * (1.0f + ripple(pair, x_px, y_px))) : 1.0f;
+    const float found = mass * (1.0f + ripple(pair, &FootprintNode::ripple, x_px, y_px));
     footprint.support_px = table.support_px(tabulated_px);
-    footprint.amplitude = table.flat_core ? shrink : shrink * gain;
-    footprint.edge_gain = table.flat_core ? (gain - 1.0f) * mass / edge_mass : 0.0f;
+    footprint.amplitude = shrink;
+    footprint.edge_gain = 0.0f;
+    if (tabulated && table.flat_core)
+        footprint.edge_gain =
+            (wanted - found) / (edge_mass * (1.0f + ripple(pair, &FootprintNode::edge_ripple, x_px, y_px)));
+    else if (tabulated)
+        footprint.amplitude = shrink * (wanted / found);
 }
 
 float footprint_weight(const FootprintTable& table, const Footprint& footprint, float distance_px) {

@@ -24,9 +24,10 @@ namespace astrosplat {
 struct alignas(64) FootprintNode {
     static constexpr int segments = 16;
     float cubic[4][segments];
-    float mean, first_moment;             // of P over u: integral P du, integral P u du
-    float edge_mean, edge_first_moment;   // the same of P (1 - P)
-    float ripple_1, ripple_11, ripple_2;  // relative spectrum at frequencies (1,0), (1,1), (2,0) per px
+    float mean, first_moment;            // of P over u: integral P du, integral P u du
+    float edge_mean, edge_first_moment;  // the same of P (1 - P)
+    float ripple[3];  // spectrum of P at frequencies (1,0), (1,1), (2,0) per px, relative to its integral
+    float edge_ripple[3];  // the same of P (1 - P), for flat cores
 };
 
 struct FootprintTable {

@@ -1,0 +1,153 @@
+// Footprints: light at every size and place, flat cores, and the profile against a convolution done by brute
+// force.
+#include "render/footprint.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/real.h"
+#include "unit/render/scenes.h"
+
+namespace astrosplat {
+namespace {
+
+using testing::all_shapes;
+
+TEST(Falloff, IntegralsAreTheClosedForms) {
+    const double pi = real::pi;
+    EXPECT_NEAR(falloff_integral({Falloff::Shape::constant, 0.5f, 4.5f}), pi, 1e-6);
+    EXPECT_NEAR(falloff_integral({Falloff::Shape::linear, 0.5f, 4.5f}), pi / 3.0, 1e-6);
+    const double c = 0.375;
+    EXPECT_NEAR(falloff_integral({Falloff::Shape::trapezoid, 0.375f, 4.5f}), pi / 3.0 * (1.0 + c + c * c),
+                1e-6);
+    for (const float k : {0.5f, 4.5f, 40.0f}) {
+        const double e = std::exp(-double(k));
+        EXPECT_NEAR(falloff_integral({Falloff::Shape::gaussian, 0.5f, k}),
+                    pi * ((1.0 - e) / k - e) / (1.0 - e), 2e-6);
+        EXPECT_NEAR(falloff_integral({Falloff::Shape::exponential, 0.5f, k}),
+                    2.0 * pi * ((1.0 - e * (1.0 + k)) / (double(k) * k) - 0.5 * e) / (1.0 - e), 2e-6);
+    }
+}
+
+TEST(Falloff, StartsAtOneAndEndsAtZero) {
+    for (const Falloff::Shape shape : all_shapes) {
+        const Falloff falloff{shape, 0.5f, 4.5f};
+        EXPECT_EQ(falloff_value(falloff, 0.0), 1.0);
+        EXPECT_EQ(falloff_value(falloff, 1.0), 0.0);
+        EXPECT_EQ(falloff_value(falloff, 2.0), 0.0);
+        for (int i = 1; i <= 100; ++i)
+            EXPECT_LE(falloff_value(falloff, i * 0.01), falloff_value(falloff, (i - 1) * 0.01));
+    }
+    EXPECT_EQ(falloff_value({Falloff::Shape::trapezoid, 0.5f, 4.5f}, 0.5), 1.0);
+    EXPECT_NEAR(falloff_value({Falloff::Shape::trapezoid, 0.5f, 4.5f}, 0.75), 0.5, 1e-6);
+}
+
+/// Sum of the weights at all pixel centres.
+double pixel_sum(const FootprintTable& table, float radius_px, float x_px, float y_px) {
+    Footprint footprint;
+    footprint_at(table, radius_px, x_px, y_px, footprint);
+    const int reach = static_cast<int>(footprint.support_px) + 2;
+    double sum = 0.0;
+    for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+            const float dx = static_cast<float>(x) + 0.5f - x_px, dy = static_cast<float>(y) + 0.5f - y_px;
+            sum += footprint_weight(table, footprint, std::sqrt(dx * dx + dy * dy));
+        }
+    return sum;
+}
+
+struct FootprintCase {
+    Falloff falloff;
+    float pixel_filter_px;
+};
+
+class FootprintLight : public ::testing::TestWithParam<FootprintCase> {};
+
+// The sum over all pixels is the falloff's integral times the squared radius, within 0.5 %, from 0.02 to 500
+// px.
+TEST_P(FootprintLight, IsConservedAtEverySizeAndOffset) {
+    const FootprintTable table = make_footprint_table(GetParam().falloff, GetParam().pixel_filter_px);
+    const double integral = falloff_integral(GetParam().falloff);
+    double worst = 0.0;
+    for (const float radius :
+         {0.02f, 0.05f, 0.1f, 0.2f, 0.3f, 0.45f, 0.6f,  0.8f,  1.0f,  1.13f, 1.3f,   1.5f,   1.8f,  2.05f,
+          2.5f,  3.0f,  3.7f, 5.0f, 7.3f, 10.0f, 13.0f, 20.0f, 33.0f, 60.0f, 100.0f, 230.0f, 500.0f}) {
+        const int offsets = radius < 40.0f ? 8 : 2;
+        for (int i = 0; i < offsets; ++i)
+            for (int j = 0; j < offsets; ++j) {
+                const float x = static_cast<float>((i * 256 / offsets + 3) % 256) / 256.0f;
+                const float y = static_cast<float>((j * 256 / offsets + 7) % 256) / 256.0f;
+                const double error = pixel_sum(table, radius, x, y) / (integral * radius * radius) - 1.0;
+                worst = std::max(worst, std::fabs(error));
+                EXPECT_NEAR(error, 0.0, 0.005) << "radius " << radius << " at " << x << ", " << y;
+            }
+    }
+    RecordProperty("worst", std::to_string(worst));
+}
+
+INSTANTIATE_TEST_SUITE_P(AllFalloffs, FootprintLight,
+                         ::testing::Values(FootprintCase{{Falloff::Shape::constant, 0.5f, 4.5f}, 0.5f},
+                                           FootprintCase{{Falloff::Shape::linear, 0.5f, 4.5f}, 0.5f},
+                                           FootprintCase{{Falloff::Shape::trapezoid, 0.5f, 4.5f}, 0.5f},
+                                           FootprintCase{{Falloff::Shape::trapezoid, 0.98f, 4.5f}, 0.5f},
+                                           FootprintCase{{Falloff::Shape::gaussian, 0.5f, 4.5f}, 0.5f},
+                                           FootprintCase{{Falloff::Shape::gaussian, 0.5f, 40.0f}, 0.5f},
+                                           FootprintCase{{Falloff::Shape::exponential, 0.5f, 4.5f}, 0.5f},
+                                           FootprintCase{{Falloff::Shape::exponential, 0.5f, 30.0f}, 0.5f},
+                                           FootprintCase{{Falloff::Shape::constant, 0.5f, 4.5f}, 0.3f},
+                                           FootprintCase{{Falloff::Shape::gaussian, 0.5f, 4.5f}, 0.3f},
+                                           FootprintCase{{Falloff::Shape::constant, 0.5f, 4.5f}, 2.0f},
+                                           FootprintCase{{Falloff::Shape::gaussian, 0.5f, 4.5f}, 2.0f}));
+
+// From four filter deviations inside the edge of a constant disc, the weight is exactly 1.
+TEST(Footprint, ConstantDiscIsExactlyOneInside) {
+    for (const float filter : {0.3f, 0.5f, 1.0f, 2.0f}) {
+        const FootprintTable table = make_footprint_table({Falloff::Shape::constant, 0.5f, 4.5f}, filter);
+        for (const float radius : {2.01f, 2.06f, 2.5f, 3.0f, 8.1f, 9.0f, 47.3f, 500.0f, 3000.0f}) {
+            Footprint footprint;
+            footprint_at(table, radius, 0.25f, 0.5f, footprint);
+            if (radius <= 4.0f * filter) continue;
+            for (int i = 0; i <= 100; ++i) {
+                const float d = (radius - 4.0f * filter) * static_cast<float>(i) * 0.0099f;
+                ASSERT_EQ(footprint_weight(table, footprint, d), 1.0f) << filter << " " << radius << " " << d;
+            }
+        }
+    }
+}
+
+/// The falloff convolved with the Gaussian filter at distance d, by summing over a fine grid of the filter.
+double convolved(const Falloff& falloff, double radius, double sigma, double d) {
+    constexpr int steps = 160;
+    double sum = 0.0, mass = 0.0;
+    for (int j = 0; j < steps; ++j)
+        for (int i = 0; i < steps; ++i) {
+            const double x = (i + 0.5 - steps / 2) * 8.0 / steps, y = (j + 0.5 - steps / 2) * 8.0 / steps;
+            if (x * x + y * y > 16.0) continue;
+            const double g = std::exp(-0.5 * (x * x + y * y));
+            const double px = d + sigma * x, py = sigma * y;
+            sum += g * falloff_value(falloff, std::sqrt(px * px + py * py) / radius);
+            mass += g;
+        }
+    return sum / mass;
+}
+
+TEST(Footprint, ProfileIsTheConvolution) {
+    for (const Falloff::Shape shape : all_shapes) {
+        const Falloff falloff{shape, 0.5f, 4.5f};
+        const FootprintTable table = make_footprint_table(falloff, 0.5f);
+        for (const float radius : {0.7f, 1.6f, 3.1f, 8.7f, 40.0f}) {
+            Footprint footprint;
+            footprint_at(table, radius, 0.25f, 0.25f,
+                         footprint);  // where the ripple's first harmonics cancel
+            for (int i = 0; i <= 40; ++i) {
+                const float d = (radius + 2.0f) * static_cast<float>(i) / 40.0f;
+                EXPECT_NEAR(footprint_weight(table, footprint, d), convolved(falloff, radius, 0.5, d), 0.004)
+                    << "shape " << int(shape) << " radius " << radius << " d " << d;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat

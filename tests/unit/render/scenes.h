@@ -1,0 +1,74 @@
+// Small hand-made sets of splats and cameras whose pictures can be worked out by hand.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "render/falloff.h"
+#include "render/render.h"
+
+namespace astrosplat::testing {
+
+inline constexpr Falloff::Shape all_shapes[] = {Falloff::Shape::constant, Falloff::Shape::linear,
+                                                Falloff::Shape::trapezoid, Falloff::Shape::gaussian,
+                                                Falloff::Shape::exponential};
+
+struct OneSplat {
+    glm::vec3 position{0.0f};
+    float radius = 1.0f;
+    float alpha = 1.0f;
+    glm::vec3 color{1.0f};
+};
+
+inline ShadedSplats make_splats(const std::vector<OneSplat>& splats) {
+    ShadedSplats set;
+    for (const OneSplat& s : splats) {
+        set.id.push_back(set.id.size());
+        set.position.push_back(s.position);
+        set.radius.push_back(s.radius);
+        set.alpha.push_back(s.alpha);
+        set.color.push_back(s.color);
+    }
+    return set;
+}
+
+/// Orthographic, one scene unit is one pixel, x right, y up, the origin in the middle of the picture, looking
+/// at -z from z = 1000.
+inline Camera pixel_camera(double width_px, double height_px) {
+    Camera camera;
+    camera.projection = Projection::orthographic;
+    camera.eye = {0.0, 0.0, 1000.0};
+    camera.focal_px = 1.0;
+    camera.center_x_px = 0.5 * width_px;
+    camera.center_y_px = 0.5 * height_px;
+    camera.aspect = width_px / height_px;
+    return camera;
+}
+
+inline RenderLayer layer_of(const char* name, const ShadedSplats& splats, Blend blend = Blend::over,
+                            Falloff::Shape shape = Falloff::Shape::constant) {
+    RenderLayer layer;
+    layer.name = name;
+    layer.splats = &splats;
+    layer.render.blend = blend;
+    layer.render.falloff.shape = shape;
+    return layer;
+}
+
+inline RenderSettings settings_of(std::int64_t width, std::int64_t height) {
+    RenderSettings settings;
+    settings.width = width;
+    settings.height = height;
+    return settings;
+}
+
+/// Sum of one channel over all pixels.
+inline double total(const Image& image, int channel) {
+    double sum = 0.0;
+    for (std::size_t i = static_cast<std::size_t>(channel); i < image.pixels.size();
+         i += static_cast<std::size_t>(image.channels))
+        sum += image.pixels[i];
+    return sum;
+}
+
+}  // namespace astrosplat::testing
