@@ -1,5 +1,5 @@
-// Scene files (TOML) to Scene values. Precedence: defaults < preset < scene < --set. Every error is one line with
-// file, line and the nearest known key; nothing half-loaded is ever returned.
+// Scene files (TOML) to Scene values. Precedence: defaults < preset < scene < --set. Every error is one line
+// with file, line and the nearest known key; nothing half-loaded is ever returned.
 #pragma once
 
 #include <filesystem>
@@ -24,8 +24,8 @@ Scene load_scene(const std::filesystem::path& file, std::span<const Assignment> 
 Scene parse_scene(const std::string& toml, const std::filesystem::path& file,
                   std::span<const Assignment> assignments = {});
 
-/// Frames of "1-100,120,200-300x2" (x or : is the step; negative numbers allowed), ascending, each once. Throws
-/// InputError naming `place`.
+/// Frames of "1-100,120,200-300x2" (x or : is the step; negative numbers allowed), ascending, each once.
+/// Throws InputError naming `place`.
 std::vector<std::int64_t> parse_frames(const std::string& text, const std::string& place);
 
 }  // namespace astrosplat

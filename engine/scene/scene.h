@@ -1,5 +1,6 @@
 // A scene: sources + looks + layers + camera + environment + animation + output, as plain values (SCENE.md).
-// load.h reads it from TOML, save.h writes it back, describe.h lists every parameter, animate.h evaluates frame k.
+// load.h reads it from TOML, save.h writes it back, describe.h lists every parameter, animate.h evaluates
+// frame k.
 #pragma once
 
 #include <filesystem>
@@ -59,8 +60,8 @@ struct LayerParams {
     bool operator==(const LayerParams&) const = default;
 };
 
-/// One animated key path, as in the file. Values are kept as numbers per component: scalars 1, colours and vectors 3,
-/// rotations 4; booleans 0 or 1; choices by their index.
+/// One animated key path, as in the file. Values are kept as numbers per component: scalars 1, colours and
+/// vectors 3, rotations 4; booleans 0 or 1; choices by their index.
 struct Track {
     std::string key;  // "camera.position", "layer.stars.render.core"
     std::vector<Key<std::vector<double>>> keys;
@@ -71,7 +72,8 @@ struct Track {
 };
 
 struct Scene {
-    std::filesystem::path file;  // where it was loaded from; paths in it are already resolved against its folder
+    std::filesystem::path
+        file;  // where it was loaded from; paths in it are already resolved against its folder
     OutputParams output;
     CameraParams camera;
     EnvironmentParams environment;

@@ -1,0 +1,63 @@
+// Tracks into values: positions move along a curve, rotations slerp, everything else goes component by
+// component; booleans, choices and whole numbers step.
+#include "scene/animate.h"
+
+#include <cmath>
+
+#include "scene/describe.h"
+
+namespace astrosplat {
+namespace {
+
+using Keys = std::vector<Key<std::vector<double>>>;
+
+std::vector<Key<double>> component(const Keys& keys, std::size_t index, bool steps) {
+    std::vector<Key<double>> scalar;
+    for (const auto& key : keys)
+        scalar.push_back({key.frame, key.value.at(index), steps ? Interpolation::step : key.interpolation});
+    return scalar;
+}
+
+std::vector<double> evaluate_position_track(const Track& track, double frame) {
+    std::vector<Key<glm::dvec3>> keys;
+    for (const auto& key : track.keys)
+        keys.push_back({key.frame, {key.value.at(0), key.value.at(1), key.value.at(2)}, key.interpolation});
+    const glm::dvec3 p = evaluate_position(keys, frame, track.ends, track.constant_speed);
+    return {p.x, p.y, p.z};
+}
+
+std::vector<double> evaluate_rotation_track(const Track& track, double frame) {
+    std::vector<Key<glm::dvec4>> keys;
+    for (const auto& key : track.keys) {
+        const glm::dvec4 q(key.value.at(0), key.value.at(1), key.value.at(2), key.value.at(3));
+        const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+        keys.push_back({key.frame, q / length, key.interpolation});
+    }
+    const glm::dvec4 q = evaluate_rotation(keys, frame, track.ends);
+    return {q.x, q.y, q.z, q.w};
+}
+
+std::vector<double> evaluate(const Track& track, const ParameterSpec& spec, double frame) {
+    if (spec.type == ParameterType::position) return evaluate_position_track(track, frame);
+    if (spec.type == ParameterType::rotation) return evaluate_rotation_track(track, frame);
+    std::vector<double> numbers;
+    const bool steps = spec.animation == Animation::steps;
+    for (std::size_t i = 0; i < track.keys.front().value.size(); ++i)
+        numbers.push_back(evaluate_scalar(component(track.keys, i, steps), frame, track.ends));
+    return numbers;
+}
+
+}  // namespace
+
+Scene scene_at(const Scene& scene, double frame) {
+    Scene still = scene;
+    const Description description = describe(still);
+    for (const Track& track : scene.animation) {
+        const Parameter* parameter = find_parameter(description, track.key);
+        if (!parameter || track.keys.empty()) continue;  // of a layer that was taken out
+        parameter->set(from_numbers(parameter->spec, evaluate(track, parameter->spec, frame)));
+    }
+    return still;
+}
+
+}  // namespace astrosplat

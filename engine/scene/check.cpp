@@ -1,0 +1,119 @@
+// Rules between parameters, each with its message.
+#include "scene/check.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "scene/load.h"
+
+namespace astrosplat {
+namespace {
+
+struct Checker {
+    std::string file;
+    const Places& places;
+
+    /// Fails unless `holds`; `keys` are those the rule is about, the message is "KEY: expected ..., found
+    /// ...".
+    void require(bool holds, std::initializer_list<std::string> keys, const std::string& message) const {
+        if (holds) return;
+        std::string place = file, named = *keys.begin();
+        for (const std::string& key : keys) {
+            const auto found = places.find(key);
+            if (found == places.end()) continue;
+            place = found->second;
+            named = key;
+        }
+        throw InputError(fmt::format("{}: {}: {}", place, named, message));
+    }
+};
+
+void check_curve(const DensityCurve& curve, const std::string& at, const Checker& check) {
+    check.require(curve.shape != DensityCurve::Shape::curve || curve.points.size() >= 2,
+                  {at + "points", at + "shape"},
+                  "expected at least 2 points for shape \"curve\", found none");
+}
+
+void check_look(const Look& look, const std::string& at, const Checker& check) {
+    check_curve(look.pdf, at + "pdf.", check);
+    for (std::size_t i = 0; i < look.thickness.keys.size(); ++i)
+        check_curve(look.thickness.keys[i].pdf, fmt::format("{}thickness.keys.{}.", at, i), check);
+    check.require(look.thickness.map.empty() || !look.thickness.keys.empty(), {at + "thickness.map"},
+                  "expected thickness.keys that the map's colours stand for, found none");
+    check.require(!look.thickness.map.empty() || look.thickness.keys.size() <= 1, {at + "thickness.keys"},
+                  "expected a thickness.map for several keys, found none");
+    check.require(look.vertical.shape != VerticalAlpha::Shape::curve || look.vertical.points.size() >= 2,
+                  {at + "vertical.points", at + "vertical.shape"},
+                  "expected at least 2 points for shape \"curve\", found none");
+    check.require(
+        look.radius.min <= look.radius.max, {at + "radius.min", at + "radius.max"},
+        fmt::format("expected min not above max, found {} and {}", look.radius.min, look.radius.max));
+}
+
+void check_source(const SourceParams& source, const std::string& at, const Checker& check) {
+    check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at + "meshes", at + "kind", at},
+                  "expected at least one mesh, found none");
+    for (std::size_t i = 0; i < source.meshes.size(); ++i) {
+        const std::string mesh = fmt::format("{}meshes.{}", at, i);
+        check.require(!source.meshes[i].mesh.empty(), {mesh + ".mesh", mesh},
+                      "expected mesh = a file or plane, relief, disk, sphere, found none");
+        const std::size_t pictures = source.meshes[i].texture.size();
+        check.require(
+            pictures <= 1 || pictures == 3, {mesh + ".texture"},
+            fmt::format("expected one picture, or three for red, green and blue, found {}", pictures));
+    }
+    check.require(source.kind != SourceKind::splats || !source.file.empty(), {at + "file", at + "kind"},
+                  "expected a splat file for kind \"splats\", found none");
+    check.require(!source.voxels || source.voxel_size == 0.0, {at + "voxels", at + "voxel_size"},
+                  "expected voxels or voxel_size, found both");
+    const TextureSettings& t = source.texture;
+    check.require(!t.black || !t.white || *t.black < *t.white, {at + "black", at + "white"},
+                  "expected black below white, found " +
+                      (t.black && t.white ? short_number(*t.black) + " and " + short_number(*t.white) : ""));
+}
+
+void check_layer(const LayerParams& layer, const Checker& check) {
+    const std::string at = "layer." + layer.name + ".";
+    check_source(layer.source, at + "source.", check);
+    check_look(layer.look, at + "look.", check);
+    check.require(layer.render.hybrid_from_deg < layer.render.hybrid_to_deg,
+                  {at + "render.hybrid.from_deg", at + "render.hybrid.to_deg"},
+                  fmt::format("expected from_deg below to_deg, found {} and {}", layer.render.hybrid_from_deg,
+                              layer.render.hybrid_to_deg));
+    check.require(layer.axis != glm::dvec3(0.0), {at + "axis"}, "expected a direction, found 0, 0, 0");
+}
+
+}  // namespace
+
+void check_layer_name(const std::string& name, const std::string& place) {
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    bool good = !name.empty() && letter(name[0]);
+    for (const char c : name) good = good && (letter(c) || (c >= '0' && c <= '9') || c == '_');
+    if (good) return;
+    throw InputError(fmt::format(
+        "{}: layer.name: expected letters, digits and _ beginning with a letter, found '{}'", place, name));
+}
+
+void check_scene(const Scene& scene, const std::string& file, const Places& places) {
+    const Checker check{file, places};
+    const auto frames = places.find("output.frames");
+    parse_frames(scene.output.frames, (frames == places.end() ? file : frames->second) + ": output.frames");
+    check.require(!scene.output.path.empty(), {"output.path"}, "expected a file name, found an empty one");
+    const CameraParams& c = scene.camera;
+    check.require(c.up != glm::dvec3(0.0), {"camera.up"}, "expected a direction, found 0, 0, 0");
+    check.require(!c.rotation || *c.rotation != glm::dvec4(0.0), {"camera.rotation"},
+                  "expected a quaternion that is not zero, found 0, 0, 0, 0");
+    check.require(c.far == 0.0 || c.far > c.near, {"camera.near", "camera.far"},
+                  fmt::format("expected far beyond near or 0, found {} and {}", short_number(c.near),
+                              short_number(c.far)));
+    const EnvironmentParams& e = scene.environment;
+    check.require(e.cube.empty() || e.cube.size() == 6, {"environment.cube"},
+                  fmt::format("expected six pictures, found {}", e.cube.size()));
+    check.require(e.image.empty() || e.cube.empty(), {"environment.image", "environment.cube"},
+                  "expected image or cube, found both");
+    if (scene.layers.empty())
+        throw InputError(fmt::format("{}: expected at least one [[layer]], found none", file));
+    for (const LayerParams& layer : scene.layers) check_layer(layer, check);
+}
+
+}  // namespace astrosplat

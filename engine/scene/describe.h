@@ -1,0 +1,41 @@
+// Every parameter of a scene, described once: describe() lists them all with key, words, range and a handle
+// on the field. Loading, saving, --set, the manual, animation and the window's sliders are loops over this
+// list. To add a parameter: a field, one line in describe.cpp or describe_layer.cpp, and its use.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/parameter.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// All parameters of the scene, "output.resolution" ... "layer.NAME.look.alpha.power", in the order of the
+/// manual. The handles point into `scene`.
+Description describe(Scene& scene);
+
+/// Those of a preset file: "look.density" ... "render.isolate".
+Description describe_preset(Look& look, LayerRender& render);
+
+/// The key with "0" put in where a list's index is left out: layer.a.look.noise.cull is noise.0.cull.
+std::string full_key(const Description& description, const std::string& key);
+
+/// The parameter of a full key, or one with left-out indices; nullptr when there is none.
+const Parameter* find_parameter(const Description& description, const std::string& key);
+
+/// Sections of a scene file: "output", "layer.look", ... ; `key` may be generic or of one layer. "" at the
+/// top.
+std::string section_of(const std::string& generic_key);
+
+/// One row of the manual, from a scene with one layer and one element in every list.
+struct ParameterRow {
+    ParameterSpec spec;  // key == generic_key
+    Value standard;      // the default
+};
+const std::vector<ParameterRow>& parameter_rows();
+
+/// parameter_rows() as a table for a terminal: key, default, unit, range, animation and help.
+std::string parameter_table();
+
+}  // namespace astrosplat

@@ -1,0 +1,92 @@
+// Builds a Description: a place in the tree of keys plus one call per field.
+#pragma once
+
+#include <fmt/format.h>
+
+#include "scene/field.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// A spec with its words; the describer puts the section before the key.
+inline ParameterSpec spec(std::string key, std::string label, std::string unit, std::string help) {
+    ParameterSpec result;
+    result.key = std::move(key);
+    result.label = std::move(label);
+    result.unit = std::move(unit);
+    result.help = std::move(help);
+    return result;
+}
+
+class Describer {
+  public:
+    Describer(Description& description, std::string prefix, std::string generic_prefix, bool animated)
+        : description_(&description),
+          prefix_(std::move(prefix)),
+          generic_prefix_(std::move(generic_prefix)),
+          animated_(animated) {}
+
+    Describer section(const std::string& name, bool animated) const {
+        return {*description_, prefix_ + name + ".", generic_prefix_ + name + ".", animated};
+    }
+
+    /// Describes one field. Its type follows from the field, unless the spec says more (color, position,
+    /// ...).
+    template <class T>
+    void operator()(ParameterSpec field_spec, T& field) const {
+        Field<T>::describe(field_spec);
+        place(field_spec, animated_);
+        add(std::move(field_spec), field);
+    }
+
+    /// The same, but never (false) or always (true) animated, whatever the section says.
+    template <class T>
+    void operator()(ParameterSpec field_spec, T& field, bool animated) const {
+        Field<T>::describe(field_spec);
+        place(field_spec, animated);
+        add(std::move(field_spec), field);
+    }
+
+    /// A parameter that is not one field: with its own way in and out; the spec names its type.
+    void custom(ParameterSpec field_spec, std::function<Value(const ParameterSpec&)> get,
+                std::function<void(const Value&, const ParameterSpec&)> set) const {
+        place(field_spec, animated_);
+        description_->parameters.push_back({field_spec, [get, field_spec] { return get(field_spec); },
+                                            [set, field_spec](const Value& v) { set(v, field_spec); }});
+    }
+
+    /// A list of tables, each element described by `describe_element(describer, element)`.
+    template <class T, class DescribeElement>
+    void list(const std::string& key, std::vector<T>& elements, DescribeElement describe_element) const {
+        std::vector<T>* const list = &elements;
+        description_->lists.push_back({prefix_ + key, generic_prefix_ + key, [list] { return list->size(); },
+                                       [list](std::size_t size) { list->resize(size); }});
+        for (std::size_t i = 0; i < elements.size(); ++i) {
+            const Describer element(*description_, fmt::format("{}{}.{}.", prefix_, key, i),
+                                    generic_prefix_ + key + ".", animated_);
+            describe_element(element, elements[i]);
+        }
+    }
+
+  private:
+    void place(ParameterSpec& field_spec, bool animated) const;
+
+    template <class T>
+    void add(ParameterSpec field_spec, T& field) const {
+        T* const target = &field;
+        description_->parameters.push_back(
+            {field_spec, [target, field_spec] { return Field<T>::get(*target, field_spec); },
+             [target, field_spec](const Value& value) { *target = Field<T>::set(value, field_spec); }});
+    }
+
+    Description* description_;
+    std::string prefix_, generic_prefix_;
+    bool animated_;
+};
+
+/// The keys of one layer; the describer stands at "layer.NAME.".
+void describe_layer(const Describer& d, LayerParams& layer);
+void describe_look(const Describer& d, Look& look);
+void describe_render(const Describer& d, LayerRender& render);
+
+}  // namespace astrosplat

@@ -1,0 +1,176 @@
+// Field<T>: how a C++ field of type T is written as a Value and read back, with the checks of its
+// ParameterSpec. A new kind of field needs one more specialisation here and nothing elsewhere.
+#pragma once
+
+#include <concepts>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+
+#include "scene/parameter.h"
+
+namespace astrosplat {
+
+// The checks, without templates. Each throws ValueError.
+bool boolean_of(const Value& value);
+std::int64_t integer_of(const Value& value, const ParameterSpec& spec);  // whole floats such as 2e6 count
+double number_of(const Value& value, const ParameterSpec& spec);         // finite and in range
+float float_of(const Value& value, const ParameterSpec& spec);
+std::vector<double> numbers_of(const Value& value, const ParameterSpec& spec);  // spec.components of them
+std::string text_of(const Value& value, const ParameterSpec& spec);
+std::size_t choice_of(const Value& value, const ParameterSpec& spec);  // index into spec.choices
+std::vector<std::string> words_of(const Value& value, const ParameterSpec& spec);
+std::vector<std::filesystem::path> files_of(const Value& value, const ParameterSpec& spec);
+std::vector<glm::vec2> curve_of(const Value& value, const ParameterSpec& spec);
+Value choice_value(const std::string& name);  // "true" and "false" as booleans
+Value files_value(const std::vector<std::filesystem::path>& files, const ParameterSpec& spec);
+Value curve_value(const std::vector<glm::vec2>& points);
+
+inline double widened(double x) { return x; }
+inline double widened(float x) { return widen(x); }
+
+template <class T>
+struct Field;
+
+template <>
+struct Field<bool> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::boolean; }
+    static Value get(bool field, const ParameterSpec&) { return field; }
+    static bool set(const Value& value, const ParameterSpec&) { return boolean_of(value); }
+};
+
+template <std::integral T>
+requires(!std::same_as<T, bool>) struct Field<T> {
+    static void describe(ParameterSpec& spec) {
+        spec.type = ParameterType::integer;
+        spec.min = std::max(spec.min, static_cast<double>(std::numeric_limits<T>::min()));
+        spec.max = std::min(spec.max, static_cast<double>(std::numeric_limits<T>::max()));
+    }
+    static Value get(T field, const ParameterSpec&) { return static_cast<std::int64_t>(field); }
+    static T set(const Value& value, const ParameterSpec& spec) {
+        return static_cast<T>(integer_of(value, spec));
+    }
+};
+
+template <>
+struct Field<double> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::number; }
+    static Value get(double field, const ParameterSpec&) { return field; }
+    static double set(const Value& value, const ParameterSpec& spec) { return number_of(value, spec); }
+};
+
+template <>
+struct Field<float> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::number; }
+    static Value get(float field, const ParameterSpec&) { return widen(field); }
+    static float set(const Value& value, const ParameterSpec& spec) { return float_of(value, spec); }
+};
+
+template <class T>
+requires std::is_enum_v<T>
+struct Field<T> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::choice; }
+    static Value get(T field, const ParameterSpec& spec) {
+        return choice_value(spec.choices.at(static_cast<std::size_t>(field)));
+    }
+    static T set(const Value& value, const ParameterSpec& spec) {
+        return static_cast<T>(choice_of(value, spec));
+    }
+};
+
+template <>
+struct Field<std::string> {
+    static void describe(ParameterSpec& spec) {
+        if (spec.type == ParameterType::number) spec.type = ParameterType::text;
+    }
+    static Value get(const std::string& field, const ParameterSpec&) { return field; }
+    static std::string set(const Value& value, const ParameterSpec& spec) { return text_of(value, spec); }
+};
+
+template <>
+struct Field<std::vector<std::string>> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::words; }
+    static Value get(const std::vector<std::string>& field, const ParameterSpec&) {
+        return Value::List(field.begin(), field.end());
+    }
+    static std::vector<std::string> set(const Value& value, const ParameterSpec& spec) {
+        return words_of(value, spec);
+    }
+};
+
+template <>
+struct Field<std::filesystem::path> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::file; }
+    static Value get(const std::filesystem::path& field, const ParameterSpec&) { return field.string(); }
+    static std::filesystem::path set(const Value& value, const ParameterSpec& spec) {
+        return text_of(value, spec);
+    }
+};
+
+template <>
+struct Field<std::vector<std::filesystem::path>> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::files; }
+    static Value get(const std::vector<std::filesystem::path>& field, const ParameterSpec& spec) {
+        return files_value(field, spec);
+    }
+    static std::vector<std::filesystem::path> set(const Value& value, const ParameterSpec& spec) {
+        return files_of(value, spec);
+    }
+};
+
+template <>
+struct Field<std::vector<glm::vec2>> {
+    static void describe(ParameterSpec& spec) { spec.type = ParameterType::curve; }
+    static Value get(const std::vector<glm::vec2>& field, const ParameterSpec&) { return curve_value(field); }
+    static std::vector<glm::vec2> set(const Value& value, const ParameterSpec& spec) {
+        return curve_of(value, spec);
+    }
+};
+
+template <int N, class T>
+struct Field<glm::vec<N, T>> {
+    using Vector = glm::vec<N, T>;
+    static void describe(ParameterSpec& spec) {
+        if (spec.type == ParameterType::number) spec.type = ParameterType::vector;
+        spec.components = N;
+    }
+    static Value get(const Vector& field, const ParameterSpec&) {
+        Value::List list;
+        for (int i = 0; i < N; ++i) {
+            if constexpr (std::integral<T>)
+                list.emplace_back(static_cast<std::int64_t>(field[i]));
+            else
+                list.emplace_back(widened(field[i]));
+        }
+        return list;
+    }
+    static Vector set(const Value& value, const ParameterSpec& spec) {
+        const std::vector<double> numbers = numbers_of(value, spec);
+        Vector field;
+        for (int i = 0; i < N; ++i) {
+            if constexpr (std::integral<T>)
+                field[i] = integer_of(numbers[static_cast<std::size_t>(i)], spec);
+            else if constexpr (std::same_as<T, float>)
+                field[i] = float_of(numbers[static_cast<std::size_t>(i)], spec);
+            else
+                field[i] = numbers[static_cast<std::size_t>(i)];
+        }
+        return field;
+    }
+};
+
+template <class T>
+struct Field<std::optional<T>> {
+    static void describe(ParameterSpec& spec) { Field<T>::describe(spec); }
+    static Value get(const std::optional<T>& field, const ParameterSpec& spec) {
+        return field ? Field<T>::get(*field, spec) : spec.nothing;
+    }
+    static std::optional<T> set(const Value& value, const ParameterSpec& spec) {
+        if (value == spec.nothing) return std::nullopt;
+        return Field<T>::set(value, spec);
+    }
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,261 @@
+// Loading: TOML -> layers -> presets -> keys of the scene -> tracks -> assignments -> checks, all in a fresh
+// Scene that is returned only when everything was right.
+#include "scene/load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "scene/check.h"
+#include "scene/describe.h"
+#include "scene/entries.h"
+#include "scene/suggest.h"
+#include "scene/tracks.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+void check_version(const toml::table& table, const std::string& file, bool required) {
+    const toml::node* node = table.get("astrosplat");
+    if (!node && !required) return;
+    if (!node)
+        throw InputError(fmt::format("{}: expected a scene that begins with 'astrosplat = 1', found {}", file,
+                                     table.empty() ? "an empty file" : "no such line"));
+    const std::string place = place_of(file, node->source());
+    if (!node->is_integer())
+        throw InputError(
+            fmt::format("{}: astrosplat: expected the format version 1, found {}", place, kind_of(*node)));
+    if (node->as_integer()->get() != 1)
+        throw InputError(fmt::format("{}: astrosplat: expected the format version 1, found {}", place,
+                                     node->as_integer()->get()));
+}
+
+/// One layer of the file: its table, and what names it in keys.
+struct LayerTable {
+    const toml::table* table;
+    std::string name;
+};
+
+std::vector<LayerTable> read_layers(const toml::table& root, const std::string& file) {
+    std::vector<LayerTable> layers;
+    const toml::node* node = root.get("layer");
+    if (!node) return layers;
+    const toml::array* array = list_of_tables(*node);
+    if (!array)
+        throw InputError(fmt::format("{}: layer: expected [[layer]], found {}",
+                                     place_of(file, node->source()), kind_of(*node)));
+    for (const toml::node& element : *array) {
+        const toml::table& table = *element.as_table();
+        const toml::node* name = table.get("name");
+        const std::string place = place_of(file, name ? name->source() : table.source());
+        if (!name) throw InputError(fmt::format("{}: layer: expected a name, found none", place));
+        if (!name->is_string())
+            throw InputError(
+                fmt::format("{}: layer.name: expected a string, found {}", place, kind_of(*name)));
+        const std::string text = name->as_string()->get();
+        check_layer_name(text, place);
+        for (const LayerTable& other : layers)
+            if (other.name == text)
+                throw InputError(
+                    fmt::format("{}: layer.name: expected each name once, found '{}' twice", place, text));
+        layers.push_back({&table, text});
+    }
+    return layers;
+}
+
+/// NAME.rest of "layer.NAME.rest"; empty where the key is of no layer.
+std::string layer_of(const std::string& key) {
+    if (key.rfind("layer.", 0) != 0) return "";
+    return key.substr(6, key.find('.', 6) - 6);
+}
+
+/// A value typed on the command line: TOML where it is TOML, otherwise the text itself.
+toml::table parse_raw(const std::string& raw) {
+    try {
+        toml::table table = toml::parse(std::string_view("value = " + raw));
+        if (table.size() == 1 && raw.find('\n') == std::string::npos) return table;
+    } catch (const toml::parse_error&) {
+        // a bare word
+    }
+    return toml::table{{"value", raw}};
+}
+
+class Loader {
+  public:
+    Loader(std::string file, fs::path folder) : file_(std::move(file)), folder_(std::move(folder)) {}
+
+    Scene load(const toml::table& root, std::span<const Assignment> assignments) {
+        check_version(root, file_, true);
+        const std::vector<LayerTable> layers = read_layers(root, file_);
+        for (const LayerTable& layer : layers) scene_.layers.emplace_back().name = layer.name;
+        for (std::size_t i = 0; i < layers.size(); ++i) load_preset(layers[i], scene_.layers[i], assignments);
+        read_keys(root, layers);
+        if (const toml::node* animation = root.get("animation")) {
+            if (!animation->is_table())
+                throw InputError(fmt::format("{}: animation: expected a table, found {}",
+                                             place_of(file_, animation->source()), kind_of(*animation)));
+            scene_.animation = read_tracks(*animation->as_table(), scene_, file_);
+        }
+        for (const Assignment& assignment : assignments) assign(assignment);
+        check_scene(scene_, file_, places_);
+        return std::move(scene_);
+    }
+
+  private:
+    void load_preset(const LayerTable& source, LayerParams& layer, std::span<const Assignment> assignments) {
+        const std::string key = "layer." + layer.name + ".preset";
+        EntryOrigin origin{file_, folder_};
+        std::vector<Entry> entries;
+        toml::table assigned;
+        std::string raw;
+        if (const toml::node* node = source.table->get("preset"))
+            flatten(*node, key, "layer.preset", origin, node->source(), entries);
+        for (const Assignment& assignment : assignments) {
+            if (assignment.key != key) continue;
+            raw = assignment.value;
+            assigned = parse_raw(raw);
+            origin = {"--set", "", true, "layer." + layer.name + "."};
+            entries = {{Entry::Kind::leaf, key, "layer.preset", "--set", {}, assigned.get("value"), &raw}};
+        }
+        apply_entries(
+            entries, origin, [this] { return describe(scene_); }, places_);
+        if (!layer.preset.empty()) read_preset(layer);
+    }
+
+    void read_preset(LayerParams& layer) {
+        const toml::table root = parse_toml(read_text_file(layer.preset), layer.preset.string());
+        check_version(root, layer.preset.string(), false);
+        const EntryOrigin origin{layer.preset.string(), layer.preset.parent_path(), false, ""};
+        std::vector<Entry> entries;
+        for (const auto& [key, node] : root)
+            if (key.str() != "astrosplat")
+                flatten(node, std::string(key.str()), std::string(key.str()), origin, key.source(), entries);
+        Places places;
+        apply_entries(
+            entries, origin, [&] { return describe_preset(layer.look, layer.render); }, places);
+        for (const auto& [key, place] : places) places_["layer." + layer.name + "." + key] = place;
+    }
+
+    void read_keys(const toml::table& root, const std::vector<LayerTable>& layers) {
+        const EntryOrigin origin{file_, folder_};
+        std::vector<Entry> entries;
+        for (const auto& [key, node] : root) {
+            const std::string name(key.str());
+            if (name == "astrosplat" || name == "layer" || name == "animation") continue;
+            flatten(node, name, name, origin, key.source(), entries);
+        }
+        for (const LayerTable& layer : layers)
+            for (const auto& [key, node] : *layer.table) {
+                const std::string name(key.str());
+                if (name == "preset") continue;  // read before everything else, perhaps replaced by --set
+                flatten(node, "layer." + layer.name + "." + name, "layer." + name, origin, key.source(),
+                        entries);
+            }
+        apply_entries(
+            std::move(entries), origin, [this] { return describe(scene_); }, places_);
+    }
+
+    void assign(const Assignment& assignment) {
+        const toml::table value = parse_raw(assignment.value);
+        const toml::node& node = *value.get("value");
+        std::string key = assignment.key;
+        if (key.rfind("animation.", 0) == 0) {
+            const std::string animated = key.substr(10);
+            add_track(read_track(animated, node, scene_, "--set"));
+            return;
+        }
+        const std::string layer = layer_of(key);
+        if (!layer.empty()) check_layer_exists(layer, key);
+        if (key == "layer." + layer + ".name") {
+            rename_layer(layer, node.is_string() ? node.as_string()->get() : assignment.value);
+            return;
+        }
+        EntryOrigin origin{"--set", "", true, layer.empty() ? "layer." : "layer." + layer + "."};
+        std::vector<Entry> entries;
+        flatten(node, key, key, origin, {}, entries);
+        for (Entry& entry : entries) {
+            entry.place = "--set";
+            if (entry.key == key) entry.raw = &assignment.value;
+        }
+        apply_entries(
+            entries, origin, [this] { return describe(scene_); }, places_);
+        for (const Entry& entry : entries) drop_track(entry.key);
+    }
+
+    void check_layer_exists(const std::string& name, const std::string& key) const {
+        std::vector<std::string> names;
+        for (const LayerParams& layer : scene_.layers) names.push_back(layer.name);
+        if (std::find(names.begin(), names.end(), name) != names.end()) return;
+        throw InputError(
+            fmt::format("--set: {}: unknown layer '{}'{}", key, name, did_you_mean(name, names)));
+    }
+
+    void rename_layer(const std::string& from, const std::string& to) {
+        check_layer_name(to, "--set");
+        const std::string old_head = "layer." + from + ".", new_head = "layer." + to + ".";
+        for (LayerParams& layer : scene_.layers) {
+            if (layer.name == to && to != from)
+                throw InputError(
+                    fmt::format("--set: layer.name: expected each name once, found '{}' twice", to));
+            if (layer.name == from) layer.name = to;
+        }
+        for (Track& track : scene_.animation)
+            if (track.key.rfind(old_head, 0) == 0) track.key = new_head + track.key.substr(old_head.size());
+    }
+
+    void add_track(Track track) {
+        for (Track& old : scene_.animation)
+            if (old.key == track.key) {
+                old = std::move(track);
+                return;
+            }
+        scene_.animation.push_back(std::move(track));
+    }
+
+    /// --set wins over the scene: a parameter set there is no longer animated.
+    void drop_track(const std::string& key) {
+        const std::string full = full_key(describe(scene_), key);
+        auto& tracks = scene_.animation;
+        const auto found =
+            std::find_if(tracks.begin(), tracks.end(), [&](const Track& t) { return t.key == full; });
+        if (found == tracks.end()) return;
+        log_info(fmt::format("--set {} replaces its animation", key));
+        tracks.erase(found);
+    }
+
+    std::string file_;
+    fs::path folder_;
+    Scene scene_;
+    Places places_;
+};
+
+}  // namespace
+
+Assignment parse_assignment(const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const auto trimmed = [](const std::string& part) {
+        const std::size_t first = part.find_first_not_of(" \t");
+        if (first == std::string::npos) return std::string();
+        return part.substr(first, part.find_last_not_of(" \t") - first + 1);
+    };
+    const std::string key = equals == std::string::npos ? "" : trimmed(text.substr(0, equals));
+    if (key.empty()) throw InputError(fmt::format("--set: expected KEY=VALUE, found '{}'", text));
+    return {key, trimmed(text.substr(equals + 1))};
+}
+
+Scene parse_scene(const std::string& toml, const fs::path& file, std::span<const Assignment> assignments) {
+    const toml::table root = parse_toml(toml, file.string());
+    Scene scene = Loader(file.string(), file.parent_path()).load(root, assignments);
+    scene.file = file;
+    return scene;
+}
+
+Scene load_scene(const fs::path& file, std::span<const Assignment> assignments) {
+    return parse_scene(read_text_file(file), file, assignments);
+}
+
+}  // namespace astrosplat

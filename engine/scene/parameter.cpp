@@ -1,0 +1,166 @@
+// Parameter specs: building them, putting their range in words, numbers per component for animation.
+#include "scene/parameter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace astrosplat {
+
+ParameterSpec& ParameterSpec::range(double lo, double hi) {
+    min = lo;
+    max = hi;
+    return slider(lo, hi);
+}
+ParameterSpec& ParameterSpec::at_least(double lo) {
+    min = lo;
+    return *this;
+}
+ParameterSpec& ParameterSpec::above(double lo) {
+    min = lo;
+    above_min = true;
+    return *this;
+}
+ParameterSpec& ParameterSpec::below(double hi) {
+    max = hi;
+    below_max = true;
+    return *this;
+}
+ParameterSpec& ParameterSpec::slider(double lo, double hi) {
+    slider_min = lo;
+    slider_max = hi;
+    return *this;
+}
+ParameterSpec& ParameterSpec::logarithmic() {
+    scale = Scale::logarithmic;
+    return *this;
+}
+ParameterSpec& ParameterSpec::as(ParameterType kind) {
+    type = kind;
+    return *this;
+}
+ParameterSpec& ParameterSpec::one_of(std::vector<std::string> names) {
+    choices = std::move(names);
+    return *this;
+}
+ParameterSpec& ParameterSpec::or_auto() {
+    nothing = Value("auto");
+    return *this;
+}
+ParameterSpec& ParameterSpec::or_no_text() {
+    nothing = Value("");
+    return *this;
+}
+
+namespace {
+
+std::string list_of(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    return text;
+}
+
+std::string range_words(const ParameterSpec& spec) {
+    // The limits of a 64-bit field are no news to anybody.
+    const bool low = spec.min > -9e18, high = spec.max < 9e18;
+    if (low && high && !spec.above_min && !spec.below_max)
+        return fmt::format(" from {} to {}", short_number(spec.min), short_number(spec.max));
+    std::string words;
+    if (low) words += fmt::format(" {} {}", spec.above_min ? "above" : "of at least", short_number(spec.min));
+    if (low && high) words += " and";
+    if (high) words += fmt::format(" {} {}", spec.below_max ? "below" : "of at most", short_number(spec.max));
+    return words;
+}
+
+}  // namespace
+
+std::string expectation(const ParameterSpec& spec) {
+    const std::string or_nothing = spec.nothing.text() ? " or \"" + *spec.nothing.text() + "\"" : "";
+    switch (spec.type) {
+        case ParameterType::boolean:
+            return "true or false";
+        case ParameterType::integer:
+            return "a whole number" + range_words(spec) + or_nothing;
+        case ParameterType::number:
+            return "a number" + range_words(spec) + or_nothing;
+        case ParameterType::text:
+            return spec.choices.empty() ? "a string" + or_nothing : list_of(spec.choices);
+        case ParameterType::choice:
+            return list_of(spec.choices);
+        case ParameterType::words:
+            return "a list of " + list_of(spec.choices);
+        case ParameterType::file:
+            return "a file name";
+        case ParameterType::files:
+            return "a file name or a list of them";
+        case ParameterType::pattern:
+            return "a file name with a frame token such as ####";
+        case ParameterType::curve:
+            return "a list of points [[x, y], ...]";
+        default:
+            return fmt::format("{} numbers", spec.components) + range_words(spec) + or_nothing;
+    }
+}
+
+std::vector<double> to_numbers(const ParameterSpec& spec, const Value& value) {
+    if (spec.type == ParameterType::choice) {
+        const std::string name = value.text() ? *value.text() : to_toml(value);
+        const auto found = std::find(spec.choices.begin(), spec.choices.end(), name);
+        return {static_cast<double>(found - spec.choices.begin())};
+    }
+    if (const auto* b = std::get_if<bool>(&value.data)) return {*b ? 1.0 : 0.0};
+    if (value.is_number()) return {value.number()};
+    std::vector<double> numbers;
+    if (const auto* list = value.list()) {
+        for (const Value& element : *list) {
+            const std::vector<double> inner = to_numbers(spec, element);
+            numbers.insert(numbers.end(), inner.begin(), inner.end());
+        }
+    }
+    return numbers;
+}
+
+static Value curve_from(const std::vector<double>& numbers) {
+    Value::List points;
+    float last = 0.0f;
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2) {
+        float x = static_cast<float>(numbers[i]);
+        // Points that move at different speeds may touch; the curve needs ascending x.
+        if (i > 0 && x <= last) x = std::nextafter(last, std::numeric_limits<float>::infinity());
+        last = x;
+        points.push_back(Value::List{widen(x), numbers[i + 1]});
+    }
+    return points;
+}
+
+Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers) {
+    const double first = numbers.empty() ? 0.0 : numbers[0];
+    const auto clamped = [&](double x) {
+        const double lo = spec.above_min ? std::nextafter(spec.min, spec.max) : spec.min;
+        const double hi = spec.below_max ? std::nextafter(spec.max, spec.min) : spec.max;
+        return std::clamp(x, lo, hi);
+    };
+    switch (spec.type) {
+        case ParameterType::boolean:
+            return first >= 0.5;
+        case ParameterType::integer:
+            return static_cast<std::int64_t>(std::floor(clamped(first) + 0.5));
+        case ParameterType::number:
+            return clamped(first);
+        case ParameterType::choice: {
+            const double last = static_cast<double>(spec.choices.size()) - 1.0;
+            return spec.choices[static_cast<std::size_t>(std::clamp(std::floor(first + 0.5), 0.0, last))];
+        }
+        case ParameterType::curve:
+            return curve_from(numbers);
+        default: {
+            Value::List list;
+            for (const double x : numbers) list.emplace_back(clamped(x));
+            return list;
+        }
+    }
+}
+
+}  // namespace astrosplat

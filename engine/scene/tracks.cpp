@@ -1,0 +1,183 @@
+// Tracks and their messages.
+#include "scene/tracks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "scene/describe.h"
+#include "scene/entries.h"
+#include "scene/suggest.h"
+
+namespace astrosplat {
+namespace {
+
+const std::vector<std::string> interpolations{"linear", "smooth", "step"};
+const std::vector<std::string> ends_names{"ease", "through"};
+const std::vector<std::string> track_keys{"keys", "interpolation", "ends", "constant_speed"};
+
+struct Place {
+    std::string place, key;
+    [[noreturn]] void fail(const std::string& message) const {
+        throw InputError(fmt::format("{}: {}: {}", place, key, message));
+    }
+};
+
+std::size_t read_name(const toml::node& node, const std::vector<std::string>& names, const std::string& what,
+                      const Place& at) {
+    const auto* text = node.as_string();
+    const auto found = std::find(names.begin(), names.end(), text ? text->get() : "");
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    at.fail(fmt::format("{}: expected {}, found {}{}", what, fmt::join(names, ", "),
+                        text ? "'" + text->get() + "'" : kind_of(node),
+                        text ? did_you_mean(text->get(), names) : ""));
+}
+
+Key<std::vector<double>> read_key(const toml::node& node, const Parameter& parameter, const Track& track,
+                                  const Place& at) {
+    const toml::array* parts = node.as_array();
+    if (!parts || parts->size() < 2 || parts->size() > 3)
+        at.fail(fmt::format("expected keys [frame, value] or [frame, value, \"smooth\"], found {}",
+                            kind_of(node)));
+    const auto frame = (*parts)[0].value<double>();
+    if (!frame || !(*parts)[0].is_number() || !std::isfinite(*frame))
+        at.fail(fmt::format("expected a frame number first in a key, found {}", kind_of((*parts)[0])));
+    Key<std::vector<double>> key{*frame, {}, track.interpolation};
+    try {
+        const Value value = value_of((*parts)[1]);
+        parameter.set(value);
+        key.value = to_numbers(parameter.spec, value);
+        const bool none = key.value.empty() || (value.text() && value == parameter.spec.nothing);
+        const bool zero = std::count(key.value.begin(), key.value.end(), 0.0) ==
+                          static_cast<std::ptrdiff_t>(key.value.size());
+        if (zero && parameter.spec.type == ParameterType::rotation)
+            throw ValueError("expected a quaternion that is not zero, found 0, 0, 0, 0");
+        if (none) throw ValueError(fmt::format("expected {}, found none", expectation(parameter.spec)));
+    } catch (const ValueError& error) {
+        at.fail(fmt::format("frame {}: {}", short_number(*frame), error.what()));
+    }
+    if (parts->size() == 3)
+        key.interpolation =
+            static_cast<Interpolation>(read_name((*parts)[2], interpolations, "the way to the next key", at));
+    return key;
+}
+
+void check_order(const Track& track, const Place& at) {
+    for (std::size_t i = 1; i < track.keys.size(); ++i) {
+        const double before = track.keys[i - 1].frame, frame = track.keys[i].frame;
+        if (frame == before)
+            at.fail(fmt::format("expected each frame once, found {} twice", short_number(frame)));
+        if (frame < before)
+            at.fail(fmt::format("expected ascending frames, found {} after {}", short_number(frame),
+                                short_number(before)));
+        if (track.keys[i].value.size() != track.keys[0].value.size())
+            at.fail("expected as many points in every key, found another number");
+    }
+}
+
+void read_settings(const toml::table& table, const ParameterSpec& spec, Track& track, const Place& at) {
+    for (const auto& [name, node] : table) {
+        const std::string key(name.str());
+        if (key == "interpolation")
+            track.interpolation = static_cast<Interpolation>(read_name(node, interpolations, key, at));
+        else if (key == "ends")
+            track.ends = static_cast<Ends>(read_name(node, ends_names, key, at));
+        else if (key == "constant_speed") {
+            if (!node.is_boolean())
+                at.fail(fmt::format("constant_speed: expected true or false, found {}", kind_of(node)));
+            track.constant_speed = node.as_boolean()->get();
+            if (track.constant_speed && spec.type != ParameterType::position)
+                at.fail("constant_speed: expected it on a position, found it on another parameter");
+        } else if (key != "keys") {
+            at.fail(fmt::format("unknown key '{}'{}", key, did_you_mean(key, track_keys)));
+        }
+    }
+}
+
+/// The animatable parameter of a key in a copy of the scene, or an error that helps.
+const Parameter& animated_parameter(const Description& description, const Scene& scene, const Place& at) {
+    if (const Parameter* parameter = find_parameter(description, at.key)) {
+        if (parameter->spec.animation == Animation::no) at.fail("this parameter cannot be animated");
+        return *parameter;
+    }
+    std::string prefix = "layer.";
+    if (at.key.rfind("layer.", 0) == 0) {
+        const std::string name = at.key.substr(6, at.key.find('.', 6) - 6);
+        std::vector<std::string> names;
+        for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            at.fail(fmt::format("unknown layer '{}'{}", name, did_you_mean(name, names)));
+        prefix += name + ".";
+    }
+    throw InputError(fmt::format("{}: {}", at.place, unknown_key(at.key, at.key, prefix)));
+}
+
+}  // namespace
+
+Track read_track(const std::string& key, const toml::node& node, Scene& scene, const std::string& place) {
+    const Place at{place, key};
+    try {
+        extend_lists(describe(scene), key);
+    } catch (const ValueError& error) {
+        at.fail(error.what());
+    }
+    Scene scratch = scene;  // keys are checked by setting them
+    const Description description = describe(scratch);
+    const toml::table* table = node.as_table();
+    const toml::array* keys = table && table->contains("keys") ? (*table)["keys"].as_array() : nullptr;
+    if (table && !table->contains("keys") && !find_parameter(description, key))
+        at.fail("expected the whole key in quotes, such as \"camera.position\", found a table");
+    const Parameter& parameter = animated_parameter(description, scene, at);
+    if (!keys || keys->empty()) at.fail("expected { keys = [[frame, value], ...] }, found no keys");
+    Track track;
+    track.key = parameter.spec.key;
+    read_settings(*table, parameter.spec, track, at);
+    for (const toml::node& element : *keys) track.keys.push_back(read_key(element, parameter, track, at));
+    check_order(track, at);
+    return track;
+}
+
+std::vector<Track> read_tracks(const toml::table& table, Scene& scene, const std::string& file) {
+    struct Found {
+        toml::source_position position;
+        Track track;
+    };
+    std::vector<Found> found;
+    for (const auto& [key, node] : table) {
+        const std::string place = place_of(file, key.source());
+        found.push_back({key.source().begin, read_track(std::string(key.str()), node, scene, place)});
+        for (std::size_t i = 0; i + 1 < found.size(); ++i)
+            if (found[i].track.key == found.back().track.key)
+                throw InputError(
+                    fmt::format("{}: {}: expected one track, found a second", place, found.back().track.key));
+    }
+    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
+        return a.position.line != b.position.line ? a.position.line < b.position.line
+                                                  : a.position.column < b.position.column;
+    });
+    std::vector<Track> tracks;
+    for (Found& one : found) tracks.push_back(std::move(one.track));
+    return tracks;
+}
+
+std::string track_to_toml(const Track& track, const ParameterSpec& spec) {
+    std::string keys;
+    for (const auto& key : track.keys) {
+        const std::string way =
+            key.interpolation == track.interpolation
+                ? ""
+                : ", " + to_toml(interpolations[static_cast<std::size_t>(key.interpolation)]);
+        keys += fmt::format("{}[{}, {}{}]", keys.empty() ? "" : ", ", short_number(key.frame),
+                            to_toml(from_numbers(spec, key.value)), way);
+    }
+    std::string text = "{ keys = [" + keys + "]";
+    if (track.interpolation != Interpolation::linear)
+        text += ", interpolation = " + to_toml(interpolations[static_cast<std::size_t>(track.interpolation)]);
+    if (track.ends != Ends::ease) text += ", ends = \"through\"";
+    if (track.constant_speed) text += ", constant_speed = true";
+    return text + " }";
+}
+
+}  // namespace astrosplat
