@@ -1,0 +1,22 @@
+// libFuzzer's entry for one target: InputError is the answer to bad input, everything else reaches the
+// fuzzer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "fuzz/targets.h"
+
+#define ASTROSPLAT_FUZZ(name)                                                           \
+    extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) { \
+        static const auto& target = astrosplat::fuzz::target(name);                     \
+        astrosplat::set_log_level(astrosplat::LogLevel::error);                         \
+        try {                                                                           \
+            target.read(std::string_view(reinterpret_cast<const char*>(data), size));   \
+        } catch (const astrosplat::InputError&) {                                       \
+        }                                                                               \
+        return 0;                                                                       \
+    }

@@ -1,0 +1,4 @@
+// Fuzzes the pda reader; see targets.cpp for what it demands.
+#include "fuzz/entry.h"
+
+ASTROSPLAT_FUZZ("pda")

@@ -1,0 +1,219 @@
+// Seeds and checks of the fuzzed readers.
+#include "fuzz/targets.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "scene/load.h"
+#include "source/mesh.h"
+#include "source/texture.h"
+#include "splats/checksum.h"
+#include "splats/native.h"
+#include "splats/pda.h"
+#include "splats/ply.h"
+
+namespace astrosplat::fuzz {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file of this process that holds the bytes while the object lives.
+struct TemporaryFile {
+    fs::path path;
+    TemporaryFile(std::string_view bytes, const std::string& ending)
+        : path(fs::temp_directory_path() / ("astrosplat_fuzz_" + std::to_string(::getpid()) + "." + ending)) {
+        std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    }
+    ~TemporaryFile() { fs::remove(path); }
+};
+
+bool finite(float v) { return std::isfinite(v); }
+bool finite(const glm::vec2& v) { return finite(v.x) && finite(v.y); }
+bool finite(const glm::vec3& v) { return finite(v.x) && finite(v.y) && finite(v.z); }
+template <class T>
+void demand_array(const Buffer<T>& array, std::size_t size, bool optional) {
+    demand(array.size() == size || (optional && array.empty()), "arrays of one length");
+    if constexpr (!std::is_integral_v<T>)
+        demand(std::all_of(array.begin(), array.end(), [](const T& v) { return finite(v); }),
+               "finite numbers");
+}
+
+void check(const SplatSet& set) {
+    const std::size_t size = set.position.size();
+    demand_array(set.position, size, false);
+    demand_array(set.color, size, false);
+    demand_array(set.alpha, size, false);
+    demand_array(set.distance, size, false);
+    demand_array(set.id, size, false);
+    demand_array(set.uv, size, true);
+    demand_array(set.normal, size, true);
+    demand_array(set.mesh, size, true);
+    demand_array(set.radius, size, true);
+}
+
+void read_pda_bytes(std::string_view bytes) { check(read_pda(TemporaryFile(bytes, "pda").path)); }
+void read_ply_bytes(std::string_view bytes) { check(read_ply(TemporaryFile(bytes, "ply").path)); }
+
+/// Makes the checksums of a native file of one block right again, so that mutations get past them.
+std::string with_checksums(std::string bytes) {
+    constexpr std::size_t word = 8, table = 32, fixed_header = 80;
+    const auto put = [&](std::size_t begin, std::size_t end, std::size_t at) {
+        if (begin > end || end > bytes.size() || at + word > bytes.size()) return;
+        const std::uint64_t sum = xxh64(std::string_view(bytes).substr(begin, end - begin));
+        std::memcpy(bytes.data() + at, &sum, word);
+    };
+    if (bytes.size() < fixed_header + word + table + word) return bytes;
+    std::uint32_t credit = 0;
+    std::memcpy(&credit, bytes.data() + 28, sizeof credit);
+    const std::size_t data = (fixed_header + std::size_t{credit} + word + 63) / 64 * 64;
+    const std::size_t entry = bytes.size() - word - table;
+    put(0, data - word, data - word);
+    put(data, entry, entry + 24);
+    put(entry, entry + table, entry + table);
+    return bytes;
+}
+
+void read_native_bytes(std::string_view bytes) {
+    check(read_native(TemporaryFile(with_checksums(std::string(bytes)), "splats").path));
+}
+
+void read_obj_bytes(std::string_view bytes) {
+    const Mesh mesh = load_obj(TemporaryFile(bytes, "obj").path);
+    demand(!mesh.triangles.empty(), "at least one triangle");
+    for (const glm::vec3& p : mesh.positions) demand(finite(p), "finite coordinates");
+    for (const Mesh::Triangle& triangle : mesh.triangles) {
+        for (const std::uint32_t index : triangle.position)
+            demand(index < mesh.positions.size(), "position in range");
+        for (const std::uint32_t index : triangle.uv)
+            demand(index == Mesh::no_uv || index < mesh.uvs.size(), "uv in range");
+        demand(mesh.maps.empty() || triangle.material < mesh.maps.size(), "material in range");
+    }
+}
+
+void read_toml_bytes(std::string_view bytes) {
+    const Scene scene = parse_scene(std::string(bytes), fs::temp_directory_path() / "fuzz.toml");
+    demand(scene.output.width > 0 && scene.output.height > 0, "a resolution");
+    demand(std::isfinite(scene.camera.fov) && std::isfinite(scene.output.exposure), "finite numbers");
+}
+
+void read_fits_bytes(std::string_view bytes) {
+    const Texture texture =
+        load_texture({TemporaryFile(bytes, "fits").path}, TextureSettings{}, TextureSettings::Wrap::clamp);
+    const Image& image = texture.image;
+    demand(image.width > 0 && image.height > 0 && image.channels == 4, "an RGBA picture");
+    demand(image.pixels.size() == static_cast<std::size_t>(image.width * image.height * 4), "all its pixels");
+    for (const float value : image.pixels) demand(finite(value), "finite pixels");
+}
+
+// ---- seeds
+
+SplatSet small_set() {
+    SplatSet set;
+    for (std::uint64_t i = 0; i < 5; ++i) {
+        const float f = static_cast<float>(i);
+        set.position.push_back({f, -0.5f * f, 0.1f});
+        set.color.push_back({0.25f * f, 1.0f, 1e-5f});
+        set.alpha.push_back(0.2f * f);
+        set.distance.push_back(0.01f * f);
+        set.id.push_back(i << 33);
+        set.mesh.push_back(static_cast<std::uint32_t>(i));
+        set.radius.push_back(0.5f);
+        set.uv.push_back({0.5f, 0.25f * f});
+    }
+    set.credit = "somebody";
+    return set;
+}
+
+std::string written(void (*write)(const fs::path&, const SplatSet&, const Progress&),
+                    const std::string& ending) {
+    const TemporaryFile file("", ending);
+    write(file.path, small_set(), {});
+    std::ifstream in(file.path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+const char* const ascii_ply =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty float y\nproperty float z\n"
+    "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty list uchar int links\nelement "
+    "face 1\n"
+    "property list uchar int vertex_indices\nend_header\n0 0 1 255 0 7 0\n1 0 1e-3 0 9 7 2 1 2\n0 1 1 5 6 7 "
+    "0\n"
+    "3 0 1 2\n";
+
+std::string big_endian_ply() {
+    std::string bytes =
+        "ply\nformat binary_big_endian 1.0\nelement face 1\nproperty list uchar short i\nelement vertex 2\n"
+        "property float x\nproperty float y\nproperty float z\nproperty list uchar uchar more\nend_header\n";
+    bytes += std::string("\x02\x00\x01\x00\x02", 5);
+    for (int row = 0; row < 2; ++row) bytes += std::string("\x3f\x80\0\0\0\0\0\0\xbf\x80\0\0\x01\x07", 14);
+    return bytes;
+}
+
+const char* const obj =
+    "# box\nmtllib absent.mtl\no one\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+    "vn 0 0 1\nusemtl red\nf 1/1/1 2/2/1 3/3/1 4/4/1\ng two\nf -4//1 -3//1 -2//1\nf 1 3 4\n";
+
+const char* const toml =
+    "astrosplat = 1\n[output]\nresolution = [320, 180]\nframes = \"1-20x2\"\npath = \"a.####.exr\"\n"
+    "aovs = [\"depth\"]\n[camera]\nposition = [0.0, 1.0, 10.0]\nfov = 35.0\n[[layer]]\nname = \"stars\"\n"
+    "[layer.source]\nmeshes = [ { mesh = \"plane\", texture = \"a.png\" } ]\ncount = 1000\n[layer.look]\n"
+    "pdf = { shape = \"curve\", points = [[0.0, 1.0], [1.0, 0.0]] }\nnoise = [ { cull = 0.5 }, { jitter = "
+    "0.1 } ]\n"
+    "[layer.render]\nblend = \"screen\"\n[animation]\n"
+    "\"camera.fov\" = { keys = [[1, 35.0], [20, 40.0, \"step\"]], interpolation = \"smooth\" }\n";
+
+/// A FITS file by hand: cards of 80 characters in blocks of 2880 bytes, then 4 x 3 big-endian 16-bit numbers.
+std::string fits(const std::vector<std::string>& cards) {
+    std::string bytes;
+    for (std::string card : cards) {
+        card.resize(80, ' ');
+        bytes += card;
+    }
+    bytes.resize((bytes.size() + 2879) / 2880 * 2880, ' ');
+    for (int i = 0; i < 12; ++i) bytes += std::string{static_cast<char>(i % 3), static_cast<char>(i * 21)};
+    bytes.resize((bytes.size() + 2879) / 2880 * 2880, '\0');
+    return bytes;
+}
+
+std::vector<std::string> fits_seeds() {
+    return {fits(
+        {"SIMPLE  =                    T", "BITPIX  =                   16", "NAXIS   =                    2",
+         "NAXIS1  =                    4", "NAXIS2  =                    3", "BZERO   =                 10.0",
+         "BSCALE  =                  0.5", "BLANK   =                    7", "ORIGIN  = 'hand    '", "END"})};
+}
+
+}  // namespace
+
+const std::vector<Target>& targets() {
+    static const std::vector<Target> all = {
+        {"pda", {written(write_pda, "pda")}, read_pda_bytes},
+        {"ply", {written(write_ply, "ply"), ascii_ply, big_endian_ply()}, read_ply_bytes},
+        {"splats", {written(write_native, "splats")}, read_native_bytes},
+        {"obj", {obj}, read_obj_bytes},
+        {"toml", {toml}, read_toml_bytes},
+        {"fits", fits_seeds(), read_fits_bytes},
+    };
+    return all;
+}
+
+const Target& target(const std::string& name) {
+    const auto& all = targets();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Target& t) { return t.name == name; });
+    demand(found != all.end(), "a known target");
+    return *found;
+}
+
+void demand(bool truth, const char* what) {
+    if (!truth) throw std::logic_error(std::string("reader's result lacks ") + what);
+}
+
+}  // namespace astrosplat::fuzz

@@ -1,0 +1,26 @@
+// The readers that take files from strangers, each behind one function from bytes to "fine" or InputError.
+// Shared by the libFuzzer programs (fuzz_*.cpp) and by the replay test that runs in every build.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace astrosplat::fuzz {
+
+struct Target {
+    std::string name;                // also the file ending
+    std::vector<std::string> seeds;  // small valid files
+    /// Reads the bytes as a file and checks what came out. Throws InputError for bad input; anything else is
+    /// a bug.
+    void (*read)(std::string_view bytes);
+};
+
+/// pda, ply, splats, obj, toml, fits.
+const std::vector<Target>& targets();
+const Target& target(const std::string& name);
+
+/// Throws std::logic_error, an error no reader may end with.
+void demand(bool truth, const char* what);
+
+}  // namespace astrosplat::fuzz
