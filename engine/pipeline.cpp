@@ -97,6 +97,7 @@ struct Pipeline::State {
     std::vector<LayerState> layers;
     std::vector<LayerStatistics> statistics;
     std::optional<Environment> environment;
+    RenderCache render_cache;
 
     void load_layer(std::size_t index, const Progress& progress);
     void shade(std::size_t index, const LayerParams& params, const Progress& progress);
