@@ -90,6 +90,8 @@ void read_uv(Reader& r, const Words& words) {
     r.mesh.uvs.emplace_back(coordinate(r, words[1]), coordinate(r, words[2]));
 }
 
+std::string plural(std::string_view what) { return what == "vertex" ? "vertices" : std::string(what) + "s"; }
+
 // OBJ counts from 1, and from the end with negative numbers.
 std::int64_t resolve(const Reader& r, std::string_view text, std::size_t count, const char* what) {
     const std::optional<std::int64_t> index = parse_int64(text);
@@ -98,7 +100,7 @@ std::int64_t resolve(const Reader& r, std::string_view text, std::size_t count, 
     if (*index > 0) return *index - 1;
     const std::int64_t resolved = static_cast<std::int64_t>(count) + *index;
     if (resolved < 0)
-        bad_line(r, fmt::format("one of the {} {}s so far", count, what), fmt::format("{}", *index));
+        bad_line(r, fmt::format("one of the {} {} so far", count, plural(what)), fmt::format("{}", *index));
     return resolved;
 }
 
@@ -116,7 +118,8 @@ Corner read_corner(Reader& r, std::string_view word) {
         corner.uv = resolve(r, uv, r.mesh.uvs.size(), "texture coordinate");
         r.uv.note(corner.uv, r.line);
     }
-    if (second != std::string_view::npos && !parse_int64(word.substr(second + 1)))
+    const bool normal = second != std::string_view::npos && second + 1 < word.size();  // some write "1//"
+    if (normal && !parse_int64(word.substr(second + 1)))
         bad_line(r, "the number of a normal", fmt::format("'{}'", word));
     return corner;
 }
@@ -225,7 +228,7 @@ std::string_view next_line(std::string_view& text, std::string& joined, std::int
 void check_range(Reader& r, const Highest& highest, std::size_t count, const char* what) {
     if (highest.index < static_cast<std::int64_t>(count)) return;
     r.line = highest.line;
-    bad_line(r, fmt::format("one of the file's {} {}s", count, what),
+    bad_line(r, fmt::format("one of the file's {} {}", count, plural(what)),
              fmt::format("number {}", highest.index + 1));
 }
 

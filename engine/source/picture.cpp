@@ -1,13 +1,11 @@
 // The only reader that touches OpenImageIO. <fmt/format.h> comes first: OpenImageIO's own copy of fmt would
 // turn exceptions off.
 #include <fmt/format.h>
-// (The blank line and this comment keep clang-format from sorting the two.)
+// (This line keeps clang-format from sorting the two.)
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -16,6 +14,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "source/credit.h"
 #include "source/picture.h"
 
 namespace astrosplat {
@@ -46,8 +45,12 @@ std::unique_ptr<ImageInput> open_picture(const fs::path& file) {
     ImageSpec wish;
     wish.attribute("oiio:UnassociatedAlpha", 1);
     std::unique_ptr<ImageInput> in = ImageInput::open(file.string(), &wish);
-    if (!in) fail(file, OIIO::geterror());
-    return in;
+    if (in) return in;
+    const std::string reason = OIIO::geterror();
+    if (reason.find("Subsampled channels") != std::string::npos)
+        fail(file,
+             "its colour is stored at a lower resolution (subsampled luminance/chroma); save it as RGB");
+    fail(file, reason.empty() ? "no picture format that OpenImageIO knows" : reason);
 }
 
 int find_channel(const ImageSpec& spec, const char* name) {
@@ -81,8 +84,6 @@ Channels choose_channels(const ImageSpec& spec) {
     return c;
 }
 
-std::int64_t pixel_count(std::int64_t width, std::int64_t height) { return width * height; }
-
 void check_spec(const fs::path& file, const ImageSpec& spec) {
     if (spec.deep) fail(file, "it holds deep samples");
     if (spec.depth > 1) fail(file, "it is a volume");
@@ -95,7 +96,7 @@ void check_spec(const fs::path& file, const ImageSpec& spec) {
 
 Image read_all(const fs::path& file, ImageInput& in, const ImageSpec& spec) {
     Image all{spec.width, spec.height, spec.nchannels, {}};
-    all.pixels.resize(static_cast<std::size_t>(pixel_count(all.width, all.height) * all.channels));
+    all.pixels.resize(static_cast<std::size_t>(all.width * all.height * all.channels));
     if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, all.pixels.data()))
         fail(file, in.geterror());
     return all;
@@ -153,12 +154,12 @@ double largest_integer(const ImageSpec& spec) {
     }
 }
 
-// XMP and AVM (photoshop:Credit becomes IPTC:Provider), then EXIF.
-std::string find_credit(const ImageSpec& spec) {
-    for (const char* key : {"IPTC:Provider", "photoshop:Credit", "avm:Credit", "IPTC:Credit", "Credit",
-                            "Artist", "Exif:Artist", "IPTC:Creator", "Copyright", "IPTC:CopyrightNotice"}) {
-        const std::string text(trim(spec.get_string_attribute(key)));
-        if (!text.empty()) return text;
+std::string find_credit(const fs::path& file, const ImageSpec& spec) {
+    std::string credit = xmp_credit(file);
+    if (!credit.empty()) return credit;
+    for (const char* key : {"IPTC:Provider", "Artist", "Exif:Artist", "IPTC:Creator", "Copyright"}) {
+        credit = trim(spec.get_string_attribute(key));
+        if (!credit.empty()) return credit;
     }
     return {};
 }
@@ -176,7 +177,7 @@ Picture read_picture(const fs::path& file) {
     picture.max_integer = largest_integer(spec);
     picture.associated = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     picture.gray = channels.gray;
-    picture.credit = find_credit(spec);
+    picture.credit = find_credit(file, spec);
     picture.summary =
         fmt::format("{}x{} px, {}", picture.image.width, picture.image.height, spec.format.c_str());
     return picture;

@@ -22,7 +22,7 @@ double percentile(std::vector<double>& values, double fraction) {
     const double part = rank - std::floor(rank);
     if (part == 0.0) return *at;
     const double next = *std::min_element(at + 1, values.end());
-    return *at * (1.0 - part) + next * part;
+    return *at + (next - *at) * part;
 }
 
 }  // namespace
