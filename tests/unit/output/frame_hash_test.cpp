@@ -1,0 +1,179 @@
+// The frame hash changes with everything that reaches the frame's pixels, and with nothing else.
+#include "output/frame_hash.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <functional>
+
+#include "scene/describe.h"
+#include "scene/load.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FrameHashTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() /
+                  fmt::format("astrosplat hash {} {}",
+                              testing::UnitTest::GetInstance()->current_test_info()->name(), getpid());
+        fs::create_directories(folder_);
+        put("stars.png", "one");
+        put("dust.pda", "two");
+        put("sky.exr", "three");
+        put("disk.obj",
+            "mtllib disk.mtl\nv 0 0 0\nv 1 0 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
+        put("disk.mtl", "newmtl m\nmap_Kd own.png\n");
+        put("own.png", "four");
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    void put(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+
+    Scene scene() {
+        return parse_scene(R"(astrosplat = 1
+[environment]
+image = "sky.exr"
+[[layer]]
+name = "stars"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "stars.png" } ]
+[[layer]]
+name = "dust"
+[layer.source]
+kind = "splats"
+file = "dust.pda"
+[animation]
+"camera.position" = { keys = [[1, [0, 0, 30]], [10, [0, 2, 4]], [20, [0, 2, 4]]], interpolation = "linear" }
+"layer.dust.visible" = { keys = [[1, true], [15, false]] }
+)",
+                           folder_ / "scene.toml");
+    }
+
+    std::string hash(const Scene& scene, std::int64_t frame = 1) {
+        return FrameHasher(scene).frame_hash(frame);
+    }
+    std::string changed(const std::function<void(Scene&)>& change, std::int64_t frame = 1) {
+        Scene other = scene();
+        change(other);
+        return hash(other, frame);
+    }
+
+    fs::path folder_;
+};
+
+TEST_F(FrameHashTest, IsSixtyFourHexDigitsAndStable) {
+    EXPECT_EQ(hash(scene()).size(), 64u);
+    EXPECT_EQ(hash(scene()), hash(scene()));
+    FrameHasher hasher(scene());
+    const std::string first = hasher.frame_hash(3);
+    hasher.frame_hash(7);
+    EXPECT_EQ(hasher.frame_hash(3), first);
+}
+
+TEST_F(FrameHashTest, IgnoresWhereAndHowOftenFramesGo) {
+    const std::string before = hash(scene());
+    EXPECT_EQ(changed([](Scene& s) { s.output.path = "other.####.exr"; }), before);
+    EXPECT_EQ(changed([](Scene& s) { s.output.frames = "5-9"; }), before);
+    EXPECT_EQ(changed([](Scene& s) { s.output.fps = 30; }), before);
+    EXPECT_EQ(changed([](Scene& s) { s.output.compression = OutputParams::Compression::none; }), before);
+    EXPECT_EQ(changed([](Scene& s) { s.provenance = {"a", "b", "Simulation"}; }), before);
+    EXPECT_EQ(changed([](Scene& s) { s.layers[0].preset = "old.toml"; }), before);
+}
+
+TEST_F(FrameHashTest, EveryOtherParameterCounts) {
+    // Every numeric or boolean parameter of the scene, changed through its description.
+    Scene original = scene();
+    const std::string before = hash(original, 5);
+    int tried = 0;
+    for (std::size_t i = 0; i < describe(original).parameters.size(); ++i) {
+        Scene other = scene();
+        Description description = describe(other);
+        const Parameter& parameter = description.parameters[i];
+        const std::string& key = parameter.spec.generic_key;
+        if (key == "output.fps" || parameter.spec.key == "layer.dust.visible" || key == "camera.position")
+            continue;
+        const Value value = parameter.get();
+        if (parameter.spec.type != ParameterType::number && parameter.spec.type != ParameterType::boolean)
+            continue;
+        if (const bool* flag = std::get_if<bool>(&value.data))
+            parameter.set(!*flag);
+        else if (value.is_number())
+            parameter.set(from_numbers(parameter.spec, {value.number() == 0.5 ? 0.75 : 0.5}));
+        else
+            continue;
+        ++tried;
+        EXPECT_NE(hash(other, 5), before) << parameter.spec.key;
+    }
+    EXPECT_GT(tried, 60);
+}
+
+TEST_F(FrameHashTest, OnlyTheFramesAKeyReachesChange) {
+    const auto move_last_key = [](Scene& s) {
+        for (Track& track : s.animation)
+            if (track.key == "camera.position") track.keys[2].value = {9, 9, 9};
+    };
+    EXPECT_EQ(changed(move_last_key, 1), hash(scene(), 1));
+    EXPECT_EQ(changed(move_last_key, 10), hash(scene(), 10));
+    EXPECT_NE(changed(move_last_key, 11), hash(scene(), 11));
+    EXPECT_NE(hash(scene(), 1), hash(scene(), 2));
+    EXPECT_EQ(hash(scene(), 16), hash(scene(), 19));  // nothing moves there: the same picture
+}
+
+TEST_F(FrameHashTest, HiddenLayersAndSkiesDoNotCount) {
+    const auto change_dust = [](Scene& s) { s.layers[1].look.density = 0.1f; };
+    EXPECT_NE(changed(change_dust, 5), hash(scene(), 5));
+    EXPECT_EQ(changed(change_dust, 16), hash(scene(), 16));
+    const auto hide = [](Scene& s) { s.environment.visible = false; };
+    EXPECT_NE(changed(hide), hash(scene()));
+    EXPECT_EQ(changed(hide), changed([&](Scene& s) {
+                  hide(s);
+                  s.environment.gain = 7;
+                  s.environment.image.clear();
+              }));
+}
+
+TEST_F(FrameHashTest, InputsCountByTheirBytesNotByTheirNames) {
+    const std::string before = hash(scene());
+    for (const char* name : {"stars.png", "dust.pda", "sky.exr"}) {
+        put(name, "changed");
+        EXPECT_NE(hash(scene()), before) << name;
+        put(name,
+            name == std::string("stars.png") ? "one" : (name == std::string("dust.pda") ? "two" : "three"));
+        EXPECT_EQ(hash(scene()), before) << name;
+    }
+    fs::copy_file(folder_ / "sky.exr", folder_ / "moved.exr");
+    EXPECT_EQ(changed([&](Scene& s) { s.environment.image = folder_ / "moved.exr"; }), before);
+}
+
+TEST_F(FrameHashTest, AMeshsOwnPicturesCount) {
+    const auto own = [&](Scene& s) {
+        s.layers[0].source.meshes[0].mesh = folder_ / "disk.obj";
+        s.layers[0].source.meshes[0].texture.clear();
+    };
+    const std::string before = changed(own);
+    put("own.png", "changed");
+    EXPECT_NE(changed(own), before);
+}
+
+TEST_F(FrameHashTest, TheRegionCounts) {
+    FrameHasher all(scene()), part(scene(), {10, 10, 50, 40}), other(scene(), {10, 10, 50, 41});
+    EXPECT_NE(all.frame_hash(1), part.frame_hash(1));
+    EXPECT_NE(other.frame_hash(1), part.frame_hash(1));
+}
+
+TEST_F(FrameHashTest, CanonicalTextShowsWhatIsHashed) {
+    const std::string text = FrameHasher(scene()).canonical_text(1);
+    EXPECT_EQ(text.rfind("pixels = 1\n", 0), 0u);
+    EXPECT_NE(text.find("\ncamera.position = [0.0, 0.0, 30.0]\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("\nlayer.stars.source.meshes.0.mesh = \"plane\"\n"), std::string::npos) << text;
+    EXPECT_EQ(text.find(folder_.string()), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,424 @@
+// Frame files written and read back: pixels, channels, windows, header, errors.
+#include "output/write.h"
+
+#include <fmt/format.h>
+// fmt first: OpenImageIO brings a copy of it with other settings.
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "core/color.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "output/encode.h"
+#include "output/metadata.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using Alpha = OutputParams::Alpha;
+using Compression = OutputParams::Compression;
+using Depth = OutputParams::Depth;
+
+/// The numbers as stored, without OpenImageIO's conversions, and the header.
+struct RawFile {
+    OIIO::ImageSpec spec;
+    std::vector<float> values;  // interleaved; integers as 0..1
+
+    float at(int x, int y, const std::string& channel) const {
+        int c = spec.channelindex(channel);
+        EXPECT_GE(c, 0) << channel;
+        return values[static_cast<std::size_t>((y * spec.width + x) * spec.nchannels + c)];
+    }
+    int code(int x, int y, const std::string& channel, float largest) const {
+        return static_cast<int>(std::lround(at(x, y, channel) * largest));
+    }
+};
+
+RawFile read_raw(const fs::path& file) {
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    auto in = OIIO::ImageInput::open(file.string(), &config);
+    EXPECT_TRUE(in) << OIIO::geterror();
+    RawFile raw{in->spec(), {}};
+    raw.values.resize(raw.spec.image_pixels() * static_cast<std::size_t>(raw.spec.nchannels));
+    EXPECT_TRUE(in->read_image(0, 0, 0, raw.spec.nchannels, OIIO::TypeDesc::FLOAT, raw.values.data()));
+    return raw;
+}
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// Soft orange on nothing, brighter than 1 in the lower half.
+RenderedFrame soft_frame(std::int64_t width, std::int64_t height) {
+    RenderedFrame frame;
+    frame.beauty = make_image(width, height, 4);
+    for (std::int64_t y = 0; y < height; ++y)
+        for (std::int64_t x = 0; x < width; ++x) {
+            float a = static_cast<float>(x) / static_cast<float>(width - 1),
+                  light = 2 * y < height ? 1.0f : 3.0f;
+            float* p = frame.beauty.at(x, y);
+            p[0] = 0.8f * a * light, p[1] = 0.4f * a * light, p[2] = 0.1f * a, p[3] = a;
+        }
+    frame.depth = make_image(width, height, 1, 123456.789f);
+    frame.coverage = make_image(width, height, 1, 0.5f);
+    frame.count = make_image(width, height, 1, 100001.0f);
+    frame.layers = {frame.beauty, make_image(width, height, 4, 0.25f)};
+    return frame;
+}
+
+class WriteTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        const char* name = testing::UnitTest::GetInstance()->current_test_info()->name();
+        folder_ = fs::temp_directory_path() / fmt::format("astrosplat größe {} {}", name, getpid());
+        fs::create_directories(folder_);
+        metadata_.frame = 12;
+        metadata_.fps = 23.976;
+        metadata_.frame_hash = std::string(64, 'a');
+        metadata_.pixel_hash = std::string(64, 'b');
+        metadata_.seed = 4000000000u;
+        metadata_.provenance = {"Orion\nfrom the side", "NASA/ESA", "Artwork"};
+    }
+    void TearDown() override {
+        fs::permissions(folder_, fs::perms::owner_all);
+        fs::remove_all(folder_);
+    }
+
+    fs::path write(const std::string& name, const OutputParams& output, const RenderedFrame& frame) {
+        fs::path file = folder_ / name;
+        write_frame(file, frame, {"stars", "dust"}, output, frame.beauty.width, frame.beauty.height, {},
+                    metadata_);
+        return file;
+    }
+
+    fs::path folder_;
+    FrameMetadata metadata_;
+};
+
+TEST_F(WriteTest, FloatExrHoldsTheExactLight) {
+    OutputParams output;
+    output.depth = Depth::float32;
+    RenderedFrame frame = soft_frame(9, 6);
+    for (Compression c : {Compression::zip, Compression::zips, Compression::piz, Compression::none}) {
+        output.compression = c;
+        RawFile raw = read_raw(write("a.exr", output, frame));
+        ASSERT_EQ(raw.spec.nchannels, 4);
+        for (int y = 0; y < 6; ++y)
+            for (int x = 0; x < 9; ++x)
+                for (int k = 0; k < 4; ++k)
+                    ASSERT_EQ(raw.at(x, y, std::string(1, "RGBA"[k])), frame.beauty.at(x, y)[k]);
+    }
+}
+
+TEST_F(WriteTest, HalfExrRoundsAndStaysFinite) {
+    RenderedFrame frame = soft_frame(4, 4);
+    frame.beauty.at(0, 0)[0] = 1e9f;
+    frame.beauty.at(1, 0)[0] = 0.5f;
+    RawFile raw = read_raw(write("a.exr", {}, frame));
+    EXPECT_EQ(raw.at(0, 0, "R"), 65504.0f);
+    EXPECT_EQ(raw.at(1, 0, "R"), 0.5f);
+    EXPECT_EQ(raw.spec.channelformat(0), OIIO::TypeDesc(OIIO::TypeDesc::HALF));
+}
+
+TEST_F(WriteTest, DwaaIsWrittenToo) {
+    OutputParams output;
+    output.compression = Compression::dwaa;
+    RenderedFrame frame = soft_frame(64, 64);
+    RawFile raw = read_raw(write("a.exr", output, frame));
+    EXPECT_EQ(raw.spec.get_string_attribute("compression"), "dwaa");
+    EXPECT_NEAR(raw.at(40, 10, "R"), frame.beauty.at(40, 10)[0], 0.02f);
+}
+
+TEST_F(WriteTest, ExtraChannelsHaveTheirNamesAndPrecision) {
+    OutputParams output;
+    output.aovs = {"layers", "count", "depth", "coverage"};
+    RawFile raw = read_raw(write("a.exr", output, soft_frame(5, 3)));
+    std::map<std::string, OIIO::TypeDesc> types;
+    for (int c = 0; c < raw.spec.nchannels; ++c)
+        types[raw.spec.channelnames[static_cast<std::size_t>(c)]] = raw.spec.channelformat(c);
+    const OIIO::TypeDesc half(OIIO::TypeDesc::HALF), full(OIIO::TypeDesc::FLOAT);
+    const std::map<std::string, OIIO::TypeDesc> expected = {
+        {"R", half},        {"G", half},      {"B", half},       {"A", half},       {"Z", full},
+        {"coverage", half}, {"count", full},  {"stars.R", half}, {"stars.G", half}, {"stars.B", half},
+        {"stars.A", half},  {"dust.R", half}, {"dust.G", half},  {"dust.B", half},  {"dust.A", half}};
+    EXPECT_EQ(types, expected);
+    EXPECT_EQ(raw.at(2, 1, "Z"), 123456.789f);
+    EXPECT_EQ(raw.at(2, 1, "count"), 100001.0f);
+    EXPECT_EQ(raw.at(2, 1, "coverage"), 0.5f);
+    EXPECT_EQ(raw.at(2, 1, "stars.A"), 0.5f);
+    EXPECT_EQ(raw.at(2, 1, "dust.B"), 0.25f);
+}
+
+TEST_F(WriteTest, TallFramesAreWrittenInBands) {
+    OutputParams output;
+    output.depth = Depth::float32;
+    RenderedFrame frame = soft_frame(3, 700);
+    for (std::int64_t y = 0; y < 700; ++y) frame.beauty.at(1, y)[0] = static_cast<float>(y);
+    RawFile raw = read_raw(write("a.exr", output, frame));
+    for (int y = 0; y < 700; ++y) ASSERT_EQ(raw.at(1, y, "R"), static_cast<float>(y));
+}
+
+TEST_F(WriteTest, RegionIsTheDataWindowOfExrAndACropElsewhere) {
+    RenderedFrame frame = soft_frame(8, 4);
+    for (const char* name : {"a.exr", "a.png"})
+        write_frame(folder_ / name, frame, {}, {}, 100, 50, {30, 20, 8, 4}, metadata_);
+    OIIO::ImageSpec exr = read_raw(folder_ / "a.exr").spec, png = read_raw(folder_ / "a.png").spec;
+    EXPECT_EQ(exr.x, 30);
+    EXPECT_EQ(exr.y, 20);
+    EXPECT_EQ(exr.width, 8);
+    EXPECT_EQ(exr.full_x, 0);
+    EXPECT_EQ(exr.full_width, 100);
+    EXPECT_EQ(exr.full_height, 50);
+    EXPECT_EQ(png.width, 8);
+    EXPECT_EQ(png.full_width, 8);
+    EXPECT_TRUE(frame_is_whole(folder_ / "a.exr"));
+}
+
+TEST_F(WriteTest, RegionOfADitheredFileEqualsTheCropOfTheWhole) {
+    RenderedFrame whole = soft_frame(40, 20), part;
+    part.beauty = make_image(10, 5, 4);
+    for (std::int64_t y = 0; y < 5; ++y) std::copy_n(whole.beauty.at(17, y + 6), 40, part.beauty.at(0, y));
+    RawFile all = read_raw(write("whole.png", {}, whole));
+    write_frame(folder_ / "part.png", part, {}, {}, 40, 20, {17, 6, 10, 5}, metadata_);
+    RawFile some = read_raw(folder_ / "part.png");
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 10; ++x) EXPECT_EQ(some.at(x, y, "G"), all.at(x + 17, y + 6, "G"));
+}
+
+TEST_F(WriteTest, PngWithoutAlphaIsOpaqueOverBlack) {
+    RenderedFrame frame = soft_frame(5, 2);
+    OutputParams output;
+    output.depth = Depth::uint16;
+    RawFile raw = read_raw(write("a.png", output, frame));
+    EXPECT_EQ(raw.spec.nchannels, 3);
+    EXPECT_EQ(raw.code(2, 0, "R", 65535), std::lround(65535 * real::linear_to_srgb(0.4)));
+    EXPECT_EQ(raw.code(0, 0, "R", 65535), 0);
+}
+
+TEST_F(WriteTest, StraightPngKeepsTheColourOfSoftEdges) {
+    RenderedFrame frame = soft_frame(101, 2);
+    OutputParams output;
+    output.alpha = Alpha::straight;
+    output.depth = Depth::uint16;
+    RawFile raw = read_raw(write("a.png", output, frame));
+    for (int x = 1; x < 101; ++x) {
+        EXPECT_NEAR(raw.code(x, 0, "R", 65535), 65535 * real::linear_to_srgb(0.8), 1.0) << x;
+        EXPECT_NEAR(raw.code(x, 0, "B", 65535), 65535 * real::linear_to_srgb(0.1), 1.0) << x;
+        EXPECT_EQ(raw.code(x, 0, "A", 65535), std::lround(655.35 * x));
+    }
+    EXPECT_EQ(raw.at(0, 0, "A"), 0.0f);
+}
+
+TEST_F(WriteTest, PremultipliedPixelsSurviveEveryIntegerFormat) {
+    RenderedFrame frame = soft_frame(51, 2);
+    OutputParams output;
+    output.alpha = Alpha::premultiplied;
+    output.depth = Depth::uint16;
+    for (const char* name : {"a.png", "a.tif"}) {
+        RawFile raw = read_raw(write(name, output, frame));
+        for (int x = 0; x < 51; ++x)
+            EXPECT_NEAR(raw.code(x, 0, "G", 65535), 65535 * real::linear_to_srgb(0.4) * x / 50.0, 1.0)
+                << name << x;
+    }
+}
+
+TEST_F(WriteTest, TiffSaysWhatItsAlphaIs) {
+    OutputParams output;
+    output.depth = Depth::uint8;
+    RenderedFrame frame = soft_frame(5, 2);
+    EXPECT_EQ(read_raw(write("p.tif", output, frame)).spec.get_int_attribute("tiff:UnassociatedAlpha", 0), 0);
+    output.alpha = Alpha::straight;
+    EXPECT_EQ(read_raw(write("s.tif", output, frame)).spec.get_int_attribute("tiff:UnassociatedAlpha", 0), 1);
+    output.alpha = Alpha::none;
+    EXPECT_EQ(read_raw(write("n.tif", output, frame)).spec.nchannels, 3);
+}
+
+TEST_F(WriteTest, TiffHoldsItsCodesInEveryCompression) {
+    RenderedFrame frame = soft_frame(33, 8);
+    for (Depth depth : {Depth::uint8, Depth::uint16, Depth::float32})
+        for (Compression c : {Compression::deflate, Compression::lzw, Compression::none}) {
+            OutputParams output;
+            output.depth = depth;
+            output.compression = c;
+            RawFile raw = read_raw(write("a.tiff", output, frame));
+            const char* name = c == Compression::deflate ? "zip" : (c == Compression::lzw ? "lzw" : "none");
+            EXPECT_EQ(raw.spec.get_string_attribute("compression"), name);
+            if (depth == Depth::float32) {
+                EXPECT_EQ(raw.at(20, 6, "R"), frame.beauty.at(20, 6)[0]);  // 1.5: light, no view
+                continue;
+            }
+            double value = real::linear_to_srgb(0.8) * 20.0 / 32.0,
+                   codes = depth == Depth::uint8 ? 255 : 65535;
+            EXPECT_NEAR(raw.at(20, 0, "R") * codes, value * codes, 1.0);
+        }
+}
+
+TEST_F(WriteTest, ExrHeaderHoldsProvenanceAndGeometryButNoClock) {
+    CameraParams camera;
+    camera.position = glm::dvec3(1, 2, 3);
+    metadata_.matrices = exr_matrices(make_camera(camera, 5, 3, {}), 5, 3);
+    const fs::path file = write("a.exr", {}, soft_frame(5, 3));
+    OIIO::ImageSpec spec = read_raw(file).spec;
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/version").substr(0, 2), "0.");
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/frameHash"), metadata_.frame_hash);
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/pixelHash"), metadata_.pixel_hash);
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/seed"), "4000000000");
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/frame"), "12");
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/title"), "Orion from the side");
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/credit"), "NASA/ESA");
+    EXPECT_EQ(spec.get_string_attribute("astrosplat/type"), "Artwork");
+    const OIIO::ParamValue* fps = spec.find_attribute("framesPerSecond", OIIO::TypeRational);
+    ASSERT_TRUE(fps);
+    EXPECT_EQ(fps->get<int>(0), 24000);
+    EXPECT_EQ(fps->get<int>(1), 1001);
+    for (const char* matrix : {"worldToCamera", "worldToNDC"}) {
+        const OIIO::ParamValue* value = spec.find_attribute(matrix, OIIO::TypeMatrix44);
+        ASSERT_TRUE(value) << matrix;
+        const bool ndc = matrix == std::string("worldToNDC");
+        const float* expected = ndc ? metadata_.matrices->world_to_ndc : metadata_.matrices->world_to_camera;
+        for (int i = 0; i < 16; ++i) EXPECT_EQ(static_cast<const float*>(value->data())[i], expected[i]);
+    }
+    const OIIO::ParamValue* primaries = spec.find_attribute("chromaticities");
+    ASSERT_TRUE(primaries);
+    EXPECT_EQ(static_cast<const float*>(primaries->data())[6], 0.3127f);
+    EXPECT_EQ(spec.get_string_attribute("DateTime"), "");
+    EXPECT_EQ(spec.get_string_attribute("Software"), "");
+    EXPECT_EQ(spec.get_string_attribute("HostComputer"), "");
+    // The attribute's name as OpenEXR spells it, not OpenImageIO's.
+    const std::string bytes = bytes_of(file);
+    for (const char* name : {"framesPerSecond", "worldToCamera", "worldToNDC", "chromaticities"})
+        EXPECT_NE(bytes.find(std::string(name) + '\0'), std::string::npos) << name;
+}
+
+TEST_F(WriteTest, EveryFormatTellsItsHashes) {
+    RenderedFrame frame = soft_frame(5, 3);
+    for (const char* name : {"a.exr", "a.tif", "a.png"}) {
+        const fs::path file = write(name, {}, frame);
+        EXPECT_EQ(read_frame_hashes(file), std::make_pair(metadata_.frame_hash, metadata_.pixel_hash))
+            << name;
+        EXPECT_TRUE(frame_is_whole(file)) << name;
+        EXPECT_EQ(read_raw(file).spec.get_string_attribute("DateTime"), "") << name;
+    }
+    std::ofstream(folder_ / "text.exr") << "no picture";
+    for (const char* name : {"text.exr", "missing.png"}) {
+        EXPECT_EQ(read_frame_hashes(folder_ / name), std::make_pair(std::string(), std::string()));
+        EXPECT_FALSE(frame_is_whole(folder_ / name));
+    }
+}
+
+TEST_F(WriteTest, TruncatedFilesAreNotWhole) {
+    RenderedFrame frame = soft_frame(64, 64);
+    for (std::size_t i = 0; i < frame.beauty.pixels.size(); ++i)  // hard to compress
+        frame.beauty.pixels[i] = static_cast<float>((i * 2654435761u) % 1009) / 1009.0f;
+    for (const char* name : {"a.exr", "a.tif", "a.png"}) {
+        const fs::path file = write(name, {}, frame);
+        const std::uintmax_t size = fs::file_size(file);
+        for (std::uintmax_t kept : {size - 200, size / 2, std::uintmax_t{20}, std::uintmax_t{0}}) {
+            fs::resize_file(file, kept);
+            // TIFF's header lies at the end: where only its text is lost, the pixels are whole but the hash
+            // is gone.
+            const bool same = frame_is_whole(file) && read_frame_hashes(file).first == metadata_.frame_hash;
+            EXPECT_FALSE(same) << name << " " << kept;
+            const bool header_first = name != std::string("a.tif");
+            EXPECT_FALSE(header_first && frame_is_whole(file)) << name << " " << kept;
+            write(name, {}, frame);
+        }
+    }
+}
+
+TEST_F(WriteTest, SameFrameGivesTheSameBytesOnAnyNumberOfThreads) {
+    OutputParams exr;
+    exr.aovs = {"layers", "depth"};
+    RenderedFrame frame = soft_frame(200, 300);
+    for (const char* name : {"a.exr", "a.tif", "a.png"}) {
+        const OutputParams output = name == std::string("a.exr") ? exr : OutputParams{};
+        set_thread_count(1);
+        const std::string one = bytes_of(write(name, output, frame));
+        set_thread_count(3);
+        const std::string three = bytes_of(write(name, output, frame));
+        set_thread_count(0);
+        EXPECT_FALSE(one.empty());
+        EXPECT_TRUE(one == three) << name;
+    }
+}
+
+TEST_F(WriteTest, FoldersAreMadeAndNothingElseIsLeft) {
+    const fs::path file = write("deep/er/a.exr", {}, soft_frame(5, 3));
+    EXPECT_TRUE(frame_is_whole(file));
+    int files = 0;
+    for (const auto& entry : fs::directory_iterator(file.parent_path()))
+        files += entry.path() == file ? 1 : 10;
+    EXPECT_EQ(files, 1);
+}
+
+TEST_F(WriteTest, UnwritablePlacesAreOneLine) {
+    std::ofstream(folder_ / "plain") << "a file, not a folder";
+    try {
+        write("plain/a.exr", {}, soft_frame(2, 2));
+        FAIL();
+    } catch (const OutputError& error) {
+        const std::string line = error.what();
+        EXPECT_NE(line.find("plain/a.exr: its folder cannot be made: "), std::string::npos) << line;
+        EXPECT_EQ(line.find('\n'), std::string::npos);
+    }
+    fs::create_directories(folder_ / "folder.exr");
+    EXPECT_THROW(write("folder.exr", {}, soft_frame(2, 2)), OutputError);
+    if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere: a read-only folder cannot be tested";
+    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+    EXPECT_THROW(write("a.exr", {}, soft_frame(2, 2)), OutputError);
+}
+
+TEST_F(WriteTest, ValuesThatAreNotFiniteAreNeverWritten) {
+    RenderedFrame frame = soft_frame(4, 4);
+    frame.beauty.at(2, 1)[1] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(write("a.exr", {}, frame), std::logic_error);
+    EXPECT_FALSE(fs::exists(folder_ / "a.exr"));
+    frame = soft_frame(4, 4);
+    frame.depth.pixels[3] = std::numeric_limits<float>::infinity();
+    OutputParams output;
+    EXPECT_NO_THROW(write("a.exr", output, frame));  // not asked for
+    output.aovs = {"depth"};
+    EXPECT_THROW(write("b.exr", output, frame), std::logic_error);
+}
+
+TEST(PixelHash, IsTheHashOfTheFloatsBytes) {
+    Image image = make_image(1, 1, 4, 0.0f);
+    // sha256 of sixteen zero bytes
+    EXPECT_EQ(pixel_hash(image), "374708fff7719dd5979ec875d56cd2286f6d3cf7ec317a3b25632aab28ec37bb");
+    image.pixels[0] = -0.0f;
+    EXPECT_NE(pixel_hash(image), "374708fff7719dd5979ec875d56cd2286f6d3cf7ec317a3b25632aab28ec37bb");
+}
+
+TEST(Metadata, FramesPerSecondBecomeFractions) {
+    struct {
+        double fps;
+        int n, d;
+    } cases[] = {{24, 24, 1},   {23.976, 24000, 1001}, {29.97, 30000, 1001}, {59.94, 60000, 1001},
+                 {12.5, 25, 2}, {25, 25, 1},           {60, 60, 1},          {23.976023976, 24000, 1001}};
+    for (const auto& c : cases) {
+        EXPECT_EQ(rational_fps(c.fps).numerator, c.n) << c.fps;
+        EXPECT_EQ(rational_fps(c.fps).denominator, c.d) << c.fps;
+    }
+}
+
+TEST(Metadata, LinesAreFoundByTheirWholeKey) {
+    const std::string lines = metadata_lines({{"a", "1"}, {"ab", "2=3"}, {"c", ""}});
+    EXPECT_EQ(lines, "a=1\nab=2=3\nc=\n");
+    EXPECT_EQ(find_metadata_line(lines, "ab"), "2=3");
+    EXPECT_EQ(find_metadata_line(lines, "b"), "");
+    EXPECT_EQ(find_metadata_line("", "a"), "");
+}
+
+}  // namespace
+}  // namespace astrosplat
