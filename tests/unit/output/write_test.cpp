@@ -374,6 +374,9 @@ TEST_F(WriteTest, UnwritablePlacesAreOneLine) {
     }
     fs::create_directories(folder_ / "folder.exr");
     EXPECT_THROW(write("folder.exr", {}, soft_frame(2, 2)), OutputError);
+}
+
+TEST_F(WriteTest, ReadOnlyFoldersAreOneLine) {
     if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere: a read-only folder cannot be tested";
     fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_THROW(write("a.exr", {}, soft_frame(2, 2)), OutputError);
