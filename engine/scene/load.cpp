@@ -88,7 +88,7 @@ class Loader {
   public:
     Loader(std::string file, fs::path folder) : file_(std::move(file)), folder_(std::move(folder)) {}
 
-    Scene load(const toml::table& root, std::span<const Assignment> assignments) {
+    Scene load(const toml::table& root, std::span<const Assignment> assignments, bool checked) {
         check_version(root, file_, true);
         const std::vector<LayerTable> layers = read_layers(root, file_);
         for (const LayerTable& layer : layers) scene_.layers.emplace_back().name = layer.name;
@@ -101,7 +101,7 @@ class Loader {
             scene_.animation = read_tracks(*animation->as_table(), scene_, file_);
         }
         for (const Assignment& assignment : assignments) assign(assignment);
-        check_scene(scene_, file_, places_);
+        if (checked) check_scene(scene_, file_, places_);
         return std::move(scene_);
     }
 
@@ -247,12 +247,19 @@ Assignment parse_assignment(const std::string& text) {
     return {key, trimmed(text.substr(equals + 1))};
 }
 
-Scene parse_scene(const std::string& toml, const fs::path& file, std::span<const Assignment> assignments) {
+static Scene parse(const std::string& toml, const fs::path& file, std::span<const Assignment> assignments,
+                   bool checked) {
     const toml::table root = parse_toml(toml, file.string());
-    Scene scene = Loader(file.string(), file.parent_path()).load(root, assignments);
+    Scene scene = Loader(file.string(), file.parent_path()).load(root, assignments, checked);
     scene.file = file;
     return scene;
 }
+
+Scene parse_scene(const std::string& toml, const fs::path& file, std::span<const Assignment> assignments) {
+    return parse(toml, file, assignments, true);
+}
+
+Scene parse_unchecked(const std::string& toml, const fs::path& file) { return parse(toml, file, {}, false); }
 
 Scene load_scene(const fs::path& file, std::span<const Assignment> assignments) {
     return parse_scene(read_text_file(file), file, assignments);

@@ -24,6 +24,9 @@ Scene load_scene(const std::filesystem::path& file, std::span<const Assignment> 
 Scene parse_scene(const std::string& toml, const std::filesystem::path& file,
                   std::span<const Assignment> assignments = {});
 
+/// parse_scene without the rules between parameters (check.h), for texts on their way to becoming a scene.
+Scene parse_unchecked(const std::string& toml, const std::filesystem::path& file);
+
 /// Frames of "1-100,120,200-300x2" (x or : is the step; negative numbers allowed), ascending, each once.
 /// Throws InputError naming `place`.
 std::vector<std::int64_t> parse_frames(const std::string& text, const std::string& place);

@@ -1,0 +1,273 @@
+// Saving: brings layers, then tracks, lists and single keys of the original text in line with the scene,
+// comparing with what the text says at each step.
+#include "scene/save.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "scene/describe.h"
+#include "scene/load.h"
+#include "scene/path_text.h"
+#include "scene/toml_read.h"
+#include "scene/toml_text.h"
+#include "scene/tracks.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+TomlPath split(const std::string& key) {
+    TomlPath path;
+    for (std::size_t begin = 0; begin <= key.size();) {
+        const std::size_t end = std::min(key.find('.', begin), key.size());
+        path.push_back(key.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return path;
+}
+
+std::vector<std::string> layer_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
+    return names;
+}
+
+/// The default of an element's parameter.
+const Value& standard_value(const std::string& generic_key) {
+    for (const ParameterRow& row : parameter_rows())
+        if (row.spec.key == generic_key) return row.standard;
+    throw std::logic_error("no parameter " + generic_key);
+}
+
+/// Edits one text until it says what a scene or preset says.
+class Saver {
+  public:
+    Saver(std::string text, std::vector<std::string> layers, fs::path folder)
+        : text_(std::move(text)), layers_(std::move(layers)), folder_(std::move(folder)) {}
+
+    TomlText& text() { return text_; }
+
+    /// Where a full key stands: layers by index; a list given as a single table has no index.
+    TomlPath path_of(const std::string& key, const Description& description) const {
+        TomlPath path = split(key);
+        if (path[0] == "layer" && path.size() > 1) path[1] = layer_index(path[1]);
+        for (const ParameterList& list : description.lists) {
+            if (key.rfind(list.key + ".0.", 0) != 0) continue;
+            const std::size_t size = split(list.key).size();
+            const TomlPath indexed(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(size) + 1);
+            const TomlPath bare(indexed.begin(), indexed.end() - 1);
+            if (!text_.contains(indexed) && text_.contains(bare))
+                path.erase(path.begin() + static_cast<std::ptrdiff_t>(size));
+        }
+        return path;
+    }
+
+    void set(const ParameterSpec& spec, const Value& value, const Description& description) {
+        const std::string written = to_toml(unresolve_paths(value, spec, folder_));
+        text_.set(path_of(spec.key, description), section_size(spec.generic_key), written);
+    }
+
+    /// Writes lists whose length differs, or that the text does not have, as a whole.
+    void set_lists(const Description& base, const Description& wanted) {
+        for (const ParameterList& list : wanted.lists) {
+            const auto old = std::find_if(base.lists.begin(), base.lists.end(),
+                                          [&](const ParameterList& l) { return l.key == list.key; });
+            const bool written = text_.contains(path_of(list.key, wanted));
+            const bool same_length = old != base.lists.end() && old->size() == list.size();
+            if (same_length && (written || same_elements(list.key, base, wanted))) continue;
+            const TomlPath path = path_of(list.key, wanted);
+            if (!text_.is_value(path)) text_.remove(path);
+            text_.set(path, section_size(list.generic_key), list_text(list, wanted));
+        }
+    }
+
+    void set_values(const Description& base, const Description& wanted) {
+        for (const Parameter& parameter : wanted.parameters) {
+            const Parameter* old = find_parameter(base, parameter.spec.key);
+            const Value value = parameter.get();
+            if (!old || !(old->get() == value)) set(parameter.spec, value, wanted);
+        }
+    }
+
+  private:
+    std::string layer_index(const std::string& name) const {
+        return std::to_string(std::find(layers_.begin(), layers_.end(), name) - layers_.begin());
+    }
+
+    static std::size_t section_size(const std::string& generic_key) {
+        const TomlPath section = split(section_of(generic_key));
+        return section.size() + (section[0] == "layer" ? 1 : 0);
+    }
+
+    static bool same_elements(const std::string& list, const Description& base, const Description& wanted) {
+        return std::all_of(wanted.parameters.begin(), wanted.parameters.end(),
+                           [&](const Parameter& parameter) {
+                               if (parameter.spec.key.rfind(list + ".", 0) != 0) return true;
+                               const Parameter* old = find_parameter(base, parameter.spec.key);
+                               return old && old->get() == parameter.get();
+                           });
+    }
+
+    std::string list_text(const ParameterList& list, const Description& description) const {
+        std::string text;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const std::string head = fmt::format("{}.{}.", list.key, i);
+            std::string pairs;
+            for (const Parameter& parameter : description.parameters) {
+                const ParameterSpec& spec = parameter.spec;
+                if (spec.key.rfind(head, 0) != 0) continue;
+                const Value value = parameter.get();
+                const std::string generic =
+                    section_of(spec.generic_key).rfind("layer", 0) == 0 ? "" : "layer.";
+                if (value == standard_value(generic + spec.generic_key)) continue;
+                pairs += fmt::format("{}{} = {}", pairs.empty() ? "" : ", ", spec.key.substr(head.size()),
+                                     to_toml(unresolve_paths(value, spec, folder_)));
+            }
+            text += (text.empty() ? "" : ", ") + (pairs.empty() ? "{}" : "{ " + pairs + " }");
+        }
+        return "[" + text + "]";
+    }
+
+    TomlText text_;
+    std::vector<std::string> layers_;
+    fs::path folder_;
+};
+
+/// A layer that is new at the place of one that is gone was renamed.
+void rename_layers(TomlText& text, std::vector<std::string>& old, const std::vector<std::string>& wanted) {
+    const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    for (std::size_t i = 0; i < std::min(old.size(), wanted.size()); ++i) {
+        if (old[i] == wanted[i] || has(old, wanted[i]) || has(wanted, old[i])) continue;
+        text.set({"layer", std::to_string(i), "name"}, 2, to_toml(wanted[i]));
+        old[i] = wanted[i];
+    }
+}
+
+/// Adds, removes and reorders whole [[layer]] parts.
+void arrange_layers(TomlText& text, std::vector<std::string> old, const std::vector<std::string>& wanted) {
+    rename_layers(text, old, wanted);
+    if (old == wanted) return;
+    std::map<std::string, std::string> blocks;
+    std::size_t at = std::string::npos, begin = 0;
+    for (std::size_t i = old.size(); i-- > 0;) {  // from the last, so that indices stay
+        blocks[old[i]] = text.cut_block({"layer", std::to_string(i)}, begin);
+        at = std::min(at, begin);
+    }
+    text.remove({"layer"});  // layer = [ { ... } ]
+    std::string all;
+    for (const std::string& name : wanted) {
+        const auto block = blocks.find(name);
+        const bool written = block != blocks.end() && !block->second.empty();
+        if (!all.empty() && all.back() != '\n') all += "\n";
+        all += written ? block->second : fmt::format("\n[[layer]]\nname = {}\n", to_toml(name));
+    }
+    at = std::min(at, text.text().size());
+    if (at > 0 && text.text()[at - 1] != '\n') all = "\n" + all;
+    text.insert(at, all);
+}
+
+/// Takes out the tracks that the scene lacks, all of them when their order differs.
+void remove_tracks(TomlText& text, const Scene& scene, const Description& wanted) {
+    std::vector<std::string> kept;
+    for (const std::string& name : text.children({"animation"})) {
+        const std::string key = full_key(wanted, name);
+        const bool stays = std::any_of(scene.animation.begin(), scene.animation.end(),
+                                       [&](const Track& track) { return track.key == key; });
+        if (stays)
+            kept.push_back(key);
+        else
+            text.remove({"animation", name});
+    }
+    // New tracks come after those that are there.
+    const bool in_order =
+        std::equal(kept.begin(), kept.end(), scene.animation.begin(),
+                   [](const std::string& key, const Track& track) { return key == track.key; });
+    if (in_order) return;
+    for (const std::string& name : text.children({"animation"})) text.remove({"animation", name});
+}
+
+void set_tracks(TomlText& text, const Scene& base, const Scene& scene, const Description& wanted) {
+    for (const Track& track : scene.animation) {
+        if (std::find(base.animation.begin(), base.animation.end(), track) != base.animation.end()) continue;
+        const Parameter* parameter = find_parameter(wanted, track.key);
+        if (!parameter) continue;
+        std::string name = track.key;
+        for (const std::string& written : text.children({"animation"}))
+            if (full_key(wanted, written) == track.key) name = written;
+        if (!text.is_value({"animation", name})) text.remove({"animation", name});
+        text.set({"animation", name}, 1, track_to_toml(track, parameter->spec));
+    }
+}
+
+/// Where the file moves to another folder, paths in the text still mean the same files.
+void rebase_paths(Saver& saver, const std::string& original, const fs::path& from, const fs::path& to) {
+    if (original.empty() || from.empty() || from.parent_path() == to.parent_path()) return;
+    Scene scene = parse_unchecked(original, from);
+    const Description description = describe(scene);
+    for (const Parameter& parameter : description.parameters) {
+        const ParameterType type = parameter.spec.type;
+        if (type != ParameterType::file && type != ParameterType::files) continue;
+        if (saver.text().contains(saver.path_of(parameter.spec.key, description)))
+            saver.set(parameter.spec, parameter.get(), description);
+    }
+}
+
+/// Presets come first: they change what the other keys start from.
+void set_presets(Saver& saver, const Scene& before, const Scene& scene, const Description& wanted) {
+    for (const LayerParams& layer : scene.layers) {
+        const auto same = [&](const LayerParams& old) { return old.name == layer.name; };
+        const auto old = std::find_if(before.layers.begin(), before.layers.end(), same);
+        if (old == before.layers.end() ? layer.preset.empty() : old->preset == layer.preset) continue;
+        const Parameter* parameter = find_parameter(wanted, "layer." + layer.name + ".preset");
+        saver.set(parameter->spec, parameter->get(), wanted);
+    }
+}
+
+}  // namespace
+
+std::string save_text(const Scene& scene, const std::string& original, const fs::path& file) {
+    Scene target = scene;
+    target.file = file;
+    const std::vector<std::string> names = layer_names(target);
+    std::string text = original.empty() ? "astrosplat = 1\n" : original;
+    const Scene before = parse_unchecked(text, scene.file.empty() || original.empty() ? file : scene.file);
+    Saver old(text, layer_names(before), file.parent_path());
+    rebase_paths(old, original, scene.file, file);
+    arrange_layers(old.text(), layer_names(before), names);
+
+    Saver saver(old.text().text(), names, file.parent_path());
+    const Description wanted = describe(target);
+    remove_tracks(saver.text(), target, wanted);
+    set_presets(saver, before, target, wanted);
+    Scene base = parse_unchecked(saver.text().text(), file);
+    saver.set_lists(describe(base), wanted);
+    base = parse_unchecked(saver.text().text(), file);
+    saver.set_values(describe(base), wanted);
+    set_tracks(saver.text(), base, target, wanted);
+    return saver.text().text();
+}
+
+void save_scene(const Scene& scene, const fs::path& file) {
+    std::error_code ignored;
+    const bool exists = !scene.file.empty() && fs::exists(scene.file, ignored);
+    write_text_file(file, save_text(scene, exists ? read_text_file(scene.file) : "", file));
+}
+
+std::string save_preset_text(const Look& look, const LayerRender& render, const fs::path& file) {
+    Look wanted_look = look, base_look;
+    LayerRender wanted_render = render, base_render;
+    Saver saver("astrosplat = 1\n", {}, file.parent_path());
+    const Description wanted = describe_preset(wanted_look, wanted_render);
+    saver.set_lists(describe_preset(base_look, base_render), wanted);
+    base_look.noise = look.noise;
+    base_look.thickness.keys = look.thickness.keys;
+    saver.set_values(describe_preset(base_look, base_render), wanted);
+    return saver.text().text();
+}
+
+}  // namespace astrosplat
