@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace astrosplat {
 
@@ -21,12 +20,5 @@ std::optional<std::int64_t> parse_int64(std::string_view text);
 /// The shortest decimal that reads back as the same bits.
 std::string shortest(double value);
 std::string shortest(float value);
-
-/// Fewest insertions, deletions and replacements of single bytes that turn `a` into `b` (Levenshtein).
-int edit_distance(std::string_view a, std::string_view b);
-
-/// The candidate a misspelt `name` most probably meant, "" when none is near (more than a third of it wrong).
-/// Dotted names are also compared with the ends of the candidates: alpha.powr means layer.look.alpha.power.
-std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace astrosplat

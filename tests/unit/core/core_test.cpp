@@ -69,20 +69,6 @@ TEST(Text, ShortestNumbersReadBack) {
         EXPECT_EQ(parse_double(shortest(value)), value);
 }
 
-TEST(Text, EditDistance) {
-    EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
-    EXPECT_EQ(edit_distance("", "abc"), 3);
-    EXPECT_EQ(edit_distance("same", "same"), 0);
-}
-
-TEST(Text, NearestName) {
-    const std::vector<std::string> keys{"layer.look.alpha.power", "layer.look.density", "camera.fov"};
-    EXPECT_EQ(nearest_name("camera.fow", keys), "camera.fov");
-    EXPECT_EQ(nearest_name("alpha.powr", keys), "layer.look.alpha.power");
-    EXPECT_EQ(nearest_name("densty", keys), "layer.look.density");
-    EXPECT_EQ(nearest_name("something", keys), "");
-}
-
 TEST(Memory, HumanNumbers) {
     EXPECT_EQ(human_bytes(1.25 * 1024 * 1024 * 1024), "1.25 GiB");
     EXPECT_EQ(human_bytes(312.0 * 1024 * 1024), "312 MiB");

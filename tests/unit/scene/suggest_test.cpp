@@ -1,0 +1,27 @@
+// "Did you mean": distances worked out by hand, and the slips people make in keys.
+#include "scene/suggest.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace astrosplat {
+namespace {
+
+TEST(Suggest, EditDistance) {
+    EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+    EXPECT_EQ(edit_distance("", "abc"), 3);
+    EXPECT_EQ(edit_distance("same", "same"), 0);
+    EXPECT_EQ(edit_distance("outptu", "output"), 1);
+}
+
+TEST(Suggest, NearestName) {
+    const std::vector<std::string> keys{"layer.look.alpha.power", "layer.look.density", "camera.fov"};
+    EXPECT_EQ(nearest_name("camera.fow", keys), "camera.fov");
+    EXPECT_EQ(nearest_name("alpha.powr", keys), "layer.look.alpha.power");
+    EXPECT_EQ(nearest_name("densty", keys), "layer.look.density");
+    EXPECT_EQ(nearest_name("something", keys), "");
+}
+
+}  // namespace
+}  // namespace astrosplat
