@@ -1,1 +1,36 @@
-int main() {}
+// Dispatch only: runs the command line and turns exceptions into one line and an exit code.
+#include <exception>
+#include <new>
+#include <string>
+
+#include "cli.h"
+#include "commands.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "interrupt.h"
+
+using namespace astrosplat;
+
+int main(int argc, char** argv) {
+    install_interrupt_handlers();
+    try {
+        const int code = run_command_line(argc, argv);
+        flush_warning_counts();
+        return code;
+    } catch (const InputError& error) {
+        log_error(error.what());
+        return exit_not_started;
+    } catch (const OutputError& error) {
+        log_error(error.what());
+        return exit_not_writable;
+    } catch (const Cancelled&) {
+        log_error("stopped; nothing half-done was left behind");
+        return interrupt_exit_code();
+    } catch (const std::bad_alloc&) {
+        log_error("not enough memory");
+        return exit_not_started;
+    } catch (const std::exception& error) {
+        log_error(std::string("internal error: ") + error.what());
+        return exit_own_fault;
+    }
+}

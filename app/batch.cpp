@@ -1,0 +1,223 @@
+// --batch: plans, checks that the output can be written, then renders frame after frame. A frame that fails
+// does not stop the others; an interrupt stops between two pixels.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <new>
+
+#include "batch_plan.h"
+#include "commands.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "interrupt.h"
+#include "output/write.h"
+#include "pipeline.h"
+#include "places.h"
+#include "progress_report.h"
+#include "scene/animate.h"
+#include "splats/generate.h"
+#include "stats.h"
+
+namespace astrosplat {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::int64_t frames_to_render(const BatchPlan& plan) {
+    std::int64_t count = 0;
+    for (const FramePlan& frame : plan.frames) count += frame.render;
+    return count;
+}
+
+void print_plan(const BatchPlan& plan) {
+    const OutputParams& output = plan.scene.output;
+    const JobEstimate job = estimate(plan);
+    const auto count = static_cast<std::int64_t>(plan.frames.size());
+    fmt::print("scene {}\n", plan.scene.file.string());
+    fmt::print("picture {}x{} px", output.width, output.height);
+    if (plan.region.width > 0) {
+        fmt::print(", region {},{},{},{}", plan.region.x, plan.region.y, plan.region.width,
+                   plan.region.height);
+    }
+    fmt::print("\nframes {}: {} to render, {} there already\n", count, frames_to_render(plan),
+               count - frames_to_render(plan));
+    for (const JobEstimate::Layer& layer : job.layers) {
+        fmt::print("layer {}: about {} splats\n", layer.name, human_count(static_cast<double>(layer.splats)));
+    }
+    fmt::print("memory about {}, threads {}\n", human_bytes(static_cast<double>(job.bytes)), thread_count());
+    for (const FramePlan& frame : plan.frames) {
+        fmt::print("{} {} {}\n", frame.render ? "render" : "keep", frame.frame, frame.file.string());
+    }
+}
+
+/// Throws OutputError where a frame or the figures could not be written.
+void check_writable(const BatchPlan& plan, const BatchOptions& options) {
+    std::filesystem::path last;
+    for (const FramePlan& frame : plan.frames) {
+        const std::filesystem::path folder = folder_of(frame.file);
+        if (frame.render && folder != last) prove_writable(folder);
+        if (frame.render) last = folder;
+    }
+    if (options.stats) prove_writable(folder_of(*options.stats));
+}
+
+/// One run over the frames of a plan.
+class BatchRun {
+  public:
+    BatchRun(const BatchPlan& plan, ProgressMode progress) : plan_(plan), report_(progress) {}
+
+    void prepare();
+    void render_frames();
+    RunFigures figures() const;
+    const std::vector<FailedFrame>& failed() const { return figures_.failed; }
+
+  private:
+    FrameFigures render_frame(const FramePlan& frame, const Progress& progress);
+    FrameMetadata metadata(const FramePlan& frame, const Scene& now, const RenderSettings& settings) const;
+    RenderSettings settings(const FramePlan& frame) const;
+
+    const BatchPlan& plan_;
+    ProgressReport report_;
+    std::unique_ptr<Pipeline> pipeline_;
+    RunFigures figures_;
+    Clock::time_point start_ = Clock::now();
+};
+
+void BatchRun::prepare() {
+    const JobEstimate job = estimate(plan_);
+    log_info(fmt::format("{} frames of {}x{} px, about {} splats, about {} of memory",
+                         frames_to_render(plan_), plan_.scene.output.width, plan_.scene.output.height,
+                         human_count(static_cast<double>(job.splats)),
+                         human_bytes(static_cast<double>(job.bytes))));
+    pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"));
+}
+
+RenderSettings BatchRun::settings(const FramePlan& frame) const {
+    RenderSettings settings = pipeline_->settings(static_cast<double>(frame.frame));
+    settings.region = plan_.region;
+    settings.memory_limit_bytes = plan_.memory_limit_bytes;
+    return settings;
+}
+
+FrameMetadata BatchRun::metadata(const FramePlan& frame, const Scene& now,
+                                 const RenderSettings& settings) const {
+    FrameMetadata metadata;
+    metadata.frame = frame.frame;
+    metadata.fps = now.output.fps;
+    metadata.frame_hash = frame.hash;
+    metadata.provenance = now.provenance;
+    if (metadata.provenance.credit.empty()) metadata.provenance.credit = pipeline_->input_credit();
+    if (!now.layers.empty())
+        metadata.seed = resolved_seed(now.layers.front().source.seed, now.layers.front().name);
+    metadata.matrices =
+        exr_matrices(pipeline_->camera(static_cast<double>(frame.frame), settings),
+                     static_cast<double>(settings.width), static_cast<double>(settings.height));
+    return metadata;
+}
+
+FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& progress) {
+    const Clock::time_point start = Clock::now();
+    const auto time = static_cast<double>(frame.frame);
+    const Scene now = scene_at(plan_.scene, time);
+    const RenderSettings settings = this->settings(frame);
+    const RenderedFrame picture = pipeline_->frame(time, settings, progress);
+    FrameMetadata metadata = this->metadata(frame, now, settings);
+    metadata.pixel_hash = pixel_hash(picture.beauty);
+    progress.check();
+    write_frame(frame.file, picture, pipeline_->layer_names(time), now.output, settings.width,
+                settings.height, settings.region, metadata);
+    FrameFigures figures;
+    figures.frame = frame.frame;
+    figures.file = frame.file;
+    figures.seconds = seconds_since(start);
+    figures.render_seconds = picture.statistics.seconds;
+    figures.splats_in = picture.statistics.splats_in;
+    figures.splats_drawn = picture.statistics.splats_drawn;
+    figures.sha256 = metadata.pixel_hash;
+    log_detail(fmt::format("frame {}: {} splats drawn, mean overlap {:.2f}", frame.frame,
+                           human_count(static_cast<double>(figures.splats_drawn)),
+                           picture.statistics.mean_overlap));
+    return figures;
+}
+
+/// Bad input that shows in the first frame ends the run (nothing was started); later failures spare the other
+/// frames.
+void BatchRun::render_frames() {
+    const std::int64_t count = frames_to_render(plan_);
+    std::int64_t index = 0;
+    const auto fail = [this](const FramePlan& frame, const std::string& error) {
+        log_error(fmt::format("frame {}: {}", frame.frame, error));
+        figures_.failed.push_back({frame.frame, frame.file, error});
+    };
+    for (const FramePlan& frame : plan_.frames) {
+        if (!frame.render) continue;
+        const Progress progress = report_.begin_frame(frame.frame, ++index, count);
+        try {
+            figures_.frames.push_back(render_frame(frame, progress));
+            report_.saved(frame.file, figures_.frames.back().seconds);
+        } catch (const InputError& error) {
+            if (index == 1) throw;
+            fail(frame, error.what());
+        } catch (const OutputError& error) {
+            fail(frame, error.what());
+        } catch (const std::bad_alloc&) {
+            fail(frame, "not enough memory");
+        }
+    }
+}
+
+RunFigures BatchRun::figures() const {
+    RunFigures figures = figures_;
+    if (pipeline_) figures.layers = pipeline_->statistics();
+    figures.seconds = seconds_since(start_);
+    return figures;
+}
+
+void report_failures(const std::vector<FailedFrame>& failed) {
+    std::vector<std::int64_t> numbers;
+    for (const FailedFrame& frame : failed) numbers.push_back(frame.frame);
+    log_error(fmt::format("{} failed: {}",
+                          numbers.size() == 1 ? "1 frame" : fmt::format("{} frames", numbers.size()),
+                          fmt::join(numbers, ",")));
+}
+
+}  // namespace
+
+int run_batch(const BatchOptions& options) {
+    const BatchPlan plan = plan_batch(options);
+    if (options.dry_run) {
+        print_plan(plan);
+        return exit_done;
+    }
+    check_writable(plan, options);
+    std::vector<FailedFrame> failed;
+    {
+        BatchRun run(plan, options.progress);
+        const auto keep_figures = [&] {
+            if (options.stats) write_stats(*options.stats, run.figures());
+        };
+        try {
+            if (frames_to_render(plan) > 0) {
+                run.prepare();
+                run.render_frames();
+            }
+        } catch (const Cancelled&) {
+            keep_figures();
+            throw;
+        }
+        keep_figures();
+        failed = run.failed();
+    }
+    flush_warning_counts();
+    if (failed.empty()) return exit_done;
+    report_failures(failed);
+    return exit_some_failed;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,180 @@
+#include "batch_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "core/parallel.h"
+#include "core/text.h"
+#include "output/frame_hash.h"
+#include "output/write.h"
+#include "scene/animate.h"
+#include "scene/load.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    std::size_t begin = 0;
+    for (std::size_t end; (end = text.find(separator, begin)) != std::string::npos; begin = end + 1) {
+        parts.emplace_back(trim(std::string_view(text).substr(begin, end - begin)));
+    }
+    parts.emplace_back(trim(std::string_view(text).substr(begin)));
+    return parts;
+}
+
+/// Exactly `count` whole numbers between separators, or none.
+std::vector<std::int64_t> whole_numbers(const std::string& text, char separator, std::size_t count) {
+    std::vector<std::int64_t> numbers;
+    for (const std::string& part : split(text, separator)) {
+        const std::optional<std::int64_t> number = parse_int64(part);
+        if (!number) return {};
+        numbers.push_back(*number);
+    }
+    if (numbers.size() != count) numbers.clear();
+    return numbers;
+}
+
+void apply_resolution(OutputParams& output, const std::string& text) {
+    const char* expected = "a size such as 1920x1080, or a percentage such as 50%";
+    if (!text.empty() && text.back() == '%') {
+        const std::optional<double> percent = parse_double(text.substr(0, text.size() - 1));
+        if (!percent || !(*percent > 0.0 && *percent <= 1000.0))
+            bad_input("--resolution", "", expected, "'" + text + "'");
+        const auto scaled = [&](std::int64_t side) {
+            return std::max<std::int64_t>(
+                1, static_cast<std::int64_t>(static_cast<double>(side) * *percent / 100.0 + 0.5));
+        };
+        output.width = scaled(output.width);
+        output.height = scaled(output.height);
+        return;
+    }
+    const std::vector<std::int64_t> size = whole_numbers(text, 'x', 2);
+    if (size.empty() || std::min(size[0], size[1]) < 1 || std::max(size[0], size[1]) > 65536) {
+        bad_input("--resolution", "", expected, "'" + text + "'");
+    }
+    output.width = size[0];
+    output.height = size[1];
+}
+
+/// Shows the layers named and hides the others, whatever the scene says about them.
+void apply_layers(Scene& scene, const std::string& text) {
+    const std::vector<std::string> wanted = split(text, ',');
+    std::vector<std::string> known;
+    for (const LayerParams& layer : scene.layers) known.push_back(layer.name);
+    for (const std::string& name : wanted) {
+        if (std::find(known.begin(), known.end(), name) == known.end()) {
+            bad_input("--layers", "", fmt::format("layers of the scene ({})", fmt::join(known, ", ")),
+                      "'" + name + "'");
+        }
+    }
+    for (LayerParams& layer : scene.layers) {
+        const std::string track_key = "layer." + layer.name + ".visible";
+        const auto is_track = [&](const Track& track) { return track.key == track_key; };
+        const bool shown = std::find(wanted.begin(), wanted.end(), layer.name) != wanted.end();
+        layer.visible = shown;
+        if (!shown) std::erase_if(scene.animation, is_track);
+    }
+    if (!scene.camera.position && scene.camera.file.empty()) {
+        log_info("the scene gives no camera position: the camera frames only the layers of --layers");
+    }
+}
+
+Region parse_region(const std::string& text, const OutputParams& output) {
+    const std::vector<std::int64_t> r = whole_numbers(text, ',', 4);
+    if (r.empty() || r[0] < 0 || r[1] < 0 || r[2] < 1 || r[3] < 1 || r[0] > output.width - r[2] ||
+        r[1] > output.height - r[3]) {
+        bad_input("--region", "",
+                  fmt::format("X,Y,W,H inside the picture of {}x{} px", output.width, output.height),
+                  "'" + text + "'");
+    }
+    return {r[0], r[1], r[2], r[3]};
+}
+
+std::int64_t parse_memory(const std::string& text) {
+    const std::optional<double> gib = parse_double(text);
+    if (!gib || !(*gib > 0.0 && *gib < 1048576.0))
+        bad_input("--memory", "", "a size in GiB, such as 4", "'" + text + "'");
+    return static_cast<std::int64_t>(*gib * 1073741824.0);
+}
+
+Scene batch_scene(const BatchOptions& options) {
+    std::vector<Assignment> assignments;
+    for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
+    Scene scene = load_scene(options.scene, assignments);
+    if (options.frames) scene.output.frames = *options.frames;
+    const fs::path base = options.output ? fs::current_path() : fs::absolute(scene.file).parent_path();
+    scene.output.path = (base / options.output.value_or(scene.output.path)).string();
+    if (options.resolution) apply_resolution(scene.output, *options.resolution);
+    if (options.layers) apply_layers(scene, *options.layers);
+    check_output(scene.output);
+    return scene;
+}
+
+std::vector<std::int64_t> frame_numbers(const Scene& scene, bool from_command_line) {
+    const std::string place = from_command_line ? "--frames" : scene.file.string() + ": output.frames";
+    std::vector<std::int64_t> frames = parse_frames(scene.output.frames, place);
+    if (frames.size() > 1 && !has_frame_token(scene.output.path)) {
+        bad_input(
+            scene.output.path, "",
+            fmt::format("a frame number such as #### in the name, as there are {} frames", frames.size()),
+            "none");
+    }
+    return frames;
+}
+
+enum class Existing { nothing, same, damaged, other };
+
+Existing existing_frame(const FramePlan& plan) {
+    std::error_code ignored;
+    if (!fs::exists(fs::symlink_status(plan.file, ignored))) return Existing::nothing;
+    if (fs::is_directory(plan.file, ignored))
+        bad_input(plan.file.string(), "", "a place for a frame", "a folder");
+    if (!frame_is_whole(plan.file)) return Existing::damaged;
+    return read_frame_hashes(plan.file).first == plan.hash ? Existing::same : Existing::other;
+}
+
+/// Decides what becomes of files that lie where frames go (DESIGN 8).
+void decide(std::vector<FramePlan>& frames, const BatchOptions& options) {
+    if (options.overwrite && !options.resume) return;
+    std::vector<const FramePlan*> in_the_way;
+    for (FramePlan& frame : frames) {
+        std::error_code ignored;
+        if (!options.resume) {
+            if (fs::exists(fs::symlink_status(frame.file, ignored))) in_the_way.push_back(&frame);
+            continue;
+        }
+        const Existing existing = existing_frame(frame);
+        frame.render = existing != Existing::same;
+        if (existing == Existing::damaged) log_info(frame.file.string() + ": damaged, is rendered again");
+        if (existing == Existing::other && !options.overwrite) in_the_way.push_back(&frame);
+    }
+    if (in_the_way.empty()) return;
+    const std::string more = in_the_way.size() > 1 ? fmt::format(" and {} more", in_the_way.size() - 1) : "";
+    const std::string file = in_the_way.front()->file.string() + more;
+    throw InputError(options.resume
+                         ? file + ": holds a frame of other settings; --resume --overwrite replaces it"
+                         : file + ": exists already; use --resume to keep it or --overwrite to replace it");
+}
+
+}  // namespace
+
+BatchPlan plan_batch(const BatchOptions& options) {
+    BatchPlan plan;
+    plan.scene = batch_scene(options);
+    if (options.region) plan.region = parse_region(*options.region, plan.scene.output);
+    if (options.memory_gib) plan.memory_limit_bytes = parse_memory(*options.memory_gib);
+    FrameHasher hasher(plan.scene, plan.region);
+    for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value())) {
+        plan.frames.push_back({frame, frame_file(plan.scene.output.path, frame), hasher.frame_hash(frame)});
+    }
+    decide(plan.frames, options);
+    return plan;
+}
+
+}  // namespace astrosplat

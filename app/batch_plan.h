@@ -1,0 +1,48 @@
+// What a batch run is going to do, decided before anything is touched: the scene with the command line
+// applied, and for every frame its file, its hash and whether it is rendered.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "render/render.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+struct FramePlan {
+    std::int64_t frame = 0;
+    std::filesystem::path file;
+    std::string hash;    // frame hash, hex
+    bool render = true;  // false: a whole frame of this hash is there already
+};
+
+struct BatchPlan {
+    Scene scene;  // with the command line applied
+    Region region;
+    std::int64_t memory_limit_bytes = 0;  // 0: none
+    std::vector<FramePlan> frames;        // ascending
+};
+
+/// Throws InputError for bad input, and where files are in the way that neither --resume nor --overwrite
+/// covers.
+BatchPlan plan_batch(const BatchOptions& options);
+
+/// About how many splats the layers will have, and how many bytes sets, shaded splats, screen splats and
+/// pictures take.
+struct JobEstimate {
+    struct Layer {
+        std::string name;
+        std::int64_t splats = 0;
+    };
+    std::vector<Layer> layers;
+    std::int64_t splats = 0;
+    std::int64_t bytes = 0;
+};
+/// Loads meshes where voxels are given, nothing else. Throws InputError.
+JobEstimate estimate(const BatchPlan& plan);
+
+}  // namespace astrosplat

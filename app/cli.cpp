@@ -1,0 +1,242 @@
+#include "cli.h"
+
+#include <fmt/format.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+#include "commands.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/parallel.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr const char* version_line = "astrosplat " ASTROSPLAT_VERSION;
+
+/// Options that every command takes.
+struct CommonOptions {
+    std::string threads, cache;
+    bool no_cache = false, verbose = false, quiet = false;
+};
+
+struct Invocation {
+    CommonOptions common;
+    bool batch = false;
+    std::string input;  // what the viewer would open
+    BatchOptions batch_options;
+    NewOptions create;
+    GenerateOptions generate;
+    ConvertOptions convert;
+    InfoOptions info;
+    CompareOptions compare;
+    ParametersOptions parameters;
+    std::function<int()> action;  // of the subcommand, when there is one
+};
+
+void add_text(CLI::App& app, const std::string& names, std::optional<std::string>& value,
+              const std::string& placeholder, const std::string& help) {
+    app.add_option_function<std::string>(
+           names, [&value](const std::string& text) { value = text; }, help)
+        ->option_text(placeholder);
+}
+
+void add_path(CLI::App& app, const std::string& names, std::filesystem::path& value,
+              const std::string& placeholder, const std::string& help, bool required = true) {
+    app.add_option_function<std::string>(
+           names, [&value](const std::string& text) { value = text; }, help)
+        ->option_text(placeholder)
+        ->required(required);
+}
+
+void add_assignments(CLI::App& app, std::vector<std::string>& values) {
+    app.add_option_function<std::vector<std::string>>(
+           "--set", [&values](const std::vector<std::string>& texts) { values = texts; },
+           "Sets a key of the scene; may be repeated")
+        ->option_text("KEY=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_progress(CLI::App& app, ProgressMode& mode) {
+    app.add_option_function<std::string>(
+           "--progress",
+           [&mode](const std::string& text) {
+               if (text != "auto" && text != "plain" && text != "none") {
+                   bad_input("--progress", "", "auto, plain or none", "'" + text + "'");
+               }
+               mode = text == "auto"    ? ProgressMode::automatic
+                      : text == "plain" ? ProgressMode::plain
+                                        : ProgressMode::none;
+           },
+           "How to report progress on stderr")
+        ->option_text("auto|plain|none");
+}
+
+void add_common(CLI::App& app, CommonOptions& common) {
+    app.set_help_flag("-h,--help", "Prints this help");
+    app.set_version_flag("--version", version_line, "Prints the version");
+    app.add_option("-t,--threads", common.threads, "Threads (default: the cores this process may use)")
+        ->option_text("N");
+    app.add_option("--cache", common.cache, "Folder for generated sets")->option_text("DIR");
+    app.add_flag("--no-cache", common.no_cache, "Neither reads nor writes a cache");
+    app.add_flag("-v,--verbose", common.verbose, "Says more");
+    app.add_flag("-q,--quiet", common.quiet, "Says only warnings and errors");
+}
+
+void add_batch(CLI::App& app, Invocation& call) {
+    BatchOptions& batch = call.batch_options;
+    app.add_flag("--batch", call.batch, "Renders the scene's frames without a window");
+    app.add_option("SCENE", call.input, "A scene; without --batch also a picture, mesh or splat file");
+    add_text(app, "-f,--frames", batch.frames, "1-100,120,200-300x2", "Frames to render");
+    add_text(app, "-o,--output", batch.output, "PATTERN", "Frame files, such as frames/shot.####.exr");
+    add_text(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the picture");
+    add_assignments(app, batch.assignments);
+    add_text(app, "--layers", batch.layers, "A,B", "Renders only these layers");
+    add_text(app, "--memory", batch.memory_gib, "GiB", "Limit of the renderer's working memory");
+    add_text(app, "--region", batch.region, "X,Y,W,H", "Part of the picture, from the top left, in pixels");
+    app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
+    app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
+    app.add_flag("--dry-run", batch.dry_run, "Says what would be done, and does nothing");
+    app.add_option_function<std::string>(
+           "--stats", [&batch](const std::string& text) { batch.stats = text; }, "Writes figures as JSON")
+        ->option_text("FILE.json");
+    add_progress(app, batch.progress);
+}
+
+/// A subcommand whose run is remembered, not done while parsing.
+CLI::App& add_command(CLI::App& app, Invocation& call, const char* name, const char* help,
+                      std::function<int()> action) {
+    CLI::App& command = *app.add_subcommand(name, help);
+    add_common(command, call.common);
+    command.callback([&call, action = std::move(action)] { call.action = action; });
+    return command;
+}
+
+void add_new(CLI::App& app, Invocation& call) {
+    CLI::App& command = add_command(app, call, "new", "Writes a scene for a picture",
+                                    [&call] { return run_new(call.create); });
+    add_path(command, "IMAGE", call.create.image, "IMAGE", "The picture");
+    add_path(command, "-o,--output", call.create.scene, "SCENE", "The scene file to write");
+    command.add_option("--shape", call.create.shape, "The mesh (default: plane)")
+        ->option_text("plane|relief|disk|sphere");
+    command.add_flag("--overwrite", call.create.overwrite, "Replaces the scene file");
+}
+
+void add_generate(CLI::App& app, Invocation& call) {
+    CLI::App& command = add_command(app, call, "generate", "Generates a layer's splats into a file",
+                                    [&call] { return run_generate(call.generate); });
+    add_path(command, "SCENE", call.generate.scene, "SCENE", "The scene");
+    command.add_option("--layer", call.generate.layer, "Name of the layer")->option_text("NAME")->required();
+    add_path(command, "-o,--output", call.generate.output, "FILE.(pda|ply|splats)",
+             "The splat file to write");
+    add_assignments(command, call.generate.assignments);
+    command.add_flag("--overwrite", call.generate.overwrite, "Replaces the file");
+    add_progress(command, call.generate.progress);
+}
+
+void add_convert(CLI::App& app, Invocation& call) {
+    CLI::App& command = add_command(app, call, "convert", "Converts between splat files",
+                                    [&call] { return run_convert(call.convert); });
+    add_path(command, "IN", call.convert.input, "IN", "A .pda, .ply or .splats file");
+    add_path(command, "OUT", call.convert.output, "OUT", "A .pda, .ply or .splats file");
+    command.add_flag("--overwrite", call.convert.overwrite, "Replaces the file");
+    add_progress(command, call.convert.progress);
+}
+
+void add_reports(CLI::App& app, Invocation& call) {
+    CLI::App& info = add_command(app, call, "info", "Describes any file the program reads",
+                                 [&call] { return run_info(call.info); });
+    add_path(info, "FILE", call.info.file, "FILE", "Scene, mesh, picture, frame or splat file");
+    info.add_flag("--json", call.info.json, "Prints JSON");
+
+    CLI::App& compare = add_command(app, call, "compare", "Compares the linear light of two pictures",
+                                    [&call] { return run_compare(call.compare); });
+    add_path(compare, "A", call.compare.a, "A", "A picture");
+    add_path(compare, "B", call.compare.b, "B", "A picture of the same size");
+    compare.add_flag("--json", call.compare.json, "Prints JSON");
+    add_text(compare, "--max-difference", call.compare.max_difference, "X",
+             "Largest difference allowed in any channel; beyond it the exit code is 3");
+
+    CLI::App& parameters = add_command(app, call, "parameters", "Lists every key of a scene file",
+                                       [&call] { return run_parameters(call.parameters); });
+    parameters.add_flag("--json", call.parameters.json, "Prints JSON");
+}
+
+void apply_common(const CommonOptions& common) {
+    if (common.quiet) set_log_level(LogLevel::warning);
+    if (common.verbose) set_log_level(LogLevel::detail);
+    if (!common.threads.empty()) {
+        const std::optional<std::int64_t> threads = parse_int64(common.threads);
+        if (!threads || *threads < 1 || *threads > 1024) {
+            bad_input("--threads", "", "a number from 1 to 1024", "'" + common.threads + "'");
+        }
+        set_thread_count(static_cast<int>(*threads));
+    }
+    if (!common.cache.empty() && !common.no_cache) {
+        log_warning("--cache: this version does not keep generated sets; they are made afresh in every run");
+    }
+}
+
+int run(Invocation& call) {
+    apply_common(call.common);
+    if (call.action) {
+        if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
+        return call.action();
+    }
+    if (!call.batch) {
+        log_error(
+            "the viewer is not part of this version; render with: astrosplat --batch SCENE (see --help)");
+        return exit_own_fault;
+    }
+    if (call.input.empty()) bad_input("--batch", "", "a scene file", "none (see --help)");
+    call.batch_options.scene = call.input;
+    if (call.common.quiet && call.batch_options.progress == ProgressMode::automatic) {
+        call.batch_options.progress = ProgressMode::none;
+    }
+    return run_batch(call.batch_options);
+}
+
+/// CLI11's message as one line.
+int report_usage_error(const CLI::ParseError& error) {
+    std::string line = error.what();
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    log_error(line + " (see astrosplat --help)");
+    return exit_not_started;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+    Invocation call;
+    CLI::App app("Turns a mesh and a telescope picture into a volume of soft splats and renders film frames.",
+                 "astrosplat");
+    app.require_subcommand(0, 1);
+    add_common(app, call.common);
+    add_batch(app, call);
+    add_new(app, call);
+    add_generate(app, call);
+    add_convert(app, call);
+    add_reports(app, call);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        const auto commands = app.get_subcommands();
+        fmt::print("{}", commands.empty() ? app.help() : commands.front()->help());
+        return exit_done;
+    } catch (const CLI::CallForVersion&) {
+        fmt::print("{}\n", version_line);
+        return exit_done;
+    } catch (const CLI::ParseError& error) {
+        return report_usage_error(error);
+    }
+    return run(call);
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,66 @@
+// What a batch run will take, before it takes it: from the scene and from file sizes, without generating
+// anything.
+#include <algorithm>
+#include <cmath>
+
+#include "batch_plan.h"
+#include "pipeline.h"
+#include "splats/generate.h"
+
+namespace astrosplat {
+namespace {
+
+// Bytes per splat: the set (position, colour, alpha, distance, id, uv, normal, mesh), the shaded splat, and
+// one projected splat with its place in a tile.
+constexpr std::int64_t set_bytes = 64, shaded_bytes = 40, screen_bytes = 64;
+constexpr std::int64_t file_bytes_per_splat =
+    100;  // a row of a PDA with colour, opacity, distance and radius
+
+/// Lattice positions within max_distance of the surface, both sides: two positions per voxel.
+std::int64_t positions_near(const std::vector<TexturedMesh>& meshes, const Lattice& lattice,
+                            double max_distance) {
+    double area = 0.0;
+    for (const TexturedMesh& textured : meshes) area += surface_area(textured.mesh);
+    const glm::dvec3 voxel = lattice.spacing();
+    const double near = 4.0 * area * max_distance / std::max(1e-300, voxel.x * voxel.y * voxel.z);
+    return static_cast<std::int64_t>(std::min(near, static_cast<double>(lattice.positions())));
+}
+
+std::int64_t splats_of(const SourceParams& source) {
+    if (source.kind == SourceKind::splats) {
+        std::error_code ignored;
+        const auto size = std::filesystem::file_size(source.file, ignored);
+        return ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat;
+    }
+    if (!source.voxels && source.voxel_size <= 0.0) return source.count;
+    const std::vector<TexturedMesh> meshes = load_meshes(source);
+    Bounds box;
+    for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
+    const double max_distance = resolved_max_distance(source, box);
+    return positions_near(meshes, make_lattice(source, meshes, max_distance), max_distance);
+}
+
+std::int64_t picture_bytes(const BatchPlan& plan) {
+    const OutputParams& output = plan.scene.output;
+    const bool whole = plan.region.width == 0;
+    const std::int64_t pixels = whole ? output.width * output.height : plan.region.width * plan.region.height;
+    const auto aovs = static_cast<std::int64_t>(output.aovs.size());
+    return pixels * 4 * (4 + aovs + 4 * static_cast<std::int64_t>(plan.scene.layers.size()) * (aovs > 0));
+}
+
+}  // namespace
+
+JobEstimate estimate(const BatchPlan& plan) {
+    JobEstimate job;
+    for (const LayerParams& layer : plan.scene.layers) {
+        if (!ever_visible(plan.scene, layer)) continue;
+        job.layers.push_back({layer.name, splats_of(layer.source)});
+        job.splats += job.layers.back().splats;
+    }
+    std::int64_t screen = job.splats * screen_bytes;
+    if (plan.memory_limit_bytes > 0) screen = std::min(screen, plan.memory_limit_bytes);
+    job.bytes = job.splats * (set_bytes + shaded_bytes) + screen + picture_bytes(plan);
+    return job;
+}
+
+}  // namespace astrosplat

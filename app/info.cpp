@@ -1,0 +1,173 @@
+// info: what any file the program reads holds.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+#include "core/error.h"
+#include "interrupt.h"
+#include "output/image_info.h"
+#include "output/write.h"
+#include "report.h"
+#include "scene/load.h"
+#include "source/fits.h"
+#include "source/mesh.h"
+#include "splats/splat_file.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+Report to_report(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Report to_report(const Bounds& box) {
+    if (box.empty()) return "empty";
+    return {{"lo", to_report(box.lo)}, {"hi", to_report(box.hi)}};
+}
+
+Report smallest_and_largest(const Buffer<float>& values) {
+    if (values.empty()) return "none";
+    const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
+    return {number(*lo), number(*hi)};
+}
+
+Report describe_splats(const fs::path& file) {
+    const SplatSet set = read_splats(file, Progress{{}, &interrupted()});
+    Report attributes = {"position", "color", "alpha", "distance", "id"};
+    if (!set.radius.empty()) attributes.push_back("radius");
+    if (!set.uv.empty()) attributes.push_back("uv");
+    if (!set.normal.empty()) attributes.push_back("normal");
+    if (!set.mesh.empty()) attributes.push_back("mesh");
+    Report report = {{"kind", "splats"},
+                     {"splats", set.size()},
+                     {"bounds", to_report(bounds(set))},
+                     {"attributes", attributes},
+                     {"alpha", smallest_and_largest(set.alpha)},
+                     {"distance", smallest_and_largest(set.distance)}};
+    if (!set.radius.empty()) report["radius"] = smallest_and_largest(set.radius);
+    report["max_distance"] = set.max_distance;
+    report["spacing"] = to_report(set.spacing);
+    if (!set.credit.empty()) report["credit"] = set.credit;
+    return report;
+}
+
+Report describe_mesh(const fs::path& file) {
+    const Mesh mesh = load_obj(file);
+    std::int64_t with_uv = 0;
+    for (const Mesh::Triangle& triangle : mesh.triangles) with_uv += triangle.uv[0] != Mesh::no_uv;
+    Report maps = Report::array();
+    for (const fs::path& map : mesh.maps) maps.push_back(map.string());
+    return {{"kind", "mesh"},
+            {"vertices", mesh.positions.size()},
+            {"triangles", mesh.triangles.size()},
+            {"triangles_with_uv", with_uv},
+            {"texture_coordinates", mesh.uvs.size()},
+            {"area", surface_area(mesh)},
+            {"bounds", to_report(bounds(mesh))},
+            {"maps", maps}};
+}
+
+Report describe_hdu(const FitsHdu& hdu) {
+    Report report = {{"number", hdu.number}, {"kind", hdu.kind}};
+    if (!hdu.name.empty()) report["name"] = hdu.name;
+    if (hdu.axes.empty()) return report;
+    report["size"] = hdu.axes;
+    if (hdu.bitpix == 0) return report;
+    report["bitpix"] = hdu.bitpix;
+    report["min"] = number(hdu.range.min);
+    report["max"] = number(hdu.range.max);
+    report["percentile_0.25"] = number(hdu.range.black);
+    report["percentile_99.75"] = number(hdu.range.white);
+    report["nan_count"] = hdu.nan_count;
+    return report;
+}
+
+Report describe_fits_file(const fs::path& file) {
+    Report hdus = Report::array();
+    for (const FitsHdu& hdu : describe_fits(file)) hdus.push_back(describe_hdu(hdu));
+    return {{"kind", "fits"}, {"hdus", hdus}};
+}
+
+Report describe_image(const fs::path& file) {
+    const ImageInfo info = read_image_info(file);
+    Report channels = Report::array(), metadata = Report::object();
+    for (const auto& [name, type] : info.channels) channels.push_back(name + " " + type);
+    for (const auto& [name, value] : info.metadata) metadata[name] = value;
+    Report report = {{"kind", "image"},
+                     {"format", info.file_format},
+                     {"width", info.width},
+                     {"height", info.height},
+                     {"channels", channels}};
+    if (info.width != info.whole_width || info.height != info.whole_height) {
+        report["whole_picture"] = {info.whole_width, info.whole_height};
+        report["at"] = {info.x, info.y};
+    }
+    const auto [frame_hash, pixel_hash] = read_frame_hashes(file);
+    if (!frame_hash.empty()) {
+        report["frame_hash"] = frame_hash;
+        report["pixel_hash"] = pixel_hash;
+        report["whole"] = frame_is_whole(file);
+    }
+    report["metadata"] = metadata;
+    return report;
+}
+
+Report describe_layer(const LayerParams& layer) {
+    constexpr std::array kinds = {"mesh", "splats", "stars"};
+    Report report = {{"name", layer.name},
+                     {"visible", layer.visible},
+                     {"kind", kinds[static_cast<std::size_t>(layer.source.kind)]}};
+    if (layer.source.kind == SourceKind::splats) report["file"] = layer.source.file.string();
+    Report meshes = Report::array();
+    for (const MeshInput& input : layer.source.meshes) {
+        Report textures = Report::array();
+        for (const fs::path& texture : input.texture) textures.push_back(texture.string());
+        meshes.push_back({{"mesh", input.mesh.string()}, {"texture", textures}});
+    }
+    if (!meshes.empty()) report["meshes"] = meshes;
+    return report;
+}
+
+Report describe_scene(const fs::path& file) {
+    const Scene scene = load_scene(file);
+    const std::vector<std::int64_t> frames =
+        parse_frames(scene.output.frames, file.string() + ": output.frames");
+    Report layers = Report::array(), animated = Report::array();
+    for (const LayerParams& layer : scene.layers) layers.push_back(describe_layer(layer));
+    for (const Track& track : scene.animation) animated.push_back(track.key);
+    return {{"kind", "scene"},
+            {"resolution", {scene.output.width, scene.output.height}},
+            {"frames", scene.output.frames},
+            {"frame_count", frames.size()},
+            {"fps", scene.output.fps},
+            {"output", scene.output.path},
+            {"layers", layers},
+            {"animated", animated}};
+}
+
+}  // namespace
+
+int run_info(const InfoOptions& options) {
+    const fs::path& file = options.file;
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored)) {
+        bad_input(file.string(), "", "a file",
+                  fs::exists(file, ignored) ? "something else" : "nothing of that name");
+    }
+    const std::string ending = file.extension().string();
+    const Report about = is_splat_file(file) ? describe_splats(file)
+                         : ending == ".toml" ? describe_scene(file)
+                         : ending == ".obj"  ? describe_mesh(file)
+                         : is_fits(file)     ? describe_fits_file(file)
+                                             : describe_image(file);
+    Report report = {{"file", file.string()}};
+    report.update(about);
+    print_report(report, options.json);
+    return exit_done;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,17 @@
+// Where results go: asked before any work is done, so that hours are not spent on a picture nobody can write.
+#pragma once
+
+#include <filesystem>
+
+namespace astrosplat {
+
+/// Creates `folder` where it is missing and tries a temporary file in it. Throws OutputError.
+void prove_writable(const std::filesystem::path& folder);
+
+/// Folder of a file as an absolute path.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// Throws InputError when something lies at `file`, unless `overwrite`.
+void refuse_to_overwrite(const std::filesystem::path& file, bool overwrite);
+
+}  // namespace astrosplat

@@ -1,0 +1,124 @@
+#include "progress_report.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/log.h"
+#include "interrupt.h"
+
+namespace astrosplat {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto bar_interval = std::chrono::milliseconds(100);
+constexpr auto line_interval = std::chrono::seconds(5);  // at least every 10 s is promised
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::string bar_text(double fraction) {
+    constexpr int width = 30;
+    const int filled = static_cast<int>(fraction * width);
+    return "[" + std::string(static_cast<std::size_t>(filled), '#') +
+           std::string(static_cast<std::size_t>(width - filled), '.') + "]";
+}
+
+}  // namespace
+
+std::string clock_text(double seconds) {
+    if (!(seconds >= 0.0 && seconds < 360000.0)) return "--:--:--";
+    const int whole = static_cast<int>(seconds + 0.5);
+    return fmt::format("{:02}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+ProgressReport::ProgressReport(ProgressMode mode) {
+    const bool terminal = isatty(STDERR_FILENO) != 0;
+    style_ = mode == ProgressMode::none                    ? Style::none
+             : mode == ProgressMode::automatic && terminal ? Style::bar
+                                                           : Style::plain;
+    if (style_ == Style::none) return;
+    set_log_sink([this](LogLevel, const std::string& line) {
+        const std::lock_guard lock(mutex_);
+        clear_bar();
+        fmt::print(stderr, "astrosplat: {}\n", line);
+    });
+    printer_ = std::thread([this] { print_loop(); });
+}
+
+ProgressReport::~ProgressReport() {
+    if (style_ == Style::none) return;
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+        clear_bar();
+    }
+    stop_condition_.notify_all();
+    printer_.join();
+    set_log_sink(nullptr);
+}
+
+Progress ProgressReport::begin_step(const std::string& name) { return begin(name, 1, 1); }
+
+Progress ProgressReport::begin_frame(std::int64_t number, std::int64_t index, std::int64_t count) {
+    return begin(fmt::format("frame {} ({}/{})", number, index, count), index, count);
+}
+
+Progress ProgressReport::begin(std::string label, std::int64_t index, std::int64_t count) {
+    const std::lock_guard lock(mutex_);
+    if (index == 1) start_ = Clock::now();
+    label_ = std::move(label);
+    index_ = index;
+    count_ = count;
+    fraction_ = 0.0;
+    print_status();
+    return Progress{[this](double fraction) { fraction_.store(fraction, std::memory_order_relaxed); },
+                    &interrupted()};
+}
+
+void ProgressReport::saved(const std::filesystem::path& file, double seconds) {
+    const std::lock_guard lock(mutex_);
+    label_.clear();
+    if (style_ == Style::none) return;
+    clear_bar();
+    fmt::print(stderr, "saved {} {:.2f}s\n", file.string(), seconds);
+}
+
+/// From the pace of all frames so far; negative while nothing is done yet.
+double ProgressReport::seconds_left(double fraction) const {
+    const double done = static_cast<double>(index_ - 1) + fraction;
+    if (done <= 0.0) return -1.0;
+    return seconds_since(start_) * (static_cast<double>(count_) - done) / done;
+}
+
+void ProgressReport::print_status() {
+    if (style_ == Style::none || label_.empty()) return;
+    const double fraction = std::clamp(fraction_.load(std::memory_order_relaxed), 0.0, 1.0);
+    const std::string left = clock_text(seconds_left(fraction));
+    const int percent = static_cast<int>(fraction * 100.0);
+    last_print_ = Clock::now();
+    if (style_ == Style::plain) {
+        fmt::print(stderr, "astrosplat: {} {}% eta {}\n", label_, percent, left);
+        return;
+    }
+    fmt::print(stderr, "\r{} {} {:3}% eta {}\x1b[K", label_, bar_text(fraction), percent, left);
+    std::fflush(stderr);
+    bar_shown_ = true;
+}
+
+void ProgressReport::clear_bar() {
+    if (bar_shown_) fmt::print(stderr, "\r\x1b[K");
+    bar_shown_ = false;
+}
+
+void ProgressReport::print_loop() {
+    std::unique_lock lock(mutex_);
+    while (!stop_condition_.wait_for(lock, bar_interval, [this] { return stopping_; })) {
+        if (style_ == Style::bar || Clock::now() - last_print_ >= line_interval) print_status();
+    }
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,59 @@
+// Progress on stderr: a bar with the time left on a terminal, plain lines elsewhere. Work reports fractions
+// through Progress values from any thread; one thread of its own prints, so that a slow frame still gives a
+// line in time.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "commands.h"
+#include "core/progress.h"
+
+namespace astrosplat {
+
+/// "00:04:10"; "--:--:--" for what is not known (negative) or longer than 99 hours.
+std::string clock_text(double seconds);
+
+class ProgressReport {
+  public:
+    /// Log messages pass through here while it lives, so that they do not collide with the bar.
+    explicit ProgressReport(ProgressMode mode);
+    ~ProgressReport();
+    ProgressReport(const ProgressReport&) = delete;
+    ProgressReport& operator=(const ProgressReport&) = delete;
+
+    /// A step that counts for itself, such as "preparing".
+    Progress begin_step(const std::string& name);
+    /// Frame `number`, the index-th (from 1) of `count`. The time left covers all of them.
+    Progress begin_frame(std::int64_t number, std::int64_t index, std::int64_t count);
+    /// "saved FILE 1.82s"
+    void saved(const std::filesystem::path& file, double seconds);
+
+  private:
+    enum class Style { bar, plain, none };
+    Progress begin(std::string label, std::int64_t index, std::int64_t count);
+    void print_loop();
+    void print_status();  // these two with mutex_ held
+    void clear_bar();
+    double seconds_left(double fraction) const;
+
+    Style style_;
+    std::atomic<double> fraction_{0.0};  // of the step or frame at hand
+    std::mutex mutex_;
+    std::condition_variable stop_condition_;
+    bool stopping_ = false;
+    bool bar_shown_ = false;
+    std::string label_;  // empty: nothing at hand
+    std::int64_t index_ = 1, count_ = 1;
+    std::chrono::steady_clock::time_point start_;  // of the first frame, or of the step
+    std::chrono::steady_clock::time_point last_print_;
+    std::thread printer_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,66 @@
+// generate and convert: splats into files, without rendering.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands.h"
+#include "core/error.h"
+#include "interrupt.h"
+#include "places.h"
+#include "progress_report.h"
+#include "scene/load.h"
+#include "scene/suggest.h"
+#include "splats/generate.h"
+#include "splats/splat_file.h"
+
+namespace astrosplat {
+namespace {
+
+const LayerParams& layer_named(const Scene& scene, const std::string& name) {
+    std::vector<std::string> names;
+    for (const LayerParams& layer : scene.layers) {
+        if (layer.name == name) return layer;
+        names.push_back(layer.name);
+    }
+    bad_input(scene.file.string(), "",
+              fmt::format("--layer to name one of its layers ({})", fmt::join(names, ", ")),
+              "'" + name + "'" + did_you_mean(name, names));
+}
+
+void check_splat_output(const std::filesystem::path& file, bool overwrite) {
+    if (!is_splat_file(file)) {
+        bad_input(file.string(), "", "a name ending in .pda, .ply or .splats",
+                  "'" + file.extension().string() + "'");
+    }
+    refuse_to_overwrite(file, overwrite);
+    prove_writable(folder_of(file));
+}
+
+void write_and_report(const std::filesystem::path& file, const SplatSet& set, ProgressReport& report) {
+    write_splats(file, set, report.begin_step("writing"));
+    fmt::print("{}: {} splats\n", file.string(), set.size());
+}
+
+}  // namespace
+
+int run_generate(const GenerateOptions& options) {
+    std::vector<Assignment> assignments;
+    for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
+    const Scene scene = load_scene(options.scene, assignments);
+    const LayerParams& layer = layer_named(scene, options.layer);
+    check_splat_output(options.output, options.overwrite);
+    ProgressReport report(options.progress);
+    const SplatSet set = load_source(layer.source, layer.name, report.begin_step("generating " + layer.name));
+    write_and_report(options.output, set, report);
+    return exit_done;
+}
+
+int run_convert(const ConvertOptions& options) {
+    check_splat_output(options.output, options.overwrite);
+    ProgressReport report(options.progress);
+    const SplatSet set = read_splats(options.input, report.begin_step("reading"));
+    write_and_report(options.output, set, report);
+    return exit_done;
+}
+
+}  // namespace astrosplat

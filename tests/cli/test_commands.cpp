@@ -1,0 +1,128 @@
+// new, generate, convert, info, compare and parameters.
+#include "scene_fixture.h"
+
+namespace astrosplat::test {
+namespace {
+
+class Commands : public SceneTest {
+  protected:
+    nlohmann::json info(const std::string& file) const {
+        const RunResult result = run({"info", file, "--json"});
+        EXPECT_EQ(result.code, 0) << result.err;
+        return nlohmann::json::parse(result.out);
+    }
+};
+
+TEST_F(Commands, ConvertKeepsEverySplat) {
+    ASSERT_EQ(run({"convert", "stars.pda", "stars.splats"}).code, 0);
+    ASSERT_EQ(run({"convert", "stars.splats", "again.pda"}).code, 0);
+    ASSERT_EQ(run({"convert", "again.pda", "stars.ply"}).code, 0);
+    ASSERT_EQ(run({"convert", "stars.ply", "last.splats"}).code, 0);
+    EXPECT_EQ(text_of(folder / "last.splats"), text_of(folder / "stars.splats"));
+    const nlohmann::json described = info("stars.ply");
+    EXPECT_EQ(described.at("splats"), 300);
+}
+
+TEST_F(Commands, ConvertRefusesWhatItShould) {
+    expect_one_line(run({"convert", "stars.pda", "stars.xyz"}), 2, ".splats");
+    expect_one_line(run({"convert", "stars.pda", "dust.pda"}), 2, "--overwrite");
+    EXPECT_EQ(run({"convert", "stars.pda", "dust.pda", "--overwrite"}).code, 0);
+    write_text(folder / "broken.pda",
+               "ATTRIBUTES\n position\nTYPES\n V\nNUMBER_OF_PARTICLES: 2\nBEGIN DATA\n1 2 3\n");
+    const RunResult broken = run({"convert", "broken.pda", "out.ply", "--progress", "none"});
+    expect_one_line(broken, 2, "broken.pda");
+    EXPECT_FALSE(fs::exists(folder / "out.ply"));
+    EXPECT_EQ(run({"convert", "stars.pda", "/proc/astrosplat/out.ply"}).code, 4);
+}
+
+TEST_F(Commands, NewMakesASceneThatRenders) {
+    write_text(folder / "picture.ppm", small_picture());
+    for (const char* shape : {"plane", "relief", "disk", "sphere"}) {
+        const std::string scene = std::string(shape) + ".toml";
+        ASSERT_EQ(run({"new", "picture.ppm", "-o", scene, "--shape", shape}).code, 0) << shape;
+        const std::vector<std::string> arguments = {
+            "--batch", scene, "-f", "1", "-o", std::string(shape) + ".png", "--resolution", "48x32"};
+        const RunResult result = run(arguments);
+        EXPECT_EQ(result.code, 0) << result.err;
+    }
+    expect_one_line(run({"new", "picture.ppm", "-o", "plane.toml"}), 2, "--overwrite");
+    expect_one_line(run({"new", "picture.ppm", "-o", "cube.toml", "--shape", "cube"}), 2, "cube");
+    expect_one_line(run({"new", "missing.png", "-o", "x.toml"}), 2, "missing.png");
+    EXPECT_FALSE(fs::exists(folder / "x.toml"));
+}
+
+TEST_F(Commands, GenerateWritesALayer) {
+    write_text(folder / "picture.ppm", small_picture());
+    ASSERT_EQ(run({"new", "picture.ppm", "-o", "new.toml"}).code, 0);
+    const std::string layer = info("new.toml").at("layers")[0].at("name");
+    const std::string count = "layer." + layer + ".source.count=5000";
+    const RunResult result =
+        run({"generate", "new.toml", "--layer", layer, "--output", "set.splats", "--set", count});
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.out.find("set.splats"), std::string::npos) << result.out;
+    const std::int64_t splats = info("set.splats").at("splats");
+    EXPECT_GT(splats, 3000);
+    EXPECT_LT(splats, 7000);
+    expect_one_line(run({"generate", "new.toml", "--layer", "other", "--output", "other.pda"}), 2, layer);
+    expect_one_line(run({"generate", "new.toml", "--layer", layer, "--output", "set.splats"}), 2,
+                    "--overwrite");
+}
+
+TEST_F(Commands, InfoDescribesEveryKind) {
+    const nlohmann::json splats = info("stars.pda");
+    EXPECT_EQ(splats.at("kind"), "splats");
+    EXPECT_EQ(splats.at("splats"), 300);
+    EXPECT_GE(splats.at("bounds").at("lo")[0].get<double>(), -2.0);
+    const nlohmann::json scene = info("scene.toml");
+    EXPECT_EQ(scene.at("kind"), "scene");
+    EXPECT_EQ(scene.at("resolution"), (std::vector<int>{64, 48}));
+    EXPECT_EQ(scene.at("layers").size(), 2u);
+    ASSERT_EQ(batch({"-f", "1"}).code, 0);
+    const nlohmann::json frame = info("frames/shot.0001.exr");
+    EXPECT_EQ(frame.at("kind"), "image");
+    EXPECT_EQ(frame.at("width"), 64);
+    EXPECT_EQ(frame.at("frame_hash").get<std::string>().size(), 64u);
+    write_text(folder / "square.obj",
+               "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n");
+    const nlohmann::json mesh = info("square.obj");
+    EXPECT_EQ(mesh.at("kind"), "mesh");
+    EXPECT_EQ(mesh.at("triangles"), 2);
+    EXPECT_EQ(mesh.at("vertices"), 4);
+    EXPECT_DOUBLE_EQ(mesh.at("area").get<double>(), 2.0);
+    EXPECT_NE(run({"info", "square.obj"}).out.find("triangles: 2"), std::string::npos);
+    write_text(folder / "noise.bin", "nothing known");
+    EXPECT_EQ(run({"info", "noise.bin"}).code, 2);
+}
+
+TEST_F(Commands, CompareFindsTheDifference) {
+    ASSERT_EQ(batch({"-f", "1,3"}).code, 0);
+    const std::string a = "frames/shot.0001.exr", b = "frames/shot.0003.exr";
+    const RunResult same = run({"compare", a, a, "--json", "--max-difference", "0"});
+    EXPECT_EQ(same.code, 0) << same.err;
+    EXPECT_EQ(nlohmann::json::parse(same.out).at("max_difference"), 0.0);
+    EXPECT_EQ(nlohmann::json::parse(same.out).at("identical"), true);
+    const RunResult other = run({"compare", a, b, "--json"});
+    EXPECT_EQ(other.code, 0) << "without a limit the answer is the figures";
+    const double difference = nlohmann::json::parse(other.out).at("max_difference");
+    EXPECT_GT(difference, 0.01);
+    EXPECT_EQ(run({"compare", a, b, "--max-difference", "0.001"}).code, 3);
+    EXPECT_EQ(run({"compare", a, b, "--max-difference", "1000"}).code, 0);
+    ASSERT_EQ(batch({"-f", "1", "--resolution", "50%", "-o", "small.exr"}).code, 0);
+    expect_one_line(run({"compare", a, "small.exr"}), 2, "small.exr");
+}
+
+TEST_F(Commands, ParametersListEveryKey) {
+    const RunResult text = run({"parameters"});
+    EXPECT_EQ(text.code, 0) << text.err;
+    EXPECT_NE(text.out.find("layer.look.alpha.power"), std::string::npos);
+    const nlohmann::json rows = nlohmann::json::parse(run({"parameters", "--json"}).out);
+    ASSERT_GT(rows.size(), 100u);
+    const auto density = std::find_if(rows.begin(), rows.end(),
+                                      [](const auto& row) { return row.at("key") == "layer.look.density"; });
+    ASSERT_NE(density, rows.end());
+    EXPECT_EQ(density->at("default"), 1.0);
+    EXPECT_EQ(density->at("animated"), "yes");
+}
+
+}  // namespace
+}  // namespace astrosplat::test

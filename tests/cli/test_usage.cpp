@@ -1,0 +1,105 @@
+// Help, version, and every way to call the program wrongly: one line, exit code 2, nothing written.
+#include <regex>
+
+#include "scene_fixture.h"
+
+namespace astrosplat::test {
+namespace {
+
+class Usage : public SceneTest {};
+
+TEST_F(Usage, HelpAndVersionAreEverywhere) {
+    for (const char* command : {"", "new", "generate", "convert", "info", "compare", "parameters"}) {
+        std::vector<std::string> start;
+        if (*command) start.push_back(command);
+        for (const char* option : {"-h", "--help", "--version"}) {
+            std::vector<std::string> arguments = start;
+            arguments.push_back(option);
+            const RunResult result = run(arguments);
+            EXPECT_EQ(result.code, 0) << command << " " << option << result.err;
+            EXPECT_EQ(result.err, "");
+            EXPECT_NE(result.out.find(option[2] == 'v' ? "astrosplat 0." : "--help"), std::string::npos)
+                << result.out;
+        }
+    }
+}
+
+TEST_F(Usage, HelpNamesEveryOptionOfTheDesign) {
+    const std::string help = run({"--help"}).out;
+    for (const char* option :
+         {"--batch",      "-f,--frames", "-o,--output", "--resolution", "--set",       "--layers",
+          "-t,--threads", "--memory",    "--region",    "--resume",     "--overwrite", "--dry-run",
+          "--stats",      "--cache",     "--no-cache",  "--progress",   "-v,",         "-q,",
+          "new",          "generate",    "convert",     "info",         "compare",     "parameters"}) {
+        EXPECT_NE(help.find(option), std::string::npos) << option;
+    }
+}
+
+TEST_F(Usage, TheViewerIsNamedAsMissing) {
+    expect_one_line(run({}), 1, "--batch");
+    expect_one_line(run({"scene.toml"}), 1, "--batch");
+}
+
+TEST_F(Usage, MistakesAreOneLineAndCode2) {
+    expect_one_line(batch({"--frobnicate"}), 2, "--frobnicate");
+    expect_one_line(batch({"other.toml"}), 2, "other.toml");
+    expect_one_line(run({"--batch"}), 2, "scene");
+    expect_one_line(run({"--batch", "missing.toml"}), 2, "missing.toml");
+    expect_one_line(run({"info"}), 2, "FILE");
+    expect_one_line(run({"info", "missing.png"}), 2, "missing.png");
+    expect_one_line(run({"convert", "stars.pda"}), 2, "OUT");
+    expect_one_line(run({"generate", "scene.toml", "--layer", "stars"}), 2, "--output");
+    expect_one_line(run({"--batch", "info", "stars.pda"}), 2, "--batch");
+    EXPECT_FALSE(fs::exists(folder / "frames"));
+}
+
+TEST_F(Usage, BadOptionValuesNameTheOptionAndTheValue) {
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"--threads", "0"},       {"--threads", "two"},     {"--memory", "-1"},
+        {"--memory", "4GB"},      {"--region", "1,2,3"},    {"--region", "0,0,65,48"},
+        {"--region", "-1,0,4,4"}, {"--region", "0,0,0,4"},  {"--resolution", "1920"},
+        {"--resolution", "0x5"},  {"--resolution", "-50%"}, {"--resolution", "axb"},
+        {"--frames", "1-"},       {"--frames", "5-1"},      {"--frames", ""},
+        {"--layers", "nothing"},  {"--set", "output.fps"},  {"--progress", "loud"},
+    };
+    for (const auto& [option, value] : cases) {
+        const RunResult result = batch({option + "=" + value});
+        expect_one_line(result, 2, value);
+        EXPECT_NE(result.err.find(option), std::string::npos) << result.err;
+    }
+    EXPECT_FALSE(fs::exists(folder / "frames"));
+}
+
+TEST_F(Usage, BadScenesNameFileAndLine) {
+    write_scene("[outptu]\n");
+    const RunResult result = batch();
+    EXPECT_EQ(result.code, 2);
+    EXPECT_TRUE(std::regex_search(result.err, std::regex("scene\\.toml:[0-9]+: .*outptu"))) << result.err;
+    EXPECT_EQ(line_count(result.err), 1) << result.err;
+    write_scene();
+    expect_one_line(batch({"--set", "layer.stars.look.alpha.powr=2"}), 2, "alpha.power");
+}
+
+TEST_F(Usage, MissingInputsAreNamed) {
+    fs::remove(folder / "dust.pda");
+    const RunResult result = batch();
+    expect_one_line(result, 2, "dust.pda");
+    EXPECT_FALSE(fs::exists(folder / "frames"));
+}
+
+TEST_F(Usage, SeveralFramesNeedAFrameToken) {
+    expect_one_line(batch({"-o", "one.exr"}), 2, "one.exr");
+    EXPECT_EQ(batch({"-o", "one.exr", "-f", "2"}).code, 0);
+    EXPECT_TRUE(fs::exists(folder / "one.exr"));
+}
+
+TEST_F(Usage, CacheIsToldToBeAbsent) {
+    const RunResult with = batch({"--cache", "sets", "--dry-run"});
+    EXPECT_EQ(with.code, 0);
+    EXPECT_NE(with.err.find("--cache"), std::string::npos);
+    EXPECT_FALSE(fs::exists(folder / "sets"));
+    EXPECT_EQ(batch({"--no-cache", "--dry-run"}).err, "");
+}
+
+}  // namespace
+}  // namespace astrosplat::test
