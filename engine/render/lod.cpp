@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 
 #include "core/real.h"
 #include "render/falloff.h"
@@ -14,13 +15,17 @@ namespace {
 
 constexpr int first_level = 2;  // four children (level 1) would be as large as their parent
 constexpr float fade_span = 1.5f;
-constexpr int alpha_steps = 64;  // table over alpha in [0, 1]
+constexpr int alpha_steps = 32;  // table over alpha in [0, 1]
 constexpr int fade_steps = 16;   // table over fade in [0, 1]
 constexpr int radius_steps = 512;
 constexpr double disc_radius = 1.5;  // parent radii; children reach no farther than 1.25
 
-/// (1 - x)^n for x in [0, 1].
-double power_of_rest(double x, double n) { return real::pow(std::max(0.0, 1.0 - x), n); }
+/// (1 - x)^(4^level) for x in [0, 1].
+double power_of_rest(double x, int level) {
+    double rest = std::max(0.0, 1.0 - x);
+    for (int i = 0; i < 2 * level; ++i) rest *= rest;
+    return rest;
+}
 
 /// Radius of the ball that holds the children's centres, in parent radii.
 double centre_ball(int level) { return 1.0 - 0.5 * child_radius_scale(level); }
@@ -47,9 +52,10 @@ LevelChoice choose_levels(float diameter_px, float limit_px, int max_children) {
 }
 
 LodTable::LodTable(const Falloff& falloff) : falloff_(falloff) {
-    constexpr int panels = 24;
-    for (int i = 0; i < panels; ++i) {
-        const double center = (i + 0.5) * disc_radius / panels, half = 0.5 * disc_radius / panels;
+    // Panels shrink towards the centre, where sharp falloffs have their light.
+    constexpr double ends[] = {0.0, 0.02, 0.06, 0.12, 0.22, 0.35, 0.5, 0.7, 0.9, 1.0, 1.25, disc_radius};
+    for (std::size_t i = 0; i + 1 < std::size(ends); ++i) {
+        const double center = 0.5 * (ends[i] + ends[i + 1]), half = 0.5 * (ends[i + 1] - ends[i]);
         for (int sign = -1; sign <= 1; sign += 2) {
             for (std::size_t k = 0; k < gauss_nodes.size(); ++k) {
                 const double t = center + sign * half * gauss_nodes[k];
@@ -68,42 +74,63 @@ void LodTable::prepare(int finest) {
     while (static_cast<int>(levels_.size()) <= finest) build(static_cast<int>(levels_.size()));
 }
 
+/// Centres per area of the parent's disc at distances 0 .. ball in equal steps, integrating to 1: the density
+/// w(|p|) in the ball, seen along the line of sight.
+std::vector<double> LodTable::centre_density(int level) const {
+    constexpr int steps = 256, depth_steps = 64;
+    const double ball = centre_ball(level);
+    std::vector<double> density;
+    double sum = 0.0;
+    for (int i = 0; i <= steps; ++i) {
+        const double s = ball * i / steps, half_chord = std::sqrt(ball * ball - s * s);
+        double column = 0.0;
+        for (int k = 0; k < depth_steps; ++k) {
+            const double z = half_chord * (k + 0.5) / depth_steps;
+            column += falloff_value(falloff_, std::sqrt(s * s + z * z)) * half_chord / depth_steps;
+        }
+        density.push_back(column);
+        sum += 2.0 * real::pi * s * column * ball / steps;
+    }
+    for (double& d : density) d /= sum;
+    return density;
+}
+
 /// q(t): the weight of a child, averaged over where its centre may lie.
-std::vector<double> LodTable::mean_footprint(int level, const std::vector<double>& centre_density) const {
-    constexpr int polar_steps = 16, azimuth_steps = 24;
+std::vector<double> LodTable::mean_footprint(int level) const {
+    constexpr int azimuth_steps = 24, rings = 4;
     const double ball = centre_ball(level), child = child_radius_scale(level);
-    const int rings = static_cast<int>(centre_density.size());
+    const std::vector<double> density = centre_density(level);
+    const auto density_at = [&](double s) {
+        const double x = s / ball * static_cast<double>(density.size() - 1);
+        const auto i = static_cast<std::size_t>(x);
+        return i + 1 < density.size() ? density[i] + (density[i + 1] - density[i]) * (x - double(i)) : 0.0;
+    };
     std::vector<double> azimuth_cosine;
     for (int k = 0; k < azimuth_steps; ++k)
         azimuth_cosine.push_back(real::cos(real::pi * (k + 0.5) / azimuth_steps));
-    std::vector<double> q(nodes_.size(), 0.0);
-    for (std::size_t n = 0; n < nodes_.size(); ++n) {
-        const double t = nodes_[n];
-        for (int i = 0; i < rings; ++i) {
-            const double r = ball * (i + 0.5) / rings;
-            for (int j = 0; j < polar_steps; ++j) {
-                const double mu = (j + 0.5) / polar_steps;
-                const double s = r * std::sqrt(1.0 - mu * mu);
-                if (std::fabs(t - s) >= child) continue;
-                for (double c : azimuth_cosine) {
-                    const double d = std::sqrt(std::max(0.0, t * t + s * s - 2.0 * t * s * c));
-                    q[n] += centre_density[i] * falloff_value(falloff_, d / child);
-                }
-            }
-        }
-        q[n] /= polar_steps * azimuth_steps;
+    std::vector<double> q;
+    for (double t : nodes_) {
+        const auto ring = [&](double r) {  // centres at distance r from the point
+            double sum = 0.0;
+            for (double c : azimuth_cosine)
+                sum += density_at(std::sqrt(std::max(0.0, t * t + r * r + 2.0 * t * r * c)));
+            return 2.0 * real::pi * r * falloff_value(falloff_, r / child) * sum / azimuth_steps;
+        };
+        double sum = 0.0;
+        for (int i = 0; i < rings; ++i)
+            sum += integrate_panel(child * i / rings, child * (i + 1) / rings, ring);
+        q.push_back(std::min(1.0, sum));
     }
     return q;
 }
 
 /// The child alpha for which the light beside `rest` (the share the coarser level lets through) reaches
 /// `target`.
-double LodTable::solve(double target, const std::vector<double>& rest, const Level& level,
-                       double children) const {
+double LodTable::solve(double target, const std::vector<double>& rest, int number, const Level& level) const {
     const auto light = [&](double alpha) {
         double sum = 0.0;
         for (std::size_t n = 0; n < nodes_.size(); ++n)
-            sum += weights_[n] * (1.0 - rest[n] * power_of_rest(alpha * level.footprint[n], children));
+            sum += weights_[n] * (1.0 - rest[n] * power_of_rest(alpha * level.footprint[n], number));
         return sum;
     };
     double lo = 0.0, hi = 1.0;
@@ -115,18 +142,9 @@ double LodTable::solve(double target, const std::vector<double>& rest, const Lev
 }
 
 void LodTable::build(int number) {
-    constexpr int rings = 32;
     Level level;
     const double ball = centre_ball(number);
-    std::vector<double> density;  // share of centres in each ring of radius
-    double sum = 0.0;
-    for (int i = 0; i < rings; ++i) {
-        const double r = ball * (i + 0.5) / rings;
-        density.push_back(r * r * falloff_value(falloff_, r));
-        sum += density.back();
-    }
-    for (double& d : density) d /= sum;
-    level.footprint = mean_footprint(number, density);
+    level.footprint = mean_footprint(number);
 
     std::vector<double> cumulative(1, 0.0);
     constexpr int fine_rings = 2048;
@@ -146,18 +164,15 @@ void LodTable::build(int number) {
     const int coarse_number = number <= first_level ? 0 : number - 1;
     const Level& coarse = levels_[coarse_number];
     const double parent_light = falloff_integral(falloff_);
-    const double children = static_cast<double>(children_of_level(number));
-    const double coarse_children = static_cast<double>(children_of_level(coarse_number));
     const std::vector<double> nothing(nodes_.size(), 1.0);
     for (int i = 0; i <= alpha_steps; ++i) {
         const double a = parent.steady[i];
-        level.steady.push_back(solve(a * parent_light, nothing, level, children));
+        level.steady.push_back(solve(a * parent_light, nothing, number, level));
         for (int f = 0; f <= fade_steps; ++f) {
             const double coarse_alpha = coarse.steady[i] * (1.0 - double(f) / fade_steps);
             std::vector<double> rest;
-            for (double q : coarse.footprint)
-                rest.push_back(power_of_rest(coarse_alpha * q, coarse_children));
-            level.fading.push_back(static_cast<float>(solve(a * parent_light, rest, level, children)));
+            for (double q : coarse.footprint) rest.push_back(power_of_rest(coarse_alpha * q, coarse_number));
+            level.fading.push_back(static_cast<float>(solve(a * parent_light, rest, number, level)));
         }
     }
     levels_.push_back(std::move(level));

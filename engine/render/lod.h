@@ -58,16 +58,17 @@ class LodTable {
         std::vector<double> footprint;   // mean child weight q at the integration nodes
         std::vector<float> radius_of_u;  // inverse of the centres' radial distribution
         std::vector<double> steady;      // child alpha over parent alpha, when drawn alone
-        std::vector<float>
-            fading;  // child alpha over (parent alpha, fade), while the coarser level fades out
+        // Child alpha over (parent alpha, fade), while the coarser level fades out.
+        std::vector<float> fading;
     };
     void build(int level);
-    std::vector<double> mean_footprint(int level, const std::vector<double>& centre_density) const;
-    double solve(double target, const std::vector<double>& rest, const Level& level, double children) const;
+    std::vector<double> centre_density(int level) const;
+    std::vector<double> mean_footprint(int level) const;
+    double solve(double target, const std::vector<double>& rest, int number, const Level& level) const;
 
     Falloff falloff_;
-    std::vector<double> nodes_,
-        weights_;                // integration over the disc of radius 1.5 parent radii: t, 2 pi t dt
+    // Integration over the disc of radius 1.5 parent radii: t and 2 pi t dt.
+    std::vector<double> nodes_, weights_;
     std::vector<Level> levels_;  // by level; 0 is the parent itself
 };
 

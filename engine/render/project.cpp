@@ -63,8 +63,9 @@ bool project_one(const LayerProjection& layer, const CameraSplat& splat, std::in
     return out.opacity > 0.0f;
 }
 
-/// Alpha and colour of the two levels for the layer's blend. Under screen a channel's light depends on s c
-/// alone, so each channel is solved by itself and the colour takes up the difference.
+/// Alpha and colour of the two levels for the layer's blend. Under screen and hybrid the light of a channel
+/// depends on s o with its own occlusion o, so each channel is solved by itself and the colour takes up the
+/// difference: exact for screen, to first order for hybrid.
 struct LevelShade {
     float alpha;
     glm::vec3 color;
@@ -73,24 +74,27 @@ struct LevelShades {
     LevelShade coarse, fine;
 };
 LevelShades shade_levels(const LayerProjection& layer, const LevelChoice& choice, const CameraSplat& splat) {
-    const auto plain = [&](const LodTable::Alphas& a) {
-        return LevelShades{{a.coarse, splat.color}, {a.fine, splat.color}};
+    const Blend blend = layer.render.holdout ? Blend::over : layer.render.blend;
+    const LodTable::Alphas whole = blend == Blend::add ? LodTable::alphas_for_add(choice, splat.alpha)
+                                                       : layer.lod->alphas(choice, splat.alpha);
+    LevelShades shades{{whole.coarse, splat.color}, {whole.fine, splat.color}};
+    if (blend != Blend::screen && blend != Blend::hybrid) return shades;
+    constexpr float least = 1e-3f;  // occlusion below which light is proportional to alpha
+    const float h = static_cast<float>(hybrid_of(layer, splat.position)) / 65535.0f;
+    const auto occlusion_at = [&](int k) {
+        return std::clamp(shared::blend_occlusion(static_cast<int>(blend), splat.color[k], h), least, 1.0f);
     };
-    if (layer.render.blend == Blend::add) return plain(LodTable::alphas_for_add(choice, splat.alpha));
-    const float brightest = std::max({splat.color.x, splat.color.y, splat.color.z});
-    if (layer.render.blend != Blend::screen || layer.render.holdout || brightest <= 0.0f)
-        return plain(layer.lod->alphas(choice, splat.alpha));
-    glm::vec3 coarse, fine;
-    for (int c = 0; c < 3; ++c) {
-        const LodTable::Alphas a = layer.lod->alphas(choice, splat.alpha * splat.color[c]);
-        coarse[c] = a.coarse;
-        fine[c] = a.fine;
+    const float mean = (occlusion_at(0) + occlusion_at(1) + occlusion_at(2)) / 3.0f;
+    const LodTable::Alphas middle = layer.lod->alphas(choice, splat.alpha * mean);
+    shades.coarse.alpha = middle.coarse / mean;
+    shades.fine.alpha = middle.fine / mean;
+    for (int k = 0; k < 3; ++k) {
+        const float o = occlusion_at(k);
+        const LodTable::Alphas own = layer.lod->alphas(choice, splat.alpha * o);
+        if (middle.coarse > 0.0f) shades.coarse.color[k] *= own.coarse / o / shades.coarse.alpha;
+        if (middle.fine > 0.0f) shades.fine.color[k] *= own.fine / o / shades.fine.alpha;
     }
-    const LodTable::Alphas a = layer.lod->alphas(choice, splat.alpha);
-    const auto divided = [](float alpha, const glm::vec3& light) {
-        return LevelShade{alpha, alpha > 0.0f ? light / alpha : glm::vec3(0.0f)};
-    };
-    return {divided(a.coarse, coarse), divided(a.fine, fine)};
+    return shades;
 }
 
 void project_level(const LayerProjection& layer, const CameraSplat& parent, std::int64_t index, int level,

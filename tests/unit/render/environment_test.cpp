@@ -112,8 +112,7 @@ glm::dvec3 latlong_direction(int x, int y, int width, int height) {
 TEST_F(EnvironmentTest, LatlongShowsItsCentreTowardsPlusZAndItsRightTowardsMinusX) {
     // Nine fields as letters on a map: top, middle, bottom rows; left, centre, right columns.
     EnvironmentParams params;
-    params.image =
-        write("map.tif", 64, 32, [](int x, int y) { return glm::vec3(x / 64.0, y / 32.0, 0.25); });
+    params.image = write("map.tif", 64, 32, [](int x, int y) { return glm::vec3(x / 64.0, y / 32.0, 0.25); });
     Environment environment = load_environment(params);
     auto at = [&](const glm::dvec3& d) { return sample_environment(environment, glm::normalize(d), 0.0); };
     const float half_x = 0.5f / 64, half_y = 0.5f / 32;  // texel centres
