@@ -11,8 +11,10 @@
 #include "core/text.h"
 #include "output/frame_hash.h"
 #include "output/write.h"
+#include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/load.h"
+#include "source/mesh.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
@@ -116,6 +118,26 @@ Scene batch_scene(const BatchOptions& options) {
     return scene;
 }
 
+/// A missing input should be told before the first folder is made.
+void check_inputs(const Scene& scene) {
+    const auto check = [](const fs::path& file) {
+        std::error_code ignored;
+        if (!file.empty() && !fs::exists(file, ignored))
+            bad_input(file.string(), "", "an input file", "nothing of that name");
+    };
+    for (const LayerParams& layer : scene.layers) {
+        if (!ever_visible(scene, layer)) continue;
+        if (layer.source.kind == SourceKind::splats) check(layer.source.file);
+        for (const MeshInput& input : layer.source.meshes) {
+            if (!is_builtin_mesh(input.mesh)) check(input.mesh);
+            for (const fs::path& texture : input.texture) check(texture);
+        }
+        check(layer.look.thickness.map);
+    }
+    check(scene.environment.image);
+    for (const fs::path& face : scene.environment.cube) check(face);
+}
+
 std::vector<std::int64_t> frame_numbers(const Scene& scene, bool from_command_line) {
     const std::string place = from_command_line ? "--frames" : scene.file.string() + ": output.frames";
     std::vector<std::int64_t> frames = parse_frames(scene.output.frames, place);
@@ -169,6 +191,7 @@ BatchPlan plan_batch(const BatchOptions& options) {
     plan.scene = batch_scene(options);
     if (options.region) plan.region = parse_region(*options.region, plan.scene.output);
     if (options.memory_gib) plan.memory_limit_bytes = parse_memory(*options.memory_gib);
+    check_inputs(plan.scene);
     FrameHasher hasher(plan.scene, plan.region);
     for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value())) {
         plan.frames.push_back({frame, frame_file(plan.scene.output.path, frame), hasher.frame_hash(frame)});

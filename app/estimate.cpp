@@ -13,6 +13,7 @@ namespace {
 // Bytes per splat: the set (position, colour, alpha, distance, id, uv, normal, mesh), the shaded splat, and
 // one projected splat with its place in a tile.
 constexpr std::int64_t set_bytes = 64, shaded_bytes = 40, screen_bytes = 64;
+constexpr std::int64_t program_bytes = 140'000'000;  // with its libraries, before any scene
 constexpr std::int64_t file_bytes_per_splat =
     100;  // a row of a PDA with colour, opacity, distance and radius
 
@@ -59,7 +60,7 @@ JobEstimate estimate(const BatchPlan& plan) {
     }
     std::int64_t screen = job.splats * screen_bytes;
     if (plan.memory_limit_bytes > 0) screen = std::min(screen, plan.memory_limit_bytes);
-    job.bytes = job.splats * (set_bytes + shaded_bytes) + screen + picture_bytes(plan);
+    job.bytes = program_bytes + job.splats * (set_bytes + shaded_bytes) + screen + picture_bytes(plan);
     return job;
 }
 

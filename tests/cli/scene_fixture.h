@@ -100,7 +100,9 @@ blend = "add"
         EXPECT_EQ(result.code, 0) << result.err;
         std::vector<std::string> list;
         if (result.code != 0) return list;
-        for (const auto& frame : json("stats.json").at("frames")) list.push_back(frame.at("sha256"));
+        const nlohmann::json stats = json("stats.json");
+        for (const auto& frame : stats.at("frames")) list.push_back(frame.at("sha256"));
+        EXPECT_FALSE(list.empty());
         return list;
     }
     std::set<std::string> names_in(const std::string& relative) const {
