@@ -13,11 +13,22 @@ struct Checker {
     std::string file;
     const Places& places;
 
+    /// Of the key, or of what it is in: the [[layer]] at least.
+    std::string nearest_place(std::string key) const {
+        for (;;) {
+            if (const auto found = places.find(key); found != places.end()) return found->second;
+            const std::size_t dot = key.rfind('.');
+            if (dot == std::string::npos) return file;
+            key.resize(dot);
+        }
+    }
+
     /// Fails unless `holds`; `keys` are those the rule is about, the message is "KEY: expected ..., found
     /// ...".
     void require(bool holds, std::initializer_list<std::string> keys, const std::string& message) const {
         if (holds) return;
-        std::string place = file, named = *keys.begin();
+        std::string named = *keys.begin();
+        std::string place = nearest_place(named);
         for (const std::string& key : keys) {
             const auto found = places.find(key);
             if (found == places.end()) continue;
@@ -51,12 +62,12 @@ void check_look(const Look& look, const std::string& at, const Checker& check) {
 }
 
 void check_source(const SourceParams& source, const std::string& at, const Checker& check) {
-    check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at + "meshes", at + "kind", at},
+    check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at + "meshes", at + "kind"},
                   "expected at least one mesh, found none");
     for (std::size_t i = 0; i < source.meshes.size(); ++i) {
         const std::string mesh = fmt::format("{}meshes.{}", at, i);
-        check.require(!source.meshes[i].mesh.empty(), {mesh + ".mesh", mesh},
-                      "expected mesh = a file or plane, relief, disk, sphere, found none");
+        check.require(!source.meshes[i].mesh.empty(), {mesh + ".mesh"},
+                      "expected a file or plane, relief, disk, sphere, found none");
         const std::size_t pictures = source.meshes[i].texture.size();
         check.require(
             pictures <= 1 || pictures == 3, {mesh + ".texture"},

@@ -51,8 +51,7 @@ class Describer {
     void custom(ParameterSpec field_spec, std::function<Value(const ParameterSpec&)> get,
                 std::function<void(const Value&, const ParameterSpec&)> set) const {
         place(field_spec, animated_);
-        description_->parameters.push_back({field_spec, [get, field_spec] { return get(field_spec); },
-                                            [set, field_spec](const Value& v) { set(v, field_spec); }});
+        description_->parameters.push_back({std::move(field_spec), std::move(get), std::move(set)});
     }
 
     /// A list of tables, each element described by `describe_element(describer, element)`.
@@ -75,8 +74,11 @@ class Describer {
     void add(ParameterSpec field_spec, T& field) const {
         T* const target = &field;
         description_->parameters.push_back(
-            {field_spec, [target, field_spec] { return Field<T>::get(*target, field_spec); },
-             [target, field_spec](const Value& value) { *target = Field<T>::set(value, field_spec); }});
+            {std::move(field_spec),
+             [target](const ParameterSpec& own) { return Field<T>::get(*target, own); },
+             [target](const Value& value, const ParameterSpec& own) {
+                 *target = Field<T>::set(value, own);
+             }});
     }
 
     Description* description_;

@@ -148,13 +148,15 @@ class Loader {
             if (name == "astrosplat" || name == "layer" || name == "animation") continue;
             flatten(node, name, name, origin, key.source(), entries);
         }
-        for (const LayerTable& layer : layers)
+        for (const LayerTable& layer : layers) {
+            places_["layer." + layer.name] = place_of(file_, layer.table->source());
             for (const auto& [key, node] : *layer.table) {
                 const std::string name(key.str());
                 if (name == "preset") continue;  // read before everything else, perhaps replaced by --set
                 flatten(node, "layer." + layer.name + "." + name, "layer." + name, origin, key.source(),
                         entries);
             }
+        }
         apply_entries(
             std::move(entries), origin, [this] { return describe(scene_); }, places_);
     }

@@ -5,10 +5,10 @@
 
 #include <functional>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "scene/value.h"
 
 namespace astrosplat {
@@ -67,17 +67,20 @@ struct ParameterSpec {
 };
 
 /// A value that a parameter cannot take: what() is "expected ..., found ...".
-struct ValueError : std::runtime_error {
-    using std::runtime_error::runtime_error;
+struct ValueError : InputError {
+    using InputError::InputError;
 };
 
 /// One parameter of one particular scene. Valid until a list of that scene (layers, meshes, noise, thickness
 /// keys) changes its length.
 struct Parameter {
     ParameterSpec spec;
-    std::function<Value()> get;
-    std::function<void(const Value&)>
-        set;  // throws ValueError and changes nothing when the value does not fit
+    std::function<Value(const ParameterSpec&)> read;
+    std::function<void(const Value&, const ParameterSpec&)> write;
+
+    Value get() const { return read(spec); }
+    /// Throws ValueError and changes nothing when the value does not fit.
+    void set(const Value& value) const { write(value, spec); }
 };
 
 /// A list of tables whose elements are described one by one, as KEY.0.xxx, KEY.1.xxx.

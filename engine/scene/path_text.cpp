@@ -48,8 +48,9 @@ std::string unresolve(const std::string& text, const ParameterSpec& spec, const 
         const bool below = !relative.empty() && *relative.begin() != "..";
         if (!relative.empty() && (below || !path.is_absolute())) written = relative.string();
     }
-    if (path.is_relative() && resolve(written, spec, folder) != text) written = fs::absolute(path).string();
-    return stands_for_itself(written, spec) ? "./" + written : written;
+    if (stands_for_itself(written, spec)) written = "./" + written;
+    const bool lost = path.is_relative() && resolve(written, spec, folder) != text;
+    return lost ? fs::absolute(path).lexically_normal().string() : written;
 }
 
 template <class Change>

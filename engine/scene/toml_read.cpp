@@ -29,7 +29,8 @@ std::string read_text_file(const fs::path& file) {
     return text;
 }
 
-/// "Error while parsing key-value pair: cannot redefine existing integer 'a'" -> "duplicate key 'a'".
+/// "Error while parsing key-value pair: cannot redefine existing integer 'a'" -> "duplicate key 'a'"; other
+/// messages lose their head.
 static std::string plain_words(std::string message) {
     const std::string redefined = "cannot redefine existing ";
     if (const std::size_t at = message.find(redefined); at != std::string::npos) {
@@ -39,7 +40,7 @@ static std::string plain_words(std::string message) {
             return fmt::format("duplicate key '{}'", message.substr(open + 1, close - open - 1));
     }
     const std::string head = "Error while parsing ";
-    if (message.rfind(head, 0) == 0) message = "in a " + message.substr(head.size());
+    if (message.rfind(head, 0) == 0) message = message.substr(head.size());
     if (!message.empty() && message[0] == 'E') message[0] = 'e';
     for (char& c : message)
         if (c == '\n' || c == '\r') c = ' ';
@@ -63,6 +64,7 @@ std::string kind_of(const toml::node& node) {
     if (node.is_table()) return "a table";
     if (node.is_date() || node.is_time() || node.is_date_time()) return "a date";
     if (list_of_tables(node)) return "a list of tables";
+    if (const auto* array = node.as_array()) return fmt::format("a list of {}", array->size());
     return kind_of(value_of(node));
 }
 

@@ -1,0 +1,95 @@
+// The scene at one frame.
+#include "scene/animate.h"
+#include "scene_texts.h"
+
+namespace astrosplat::test {
+namespace {
+
+Scene animated(const std::string& tracks, const std::string& layer = "") {
+    return parse(small_scene(layer) + "[animation]\n" + tracks);
+}
+
+TEST(Animate, LinearNumbersAndHeldEnds) {
+    const Scene scene = animated("\"layer.stars.render.core\" = { keys = [[1, 1.0], [121, 0.5]] }\n");
+    EXPECT_EQ(scene_at(scene, -10).layers[0].render.falloff.core, 1.0f);
+    EXPECT_EQ(scene_at(scene, 61).layers[0].render.falloff.core, 0.75f);
+    EXPECT_EQ(scene_at(scene, 500).layers[0].render.falloff.core, 0.5f);
+    EXPECT_EQ(scene_at(scene, 31).layers[0].render.falloff.core, 0.875f);
+}
+
+TEST(Animate, ChoicesBooleansAndIntegersStep) {
+    const Scene scene = animated(
+        "\"layer.stars.render.blend\" = { keys = [[1, \"over\"], [5, \"hybrid\"]] }\n"
+        "\"layer.stars.visible\" = { keys = [[1, true], [3, false], [9, true]], interpolation = \"smooth\" "
+        "}\n"
+        "\"layer.stars.look.noise.octaves\" = { keys = [[1, 2], [5, 9]] }\n");
+    const Scene before = scene_at(scene, 4.99), after = scene_at(scene, 5);
+    EXPECT_EQ(before.layers[0].render.blend, Blend::over);
+    EXPECT_EQ(after.layers[0].render.blend, Blend::hybrid);
+    EXPECT_EQ(before.layers[0].look.noise[0].octaves, 2);
+    EXPECT_EQ(after.layers[0].look.noise[0].octaves, 9);
+    EXPECT_TRUE(scene_at(scene, 2).layers[0].visible);
+    EXPECT_FALSE(scene_at(scene, 3).layers[0].visible);
+    EXPECT_FALSE(scene_at(scene, 8).layers[0].visible);
+    EXPECT_TRUE(scene_at(scene, 9).layers[0].visible);
+}
+
+TEST(Animate, SmoothNeverLeavesTheRangeOfItsKeys) {
+    const Scene scene = animated(
+        "\"layer.stars.render.opacity\" = { keys = [[0, 0], [10, 1], [11, 1], [30, 0]], interpolation = "
+        "\"smooth\", ends = \"through\" }\n"
+        "\"layer.stars.look.grade.tint\" = { keys = [[0, [0, 1, 0.5]], [10, [1, 0, 0.5]]], interpolation = "
+        "\"smooth\" }\n");
+    for (int i = 0; i <= 300; ++i) {
+        const LayerParams layer = scene_at(scene, i * 0.1).layers[0];
+        EXPECT_GE(layer.render.opacity, 0.0f);
+        EXPECT_LE(layer.render.opacity, 1.0f);
+        EXPECT_EQ(layer.look.grade.tint.z, 0.5f);
+    }
+    EXPECT_EQ(scene_at(scene, 5).layers[0].look.grade.tint.x, 0.5f) << "eased ends: the middle is the middle";
+}
+
+TEST(Animate, PositionsAndRotations) {
+    const Scene scene = animated(
+        "\"camera.position\" = { keys = [[0, [0, 0, 0]], [10, [10, 0, 0]]] }\n"
+        "\"camera.rotation\" = { keys = [[0, [0, 0, 0, 2]], [10, [0, 0, 1, 0]]] }\n"
+        "\"layer.stars.transform.translate\" = { keys = [[0, [0, 0, 0]], [10, [0, 4, 0]]], constant_speed = "
+        "true }\n");
+    const Scene still = scene_at(scene, 5);
+    EXPECT_EQ(still.camera.position, glm::dvec3(5, 0, 0));
+    EXPECT_NEAR(still.layers[0].transform.translate.y, 2.0, 1e-9);
+    ASSERT_TRUE(still.camera.rotation);
+    const double half = 0.70710678118654752;  // a quarter turn about z of the half turn between the keys
+    EXPECT_NEAR(still.camera.rotation->z, half, 1e-12);
+    EXPECT_NEAR(still.camera.rotation->w, half, 1e-12);
+}
+
+TEST(Animate, CurvesAndListElements) {
+    const Scene scene = animated(
+        "\"layer.stars.look.pdf.points\" = { keys = [[0, [[0, 1], [1, 0]]], [10, [[0, 0], [0.5, 1]]]] }\n"
+        "\"layer.stars.look.thickness.keys.0.scale\" = { keys = [[0, 1], [10, 3]] }\n");
+    const Look look = scene_at(scene, 5).layers[0].look;
+    ASSERT_EQ(look.pdf.points.size(), 2u);
+    EXPECT_EQ(look.pdf.points[0], glm::vec2(0.0f, 0.5f));
+    EXPECT_EQ(look.pdf.points[1], glm::vec2(0.75f, 0.5f));
+    EXPECT_EQ(look.thickness.keys.at(0).scale, 2.0f);
+}
+
+TEST(Animate, EveryAnimatableParameterHoldsItsKey) {
+    Scene scene = parse(full_scene);
+    int animated_parameters = 0;
+    for (const Parameter& parameter : describe(scene).parameters) {
+        const Value value = parameter.get();
+        const std::vector<double> numbers = to_numbers(parameter.spec, value);
+        if (parameter.spec.animation == Animation::no || numbers.empty()) continue;
+        ++animated_parameters;
+        Scene one = scene;
+        one.animation = {{parameter.spec.key, {{1.0, numbers, Interpolation::linear}}}};
+        const Scene still = scene_at(one, 7.0);
+        EXPECT_EQ(still, one) << parameter.spec.key;
+    }
+    EXPECT_GT(animated_parameters, 60);
+}
+
+}  // namespace
+}  // namespace astrosplat::test

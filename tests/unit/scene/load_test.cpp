@@ -1,0 +1,256 @@
+// Loading: every key, precedence, paths, --set, tracks.
+#include <clocale>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "scene/save.h"
+#include "scene/toml_text.h"
+#include "scene_texts.h"
+
+namespace astrosplat::test {
+namespace fs = std::filesystem;
+namespace {
+
+/// A folder of its own, with an umlaut and a space in its name.
+class Folder {
+  public:
+    explicit Folder(const std::string& name)
+        : path_(fs::temp_directory_path() / ("astrosplat scene \xC3\xA4 " + name)) {
+        fs::remove_all(path_);
+        fs::create_directories(path_);
+    }
+    ~Folder() { fs::remove_all(path_); }
+    fs::path write(const std::string& name, const std::string& text) const {
+        fs::create_directories((path_ / name).parent_path());
+        write_text_file(path_ / name, text);
+        return path_ / name;
+    }
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+Scene defaults() {
+    Scene scene;
+    LayerParams& layer = scene.layers.emplace_back();
+    layer.name = "stars";
+    layer.source.meshes.resize(1);
+    layer.source.meshes[0].mesh = "disk.obj";
+    layer.look.thickness.keys.resize(1);
+    layer.look.noise.resize(1);
+    scene.file = "scene.toml";
+    return scene;
+}
+
+TEST(Load, FullSceneGivesTheDefaults) { EXPECT_EQ(parse(full_scene), defaults()); }
+
+TEST(Load, FullSceneWritesEveryDescribedKey) {
+    const TomlText text(full_scene);
+    Scene scene = parse(full_scene);
+    for (const Parameter& parameter : describe(scene).parameters) {
+        TomlPath path{""};
+        for (const char c : parameter.spec.key) {
+            if (c == '.')
+                path.emplace_back();
+            else
+                path.back().push_back(c);
+        }
+        if (path[0] == "layer") path[1] = "0";
+        if (path.size() > 4 && path[3] == "noise") path.erase(path.begin() + 4);  // one table, not a list
+        EXPECT_TRUE(text.is_value(path)) << parameter.spec.key;
+    }
+}
+
+TEST(Load, DescribedKeysAreUnique) {
+    std::set<std::string> keys;
+    for (const ParameterRow& row : parameter_rows())
+        EXPECT_TRUE(keys.insert(row.spec.key).second) << row.spec.key;
+}
+
+TEST(Load, DefaultsLieInTheirRangeAndHaveWords) {
+    for (const ParameterRow& row : parameter_rows()) {
+        EXPECT_FALSE(row.spec.label.empty()) << row.spec.key;
+        ASSERT_FALSE(row.spec.help.empty()) << row.spec.key;
+        EXPECT_EQ(row.spec.help.back(), '.') << row.spec.key;
+        EXPECT_LT(row.spec.slider_min, row.spec.slider_max) << row.spec.key;
+        EXPECT_TRUE(row.spec.scale == Scale::linear || row.spec.slider_min > 0.0) << row.spec.key;
+    }
+}
+
+TEST(Load, IntegersAreNumbersAndWholeFloatsAreIntegers) {
+    const Scene scene = parse(small_scene("[layer.look]\ndensity = 2") + "count = 3e6\n");
+    EXPECT_EQ(scene.layers[0].look.density, 2.0f);
+    EXPECT_EQ(scene.layers[0].source.count, 3000000);
+}
+
+TEST(Load, SeveralWaysToWriteOneValue) {
+    const Scene scene = parse(small_scene() +
+                              "buffer = 2\nhdu = 3\nunpremultiply = true\nblack = 1\nvoxels = [10, 20, 30]\n"
+                              "[output]\ndepth = 16\n[layer.look.noise]\ncull = 0.5\n");
+    const SourceParams& source = scene.layers[0].source;
+    EXPECT_EQ(source.buffer, glm::dvec3(2.0));
+    EXPECT_EQ(source.texture.hdu, "3");
+    EXPECT_EQ(source.texture.unpremultiply, TextureSettings::Unpremultiply::yes);
+    EXPECT_EQ(source.texture.black, 1.0);
+    EXPECT_EQ(source.voxels, glm::i64vec3(10, 20, 30));
+    EXPECT_EQ(scene.output.depth, OutputParams::Depth::uint16);
+    ASSERT_EQ(scene.layers[0].look.noise.size(), 1u);
+    EXPECT_EQ(scene.layers[0].look.noise[0].cull, 0.5f);
+}
+
+TEST(Load, ListsOfTablesInEitherForm) {
+    const Scene inline_form = parse(small_scene("[layer.look]\nnoise = [{ cull = 0.5 }, { jitter = 0.1 }]"));
+    const Scene header_form =
+        parse(small_scene("[[layer.look.noise]]\ncull = 0.5\n[[layer.look.noise]]\njitter = 0.1"));
+    EXPECT_EQ(inline_form, header_form);
+    EXPECT_EQ(inline_form.layers[0].look.noise[1].jitter, 0.1f);
+}
+
+TEST(Load, ThreePicturesMakeOne) {
+    const Scene scene = parse(
+        "astrosplat = 1\n[[layer]]\nname = \"a\"\nsource.meshes = { mesh = \"sphere\", texture = "
+        "[\"r.fits\", \"g.fits\", \"b.fits\"] }\n",
+        {}, "scenes/a.toml");
+    const MeshInput& mesh = scene.layers[0].source.meshes.at(0);
+    EXPECT_EQ(mesh.mesh, "sphere");
+    EXPECT_EQ(mesh.texture, (std::vector<fs::path>{"scenes/r.fits", "scenes/g.fits", "scenes/b.fits"}));
+}
+
+TEST(Load, StarsAreUnderstood) {
+    const Scene scene = parse(
+        "astrosplat = 1\n[[layer]]\nname = \"s\"\n[layer.source]\nkind = \"stars\"\n"
+        "catalogue = \"hip_main.dat\"\nunit = 2.0\nlimit = 9.5\nzero_point = 3.0\n"
+        "along = \"camera\"\ncount = 800000\nspread = 4.0\npsf = 1.5\n");
+    EXPECT_EQ(scene.layers[0].source.kind, SourceKind::stars);
+    EXPECT_EQ(scene.layers[0].source.stars.catalogue, "hip_main.dat");
+    EXPECT_EQ(scene.layers[0].source.stars.psf, 1.5);
+    EXPECT_EQ(scene.layers[0].source.count, 800000);
+}
+
+TEST(Load, PrecedenceIsDefaultsPresetSceneSet) {
+    const Folder folder("precedence");
+    folder.write("looks/p.toml",
+                 "[look]\nalpha = { power = 2.0, gain = 2.0, threshold = 0.5 }\nthickness.map = \"m.png\"\n"
+                 "thickness.keys = [{ scale = 2.0 }]\n[render]\nopacity = 0.5\n");
+    const fs::path file = folder.write(
+        "s.toml", small_scene("preset = \"looks/p.toml\"\nlook.alpha = { power = 3.0, gain = 3.0 }"));
+    const std::vector<Assignment> assignments{{"layer.stars.look.alpha.power", "4"}};
+    const Scene scene = load_scene(file, assignments);
+    const LayerParams& layer = scene.layers[0];
+    EXPECT_EQ(layer.look.alpha.power, 4.0f);      // --set
+    EXPECT_EQ(layer.look.alpha.gain, 3.0f);       // scene
+    EXPECT_EQ(layer.look.alpha.threshold, 0.5f);  // preset
+    EXPECT_EQ(layer.look.density, 1.0f);          // default
+    EXPECT_EQ(layer.render.opacity, 0.5f);
+    EXPECT_EQ(layer.look.thickness.map, folder.path() / "looks/m.png")
+        << "a preset's paths are relative to the preset";
+}
+
+TEST(Load, SetChoosesThePresetBeforeTheSceneSpeaks) {
+    const Folder folder("presets");
+    const fs::path a = folder.write("a.toml", "[look]\nreach = 1.0\ndensity = 0.5\n");
+    const fs::path b = folder.write("b.toml", "[look]\nreach = 2.0\ndensity = 0.25\n");
+    const fs::path file = folder.write("s.toml", small_scene("preset = \"a.toml\"\nlook.density = 0.75"));
+    const std::vector<Assignment> assignments{{"layer.stars.preset", b.string()}};
+    const Scene scene = load_scene(file, assignments);
+    EXPECT_EQ(scene.layers[0].look.reach, 2.0f);
+    EXPECT_EQ(scene.layers[0].look.density, 0.75f);
+    EXPECT_EQ(scene.layers[0].preset, b);
+}
+
+TEST(Load, PathsAreRelativeToTheFileAndKnowTheEnvironment) {
+    ::setenv("ASTROSPLAT_TEST_FOLDER", "/data/n\xC3\xA4he", 1);
+    const Scene scene = parse(small_scene() +
+                                  "[environment]\nimage = \"${ASTROSPLAT_TEST_FOLDER}/sky.exr\"\n"
+                                  "[output]\npath = \"${ASTROSPLAT_TEST_FOLDER}/f.####.png\"\n",
+                              {"camera.file=cam.txt"}, "scenes/a.toml");
+    EXPECT_EQ(scene.environment.image, "/data/n\xC3\xA4he/sky.exr");
+    EXPECT_EQ(scene.output.path, "/data/n\xC3\xA4he/f.####.png");
+    EXPECT_EQ(scene.layers[0].source.meshes[0].texture[0], "scenes/a.png");
+    EXPECT_EQ(scene.layers[0].source.meshes[0].mesh, "plane") << "built-in names are no paths";
+    EXPECT_EQ(scene.camera.file, "cam.txt") << "--set is relative to the working directory";
+    EXPECT_EQ(parse(small_scene(), {"output.path=x/f.####.exr"}).output.path,
+              (fs::current_path() / "x/f.####.exr").string());
+}
+
+TEST(Load, SetTakesBareWordsAsText) {
+    const Scene scene =
+        parse(small_scene(), {"output.frames=1-10,20", "provenance.title = M 51, 2005-01-01",
+                              "provenance.credit=1984", "layer.stars.render.blend=add",
+                              "layer.stars.visible=false", "layer.stars.source.meshes.0.texture=b.png",
+                              "layer.stars.look.noise.cull=0.5", "layer.stars.look.noise.1.jitter=0.25",
+                              "camera.position=[1,2,3]", "layer.stars.look.grade={gain=2.0, gamma=1.5}"});
+    EXPECT_EQ(scene.output.frames, "1-10,20");
+    EXPECT_EQ(scene.provenance.title, "M 51, 2005-01-01");
+    EXPECT_EQ(scene.provenance.credit, "1984");
+    EXPECT_EQ(scene.layers[0].render.blend, Blend::add);
+    EXPECT_FALSE(scene.layers[0].visible);
+    EXPECT_EQ(scene.layers[0].source.meshes[0].texture[0], "b.png");
+    ASSERT_EQ(scene.layers[0].look.noise.size(), 2u);
+    EXPECT_EQ(scene.layers[0].look.noise[0].cull, 0.5f);
+    EXPECT_EQ(scene.layers[0].look.noise[1].jitter, 0.25f);
+    EXPECT_EQ(scene.camera.position, glm::dvec3(1, 2, 3));
+    EXPECT_EQ(scene.layers[0].look.grade.gamma, 1.5f);
+}
+
+TEST(Load, SetReachesEveryParameter) {
+    Scene scene = parse(full_scene);
+    for (const Parameter& parameter : describe(scene).parameters) {
+        const std::string assignment = parameter.spec.key + "=" + to_toml(parameter.get());
+        if (parameter.spec.key == "layer.stars.preset") continue;  // "" is no file
+        EXPECT_EQ(message(full_scene, {assignment}), "") << assignment;
+    }
+}
+
+TEST(Load, SetWinsOverAnimation) {
+    const std::string text = small_scene() + "[animation]\n\"camera.fov\" = { keys = [[1, 20], [9, 40]] }\n";
+    EXPECT_EQ(parse(text).animation.size(), 1u);
+    const Scene scene = parse(text, {"camera.fov=30"});
+    EXPECT_TRUE(scene.animation.empty());
+    EXPECT_EQ(scene.camera.fov, 30.0);
+    EXPECT_EQ(parse(text, {"animation.camera.roll={keys=[[1,0],[2,5]]}"}).animation.size(), 2u);
+}
+
+TEST(Load, TracksKeepTheFilesOrderAndTheirSettings) {
+    const Scene scene =
+        parse(small_scene() +
+              "[animation]\n"
+              "\"layer.stars.render.blend\" = { keys = [[1, \"over\"], [5, \"hybrid\"]] }\n"
+              "\"camera.position\" = { keys = [[1, [0, 0, 30], \"linear\"], [240, [0, 2, 4]]], interpolation "
+              "= \"smooth\", ends = \"through\", constant_speed = true }\n"
+              "\"layer.stars.look.noise.cull\" = { keys = [[-2.5, 0.25]] }\n");
+    ASSERT_EQ(scene.animation.size(), 3u);
+    EXPECT_EQ(scene.animation[0].keys[1].value, std::vector<double>{4.0});
+    const Track& path = scene.animation[1];
+    EXPECT_EQ(path.keys[0].interpolation, Interpolation::linear);
+    EXPECT_EQ(path.keys[1].interpolation, Interpolation::smooth);
+    EXPECT_EQ(path.keys[1].value, (std::vector<double>{0, 2, 4}));
+    EXPECT_EQ(path.ends, Ends::through);
+    EXPECT_TRUE(path.constant_speed);
+    EXPECT_EQ(scene.animation[2].key, "layer.stars.look.noise.0.cull");
+    EXPECT_EQ(scene.layers[0].look.noise.size(), 1u);
+}
+
+TEST(Load, ACommaLocaleChangesNothing) {
+    // No locale with a decimal comma need be installed here: then this still runs under the environment's
+    // own.
+    const char* found = nullptr;
+    for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", ""})
+        if (!found) found = std::setlocale(LC_ALL, name);
+    EXPECT_EQ(parse(small_scene(), {"camera.fov=30.5"}).camera.fov, 30.5);
+    EXPECT_EQ(to_toml(Value(0.5)), "0.5");
+    EXPECT_EQ(to_toml(Value(1e20)), "1e+20");
+    EXPECT_EQ(to_toml(Value(3.0)), "3.0");
+    std::setlocale(LC_ALL, "C");
+}
+
+TEST(Load, FilesWithUmlautsAndBlanks) {
+    const Folder folder("umlaut");
+    const fs::path file = folder.write("M\xC3\xB6we 1.toml", small_scene());
+    EXPECT_EQ(load_scene(file).layers[0].source.meshes[0].texture[0], folder.path() / "a.png");
+}
+
+}  // namespace
+}  // namespace astrosplat::test

@@ -1,0 +1,281 @@
+// One test for each message that a scene, a preset or --set can cause.
+#include <filesystem>
+
+#include "scene/save.h"
+#include "scene_texts.h"
+
+namespace astrosplat::test {
+namespace fs = std::filesystem;
+namespace {
+
+const std::string head =
+    "astrosplat = 1\n[[layer]]\nname = \"stars\"\nsource.meshes = { mesh = \"disk\" }\n";  // 4 lines
+
+struct Case {
+    const char* lines;    // follow `head`, so the first is line 5
+    const char* message;  // after "scene.toml:"
+};
+
+class WrongKeys : public testing::TestWithParam<Case> {};
+
+TEST_P(WrongKeys, SayWhatIsExpected) {
+    EXPECT_EQ(message(head + GetParam().lines), std::string("scene.toml:") + GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, WrongKeys,
+    testing::Values(
+        Case{"[layer.look]\nalpha.powr = 2\n",
+             "6: unknown key 'alpha.powr'; did you mean 'layer.look.alpha.power'?"},
+        Case{"[layer.look]\nalpha = { powr = 2 }\n",
+             "6: unknown key 'alpha.powr'; did you mean 'layer.look.alpha.power'?"},
+        Case{"[layer.look]\nnoise = [{ cul = 0.5 }]\n",
+             "6: unknown key 'noise.cul'; did you mean 'layer.look.noise.cull'?"},
+        Case{"[layer.look]\nopacity = 0.5\n",
+             "6: unknown key 'opacity'; did you mean 'layer.render.opacity'?"},
+        Case{"[outptu]\nfps = 24\n", "6: unknown key 'outptu.fps'; did you mean 'output.fps'?"},
+        Case{"[nonsense]\n", "5: unknown key 'nonsense'; 'astrosplat parameters' lists all keys"},
+        Case{"[layer.look]\n\"alpha.power\" = 2\n",
+             "6: unknown key '\"alpha.power\"'; did you mean 'layer.look.alpha.power'?"},
+        Case{"[layer.look]\nalpha.power = \"6\"\n",
+             "6: layer.look.alpha.power: expected a number, found a string"},
+        Case{"[layer.look]\ndensity = [1, {}]\n", "6: layer.look.density: expected a value, found a table"},
+        Case{"[layer.look]\nnoise = [1, {}]\n",
+             "6: layer.look.noise: expected a table or a list of tables, found a list of 2"},
+        Case{"[layer.look]\nalpha = 6\n", "6: layer.look.alpha: expected a table, found a number"},
+        Case{"[layer.look]\ndensity = { x = 6 }\n",
+             "6: layer.look.density: expected a number of at least 0, found a table"},
+        Case{"[layer.look]\ndensity = 2020-01-01\n", "6: layer.look.density: expected a value, found a date"},
+        Case{"[layer.look]\ndensity = nan\n", "6: layer.look.density: expected a finite number, found nan"},
+        Case{"[layer.look]\ndensity = -inf\n", "6: layer.look.density: expected a finite number, found inf"},
+        Case{"[layer.look]\ndensity = 1e39\n",
+             "6: layer.look.density: expected a number that fits 32 bits, found 1e+39"},
+        Case{"[layer.look]\ndensity = -1\n",
+             "6: layer.look.density: expected a number of at least 0, found -1"},
+        Case{"[layer.look]\nnoise = 3\n",
+             "6: layer.look.noise: expected a table or a list of tables, found a number"},
+        Case{"[layer.look]\nnoise.octaves = 2.5\n",
+             "6: layer.look.noise.octaves: expected a whole number, found 2.5"},
+        Case{"[layer.look]\nnoise.octaves = 17\n",
+             "6: layer.look.noise.octaves: expected a whole number from 1 to 16, found 17"},
+        Case{"[layer.look]\ngrade.tint = [1, 1]\n",
+             "6: layer.look.grade.tint: expected 3 numbers of at least 0, found a list of 2"},
+        Case{"[layer.look]\ngrade.tint = [1, 1, true]\n",
+             "6: layer.look.grade.tint: expected 3 numbers of at least 0, found true among them"},
+        Case{"[layer.look]\nalpha.unpremultiply = 1\n",
+             "6: layer.look.alpha.unpremultiply: expected true or false, found a number"},
+        Case{"[layer.look]\npdf.points = [[0, 1]]\n",
+             "6: layer.look.pdf.points: expected at least 2 points, found 1"},
+        Case{"[layer.look]\npdf.points = [[0, 1], [0, 0.5]]\n",
+             "6: layer.look.pdf.points: expected points with ascending x, found 0 after 0"},
+        Case{"[layer.look]\npdf.points = [0, 1]\n",
+             "6: layer.look.pdf.points: expected a list of points [[x, y], ...], found a number"},
+        Case{"[layer.look]\npdf.shape = \"curve\"\n",
+             "6: layer.stars.look.pdf.shape: expected at least 2 points for shape \"curve\", found none"},
+        Case{
+            "[layer.look]\nvertical.shape = \"curve\"\n",
+            "6: layer.stars.look.vertical.shape: expected at least 2 points for shape \"curve\", found none"},
+        Case{"[layer.look]\nthickness.map = \"a.png\"\n",
+             "6: layer.stars.look.thickness.map: expected thickness.keys that the map's colours stand for, "
+             "found none"},
+        Case{"[layer.look]\nthickness.keys = [{}, {}]\n",
+             "6: layer.stars.look.thickness.keys: expected a thickness.map for several keys, found none"},
+        Case{"[layer.look]\nradius.min = 0.2\nradius.max = 0.1\n",
+             "7: layer.stars.look.radius.max: expected min not above max, found 0.2 and 0.1"},
+        Case{"[layer.render]\nblend = \"ovr\"\n",
+             "6: layer.render.blend: expected over, add, screen, lighten or hybrid, found 'ovr'; did you "
+             "mean 'over'?"},
+        Case{"[layer.render]\nblend = [1]\n",
+             "6: layer.render.blend: expected over, add, screen, lighten or hybrid, found a list of 1"},
+        Case{"[layer.render]\nhybrid = { from_deg = 60, to_deg = 40 }\n",
+             "6: layer.stars.render.hybrid.to_deg: expected from_deg below to_deg, found 60 and 40"},
+        Case{"[layer.source]\n", "5: duplicate key 'layer.source'"},
+        Case{"source.voxels = [4, 4, 4]\nsource.voxel_size = 0.5\n",
+             "6: layer.stars.source.voxel_size: expected voxels or voxel_size, found both"},
+        Case{"source.voxels = [4, 4, 0.5]\n",
+             "5: layer.source.voxels: expected 3 numbers from 1 to 1000000 or \"auto\", found 0.5"},
+        Case{"source.voxels = \"many\"\n",
+             "5: layer.source.voxels: expected 3 numbers from 1 to 1000000 or \"auto\", found a string"},
+        Case{"source.black = 3\nsource.white = 2\n",
+             "6: layer.stars.source.white: expected black below white, found 3 and 2"},
+        Case{"source.kind = \"splats\"\n",
+             "5: layer.stars.source.kind: expected a splat file for kind \"splats\", found none"},
+        Case{"axis = [0, 0, 0]\n", "5: layer.stars.axis: expected a direction, found 0, 0, 0"},
+        Case{"[[layer]]\nsource.kind = \"stars\"\n", "5: layer: expected a name, found none"},
+        Case{"[[layer]]\nname = 3\n", "6: layer.name: expected a string, found a number"},
+        Case{"[[layer]]\nname = \"stars\"\n", "6: layer.name: expected each name once, found 'stars' twice"},
+        Case{"[[layer]]\nname = \"2nd\"\n",
+             "6: layer.name: expected letters, digits and _ beginning with a letter, found '2nd'"},
+        Case{"[[layer]]\nname = \"b\"\n", "5: layer.b.source.meshes: expected at least one mesh, found none"},
+        Case{"[[layer]]\nname = \"b\"\nsource.meshes = [{ texture = \"a.png\" }]\n",
+             "7: layer.b.source.meshes.0.mesh: expected a file or plane, relief, disk, sphere, found none"},
+        Case{"[[layer]]\nname = \"b\"\nsource.meshes = [{ mesh = \"disk\", texture = [\"a\", \"b\"] }]\n",
+             "7: layer.b.source.meshes.0.texture: expected one picture, or three for red, green and blue, "
+             "found 2"},
+        Case{"[output]\nfps = 1\nfps = 2\n", "7: duplicate key 'fps'"},
+        Case{"[output]\nfps = \n", "6: not valid TOML: key-value pair: expected value, saw '\\n'"},
+        Case{"[output]\nframes = \"1-x\"\n",
+             "6: output.frames: expected frames such as 1-100,120,200-300x2, found '1-x'"},
+        Case{"[output]\npath = \"\"\n", "6: output.path: expected a file name, found an empty one"},
+        Case{"[output]\npath = \"${ASTROSPLAT_NOT_THERE}/a.####.exr\"\n",
+             "6: output.path: expected the environment variable ASTROSPLAT_NOT_THERE to be set, found it "
+             "undefined"},
+        Case{"[output]\npath = \"${HOME/a.####.exr\"\n",
+             "6: output.path: expected '}' after '${', found none"},
+        Case{"[output]\naovs = [\"depht\"]\n",
+             "6: output.aovs: expected a list of depth, coverage, count or layers, found 'depht'; did you "
+             "mean 'depth'?"},
+        Case{"[output]\naovs = [\"depth\", \"depth\"]\n",
+             "6: output.aovs: expected a list of depth, coverage, count or layers, found 'depth' twice"},
+        Case{"[provenance]\ntype = \"Photo\"\n",
+             "6: provenance.type: expected Artwork or Simulation, found 'Photo'"},
+        Case{"[camera]\nup = [0, 0, 0]\n", "6: camera.up: expected a direction, found 0, 0, 0"},
+        Case{"[camera]\nrotation = [0, 0, 0, 0]\n",
+             "6: camera.rotation: expected a quaternion that is not zero, found 0, 0, 0, 0"},
+        Case{"[camera]\nfov = 180\n", "6: camera.fov: expected a number above 0 and below 180, found 180"},
+        Case{"[camera]\nnear = 5\nfar = 2\n", "7: camera.far: expected far beyond near or 0, found 5 and 2"},
+        Case{"[environment]\ncube = [\"a\", \"b\"]\n", "6: environment.cube: expected six pictures, found 2"},
+        Case{"[environment]\nimage = \"a\"\ncube = [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\"]\n",
+             "7: environment.cube: expected image or cube, found both"},
+        Case{"[environment]\ncube = [\"a\", \"\"]\n",
+             "6: environment.cube: expected a file name or a list of them, found an empty file name"}));
+
+class WrongTracks : public testing::TestWithParam<Case> {};
+
+TEST_P(WrongTracks, SayWhatIsExpected) {
+    EXPECT_EQ(message(head + "[animation]\n" + GetParam().lines),
+              std::string("scene.toml:6: ") + GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Tracks, WrongTracks,
+    testing::Values(
+        Case{"\"camera.fow\" = { keys = [[1, 20]] }\n",
+             "unknown key 'camera.fow'; did you mean 'camera.fov'?"},
+        Case{"\"layer.star.look.reach\" = { keys = [[1, 20]] }\n",
+             "layer.star.look.reach: unknown layer 'star'; did you mean 'stars'?"},
+        Case{"\"layer.stars.look.rech\" = { keys = [[1, 20]] }\n",
+             "unknown key 'layer.stars.look.rech'; did you mean 'layer.stars.look.reach'?"},
+        Case{"\"layer.stars.source.jitter\" = { keys = [[1, 0]] }\n",
+             "layer.stars.source.jitter: this parameter cannot be animated"},
+        Case{"\"layer.stars.look.noise.2.cull\" = { keys = [[1, 0]] }\n",
+             "layer.stars.look.noise.2.cull: expected an index of at most 0 in layer.look.noise, found 2"},
+        Case{"camera.fov = { keys = [[1, 20]] }\n",
+             "camera: expected the whole key in quotes, such as \"camera.position\", found a table"},
+        Case{"\"camera.fov\" = 3\n", "camera.fov: expected { keys = [[frame, value], ...] }, found no keys"},
+        Case{"\"camera.fov\" = { keys = [] }\n",
+             "camera.fov: expected { keys = [[frame, value], ...] }, found no keys"},
+        Case{"\"camera.fov\" = { keys = [[1]] }\n",
+             "camera.fov: expected keys [frame, value] or [frame, value, \"smooth\"], found a list of 1"},
+        Case{"\"camera.fov\" = { keys = [[\"a\", 3]] }\n",
+             "camera.fov: expected a frame number first in a key, found a string"},
+        Case{"\"camera.fov\" = { keys = [[nan, 3]] }\n",
+             "camera.fov: expected a frame number first in a key, found a number"},
+        Case{"\"camera.fov\" = { keys = [[1, 200]] }\n",
+             "camera.fov: frame 1: expected a number above 0 and below 180, found 200"},
+        Case{"\"camera.fov\" = { keys = [[1, nan]] }\n",
+             "camera.fov: frame 1: expected a finite number, found nan"},
+        Case{"\"camera.position\" = { keys = [[1, []]] }\n",
+             "camera.position: frame 1: expected 3 numbers, found none"},
+        Case{"\"camera.rotation\" = { keys = [[1, [0, 0, 0, 0]]] }\n",
+             "camera.rotation: frame 1: expected a quaternion that is not zero, found 0, 0, 0, 0"},
+        Case{"\"camera.fov\" = { keys = [[2, 30], [2, 30]] }\n",
+             "camera.fov: expected each frame once, found 2 twice"},
+        Case{"\"camera.fov\" = { keys = [[2, 30], [1, 30]] }\n",
+             "camera.fov: expected ascending frames, found 1 after 2"},
+        Case{"\"camera.fov\" = { keys = [[2, 30, \"smoth\"]] }\n",
+             "camera.fov: the way to the next key: expected linear, smooth, step, found 'smoth'; did you "
+             "mean 'smooth'?"},
+        Case{"\"camera.fov\" = { keys = [[2, 30]], ends = \"loop\" }\n",
+             "camera.fov: ends: expected ease, through, found 'loop'"},
+        Case{"\"camera.fov\" = { keys = [[2, 30]], end = \"ease\" }\n",
+             "camera.fov: unknown key 'end'; did you mean 'ends'?"},
+        Case{"\"camera.fov\" = { keys = [[2, 30]], constant_speed = true }\n",
+             "camera.fov: constant_speed: expected it on a position, found it on another parameter"},
+        Case{"\"camera.position\" = { keys = [[2, [1, 2, 3]]], constant_speed = 1 }\n",
+             "camera.position: constant_speed: expected true or false, found a number"},
+        Case{"\"layer.stars.look.pdf.points\" = { keys = [[1, [[0, 1], [1, 0]]], [2, [[0, 1], [0.5, 1], [1, "
+             "0]]]] }\n",
+             "layer.stars.look.pdf.points: expected as many points in every key, found another number"}));
+
+TEST(Messages, WholeFiles) {
+    EXPECT_EQ(message(""),
+              "scene.toml: expected a scene that begins with 'astrosplat = 1', found an empty file");
+    EXPECT_EQ(message("[output]\n"),
+              "scene.toml: expected a scene that begins with 'astrosplat = 1', found no such line");
+    EXPECT_EQ(message("\nastrosplat = 2\n"),
+              "scene.toml:2: astrosplat: expected the format version 1, found 2");
+    EXPECT_EQ(message("astrosplat = \"1\"\n"),
+              "scene.toml:1: astrosplat: expected the format version 1, found a string");
+    EXPECT_EQ(message("astrosplat = 1\n"), "scene.toml: expected at least one [[layer]], found none");
+    EXPECT_EQ(message("astrosplat = 1\n[layer]\nname = \"a\"\n"),
+              "scene.toml:2: layer: expected [[layer]], found a table");
+    EXPECT_EQ(message("astrosplat = 1\nanimation = 2\n"),
+              "scene.toml:2: animation: expected a table, found a number");
+    EXPECT_EQ(message("astrosplat = 1\n[output]\nfps = [24,\n"),
+              "scene.toml:3: not valid TOML: array: encountered end-of-file");
+    EXPECT_EQ(message("astrosplat = 1\ntitle = \"\xff\"\n"),
+              "scene.toml:2: not valid TOML: encountered invalid utf-8 sequence");
+}
+
+TEST(Messages, FilesThatCannotBeRead) {
+    const auto load = [](const fs::path& file) -> std::string {
+        try {
+            load_scene(file);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string folder = fs::temp_directory_path().string();
+    EXPECT_EQ(load(folder), folder + ": expected a file, found a folder");
+    EXPECT_EQ(load("no such.toml"), "no such.toml: cannot be read: No such file or directory");
+}
+
+TEST(Messages, PresetsNameTheirOwnFileAndLine) {
+    const fs::path preset = fs::temp_directory_path() / "astrosplat preset messages.toml";
+    write_text_file(preset, "[look]\nalpha.powr = 2\n");
+    const std::string text = head + "preset = \"" + preset.string() + "\"\n";
+    EXPECT_EQ(message(text),
+              preset.string() + ":2: unknown key 'alpha.powr'; did you mean 'look.alpha.power'?");
+    write_text_file(preset, "[look]\nalpha.power = -2\n");
+    EXPECT_EQ(message(text),
+              preset.string() + ":2: look.alpha.power: expected a number of at least 0, found -2");
+    write_text_file(preset, "[output]\nfps = 2\n");
+    EXPECT_EQ(message(text),
+              preset.string() + ":2: unknown key 'fps'; 'astrosplat parameters' lists all keys");
+    write_text_file(preset, "[look]\nradius = { min = 2.0 }\n");
+    EXPECT_EQ(message(text),
+              preset.string() + ":2: layer.stars.look.radius.min: expected min not above max, found 2 and 0");
+    fs::remove(preset);
+    EXPECT_EQ(message(text), preset.string() + ": cannot be read: No such file or directory");
+}
+
+TEST(Messages, Assignments) {
+    const auto set = [](const std::string& assignment) { return message(head, {assignment}); };
+    EXPECT_EQ(
+        set("layer.stars.look.alpha.powr=6"),
+        "--set: unknown key 'layer.stars.look.alpha.powr'; did you mean 'layer.stars.look.alpha.power'?");
+    EXPECT_EQ(set("layer.star.look.alpha.power=6"),
+              "--set: layer.star.look.alpha.power: unknown layer 'star'; did you mean 'stars'?");
+    EXPECT_EQ(set("layer.stars.look.alpha.power=six"),
+              "--set: layer.stars.look.alpha.power: expected a number, found a string");
+    EXPECT_EQ(set("layer.stars.look.alpha.power="),
+              "--set: layer.stars.look.alpha.power: expected a number, found a string");
+    EXPECT_EQ(
+        set("layer.stars.look.noise.3.cull=0.5"),
+        "--set: layer.stars.look.noise.3.cull: expected an index of at most 0 in layer.look.noise, found 3");
+    EXPECT_EQ(set("output.resoluton=[1,1]"),
+              "--set: unknown key 'output.resoluton'; did you mean 'output.resolution'?");
+    EXPECT_EQ(set("output.frames=x"),
+              "--set: output.frames: expected frames such as 1-100,120,200-300x2, found 'x'");
+    EXPECT_EQ(set("layer.stars.name=9"),
+              "--set: layer.name: expected letters, digits and _ beginning with a letter, found '9'");
+    EXPECT_EQ(set("animation.camera.fow={keys=[[1,2]]}"),
+              "--set: unknown key 'camera.fow'; did you mean 'camera.fov'?");
+    EXPECT_THROW(parse_assignment("nothing"), InputError);
+    EXPECT_THROW(parse_assignment("=3"), InputError);
+}
+
+}  // namespace
+}  // namespace astrosplat::test

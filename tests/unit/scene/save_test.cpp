@@ -1,0 +1,329 @@
+// Saving: what is loaded again is what was saved, and the text keeps everything that did not change.
+#include <filesystem>
+
+#include "scene/check.h"
+#include "scene/new_scene.h"
+#include "scene/save.h"
+#include "scene_texts.h"
+#include "shared_hash.h"
+
+namespace astrosplat::test {
+namespace fs = std::filesystem;
+namespace {
+
+const char* const commented = R"(# My galaxy
+astrosplat = 1   # the format
+
+[output]
+fps = 24.0  # cinema
+resolution = [ 640, 360 ]
+
+# The stars.
+[[layer]]
+name = "stars"
+  [layer.source]
+  meshes = [ { mesh = "plane", texture = "a.png" } ]  # flat
+  [layer.look]
+  alpha = { power = 1.0 }  # spelled out
+  noise = { cull = 0.25, frequency = 2 }
+
+# The dust.
+[[layer]]
+name = "dust"
+source.meshes = [{ mesh = "disk", texture = "d.png" }, { mesh = "sphere" }]
+look.noise = [{ cull = 0.5 }, { jitter = 0.1 }]
+
+[animation]
+"camera.fov" = { keys = [
+  [1, 20],   # wide
+  [9, 40],
+] }
+"camera.roll" = { keys = [[1, 0], [9, 10, "step"]], interpolation = "smooth" }  # tilt
+)";
+
+/// Saves and loads again: must be the same. Returns the text.
+std::string saved(Scene scene, const std::string& original = commented,
+                  const std::string& file = "scene.toml") {
+    const std::string text = save_text(scene, original, file);
+    scene.file = file;
+    EXPECT_EQ(parse_scene(text, file), scene) << text;
+    return text;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(Save, NothingChangedIsTheSameText) { EXPECT_EQ(saved(parse(commented)), commented); }
+
+TEST(Save, AValueIsChangedInPlace) {
+    Scene scene = parse(commented);
+    scene.output.fps = 25.0;
+    scene.layers[0].look.alpha.power = 6.0f;
+    scene.layers[1].look.noise[1].jitter = 0.2f;
+    std::string expected = replaced(commented, "24.0  # cinema", "25.0  # cinema");
+    expected = replaced(expected, "power = 1.0 }", "power = 6.0 }");
+    EXPECT_EQ(saved(scene), replaced(expected, "jitter = 0.1", "jitter = 0.2"));
+}
+
+TEST(Save, BackToTheDefaultIsWritten) {
+    Scene scene = parse(commented);
+    scene.layers[0].look.noise[0].cull = 0.0f;
+    EXPECT_EQ(saved(scene), replaced(commented, "cull = 0.25", "cull = 0.0"));
+}
+
+TEST(Save, NewKeysGoToTheirTable) {
+    Scene scene = parse(commented);
+    scene.layers[0].look.alpha.threshold = 0.5f;
+    scene.layers[0].look.density = 0.5f;
+    scene.layers[0].render.blend = Blend::add;
+    scene.layers[1].visible = false;
+    scene.output.exposure = 1.0;
+    scene.camera.fov = 30.0;
+    std::string expected = replaced(commented, "{ power = 1.0 }", "{ power = 1.0, threshold = 0.5 }");
+    expected = replaced(expected, "frequency = 2 }\n",
+                        "frequency = 2 }\ndensity = 0.5\n\n[layer.render]\nblend = \"add\"\n");
+    expected = replaced(expected, "{ jitter = 0.1 }]\n", "{ jitter = 0.1 }]\nvisible = false\n");
+    expected = replaced(expected, "[ 640, 360 ]\n", "[ 640, 360 ]\nexposure = 1.0\n");
+    EXPECT_EQ(saved(scene), expected + "\n[camera]\nfov = 30.0\n");
+}
+
+TEST(Save, LayersAreAddedRemovedMovedAndRenamed) {
+    Scene scene = parse(commented);
+    LayerParams third = scene.layers[1];
+    third.name = "gas";
+    third.look.density = 0.125f;
+    scene.layers.push_back(third);
+    const std::string three = saved(scene);
+    EXPECT_NE(three.find("# The dust."), std::string::npos);
+    std::swap(scene.layers[0], scene.layers[1]);
+    const std::string moved = saved(scene);
+    EXPECT_LT(moved.find("# The dust."), moved.find("# The stars."));
+    EXPECT_NE(moved.find("# spelled out"), std::string::npos);
+    scene.layers.erase(scene.layers.begin() + 1);
+    EXPECT_EQ(saved(scene).find("# The stars."), std::string::npos);
+    scene = parse(commented);
+    scene.layers[0].name = "suns";
+    EXPECT_EQ(saved(scene), replaced(commented, "\"stars\"", "\"suns\""));
+}
+
+TEST(Save, TracksAreChangedAddedAndRemoved) {
+    Scene scene = parse(commented);
+    scene.animation[1].keys[1].value = {20.0};
+    EXPECT_EQ(saved(scene),
+              replaced(commented, "[[1, 0], [9, 10, \"step\"]]", "[[1, 0.0], [9, 20.0, \"step\"]]"));
+    scene = parse(commented);
+    scene.animation.push_back({"layer.dust.render.blend",
+                               {{1.0, {0.0}, Interpolation::linear}, {2.5, {3.0}, Interpolation::step}}});
+    EXPECT_EQ(saved(scene),
+              std::string(commented) +
+                  "\"layer.dust.render.blend\" = { keys = [[1, \"over\"], [2.5, \"lighten\", \"step\"]] }\n");
+    std::swap(scene.animation[0], scene.animation[2]);
+    saved(scene);
+    scene.animation.clear();
+    EXPECT_EQ(saved(scene).find("camera."), std::string::npos);
+}
+
+TEST(Save, ListsGrowAndShrink) {
+    Scene scene = parse(commented);
+    scene.layers[0].look.noise.resize(2);
+    scene.layers[0].look.noise[1].brightness = 0.5f;
+    EXPECT_EQ(saved(scene), replaced(commented, "{ cull = 0.25, frequency = 2 }",
+                                     "[{ frequency = 2.0, cull = 0.25 }, { brightness = 0.5 }]"));
+    scene.layers[0].look.noise.clear();
+    scene.layers[1].source.meshes.pop_back();
+    std::string expected = replaced(commented, "{ cull = 0.25, frequency = 2 }", "[]");
+    EXPECT_EQ(saved(scene),
+              replaced(expected, "[{ mesh = \"disk\", texture = \"d.png\" }, { mesh = \"sphere\" }]",
+                       "[{ mesh = \"disk\", texture = \"d.png\" }]"));
+}
+
+TEST(Save, ANewFile) {
+    Scene scene = parse(commented);
+    scene.file = "";
+    const std::string text = saved(scene, "");
+    EXPECT_EQ(text.find("astrosplat = 1\n"), 0u);
+    EXPECT_EQ(text.find("compression"), std::string::npos) << "defaults are not written";
+}
+
+TEST(Save, AnotherFolderKeepsTheFiles) {
+    Scene scene = parse_scene(commented, "scenes/a.toml");
+    EXPECT_NE(saved(scene, commented, "b.toml").find("texture = \"scenes/a.png\""), std::string::npos);
+    EXPECT_NE(saved(scene, commented, "scenes/deep/b.toml").find("texture = \"../a.png\""),
+              std::string::npos);
+}
+
+TEST(Save, FilesNamedLikeBuiltInMeshes) {
+    Scene scene = parse(replaced(commented, "mesh = \"sphere\"", "mesh = \"./sphere\""));
+    EXPECT_EQ(scene.layers[1].source.meshes[1].mesh, "./sphere");
+    scene.layers[0].source.meshes[0].mesh = "./disk";
+    saved(scene);
+    scene = parse_scene(commented, "/x/y.toml");
+    scene.layers[0].source.meshes[0].mesh = "/x/disk";
+    EXPECT_NE(saved(scene, commented, "/x/y.toml").find("mesh = \"./disk\""), std::string::npos);
+}
+
+TEST(Save, WindowsLineEndsStay) {
+    std::string text = commented;
+    for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += 2) text.replace(i, 1, "\r\n");
+    Scene scene = parse(text);
+    scene.camera.fov = 30.0;
+    const std::string written = saved(scene, text);
+    for (std::size_t i = 0; (i = written.find('\n', i)) != std::string::npos; ++i)
+        EXPECT_EQ(written[i - 1], '\r');
+}
+
+/// A value that fits the parameter, picked by a hash.
+Value some_value(const ParameterSpec& spec, std::uint32_t seed) {
+    const auto unit = [&](std::uint32_t purpose) { return hash_unit(seed, purpose); };
+    const auto number = [&](std::uint32_t purpose) {
+        const double lo = std::max(spec.min, -1000.0), hi = std::min(spec.max, 1000.0);
+        return spec.above_min || spec.below_max ? lo + (hi - lo) * (0.25 + 0.5 * unit(purpose))
+                                                : lo + (hi - lo) * unit(purpose);
+    };
+    const std::size_t choice =
+        spec.choices.empty() ? 0
+                             : static_cast<std::size_t>(unit(1) * static_cast<double>(spec.choices.size()));
+    switch (spec.type) {
+        case ParameterType::boolean:
+            return unit(1) < 0.5;
+        case ParameterType::integer:
+            return static_cast<std::int64_t>(number(1));
+        case ParameterType::number:
+            return spec.nothing.text() && unit(2) < 0.3 ? spec.nothing : Value(number(1));
+        case ParameterType::text:
+            return spec.choices.empty() ? Value("\xC3\xA4 \"quoted\" \\ #" + std::to_string(seed))
+                                        : Value(spec.choices[choice]);
+        case ParameterType::choice:
+            return spec.choices[choice];
+        case ParameterType::words:
+            return Value::List{spec.choices[choice]};
+        case ParameterType::file:
+        case ParameterType::pattern:
+            return "dir/\xC3\xB6 " + std::to_string(seed) + ".####.png";
+        case ParameterType::files:
+            return Value::List{"a.png", "../b.png", "/c/" + std::to_string(seed)};
+        case ParameterType::curve:
+            return Value::List{Value::List{0.0, unit(1)}, Value::List{0.5, unit(2)},
+                               Value::List{1.0, unit(3)}};
+        default: {
+            const bool whole =
+                spec.generic_key == "layer.source.voxels" || spec.generic_key == "output.resolution";
+            Value::List list;
+            for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(spec.components); ++i)
+                list.emplace_back(whole ? std::floor(number(i)) : number(i));
+            return list;
+        }
+    }
+}
+
+bool is_valid(const Scene& scene) {
+    try {
+        check_scene(scene, "", {});
+    } catch (const InputError&) {
+        return false;
+    }
+    return true;
+}
+
+/// The scene with one parameter changed; presets must exist and names are keys, so these stay.
+Scene changed(const Scene& scene, std::size_t index, std::uint32_t seed) {
+    Scene edited = scene;
+    const Description description = describe(edited);
+    const Parameter& parameter = description.parameters[index];
+    const std::string key = parameter.spec.generic_key;
+    if (key == "layer.name" || key == "layer.preset") return scene;
+    parameter.set(key == "output.frames" ? Value("1-9") : some_value(parameter.spec, seed));
+    return is_valid(edited) ? edited : scene;
+}
+
+TEST(Save, EveryParameterSurvives) {
+    for (const char* original : {commented, full_scene}) {
+        Scene scene = parse(original);
+        const std::size_t count = describe(scene).parameters.size();
+        std::size_t edits = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Scene edited = changed(scene, i, i + 1);
+            if (edited == scene) continue;
+            saved(edited, original);
+            ++edits;
+        }
+        EXPECT_GT(edits, count * 8 / 10)
+            << "the others need a second key to be valid, or drew their old value";
+    }
+}
+
+TEST(Save, RandomEditsOneAfterAnother) {
+    std::string text = commented;
+    Scene scene = parse(text);
+    for (std::uint32_t step = 1; step <= 200; ++step) {
+        const double count = static_cast<double>(describe(scene).parameters.size());
+        scene = changed(scene, static_cast<std::size_t>(hash_unit(step, 77) * count), step);
+        text = saved(scene, text);
+    }
+    for (const char* comment : {"# My galaxy", "# the format", "# cinema", "# The stars.", "# flat",
+                                "# spelled out", "# The dust.", "# wide", "# tilt"})
+        EXPECT_NE(text.find(comment), std::string::npos) << comment;
+}
+
+TEST(Save, PresetsGiveBackLookAndRender) {
+    Scene scene = parse(commented);
+    Look& look = scene.layers[1].look;
+    look.thickness.map = "maps/m.png";
+    look.thickness.keys.resize(2);
+    look.thickness.keys[1].pdf.shape = DensityCurve::Shape::gaussian;
+    scene.layers[1].render.falloff.core = 0.25f;
+    const fs::path folder = fs::temp_directory_path() / "astrosplat save preset";
+    fs::create_directories(folder);
+    look.thickness.map = folder / "m.png";
+    write_text_file(folder / "p.toml", save_preset_text(look, scene.layers[1].render, folder / "p.toml"));
+    const Scene loaded = parse_scene(small_scene("preset = \"p.toml\""), folder / "s.toml");
+    EXPECT_EQ(loaded.layers[0].look, look);
+    EXPECT_EQ(loaded.layers[0].render, scene.layers[1].render);
+    fs::remove_all(folder);
+}
+
+TEST(Save, OverAPresetOnlyDifferencesAreWritten) {
+    const fs::path folder = fs::temp_directory_path() / "astrosplat over preset";
+    fs::create_directories(folder);
+    write_text_file(folder / "p.toml", "[look]\ndensity = 0.5\nnoise = [{ cull = 0.5 }, { cull = 0.25 }]\n");
+    const std::string original = small_scene("preset = \"p.toml\"");
+    Scene scene = parse_scene(original, folder / "s.toml");
+    EXPECT_EQ(save_text(scene, original, folder / "s.toml"), original);
+    scene.layers[0].look.density = 1.0f;
+    scene.layers[0].look.noise[1].cull = 0.125f;
+    const std::string text = save_text(scene, original, folder / "s.toml");
+    EXPECT_NE(text.find("density = 1.0"), std::string::npos) << "the default, against the preset";
+    EXPECT_EQ(parse_scene(text, folder / "s.toml"), scene);
+    fs::remove_all(folder);
+}
+
+TEST(Save, WritesTheFileWhole) {
+    const fs::path folder = fs::temp_directory_path() / "astrosplat save \xC3\xBC";
+    fs::create_directories(folder);
+    const Scene scene = parse_scene(commented, folder / "s.toml");
+    save_scene(scene, folder / "s.toml");
+    EXPECT_EQ(load_scene(folder / "s.toml"), scene);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
+        << "no temporary file is left";
+    EXPECT_THROW(save_scene(scene, folder / "none" / "s.toml"), OutputError);
+    fs::remove_all(folder);
+}
+
+TEST(NewScene, LoadsForEveryShapeAndOddNames) {
+    for (const char* shape : {"plane", "relief", "disk", "sphere"}) {
+        const std::string text = new_scene_text("pictures/51 M\xC3\xB6we.fits", shape, "scenes/a.toml");
+        const Scene scene = parse_scene(text, "scenes/a.toml");
+        EXPECT_EQ(scene.layers[0].name, "M_we");
+        EXPECT_EQ(scene.layers[0].source.meshes[0].mesh, shape);
+        EXPECT_EQ(scene.layers[0].source.meshes[0].texture[0], "pictures/51 M\xC3\xB6we.fits");
+        EXPECT_EQ(save_text(scene, text, "scenes/a.toml"), text);
+    }
+    EXPECT_EQ(parse(new_scene_text("51.png", "plane", "a.toml")).layers[0].name, "picture");
+    EXPECT_THROW(new_scene_text("a.png", "cube", "a.toml"), InputError);
+}
+
+}  // namespace
+}  // namespace astrosplat::test

@@ -1,0 +1,116 @@
+#include "scene_texts.h"
+
+namespace astrosplat::test {
+
+const char* const full_scene = R"toml(astrosplat = 1
+
+[output]
+resolution = [1920, 1080]
+frames = "1-240"
+fps = 24.0
+path = "frames/shot.####.exr"
+depth = "auto"
+compression = "auto"
+alpha = "auto"
+aovs = []
+view = "auto"
+exposure = 0.0
+pixel_filter = 0.5
+
+[camera]
+projection = "perspective"
+position = []
+target = [0.0, 0.0, 0.0]
+up = [0.0, 1.0, 0.0]
+rotation = []
+roll = 0.0
+fov = 45.0
+focal_length = 0.0
+film_width = 36.0
+fisheye_fov = 180.0
+height = 10.0
+near = 0.01
+far = 0.0
+near_fade = 0.0
+file = ""
+
+[environment]
+image = ""
+cube = []
+gain = 1.0
+rotation = [0.0, 0.0, 0.0]
+visible = true
+
+[provenance]
+title = ""
+credit = ""
+type = "Artwork"
+
+[[layer]]
+name = "stars"
+visible = true
+axis = [0.0, 1.0, 0.0]
+preset = ""
+
+[layer.transform]
+translate = [0.0, 0.0, 0.0]
+rotate = [0.0, 0.0, 0.0]
+scale = 1.0
+
+[layer.source]
+kind = "mesh"
+meshes = [ { mesh = "disk.obj", texture = "", relief = 0.15 } ]
+
+colorspace = "auto"
+alpha = "auto"
+unpremultiply = "auto"
+hdu = "auto"
+stretch = "auto"
+black = "auto"
+white = "auto"
+softening = 0.1
+buffer = "auto"
+voxels = "auto"
+count = 2000000
+jitter = 1.0
+max_distance = 0.0
+filter = "bilinear"
+wrap = "auto"
+uv = "mesh"
+seed = 0
+plane = 0
+voxel_size = 0.0
+file = ""
+catalogue = ""
+unit = 1.0
+limit = 12.0
+zero_point = 4.0
+along = ""
+spread = 10.0
+psf = 1.0
+
+[layer.look]
+density = 1.0
+reach = 0.0
+pdf = { shape = "constant", rate = 3.0, sigma = 0.35, points = [] }
+thickness = { map = "", keys = [ { color = [1.0, 1.0, 1.0], scale = 1.0, shape = "constant", rate = 3.0, sigma = 0.35, points = [] } ] }
+noise = { frequency = 1.0, octaves = 4, lacunarity = 2.0, gain = 0.5, seed = 1, cull = 0.0, silhouette = 0.0, jitter = 0.0, alpha = 0.0, brightness = 0.0 }
+alpha = { power = 1.0, threshold = 0.95, unpremultiply = false, gain = 1.0 }
+vertical = { shape = "none", rate = 3.0, points = [], reach = 0.0, match = "auto" }
+radius = { min = 0.0, max = 0.0, horizontal_scale = 1.0, vertical_scale = 1.0 }
+grade = { gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0, black = 0.0 }
+
+[layer.render]
+falloff = "gaussian"
+core = 0.5
+sharpness = 4.5
+blend = "over"
+opacity = 1.0
+hybrid = { from_deg = 30.0, to_deg = 80.0 }
+lod = { max_px = 0.0, max_children = 4096 }
+holdout = false
+isolate = false
+
+)toml";
+
+}  // namespace astrosplat::test
