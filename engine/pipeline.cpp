@@ -140,7 +140,7 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
     layer.key.reset();  // an exception below must not leave old splats under a new key
     LookStatistics counts;
-    layer.shaded = apply_look(layer.set, key.look, inputs, progress, &counts);
+    apply_look(layer.set, key.look, inputs, layer.shaded, progress, &counts);
     layer.key = key;
     statistics[index].drawn = layer.shaded.size();
     statistics[index].look_seconds += counts.seconds;
@@ -199,7 +199,7 @@ RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, cons
         if (now.layers[i].visible) state_->shade(i, now.layers[i], progress);
     }
     return render(state_->visible_layers(now), state_->camera(now, settings), state_->environment_at(now),
-                  settings, progress);
+                  settings, progress, &state_->render_cache);
 }
 
 RenderSettings Pipeline::settings(double frame) const {
