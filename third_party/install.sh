@@ -14,10 +14,12 @@ is_installed() {
     [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
-# "91 MB", or "a size apt does not know yet" where the package lists have never been fetched.
+# "91.2 MB", as apt counts it, or words where the package lists have never been fetched.
 download_size() {
-    apt-get install --print-uris --yes --no-install-recommends "$@" 2>/dev/null |
-        awk '/^\x27/ { bytes += $3 } END { if (bytes) printf "%.0f MB", bytes / 1e6 + 0.5; else print "a size apt does not know yet" }'
+    local size
+    size=$(apt-get install --print-uris --yes --no-install-recommends "$@" 2>/dev/null |
+        sed -n 's/^Need to get \(.*\) of archives\.$/\1/p') || true
+    echo "${size:-a size apt does not know before its first update}"
 }
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
