@@ -1,19 +1,16 @@
 // The demo nebula: an hourglass of two nested, folded sheets of gas, each with a picture of bright filaments
 // and one of thin veils, a dark torus around the waist and a small cluster of stars inside it.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <fstream>
+#include <vector>
 
 #include "assets.h"
 #include "canvas.h"
-#include "core/error.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "mesh_file.h"
 #include "noise.h"
+#include "splat_rows.h"
 
 namespace astrosplat::assets {
 namespace {
@@ -148,38 +145,21 @@ Canvas torus_picture() {
     return canvas;
 }
 
-// One row of a binary PLY: x y z red green blue alpha radius, little-endian floats.
-void append_star(std::string& data, glm::vec3 place, glm::vec3 color, float alpha, float radius) {
-    for (const float value : {place.x, place.y, place.z, color.x, color.y, color.z, alpha, radius}) {
-        std::uint32_t bits = 0;
-        std::memcpy(&bits, &value, sizeof bits);
-        for (int shift = 0; shift < 32; shift += 8) data += static_cast<char>((bits >> shift) & 255u);
-    }
-}
-
-// Stars crowd towards the middle; luminosity is a power law, shown as size and opacity.
+// Stars crowd towards the middle; luminosity is a power law, shown as size and opacity. The last is the dying
+// star.
 void save_cluster(const std::filesystem::path& file) {
-    constexpr unsigned count = 2000;  // and the central star
-    std::string data = fmt::format(
-        "ply\nformat binary_little_endian 1.0\ncomment a star cluster; made by "
-        "astrosplat_make_assets\nelement vertex {}\n",
-        count + 1);
-    for (const char* name : {"x", "y", "z", "red", "green", "blue", "alpha", "radius"})
-        data += fmt::format("property float {}\n", name);
-    data += "end_header\n";
-    for (unsigned i = 0; i < count; ++i) {
+    std::vector<SplatRow> rows;
+    for (unsigned i = 0; i < 2000; ++i) {
         const glm::vec3 direction(normal(1401, i, 1), normal(1401, i, 2), normal(1401, i, 3));
         const float spread = 0.05f + 1.1f * shared::as_pow(uniform(1401, i, 4), 1.6f);
         const float light = std::min(30.0f, shared::as_pow(std::max(1e-5f, uniform(1401, i, 5)), -0.8f));
         const glm::vec3 tint = blend(glm::vec3(0.66f, 0.80f, 1.0f), glm::vec3(1.0f, 0.78f, 0.55f),
                                      1.4f * uniform(1401, i, 6) - 0.4f);
-        append_star(data, direction * spread, tint, std::min(1.0f, 0.35f + 0.08f * light),
-                    0.011f * std::sqrt(std::sqrt(light)));
+        rows.push_back({direction * spread, tint, std::min(1.0f, 0.35f + 0.08f * light),
+                        0.011f * std::sqrt(std::sqrt(light))});
     }
-    append_star(data, glm::vec3(0.0f), glm::vec3(0.85f, 0.93f, 1.0f), 1.0f, 0.06f);
-    std::ofstream out(file, std::ios::binary);
-    out << data;
-    if (!out.flush()) throw OutputError(fmt::format("{}: cannot be written", file.string()));
+    rows.push_back({glm::vec3(0.0f), glm::vec3(0.85f, 0.93f, 1.0f), 1.0f, 0.06f});
+    save_ply(rows, file, "a star cluster");
 }
 
 }  // namespace

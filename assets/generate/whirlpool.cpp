@@ -3,6 +3,8 @@
 // stars and clusters.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "assets.h"
 #include "canvas.h"
@@ -11,12 +13,13 @@
 #include "mesh_file.h"
 #include "noise.h"
 #include "spiral.h"
+#include "splat_rows.h"
 
 namespace astrosplat::assets {
 namespace {
 
 constexpr int picture_px = 2048;
-constexpr glm::vec3 old_color(1.0f, 0.78f, 0.50f);
+constexpr glm::vec3 old_color(1.0f, 0.75f, 0.46f);
 constexpr glm::vec3 disk_color(1.0f, 0.79f, 0.56f);
 constexpr glm::vec3 young_color(0.36f, 0.58f, 1.0f);
 
@@ -35,17 +38,22 @@ glm::vec3 extinct(glm::vec3 light, float depth) {
             light.z * shared::as_exp(-1.35f * depth)};
 }
 
-glm::vec3 smooth_starlight(glm::vec2 p, const DiskPlace& place) {
+// The old disk and the bulge: smooth and warm.
+glm::vec3 old_light(glm::vec2 p, const DiskPlace& place) {
     const float r = std::sqrt(p.x * p.x + p.y * p.y);
     const float mottle = 1.0f + 0.25f * fbm(p * 14.0f, 311, 5, 0.65f);
-    const float disk = 0.62f * shared::as_exp(-r / 0.165f) * (0.45f + 0.8f * place.broad) * mottle;
-    const float bulge = 3.0f * shared::as_exp(-std::sqrt(r / 0.0060f)) * 4.0f;
+    const float disk = 0.60f * shared::as_exp(-r / 0.195f) * (0.45f + 0.8f * place.broad) * mottle;
+    const float bulge = 12.0f * shared::as_exp(-std::sqrt(r / 0.0060f));
+    return disk_color * disk + old_color * bulge;
+}
+
+// The arms: blue and torn.
+glm::vec3 young_light(glm::vec2 p, const DiskPlace& place) {
+    const float r = std::sqrt(p.x * p.x + p.y * p.y);
     const float streaks = shared::as_exp(1.25f * along_spiral(place, 18.0f, 40, 3.5f, 321, false));
     const float patches = shared::as_exp(2.1f * fbm(p * 15.0f, 331, 6, 0.70f));
     const float reach = shared::as_exp(-r / 0.46f) * smoothstep(0.05f, 0.20f, r);
-    const float young = 1.15f * place.young * streaks * patches * reach;
-    const float haze = 0.05f * place.broad * reach * patches;
-    return disk_color * disk + old_color * bulge + young_color * (young + haze);
+    return young_color * (reach * patches * (1.15f * place.young * streaks + 0.05f * place.broad));
 }
 
 // Calls each(place, random index) for points strewn with probability chance(disk place) <= 1.
@@ -69,43 +77,78 @@ void add_field_stars(Canvas& canvas) {
         return rim(p) * shared::as_exp(-place.r / 0.33f) * (0.25f + 0.75f * std::min(1.0f, place.broad));
     };
     strew(401, 420000, chance, [&](glm::vec2 p, const DiskPlace& place, unsigned i) {
-        const float flux = 0.028f * power_law(uniform(401, i, 4), 1.5f, 60.0f) * (0.5f + place.r);
+        const float flux = 0.028f * power_law(uniform(401, i, 4), 1.5f, 6.0f) * (0.5f + place.r);
         const float warmth = std::clamp(uniform(401, i, 5) + 0.25f - place.young * 0.7f, 0.0f, 1.0f);
         add_glow(canvas, in_pixels(p), flux * glm::vec3(shared::mix(young_color, old_color, warmth)), 0.62f);
     });
 }
 
-void add_blue_clusters(Canvas& canvas) {
-    const auto chance = [](glm::vec2 p, const DiskPlace& place) {
-        const float lumps = smoothstep(-0.25f, 0.7f, fbm(p * 13.0f, 411, 4, 0.6f));
-        return rim(p) * place.young * lumps * smoothstep(0.05f, 0.2f, place.r);
-    };
-    strew(421, 260000, chance, [&](glm::vec2 p, const DiskPlace&, unsigned i) {
-        const float flux = 0.42f * power_law(uniform(421, i, 4), 1.2f, 90.0f);
-        const float sigma = 0.7f + 0.35f * std::sqrt(std::sqrt(flux));
-        const glm::vec3 tint = shared::mix(young_color, glm::vec3(0.85f, 0.9f, 1.0f), uniform(421, i, 5));
-        add_glow(canvas, in_pixels(p), flux * tint, sigma);
+// A picture of `light` on black, with `baked` of the dust's depth: the part that lies before these stars
+// whichever way one looks.
+Canvas light_picture(int size_px, const std::function<glm::vec3(glm::vec2, const DiskPlace&)>& light,
+                     float baked) {
+    Canvas canvas = make_canvas(size_px, size_px);
+    paint(canvas, [&](float u, float v) {
+        const glm::vec2 p = on_disk(u, v);
+        const DiskPlace place = disk_place(p);
+        return glm::vec4(extinct(light(p, place) * rim(p), baked * dust_depth(p, place)), 1.0f);
+    });
+    return canvas;
+}
+
+void develop(Canvas& canvas, float softening, float white) {
+    for (glm::vec4& pixel : canvas.pixels)
+        pixel = glm::vec4(asinh_curve(glm::vec3(pixel), softening, white), 1.0f);
+}
+
+Canvas disk_picture() {
+    Canvas canvas = light_picture(1024, old_light, 0.4f);
+    develop(canvas, 0.17f, 3.4f);
+    return canvas;
+}
+
+Canvas arms_picture() {
+    Canvas canvas = light_picture(picture_px, young_light, 0.55f);
+    add_field_stars(canvas);
+    develop(canvas, 0.17f, 3.0f);
+    return canvas;
+}
+
+// Height of the disk's middle plane, scene units: its rim bends up on one side and down on the other, as most
+// real disks do.
+float warp(glm::vec2 p) {
+    const float r = std::sqrt(p.x * p.x + p.y * p.y);
+    const double angle =
+        real::atan2(static_cast<double>(p.y), static_cast<double>(p.x)) + 2.2 * static_cast<double>(r);
+    return 0.17f * smoothstep(0.45f, 1.05f, r) * static_cast<float>(real::sin(angle)) +
+           0.02f * noise(3.0f * p, 611);
+}
+
+SheetMesh disk_mesh() {
+    return make_sheet(96, 28, true, [](float turn, float out) {
+        const double angle = 2.0 * real::pi * static_cast<double>(turn);
+        const glm::vec2 p = std::sqrt(out) * glm::vec2(static_cast<float>(real::cos(angle)),
+                                                       static_cast<float>(real::sin(angle)));
+        return SheetPoint{{5.0f * p.x, warp(p), -5.0f * p.y}, 0.5f + 0.5f * p};
     });
 }
 
-Canvas stars_picture() {
-    Canvas canvas = make_canvas(picture_px, picture_px);
-    paint(canvas, [](float u, float v) {
-        const glm::vec2 p = on_disk(u, v);
-        return glm::vec4(smooth_starlight(p, disk_place(p)) * rim(p), 1.0f);
+// Single bright stars and clusters as a splat file: in a picture they would be drawn out into columns through
+// the thickness of the layer. Luminosity is a power law, shown as size and opacity.
+void save_clusters(const std::filesystem::path& file) {
+    std::vector<SplatRow> rows;
+    const auto chance = [](glm::vec2 p, const DiskPlace& place) {
+        const float lumps = smoothstep(-0.2f, 0.6f, fbm(p * 13.0f, 411, 4, 0.6f));
+        return rim(p) * place.young * lumps * smoothstep(0.05f, 0.2f, place.r);
+    };
+    strew(421, 330000, chance, [&](glm::vec2 p, const DiskPlace&, unsigned i) {
+        const float light = power_law(uniform(421, i, 4), 1.15f, 40.0f);
+        const glm::vec3 tint = shared::mix(young_color, glm::vec3(0.95f, 0.95f, 1.0f), uniform(421, i, 5));
+        const glm::vec3 place(5.0f * p.x, warp(p) + 0.035f * normal(421, i, 6), -5.0f * p.y);
+        rows.push_back(
+            {place, tint, std::min(1.0f, 0.30f + 0.06f * light), 0.011f * std::sqrt(std::sqrt(light))});
     });
-    add_field_stars(canvas);
-    add_blue_clusters(canvas);
-    Canvas out = make_canvas(picture_px, picture_px);
-    paint(out, [&](float u, float v) {
-        const glm::vec2 p = on_disk(u, v);
-        const glm::vec4& c =
-            canvas.at(static_cast<int>(u * picture_px), static_cast<int>((1.0f - v) * picture_px));
-        // Half of the dust is baked in: the part that lies before these stars whichever way one looks.
-        const glm::vec3 light = extinct(glm::vec3(c), 0.55f * dust_depth(p, disk_place(p)));
-        return glm::vec4(asinh_curve(light, 0.40f, 3.4f), 1.0f);
-    });
-    return out;
+    save_ply(rows, file, "young star clusters");
 }
 
 Canvas dust_picture() {
@@ -192,28 +235,17 @@ Canvas bulge_picture() {
     return canvas;
 }
 
-// A disk of radius 5 whose rim bends up on one side and down on the other, as most real disks do.
-SheetMesh disk_mesh() {
-    return make_sheet(96, 28, true, [](float turn, float out) {
-        const float r = std::sqrt(out), angle = turn * static_cast<float>(2.0 * real::pi);
-        const float c = static_cast<float>(real::cos(static_cast<double>(angle)));
-        const float s = static_cast<float>(real::sin(static_cast<double>(angle)));
-        const float tilt = static_cast<float>(real::sin(static_cast<double>(angle + 2.2f * r)));
-        const float height = 0.17f * smoothstep(0.45f, 1.05f, r) * tilt +
-                             0.02f * noise(glm::vec2(3.0f * r * c, 3.0f * r * s), 611);
-        return SheetPoint{{5.0f * r * c, height, -5.0f * r * s}, {0.5f + 0.5f * r * c, 0.5f + 0.5f * r * s}};
-    });
-}
-
 }  // namespace
 
 void make_whirlpool(const std::filesystem::path& folder) {
-    save_jpeg(stars_picture(), folder / "textures/whirlpool_stars.jpg", 88);
+    save_jpeg(disk_picture(), folder / "textures/whirlpool_disk.jpg", 92);
+    save_jpeg(arms_picture(), folder / "textures/whirlpool_arms.jpg", 88);
     save_png(dust_picture(), folder / "textures/whirlpool_dust.png", 4);
     save_jpeg(nebulae_picture(), folder / "textures/whirlpool_nebulae.jpg", 88);
     save_png(bulge_picture(), folder / "textures/whirlpool_bulge.png", 3);
     save_png(thickness_picture(), folder / "textures/whirlpool_thickness.png", 3);
     save_obj(disk_mesh(), folder / "meshes/whirlpool_disk.obj", "a gently warped disk, radius 5");
+    save_clusters(folder / "meshes/whirlpool_clusters.ply");
 }
 
 }  // namespace astrosplat::assets
