@@ -25,6 +25,7 @@ struct Sheet {
     unsigned seed;
 };
 
+constexpr glm::vec3 waist_place(0.0f, -0.12f, 0.0f);  // where the bent axis crosses x = 0
 constexpr Sheet outer = {5.0f, 2.15f, 0.34f, 0.30f, 1100};
 constexpr Sheet inner = {4.1f, 1.35f, 0.20f, 0.38f, 1200};
 
@@ -62,7 +63,7 @@ SheetMesh sheet_mesh(const Sheet& sheet) {
         const float radius = sheet.waist + sheet.girth * lobe(a.s) * std::max(0.25f, fold);
         // The axis is bent, and the ends are ragged.
         const float x = sheet.length * a.s * (1.0f + 0.10f * fbm(grain(a, 1.3f, 1.0f), sheet.seed + 31, 2));
-        const glm::vec2 bend(0.35f * a.s * a.s - 0.12f, 0.30f * a.s * std::fabs(a.s));
+        const glm::vec2 bend(0.35f * a.s * a.s + waist_place.y, 0.30f * a.s * std::fabs(a.s));
         return SheetPoint{{x, radius * a.cosine + bend.x, radius * a.sine + bend.y}, {turn, along}};
     });
 }
@@ -127,8 +128,8 @@ SheetMesh torus_mesh() {
         const Around a = around(turn, 0.5f), tube = around(around_tube, 0.5f);
         const float lumps =
             1.0f + 0.35f * fbm(glm::vec3(a.cosine * 2.0f, a.sine * 2.0f, 1.5f * tube.cosine), 1301, 3);
-        const float radius = 0.62f + 0.20f * lumps * tube.cosine;
-        return SheetPoint{{0.16f * lumps * tube.sine, radius * a.cosine - 0.10f, radius * a.sine},
+        const float radius = 0.66f + 0.16f * lumps * tube.cosine;
+        return SheetPoint{{0.10f * lumps * tube.sine, radius * a.cosine + waist_place.y, radius * a.sine},
                           {turn, around_tube}};
     });
 }
@@ -139,7 +140,7 @@ Canvas torus_picture() {
         const Around a = around(u, 0.5f), tube = around(v, 0.5f);
         const glm::vec3 p(a.cosine * 3.5f + tube.cosine, a.sine * 3.5f + tube.sine, 1.2f * tube.sine);
         const float wisps = ridged(p, 1311, 6, 0.6f), clumps = fbm(p * 0.7f, 1321, 5, 0.6f);
-        const float depth = 2.6f * smoothstep(0.15f, 0.75f, wisps) * shared::as_exp(1.6f * clumps);
+        const float depth = 2.4f * smoothstep(0.25f, 0.8f, wisps) * shared::as_exp(2.6f * clumps);
         return glm::vec4(0.045f, 0.018f, 0.008f, 1.0f - shared::as_exp(-depth));
     });
     return canvas;
@@ -155,10 +156,11 @@ void save_cluster(const std::filesystem::path& file) {
         const float light = std::min(30.0f, shared::as_pow(std::max(1e-5f, uniform(1401, i, 5)), -0.8f));
         const glm::vec3 tint = blend(glm::vec3(0.66f, 0.80f, 1.0f), glm::vec3(1.0f, 0.78f, 0.55f),
                                      1.4f * uniform(1401, i, 6) - 0.4f);
-        rows.push_back({direction * spread, tint, std::min(1.0f, 0.35f + 0.08f * light),
+        rows.push_back({waist_place + direction * spread, tint, std::min(1.0f, 0.35f + 0.08f * light),
                         0.011f * std::sqrt(std::sqrt(light))});
     }
-    rows.push_back({glm::vec3(0.0f), glm::vec3(0.85f, 0.93f, 1.0f), 1.0f, 0.06f});
+    rows.push_back({waist_place, glm::vec3(0.80f, 0.92f, 1.0f), 1.0f, 0.26f});
+    rows.push_back({waist_place, glm::vec3(0.70f, 0.88f, 1.0f), 0.22f, 1.0f});  // its glow
     save_ply(rows, file, "a star cluster");
 }
 

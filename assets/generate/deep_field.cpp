@@ -70,7 +70,7 @@ void add_galaxies(Canvas& sky) {
         g.place_px = sky_place(701, i, g.widen);
         const float size =
             shared::as_pow(std::max(1e-4f, uniform(701, i, 3)), -1.0f / 2.1f);  // N(> size) ~ size^-2.1
-        g.radius_px = std::min(0.62f * size, 6.5f);
+        g.radius_px = std::min(0.60f * size, 4.6f);
         g.flattening = 0.22f + 0.75f * uniform(701, i, 4);
         g.turn = uniform(701, i, 5) * static_cast<float>(2.0 * real::pi);
         const bool elliptical = uniform(701, i, 6) < 0.3f;
