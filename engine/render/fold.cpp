@@ -28,18 +28,28 @@ struct Coefficients {
     V part[segments / lanes];
 };
 
-HWY_INLINE Coefficients load_coefficients(const float* values) {
+/// Coefficients of one power, interpolated between the footprint's two nodes.
+HWY_INLINE Coefficients load_coefficients(const Footprint& f, int power) {
+    const V t = hn::Set(D(), f.t);
     Coefficients c;
-    for (int i = 0; i < segments / lanes; ++i) c.part[i] = hn::LoadU(D(), values + i * lanes);
+    for (int i = 0; i < segments / lanes; ++i) {
+        const V a = hn::Load(D(), f.node_a->cubic[power] + i * lanes);
+        const V b = hn::Load(D(), f.node_b->cubic[power] + i * lanes);
+        c.part[i] = hn::Add(a, hn::Mul(hn::Sub(b, a), t));
+    }
     return c;
 }
 
+/// Lookup by the lowest four bits of `segment`.
 HWY_INLINE V look_up(const Coefficients& c, VI segment) {
     const auto index = hn::IndicesFromVec(D(), hn::And(segment, hn::Set(DI(), lanes - 1)));
     V r = hn::TableLookupLanes(c.part[0], index);
-    for (int i = 1; i < segments / lanes; ++i) {
-        const auto here = hn::RebindMask(D(), hn::Gt(segment, hn::Set(DI(), i * lanes - 1)));
-        r = hn::IfThenElse(here, hn::TableLookupLanes(c.part[i], index), r);
+    if constexpr (lanes < segments) {
+        const VI low = hn::And(segment, hn::Set(DI(), segments - 1));
+        for (int i = 1; i < segments / lanes; ++i) {
+            const auto here = hn::RebindMask(D(), hn::Gt(low, hn::Set(DI(), i * lanes - 1)));
+            r = hn::IfThenElse(here, hn::TableLookupLanes(c.part[i], index), r);
+        }
     }
     return r;
 }
@@ -51,27 +61,31 @@ struct Weights {
     V lo, scale, edge_gain;
 
     HWY_INLINE explicit Weights(const Footprint& f)
-        : c0(load_coefficients(f.cubic[0])),
-          c1(load_coefficients(f.cubic[1])),
-          c2(load_coefficients(f.cubic[2])),
-          c3(load_coefficients(f.cubic[3])),
+        : c0(load_coefficients(f, 0)),
+          c1(load_coefficients(f, 1)),
+          c2(load_coefficients(f, 2)),
+          c3(load_coefficients(f, 3)),
           lo(hn::Set(D(), f.lo)),
           scale(hn::Set(D(), f.scale)),
           edge_gain(hn::Set(D(), f.edge_gain)) {}
 
+    /// Not clamped: the cubics may leave [0, 1] by a few 1e-5.
     HWY_INLINE V operator()(V distance_squared) const {
         const D d;
-        const V end = hn::Set(d, static_cast<float>(segments));
         const V place = kRoot ? hn::Sqrt(distance_squared) : distance_squared;
-        const V u = hn::Min(hn::Max(hn::Mul(hn::Sub(place, lo), scale), hn::Zero(d)), end);
-        const VI segment = hn::Min(hn::ConvertTo(DI(), u), hn::Set(DI(), segments - 1));
-        const V f = hn::Sub(u, hn::ConvertTo(d, segment));
+        // Only flat cores have an inside (place < lo).
+        const V u = kFlat ? hn::Max(hn::Mul(hn::Sub(place, lo), scale), hn::Zero(d)) : hn::Mul(place, scale);
+        // Rounding to the nearest whole number in the lowest bits of a float is the segment; on a segment's
+        // end either side will do. Far outside, both are nonsense that the mask takes away.
+        const V magic = hn::Set(d, 12582912.0f);  // 1.5 * 2^23
+        const V rounded = hn::Add(hn::Sub(u, hn::Set(d, 0.5f)), magic);
+        const VI segment = hn::BitCast(DI(), rounded);
+        const V f = hn::Sub(u, hn::Sub(rounded, magic));
         V p = hn::Add(hn::Mul(look_up(c3, segment), f), look_up(c2, segment));
         p = hn::Add(hn::Mul(p, f), look_up(c1, segment));
         p = hn::Add(hn::Mul(p, f), look_up(c0, segment));
-        const V one = hn::Set(d, 1.0f);
-        p = hn::IfThenElseZero(hn::Lt(u, end), hn::Min(one, hn::Max(hn::Zero(d), p)));
-        if (kFlat) p = hn::Add(p, hn::Mul(edge_gain, hn::Mul(p, hn::Sub(one, p))));
+        p = hn::IfThenElseZero(hn::Lt(u, hn::Set(d, static_cast<float>(segments))), p);
+        if (kFlat) p = hn::Add(p, hn::Mul(edge_gain, hn::Mul(p, hn::Sub(hn::Set(d, 1.0f), p))));
         return p;
     }
 };
@@ -92,6 +106,7 @@ HWY_INLINE V load(const float* p) { return hn::LoadU(D(), p); }
 HWY_INLINE void store(V v, float* p) { hn::StoreU(v, D(), p); }
 HWY_INLINE void accumulate(float* p, V v) { store(hn::Add(load(p), v), p); }
 HWY_INLINE V clamp_one(V v) { return hn::Min(v, hn::Set(D(), 1.0f)); }
+HWY_INLINE V saturate(V v) { return clamp_one(hn::Max(v, hn::Zero(D()))); }
 
 /// Over: one transmittance.
 HWY_INLINE void fold_over(TilePlanes& t, std::size_t i, V s, const SplatConstants& c, V stop) {
@@ -117,7 +132,7 @@ HWY_INLINE void add_aovs(TilePlanes& t, std::size_t i, V s, V weight, V alpha_sh
     accumulate(&t.depth_sum[i], hn::Mul(alpha_share, hn::Set(d, c.depth)));
     const auto touched = hn::And(hn::Gt(s, hn::Zero(d)), hn::Gt(open, hn::Zero(d)));
     accumulate(&t.count[i], hn::IfThenElseZero(touched, one));
-    const V rest = hn::Mul(load(&t.uncovered[i]), hn::Sub(one, clamp_one(weight)));
+    const V rest = hn::Mul(load(&t.uncovered[i]), hn::Sub(one, saturate(weight)));
     store(hn::IfThenElse(touched, rest, load(&t.uncovered[i])), &t.uncovered[i]);
 }
 
@@ -135,7 +150,7 @@ HWY_INLINE void fold_lighten(TilePlanes& t, std::size_t i, V s, V weight, const 
     if (kAovs) add_aovs(t, i, s, weight, share, hn::Set(d, 1.0f), c);
 }
 
-template <bool kAovs>
+template <bool kAovs, bool kHolds>
 HWY_INLINE void fold_general(TilePlanes& t, std::size_t i, V s, V weight, const SplatConstants& c, V stop) {
     const D d;
     const V one = hn::Set(d, 1.0f);
@@ -155,13 +170,17 @@ HWY_INLINE void fold_general(TilePlanes& t, std::size_t i, V s, V weight, const 
     if (c.bright_screen) hidden = hn::Div(sum, hn::Set(d, 3.0f));
     const V before = load(&t.transmittance[3][i]);
     const V share = hn::Mul(before, hidden);
-    const V shown = hn::Mul(share, hn::Set(d, c.shows));
-    const V held = hn::Add(load(&t.held[i]), hn::Sub(share, shown));
-    store(held, &t.held[i]);
+    const V shown = kHolds ? hn::Mul(share, hn::Set(d, c.shows)) : share;
+    V full = one;
+    if (kHolds) {
+        const V held = hn::Add(load(&t.held[i]), hn::Sub(share, shown));
+        store(held, &t.held[i]);
+        full = hn::Sub(one, held);
+    }
     after[3] = hn::Mul(before, hn::Sub(one, hidden));
     largest = hn::Max(largest, after[3]);
     const auto done = hn::Lt(largest, stop);
-    store(hn::IfThenElse(done, hn::Sub(one, held), hn::Add(load(&t.alpha[i]), shown)), &t.alpha[i]);
+    store(hn::IfThenElse(done, full, hn::Add(load(&t.alpha[i]), shown)), &t.alpha[i]);
     for (int k = 0; k < 4; ++k) store(hn::IfThenZeroElse(done, after[k]), &t.transmittance[k][i]);
     if (kAovs) {
         if (c.layer_light[3]) accumulate(c.layer_light[3] + i, shown);
@@ -174,36 +193,44 @@ struct PixelRange {
     int x0, x1, y0, y1;
 };
 
-template <FoldKind kKind, bool kAovs, bool kRoot, bool kFlat>
+template <FoldKind kKind, bool kAovs, bool kHolds, bool kRoot, bool kFlat>
 void fold_splat(TilePlanes& t, const Footprint& footprint, float x_px, float y_px, const PixelRange& range,
                 const std::vector<std::uint8_t>& row_open, const SplatConstants& c, float stop_at) {
     const D d;
     const Weights<kRoot, kFlat> weights(footprint);
     const V opacity = hn::Set(d, c.opacity), stop = hn::Set(d, stop_at);
-    const V lane = hn::Iota(d, 0.5f);
     // Offsets of pixel centres from the splat's centre are exact: both are multiples of 1/256 px.
     const float left = static_cast<float>(t.x0) - x_px, top = static_cast<float>(t.y0) + 0.5f - y_px;
+    // Wide footprints start at whole vectors, so that no load crosses a cache line.
+    const int first = range.x1 - range.x0 > lanes ? range.x0 / lanes * lanes : range.x0;
+    const int vectors = (range.x1 - first + lanes - 1) / lanes;
+    V dx_squared[TilePlanes::widest_px / lanes];
+    for (int n = 0; n < vectors; ++n) {
+        const V dx = hn::Add(hn::Iota(d, 0.5f), hn::Set(d, left + static_cast<float>(first + n * lanes)));
+        dx_squared[n] = hn::Mul(dx, dx);
+    }
     const float reach_squared = footprint.support_px * footprint.support_px;
     for (int y = range.y0; y < range.y1; ++y) {
         if (!row_open[static_cast<std::size_t>(y)]) continue;
         const float dy = top + static_cast<float>(y);
         const V dy_squared = hn::Set(d, dy * dy);
-        int x0 = range.x0, x1 = range.x1;
-        if (x1 - x0 > lanes) {  // skip the corners of the support's square; weights there are 0
+        int n0 = 0, n1 = vectors;
+        if (vectors > 2) {  // skip the corners of the support's square; weights there are 0
             const float half = std::sqrt(std::max(0.0f, reach_squared - dy * dy)) + 1.0f;
-            x0 = static_cast<int>(std::max(static_cast<float>(x0), -left - half));
-            x1 = static_cast<int>(std::min(static_cast<float>(x1), -left + half + 1.0f));
+            const float middle = -left - static_cast<float>(first),
+                        per_lane = 1.0f / static_cast<float>(lanes);
+            n0 = static_cast<int>(std::max(0.0f, (middle - half) * per_lane));
+            n1 = static_cast<int>(std::min(static_cast<float>(vectors), (middle + half) * per_lane + 1.0f));
         }
-        for (int x = x0; x < x1; x += lanes) {
-            const V dx = hn::Add(lane, hn::Set(d, left + static_cast<float>(x)));
-            const V w = weights(hn::Add(hn::Mul(dx, dx), dy_squared));
-            const V s = clamp_one(hn::Mul(opacity, w));
-            const std::size_t i = t.at(x, y);
+        for (int n = n0; n < n1; ++n) {
+            const V w = weights(hn::Add(dx_squared[n], dy_squared));
+            const V s = saturate(hn::Mul(opacity, w));
+            const std::size_t i = t.at(first + n * lanes, y);
             if constexpr (kKind == FoldKind::over) fold_over(t, i, s, c, stop);
             if constexpr (kKind == FoldKind::add) fold_add(t, i, s, c);
             const V weight = hn::Mul(w, hn::Set(d, c.weight_gain));
             if constexpr (kKind == FoldKind::lighten) fold_lighten<kAovs>(t, i, s, weight, c);
-            if constexpr (kKind == FoldKind::general) fold_general<kAovs>(t, i, s, weight, c, stop);
+            if constexpr (kKind == FoldKind::general) fold_general<kAovs, kHolds>(t, i, s, weight, c, stop);
         }
     }
 }
@@ -264,7 +291,7 @@ bool find_open_rows(const TilePlanes& t, FoldKind kind, std::vector<std::uint8_t
     return any;
 }
 
-template <FoldKind kKind, bool kAovs>
+template <FoldKind kKind, bool kAovs, bool kHolds>
 void fold_all(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
               const FoldSettings& settings, TilePlanes& planes) {
     constexpr std::size_t look_every = 64;
@@ -283,30 +310,37 @@ void fold_all(std::span<const ScreenSplat> splats, std::span<const FoldLayer> la
             fold_one(planes, footprint, splat.x_px, splat.y_px, range, row_open, c, settings.stop);
         };
         if (table.linear_in_distance)
-            table.flat_core ? call(&fold_splat<kKind, kAovs, true, true>)
-                            : call(&fold_splat<kKind, kAovs, true, false>);
+            table.flat_core ? call(&fold_splat<kKind, kAovs, kHolds, true, true>)
+                            : call(&fold_splat<kKind, kAovs, kHolds, true, false>);
         else
-            table.flat_core ? call(&fold_splat<kKind, kAovs, false, true>)
-                            : call(&fold_splat<kKind, kAovs, false, false>);
+            table.flat_core ? call(&fold_splat<kKind, kAovs, kHolds, false, true>)
+                            : call(&fold_splat<kKind, kAovs, kHolds, false, false>);
     }
 }
 
 template <bool kAovs>
 void fold_kind(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
                const FoldSettings& settings, TilePlanes& planes) {
+    const bool holds =
+        std::any_of(layers.begin(), layers.end(), [](const FoldLayer& layer) { return layer.holdout; });
     if (settings.kind == FoldKind::lighten)
-        return fold_all<FoldKind::lighten, kAovs>(splats, layers, settings, planes);
-    fold_all<FoldKind::general, kAovs>(splats, layers, settings, planes);
+        fold_all<FoldKind::lighten, kAovs, false>(splats, layers, settings, planes);
+    else if (holds)
+        fold_all<FoldKind::general, kAovs, true>(splats, layers, settings, planes);
+    else
+        fold_all<FoldKind::general, kAovs, false>(splats, layers, settings, planes);
 }
 
 void fold_here(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
                const FoldSettings& settings, TilePlanes& planes) {
     if (settings.kind == FoldKind::over)
-        return fold_all<FoldKind::over, false>(splats, layers, settings, planes);
-    if (settings.kind == FoldKind::add)
-        return fold_all<FoldKind::add, false>(splats, layers, settings, planes);
-    settings.aovs ? fold_kind<true>(splats, layers, settings, planes)
-                  : fold_kind<false>(splats, layers, settings, planes);
+        fold_all<FoldKind::over, false, false>(splats, layers, settings, planes);
+    else if (settings.kind == FoldKind::add)
+        fold_all<FoldKind::add, false, false>(splats, layers, settings, planes);
+    else if (settings.aovs)
+        fold_kind<true>(splats, layers, settings, planes);
+    else
+        fold_kind<false>(splats, layers, settings, planes);
 }
 
 }  // namespace astrosplat::HWY_NAMESPACE
@@ -324,7 +358,6 @@ void fold(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers
 
 void TilePlanes::reset(std::int64_t x, std::int64_t y, int w, int h, int tile_px,
                        const FoldSettings& settings, std::size_t layer_count) {
-    constexpr int widest_vector = 16;
     x0 = x;
     y0 = y;
     width = w;

@@ -41,10 +41,12 @@ struct FoldSettings {
 /// One blend group's result over one tile, plane by plane. Rows are padded so that vectors may run over their
 /// end.
 struct TilePlanes {
-    std::int64_t x0 = 0, y0 = 0;  // px of the whole picture
-    int width = 0, height = 0;    // px in use
-    int stride = 0;               // floats between rows
-    Buffer<float> color[3];       // light towards the eye
+    static constexpr int widest_px = 128;     // largest tile
+    static constexpr int widest_vector = 16;  // floats
+    std::int64_t x0 = 0, y0 = 0;              // px of the whole picture
+    int width = 0, height = 0;                // px in use
+    int stride = 0;                           // floats between rows
+    Buffer<float> color[3];                   // light towards the eye
     Buffer<float> alpha;
     Buffer<float> transmittance[4];  // r, g, b, alpha; FoldKind::over uses the first alone, add none
     Buffer<float> held;              // alpha taken away by holdouts

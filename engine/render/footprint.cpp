@@ -224,11 +224,12 @@ std::array<float, 256> make_cosines() {
     return table;
 }
 
-/// cos of the phase of a snapped coordinate relative to the pixel centres.
+/// cos of the phase of a coordinate, snapped to 1/256 px, relative to the pixel centres.
 float pixel_cosine(float coordinate_px) {
     static const std::array<float, 256> cosines = make_cosines();
-    const float fraction = coordinate_px - std::floor(coordinate_px);
-    return -cosines[static_cast<int>(fraction * 256.0f) & 255];
+    constexpr float far_px = 1e6f;  // so far out nothing of a splat this small shows
+    const float inside = std::min(std::max(coordinate_px, -far_px), far_px);
+    return -cosines[static_cast<std::size_t>(static_cast<int>(inside * 256.0f) & 255)];
 }
 
 /// Interpolation between two neighbouring nodes.
@@ -294,10 +295,9 @@ FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_p
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px,
                   Footprint& footprint) {
     const NodePair pair = nodes_at(table, radius_px);
-    for (int k = 0; k < 4; ++k)
-        for (int s = 0; s < segments; ++s)
-            footprint.cubic[k][s] =
-                pair.a->cubic[k][s] + (pair.b->cubic[k][s] - pair.a->cubic[k][s]) * pair.t;
+    footprint.node_a = pair.a;
+    footprint.node_b = pair.b;
+    footprint.t = pair.t;
 
     constexpr float pi = static_cast<float>(real::pi);
     const float smallest = static_cast<float>(smallest_radius_px);
@@ -343,9 +343,13 @@ float footprint_weight(const FootprintTable& table, const Footprint& footprint, 
     if (!(u < static_cast<float>(segments))) return 0.0f;
     const int s = std::min(static_cast<int>(u), segments - 1);
     const float f = u - static_cast<float>(s);
-    const float(&c)[4][segments] = footprint.cubic;
-    const float p = std::min(1.0f, std::max(0.0f, ((c[3][s] * f + c[2][s]) * f + c[1][s]) * f + c[0][s]));
-    return footprint.amplitude * (p + footprint.edge_gain * (p * (1.0f - p)));
+    float c[4];
+    for (int k = 0; k < 4; ++k) {
+        const float a = footprint.node_a->cubic[k][s];
+        c[k] = a + (footprint.node_b->cubic[k][s] - a) * footprint.t;
+    }
+    const float p = ((c[3] * f + c[2]) * f + c[1]) * f + c[0];
+    return std::max(0.0f, footprint.amplitude * (p + footprint.edge_gain * (p * (1.0f - p))));
 }
 
 }  // namespace astrosplat

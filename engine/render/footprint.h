@@ -43,9 +43,12 @@ struct FootprintTable {
     float support_px(float radius_px) const { return radius_px * reach + 4.0f * pixel_filter_px; }
 };
 
-/// Everything the fold needs of one splat's footprint besides its centre.
+/// Everything the fold needs of one splat's footprint besides its centre. The cubics are node_a's, moved by
+/// the share t towards node_b's.
 struct Footprint {
-    float cubic[4][FootprintNode::segments];
+    const FootprintNode* node_a = nullptr;
+    const FootprintNode* node_b = nullptr;
+    float t = 0.0f;
     float lo = 0.0f, scale = 0.0f;  // segment coordinate = (d or d^2 - lo) * scale, in [0, 16)
     float amplitude = 1.0f;         // multiplies the weight
     float edge_gain = 0.0f;         // flat cores: w += edge_gain * w (1 - w)

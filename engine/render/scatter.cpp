@@ -65,60 +65,59 @@ TileBins::TileBins(const TileGrid& grid, int groups) : grid_(grid), groups_(grou
 }
 
 TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px, int group) const {
-    const float tile = static_cast<float>(grid_.tile_px);
+    float bins_per_px = 1.0f / static_cast<float>(grid_.tile_px), bin_px = static_cast<float>(grid_.tile_px);
     std::size_t number = 0;
-    float bin_px = tile;
     while (support_px > bin_px && number + 1 < levels_.size()) {
         bin_px *= 2.0f;
+        bins_per_px *= 0.5f;
         ++number;
     }
     const Level& level = levels_[number];
-    const auto bin = [&](float px, std::int64_t origin, std::int64_t count) {
-        const float b = std::floor((px - static_cast<float>(origin)) / bin_px);
-        return static_cast<std::int64_t>(std::clamp(b, 0.0f, static_cast<float>(count - 1)));
+    const auto bin = [&](float px,
+                         std::int64_t count) {  // clamped first, so that rounding towards 0 is floor
+        const float b = std::min(std::max(px * bins_per_px, 0.0f), static_cast<float>(count - 1));
+        return static_cast<std::int32_t>(b);
     };
-    return {group * bins_per_group_ + level.first_bin,
-            level.columns,
-            bin(splat.x_px - support_px, grid_.x0, level.columns),
-            bin(splat.y_px - support_px, grid_.y0, level.rows),
-            bin(splat.x_px + support_px, grid_.x0, level.columns),
-            bin(splat.y_px + support_px, grid_.y0, level.rows)};
+    const float x = splat.x_px - static_cast<float>(grid_.x0), y = splat.y_px - static_cast<float>(grid_.y0);
+    return {group * bins_per_group_ + level.first_bin, static_cast<std::int32_t>(level.columns),
+            bin(x - support_px, level.columns),        bin(y - support_px, level.rows),
+            bin(x + support_px, level.columns),        bin(y + support_px, level.rows)};
 }
 
-/// Counting sort of a chunk's splats by bin, straight into the store. Empties `splats`.
-void TileBins::add_segments(std::vector<ScreenSplat>& splats, const LayerProjection& layer, int group,
-                            SplatStore& store, std::vector<Segment>& out) const {
-    if (splats.empty()) return;
-    const auto each_bin = [&](const ScreenSplat& splat, const auto& visit) {
-        const BinRect r = bins_of(splat, support_of(layer, splat), group);
-        for (std::int64_t y = r.y0; y <= r.y1; ++y)
-            for (std::int64_t x = r.x0; x <= r.x1; ++x) visit(r.first_bin + y * r.columns + x);
-    };
+/// Counting sort of a chunk's splats by bin, straight into the store. Empties scratch.splats.
+void TileBins::add_segment(Scratch& scratch, const LayerProjection& layer, int group, SplatStore& store,
+                           std::vector<Segment>& out) const {
+    if (scratch.splats.empty()) return;
     Segment segment;
     std::int64_t last_bin = 0;
     segment.first_bin = static_cast<std::int64_t>(groups_) * bins_per_group_;
-    for (const ScreenSplat& splat : splats) {
+    scratch.rects.clear();
+    for (const ScreenSplat& splat : scratch.splats) {
         const BinRect r = bins_of(splat, support_of(layer, splat), group);
-        segment.first_bin = std::min(segment.first_bin, r.first_bin + r.y0 * r.columns + r.x0);
-        last_bin = std::max(last_bin, r.first_bin + r.y1 * r.columns + r.x1);
+        scratch.rects.push_back(r);
+        segment.first_bin = std::min(segment.first_bin, r.first_bin + std::int64_t{r.y0} * r.columns + r.x0);
+        last_bin = std::max(last_bin, r.first_bin + std::int64_t{r.y1} * r.columns + r.x1);
         segment.footprint_px += real::pi * splat.radius_px * splat.radius_px;
     }
-    segment.instances = static_cast<std::int64_t>(splats.size());
-    segment.offsets.assign(static_cast<std::size_t>(last_bin - segment.first_bin + 2), 0);
+    segment.instances = static_cast<std::int64_t>(scratch.splats.size());
+    const auto each_bin = [&](const BinRect& r, const auto& visit) {
+        const std::int64_t corner = r.first_bin - segment.first_bin;
+        for (std::int32_t y = r.y0; y <= r.y1; ++y)
+            for (std::int32_t x = r.x0; x <= r.x1; ++x)
+                visit(static_cast<std::size_t>(corner + std::int64_t{y} * r.columns + x));
+    };
     std::vector<std::uint32_t>& offsets = segment.offsets;
-    for (const ScreenSplat& splat : splats)
-        each_bin(splat,
-                 [&](std::int64_t bin) { ++offsets[static_cast<std::size_t>(bin - segment.first_bin + 1)]; });
+    offsets.assign(static_cast<std::size_t>(last_bin - segment.first_bin + 2), 0);
+    for (const BinRect& r : scratch.rects) each_bin(r, [&](std::size_t bin) { ++offsets[bin + 1]; });
     for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
     ScreenSplat* records = store.take(offsets.back());
-    std::vector<std::uint32_t> cursor(offsets.begin(), offsets.end() - 1);
-    for (const ScreenSplat& splat : splats)
-        each_bin(splat, [&](std::int64_t bin) {
-            records[cursor[static_cast<std::size_t>(bin - segment.first_bin)]++] = splat;
-        });
+    scratch.cursor.assign(offsets.begin(), offsets.end() - 1);
+    for (std::size_t i = 0; i < scratch.splats.size(); ++i)
+        each_bin(scratch.rects[i],
+                 [&](std::size_t bin) { records[scratch.cursor[bin]++] = scratch.splats[i]; });
     segment.records = records;
     out.push_back(std::move(segment));
-    splats.clear();
+    scratch.splats.clear();
 }
 
 void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
@@ -132,22 +131,22 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
         for (std::int64_t begin = 0; begin < layers[l].splats->size(); begin += chunk_splats)
             chunks.push_back({l, begin, std::min(begin + chunk_splats, layers[l].splats->size())});
     segments_.assign(chunks.size(), {});
-    std::vector<std::vector<ScreenSplat>> scratch(static_cast<std::size_t>(thread_count()));
+    std::vector<Scratch> workers(static_cast<std::size_t>(thread_count()));
     const ScreenRect rect = rect_of(grid_);
     parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int worker) {
         progress.check();
         const Chunk& chunk = chunks[static_cast<std::size_t>(c)];
         const LayerProjection& layer = layers[chunk.layer];
         const int group = group_of_layer[chunk.layer];
-        std::vector<ScreenSplat>& splats = scratch[static_cast<std::size_t>(worker)];
-        splats.clear();
+        Scratch& scratch = workers[static_cast<std::size_t>(worker)];
+        std::vector<Segment>& segments = segments_[static_cast<std::size_t>(c)];
+        scratch.splats.clear();
         const std::int64_t step = layer.lod ? 16 : chunk_splats;  // children are flushed before they pile up
         for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
-            project(layer, begin, std::min(begin + step, chunk.end), rect, splats);
-            if (splats.size() >= flush_records)
-                add_segments(splats, layer, group, store, segments_[static_cast<std::size_t>(c)]);
+            project(layer, begin, std::min(begin + step, chunk.end), rect, scratch.splats);
+            if (scratch.splats.size() >= flush_records) add_segment(scratch, layer, group, store, segments);
         }
-        add_segments(splats, layer, group, store, segments_[static_cast<std::size_t>(c)]);
+        add_segment(scratch, layer, group, store, segments);
     });
 }
 

@@ -75,11 +75,17 @@ class TileBins {
         double footprint_px = 0.0;
     };
     struct BinRect {
-        std::int64_t first_bin, columns, x0, y0, x1, y1;  // inclusive columns and rows
+        std::int64_t first_bin;                // of the level
+        std::int32_t columns, x0, y0, x1, y1;  // inclusive columns and rows
+    };
+    struct Scratch {  // of one worker
+        std::vector<ScreenSplat> splats;
+        std::vector<BinRect> rects;
+        std::vector<std::uint32_t> cursor;
     };
     BinRect bins_of(const ScreenSplat& splat, float support_px, int group) const;
-    void add_segments(std::vector<ScreenSplat>& splats, const LayerProjection& layer, int group,
-                      SplatStore& store, std::vector<Segment>& out) const;
+    void add_segment(Scratch& scratch, const LayerProjection& layer, int group, SplatStore& store,
+                     std::vector<Segment>& out) const;
 
     TileGrid grid_;
     int groups_ = 1;
