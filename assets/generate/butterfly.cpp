@@ -70,9 +70,9 @@ SheetMesh sheet_mesh(const Sheet& sheet) {
 
 // Bright near the waist, gone before the sheet's end, whose outline is torn by noise.
 float extent(const Around& a, unsigned seed) {
-    const float torn = std::fabs(a.s) + 0.16f * fbm(grain(a, 3.0f, 3.0f), seed, 4, 0.6f);
+    const float torn = std::fabs(a.s) + 0.26f * fbm(grain(a, 3.0f, 3.0f), seed, 4, 0.6f);
     const float regions = shared::as_exp(1.7f * fbm(grain(a, 1.2f, 1.6f), seed + 5, 3));
-    return regions * (1.0f - smoothstep(0.50f, 0.93f, torn)) *
+    return regions * (1.0f - smoothstep(0.40f, 0.92f, torn)) *
            (0.35f + 0.65f * shared::as_exp(-1.6f * std::fabs(a.s)));
 }
 
