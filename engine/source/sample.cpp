@@ -32,8 +32,11 @@ double place(double coordinate, std::int64_t n, Wrap wrap) {
     return std::clamp(coordinate, -2.0, 3.0) * static_cast<double>(n);
 }
 
-// Exact at both ends, and of equal values exactly that value.
-glm::vec4 mix(const glm::vec4& a, const glm::vec4& b, float t) { return a + (b - a) * t; }
+// Exact at both ends, and of equal values exactly that value. Started from the nearer end, so that beside an
+// empty texel the faint rest of colour and alpha keeps its digits and their quotient the colour.
+glm::vec4 mix(const glm::vec4& a, const glm::vec4& b, float t) {
+    return t < 0.5f ? a + (b - a) * t : b - (b - a) * (1.0f - t);
+}
 
 glm::vec4 bilinear(const Texture& texture, double x, double y) {
     const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
