@@ -1,0 +1,199 @@
+// A picture with a letter on it reads right: seen from the front, the top and the side, on every built-in
+// shape, through both projections, and in the file that is written.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "analytic/support.h"
+#include "core/color.h"
+#include "core/real.h"
+
+namespace astrosplat {
+namespace {
+
+using namespace astrosplat::analytic;
+
+constexpr int texture_px = 64, view_px = 64;
+constexpr const char* letter[8] = {"RR....GG",  //
+                                   "R.####.G",  //
+                                   "..#.....",  //
+                                   "..##....",  //
+                                   "..#.....",  //
+                                   "..#.....",  //
+                                   "B.#....Y",  //
+                                   "BB....YY"};
+
+/// Colour at (u, v), v = 0 at the bottom.
+glm::vec3 letter_color(double u, double v) {
+    const auto cell = [](double t) { return std::clamp(static_cast<int>(std::floor(t * 8.0)), 0, 7); };
+    switch (letter[cell(1.0 - v)][cell(u)]) {
+        case 'R':
+            return {1.0f, 0.0f, 0.0f};
+        case 'G':
+            return {0.0f, 1.0f, 0.0f};
+        case 'B':
+            return {0.0f, 0.0f, 1.0f};
+        case 'Y':
+            return {1.0f, 1.0f, 0.0f};
+        case '#':
+            return {1.0f, 1.0f, 1.0f};
+        default:
+            return {0.1f, 0.1f, 0.1f};
+    }
+}
+
+struct Uv {
+    double u, v;
+};
+/// Where on the texture a place of the picture (-1..1 to the right and up) should look; nothing: not judged.
+using Mapping = std::optional<Uv> (*)(double right, double up);
+
+std::optional<Uv> whole(double right, double up) { return Uv{0.5 + 0.5 * right, 0.5 + 0.5 * up}; }
+std::optional<Uv> inside_disc(double right, double up) {
+    if (right * right + up * up > 0.9) return {};
+    return whole(right, up);
+}
+/// Orthographic view of a sphere that fills the picture, whose map's centre faces the camera.
+std::optional<Uv> sphere(double right, double up) {
+    if (right * right + up * up > 0.85) return {};
+    const double towards = std::sqrt(1.0 - right * right - up * up);
+    return Uv{0.5 + std::atan2(right, towards) / (2.0 * real::pi), 0.5 + std::asin(up) / real::pi};
+}
+
+/// The eight ways to turn and mirror a square; 0 leaves it as it is.
+Uv turned(Uv p, int way) {
+    if (way & 1) p.u = 1.0 - p.u;
+    if (way & 2) p.v = 1.0 - p.v;
+    if (way & 4) std::swap(p.u, p.v);
+    return p;
+}
+
+/// Mean absolute difference of a picture (RGB first) to the texture, turned.
+double difference(const Image& image, Mapping mapping, int way, bool encoded) {
+    double sum = 0.0, count = 0.0;
+    for (std::int64_t y = 0; y < image.height; ++y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            const double right =
+                2.0 * (static_cast<double>(x) + 0.5) / static_cast<double>(image.width) - 1.0;
+            const double up = 1.0 - 2.0 * (static_cast<double>(y) + 0.5) / static_cast<double>(image.height);
+            const std::optional<Uv> place = mapping(right, up);
+            if (!place) continue;
+            const Uv uv = turned(*place, way);
+            const glm::vec3 color = letter_color(uv.u, uv.v);
+            for (int k = 0; k < 3; ++k) {
+                const double wanted = encoded ? real::linear_to_srgb(color[k]) : double(color[k]);
+                sum += std::fabs(image.at(x, y)[k] - wanted);
+                count += 1.0;
+            }
+        }
+    }
+    return sum / count;
+}
+
+void expect_reads_right(const Image& image, Mapping mapping, bool encoded = false) {
+    const double upright = difference(image, mapping, 0, encoded);
+    EXPECT_LT(upright, 0.06);  // what the dots blur at the letter's edges
+    for (int way = 1; way < 8; ++way)
+        EXPECT_GT(difference(image, mapping, way, encoded), 3.0 * upright) << "way " << way;
+}
+
+struct View {
+    const char *name, *mesh, *uv;
+    const char* direction;  // from the target to the camera, 20 scene units
+    Mapping mapping;
+};
+
+std::string view_scene(const View& view, bool perspective, const std::string& output = "") {
+    // From 20 scene units, the plane of 10 fills a field of view of 2 atan(5 / 20).
+    return fmt::format(R"(astrosplat = 1
+[output]
+resolution = [{px}, {px}]
+{output}
+[camera]
+projection = "{projection}"
+position = {direction}
+height = 10.0
+fov = 28.072486935852957
+[[layer]]
+name = "letter"
+[layer.source]
+meshes = [ {{ mesh = "{mesh}", texture = "letter.tif", relief = 0.02 }} ]
+uv = "{uv}"
+count = 200000
+max_distance = 0.05
+)",
+                       fmt::arg("px", view_px), fmt::arg("output", output),
+                       fmt::arg("projection", perspective ? "perspective" : "orthographic"),
+                       fmt::arg("direction", view.direction), fmt::arg("mesh", view.mesh),
+                       fmt::arg("uv", view.uv));
+}
+
+void write_inputs(const TempFolder& folder) {
+    write_float_tiff(folder / "letter.tif", texture_px, texture_px, [](int x, int y) {
+        return glm::vec4(letter_color((x + 0.5) / texture_px, 1.0 - (y + 0.5) / texture_px), 1.0f);
+    });
+    const char* face = "f 1 2 3 4\n";
+    folder.file("xy.obj", std::string("v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\n") + face);
+    folder.file("xz.obj", std::string("v -5 0 5\nv 5 0 5\nv 5 0 -5\nv -5 0 -5\n") + face);
+    folder.file("yz.obj", std::string("v 0 -5 5\nv 0 -5 -5\nv 0 5 -5\nv 0 5 5\n") + face);
+}
+
+class Orientation : public ::testing::TestWithParam<View> {};
+
+TEST_P(Orientation, OrthographicViewReadsRight) {
+    const TempFolder folder;
+    write_inputs(folder);
+    expect_reads_right(render_text(folder, view_scene(GetParam(), false)).beauty, GetParam().mapping);
+}
+
+INSTANTIATE_TEST_SUITE_P(Views, Orientation,
+                         ::testing::Values(View{"PlanarXz", "xz.obj", "planar-xz", "[0, 20, 0]", whole},
+                                           View{"PlanarXy", "xy.obj", "planar-xy", "[0, 0, 20]", whole},
+                                           View{"PlanarYz", "yz.obj", "planar-yz", "[20, 0, 0]", whole},
+                                           View{"Plane", "plane", "mesh", "[0, 20, 0]", whole},
+                                           View{"Relief", "relief", "mesh", "[0, 20, 0]", whole},
+                                           View{"Disk", "disk", "mesh", "[0, 20, 0]", inside_disc},
+                                           View{"Sphere", "sphere", "mesh", "[0, 0, 20]", sphere}),
+                         [](const ::testing::TestParamInfo<View>& view) { return view.param.name; });
+
+class OrientationInPerspective : public ::testing::TestWithParam<View> {};
+
+TEST_P(OrientationInPerspective, ReadsRight) {
+    const TempFolder folder;
+    write_inputs(folder);
+    expect_reads_right(render_text(folder, view_scene(GetParam(), true)).beauty, GetParam().mapping);
+}
+
+INSTANTIATE_TEST_SUITE_P(Views, OrientationInPerspective,
+                         ::testing::Values(View{"PlanarXz", "xz.obj", "planar-xz", "[0, 20, 0]", whole},
+                                           View{"PlanarXy", "xy.obj", "planar-xy", "[0, 0, 20]", whole},
+                                           View{"PlanarYz", "yz.obj", "planar-yz", "[20, 0, 0]", whole},
+                                           View{"Relief", "relief", "mesh", "[0, 20, 0]", whole},
+                                           View{"Disk", "disk", "mesh", "[0, 20, 0]", inside_disc}),
+                         [](const ::testing::TestParamInfo<View>& view) { return view.param.name; });
+
+TEST(OrientationOfFiles, PngTiffAndExrReadRight) {
+    const TempFolder folder;
+    write_inputs(folder);
+    const View plane{"Plane", "plane", "mesh", "[0, 20, 0]", whole};
+    for (const char* name : {"out.png", "out.tif", "out.exr"}) {
+        SCOPED_TRACE(name);
+        const bool encoded = std::string(name) != "out.exr";
+        const std::string output = fmt::format("frames = \"1\"\npath = \"{}\"", name);
+        const StoredFile stored = read_stored_file(write_text(folder, view_scene(plane, true, output)));
+        Image rgb = make_image(view_px, view_px, 3);
+        for (std::int64_t y = 0; y < view_px; ++y)
+            for (std::int64_t x = 0; x < view_px; ++x) {
+                rgb.at(x, y)[0] = stored.at("R", x, y);
+                rgb.at(x, y)[1] = stored.at("G", x, y);
+                rgb.at(x, y)[2] = stored.at("B", x, y);
+            }
+        expect_reads_right(rgb, whole, encoded);
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat
