@@ -80,7 +80,7 @@ std::filesystem::path write_text(const TempFolder& folder, const std::string& to
     const Scene scene = scene_of(folder, toml);
     Pipeline pipeline(scene);
     const RenderedFrame frame = render_frame(pipeline);
-    const std::filesystem::path file = frame_file(scene.output.path, 1);
+    const std::filesystem::path file = folder / frame_file(scene.output.path, 1);
     write_frame(file, frame, pipeline.layer_names(1.0), scene.output, scene.output.width, scene.output.height,
                 {}, {});
     return file;

@@ -42,7 +42,7 @@ Scene scene_of(const TempFolder& folder, const std::string& toml);
 RenderedFrame render_text(const TempFolder& folder, const std::string& toml, double frame = 1.0);
 RenderedFrame render_frame(Pipeline& pipeline, double frame = 1.0);
 
-/// Renders frame 1 and writes it to output.path as batch does.
+/// Renders frame 1 and writes it to output.path, in the folder, as batch does.
 std::filesystem::path write_text(const TempFolder& folder, const std::string& toml);
 
 /// Mean of each channel over a part of an RGBA picture; all of it when the part is empty.
