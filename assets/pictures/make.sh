@@ -9,5 +9,5 @@ for picture in whirlpool:96 nebula:1; do
     name=${picture%:*} frame=${picture#*:}
     "$program" --batch "$here/../scenes/$name.toml" --frames "$frame" --resolution 1600x900 --no-cache \
         --output "$work/$name.png"
-    oiiotool "$work/$name.png" --eraseattrib ".*" --quality 88 -o "$here/$name.jpg"
+    oiiotool --nosoftwareattrib "$work/$name.png" --eraseattrib ".*" --quality 88 -o "$here/$name.jpg"
 done
