@@ -1,5 +1,5 @@
-// The environment behind everything: an equirectangular picture or six cube faces, as mip-mapped linear light.
-// In: EnvironmentParams. Out: colour along a direction.
+// The environment behind everything: an equirectangular picture or six cube faces, as mip-mapped linear
+// light. In: EnvironmentParams. Out: colour along a direction.
 #pragma once
 
 #include <array>
@@ -28,13 +28,13 @@ struct Environment {
     float largest = 0.0f;  // largest channel value of the pictures times gain
 };
 
-/// Loads the pictures and builds their mip levels (box filter). Throws InputError. The picture part is independent
-/// of gain and rotation, which may be animated: see set_environment_params.
+/// Loads the pictures and builds their mip levels (box filter). Throws InputError. The picture part is
+/// independent of gain and rotation, which may be animated: see set_environment_params.
 Environment load_environment(const EnvironmentParams& params);
 void set_environment_params(Environment& environment, const EnvironmentParams& params);
 
-/// Colour seen along a unit direction in world space; `spread` is the angle in radians between neighbouring pixels,
-/// which picks the mip level (trilinear).
+/// Colour seen along a unit direction in world space; `spread` is the angle in radians between neighbouring
+/// pixels, which picks the mip level (trilinear).
 glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& direction, double spread);
 
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
-// Splat files by their ending: .pda (Maya ASCII particles), .ply, .splats (native). One reader/writer a file: pda.*,
-// ply.*, native.*; this is the front door.
+// Splat files by their ending: .pda (Maya ASCII particles), .ply, .splats (native). One reader/writer a file:
+// pda.*, ply.*, native.*; this is the front door.
 #pragma once
 
 #include <filesystem>
