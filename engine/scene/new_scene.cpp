@@ -53,16 +53,17 @@ fov = 40.0                        # degrees, vertical
 name = {name}
 
 [layer.source]
-meshes  = [ {{ mesh = {shape}, texture = {picture}{relief} }} ]
-count   = 2000000                 # about how many dots are kept
-stretch = "auto"                  # from data values to display values: asinh for FITS; or linear, asinh, log
-black   = "auto"                  # data value shown as black
-white   = "auto"                  # data value shown as white
+meshes       = [ {{ mesh = {shape}, texture = {picture}{relief} }} ]
+count        = 5000000            # about how many dots are made; more are finer and take longer
+max_distance = 0.1                # how far dots lie from the surface, on either side; the picture is 10 wide
+stretch      = "auto"             # from data values to display values: asinh for FITS; or linear, asinh, log
+black        = "auto"             # data value shown as black
+white        = "auto"             # data value shown as white
 
 [layer.look]
 density  = 1.0                                   # share of the dots that is kept
 pdf      = {{ shape = "gaussian", sigma = 0.35 }}  # how density falls with the distance from the surface
-noise    = {{ frequency = 1.0, cull = 0.0, silhouette = 0.0, jitter = 0.0 }}  # cull thins out, silhouette frays the edge
+noise    = {{ frequency = 1.0, cull = 0.0, silhouette = 0.0, jitter = {jitter} }}  # cull thins out, silhouette frays the edge, jitter lifts and sinks
 alpha    = {{ power = 1.0, threshold = 0.95 }}     # opacity at soft edges: above 1 they fade, below 1 they fill
 vertical = {{ shape = "none" }}                    # opacity with distance: none, constant, linear, exponential
 grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 }}
@@ -88,7 +89,9 @@ std::string new_scene_text(const fs::path& image, const std::string& shape, cons
                        fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
                        fmt::arg("shape", to_toml(shape)),
                        fmt::arg("picture", to_toml(picture_path(image, file))),
-                       fmt::arg("relief", shape == "relief" ? ", relief = 0.15" : ""));
+                       fmt::arg("relief", shape == "relief" ? ", relief = 0.15" : ""),
+                       // Jitter moves along one axis: depth for a flat picture, a smear on a sphere's sides.
+                       fmt::arg("jitter", shape == "sphere" ? "0.0" : "0.1"));
 }
 
 }  // namespace astrosplat
