@@ -10,7 +10,7 @@ cmake --preset release -DASTROSPLAT_TESTS=OFF >/dev/null
 cmake --build --preset release --target astrosplat
 
 program=build/release/astrosplat
-"$program" --batch "$scene" --frames 1 --resolution 1920x1080 --output renders/whirlpool.png --resume --overwrite
+"$program" --batch "$scene" --frames 96 --resolution 1920x1080 --output renders/whirlpool.png --resume --overwrite
 "$program" --batch "$scene" --frames 1-231x10 --resolution 960x540 --output renders/flight/whirlpool.####.png --resume --overwrite
 
 echo "The pictures are in $PWD/renders: whirlpool.png and flight/"
