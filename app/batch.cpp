@@ -95,7 +95,7 @@ void BatchRun::prepare() {
                          frames_to_render(plan_), plan_.scene.output.width, plan_.scene.output.height,
                          human_count(static_cast<double>(job.splats)),
                          human_bytes(static_cast<double>(job.bytes))));
-    pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"));
+    pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache);
 }
 
 RenderSettings BatchRun::settings(const FramePlan& frame) const {

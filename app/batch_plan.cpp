@@ -191,6 +191,7 @@ BatchPlan plan_batch(const BatchOptions& options) {
     plan.scene = batch_scene(options);
     if (options.region) plan.region = parse_region(*options.region, plan.scene.output);
     if (options.memory_gib) plan.memory_limit_bytes = parse_memory(*options.memory_gib);
+    plan.cache = options.cache;
     check_inputs(plan.scene);
     FrameHasher hasher(plan.scene, plan.region);
     for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value())) {

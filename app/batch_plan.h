@@ -24,7 +24,8 @@ struct BatchPlan {
     Scene scene;  // with the command line applied
     Region region;
     std::int64_t memory_limit_bytes = 0;  // 0: none
-    std::vector<FramePlan> frames;        // ascending
+    SetCache cache;
+    std::vector<FramePlan> frames;  // ascending
 };
 
 /// Throws InputError for bad input, and where files are in the way that neither --resume nor --overwrite
@@ -42,7 +43,7 @@ struct JobEstimate {
     std::int64_t splats = 0;
     std::int64_t bytes = 0;
 };
-/// Loads meshes where voxels are given, nothing else. Throws InputError.
+/// Loads meshes where voxels are given and the set is not in the cache, nothing else. Throws InputError.
 JobEstimate estimate(const BatchPlan& plan);
 
 }  // namespace astrosplat

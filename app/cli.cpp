@@ -84,8 +84,12 @@ void add_common(CLI::App& app, CommonOptions& common) {
     app.set_version_flag("--version", version_line, "Prints the version");
     app.add_option("-t,--threads", common.threads, "Threads (default: the cores this process may use)")
         ->option_text("N");
-    app.add_option("--cache", common.cache, "Folder for generated sets")->option_text("DIR");
-    app.add_flag("--no-cache", common.no_cache, "Neither reads nor writes a cache");
+    app.add_option(
+           "--cache", common.cache,
+           "Folder that keeps generated sets (default: $ASTROSPLAT_CACHE, $XDG_CACHE_HOME/astrosplat or "
+           "~/.cache/astrosplat); at most 20 GiB or a tenth of the disk, the least recently used go")
+        ->option_text("DIR");
+    app.add_flag("--no-cache", common.no_cache, "Neither reads nor writes generated sets");
     app.add_flag("-v,--verbose", common.verbose, "Says more");
     app.add_flag("-q,--quiet", common.quiet, "Says only warnings and errors");
 }
@@ -179,13 +183,16 @@ void apply_common(const CommonOptions& common) {
         }
         set_thread_count(static_cast<int>(*threads));
     }
-    if (!common.cache.empty() && !common.no_cache) {
-        log_warning("--cache: this version does not keep generated sets; they are made afresh in every run");
-    }
+}
+
+SetCache cache_of(const CommonOptions& common) {
+    if (common.no_cache) return {};
+    return {common.cache.empty() ? default_cache_folder() : std::filesystem::path(common.cache)};
 }
 
 int run(Invocation& call) {
     apply_common(call.common);
+    call.batch_options.cache = call.generate.cache = cache_of(call.common);
     if (call.action) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
         return call.action();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "splats/set_cache.h"
 
 namespace astrosplat {
 
@@ -34,6 +35,7 @@ struct BatchOptions {
     std::optional<std::string> region;      // "X,Y,W,H" from the top left, px
     std::optional<std::string> memory_gib;  // limit of the renderer's working memory
     std::optional<std::filesystem::path> stats;
+    SetCache cache;
     bool resume = false, overwrite = false, dry_run = false;
     ProgressMode progress = ProgressMode::automatic;
 };
@@ -50,6 +52,7 @@ struct GenerateOptions {
     std::filesystem::path scene, output;
     std::string layer;
     std::vector<std::string> assignments;
+    SetCache cache;
     bool overwrite = false;
     ProgressMode progress = ProgressMode::automatic;
 };

@@ -55,7 +55,8 @@ JobEstimate estimate(const BatchPlan& plan) {
     JobEstimate job;
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
-        job.layers.push_back({layer.name, splats_of(layer.source)});
+        const auto cached = cached_splats(plan.cache, layer.source, layer.name);
+        job.layers.push_back({layer.name, cached ? *cached : splats_of(layer.source)});
         job.splats += job.layers.back().splats;
     }
     std::int64_t screen = job.splats * screen_bytes;

@@ -10,7 +10,6 @@
 #include "progress_report.h"
 #include "scene/load.h"
 #include "scene/suggest.h"
-#include "splats/generate.h"
 #include "splats/splat_file.h"
 
 namespace astrosplat {
@@ -50,7 +49,9 @@ int run_generate(const GenerateOptions& options) {
     const LayerParams& layer = layer_named(scene, options.layer);
     check_splat_output(options.output, options.overwrite);
     ProgressReport report(options.progress);
-    const SplatSet set = load_source(layer.source, layer.name, report.begin_step("generating " + layer.name));
+    const SplatSet set =
+        load_source(options.cache, layer.source, layer.name, report.begin_step("generating " + layer.name))
+            .set;
     write_and_report(options.output, set, report);
     return exit_done;
 }

@@ -9,7 +9,7 @@
 #include "look/apply.h"
 #include "render/falloff.h"
 #include "scene/animate.h"
-#include "splats/generate.h"
+#include "splats/lattice.h"
 
 namespace astrosplat {
 namespace {
@@ -99,14 +99,14 @@ struct Pipeline::State {
     std::optional<Environment> environment;
     RenderCache render_cache;
 
-    void load_layer(std::size_t index, const Progress& progress);
+    void load_layer(std::size_t index, const SetCache& cache, const Progress& progress);
     void shade(std::size_t index, const LayerParams& params, const Progress& progress);
     std::vector<RenderLayer> visible_layers(const Scene& now) const;
     Camera camera(const Scene& now, const RenderSettings& settings) const;
     const Environment* environment_at(const Scene& now);
 };
 
-void Pipeline::State::load_layer(std::size_t index, const Progress& progress) {
+void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const Progress& progress) {
     const LayerParams& params = scene.layers[index];
     LayerState& layer = layers[index];
     LayerStatistics& counts = statistics[index];
@@ -114,7 +114,9 @@ void Pipeline::State::load_layer(std::size_t index, const Progress& progress) {
     layer.used = ever_visible(scene, params);
     if (!layer.used) return;
     const auto start = std::chrono::steady_clock::now();
-    layer.set = load_source(params.source, params.name, progress);
+    LoadedSet loaded = load_source(cache, params.source, params.name, progress);
+    layer.set = std::move(loaded.set);
+    counts.cached = loaded.cached;
     layer.box = bounds(layer.set);
     counts.test_positions = layer.set.test_positions;
     counts.kept = layer.set.size();
@@ -173,7 +175,8 @@ const Environment* Pipeline::State::environment_at(const Scene& now) {
     return &*environment;
 }
 
-Pipeline::Pipeline(const Scene& scene, const Progress& progress) : state_(std::make_unique<State>()) {
+Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache& cache)
+    : state_(std::make_unique<State>()) {
     state_->scene = scene;
     state_->layers.resize(scene.layers.size());
     state_->statistics.resize(scene.layers.size());
@@ -185,7 +188,7 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress) : state_(std::m
                 progress.report((static_cast<double>(i) + f) / count);
             };
         }
-        state_->load_layer(i, part);
+        state_->load_layer(i, cache, part);
     }
     if (has_environment(scene.environment)) state_->environment = load_environment(scene.environment);
 }

@@ -9,6 +9,7 @@
 #include "core/progress.h"
 #include "render/render.h"
 #include "scene/scene.h"
+#include "splats/set_cache.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -21,15 +22,16 @@ struct LayerStatistics {
     std::int64_t test_positions = 0, kept = 0, zero_alpha = 0;
     std::int64_t drawn = 0;  // shaded splats after the look, in the last frame
     double generate_seconds = 0.0, look_seconds = 0.0;
-    bool cached = false;
+    bool cached = false;  // the set came from the cache; generate_seconds is how long reading it took
 };
 
 /// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats of each
 /// layer.
 class Pipeline {
   public:
-    /// Loads or generates the set of every layer that is visible at some frame. Throws InputError, Cancelled.
-    explicit Pipeline(const Scene& scene, const Progress& progress = {});
+    /// Loads or generates the set of every layer that is visible at some frame, through the cache where one
+    /// is given. Throws InputError, Cancelled.
+    explicit Pipeline(const Scene& scene, const Progress& progress = {}, const SetCache& cache = {});
     ~Pipeline();
 
     /// Renders one frame of the scene this was made of.

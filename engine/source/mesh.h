@@ -39,6 +39,10 @@ Mesh load_obj(const std::filesystem::path& file);
 /// Bounds of all vertices (also of those no face uses).
 Bounds bounds(const Mesh& mesh);
 
+/// The files besides the OBJ itself that its map_Kd pictures come from: the material libraries that it names
+/// and the pictures that those name, as far as they exist. Reads no geometry. Throws InputError.
+std::vector<std::filesystem::path> obj_materials(const std::filesystem::path& file);
+
 /// Sum of the triangles' areas, square scene units.
 double surface_area(const Mesh& mesh);
 

@@ -54,6 +54,7 @@ struct Reader {
     std::vector<Polygon> polygons;  // those with more than three corners
     Highest position, uv;
     std::map<std::string, fs::path> material_maps;  // material -> map_Kd
+    std::vector<fs::path> libraries;                // the MTL files read
     std::map<fs::path, std::uint32_t> map_index;    // map -> place in mesh.maps
     std::uint32_t material = 0;
     bool material_chosen = false;
@@ -177,6 +178,7 @@ void load_materials(Reader& r, const std::string& name) {
     std::vector<tinyobj::material_t> materials;
     std::string warning, problem;
     tinyobj::LoadMtl(&ids, &materials, &in, &warning, &problem);
+    r.libraries.push_back(file);
     for (const auto& [material, id] : ids) {
         const std::string& map = materials[static_cast<std::size_t>(id)].diffuse_texname;
         r.material_maps[material] = map.empty() ? fs::path() : file.parent_path() / native(map);
@@ -265,6 +267,19 @@ void check_whole(Reader& r) {
     check_range(r, r.uv, r.mesh.uvs.size(), "texture coordinate");
 }
 
+// Calls read(line) for every logical line; r.line is the number of its first.
+template <class Read>
+void for_each_line(Reader& r, std::string_view text, Read&& read) {
+    if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // byte order mark
+    for (std::string joined; !text.empty();) {
+        std::int64_t lines = 0;
+        const std::string_view line = next_line(text, joined, lines);
+        ++r.line;
+        read(line);
+        r.line += lines - 1;
+    }
+}
+
 }  // namespace
 
 Mesh load_obj(const fs::path& file) {
@@ -272,20 +287,29 @@ Mesh load_obj(const fs::path& file) {
     Reader r;
     r.file = file;
     r.mesh.name = file.string();
-    std::string_view text = content;
-    if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // byte order mark
     Words words;
-    for (std::string joined; !text.empty();) {
-        std::int64_t lines = 0;
-        const std::string_view line = next_line(text, joined, lines);
-        ++r.line;
-        read_line(r, line, words);
-        r.line += lines - 1;
-    }
+    for_each_line(r, content, [&](std::string_view line) { read_line(r, line, words); });
     check_whole(r);
     triangulate_polygons(r);
     if (r.mesh.maps.size() == 1 && r.mesh.maps[0].empty()) r.mesh.maps.clear();
     return std::move(r.mesh);
+}
+
+std::vector<fs::path> obj_materials(const fs::path& file) {
+    const std::string content = read_file(file);
+    Reader r;
+    r.file = file;
+    Words words;
+    for_each_line(r, content, [&](std::string_view line) {
+        if (line.find("mtllib") == std::string_view::npos) return;
+        split(line, words);
+        if (words[0] == "mtllib") read_mtllib(r, line, words);
+    });
+    std::vector<fs::path> files = r.libraries;
+    for (const auto& [material, map] : r.material_maps) files.push_back(map);
+    std::error_code ignored;
+    std::erase_if(files, [&](const fs::path& each) { return !fs::is_regular_file(each, ignored); });
+    return files;
 }
 
 }  // namespace astrosplat

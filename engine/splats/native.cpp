@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 #include <cstring>
@@ -37,7 +38,8 @@ enum Flag : std::uint32_t {
     has_uv = 4,
     has_normal = 8,
     has_mesh = 16,
-    has_radius = 32
+    has_radius = 32,
+    by_id = 64
 };
 
 struct Header {
@@ -103,13 +105,17 @@ BlockEntry describe_block(std::string_view bytes, std::size_t rows) {
 
 // ---- writing
 
-std::string header_bytes(const SplatSet& set) {
+std::uint32_t flags_of(const SplatSet& set, RowOrder order) {
+    return (set.generated ? generated : 0u) | (set.divided ? divided : 0u) | (set.uv.empty() ? 0u : has_uv) |
+           (set.normal.empty() ? 0u : has_normal) | (set.mesh.empty() ? 0u : has_mesh) |
+           (set.radius.empty() ? 0u : has_radius) | (order == RowOrder::id ? by_id : 0u);
+}
+
+std::string header_bytes(const SplatSet& set, RowOrder order) {
     Header header{};
     std::memcpy(header.magic, magic.data(), sizeof header.magic);
     header.version = version;
-    header.flags = (set.generated ? generated : 0u) | (set.divided ? divided : 0u) |
-                   (set.uv.empty() ? 0u : has_uv) | (set.normal.empty() ? 0u : has_normal) |
-                   (set.mesh.empty() ? 0u : has_mesh) | (set.radius.empty() ? 0u : has_radius);
+    header.flags = flags_of(set, order);
     header.splats = static_cast<std::uint64_t>(set.size());
     header.block = splats_per_block;
     header.credit_bytes = static_cast<std::uint32_t>(set.credit.size());
@@ -124,10 +130,17 @@ std::string header_bytes(const SplatSet& set) {
     return bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
 }
 
+/// Rows [begin, end) of every array; `order` says which splat a row is, empty: the splats as they are.
 char* pack(const SplatSet& set, const Buffer<std::int64_t>& order, std::int64_t begin, std::int64_t end,
            char* out) {
     visit_arrays(set, [&](const auto& array) {
         if (array.empty()) return;
+        if (order.empty()) {
+            const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
+            std::memcpy(out, &array[static_cast<std::size_t>(begin)], bytes);
+            out += bytes;
+            return;
+        }
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
             std::memcpy(out, &array[static_cast<std::size_t>(order[i])], sizeof array[0]);
             out += sizeof array[0];
@@ -183,8 +196,7 @@ Header read_header(const Checker& checker, std::string_view bytes) {
     std::memcpy(&header, bytes.data(), sizeof header);
     if (header.version != version)
         checker.fail("header", fmt::format("version {}", version), std::to_string(header.version));
-    if (header.flags >= has_radius * 2)
-        checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
+    if (header.flags >= by_id * 2) checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
     if (header.block == 0) checker.fail("header", "blocks of at least one splat", "0");
     return header;
 }
@@ -289,13 +301,27 @@ SplatSet read_native(const std::filesystem::path& file, const Progress& progress
     });
     for (const std::string& error : errors)
         if (!error.empty()) throw InputError(error);
+    if ((layout.header.flags & by_id) && !std::is_sorted(set.id.begin(), set.id.end()))
+        checker.fail("", "ids in ascending order", "another order");
     return set;
 }
 
+std::int64_t native_splat_count(const std::filesystem::path& file) {
+    const MappedFile mapped(file);
+    return static_cast<std::int64_t>(read_layout(Checker{file.string()}, mapped.bytes()).header.splats);
+}
+
 void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+    write_native(file, set, RowOrder::space, progress);
+}
+
+void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrder row_order,
+                  const Progress& progress) {
     check_consistent(set);
-    const std::string header = header_bytes(set);
-    const Buffer<std::int64_t> order = spatial_order(set);
+    assert(row_order == RowOrder::space || std::is_sorted(set.id.begin(), set.id.end()));
+    const std::string header = header_bytes(set, row_order);
+    const Buffer<std::int64_t> order =
+        row_order == RowOrder::space ? spatial_order(set) : Buffer<std::int64_t>{};
     std::vector<BlockEntry> table(block_count(static_cast<std::uint64_t>(set.size()), splats_per_block));
     write_ordered(
         file, header, set.size(), splats_per_block,
@@ -307,6 +333,14 @@ void write_native(const std::filesystem::path& file, const SplatSet& set, const 
             return stop;
         },
         [&] { return table_bytes(table); });
+}
+
+std::int64_t native_file_bytes(const SplatSet& set) {
+    const auto rows = static_cast<std::uint64_t>(set.size());
+    const std::size_t table = block_count(rows, splats_per_block) * sizeof(BlockEntry);
+    return static_cast<std::int64_t>(data_offset(set.credit.size()) +
+                                     rows * bytes_per_splat(flags_of(set, RowOrder::id)) + table +
+                                     sizeof(std::uint64_t));
 }
 
 }  // namespace astrosplat

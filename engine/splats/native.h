@@ -4,7 +4,8 @@
 // Format version 1, all little-endian, checksums XXH64 (checksum.h):
 //   header   0  8 bytes  89 'S' 'P' 'L' 'A' 'T' 0d 0a
 //            8  u32      version, 1
-//           12  u32      flags: 1 generated, 2 divided, 4 uv, 8 normal, 16 mesh, 32 radius are present
+//           12  u32      flags: 1 generated, 2 divided, 4 uv, 8 normal, 16 mesh, 32 radius are present,
+//                    64 the rows are in ascending order of id
 //           16  u64      splats
 //           24  u32      splats in a block (the last block may hold fewer)
 //           28  u32      bytes of the credit
@@ -19,6 +20,7 @@
 //           then u64 checksum of the table
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "core/progress.h"
@@ -26,11 +28,25 @@
 
 namespace astrosplat {
 
-/// Rows come back in the file's order (spatial_order.h); sort_by_id brings back that of the ids. Every length
-/// is checked before memory is taken or touched, every block against its checksum. Throws InputError.
+/// space: neighbours share blocks (spatial_order.h), for files that travel. id: as the set has them, so that
+/// nothing is sorted when it is read again.
+enum class RowOrder { space, id };
+
+/// Rows come back in the file's order; sort_by_id brings back that of the ids. Every length is checked before
+/// memory is taken or touched, every block against its checksum. Throws InputError.
 SplatSet read_native(const std::filesystem::path& file, const Progress& progress = {});
 
-/// The same bytes for any thread count. Throws OutputError.
+/// How many splats a file holds, from its header. Throws InputError.
+std::int64_t native_splat_count(const std::filesystem::path& file);
+
+/// In RowOrder::space. The same bytes for any thread count. Throws OutputError.
 void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {});
+
+/// For RowOrder::id the set must be in ascending order of id.
+void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
+                  const Progress& progress);
+
+/// Length of the file that write_native makes of a set.
+std::int64_t native_file_bytes(const SplatSet& set);
 
 }  // namespace astrosplat

@@ -83,8 +83,11 @@ blend = "add"
     RunResult run(std::vector<std::string> arguments, RunOptions options = {}) const {
         arguments.insert(arguments.begin(), ASTROSPLAT_PROGRAM);
         if (options.folder == ".") options.folder = folder;
+        // No test fills the user's cache. Last, as of two values the first counts: a test's own choice.
+        options.environment.push_back("ASTROSPLAT_CACHE=" + own_cache());
         return run_program(arguments, options);
     }
+    std::string own_cache() const { return (folder / "sets").string(); }
     /// --batch scene.toml and more.
     RunResult batch(std::vector<std::string> more = {}, RunOptions options = {}) const {
         more.insert(more.begin(), {"--batch", "scene.toml"});

@@ -93,13 +93,5 @@ TEST_F(Usage, SeveralFramesNeedAFrameToken) {
     EXPECT_TRUE(fs::exists(folder / "one.exr"));
 }
 
-TEST_F(Usage, CacheIsToldToBeAbsent) {
-    const RunResult with = batch({"--cache", "sets", "--dry-run"});
-    EXPECT_EQ(with.code, 0);
-    EXPECT_NE(with.err.find("--cache"), std::string::npos);
-    EXPECT_FALSE(fs::exists(folder / "sets"));
-    EXPECT_EQ(batch({"--no-cache", "--dry-run"}).err, "");
-}
-
 }  // namespace
 }  // namespace astrosplat::test

@@ -44,6 +44,15 @@ void expect_same_set(const SplatSet& a, const SplatSet& b) {
     EXPECT_EQ(a.credit, b.credit);
 }
 
+/// Replaces the bytes at `at` of a valid file's header and makes the header's checksum fit again.
+template <class T>
+std::string forged(std::string bytes, std::size_t at, T value, std::size_t header_end = 128) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    const std::uint64_t checksum = xxh64(std::string_view(bytes).substr(0, header_end - 8));
+    std::memcpy(bytes.data() + header_end - 8, &checksum, sizeof checksum);
+    return bytes;
+}
+
 TEST_F(Native, EverythingSurvives) {
     const SplatSet set = full_set(200000);  // three blocks and a part
     write_native(path("a.splats"), set);
@@ -81,6 +90,28 @@ TEST_F(Native, ThreadsAndOrderOfTheSetDoNotChangeBytes) {
     set_thread_count(5);
     write_native(path("five.splats"), shuffled);
     EXPECT_EQ(bytes_of(path("one.splats")), bytes_of(path("five.splats")));
+}
+
+TEST_F(Native, RowsByIdNeedNoSorting) {
+    SplatSet set = full_set(200000);
+    std::sort(set.id.begin(), set.id.end());
+    write_native(path("a.splats"), set, RowOrder::id, {});
+    expect_same_set(read_native(path("a.splats")), set);
+    EXPECT_EQ(native_file_bytes(set), static_cast<std::int64_t>(bytes_of(path("a.splats")).size()));
+    EXPECT_EQ(native_splat_count(path("a.splats")), 200000);
+}
+
+TEST_F(Native, RowsThatBelieTheirOrderAreRefused) {
+    SplatSet set = full_set(2);
+    set.position[0] = glm::vec3(0.0f);
+    set.position[1] = glm::vec3(1.0f);  // behind the other in space
+    set.id[0] = 7;
+    set.id[1] = 6;
+    write_native(path("a.splats"), set);
+    const std::string bytes = bytes_of(path("a.splats"));
+    EXPECT_EQ(error(bytes), "");
+    EXPECT_EQ(error(forged(bytes, 12, 0x7fu)),
+              "a.splats: expected ids in ascending order, found another order");
 }
 
 TEST_F(Native, NeighboursShareBlocks) {
@@ -132,15 +163,6 @@ TEST_F(Native, EveryDamagedByteAndEveryTruncationIsFound) {
     EXPECT_NE(error(whole + "x"), "");
 }
 
-/// Replaces the bytes at `at` of a valid file's header and makes the header's checksum fit again.
-template <class T>
-std::string forged(std::string bytes, std::size_t at, T value, std::size_t header_end = 128) {
-    std::memcpy(bytes.data() + at, &value, sizeof value);
-    const std::uint64_t checksum = xxh64(std::string_view(bytes).substr(0, header_end - 8));
-    std::memcpy(bytes.data() + header_end - 8, &checksum, sizeof checksum);
-    return bytes;
-}
-
 TEST_F(Native, Messages) {
     write_native(path("whole.splats"), full_set(2));
     const std::string whole = bytes_of(path("whole.splats"));
@@ -150,7 +172,7 @@ TEST_F(Native, Messages) {
     EXPECT_EQ(error("ply" + whole.substr(3)),
               "a.splats: expected an astrosplat .splats file, found another format");
     EXPECT_EQ(error(forged(whole, 8, 2u)), "a.splats:header: expected version 1, found 2");
-    EXPECT_EQ(error(forged(whole, 12, 0x40u)), "a.splats:header: expected known flags, found 0x40");
+    EXPECT_EQ(error(forged(whole, 12, 0x80u)), "a.splats:header: expected known flags, found 0x80");
     EXPECT_EQ(error(forged(whole, 24, 0u)),
               "a.splats:header: expected blocks of at least one splat, found 0");
     for (const std::uint64_t count :

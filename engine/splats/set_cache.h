@@ -1,0 +1,46 @@
+// Generated sets, kept in a folder so that the second run of a scene starts at once. In: what load_source
+// takes, and the folder. Out: the same SplatSet, to the bit. Many processes may share the folder; an entry
+// that is damaged is generated anew, and a folder that cannot be read or written costs a warning, never a
+// run.
+//
+// In the folder: KEY.splats (native.h, rows by id; the key is set_key.h's; its file time says when it was
+// last used), KEY.lock while a process generates that set, .KEY.*.part.splats while it is written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/progress.h"
+#include "source/source.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+struct SetCache {
+    std::filesystem::path folder;  // made when a set is kept; empty: no cache
+    /// Bytes of all entries; the least recently used go first. 0: 20 GiB or a tenth of the disk, whichever is
+    /// less.
+    std::int64_t limit_bytes = 0;
+};
+
+/// $ASTROSPLAT_CACHE, else $XDG_CACHE_HOME/astrosplat, else ~/.cache/astrosplat; empty without a home.
+std::filesystem::path default_cache_folder();
+
+struct LoadedSet {
+    SplatSet set;
+    bool cached = false;  // read from the cache
+};
+
+/// load_source through a cache: reads a mesh source's set where it is kept, else generates and keeps it;
+/// other kinds pass by. Of several processes that need the same set one generates it and the others wait.
+/// Throws as load_source does.
+LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                      const Progress& progress = {});
+
+/// Splats of a source's set, if it is kept: what an estimate asks before anything is loaded.
+std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,
+                                          const std::string& layer_name);
+
+}  // namespace astrosplat

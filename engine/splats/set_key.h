@@ -1,0 +1,23 @@
+// The name under which a generated set is kept: a hash of everything that reaches a bit of it, and of nothing
+// else. In: a source and its layer's name. Out: 64 hex digits.
+#pragma once
+
+#include <string>
+
+#include "source/source.h"
+
+namespace astrosplat {
+
+/// Raised whenever generation, or the reading of meshes and pictures, gives other bits than before.
+inline constexpr int set_version = 1;
+
+/// What is hashed, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
+/// picture also its material libraries and their pictures), and the parameters in use, with the seed
+/// resolved. Names of files stay out, except for their endings. Empty where an input cannot be read: then the
+/// loader says why. For kind mesh.
+std::string set_key_text(const SourceParams& source, const std::string& layer_name);
+
+/// The hash of that text, or nothing.
+std::string set_key(const SourceParams& source, const std::string& layer_name);
+
+}  // namespace astrosplat

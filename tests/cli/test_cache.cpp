@@ -1,0 +1,190 @@
+// The cache of generated sets as users meet it: the second run starts from it with the same pixels, a look
+// never touches it, processes share it, and it never fails a run.
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "core/memory.h"
+#include "scene_fixture.h"
+
+namespace astrosplat::test {
+namespace {
+
+class Cache : public SceneTest {
+  protected:
+    Cache() {
+        write_text(folder / "picture.ppm", small_picture());
+        write_text(folder / "scene.toml", R"(astrosplat = 1
+[output]
+resolution = [64, 48]
+frames = "1"
+path = "frames/shot.####.exr"
+[[layer]]
+name = "gas"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "picture.ppm" } ]
+voxel_size = 0.2
+)");
+    }
+    /// What a run with these options says of its layer, and the sha256 of its frame.
+    struct Figures {
+        bool cached;
+        std::int64_t kept, test_positions;
+        std::string sha256;
+    };
+    Figures figures(std::vector<std::string> more, const RunOptions& options = {}) const {
+        const std::vector<std::string> sha256 = hashes(more, options);
+        const nlohmann::json layer = json("stats.json").at("layers").at(0);
+        return {layer.at("cached"), layer.at("kept"), layer.at("test_positions"), sha256.at(0)};
+    }
+    std::vector<std::string> sets_in(const std::string& relative) const {
+        std::vector<std::string> sets;
+        for (const std::string& name : names_in(relative))
+            if (fs::path(name).extension() == ".splats") sets.push_back(name);
+        return sets;
+    }
+    /// Starts a run that generates for a while, and returns once it does.
+    std::unique_ptr<RunningProgram> generating_run() const {
+        RunOptions options;
+        options.folder = folder;
+        auto program = std::make_unique<RunningProgram>(
+            std::vector<std::string>{ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "--cache", "sets", "--set",
+                                     "layer.gas.source.voxel_size=0.02"},
+            options);
+        while (names_in("sets").empty()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return program;
+    }
+};
+
+TEST_F(Cache, TheSecondRunTakesTheSetAndGivesTheSamePixels) {
+    const Figures first = figures({}), second = figures({}), without = figures({"--no-cache"});
+    EXPECT_FALSE(first.cached);
+    EXPECT_TRUE(second.cached);
+    EXPECT_FALSE(without.cached);
+    EXPECT_EQ(second.sha256, first.sha256);
+    EXPECT_EQ(without.sha256, first.sha256);
+    EXPECT_EQ(second.kept, first.kept);
+    EXPECT_EQ(second.test_positions, first.test_positions);
+    EXPECT_EQ(sets_in("sets").size(), 1u);
+    EXPECT_EQ(names_in("sets").size(), 1u);
+}
+
+TEST_F(Cache, OnlyTheSourceMakesANewSet) {
+    figures({});
+    for (const char* change : {"layer.gas.look.alpha.power=3", "layer.gas.look.radius.max=0.4",
+                               "layer.gas.render.blend=\"add\"", "layer.gas.transform.scale=2.0"})
+        EXPECT_TRUE(figures({"--set", change}).cached) << change;
+    EXPECT_FALSE(figures({"--set", "layer.gas.source.jitter=0.5"}).cached);
+    std::string picture = small_picture();
+    picture.back() ^= 1;
+    write_text(folder / "picture.ppm", picture);
+    EXPECT_FALSE(figures({}).cached);
+    EXPECT_EQ(sets_in("sets").size(), 3u);
+}
+
+TEST_F(Cache, NoCacheNeitherReadsNorWrites) {
+    EXPECT_FALSE(figures({"--no-cache"}).cached);
+    EXPECT_FALSE(figures({"--no-cache", "--cache", "other"}).cached);
+    EXPECT_FALSE(fs::exists(folder / "sets") || fs::exists(folder / "other"));
+    figures({});
+    EXPECT_FALSE(figures({"--no-cache"}).cached);
+}
+
+TEST_F(Cache, ADryRunMakesNoFolderButKnowsTheSet) {
+    ASSERT_EQ(batch({"--dry-run"}).code, 0);
+    EXPECT_FALSE(fs::exists(folder / "sets"));
+    const Figures first = figures({});
+    const std::string plan = batch({"--dry-run", "--overwrite"}).out;
+    const std::string splats = human_count(static_cast<double>(first.kept));
+    EXPECT_NE(plan.find("layer gas: about " + splats + " splats"), std::string::npos) << plan << splats;
+}
+
+TEST_F(Cache, OptionThenVariableThenHome) {
+    RunOptions variable, xdg, home;
+    const std::string here = folder.string();
+    variable.environment = {"ASTROSPLAT_CACHE=" + here + "/v", "XDG_CACHE_HOME=" + here + "/x"};
+    xdg.environment = {"ASTROSPLAT_CACHE=", "XDG_CACHE_HOME=" + here + "/x", "HOME=" + here + "/h"};
+    home.environment = {"ASTROSPLAT_CACHE=", "XDG_CACHE_HOME=", "HOME=" + here + "/h"};
+    figures({"--cache", "option"}, variable);
+    EXPECT_EQ(sets_in("option").size(), 1u);
+    EXPECT_FALSE(fs::exists(folder / "v"));
+    figures({}, variable);
+    EXPECT_EQ(sets_in("v").size(), 1u);
+    EXPECT_FALSE(fs::exists(folder / "x"));
+    figures({}, xdg);
+    EXPECT_EQ(sets_in("x/astrosplat").size(), 1u);
+    figures({}, home);
+    EXPECT_EQ(sets_in("h/.cache/astrosplat").size(), 1u);
+}
+
+TEST_F(Cache, GenerateUsesItToo) {
+    ASSERT_EQ(run({"generate", "scene.toml", "--layer", "gas", "-o", "a.splats"}).code, 0);
+    EXPECT_TRUE(figures({}).cached);
+    ASSERT_EQ(run({"generate", "scene.toml", "--layer", "gas", "-o", "b.splats"}).code, 0);
+    EXPECT_EQ(text_of(folder / "a.splats"), text_of(folder / "b.splats"));
+}
+
+TEST_F(Cache, AFolderThatCannotBeWrittenIsAWarning) {
+    write_text(folder / "file", "");
+    const RunResult result = batch({"--cache", "file/sets", "-q"});
+    EXPECT_EQ(result.code, 0);
+    EXPECT_NE(result.err.find("file/sets"), std::string::npos) << result.err;
+    EXPECT_TRUE(fs::exists(folder / "frames/shot.0001.exr"));
+}
+
+TEST_F(Cache, DamagedSetsAreGeneratedAgain) {
+    const std::string sha256 = figures({}).sha256;
+    const fs::path set = folder / "sets" / sets_in("sets").at(0);
+    std::string bytes = text_of(set);
+    bytes[bytes.size() / 2] ^= 1;
+    write_text(set, bytes);
+    const Figures again = figures({});
+    EXPECT_FALSE(again.cached);
+    EXPECT_EQ(again.sha256, sha256);
+    EXPECT_TRUE(figures({}).cached);
+}
+
+TEST_F(Cache, OfManyProcessesOneGenerates) {
+    RunOptions options;
+    options.folder = folder;
+    std::vector<std::unique_ptr<RunningProgram>> programs;
+    for (int i = 0; i < 4; ++i) {
+        const std::string name = fmt::format("s{}", i);
+        programs.push_back(std::make_unique<RunningProgram>(
+            std::vector<std::string>{ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "--cache", "sets", "-o",
+                                     name + ".exr", "--stats", name + ".json", "--set",
+                                     "layer.gas.source.voxel_size=0.05"},
+            options));
+    }
+    int generated = 0;
+    std::set<std::string> sha256;
+    for (std::size_t i = 0; i < programs.size(); ++i) {
+        const RunResult result = programs[i]->wait();
+        ASSERT_EQ(result.code, 0) << result.err;
+        const nlohmann::json stats = json(fmt::format("s{}.json", i));
+        generated += !stats.at("layers").at(0).at("cached").get<bool>();
+        sha256.insert(stats.at("frames").at(0).at("sha256").get<std::string>());
+    }
+    EXPECT_EQ(generated, 1);
+    EXPECT_EQ(sha256.size(), 1u);
+    EXPECT_EQ(names_in("sets").size(), 1u);
+}
+
+TEST_F(Cache, AnInterruptLeavesNothingThere) {
+    const auto program = generating_run();
+    program->signal(SIGINT);
+    EXPECT_EQ(program->wait().code, 130);
+    EXPECT_TRUE(names_in("sets").empty());
+}
+
+TEST_F(Cache, WhatAKilledRunLeftIsClearedByTheNext) {
+    const auto program = generating_run();
+    program->signal(SIGKILL);
+    EXPECT_EQ(program->wait().code, -SIGKILL);
+    EXPECT_EQ(names_in("sets").size(), 1u);  // its lock, free again
+    EXPECT_FALSE(figures({}).cached);
+    EXPECT_EQ(names_in("sets"), (std::set<std::string>{sets_in("sets").at(0)}));
+}
+
+}  // namespace
+}  // namespace astrosplat::test
