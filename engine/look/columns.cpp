@@ -3,21 +3,15 @@
 #include "look/columns.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
+#include "core/quadrature.h"
 #include "look/shared_look.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr int panels_per_piece = 16;
-
-// Abscissae and weights of order 4 on [-1, 1] (Abramowitz and Stegun 25.4).
-constexpr std::array<double, 4> abscissa = {-0.861136311594052575, -0.339981043584856265,
-                                            0.339981043584856265, 0.861136311594052575};
-constexpr std::array<double, 4> weight = {0.347854845137453857, 0.652145154862546143, 0.652145154862546143,
-                                          0.347854845137453857};
+constexpr int panels_per_piece = 8;
 
 // Where a profile may have a corner or a jump, in its own x.
 std::vector<double> corners(const LookProfile& profile) {
@@ -52,12 +46,10 @@ double column_integral(const Column& column, double vertical_scale) {
     const std::vector<double> ends = piece_ends(column);
     double sum = 0.0;
     for (std::size_t i = 1; i < ends.size(); ++i) {
-        const double half = 0.5 * (ends[i] - ends[i - 1]) / panels_per_piece;
-        for (int panel = 0; panel < panels_per_piece; ++panel) {
-            const double middle = ends[i - 1] + half * (2 * panel + 1);
-            for (std::size_t k = 0; k < abscissa.size(); ++k)
-                sum += half * weight[k] * integrand(column, vertical_scale, middle + half * abscissa[k]);
-        }
+        const double step = (ends[i] - ends[i - 1]) / panels_per_piece;
+        for (int panel = 0; panel < panels_per_piece; ++panel)
+            sum += integrate_panel(ends[i - 1] + step * panel, ends[i - 1] + step * (panel + 1),
+                                   [&](double x) { return integrand(column, vertical_scale, x); });
     }
     return sum;
 }

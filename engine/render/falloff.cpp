@@ -2,8 +2,8 @@
 
 #include <array>
 
+#include "core/quadrature.h"
 #include "core/real.h"
-#include "render/quadrature.h"
 #include "render/shared_render.h"
 
 namespace astrosplat {

@@ -6,9 +6,9 @@
 #include <cstring>
 
 #include "core/parallel.h"
+#include "core/quadrature.h"
 #include "core/real.h"
 #include "render/falloff.h"
-#include "render/quadrature.h"
 
 namespace astrosplat {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/quadrature.h"
 #include "core/real.h"
 #include "render/falloff.h"
-#include "render/quadrature.h"
 #include "render/shared_render.h"
 
 namespace astrosplat {
