@@ -115,6 +115,18 @@ TEST(Obj, MapsAreFoundBesideTheMaterialLibrary) {
     EXPECT_EQ(map_of_triangle, (std::vector<fs::path>{"", red, "", blue, blue, red}));
 }
 
+TEST(Obj, MaterialsAreTheLibrariesAndThePicturesThatExist) {
+    const TempFolder folder;
+    const fs::path library =
+        folder.file("a.mtl", "newmtl red\nmap_Kd red.png\nnewmtl gone\nmap_Kd gone.png\nnewmtl plain\n");
+    const fs::path red = folder.file("red.png", "any bytes"), other = folder.file("b c.mtl", "newmtl x\n");
+    const fs::path file = folder.file(
+        "m.obj", "# mtllib no.mtl\nmtllib a.mtl\n" + square + "usemtl x\nf 1 2 3\nmtllib b c.mtl\n");
+    EXPECT_EQ(obj_materials(file), (std::vector<fs::path>{library, other, red}));
+    EXPECT_TRUE(obj_materials(folder.file("bare.obj", square)).empty());
+    EXPECT_THROW(obj_materials(folder / "missing.obj"), InputError);
+}
+
 TEST(Obj, MissingMaterialLibraryIsAWarning) {
     std::vector<std::string> lines;
     set_log_sink([&](LogLevel, const std::string& line) { lines.push_back(line); });

@@ -375,10 +375,10 @@ TEST_F(SetCacheTest, ACancelledRunLeavesNothing) {
 
 TEST_F(SetCacheTest, AProcessThatIsKilledGivesWay) {
     fs::create_directories(cache_.folder);
-    const fs::path ready = folder_ / "ready";
+    const fs::path ready = folder_ / "ready", lock_name = key_file(".lock");
     const pid_t child = fork();
     if (child == 0) {  // takes the lock, says so, and is killed
-        const int lock = open(key_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        const int lock = open(lock_name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (flock(lock, LOCK_EX) == 0) close(open(ready.c_str(), O_CREAT | O_WRONLY, 0666));
         for (;;) pause();
     }
