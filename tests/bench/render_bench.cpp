@@ -1,0 +1,95 @@
+// Whole frames, look already applied: project to finished float image in memory. Prints memory bandwidth
+// beside them.
+#include <benchmark/benchmark.h>
+
+#include <cstring>
+
+#include "core/buffer.h"
+#include "core/parallel.h"
+#include "core/shared_maths.h"
+#include "render/render.h"
+
+namespace astrosplat {
+namespace {
+
+float random(std::uint32_t n, std::uint32_t purpose) {
+    return shared::as_uniform(shared::as_hash(1u, n, 0u, purpose));
+}
+
+/// Splats spread evenly over a 1080p picture at depths 10..20, `diameter_px` across.
+ShadedSplats spread(std::int64_t count, float diameter_px, float alpha) {
+    ShadedSplats set;
+    const auto n = static_cast<std::size_t>(count);
+    set.position.resize(n);
+    set.color.resize(n);
+    set.alpha.resize(n);
+    set.radius.resize(n);
+    set.id.resize(n);
+    parallel_chunks(count, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t i = begin; i < end; ++i) {
+            const auto k = static_cast<std::uint32_t>(i);
+            const float z = 10.0f + 10.0f * random(k, 3);
+            set.position[i] = {(random(k, 1) - 0.5f) * 1.92f * z, (random(k, 2) - 0.5f) * 1.08f * z, -z};
+            set.radius[i] = 0.5f * diameter_px * z * 0.001f;
+            set.alpha[i] = alpha * (0.5f + random(k, 4));
+            set.color[i] = {random(k, 5), random(k, 6), random(k, 7)};
+            set.id[i] = static_cast<std::uint64_t>(i);
+        }
+    });
+    return set;
+}
+
+void frame(benchmark::State& state, std::int64_t count, float diameter_px, float alpha, Blend blend) {
+    const ShadedSplats set = spread(count, diameter_px, alpha);
+    RenderLayer layer;
+    layer.name = "bench";
+    layer.splats = &set;
+    layer.render.blend = blend;
+    Camera camera;
+    camera.focal_px = 1000.0;
+    camera.center_x_px = 960.0;
+    camera.center_y_px = 540.0;
+    RenderCache cache;
+    const RenderSettings settings;
+    render({&layer, 1}, camera, nullptr, settings, {}, &cache);  // buffers and tables, as in a sequence
+    for (auto _ : state) {
+        const RenderedFrame result = render({&layer, 1}, camera, nullptr, settings, {}, &cache);
+        benchmark::DoNotOptimize(result.beauty.pixels.data());
+    }
+    state.counters["Msplats/s"] =
+        benchmark::Counter(static_cast<double>(count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+BENCHMARK_CAPTURE(frame, 10M_5px_over, 10000000, 5.0f, 0.3f, Blend::over)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(4);
+BENCHMARK_CAPTURE(frame, 2600k_26px_over, 2600000, 26.0f, 0.3f, Blend::over)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(4);
+BENCHMARK_CAPTURE(frame, 2600k_26px_add, 2600000, 26.0f, 0.3f, Blend::add)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(4);
+BENCHMARK_CAPTURE(frame, 44M_3px_screen, 44000000, 3.0f, 0.05f, Blend::screen)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->Iterations(4);
+
+void copy(benchmark::State& state) {
+    const std::int64_t bytes = std::int64_t{1} << 30;
+    Buffer<char> from(static_cast<std::size_t>(bytes)), to(static_cast<std::size_t>(bytes));
+    std::memset(from.data(), 1, from.size());
+    for (auto _ : state)
+        parallel_chunks(bytes, 1 << 20, [&](std::int64_t begin, std::int64_t end, int) {
+            std::memcpy(to.data() + begin, from.data() + begin, static_cast<std::size_t>(end - begin));
+        });
+    state.SetBytesProcessed(2 * bytes * state.iterations());
+}
+BENCHMARK(copy)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(4);
+
+}  // namespace
+}  // namespace astrosplat
+
+BENCHMARK_MAIN();
