@@ -1,19 +1,32 @@
 // new: a first scene around a picture.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "output/image_info.h"
 #include "places.h"
 #include "scene/new_scene.h"
+#include "source/fits.h"
 
 namespace astrosplat {
+namespace {
+
+// A scene around something else would fail at its first frame: better said now.
+void check_picture(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) bad_input(file.string(), "", "a picture", "a folder");
+    if (!std::ifstream(file)) bad_input(file.string(), "", "a picture", "nothing that can be read");
+    if (!is_fits(file)) read_image_info(file);
+}
+
+}  // namespace
 
 int run_new(const NewOptions& options) {
-    if (!std::ifstream(options.image))
-        bad_input(options.image.string(), "", "a picture", "nothing that can be read");
+    check_picture(options.image);
     if (options.scene.extension() != ".toml") {
         bad_input(options.scene.string(), "", "a name ending in .toml",
                   "'" + options.scene.extension().string() + "'");

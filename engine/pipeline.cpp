@@ -177,6 +177,9 @@ const Environment* Pipeline::State::environment_at(const Scene& now) {
 
 Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache& cache)
     : state_(std::make_unique<State>()) {
+    // What can be refused at once comes before the long work.
+    check_supported(scene.camera);
+    if (has_environment(scene.environment)) state_->environment = load_environment(scene.environment);
     state_->scene = scene;
     state_->layers.resize(scene.layers.size());
     state_->statistics.resize(scene.layers.size());
@@ -190,7 +193,6 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache&
         }
         state_->load_layer(i, cache, part);
     }
-    if (has_environment(scene.environment)) state_->environment = load_environment(scene.environment);
 }
 
 Pipeline::~Pipeline() = default;

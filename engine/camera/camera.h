@@ -45,6 +45,10 @@ struct Camera {
     double aspect = 1.0;  // width / height
 };
 
+/// Throws InputError for what a later release brings: camera files, projections other than perspective and
+/// orthographic. Can be asked before anything is generated; what an animation brings is met at its frame.
+void check_supported(const CameraParams& params);
+
 /// Resolves the parameters for a picture of width x height px. `scene_box` (may be empty) is what a camera
 /// without position frames: its place, target and (orthographic) height then come from frame_box; a rotation
 /// is kept. Where the view is parallel to up, -z is up, else +x. Throws InputError for values out of range,

@@ -11,8 +11,9 @@ namespace astrosplat {
 ImageInfo read_image_info(const std::filesystem::path& file) {
     const auto in = OIIO::ImageInput::open(file.string());
     if (!in) {
-        (void)OIIO::geterror();  // a message left behind would be printed at exit
-        bad_input(file.string(), "", "a picture", "something else");
+        const std::string reason = OIIO::geterror();
+        throw InputError(fmt::format("{}: cannot be read as a picture: {}", file.string(),
+                                     reason.substr(0, reason.find('\n'))));
     }
     const OIIO::ImageSpec& spec = in->spec();
     ImageInfo info{spec.width,       spec.height,       spec.x, spec.y, spec.full_width,

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include "core/color.h"
@@ -15,6 +16,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "source/credit.h"
+#include "source/jpeg_end.h"
 #include "source/picture.h"
 
 namespace astrosplat {
@@ -170,6 +172,8 @@ Picture read_picture(const fs::path& file) {
     const std::unique_ptr<ImageInput> in = open_picture(file);
     const ImageSpec spec = in->spec();
     check_spec(file, spec);
+    if (std::string_view(in->format_name()) == "jpeg" && !jpeg_is_whole(file))
+        fail(file, "the file ends before the picture does");
     const Channels channels = choose_channels(spec);
     const Image all = read_all(file, *in, spec);
     Picture picture;

@@ -296,6 +296,23 @@ TEST(Fits, Errors) {
     EXPECT_EQ(cut.rfind((folder / "cut.fits").string() + ": FITS ", 0), 0u) << cut;
 }
 
+// libjpeg would show the rest in grey; cuts in the header, in the data and before the very end are all seen.
+TEST(Picture, ACutJpegIsAnError) {
+    const TempFolder folder;
+    Pixels pixels;
+    for (int i = 0; i < 64 * 48 * 3; ++i) pixels.push_back(static_cast<float>(i * 37 % 101) / 100.0f);
+    const fs::path whole = write(folder / "whole.jpg", {64, 48, rgb, OIIO::TypeUInt8}, pixels);
+    EXPECT_EQ(read_picture(whole).image.width, 64);
+    const std::uintmax_t size = fs::file_size(whole);
+    for (const std::uintmax_t kept : {size / 2, size - 100, size - 1}) {
+        const fs::path cut = folder / "cut.jpg";
+        fs::copy_file(whole, cut, fs::copy_options::overwrite_existing);
+        fs::resize_file(cut, kept);
+        EXPECT_EQ(message_of<InputError>([&] { read_picture(cut); }),
+                  cut.string() + ": cannot be read as a picture: the file ends before the picture does");
+    }
+}
+
 TEST(Stretch, CurvesAtKnownPlaces) {
     const Limits limits{10.0, 20.0};
     EXPECT_EQ(stretched(15.0, limits, Stretch::linear, 0.1), 0.5);
