@@ -17,6 +17,9 @@ constexpr std::int64_t program_bytes = 140'000'000;  // with its libraries, befo
 constexpr std::int64_t file_bytes_per_splat =
     100;  // a row of a PDA with colour, opacity, distance and radius
 
+// More than any machine holds, few enough that bytes of many layers still fit 63 bits.
+constexpr std::int64_t most_splats = 1'000'000'000'000'000;
+
 /// Lattice positions within max_distance of the surface, both sides: two positions per voxel.
 std::int64_t positions_near(const std::vector<TexturedMesh>& meshes, const Lattice& lattice,
                             double max_distance) {
@@ -56,7 +59,8 @@ JobEstimate estimate(const BatchPlan& plan) {
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
         const auto cached = cached_splats(plan.cache, layer.source, layer.name);
-        job.layers.push_back({layer.name, cached ? *cached : splats_of(layer.source)});
+        const std::int64_t splats = cached ? *cached : splats_of(layer.source);
+        job.layers.push_back({layer.name, std::min(splats, most_splats)});
         job.splats += job.layers.back().splats;
     }
     std::int64_t screen = job.splats * screen_bytes;
