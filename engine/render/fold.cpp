@@ -102,6 +102,30 @@ struct SplatConstants {
     float* layer_light[4];
 };
 
+/// Where a tile's planes begin: a local copy of these stays in registers, the planes' own would be read again
+/// after every store.
+struct PlanePointers {
+    float* color[3];
+    float* alpha;
+    float* transmittance[4];
+    float* held;
+    float* depth_sum;
+    float* uncovered;
+    float* count;
+};
+
+PlanePointers pointers_to(TilePlanes& t) {
+    PlanePointers p{};
+    for (int k = 0; k < 3; ++k) p.color[k] = t.color[k].data();
+    for (int k = 0; k < 4; ++k) p.transmittance[k] = t.transmittance[k].data();
+    p.alpha = t.alpha.data();
+    p.held = t.held.data();
+    p.depth_sum = t.depth_sum.data();
+    p.uncovered = t.uncovered.data();
+    p.count = t.count.data();
+    return p;
+}
+
 HWY_INLINE V load(const float* p) { return hn::LoadU(D(), p); }
 HWY_INLINE void store(V v, float* p) { hn::StoreU(v, D(), p); }
 HWY_INLINE void accumulate(float* p, V v) { store(hn::Add(load(p), v), p); }
@@ -109,7 +133,7 @@ HWY_INLINE V clamp_one(V v) { return hn::Min(v, hn::Set(D(), 1.0f)); }
 HWY_INLINE V saturate(V v) { return clamp_one(hn::Max(v, hn::Zero(D()))); }
 
 /// Over: one transmittance.
-HWY_INLINE void fold_over(TilePlanes& t, std::size_t i, V s, const SplatConstants& c, V stop) {
+HWY_INLINE void fold_over(const PlanePointers& t, std::size_t i, V s, const SplatConstants& c, V stop) {
     const D d;
     const V one = hn::Set(d, 1.0f);
     const V before = load(&t.transmittance[0][i]);
@@ -121,11 +145,11 @@ HWY_INLINE void fold_over(TilePlanes& t, std::size_t i, V s, const SplatConstant
     store(hn::IfThenZeroElse(done, after), &t.transmittance[0][i]);
 }
 
-HWY_INLINE void fold_add(TilePlanes& t, std::size_t i, V s, const SplatConstants& c) {
+HWY_INLINE void fold_add(const PlanePointers& t, std::size_t i, V s, const SplatConstants& c) {
     for (int k = 0; k < 3; ++k) accumulate(&t.color[k][i], hn::Mul(s, hn::Set(D(), c.color[k])));
 }
 
-HWY_INLINE void add_aovs(TilePlanes& t, std::size_t i, V s, V weight, V alpha_share, V open,
+HWY_INLINE void add_aovs(const PlanePointers& t, std::size_t i, V s, V weight, V alpha_share, V open,
                          const SplatConstants& c) {
     const D d;
     const V one = hn::Set(d, 1.0f);
@@ -137,7 +161,7 @@ HWY_INLINE void add_aovs(TilePlanes& t, std::size_t i, V s, V weight, V alpha_sh
 }
 
 template <bool kAovs>
-HWY_INLINE void fold_lighten(TilePlanes& t, std::size_t i, V s, V weight, const SplatConstants& c) {
+HWY_INLINE void fold_lighten(const PlanePointers& t, std::size_t i, V s, V weight, const SplatConstants& c) {
     const D d;
     for (int k = 0; k < 3; ++k) {
         float* p = &t.color[k][i];
@@ -151,7 +175,8 @@ HWY_INLINE void fold_lighten(TilePlanes& t, std::size_t i, V s, V weight, const 
 }
 
 template <bool kAovs, bool kHolds>
-HWY_INLINE void fold_general(TilePlanes& t, std::size_t i, V s, V weight, const SplatConstants& c, V stop) {
+HWY_INLINE void fold_general(const PlanePointers& t, std::size_t i, V s, V weight, const SplatConstants& c,
+                             V stop) {
     const D d;
     const V one = hn::Set(d, 1.0f);
     V sum = hn::Zero(d), largest = hn::Zero(d), open = hn::Zero(d), after[4];
@@ -197,6 +222,7 @@ template <FoldKind kKind, bool kAovs, bool kHolds, bool kRoot, bool kFlat>
 void fold_splat(TilePlanes& t, const Footprint& footprint, float x_px, float y_px, const PixelRange& range,
                 const std::vector<std::uint8_t>& row_open, const SplatConstants& c, float stop_at) {
     const D d;
+    const PlanePointers planes = pointers_to(t);
     const Weights<kRoot, kFlat> weights(footprint);
     const V opacity = hn::Set(d, c.opacity), stop = hn::Set(d, stop_at);
     // Offsets of pixel centres from the splat's centre are exact: both are multiples of 1/256 px.
@@ -226,11 +252,12 @@ void fold_splat(TilePlanes& t, const Footprint& footprint, float x_px, float y_p
             const V w = weights(hn::Add(dx_squared[n], dy_squared));
             const V s = saturate(hn::Mul(opacity, w));
             const std::size_t i = t.at(first + n * lanes, y);
-            if constexpr (kKind == FoldKind::over) fold_over(t, i, s, c, stop);
-            if constexpr (kKind == FoldKind::add) fold_add(t, i, s, c);
+            if constexpr (kKind == FoldKind::over) fold_over(planes, i, s, c, stop);
+            if constexpr (kKind == FoldKind::add) fold_add(planes, i, s, c);
             const V weight = hn::Mul(w, hn::Set(d, c.weight_gain));
-            if constexpr (kKind == FoldKind::lighten) fold_lighten<kAovs>(t, i, s, weight, c);
-            if constexpr (kKind == FoldKind::general) fold_general<kAovs, kHolds>(t, i, s, weight, c, stop);
+            if constexpr (kKind == FoldKind::lighten) fold_lighten<kAovs>(planes, i, s, weight, c);
+            if constexpr (kKind == FoldKind::general)
+                fold_general<kAovs, kHolds>(planes, i, s, weight, c, stop);
         }
     }
 }

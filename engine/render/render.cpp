@@ -70,6 +70,10 @@ float stop_threshold(float largest, float exposure_stops) {
 
 RenderedFrame make_frame(std::span<const RenderLayer> layers, const RenderSettings& settings,
                          const Region& region) {
+    const std::int64_t channels = 4 + settings.aov_depth + settings.aov_coverage + settings.aov_count +
+                                  (settings.aov_layers ? 4 * static_cast<std::int64_t>(layers.size()) : 0);
+    claim_memory(region.width * region.height * channels * static_cast<std::int64_t>(sizeof(float)),
+                 "the picture");
     RenderedFrame frame;
     frame.beauty = make_image(region.width, region.height, 4);
     if (settings.aov_depth) frame.depth = make_image(region.width, region.height, 1);
@@ -229,6 +233,7 @@ void render_band(const Job& job, const TileGrid& grid, SplatStore& store, const 
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                      const Environment* environment, const RenderSettings& settings, const Progress& progress,
                      RenderCache* cache) {
+    assert(settings.tile_px >= 16 && settings.tile_px <= TilePlanes::widest_px);
     const auto start = std::chrono::steady_clock::now();
     for (const RenderLayer& layer : layers)
         if (layer.splats->size() > 0xffffffffLL)
@@ -249,6 +254,8 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
         TileGrid band = grid;
         band.y0 = grid.y0 + row * grid.tile_px;
         band.height = std::min(band_rows * grid.tile_px, grid.y0 + grid.height - band.y0);
+        band.first_band = row == 0;
+        band.last_band = row + band_rows >= grid.rows();
         render_band(job, band, state.store, progress, frame);
     }
     if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);

@@ -22,6 +22,12 @@ float support_of(const LayerProjection& layer, const ScreenSplat& splat) {
     return splat.radius_px * layer.reach + layer.margin_px;
 }
 
+/// Whether a splat that touches a band is to be counted in it: by its centre, so that it counts once.
+bool counts_here(const TileGrid& grid, float y_px) {
+    return (grid.first_band || y_px >= static_cast<float>(grid.y0)) &&
+           (grid.last_band || y_px < static_cast<float>(grid.y0 + grid.height));
+}
+
 }  // namespace
 
 ScreenSplat* SplatStore::take(std::int64_t count) {
@@ -97,9 +103,10 @@ void TileBins::add_segment(Scratch& scratch, const LayerProjection& layer, int g
         scratch.rects.push_back(r);
         segment.first_bin = std::min(segment.first_bin, r.first_bin + std::int64_t{r.y0} * r.columns + r.x0);
         last_bin = std::max(last_bin, r.first_bin + std::int64_t{r.y1} * r.columns + r.x1);
+        if (!counts_here(grid_, splat.y_px)) continue;
+        ++segment.instances;
         segment.footprint_px += real::pi * splat.radius_px * splat.radius_px;
     }
-    segment.instances = static_cast<std::int64_t>(scratch.splats.size());
     const auto each_bin = [&](const BinRect& r, const auto& visit) {
         const std::int64_t corner = r.first_bin - segment.first_bin;
         for (std::int32_t y = r.y0; y <= r.y1; ++y)

@@ -41,6 +41,7 @@ class SplatStore {
 struct TileGrid {
     std::int64_t x0 = 0, y0 = 0, width = 0, height = 0;  // px
     int tile_px = 32;
+    bool first_band = true, last_band = true;  // of the bands that a memory limit asks for
     std::int64_t columns() const { return (width + tile_px - 1) / tile_px; }
     std::int64_t rows() const { return (height + tile_px - 1) / tile_px; }
     std::int64_t tiles() const { return columns() * rows(); }
@@ -60,7 +61,7 @@ class TileBins {
 
     const TileGrid& grid() const { return grid_; }
     std::int64_t records() const;    // written, a splat once per bin it touches
-    std::int64_t instances() const;  // splats (children counted one by one) that touch the grid
+    std::int64_t instances() const;  // splats (children counted one by one), each in one band only
     double footprint_px() const;     // sum of their footprints' areas, square px
 
   private:
