@@ -91,9 +91,10 @@ class BatchRun {
 
 void BatchRun::prepare() {
     const JobEstimate job = estimate(plan_);
-    log_info(fmt::format("{} frames of {}x{} px, about {} splats, about {} of memory",
-                         frames_to_render(plan_), plan_.scene.output.width, plan_.scene.output.height,
-                         human_count(static_cast<double>(job.splats)),
+    const auto frames = frames_to_render(plan_);
+    log_info(fmt::format("{} {} of {}x{} px, about {} splats, about {} of memory", frames,
+                         frames == 1 ? "frame" : "frames", plan_.scene.output.width,
+                         plan_.scene.output.height, human_count(static_cast<double>(job.splats)),
                          human_bytes(static_cast<double>(job.bytes))));
     pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache);
 }

@@ -41,10 +41,10 @@ ProgressReport::ProgressReport(ProgressMode mode) {
              : mode == ProgressMode::automatic && terminal ? Style::bar
                                                            : Style::plain;
     if (style_ == Style::none) return;
-    set_log_sink([this](LogLevel, const std::string& line) {
+    set_log_sink([this](LogLevel level, const std::string& line) {
         const std::lock_guard lock(mutex_);
         clear_bar();
-        fmt::print(stderr, "astrosplat: {}\n", line);
+        fmt::print(stderr, "{}\n", terminal_line(level, line));
     });
     printer_ = std::thread([this] { print_loop(); });
 }

@@ -31,11 +31,15 @@ void emit(Log& log, LogLevel level, const std::string& line) {
         log.sink(level, line);
         return;
     }
-    const char* kind = level == LogLevel::warning ? "warning: " : level == LogLevel::error ? "error: " : "";
-    fmt::print(stderr, "astrosplat: {}{}\n", kind, line);
+    fmt::print(stderr, "{}\n", terminal_line(level, line));
 }
 
 }  // namespace
+
+std::string terminal_line(LogLevel level, const std::string& line) {
+    const char* kind = level == LogLevel::warning ? "warning: " : level == LogLevel::error ? "error: " : "";
+    return fmt::format("astrosplat: {}{}", kind, line);
+}
 
 void set_log_level(LogLevel level) {
     Log& log = the_log();

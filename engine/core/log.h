@@ -16,6 +16,9 @@ void set_log_level(LogLevel level);
 /// The sink is called by one thread at a time and must not log itself.
 void set_log_sink(std::function<void(LogLevel, const std::string&)> sink);
 
+/// "astrosplat: warning: LINE": what a terminal shows of a message.
+std::string terminal_line(LogLevel level, const std::string& line);
+
 /// One line, without a newline. Thread-safe.
 void log_line(LogLevel level, const std::string& line);
 void log_error(const std::string& line);
