@@ -1,0 +1,52 @@
+// What a person asked for and the widgets cannot do themselves, in order of asking. The viewer empties the
+// list every frame.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace astrosplat {
+
+struct Command {
+    enum class Kind {
+        new_from_file,  // path: picture, mesh or splats become an untitled scene
+        open,           // path: a scene
+        open_demo,
+        save,
+        save_as,  // path
+        reload,   // from disk
+        keep,     // ignore the change on disk
+        recover,  // path: an autosave
+        discard_recovery,
+        quit,           // unsaved changes already answered for
+        import_file,    // path: as a new layer
+        set_reference,  // path
+        save_look,      // path: of the selected layer
+        apply_look,     // path: to the selected layer
+        regenerate,     // index: layer whose set is stale
+        cancel_load,    // index: layer being generated
+        render_frame,   // path: to this file, the current frame
+        render_range,   // as [output] says
+        render_movie,   // path: through ffmpeg
+        cancel_render,
+        screenshot,  // path
+        store_b,     // the look now becomes B
+        take_snapshot,
+        restore_snapshot,  // index
+        delete_snapshot,   // index
+        compare_snapshot,  // index becomes B
+        copy_batch_command,
+        copy_text,    // text
+        frame_layer,  // camera on the selected layer
+        frame_all,
+        add_move  // index: CameraMove
+    };
+    Kind kind;
+    std::filesystem::path path;
+    std::string text;
+    std::size_t index = 0;
+};
+using Commands = std::vector<Command>;
+
+}  // namespace astrosplat

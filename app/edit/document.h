@@ -1,0 +1,85 @@
+// The scene being edited: the scene itself, the text it came from, undo and redo, what is saved and what is
+// not. In: a scene file, or the text of one that has no file yet; then edits. Out: a plain Scene after every
+// edit. Knows no window.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scene/load.h"
+#include "scene/parameter.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// Edits that belong together (one drag of a slider) carry the same id and make one undo step; 0: a step of
+/// its own.
+using Gesture = std::uint64_t;
+
+class Document {
+  public:
+    /// Opens a scene file. Throws InputError. Keys given by `assignments` are remembered (see
+    /// set_by_command_line).
+    static Document open(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
+    /// A scene without a file: `toml` as if it lay at `place`, whose folder resolves its paths. Saving asks
+    /// for a file.
+    static Document untitled(const std::string& toml, const std::filesystem::path& place,
+                             std::span<const Assignment> assignments = {});
+
+    const Scene& scene() const;
+    /// Differs after every edit, undo, redo and load.
+    std::uint64_t revision() const;
+    /// Empty when untitled.
+    const std::filesystem::path& file() const;
+    std::string name() const;  // "whirlpool.toml", "Untitled"
+    bool edited() const;       // differs from what lies on disk
+
+    /// Applies `change` to a copy and makes it the scene as one undo step called `name` ("Opacity of dust").
+    /// Throws what `change` throws, and InputError where the result breaks a rule between parameters; the
+    /// scene is then as before. An edit that changes nothing is not recorded.
+    void edit(const std::string& name, const std::function<void(Scene&)>& change, Gesture gesture = 0);
+
+    /// Sets one parameter by its full key. A keyed parameter gets (or changes) the key at `frame`, any other
+    /// its value. Throws InputError as edit() does.
+    void set(const std::string& key, const Value& value, double frame, Gesture gesture = 0);
+    /// Back to the default, animation of it removed.
+    void reset(const std::string& key);
+    /// The parameter's default in a new scene.
+    static Value default_value(const ParameterSpec& spec);
+    bool set_by_command_line(const std::string& key) const;
+
+    bool can_undo() const;
+    bool can_redo() const;
+    std::string undo_name() const;  // empty when there is nothing to undo
+    std::string redo_name() const;
+    void undo();
+    void redo();
+
+    /// Writes the scene's file, atomically, keeping comments and order. Throws OutputError, and InputError
+    /// when untitled.
+    void save();
+    /// Writes to `file`, which the document then is. Throws OutputError.
+    void save_as(const std::filesystem::path& file);
+    /// The text that save_as(file) would write.
+    std::string text_for(const std::filesystem::path& file) const;
+
+    /// The file was changed by somebody else since it was read or saved (asked of the disk now).
+    bool changed_on_disk() const;
+    /// Reads the file again as one undo step. Throws InputError; the scene is then as before.
+    void reload();
+    /// Keeps what is here; changed_on_disk() is false until the next change.
+    void ignore_change_on_disk();
+
+  private:
+    struct State;
+    explicit Document(std::shared_ptr<State> state);
+    std::shared_ptr<State> state_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,26 @@
+// Editing the list of layers: free functions on a scene. Names stay unique and valid; tracks follow a layer's
+// name.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// A name like `wanted` that no layer has and that SCENE.md allows.
+std::string free_layer_name(const Scene& scene, const std::string& wanted);
+/// A layer for a picture (on the built-in plane), a mesh (with its own texture) or a splat file, at the end
+/// of the list. Throws InputError for another kind of file. Returns its index.
+std::size_t add_layer(Scene& scene, const std::filesystem::path& file);
+std::size_t duplicate_layer(Scene& scene, std::size_t index);
+void remove_layer(Scene& scene, std::size_t index);
+void move_layer(Scene& scene, std::size_t from, std::size_t to);
+/// Throws InputError where the name is taken or not valid.
+void rename_layer(Scene& scene, std::size_t index, const std::string& name);
+
+/// Look and render of a preset file (see save_preset_text) put on a layer. Throws InputError.
+void apply_preset(LayerParams& layer, const std::filesystem::path& preset);
+
+}  // namespace astrosplat

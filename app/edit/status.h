@@ -1,0 +1,104 @@
+// What the window has to say: how far the picture is, what layers hold, what jobs run. Filled by the viewer
+// every frame, only read by the widgets.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/bounds.h"
+
+namespace astrosplat {
+
+/// How many of a layer's splats lie at each distance, and how its picture's values spread.
+struct LayerHistograms {
+    static constexpr int bins = 64;
+    std::array<float, bins> distance{};  // share of the fullest bin, over 0 .. max_distance
+    double max_distance = 0.0;           // scene units
+    struct Values {  // of the picture as it lies in the file (FITS: data values); empty for splat files
+        std::vector<float> share;  // of the fullest bin
+        double lo = 0.0, hi = 1.0;
+        double black = 0.0, white = 1.0;  // what "auto" means
+    };
+    Values values;
+};
+
+struct LayerStatus {
+    std::int64_t splats = 0;  // in the set
+    std::int64_t kept = 0;    // by the look, estimated from the preview's share
+    std::int64_t shown = 0;   // by the preview
+    bool loading = false;
+    float progress = 0.0f;                      // 0..1 while loading
+    std::int64_t found = 0;                     // splats so far while loading
+    bool stale = false;                         // the source was changed and not generated anew
+    std::string error;                          // why it could not be loaded, one line
+    double radius_min = 0.0, radius_max = 0.0;  // what radius 0, 0 means for this set, scene units
+    double spacing = 0.0;                       // lattice step, scene units; 0: unknown
+    std::shared_ptr<const LayerHistograms> histograms;
+};
+
+enum class PictureState { loading, preview, refining, final, failed };
+
+struct PictureStatus {
+    PictureState state = PictureState::loading;
+    std::int64_t shown = 0, total = 0;  // splats in the preview and in the sets
+    float progress = 0.0f;              // refining
+    double seconds = 0.0;               // final: how long it took
+    std::string error;
+    int width = 0, height = 0;  // px of the picture
+};
+
+struct PixelProbe {
+    int x = 0, y = 0;
+    float rgba[4] = {0, 0, 0, 0};  // linear, premultiplied
+    std::optional<float> depth;    // scene units
+};
+
+struct Snapshot {
+    std::string name;
+    void* thumbnail = nullptr;  // texture handle for the widgets
+    float aspect = 1.0f;
+    std::int64_t splats = 0;
+    double seconds = 0.0;  // render time; 0: from the preview
+};
+
+struct JobStatus {
+    std::string name;  // "Rendering 12 of 240"; empty: none
+    float progress = 0.0f;
+};
+
+struct Message {
+    std::string text;
+    bool error = false;
+};
+
+struct Status {
+    PictureStatus picture;
+    std::vector<LayerStatus> layers;  // as in the scene
+    Bounds box;                       // of all visible layers, world space
+    std::optional<PixelProbe> probe;
+    std::vector<Snapshot> snapshots;
+    int b_snapshot = -1;
+    std::string b_name;
+    JobStatus job;
+    Message message;
+    std::vector<Message> log;
+    std::int64_t memory_bytes = 0;
+    int threads = 1;
+    float frames_per_second = 0.0f;
+    std::vector<std::filesystem::path> recent;
+    bool changed_on_disk = false;
+    std::vector<std::filesystem::path> recoveries;  // autosaves of scenes that were not closed
+    bool has_ffmpeg = false;
+    std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
+
+    void* picture_texture = nullptr;                    // what the viewport shows, bottom row first
+    std::vector<std::vector<glm::vec2>> overlay_lines;  // camera path, frustum; px of the viewport
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,67 @@
+// What the person at the window looks at: view, frame, comparison, panels. Nothing of it is saved in a scene
+// or reaches a rendered file. Plain values, changed by the widgets and read by the viewer.
+#pragma once
+
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "camera/camera.h"
+
+namespace astrosplat {
+
+enum class ViewKind { camera, free, front, top, side };
+enum class SizeMode { fit, one_to_one };  // the viewport's size, or the output's resolution
+enum class CompareMode { a, wipe, b, reference, difference };
+enum class PanelTab { source, look, render, camera, output };
+enum class PreviewEngine { automatic, opengl, processor };
+enum class DisplayView { scene, linear, srgb, soft };  // scene: as [output] view has it
+
+/// A camera that belongs to the window, not to the scene.
+struct FreeCamera {
+    glm::dvec3 position{0.0, 0.0, 10.0}, pivot{0.0}, up{0.0, 1.0, 0.0};
+    double fov_deg = 45.0;  // vertical
+    bool orthographic = false;
+    double height = 10.0;  // scene units, orthographic
+};
+
+struct ViewState {
+    std::size_t layer = 0;  // selected
+    PanelTab tab = PanelTab::look;
+    double frame = 1.0;
+    bool playing = false;
+
+    ViewKind view = ViewKind::camera;
+    FreeCamera free;
+    bool lock_to_camera = false;  // moving the mouse edits the scene's camera
+    SizeMode size = SizeMode::fit;
+    glm::dvec2 pan_px{0.0};  // 1:1: the picture's middle from the viewport's
+    double zoom = 1.0;       // 1:1: screen px per picture px
+
+    CompareMode compare = CompareMode::a;
+    float wipe = 0.5f;  // 0..1 of the picture's width; A lies to the left
+    float difference_gain = 1.0f;
+    std::filesystem::path reference;  // picture to compare with
+    float reference_opacity = 1.0f;
+
+    float inspect_exposure = 0.0f;  // stops; shown in amber while not 0
+    DisplayView display = DisplayView::scene;
+    bool gate = true, safe_areas = false, camera_path = true;
+    PreviewEngine engine = PreviewEngine::automatic;
+    float preview_share = 0.0f;  // 0: sized to hold the frame rate; else 0..1 of every layer
+    bool settle = true;          // the final picture follows by itself
+
+    std::set<std::string> solo;  // names of layers; empty: all
+
+    bool panels = true;                                    // F11
+    float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
+    bool timeline_open = true, graph_open = false;
+    std::string graph_key;  // parameter shown in the timeline's graph
+    bool help_open = false, log_open = false;
+    bool hint_open = false;  // "Drop a picture, mesh or splat file here. F1 shows the keys."
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,61 @@
+// From linear pictures to what the screen shows: exposure, view transform, A/B wipe, difference, checker
+// behind transparency, letterbox.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/image.h"
+
+namespace astrosplat {
+
+/// A picture on the GPU that the processor fills, whole or tile by tile. RGBA32F, top row first.
+class PictureTexture {
+  public:
+    PictureTexture();
+    ~PictureTexture();
+    PictureTexture(PictureTexture&&) noexcept;
+    PictureTexture& operator=(PictureTexture&&) noexcept;
+    void upload(const Image& rgba);
+    /// Only this part of `rgba` (whose size is that of the last upload).
+    void upload(const Image& rgba, const Region& part);
+    unsigned handle() const;  // 0 before the first upload
+    int width() const;
+    int height() const;
+
+  private:
+    unsigned texture_ = 0;
+    int width_ = 0, height_ = 0;
+};
+
+/// How a picture is shown. `view` as in OutputParams.
+struct DisplaySettings {
+    enum class View { linear, srgb, soft } view = View::srgb;
+    float exposure = 0.0f;  // stops
+    unsigned a = 0, b = 0;  // textures; b 0: only a
+    enum class Mode { a, wipe, b, difference } mode = Mode::a;
+    float wipe = 0.5f;  // 0..1 of the picture's width
+    float difference_gain = 1.0f;
+    bool b_is_display = false;  // b holds display values (a reference picture), not linear light
+    // Where the picture lies in the target, px from its upper left; may be larger than the target (1:1).
+    float x = 0, y = 0, width = 0, height = 0;
+    float background[3] = {0, 0, 0};  // around the picture, display values
+};
+
+/// An 8-bit target for the widgets to show.
+class Display {
+  public:
+    Display();
+    ~Display();
+    /// Draws at target_width x target_height px; returns the texture (RGBA8, bottom row first as ImGui's
+    /// ImVec2(0, 1) .. ImVec2(1, 0) expects).
+    unsigned draw(const DisplaySettings& settings, int target_width, int target_height);
+    /// The last draw(), read back as 8-bit RGBA, top row first.
+    std::vector<unsigned char> read() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,53 @@
+// The picture in motion, drawn by OpenGL: raw splats in GPU memory, the look evaluated there
+// (shaders/shared), a share of every layer, sorted, into an RGBA32F picture (DESIGN 10).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/image.h"
+#include "look/apply.h"
+#include "render/environment.h"
+#include "render/render.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+/// One layer of the preview. `set` holds the splats in stratified order (splats/stratified.h), so that any
+/// prefix is a fair sample; the same pointer means that nothing needs uploading.
+struct PreviewLayer {
+    RenderLayer layer;  // name, render, transform; its `splats` are not used
+    std::shared_ptr<const SplatSet> set;
+    Look look;
+    LookInputs inputs;
+    float share = 1.0f;  // of the set, 0..1
+};
+
+class GlPreview {
+  public:
+    /// Needs a current context of OpenGL 4.1 core or later. Throws std::runtime_error with the driver's words
+    /// where a shader does not compile.
+    GlPreview();
+    ~GlPreview();
+
+    /// Draws into its own picture of width x height px and returns the texture (RGBA32F, linear,
+    /// premultiplied, top row first). Layers in file order. Throws InputError where a look cannot be applied.
+    unsigned draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
+                  const Environment* environment, int width, int height, float pixel_filter);
+    /// The order of the last draw() was that of an older camera: draw again soon.
+    bool sorting() const;
+    /// For tests and screenshots: waits for the sorting, so that the next draw() is exact.
+    void wait_for_order();
+    /// The picture as it is, read back.
+    Image read() const;
+    std::int64_t shown() const;  // splats of the last draw, before the look dropped any
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,52 @@
+// The final picture in the background: the offline renderer on a thread of its own, whose tiles the window
+// takes as they come. The pixels are the very bits of `--batch` at that size.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "render/render.h"
+#include "scene/scene.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+/// One picture to compute.
+struct FinalRequest {
+    Scene scene;                                        // evaluated by the pipeline at `frame`
+    std::vector<std::shared_ptr<const SplatSet>> sets;  // one a layer; null: the layer is not drawn
+    double frame = 1.0;
+    std::int64_t width = 0, height = 0;  // px
+    Region region;                       // empty: all
+};
+
+class FinalPicture {
+  public:
+    FinalPicture();
+    ~FinalPicture();  // cancels and waits
+
+    /// Cancels what is under way and begins anew. Returns at once.
+    void start(FinalRequest request);
+    /// Cancels and returns at once; the thread stops within 50 ms of work.
+    void cancel();
+
+    enum class State { idle, running, done, failed };
+    State state() const;
+    float progress() const;
+    std::string error() const;
+    /// When done. Its beauty is region-sized.
+    std::shared_ptr<const RenderedFrame> frame() const;
+
+    /// Tiles finished since the last call, copied into `picture` (resized to the request's). Returns their
+    /// regions, px of `picture`. Never blocks on the renderer.
+    std::vector<Region> take_tiles(Image& picture);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace astrosplat

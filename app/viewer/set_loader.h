@@ -1,0 +1,57 @@
+// Loads and generates layers' sets in the background, newest wish first. In: a layer's source. Out: the set,
+// its stratified order for the preview, and its histograms.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "edit/status.h"
+#include "scene/scene.h"
+#include "splats/set_cache.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+/// What the viewer keeps of one layer.
+struct LoadedLayer {
+    std::shared_ptr<const SplatSet> set;      // in order of id: for the final picture
+    std::shared_ptr<const SplatSet> preview;  // in stratified order, at most `preview_limit` splats
+    std::shared_ptr<const LayerHistograms> histograms;
+    Bounds box;  // layer space
+    SourceParams source;
+    std::string name;  // which the seed may depend on
+};
+
+class SetLoader {
+  public:
+    /// `preview_limit`: largest number of splats of a layer that a preview will ever draw.
+    SetLoader(const SetCache& cache, std::int64_t preview_limit);
+    ~SetLoader();  // cancels and waits
+
+    /// Makes sure that every layer of the scene has its set or is on its way: starts what is missing or
+    /// changed, cancels what nobody wants any more. Cheap when nothing changed. Layers never visible are not
+    /// loaded.
+    void want(const Scene& scene);
+    /// Begins again a layer that was cancelled or failed.
+    void retry(const std::string& layer_name);
+    /// Stops one layer's loading; its old set, if any, stays.
+    void cancel(const std::string& layer_name);
+
+    /// Grows whenever a layer of the wanted scene got its set or failed.
+    std::uint64_t revision() const;
+    /// The latest set of a layer, which may be older than its source; null: none yet.
+    std::shared_ptr<const LoadedLayer> layer(const std::string& layer_name) const;
+    /// loading, progress, found, stale, error, splats and histograms filled in.
+    LayerStatus status(const LayerParams& layer) const;
+    /// Every wanted layer is there or has failed.
+    bool idle() const;
+    void wait();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace astrosplat

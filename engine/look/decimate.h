@@ -1,0 +1,13 @@
+// A share of a layer that looks like the whole (DESIGN 10): fewer splats, each more opaque and, where that
+// does not suffice, larger, so that alpha * radius^2 is conserved.
+#pragma once
+
+#include "splats/shaded_splats.h"
+
+namespace astrosplat {
+
+/// alpha' = min(max(0.5, alpha), alpha/q), with additive blends alpha/q unbounded; radius' = radius *
+/// sqrt(alpha / (q alpha')). `share` is q in (0, 1]; 1 changes nothing.
+void decimate(ShadedSplats& splats, float share, bool additive);
+
+}  // namespace astrosplat
