@@ -320,12 +320,13 @@ bool find_open_rows(const TilePlanes& t, FoldKind kind, std::vector<std::uint8_t
 
 template <FoldKind kKind, bool kAovs, bool kHolds>
 void fold_all(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
-              const FoldSettings& settings, TilePlanes& planes) {
-    constexpr std::size_t look_every = 64;
+              const FoldSettings& settings, const Progress& progress, TilePlanes& planes) {
+    constexpr std::size_t look_every = 64, check_every = 1024;
     std::vector<std::uint8_t> row_open(static_cast<std::size_t>(planes.height), 1);
     Footprint footprint;
     for (std::size_t n = 0; n < splats.size(); ++n) {
         if (n % look_every == look_every - 1 && !find_open_rows(planes, kKind, row_open)) return;
+        if (n % check_every == 0) progress.check();
         const ScreenSplat& splat = splats[n];
         const FoldLayer& layer = layers[splat.layer];
         const FootprintTable& table = *layer.footprints;
@@ -347,27 +348,27 @@ void fold_all(std::span<const ScreenSplat> splats, std::span<const FoldLayer> la
 
 template <bool kAovs>
 void fold_kind(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
-               const FoldSettings& settings, TilePlanes& planes) {
+               const FoldSettings& settings, const Progress& progress, TilePlanes& planes) {
     const bool holds =
         std::any_of(layers.begin(), layers.end(), [](const FoldLayer& layer) { return layer.holdout; });
     if (settings.kind == FoldKind::lighten)
-        fold_all<FoldKind::lighten, kAovs, false>(splats, layers, settings, planes);
+        fold_all<FoldKind::lighten, kAovs, false>(splats, layers, settings, progress, planes);
     else if (holds)
-        fold_all<FoldKind::general, kAovs, true>(splats, layers, settings, planes);
+        fold_all<FoldKind::general, kAovs, true>(splats, layers, settings, progress, planes);
     else
-        fold_all<FoldKind::general, kAovs, false>(splats, layers, settings, planes);
+        fold_all<FoldKind::general, kAovs, false>(splats, layers, settings, progress, planes);
 }
 
 void fold_here(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
-               const FoldSettings& settings, TilePlanes& planes) {
+               const FoldSettings& settings, const Progress& progress, TilePlanes& planes) {
     if (settings.kind == FoldKind::over)
-        fold_all<FoldKind::over, false, false>(splats, layers, settings, planes);
+        fold_all<FoldKind::over, false, false>(splats, layers, settings, progress, planes);
     else if (settings.kind == FoldKind::add)
-        fold_all<FoldKind::add, false, false>(splats, layers, settings, planes);
+        fold_all<FoldKind::add, false, false>(splats, layers, settings, progress, planes);
     else if (settings.aovs)
-        fold_kind<true>(splats, layers, settings, planes);
+        fold_kind<true>(splats, layers, settings, progress, planes);
     else
-        fold_kind<false>(splats, layers, settings, planes);
+        fold_kind<false>(splats, layers, settings, progress, planes);
 }
 
 }  // namespace astrosplat::HWY_NAMESPACE
@@ -379,16 +380,16 @@ namespace astrosplat {
 HWY_EXPORT(fold_here);
 
 void fold(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
-          const FoldSettings& settings, TilePlanes& planes) {
-    HWY_DYNAMIC_DISPATCH(fold_here)(splats, layers, settings, planes);
+          const FoldSettings& settings, const Progress& progress, TilePlanes& planes) {
+    HWY_DYNAMIC_DISPATCH(fold_here)(splats, layers, settings, progress, planes);
 }
 
-void TilePlanes::reset(std::int64_t x, std::int64_t y, int w, int h, int tile_px,
-                       const FoldSettings& settings, std::size_t layer_count) {
-    x0 = x;
-    y0 = y;
-    width = w;
-    height = h;
+void TilePlanes::reset(const Region& tile, int tile_px, const FoldSettings& settings,
+                       std::size_t layer_count) {
+    x0 = tile.x;
+    y0 = tile.y;
+    width = static_cast<int>(tile.width);
+    height = static_cast<int>(tile.height);
     stride = tile_px + widest_vector;
     const std::size_t size = static_cast<std::size_t>(stride) * static_cast<std::size_t>(tile_px);
     for (Buffer<float>& plane : color) plane.assign(size, 0.0f);
@@ -406,7 +407,7 @@ void TilePlanes::reset(std::int64_t x, std::int64_t y, int w, int h, int tile_px
     }
 }
 
-void SplatSorter::sort(std::vector<ScreenSplat>& splats) {
+void SplatSorter::sort(std::vector<ScreenSplat>& splats, const Progress& progress) {
     const std::size_t n = splats.size();
     keys_.resize(n);
     other_.resize(n);
@@ -416,6 +417,7 @@ void SplatSorter::sort(std::vector<ScreenSplat>& splats) {
         all_or |= splats[i].depth;
         all_and &= splats[i].depth;
     }
+    constexpr std::size_t check_every = 65536;
     constexpr int digit_bits = 11;
     constexpr std::uint32_t digits = 1u << digit_bits;
     for (int shift = 0; shift < 32; shift += digit_bits) {
@@ -424,11 +426,17 @@ void SplatSorter::sort(std::vector<ScreenSplat>& splats) {
         std::uint32_t start[digits + 1] = {};
         for (std::size_t i = 0; i < n; ++i) ++start[(keys_[i] >> (32 + shift) & mask) + 1];
         for (std::uint32_t d = 0; d < digits; ++d) start[d + 1] += start[d];
-        for (std::size_t i = 0; i < n; ++i) other_[start[keys_[i] >> (32 + shift) & mask]++] = keys_[i];
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i % check_every == 0) progress.check();
+            other_[start[keys_[i] >> (32 + shift) & mask]++] = keys_[i];
+        }
         keys_.swap(other_);
     }
     sorted_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) sorted_[i] = splats[keys_[i] & 0xffffffffu];
+    for (std::size_t i = 0; i < n; ++i) {
+        if (i % check_every == 0) progress.check();
+        sorted_[i] = splats[keys_[i] & 0xffffffffu];
+    }
     for (std::size_t i = 0; i < n;) {
         std::size_t end = i + 1;
         while (end < n && sorted_[end].depth == sorted_[i].depth) ++end;

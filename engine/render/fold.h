@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/buffer.h"
+#include "core/image.h"
+#include "core/progress.h"
 #include "render/footprint.h"
 #include "render/layer_render.h"
 #include "render/screen_splat.h"
@@ -56,15 +58,14 @@ struct TilePlanes {
     std::vector<Buffer<float>> layer_light;  // 4 planes a layer: r, g, b, alpha
 
     /// Clears to "nothing yet" for a tile; `layer_count` layers' light is kept when settings.aovs.
-    void reset(std::int64_t x, std::int64_t y, int w, int h, int tile_px, const FoldSettings& settings,
-               std::size_t layer_count);
+    void reset(const Region& tile, int tile_px, const FoldSettings& settings, std::size_t layer_count);
     std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * stride + x); }
 };
 
 /// Sorts near to far: radix sort on depth, ties by in_front_of.
 class SplatSorter {
   public:
-    void sort(std::vector<ScreenSplat>& splats);
+    void sort(std::vector<ScreenSplat>& splats, const Progress& progress);
 
   private:
     std::vector<std::uint64_t> keys_, other_;
@@ -73,6 +74,6 @@ class SplatSorter {
 
 /// Folds `splats` (near to far) into the planes.
 void fold(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
-          const FoldSettings& settings, TilePlanes& planes);
+          const FoldSettings& settings, const Progress& progress, TilePlanes& planes);
 
 }  // namespace astrosplat

@@ -267,7 +267,7 @@ float ripple(const NodePair& pair, float (FootprintNode::*spectrum)[3], float x_
 
 }  // namespace
 
-FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px) {
+FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px, const Progress& progress) {
     using Shape = Falloff::Shape;
     FootprintTable table;
     table.linear_in_distance = falloff.shape != Shape::constant && falloff.shape != Shape::gaussian;
@@ -284,6 +284,7 @@ FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_p
         table.reach = static_cast<float>(exponent / falloff.sharpness);
     table.nodes.resize(octaves * steps_per_octave + 1);
     parallel_for(static_cast<std::int64_t>(table.nodes.size()), [&](std::int64_t i, int) {
+        progress.check();
         const double octave = static_cast<double>(std::uint64_t{1} << (i / steps_per_octave));
         const double radius_px =
             smallest_radius_px * octave * (1.0 + double(i % steps_per_octave) / steps_per_octave);

@@ -16,6 +16,7 @@
 #include <array>
 #include <vector>
 
+#include "core/progress.h"
 #include "render/layer_render.h"
 
 namespace astrosplat {
@@ -56,7 +57,8 @@ struct Footprint {
 };
 
 /// Builds the table for every radius from 2^-6 to 2^10 px (larger ones reuse the last shape). About 30 ms.
-FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px);
+FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px,
+                                    const Progress& progress = {});
 
 /// The footprint of one splat; x_px, y_px are its centre, snapped to 1/256 px by the caller.
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px, Footprint& footprint);

@@ -70,8 +70,8 @@ LodTable::LodTable(const Falloff& falloff) : falloff_(falloff) {
     levels_.push_back(std::move(parent));
 }
 
-void LodTable::prepare(int finest) {
-    while (static_cast<int>(levels_.size()) <= finest) build(static_cast<int>(levels_.size()));
+void LodTable::prepare(int finest, const Progress& progress) {
+    while (static_cast<int>(levels_.size()) <= finest) build(static_cast<int>(levels_.size()), progress);
 }
 
 /// Centres per area of the parent's disc at distances 0 .. ball in equal steps, integrating to 1: the density
@@ -141,7 +141,7 @@ double LodTable::solve(double target, const std::vector<double>& rest, int numbe
     return 0.5 * (lo + hi);
 }
 
-void LodTable::build(int number) {
+void LodTable::build(int number, const Progress& progress) {
     Level level;
     const double ball = centre_ball(number);
     level.footprint = mean_footprint(number);
@@ -169,6 +169,7 @@ void LodTable::build(int number) {
         const double a = parent.steady[i];
         level.steady.push_back(solve(a * parent_light, nothing, number, level));
         for (int f = 0; f <= fade_steps; ++f) {
+            progress.check();
             const double coarse_alpha = coarse.steady[i] * (1.0 - double(f) / fade_steps);
             std::vector<double> rest;
             for (double q : coarse.footprint) rest.push_back(power_of_rest(coarse_alpha * q, coarse_number));

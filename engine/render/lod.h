@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/progress.h"
 #include "render/layer_render.h"
 
 namespace astrosplat {
@@ -38,7 +39,7 @@ class LodTable {
     explicit LodTable(const Falloff& falloff);
 
     /// Makes lookups for levels up to `finest` possible.
-    void prepare(int finest);
+    void prepare(int finest, const Progress& progress = {});
 
     /// Alphas of the coarse and the fine level's splats which together deposit the light of a parent of alpha
     /// `a` under over: Integral[1 - (1 - a_coarse q_coarse)^M (1 - a_fine q_fine)^N] = a Integral[w].
@@ -61,7 +62,7 @@ class LodTable {
         // Child alpha over (parent alpha, fade), while the coarser level fades out.
         std::vector<float> fading;
     };
-    void build(int level);
+    void build(int level, const Progress& progress);
     std::vector<double> centre_density(int level) const;
     std::vector<double> mean_footprint(int level) const;
     double solve(double target, const std::vector<double>& rest, int number, const Level& level) const;

@@ -1,10 +1,13 @@
 #include "render/render.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "core/error.h"
@@ -43,13 +46,14 @@ int finest_level(const LevelOfDetail& lod) {
 
 /// The largest light of a single splat: alpha * opacity * brightest channel, over all layers (DESIGN 7's L).
 /// Taken over all splats, seen or not, so that a region renders as the whole does.
-float largest_light(std::span<const RenderLayer> layers) {
+float largest_light(std::span<const RenderLayer> layers, const Progress& progress) {
     constexpr std::int64_t chunk = 1 << 18;
     float largest = 0.0f;
     for (const RenderLayer& layer : layers) {
         const ShadedSplats& splats = *layer.splats;
         std::vector<float> partial(static_cast<std::size_t>((splats.size() + chunk - 1) / chunk), 0.0f);
         parallel_chunks(splats.size(), chunk, [&](std::int64_t begin, std::int64_t end, int) {
+            progress.check();
             float most = 0.0f;
             for (std::int64_t i = begin; i < end; ++i) {
                 const glm::vec3& c = splats.color[i];
@@ -110,15 +114,16 @@ struct RenderCache::State {
     std::map<TableKey, std::unique_ptr<FootprintTable>> footprints;
     std::map<FalloffKey, std::unique_ptr<LodTable>> lods;
 
-    const FootprintTable& footprint(const Falloff& falloff, float pixel_filter) {
+    const FootprintTable& footprint(const Falloff& falloff, float pixel_filter, const Progress& progress) {
         std::unique_ptr<FootprintTable>& table = footprints[{key_of(falloff), pixel_filter}];
-        if (!table) table = std::make_unique<FootprintTable>(make_footprint_table(falloff, pixel_filter));
+        if (!table)
+            table = std::make_unique<FootprintTable>(make_footprint_table(falloff, pixel_filter, progress));
         return *table;
     }
-    const LodTable& lod(const Falloff& falloff, int finest) {
+    const LodTable& lod(const Falloff& falloff, int finest, const Progress& progress) {
         std::unique_ptr<LodTable>& table = lods[key_of(falloff)];
         if (!table) table = std::make_unique<LodTable>(falloff);
-        table->prepare(finest);
+        table->prepare(finest, progress);
         return *table;
     }
 };
@@ -134,6 +139,8 @@ struct Job {
     const Camera& camera;
     const Environment* environment;
     const RenderSettings& settings;
+    const Progress& progress;
+    const TileDone& tile_done;
     Region region;
     std::vector<BlendGroup> groups;
     std::vector<int> group_of_layer;
@@ -142,9 +149,12 @@ struct Job {
     FoldSettings fold;
 };
 
-Job make_job(std::span<const RenderLayer> layers, const Camera& camera, const Environment* environment,
-             const RenderSettings& settings, RenderCache::State& cache) {
-    Job job{layers, camera, environment, settings, settings.region, {}, {}, {}, {}, {}};
+/// What remains to be said of a job after its arguments.
+void prepare(Job& job, RenderCache::State& cache) {
+    const RenderSettings& settings = job.settings;
+    const std::span<const RenderLayer> layers = job.layers;
+    const Camera& camera = job.camera;
+    job.region = settings.region;
     if (job.region.width <= 0 || job.region.height <= 0) job.region = {0, 0, settings.width, settings.height};
     job.fold.aovs = settings.aov_depth || settings.aov_coverage || settings.aov_count || settings.aov_layers;
     job.groups = make_groups(layers, job.fold.aovs);
@@ -155,23 +165,23 @@ Job make_job(std::span<const RenderLayer> layers, const Camera& camera, const En
     keep_small(cache.lods);
     for (std::size_t l = 0; l < layers.size(); ++l) {
         const LayerRender& render = layers[l].render;
-        const FootprintTable& footprints = cache.footprint(render.falloff, settings.pixel_filter);
+        const FootprintTable& footprints =
+            cache.footprint(render.falloff, settings.pixel_filter, job.progress);
         LayerProjection projection =
             make_projection(layers[l], static_cast<std::uint16_t>(l), camera, settings);
         projection.reach = footprints.reach;
         if (projection.lod_limit_px > 0.0f)
-            projection.lod = &cache.lod(render.falloff, finest_level(render.lod));
+            projection.lod = &cache.lod(render.falloff, finest_level(render.lod), job.progress);
         job.projections.push_back(projection);
         job.fold_layers.push_back({&footprints, render.blend, render.holdout});
     }
-    float largest = largest_light(layers);
-    if (environment) largest = std::max(largest, environment->largest);
+    float largest = largest_light(layers, job.progress);
+    if (job.environment) largest = std::max(largest, job.environment->largest);
     job.fold.stop = stop_threshold(largest, settings.exposure);
     job.fold.focal_px = static_cast<float>(camera.focal_px);
     job.fold.center_x_px = static_cast<float>(camera.center_x_px);
     job.fold.center_y_px = static_cast<float>(camera.center_y_px);
     job.fold.orthographic = camera.projection == Projection::orthographic;
-    return job;
 }
 
 /// Scratch of one worker.
@@ -182,57 +192,100 @@ struct TileWorker {
     TileResolver resolver;
 };
 
-void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
-                 RenderedFrame& frame) {
-    const TileGrid& grid = bins.grid();
+Region tile_region(const TileGrid& grid, std::int64_t tile) {
     const std::int64_t x = grid.x0 + tile % grid.columns() * grid.tile_px;
     const std::int64_t y = grid.y0 + tile / grid.columns() * grid.tile_px;
-    const int width = static_cast<int>(std::min<std::int64_t>(grid.tile_px, grid.x0 + grid.width - x));
-    const int height = static_cast<int>(std::min<std::int64_t>(grid.tile_px, grid.y0 + grid.height - y));
+    return {x, y, std::min<std::int64_t>(grid.tile_px, grid.x0 + grid.width - x),
+            std::min<std::int64_t>(grid.tile_px, grid.y0 + grid.height - y)};
+}
+
+void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
+                 RenderedFrame& frame) {
+    const Region region = tile_region(bins.grid(), tile);
     for (std::size_t g = 0; g < std::max<std::size_t>(1, job.groups.size()); ++g) {
         FoldSettings fold_settings = job.fold;
         if (g < job.groups.size()) fold_settings.kind = job.groups[g].kind;
-        worker.planes.reset(x, y, width, height, grid.tile_px, fold_settings, job.layers.size());
+        worker.planes.reset(region, bins.grid().tile_px, fold_settings, job.layers.size());
         if (g == 0) worker.resolver.begin(worker.planes, job.camera, job.environment);
         if (g == job.groups.size()) break;  // nothing but the environment
-        bins.collect(tile, static_cast<int>(g), worker.splats);
-        worker.sorter.sort(worker.splats);
-        fold(worker.splats, job.fold_layers, fold_settings, worker.planes);
+        bins.collect(tile, static_cast<int>(g), job.progress, worker.splats);
+        worker.sorter.sort(worker.splats, job.progress);
+        fold(worker.splats, job.fold_layers, fold_settings, job.progress, worker.planes);
         worker.resolver.lay(job.groups[g], worker.planes);
     }
     worker.resolver.write(worker.planes, job.region.x, job.region.y, frame);
+    if (job.tile_done) job.tile_done(region, frame);
 }
 
-void render_band(const Job& job, const TileGrid& grid, SplatStore& store, const Progress& progress,
+/// The tiles in the order in which they are rendered: when somebody watches, from the middle of the picture
+/// outwards.
+std::vector<std::int64_t> tile_order(const Job& job, const TileGrid& grid) {
+    std::vector<std::int64_t> order(static_cast<std::size_t>(grid.tiles()));
+    std::iota(order.begin(), order.end(), std::int64_t{0});
+    if (!job.tile_done) return order;
+    const auto from_middle = [&](std::int64_t tile) {  // twice the distance between centres, squared
+        const Region r = tile_region(grid, tile);
+        const std::int64_t x = 2 * (r.x - job.region.x) + r.width - job.region.width;
+        const std::int64_t y = 2 * (r.y - job.region.y) + r.height - job.region.height;
+        return x * x + y * y;
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::int64_t a, std::int64_t b) { return from_middle(a) < from_middle(b); });
+    return order;
+}
+
+/// One band; `before` of the picture's share is done already.
+void render_band(const Job& job, const TileGrid& grid, double before, SplatStore& store,
                  RenderedFrame& frame) {
-    const double before =
-        static_cast<double>(grid.y0 - job.region.y) / static_cast<double>(job.region.height);
     const double share = static_cast<double>(grid.height) / static_cast<double>(job.region.height);
     store.clear();
     TileBins bins(grid, static_cast<int>(job.groups.size()));
-    bins.scatter(job.projections, job.group_of_layer, store, progress);
-    progress.at(before + 0.4 * share);
+    bins.scatter(job.projections, job.group_of_layer, store, job.progress);
+    job.progress.at(before + 0.4 * share);
     std::vector<TileWorker> workers;
     for (int i = 0; i < thread_count(); ++i)
         workers.push_back({{}, {}, {}, TileResolver(job.layers, job.settings)});
+    const std::vector<std::int64_t> order = tile_order(job, grid);
     std::atomic<std::int64_t> done = 0;
-    parallel_for(grid.tiles(), [&](std::int64_t tile, int worker) {
-        progress.check();
-        render_tile(job, bins, tile, workers[static_cast<std::size_t>(worker)], frame);
+    parallel_for(grid.tiles(), [&](std::int64_t i, int worker) {
+        job.progress.check();
+        render_tile(job, bins, order[static_cast<std::size_t>(i)], workers[static_cast<std::size_t>(worker)],
+                    frame);
         const std::int64_t finished = ++done;
         if (finished % 64 == 0)
-            progress.at(before + share * (0.4 + 0.6 * static_cast<double>(finished) /
-                                                    static_cast<double>(grid.tiles())));
+            job.progress.at(before + share * (0.4 + 0.6 * static_cast<double>(finished) /
+                                                        static_cast<double>(grid.tiles())));
     });
     frame.statistics.splats_drawn += bins.instances();
     frame.statistics.mean_overlap += bins.footprint_px();
+}
+
+/// The picture in bands of `band_rows` rows of tiles, those nearest to the middle first when somebody
+/// watches.
+std::vector<TileGrid> make_bands(const Job& job, const TileGrid& grid, std::int64_t band_rows) {
+    std::vector<TileGrid> bands;
+    for (std::int64_t row = 0; row < grid.rows(); row += band_rows) {
+        TileGrid band = grid;
+        band.y0 = grid.y0 + row * grid.tile_px;
+        band.height = std::min(band_rows * grid.tile_px, grid.y0 + grid.height - band.y0);
+        band.first_band = row == 0;
+        band.last_band = row + band_rows >= grid.rows();
+        bands.push_back(band);
+    }
+    if (!job.tile_done) return bands;
+    const auto from_middle = [&](const TileGrid& band) {
+        return std::abs(2 * (band.y0 - grid.y0) + band.height - grid.height);
+    };
+    std::stable_sort(bands.begin(), bands.end(),
+                     [&](const TileGrid& a, const TileGrid& b) { return from_middle(a) < from_middle(b); });
+    return bands;
 }
 
 }  // namespace
 
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                      const Environment* environment, const RenderSettings& settings, const Progress& progress,
-                     RenderCache* cache) {
+                     RenderCache* cache, const TileDone& tile_done) {
     assert(settings.tile_px >= 16 && settings.tile_px <= TilePlanes::widest_px);
     const auto start = std::chrono::steady_clock::now();
     for (const RenderLayer& layer : layers)
@@ -242,21 +295,19 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                              " splats in one layer, at most 4294967295 can be drawn");
     std::unique_ptr<RenderCache> own = cache ? nullptr : std::make_unique<RenderCache>();
     RenderCache::State& state = cache ? *cache->state : *own->state;
-    const Job job = make_job(layers, camera, environment, settings, state);
+    Job job{layers, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
+    prepare(job, state);
     const TileGrid grid{job.region.x, job.region.y, job.region.width, job.region.height, settings.tile_px};
-    const std::int64_t records = estimate_records(job.projections, grid);
+    const std::int64_t records = estimate_records(job.projections, grid, progress);
     const std::int64_t band_rows = rows_per_band(records, settings.memory_limit_bytes, grid.rows());
     const std::int64_t bands = (grid.rows() + band_rows - 1) / band_rows;
     const std::int64_t bytes = records * static_cast<std::int64_t>(sizeof(ScreenSplat)) / bands;
     if (bytes > state.store.bytes()) claim_memory(bytes - state.store.bytes(), "projected splats");
     RenderedFrame frame = make_frame(layers, settings, job.region);
-    for (std::int64_t row = 0; row < grid.rows(); row += band_rows) {
-        TileGrid band = grid;
-        band.y0 = grid.y0 + row * grid.tile_px;
-        band.height = std::min(band_rows * grid.tile_px, grid.y0 + grid.height - band.y0);
-        band.first_band = row == 0;
-        band.last_band = row + band_rows >= grid.rows();
-        render_band(job, band, state.store, progress, frame);
+    double done = 0.0;
+    for (const TileGrid& band : make_bands(job, grid, band_rows)) {
+        render_band(job, band, done, state.store, frame);
+        done += static_cast<double>(band.height) / static_cast<double>(grid.height);
     }
     if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);
     const double covered = covered_pixels(frame.beauty);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -68,10 +69,17 @@ class RenderCache {
     std::unique_ptr<State> state;
 };
 
+/// Called when the pixels of a tile are final in the frame's images; `tile_px` in px of the whole picture.
+/// Comes from the worker threads, several at once but never for the same pixels, and the work waits for it.
+using TileDone = std::function<void(const Region& tile_px, const RenderedFrame& frame)>;
+
 /// A pure function of its arguments but for `progress`. Layers in file order; invisible ones are left out by
-/// the caller. `environment` may be null. Throws Cancelled, and InputError when memory does not suffice.
+/// the caller. `environment` may be null. With `tile_done` the tiles come from the middle of the picture
+/// outwards, each pixel in exactly one. Throws Cancelled within some 20 ms of being asked to stop, and
+/// InputError when memory does not suffice.
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                      const Environment* environment, const RenderSettings& settings,
-                     const Progress& progress = {}, RenderCache* cache = nullptr);
+                     const Progress& progress = {}, RenderCache* cache = nullptr,
+                     const TileDone& tile_done = {});
 
 }  // namespace astrosplat

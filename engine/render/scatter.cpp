@@ -141,7 +141,6 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
     std::vector<Scratch> workers(static_cast<std::size_t>(thread_count()));
     const ScreenRect rect = rect_of(grid_);
     parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int worker) {
-        progress.check();
         const Chunk& chunk = chunks[static_cast<std::size_t>(c)];
         const LayerProjection& layer = layers[chunk.layer];
         const int group = group_of_layer[chunk.layer];
@@ -150,6 +149,7 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
         scratch.splats.clear();
         const std::int64_t step = layer.lod ? 16 : chunk_splats;  // children are flushed before they pile up
         for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
+            progress.check();
             project(layer, begin, std::min(begin + step, chunk.end), rect, scratch.splats);
             if (scratch.splats.size() >= flush_records) add_segment(scratch, layer, group, store, segments);
         }
@@ -157,7 +157,8 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
     });
 }
 
-void TileBins::collect(std::int64_t tile, int group, std::vector<ScreenSplat>& out) const {
+void TileBins::collect(std::int64_t tile, int group, const Progress& progress,
+                       std::vector<ScreenSplat>& out) const {
     out.clear();
     const std::int64_t column = tile % grid_.columns(), row = tile / grid_.columns();
     for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -165,6 +166,7 @@ void TileBins::collect(std::int64_t tile, int group, std::vector<ScreenSplat>& o
         const std::int64_t bin =
             group * bins_per_group_ + level.first_bin + (row >> l) * level.columns + (column >> l);
         for (const std::vector<Segment>& chunk : segments_) {
+            progress.check();
             for (const Segment& segment : chunk) {
                 const std::int64_t i = bin - segment.first_bin;
                 if (i < 0 || i + 1 >= static_cast<std::int64_t>(segment.offsets.size())) continue;
@@ -196,7 +198,8 @@ double TileBins::footprint_px() const {
     return sum;
 }
 
-std::int64_t estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid) {
+std::int64_t estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
+                              const Progress& progress) {
     constexpr std::int64_t block = 16, stride = 64 * block;
     const ScreenRect rect = rect_of(grid);
     double sum = 0.0;
@@ -205,6 +208,7 @@ std::int64_t estimate_records(std::span<const LayerProjection> layers, const Til
         std::int64_t sampled = 0;
         double records = 0.0;
         for (std::int64_t begin = 0; begin < layer.splats->size(); begin += stride) {
+            progress.check();
             const std::int64_t end = std::min(begin + block, layer.splats->size());
             splats.clear();
             project(layer, begin, end, rect, splats);

@@ -57,7 +57,7 @@ class TileBins {
                  SplatStore& store, const Progress& progress);
 
     /// Records of a tile and group whose square of support touches the tile, in no meaningful order.
-    void collect(std::int64_t tile, int group, std::vector<ScreenSplat>& out) const;
+    void collect(std::int64_t tile, int group, const Progress& progress, std::vector<ScreenSplat>& out) const;
 
     const TileGrid& grid() const { return grid_; }
     std::int64_t records() const;    // written, a splat once per bin it touches
@@ -96,6 +96,7 @@ class TileBins {
 };
 
 /// Screen splats that the layers will take, estimated from every 64th block.
-std::int64_t estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid);
+std::int64_t estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
+                              const Progress& progress);
 
 }  // namespace astrosplat
