@@ -1,0 +1,72 @@
+// Splat files of 10 million splats. Reading finds the file in the system's page cache; writing ends when the
+// disk has everything.
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+
+#include "inputs.h"
+#include "measure.h"
+#include "splats/native.h"
+#include "splats/pda.h"
+#include "splats/ply.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat::bench {
+namespace {
+
+const SplatSet& set() {
+    static const SplatSet the_set = random_set(10000000);
+    return the_set;
+}
+
+std::filesystem::path file(const char* name) {
+    static const TempFolder folder;
+    return folder / name;
+}
+
+void report(benchmark::State& state, const std::filesystem::path& path) {
+    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
+    state.SetBytesProcessed(bytes * state.iterations());
+    report_rate(state, set().size());
+    report_traffic(state, bytes);
+}
+
+template <class Write>
+void write(benchmark::State& state, const char* name, const Write& write_file) {
+    for (auto _ : state) write_file(file(name));
+    report(state, file(name));
+}
+
+template <class Read, class Write>
+void read(benchmark::State& state, const char* name, const Read& read_file, const Write& write_file) {
+    if (!std::filesystem::exists(file(name))) write_file(file(name));
+    for (auto _ : state) benchmark::DoNotOptimize(read_file(file(name)).position.data());
+    report(state, file(name));
+}
+
+using std::filesystem::path;
+void put_pda(const path& p) { write_pda(p, set()); }
+void put_ply(const path& p) { write_ply(p, set()); }
+void put_native(const path& p) { write_native(p, set()); }
+SplatSet get_pda(const path& p) { return read_pda(p); }
+SplatSet get_ply(const path& p) { return read_ply(p); }
+SplatSet get_native(const path& p) { return read_native(p); }
+
+void pda_write(benchmark::State& state) { write(state, "set.pda", put_pda); }
+void pda_read(benchmark::State& state) { read(state, "set.pda", get_pda, put_pda); }
+void ply_write(benchmark::State& state) { write(state, "set.ply", put_ply); }
+void ply_read(benchmark::State& state) { read(state, "set.ply", get_ply, put_ply); }
+void splats_write(benchmark::State& state) { write(state, "set.splats", put_native); }
+void splats_read(benchmark::State& state) { read(state, "set.splats", get_native, put_native); }
+
+BENCHMARK(pda_write)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+BENCHMARK(pda_read)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+BENCHMARK(ply_write)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+BENCHMARK(ply_read)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+BENCHMARK(splats_write)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+BENCHMARK(splats_read)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+
+}  // namespace
+}  // namespace astrosplat::bench
+
+BENCHMARK_MAIN();

@@ -1,0 +1,50 @@
+// Mesh + picture -> SplatSet: the index over the triangles, the cull, the colours, the set in order of id.
+#include <benchmark/benchmark.h>
+
+#include "inputs.h"
+#include "measure.h"
+#include "splats/generate.h"
+
+namespace astrosplat::bench {
+namespace {
+
+constexpr std::int64_t kept_bytes = 60;  // of one splat in a generated set
+
+void generate(benchmark::State& state, const GenerateInput& input) {
+    const std::int64_t before = resident_bytes();
+    std::int64_t kept = 0;
+    forget_peak();
+    for (auto _ : state) {
+        const SplatSet set = astrosplat::generate(input.meshes, input.lattice, input.max_distance, 1.0, 1);
+        benchmark::DoNotOptimize(set.position.data());
+        kept = set.size();
+    }
+    const auto positions = static_cast<double>(input.lattice.positions());
+    report_rate(state, input.lattice.positions());
+    report_traffic(state, kept * kept_bytes);
+    state.counters["kept_percent"] = 100.0 * static_cast<double>(kept) / positions;
+    state.counters["extra_MiB"] =
+        static_cast<double>(peak_bytes() - before - kept * kept_bytes) / (1024.0 * 1024.0);
+}
+
+void ball_13k(benchmark::State& state) {
+    static const GenerateInput input = ball_input(58, 114);
+    generate(state, input);
+}
+void ball_1M(benchmark::State& state) {
+    static const GenerateInput input = ball_input(501, 1000);
+    generate(state, input);
+}
+void plane_40_percent(benchmark::State& state) {
+    static const GenerateInput input = plane_input();
+    generate(state, input);
+}
+
+BENCHMARK(ball_13k)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+BENCHMARK(ball_1M)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+BENCHMARK(plane_40_percent)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+
+}  // namespace
+}  // namespace astrosplat::bench
+
+BENCHMARK_MAIN();
