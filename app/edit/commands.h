@@ -1,5 +1,5 @@
 // What a person asked for and the widgets cannot do themselves, in order of asking. The viewer empties the
-// list every frame.
+// list every frame. Where a path is needed and empty, the window asks for it first (gui.h).
 #pragma once
 
 #include <filesystem>
@@ -22,6 +22,7 @@ struct Command {
         quit,           // unsaved changes already answered for
         import_file,    // path: as a new layer
         set_reference,  // path
+        choose_file,    // text: full key of a file parameter; the window asks for the file and sets it
         save_look,      // path: of the selected layer
         apply_look,     // path: to the selected layer
         regenerate,     // index: layer whose set is stale

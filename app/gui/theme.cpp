@@ -1,0 +1,151 @@
+// Colours, spacing and fonts into ImGui's style and font atlas.
+#include "gui/theme.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gui/gui.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr float regular_px = 15.0f;
+constexpr float small_px = 13.0f;
+
+// Folders that hold fonts/, most specific first, as the XDG base directory specification has them.
+std::vector<fs::path> data_folders() {
+    std::vector<fs::path> folders;
+    if (const char* home = std::getenv("HOME")) folders.push_back(fs::path(home) / ".local/share");
+    const char* listed = std::getenv("XDG_DATA_DIRS");
+    const std::string text = listed && *listed ? listed : "/usr/local/share:/usr/share";
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find(':', begin), text.size());
+        if (end > begin) folders.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    folders.push_back("/usr/share");
+    return folders;
+}
+
+std::optional<fs::path> find_font(const std::vector<std::string>& names) {
+    const std::vector<fs::path> folders = data_folders();
+    for (const std::string& name : names)
+        for (const fs::path& folder : folders) {
+            std::error_code ignored;
+            const fs::path file = folder / "fonts" / name;
+            if (fs::is_regular_file(file, ignored)) return file;
+        }
+    return std::nullopt;
+}
+
+// Latin-1, Latin Extended-A for names of files, dashes and quotes, a few signs.
+const ImWchar* glyph_ranges() {
+    static constexpr std::array<ImWchar, 15> ranges{0x0020, 0x00FF, 0x0100, 0x017F, 0x2010,
+                                                    0x2026, 0x2032, 0x2033, 0x2190, 0x2193,
+                                                    0x2212, 0x2212, 0x2264, 0x2265, 0};
+    return ranges.data();
+}
+
+ImFont* add_font(const std::optional<fs::path>& file, float size_px) {
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    ImFontConfig config;
+    config.OversampleH = 3;
+    config.RasterizerMultiply = 1.1f;
+    config.SizePixels = size_px;
+    if (file)
+        if (ImFont* font = atlas.AddFontFromFileTTF(file->c_str(), size_px, &config, glyph_ranges()))
+            return font;
+    return atlas.AddFontDefault(&config);
+}
+
+void add_fonts(float content_scale) {
+    const std::string roboto = "truetype/roboto/unhinted/RobotoTTF/", flat = "truetype/roboto/",
+                      dejavu = "truetype/dejavu/", local = "Roboto/";
+    const auto regular =
+        find_font({roboto + "Roboto-Regular.ttf", flat + "Roboto-Regular.ttf", local + "Roboto-Regular.ttf",
+                   "Roboto-Regular.ttf", dejavu + "DejaVuSans.ttf"});
+    const auto medium =
+        find_font({roboto + "Roboto-Medium.ttf", flat + "Roboto-Medium.ttf", local + "Roboto-Medium.ttf",
+                   "Roboto-Medium.ttf", dejavu + "DejaVuSans-Bold.ttf"});
+    ImGui::GetIO().Fonts->Clear();
+    const float size = std::round(regular_px * content_scale);
+    add_font(regular, size);
+    add_font(medium, size);
+    add_font(regular, std::round(small_px * content_scale));
+}
+
+void set_colors(ImGuiStyle& style) {
+    const auto set = [&](ImGuiCol which, ImU32 c) { style.Colors[which] = color4(c); };
+    for (ImVec4& c : style.Colors) c = color4(color::field);
+    set(ImGuiCol_Text, color::text);
+    set(ImGuiCol_TextDisabled, color::dim);
+    for (const ImGuiCol c : {ImGuiCol_WindowBg, ImGuiCol_ChildBg, ImGuiCol_MenuBarBg}) set(c, color::panel);
+    set(ImGuiCol_PopupBg, color::panel);
+    for (const ImGuiCol c :
+         {ImGuiCol_Border, ImGuiCol_Separator, ImGuiCol_TableBorderLight, ImGuiCol_TableBorderStrong})
+        set(c, color::line);
+    for (const ImGuiCol c : {ImGuiCol_BorderShadow, ImGuiCol_TableRowBg, ImGuiCol_ScrollbarBg, ImGuiCol_Tab,
+                             ImGuiCol_NavWindowingHighlight, ImGuiCol_ResizeGrip})
+        set(c, color::none);
+    for (const ImGuiCol c : {ImGuiCol_FrameBgHovered, ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered,
+                             ImGuiCol_ScrollbarGrab, ImGuiCol_TabHovered})
+        set(c, color::hover);
+    for (const ImGuiCol c : {ImGuiCol_FrameBgActive, ImGuiCol_ButtonActive, ImGuiCol_Header,
+                             ImGuiCol_HeaderActive, ImGuiCol_TextSelectedBg, ImGuiCol_TabActive})
+        set(c, color::selection);
+    for (const ImGuiCol c : {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive,
+                             ImGuiCol_DragDropTarget, ImGuiCol_NavHighlight, ImGuiCol_PlotHistogram})
+        set(c, color::accent);
+    for (const ImGuiCol c : {ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive}) set(c, color::dim);
+    for (const ImGuiCol c : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed})
+        set(c, color::panel);
+    set(ImGuiCol_ModalWindowDimBg, color::with_opacity(color::line, 0.55f));
+    style.Colors[ImGuiCol_TableRowBgAlt] = ImVec4(1, 1, 1, 0.02f);
+}
+
+void set_sizes(ImGuiStyle& style) {
+    style.WindowPadding = {12, 12};
+    style.FramePadding = {8, 4};
+    style.ItemSpacing = {8, 4};
+    style.ItemInnerSpacing = {4, 4};
+    style.CellPadding = {4, 2};
+    style.IndentSpacing = 12;
+    style.ScrollbarSize = 10;
+    style.GrabMinSize = 8;
+    style.WindowRounding = style.PopupRounding = style.FrameRounding = style.GrabRounding = 3;
+    style.ChildRounding = 0;
+    style.TabRounding = 0;
+    style.ScrollbarRounding = 5;
+    style.WindowBorderSize = style.PopupBorderSize = 1;
+    style.ChildBorderSize = style.FrameBorderSize = 0;
+    style.WindowTitleAlign = {0.0f, 0.5f};
+    style.WindowMenuButtonPosition = ImGuiDir_None;
+    style.DisabledAlpha = 0.45f;
+}
+
+}  // namespace
+
+void apply_theme(float content_scale) {
+    ImGuiStyle& style = ImGui::GetStyle();
+    style = ImGuiStyle();
+    set_colors(style);
+    set_sizes(style);
+    style.ScaleAllSizes(content_scale);
+    add_fonts(content_scale);
+    ImGui::GetIO().IniFilename = nullptr;
+}
+
+ImFont* regular_font() { return ImGui::GetIO().Fonts->Fonts[0]; }
+ImFont* medium_font() { return ImGui::GetIO().Fonts->Fonts[1]; }
+ImFont* small_font() { return ImGui::GetIO().Fonts->Fonts[2]; }
+
+float px(float length) { return length * regular_font()->FontSize / regular_px; }
+
+}  // namespace astrosplat
