@@ -1,0 +1,61 @@
+#include "scene/layer_setup.h"
+
+#include "render/falloff.h"
+#include "splats/lattice.h"
+
+namespace astrosplat {
+namespace {
+
+ColumnLaw column_law(Blend blend) {
+    switch (blend) {
+        case Blend::add:
+            return ColumnLaw::sum;
+        case Blend::lighten:
+            return ColumnLaw::maximum;
+        case Blend::over:
+        case Blend::screen:
+        case Blend::hybrid:
+            return ColumnLaw::transmittance;
+    }
+    return ColumnLaw::transmittance;
+}
+
+}  // namespace
+
+RenderLayer render_layer(const LayerParams& params) {
+    RenderLayer layer;
+    layer.name = params.name;
+    layer.render = params.render;
+    layer.world_from_layer = rotation_from_degrees(params.transform.rotate);
+    layer.scale = params.transform.scale;
+    layer.translate = params.transform.translate;
+    layer.axis = params.axis;
+    layer.seed = resolved_seed(params.source.seed, params.name);
+    return layer;
+}
+
+LookInputs look_inputs(const LayerParams& params) {
+    LookInputs inputs;
+    inputs.axis = glm::vec3(params.axis);
+    inputs.seed = resolved_seed(params.source.seed, params.name);
+    inputs.falloff_integral = falloff_integral(params.render.falloff);
+    inputs.column = column_law(params.render.blend);
+    return inputs;
+}
+
+Bounds world_bounds(const Bounds& box, const RenderLayer& layer) {
+    Bounds result;
+    if (box.empty()) return result;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                           corner & 4 ? box.hi.z : box.lo.z);
+        result.add(layer.world_from_layer * (layer.scale * p) + layer.translate);
+    }
+    return result;
+}
+
+bool has_environment(const EnvironmentParams& params) {
+    return !params.image.empty() || !params.cube.empty();
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,23 @@
+// A layer of a scene as the look and the renderer want it: from keys to their plain inputs. Used by the
+// pipeline and by the viewer's preview, so that both mean the same.
+#pragma once
+
+#include "core/bounds.h"
+#include "look/apply.h"
+#include "render/render.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// The layer without its splats.
+RenderLayer render_layer(const LayerParams& params);
+
+/// What the look needs beside the set; the thickness map is left null.
+LookInputs look_inputs(const LayerParams& params);
+
+/// Bounds in world space of a box in layer space: of its eight corners, so that no splat lies outside.
+Bounds world_bounds(const Bounds& box, const RenderLayer& layer);
+
+bool has_environment(const EnvironmentParams& params);
+
+}  // namespace astrosplat
