@@ -59,26 +59,6 @@ int profile_shape(VerticalAlpha::Shape shape) {
     return PROFILE_CONSTANT;
 }
 
-LookProfile density_profile(const DensityCurve& pdf, const std::string& key) {
-    LookProfile profile{};
-    profile.shape = profile_shape(pdf.shape);
-    profile.rate = pdf.rate;
-    if (pdf.shape == DensityCurve::Shape::gaussian) {
-        const double sigma = std::max(double(pdf.sigma), 1e-6);
-        profile.rate = float(0.5 / (sigma * sigma));
-    }
-    profile.curve = make_curve(pdf.points, key + ".points");
-    return profile;
-}
-
-LookProfile vertical_profile(const VerticalAlpha& vertical) {
-    LookProfile profile{};
-    profile.shape = profile_shape(vertical.shape);
-    profile.rate = vertical.rate;
-    profile.curve = make_curve(vertical.points, "look.vertical.points");
-    return profile;
-}
-
 vec3 unit_axis(const glm::vec3& axis) {
     const glm::dvec3 a(axis);
     const double length = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
@@ -234,6 +214,26 @@ void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inpu
 }
 
 }  // namespace
+
+LookProfile density_profile(const DensityCurve& pdf, const std::string& key) {
+    LookProfile profile{};
+    profile.shape = profile_shape(pdf.shape);
+    profile.rate = pdf.rate;
+    if (pdf.shape == DensityCurve::Shape::gaussian) {
+        const double sigma = std::max(double(pdf.sigma), 1e-6);
+        profile.rate = float(0.5 / (sigma * sigma));
+    }
+    profile.curve = make_curve(pdf.points, key + ".points");
+    return profile;
+}
+
+LookProfile vertical_profile(const VerticalAlpha& vertical) {
+    LookProfile profile{};
+    profile.shape = profile_shape(vertical.shape);
+    profile.rate = vertical.rate;
+    profile.curve = make_curve(vertical.points, "look.vertical.points");
+    return profile;
+}
 
 VerticalAlpha::Match resolved_match(const SplatSet& set, const VerticalAlpha& vertical) {
     if (vertical.match != Match::automatic) return vertical.match;

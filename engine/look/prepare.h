@@ -3,6 +3,8 @@
 // frame.
 #pragma once
 
+#include <string>
+
 #include "look/apply.h"
 #include "look/shared_uniforms.h"
 
@@ -10,6 +12,10 @@ namespace astrosplat {
 
 /// Throws InputError as apply_look does. Warns where colours would be divided by alpha twice.
 LookUniforms prepare_look(const SplatSet& set, const Look& look, const LookInputs& inputs);
+
+/// The profiles alone, for the curves an artist looks at. `key` begins the messages of make_curve.
+LookProfile density_profile(const DensityCurve& pdf, const std::string& key);
+LookProfile vertical_profile(const VerticalAlpha& vertical);
 
 /// automatic is resolved: coverage for generated sets, none for files.
 VerticalAlpha::Match resolved_match(const SplatSet& set, const VerticalAlpha& vertical);
