@@ -4,6 +4,7 @@
 #include <cassert>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include "core/log.h"
 #include "look/apply.h"
@@ -18,6 +19,7 @@ namespace {
 struct ShadingKey {
     Look look;
     glm::vec3 axis{0.0f};
+    std::uint32_t seed = 0;
     double falloff_integral = 0.0;
     ColumnLaw column = ColumnLaw::transmittance;
     bool operator==(const ShadingKey&) const = default;
@@ -25,9 +27,8 @@ struct ShadingKey {
 
 /// One layer between frames; the index is that of Scene::layers.
 struct LayerState {
-    bool used = false;  // visible at some frame
-    SplatSet set;
-    Bounds box;  // of the set, layer space
+    std::shared_ptr<const SplatSet> set;  // null: not drawn
+    Bounds box;                           // of the set, layer space
     std::filesystem::path thickness_file;
     Image thickness_map;
     std::optional<ShadingKey> key;  // what `shaded` was made with
@@ -76,8 +77,18 @@ RenderLayer render_layer(const LayerParams& params) {
     return layer;
 }
 
+void count_set(const SplatSet& set, LayerStatistics& counts) {
+    counts.test_positions = set.test_positions;
+    counts.kept = set.size();
+    counts.zero_alpha = set.zero_alpha;
+}
+
 bool has_environment(const EnvironmentParams& params) {
     return !params.image.empty() || !params.cube.empty();
+}
+
+bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
+    return a.image == b.image && a.cube == b.cube;
 }
 
 }  // namespace
@@ -99,7 +110,11 @@ struct Pipeline::State {
     std::optional<Environment> environment;
     RenderCache render_cache;
 
+    bool drawn(const Scene& now, std::size_t index) const {
+        return now.layers[index].visible && layers[index].set;
+    }
     void load_layer(std::size_t index, const SetCache& cache, const Progress& progress);
+    LayerState take_layer(const std::string& name, const std::shared_ptr<const SplatSet>& set);
     void shade(std::size_t index, const LayerParams& params, const Progress& progress);
     std::vector<RenderLayer> visible_layers(const Scene& now) const;
     Camera camera(const Scene& now, const RenderSettings& settings) const;
@@ -111,38 +126,52 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     LayerState& layer = layers[index];
     LayerStatistics& counts = statistics[index];
     counts.name = params.name;
-    layer.used = ever_visible(scene, params);
-    if (!layer.used) return;
+    if (!ever_visible(scene, params)) return;
     const auto start = std::chrono::steady_clock::now();
     LoadedSet loaded = load_source(cache, params.source, params.name, progress);
-    layer.set = std::move(loaded.set);
+    layer.set = std::make_shared<const SplatSet>(std::move(loaded.set));
+    layer.box = bounds(*layer.set);
+    count_set(*layer.set, counts);
     counts.cached = loaded.cached;
-    layer.box = bounds(layer.set);
-    counts.test_positions = layer.set.test_positions;
-    counts.kept = layer.set.size();
-    counts.zero_alpha = layer.set.zero_alpha;
     counts.generate_seconds = seconds_since(start);
+}
+
+/// The state of a layer that had this set, under the same name if there are several; else a new one.
+LayerState Pipeline::State::take_layer(const std::string& name, const std::shared_ptr<const SplatSet>& set) {
+    LayerState taken;
+    if (!set) return taken;
+    std::size_t found = layers.size();
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        if (layers[i].set != set) continue;
+        if (found == layers.size() || scene.layers[i].name == name) found = i;
+    }
+    if (found < layers.size()) return std::exchange(layers[found], {});
+    taken.set = set;
+    taken.box = bounds(*set);
+    return taken;
 }
 
 /// Applies the look where anything that it depends on has changed since the last frame.
 void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Progress& progress) {
     LayerState& layer = layers[index];
-    const ShadingKey key{params.look, glm::vec3(params.axis), falloff_integral(params.render.falloff),
-                         column_law(params.render.blend)};
+    const ShadingKey key{params.look, glm::vec3(params.axis), resolved_seed(params.source.seed, params.name),
+                         falloff_integral(params.render.falloff), column_law(params.render.blend)};
     if (layer.key == key) return;
     if (layer.thickness_file != params.look.thickness.map) {
+        layer.thickness_file.clear();  // should the next line throw
+        layer.thickness_map =
+            params.look.thickness.map.empty() ? Image{} : load_raw_image(params.look.thickness.map);
         layer.thickness_file = params.look.thickness.map;
-        layer.thickness_map = layer.thickness_file.empty() ? Image{} : load_raw_image(layer.thickness_file);
     }
     LookInputs inputs;
     inputs.axis = key.axis;
-    inputs.seed = resolved_seed(params.source.seed, params.name);
+    inputs.seed = key.seed;
     inputs.falloff_integral = key.falloff_integral;
     inputs.column = key.column;
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
     layer.key.reset();  // an exception below must not leave old splats under a new key
     LookStatistics counts;
-    apply_look(layer.set, key.look, inputs, layer.shaded, progress, &counts);
+    apply_look(*layer.set, key.look, inputs, layer.shaded, progress, &counts);
     layer.key = key;
     statistics[index].drawn = layer.shaded.size();
     statistics[index].look_seconds += counts.seconds;
@@ -152,8 +181,7 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
 std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const {
     std::vector<RenderLayer> visible;
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
-        if (!now.layers[i].visible) continue;
-        assert(layers[i].used);
+        if (!drawn(now, i)) continue;
         visible.push_back(render_layer(now.layers[i]));
         visible.back().splats = &layers[i].shaded;
     }
@@ -163,7 +191,7 @@ std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const
 Camera Pipeline::State::camera(const Scene& now, const RenderSettings& settings) const {
     Bounds box;
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
-        if (now.layers[i].visible) box.add(world_bounds(layers[i].box, render_layer(now.layers[i])));
+        if (drawn(now, i)) box.add(world_bounds(layers[i].box, render_layer(now.layers[i])));
     }
     return make_camera(now.camera, static_cast<double>(settings.width), static_cast<double>(settings.height),
                        box);
@@ -174,6 +202,8 @@ const Environment* Pipeline::State::environment_at(const Scene& now) {
     set_environment_params(*environment, now.environment);
     return &*environment;
 }
+
+Pipeline::Pipeline() : state_(std::make_unique<State>()) {}
 
 Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache& cache)
     : state_(std::make_unique<State>()) {
@@ -197,14 +227,39 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache&
 
 Pipeline::~Pipeline() = default;
 
-RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, const Progress& progress) {
+void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets) {
+    assert(sets.size() == scene.layers.size());
+    State& state = *state_;
+    check_supported(scene.camera);
+    if (!same_pictures(scene.environment, state.scene.environment)) {
+        std::optional<Environment> environment;
+        if (has_environment(scene.environment)) environment = load_environment(scene.environment);
+        state.environment = std::move(environment);
+    }
+    std::vector<LayerState> layers;
+    std::vector<LayerStatistics> statistics;
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+        layers.push_back(state.take_layer(scene.layers[i].name, sets[i]));
+        LayerStatistics counts;
+        counts.name = scene.layers[i].name;
+        if (sets[i]) count_set(*sets[i], counts);
+        counts.drawn = layers.back().shaded.size();
+        statistics.push_back(counts);
+    }
+    state.scene = scene;
+    state.layers = std::move(layers);
+    state.statistics = std::move(statistics);
+}
+
+RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, const Progress& progress,
+                              const TileDone& tile_done) {
     const Scene now = scene_at(state_->scene, frame);
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         progress.check();
-        if (now.layers[i].visible) state_->shade(i, now.layers[i], progress);
+        if (state_->drawn(now, i)) state_->shade(i, now.layers[i], progress);
     }
     return render(state_->visible_layers(now), state_->camera(now, settings), state_->environment_at(now),
-                  settings, progress, &state_->render_cache);
+                  settings, progress, &state_->render_cache, tile_done);
 }
 
 RenderSettings Pipeline::settings(double frame) const {
@@ -232,8 +287,9 @@ const std::vector<LayerStatistics>& Pipeline::statistics() const { return state_
 
 std::vector<std::string> Pipeline::layer_names(double frame) const {
     std::vector<std::string> names;
-    for (const LayerParams& layer : scene_at(state_->scene, frame).layers) {
-        if (layer.visible) names.push_back(layer.name);
+    const Scene now = scene_at(state_->scene, frame);
+    for (std::size_t i = 0; i < now.layers.size(); ++i) {
+        if (state_->drawn(now, i)) names.push_back(now.layers[i].name);
     }
     return names;
 }
@@ -242,7 +298,7 @@ std::string Pipeline::input_credit() const {
     std::vector<std::string> credits;
     std::string joined;
     for (const LayerState& layer : state_->layers) {
-        const std::string& credit = layer.set.credit;
+        const std::string credit = layer.set ? layer.set->credit : "";
         if (credit.empty() || std::find(credits.begin(), credits.end(), credit) != credits.end()) continue;
         credits.push_back(credit);
         joined += (joined.empty() ? "" : "; ") + credit;

@@ -29,19 +29,28 @@ struct LayerStatistics {
 /// layer.
 class Pipeline {
   public:
+    /// Without layers, until set_scene.
+    Pipeline();
     /// Loads or generates the set of every layer that is visible at some frame, through the cache where one
     /// is given. Throws InputError, Cancelled.
     explicit Pipeline(const Scene& scene, const Progress& progress = {}, const SetCache& cache = {});
     ~Pipeline();
 
-    /// Renders one frame of the scene this was made of.
-    RenderedFrame frame(double frame, const RenderSettings& settings, const Progress& progress = {});
+    /// Takes another scene with sets that are there already, one a layer; a layer whose set is null is left
+    /// out. What did not change is kept: environment pictures of the same files, and the thickness map and
+    /// shaded splats of a set that was in use, so that the next frame pays only for what changed. Throws
+    /// InputError and then keeps the scene it had.
+    void set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets);
+
+    /// Renders one frame of the scene. `tile_done` as in render().
+    RenderedFrame frame(double frame, const RenderSettings& settings, const Progress& progress = {},
+                        const TileDone& tile_done = {});
 
     /// Render settings as the scene's [output] has them.
     RenderSettings settings(double frame) const;
     Camera camera(double frame, const RenderSettings& settings) const;
     const std::vector<LayerStatistics>& statistics() const;
-    /// Names of the layers visible at a frame, in file order: those of RenderedFrame::layers.
+    /// Names of the layers drawn at a frame, in file order: those of RenderedFrame::layers.
     std::vector<std::string> layer_names(double frame) const;
     /// Credits of all pictures and splat files in use, each once, joined with "; ".
     std::string input_credit() const;

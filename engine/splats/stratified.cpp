@@ -1,0 +1,245 @@
+// Morton keys, one scatter by their highest bits, then each of those parts by itself in cache: stable
+// throughout, so that neighbours with equal keys stay in order of id.
+#include "splats/stratified.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <utility>
+#include <vector>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr unsigned axis_bits = 21;
+constexpr unsigned key_bits = 3 * axis_bits;
+constexpr unsigned part_bits = 12;  // of the key, highest first: four levels of halving the box
+constexpr std::size_t parts = std::size_t{1} << part_bits;
+constexpr std::int64_t chunk = 1 << 16;
+
+struct KeyedRow {
+    std::uint64_t key;
+    std::int64_t row;
+};
+
+/// Moves bit i of a 21-bit number to bit 3 i.
+std::uint64_t spread(std::uint64_t v) {
+    v = (v | v << 32) & 0x001f00000000ffffu;
+    v = (v | v << 16) & 0x001f0000ff0000ffu;
+    v = (v | v << 8) & 0x100f00f00f00f00fu;
+    v = (v | v << 4) & 0x10c30c30c30c30c3u;
+    return (v | v << 2) & 0x1249249249249249u;
+}
+
+/// Cells are cubes, so that a thin disk is sampled evenly over its face before its thickness matters.
+class MortonKeys {
+  public:
+    explicit MortonKeys(const SplatSet& set) : set_(set), lo_(bounds(set).lo) {
+        const glm::dvec3 extent = bounds(set).extent();
+        const double edge = std::max({extent.x, extent.y, extent.z});
+        cells_per_unit_ = edge > 0.0 ? static_cast<double>(last_cell) / edge : 0.0;
+    }
+
+    KeyedRow operator()(std::int64_t row) const {
+        const glm::dvec3 p =
+            (glm::dvec3(set_.position[static_cast<std::size_t>(row)]) - lo_) * cells_per_unit_;
+        return {spread(cell(p.x)) | spread(cell(p.y)) << 1 | spread(cell(p.z)) << 2, row};
+    }
+
+  private:
+    static constexpr std::uint64_t last_cell = (std::uint64_t{1} << axis_bits) - 1;
+    static std::uint64_t cell(double x) {
+        return x > 0.0 ? std::min(static_cast<std::uint64_t>(x), last_cell) : 0;
+    }
+
+    const SplatSet& set_;
+    glm::dvec3 lo_;
+    double cells_per_unit_ = 0.0;
+};
+
+std::size_t part_of(std::uint64_t key) { return static_cast<std::size_t>(key >> (key_bits - part_bits)); }
+
+/// Rows grouped by the highest bits of their key, in order of row inside a part; starts[part] is where it
+/// begins.
+Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
+                                  std::vector<std::int64_t>& starts) {
+    const MortonKeys key_of(set);
+    const std::int64_t chunks = (set.size() + chunk - 1) / chunk;
+    Buffer<KeyedRow> keyed(static_cast<std::size_t>(set.size()));
+    std::vector<std::array<std::int64_t, parts>> next(static_cast<std::size_t>(chunks));
+    parallel_for(chunks, [&](std::int64_t c, int) {
+        progress.check();
+        auto& counts = next[static_cast<std::size_t>(c)];
+        counts.fill(0);
+        const std::int64_t end = std::min(set.size(), (c + 1) * chunk);
+        for (std::int64_t row = c * chunk; row < end; ++row) {
+            const KeyedRow keyed_row = key_of(row);
+            keyed[static_cast<std::size_t>(row)] = keyed_row;
+            ++counts[part_of(keyed_row.key)];
+        }
+    });
+    starts.assign(parts + 1, 0);
+    std::int64_t sum = 0;
+    for (std::size_t part = 0; part < parts; ++part) {
+        starts[part] = sum;
+        for (auto& counts : next) sum += std::exchange(counts[part], sum);
+    }
+    starts[parts] = sum;
+    Buffer<KeyedRow> sorted(keyed.size());
+    parallel_for(chunks, [&](std::int64_t c, int) {
+        progress.check();
+        auto& places = next[static_cast<std::size_t>(c)];
+        const std::int64_t end = std::min(set.size(), (c + 1) * chunk);
+        for (std::int64_t row = c * chunk; row < end; ++row) {
+            const KeyedRow& keyed_row = keyed[static_cast<std::size_t>(row)];
+            sorted[static_cast<std::size_t>(places[part_of(keyed_row.key)]++)] = keyed_row;
+        }
+    });
+    return sorted;
+}
+
+/// Least significant digit first over the bits in which keys of one part differ; stable.
+void radix_sort(KeyedRow* rows, std::size_t count, std::vector<KeyedRow>& scratch) {
+    constexpr unsigned digit_bits = 8;
+    std::uint64_t differing = 0;
+    for (std::size_t i = 1; i < count; ++i) differing |= rows[i].key ^ rows[0].key;
+    scratch.resize(count);
+    KeyedRow *from = rows, *to = scratch.data();
+    for (unsigned shift = 0; shift < key_bits; shift += digit_bits) {
+        constexpr std::uint64_t mask = (1u << digit_bits) - 1;
+        if ((differing >> shift & mask) == 0) continue;
+        std::array<std::size_t, mask + 1> next{};
+        for (std::size_t i = 0; i < count; ++i) ++next[from[i].key >> shift & mask];
+        std::size_t sum = 0;
+        for (std::size_t& n : next) sum += std::exchange(n, sum);
+        for (std::size_t i = 0; i < count; ++i) to[next[from[i].key >> shift & mask]++] = from[i];
+        std::swap(from, to);
+    }
+    if (from != rows) std::copy_n(from, count, rows);
+}
+
+void sort_part(KeyedRow* rows, std::size_t count, std::vector<KeyedRow>& scratch) {
+    constexpr std::size_t few = 512;  // below, counting digits costs more than comparing
+    if (count >= few) return radix_sort(rows, count, scratch);
+    std::sort(rows, rows + count, [](const KeyedRow& a, const KeyedRow& b) {
+        return a.key != b.key ? a.key < b.key : a.row < b.row;
+    });
+}
+
+/// Rows of equal keys by id, for sets that are not in that order.
+void order_ties(const SplatSet& set, KeyedRow* rows, std::size_t count) {
+    const auto id = [&](const KeyedRow& r) { return set.id[static_cast<std::size_t>(r.row)]; };
+    for (std::size_t i = 0; i < count;) {
+        std::size_t end = i + 1;
+        while (end < count && rows[end].key == rows[i].key) ++end;
+        std::stable_sort(rows + i, rows + end,
+                         [&](const KeyedRow& a, const KeyedRow& b) { return id(a) < id(b); });
+        i = end;
+    }
+}
+
+Buffer<KeyedRow> morton_order(const SplatSet& set, const Progress& progress) {
+    std::vector<std::int64_t> starts;
+    Buffer<KeyedRow> rows = scatter_to_parts(set, progress, starts);
+    progress.at(0.4);
+    const bool by_id = std::is_sorted(set.id.begin(), set.id.end());
+    std::vector<std::vector<KeyedRow>> scratch(static_cast<std::size_t>(thread_count()));
+    parallel_chunks(
+        static_cast<std::int64_t>(parts), 8, [&](std::int64_t begin, std::int64_t end, int worker) {
+            progress.check();
+            for (auto part = static_cast<std::size_t>(begin); part < static_cast<std::size_t>(end); ++part) {
+                KeyedRow* first = rows.data() + starts[part];
+                const auto count = static_cast<std::size_t>(starts[part + 1] - starts[part]);
+                sort_part(first, count, scratch[static_cast<std::size_t>(worker)]);
+                if (!by_id) order_ties(set, first, count);
+            }
+        });
+    progress.at(0.8);
+    return rows;
+}
+
+/// The lowest `bits` bits in reverse; v has no others.
+std::uint64_t reversed(std::uint64_t v, unsigned bits) {
+    if (bits == 0) return 0;
+    v = (v & 0x5555555555555555u) << 1 | (v >> 1 & 0x5555555555555555u);
+    v = (v & 0x3333333333333333u) << 2 | (v >> 2 & 0x3333333333333333u);
+    v = (v & 0x0f0f0f0f0f0f0f0fu) << 4 | (v >> 4 & 0x0f0f0f0f0f0f0f0fu);
+    return __builtin_bswap64(v) >> (64 - bits);
+}
+
+/// Runs through j = 0 .. 2^bits - 1 and takes the row of rank reversed(j) where there is one. Blocks of 2^low
+/// successive j have ranks that agree in their lowest bits, so how many of them exist is known beforehand.
+Buffer<std::int64_t> by_reversed_rank(const Buffer<KeyedRow>& sorted, const Progress& progress) {
+    const auto count = static_cast<std::uint64_t>(sorted.size());
+    const auto bits = static_cast<unsigned>(std::bit_width(count - 1));
+    const unsigned low = std::min(bits, 16u), high = bits - low;
+    const std::uint64_t blocks = std::uint64_t{1} << high;
+    std::vector<std::uint64_t> starts(static_cast<std::size_t>(blocks + 1), 0);
+    for (std::uint64_t b = 0; b < blocks; ++b) {
+        const std::uint64_t first = reversed(b, high);
+        starts[static_cast<std::size_t>(b + 1)] =
+            starts[static_cast<std::size_t>(b)] + (first < count ? (count - first + blocks - 1) >> high : 0);
+    }
+    Buffer<std::int64_t> order(sorted.size());
+    parallel_for(static_cast<std::int64_t>(blocks), [&](std::int64_t block, int) {
+        progress.check();
+        const std::uint64_t first = reversed(static_cast<std::uint64_t>(block), high);
+        std::uint64_t at = starts[static_cast<std::size_t>(block)];
+        for (std::uint64_t j = 0; j < std::uint64_t{1} << low; ++j) {
+            const std::uint64_t rank = reversed(j, low) << high | first;
+            if (rank < count)
+                order[static_cast<std::size_t>(at++)] = sorted[static_cast<std::size_t>(rank)].row;
+        }
+        assert(at == starts[static_cast<std::size_t>(block) + 1]);
+    });
+    return order;
+}
+
+template <class T>
+void take(const Buffer<T>& from, const Buffer<std::int64_t>& order, std::int64_t count, Buffer<T>& to) {
+    if (from.empty()) return;
+    to.resize(static_cast<std::size_t>(count));
+    parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            to[i] = from[static_cast<std::size_t>(order[i])];
+    });
+}
+
+}  // namespace
+
+Buffer<std::int64_t> stratified_order(const SplatSet& set, const Progress& progress) {
+    if (set.size() == 0) return {};
+    claim_memory(set.size() * static_cast<std::int64_t>(2 * sizeof(KeyedRow) + sizeof(std::int64_t)),
+                 "the order of a preview");
+    Buffer<std::int64_t> order = by_reversed_rank(morton_order(set, progress), progress);
+    progress.at(1.0);
+    return order;
+}
+
+SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& order, std::int64_t count) {
+    assert(count >= 0 && count <= static_cast<std::int64_t>(order.size()));
+    SplatSet taken;
+    taken.spacing = set.spacing;
+    taken.max_distance = set.max_distance;
+    taken.generated = set.generated;
+    taken.divided = set.divided;
+    taken.test_positions = set.test_positions;
+    taken.zero_alpha = set.zero_alpha;
+    taken.credit = set.credit;
+    take(set.position, order, count, taken.position);
+    take(set.color, order, count, taken.color);
+    take(set.alpha, order, count, taken.alpha);
+    take(set.distance, order, count, taken.distance);
+    take(set.id, order, count, taken.id);
+    take(set.uv, order, count, taken.uv);
+    take(set.normal, order, count, taken.normal);
+    take(set.mesh, order, count, taken.mesh);
+    take(set.radius, order, count, taken.radius);
+    return taken;
+}
+
+}  // namespace astrosplat
