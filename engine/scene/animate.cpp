@@ -37,7 +37,9 @@ std::vector<double> evaluate_rotation_track(const Track& track, double frame) {
     return {q.x, q.y, q.z, q.w};
 }
 
-std::vector<double> evaluate(const Track& track, const ParameterSpec& spec, double frame) {
+}  // namespace
+
+std::vector<double> track_at(const Track& track, const ParameterSpec& spec, double frame) {
     if (spec.type == ParameterType::position) return evaluate_position_track(track, frame);
     if (spec.type == ParameterType::rotation) return evaluate_rotation_track(track, frame);
     std::vector<double> numbers;
@@ -47,15 +49,13 @@ std::vector<double> evaluate(const Track& track, const ParameterSpec& spec, doub
     return numbers;
 }
 
-}  // namespace
-
 Scene scene_at(const Scene& scene, double frame) {
     Scene still = scene;
     const Description description = describe(still);
     for (const Track& track : scene.animation) {
         const Parameter* parameter = find_parameter(description, track.key);
         if (!parameter || track.keys.empty()) continue;  // of a layer that was taken out
-        parameter->set(from_numbers(parameter->spec, evaluate(track, parameter->spec, frame)));
+        parameter->set(from_numbers(parameter->spec, track_at(track, parameter->spec, frame)));
     }
     return still;
 }
