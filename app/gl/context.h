@@ -2,22 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 namespace astrosplat {
 
-class OffscreenContext {
-  public:
-    /// OpenGL 4.1 core or later, current on this thread, functions loaded. Throws std::runtime_error in one
-    /// line where none can be had.
-    OffscreenContext();
-    ~OffscreenContext();
-    OffscreenContext(const OffscreenContext&) = delete;
-    OffscreenContext& operator=(const OffscreenContext&) = delete;
-
-  private:
-    struct State;
-    std::unique_ptr<State> state_;
+/// No OpenGL context of the version needed can be had; what() is one line.
+struct NoContext : std::runtime_error {
+    using std::runtime_error::runtime_error;
 };
 
 struct GlInfo {
@@ -25,8 +17,23 @@ struct GlInfo {
     std::string renderer;   // "llvmpipe (LLVM 15.0.6, 256 bits)"
     bool software = false;  // drawn by the processor: llvmpipe, softpipe, SwiftShader
 };
+
+class OffscreenContext {
+  public:
+    /// OpenGL 4.1 core or later, current on this thread, functions loaded. Throws NoContext.
+    OffscreenContext();
+    ~OffscreenContext();
+    OffscreenContext(const OffscreenContext&) = delete;
+    OffscreenContext& operator=(const OffscreenContext&) = delete;
+    const GlInfo& info() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
 /// Of the current context, whose functions this loads through `loader` (glfwGetProcAddress). Throws
-/// std::runtime_error below 4.1.
+/// NoContext below 4.1.
 using GlLoader = void (*(*)(const char* name))(void);
 GlInfo load_gl(GlLoader loader);
 

@@ -1,0 +1,47 @@
+// Rendering to files while the window stays usable: the program itself as a child process with --batch, on a
+// copy of the scene as it stands. So a frame of the viewer is a frame of the farm, and a cancelled or crashed
+// job harms nothing.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// One step of a job.
+struct ProcessStep {
+    std::string name;                    // "Rendering", "Writing the movie"
+    std::vector<std::string> arguments;  // [0] is the program
+};
+
+class RenderJob {
+  public:
+    RenderJob();
+    ~RenderJob();  // cancels and waits
+
+    /// Frames as `arguments` after --batch SCENE say; `scene` is written to a temporary file first. Throws
+    /// OutputError where that fails, InputError while a job runs.
+    void start(const Scene& scene, const std::string& original_text,
+               const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards = {},
+               const std::filesystem::path& scratch = {});
+    void cancel();
+
+    enum class State { none, running, done, failed, cancelled };
+    State state() const;
+    /// Takes what the process has said since the last call. Cheap; call every frame.
+    void poll();
+    std::string text() const;  // "Rendering frame 12 (3/10)", or the last line of a job that failed
+    float progress() const;    // 0..1
+    /// done, failed or cancelled: seen once, then none.
+    State take_result();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace astrosplat

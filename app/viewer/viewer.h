@@ -1,0 +1,34 @@
+// The viewer's two ways in: a window, or one picture of what the window would show. In: what the command line
+// asks for. Out: the exit code. Where no OpenGL context can be had, one line that names --batch.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/load.h"
+#include "splats/set_cache.h"
+
+namespace astrosplat {
+
+struct ViewerOptions {
+    std::filesystem::path input;          // scene, picture, mesh or splat file; empty: the demo
+    std::vector<Assignment> assignments;  // --set
+    SetCache cache;
+};
+int run_viewer(const ViewerOptions& options);
+
+struct ScreenshotOptions {
+    ViewerOptions scene;
+    std::filesystem::path output;   // .png, or .exr with `settled`
+    int width = 960, height = 540;  // px: of the picture, with `ui` of the window
+    std::optional<double> frame;
+    bool ui = false;       // with the panels
+    bool settled = false;  // the final picture
+    bool opengl = false;   // the preview drawn by OpenGL where the processor would be faster
+};
+/// Throws InputError, OutputError.
+int run_screenshot(const ScreenshotOptions& options);
+
+}  // namespace astrosplat

@@ -1,0 +1,50 @@
+// The window: GLFW, an OpenGL context and Dear ImGui's backends, owned for as long as the viewer runs.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gl/context.h"
+
+struct GLFWwindow;
+
+namespace astrosplat {
+
+class Window {
+  public:
+    /// Opens a window of about width x height (screen units). Throws std::runtime_error in one line where
+    /// there is no display or no OpenGL 4.1.
+    Window(int width, int height, const std::string& title);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    /// Waits up to `seconds` for events (0: only takes those that are there).
+    void wait(double seconds);
+    /// Ends a wait() from any thread.
+    static void wake();
+    /// Begins a frame of widgets; false while the window is minimised.
+    bool begin_frame();
+    /// Draws the widgets and shows the frame.
+    void end_frame();
+
+    bool close_requested();  // and forgets it
+    std::vector<std::filesystem::path> take_dropped();
+    void set_title(const std::string& title);
+    /// Screen units, for the preferences.
+    void size(int& width, int& height) const;
+    float content_scale() const;
+    const GlInfo& gl() const { return gl_; }
+    /// The frame last drawn, RGBA, top row first.
+    std::vector<unsigned char> read(int& width, int& height) const;
+
+  private:
+    GLFWwindow* window_ = nullptr;
+    GlInfo gl_;
+    std::vector<std::filesystem::path> dropped_;
+};
+
+}  // namespace astrosplat
