@@ -22,7 +22,6 @@ struct Command {
         quit,           // unsaved changes already answered for
         import_file,    // path: as a new layer
         set_reference,  // path
-        choose_file,    // text: full key of a file parameter; the window asks for the file and sets it
         save_look,      // path: of the selected layer
         apply_look,     // path: to the selected layer
         regenerate,     // index: layer whose set is stale
