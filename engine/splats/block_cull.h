@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "splats/block_kernel.h"
 #include "splats/closest_point.h"
 #include "splats/lattice.h"
 
@@ -26,7 +27,6 @@ struct LatticeBlock {
     double distance;        // of the ball's middle from the meshes, scene units
     std::uint32_t nearest;  // triangle there
 };
-constexpr std::int64_t block_cells = 4;
 
 /// A ball around all positions, after jitter, of the `cells`^3 cells from cell `first` on.
 struct BlockBall {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <memory>
 #include <new>
 #include <numeric>
@@ -19,16 +20,12 @@
 
 #include "core/buffer.h"
 #include "core/error.h"
+#include "core/parallel.h"
 
 namespace astrosplat {
 namespace {
 
 constexpr std::size_t most_triangles = ClosestPoint::none / 3;  // Embree counts corners in 32 bits
-
-// In float, relative to the middle of all meshes.
-struct FloatBox {
-    glm::vec3 lo, hi;
-};
 
 double squared(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -53,6 +50,31 @@ ClosestPoint closest_on_edges(const glm::dvec3& ap, const TriangleShape& s) {
     return best;
 }
 
+// The middle of the smallest circle around a triangle, from its first corner: the circumcentre where all
+// angles are acute, else the middle of the longest side.
+glm::dvec3 circle_middle(const TriangleShape& s) {
+    const double at_b = s.ab_ab - s.ab_ac, at_c = s.ac_ac - s.ab_ac;
+    if (has_no_inside(s) || s.ab_ac <= 0.0 || at_b <= 0.0 || at_c <= 0.0) {
+        const double bc_bc = at_b + at_c;
+        if (s.ab_ab >= s.ac_ac && s.ab_ab >= bc_bc) return s.ab * 0.5;
+        return s.ac_ac >= bc_bc ? s.ac * 0.5 : (s.ab + s.ac) * 0.5;
+    }
+    const double area_squared = s.ab_ab * s.ac_ac - s.ab_ac * s.ab_ac;
+    return (s.ab * (s.ac_ac * at_b) + s.ac * (s.ab_ab * at_c)) / (2.0 * area_squared);
+}
+
+TriangleBound triangle_bound(const TriangleShape& s, const glm::dvec3& origin) {
+    const glm::dvec3 a = s.a - origin, b = a + s.ab, c = a + s.ac, middle = circle_middle(s);
+    const glm::dvec3 normal = glm::cross(s.ab, s.ac);
+    const double length = std::sqrt(squared(normal));
+    const bool flat = length > 0.0 && !has_no_inside(s);
+    const double radius =
+        std::sqrt(std::max({squared(middle), squared(middle - s.ab), squared(middle - s.ac)}));
+    return {glm::vec3(glm::min(glm::min(a, b), c)), glm::vec3(glm::max(glm::max(a, b), c)),
+            glm::vec3(a + middle), flat ? glm::vec3(normal / length) : glm::vec3(0.0f),
+            static_cast<float>(radius * (1.0 + 1e-6))};
+}
+
 }  // namespace
 
 TriangleShape triangle_shape(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -65,8 +87,7 @@ ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& s) {
     const double d1 = dot(s.ab, ap), d2 = dot(s.ac, ap);  // from a; from b and c the same dot products follow
     const double d3 = d1 - s.ab_ab, d4 = d2 - s.ab_ac;
     const double d5 = d1 - s.ab_ac, d6 = d2 - s.ac_ac;
-    const double area_squared = s.ab_ab * s.ac_ac - s.ab_ac * s.ab_ac;
-    if (!(area_squared > 1e-14 * (s.ab_ab * s.ac_ac))) return closest_on_edges(ap, s);
+    if (has_no_inside(s)) return closest_on_edges(ap, s);
     if (d1 <= 0.0 && d2 <= 0.0) return at(ap, s, 0.0, 0.0);
     if (d3 >= 0.0 && d4 <= d3) return at(ap, s, 1.0, 0.0);
     if (d6 >= 0.0 && d5 <= d6) return at(ap, s, 0.0, 1.0);
@@ -91,7 +112,7 @@ ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const
 
 struct ClosestPointIndex::State {
     Buffer<TriangleShape> shapes;
-    Buffer<FloatBox> boxes;
+    Buffer<TriangleBound> bounds;
     glm::dvec3 center{0.0};  // Embree's origin, scene units
     double reach = 0.0;      // largest coordinate of a vertex relative to center
     RTCDevice device = nullptr;
@@ -169,11 +190,12 @@ RTCGeometry ClosestPointIndex::State::float_triangles() const {
 }
 
 void ClosestPointIndex::State::build() {
-    boxes.resize(shapes.size());
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-        const glm::dvec3 a = shapes[i].a - center, b = a + shapes[i].ab, c = a + shapes[i].ac;
-        boxes[i] = {glm::vec3(glm::min(glm::min(a, b), c)), glm::vec3(glm::max(glm::max(a, b), c))};
-    }
+    bounds.resize(shapes.size());
+    parallel_chunks(static_cast<std::int64_t>(shapes.size()), 4096,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                            bounds[i] = triangle_bound(shapes[i], center);
+                    });
     device = rtcNewDevice("threads=1");  // keeps Embree off TBB's pool
     if (!device) throw std::runtime_error("Embree gave no device");
     scene = rtcNewScene(device);
@@ -251,23 +273,22 @@ ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double 
     return best;
 }
 
-bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, BoxList& boxes) const {
+bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, CandidateList& candidates) const {
     bool fits = true;
-    boxes.count = 0;
+    candidates.count = 0;
     state_->query(center, radius, [&](std::uint32_t triangle) {
-        fits = boxes.count < BoxList::most;
+        fits = candidates.count < CandidateList::most;
         if (!fits) return -1.0;
-        boxes.add(triangle, state_->boxes[triangle].lo, state_->boxes[triangle].hi);
+        candidates.add(triangle, state_->bounds[triangle]);
         return radius;
     });
     return fits;
 }
 
-glm::vec3 ClosestPointIndex::local(const glm::dvec3& p) const { return glm::vec3(p - state_->center); }
+const glm::dvec3& ClosestPointIndex::origin() const { return state_->center; }
 
-float ClosestPointIndex::box_limit(const glm::dvec3& p, double distance) const {
-    const float widened = State::widened(distance, state_->slack(p - state_->center));
-    return widened * widened;
+double ClosestPointIndex::slack(const glm::dvec3& center, double radius) const {
+    return state_->slack(glm::abs(center - state_->center) + radius);
 }
 
 ClosestPoint ClosestPointIndex::closest_of(std::uint32_t triangle, const glm::dvec3& p) const {
@@ -276,9 +297,7 @@ ClosestPoint ClosestPointIndex::closest_of(std::uint32_t triangle, const glm::dv
     return closest;
 }
 
-const TriangleShape& ClosestPointIndex::shape(std::uint32_t triangle) const {
-    return state_->shapes[triangle];
-}
+const TriangleShape* ClosestPointIndex::shapes() const { return state_->shapes.data(); }
 
 std::int64_t ClosestPointIndex::triangle_count() const {
     return static_cast<std::int64_t>(state_->shapes.size());

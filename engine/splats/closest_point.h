@@ -10,7 +10,7 @@
 
 #include "core/bounds.h"
 #include "source/mesh.h"
-#include "splats/box_scan.h"
+#include "splats/candidates.h"
 
 namespace astrosplat {
 
@@ -29,10 +29,15 @@ struct TriangleShape {
 };
 TriangleShape triangle_shape(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
 
+/// Triangles whose angle at the first corner is below 1e-7 rad or that close to 180 degrees have no usable
+/// inside and count as their three edges.
+inline bool has_no_inside(const TriangleShape& s) {
+    const double corners = s.ab_ab * s.ac_ac;
+    return !(corners - s.ab_ac * s.ab_ac > 1e-14 * corners);
+}
+
 /// Closest point of one triangle (Ericson, Real-Time Collision Detection 5.1.5, with the dot products of the
-/// other two corners derived from the first corner's), in double; `triangle` comes back as 0. Triangles whose
-/// angle at the first corner is below 1e-7 rad or that close to 180 degrees have no usable inside and count
-/// as their three edges.
+/// other two corners derived from the first corner's), in double; `triangle` comes back as 0.
 ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& shape);
 ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
                                  const glm::dvec3& c);
@@ -61,18 +66,20 @@ class ClosestPointIndex {
     /// The same by trying every triangle: the oracle of the tests.
     ClosestPoint closest_brute_force(const glm::dvec3& p, double max_distance) const;
 
-    /// Puts at least the triangles that come within `radius` of `center` into `boxes`, in any order; false
-    /// when they do not fit. Thread-safe.
-    bool collect(const glm::dvec3& center, double radius, BoxList& boxes) const;
+    /// Puts at least the triangles that come within `radius` of `center` into `candidates`, in any order;
+    /// false when they do not fit. Thread-safe.
+    bool collect(const glm::dvec3& center, double radius, CandidateList& candidates) const;
 
-    /// p in the float coordinates of collect()'s boxes, and the squared distance in them beyond which a box
-    /// holds nothing within `distance` of p.
-    glm::vec3 local(const glm::dvec3& p) const;
-    float box_limit(const glm::dvec3& p, double distance) const;
+    /// Where the float coordinates of candidates have their origin, scene units.
+    const glm::dvec3& origin() const;
+    /// How much rounding to those coordinates may move a point or a triangle, along any direction, with
+    /// plenty of room, for points within `radius` of `center`. Scene units.
+    double slack(const glm::dvec3& center, double radius) const;
 
     /// The closest point of one triangle, numbered.
     ClosestPoint closest_of(std::uint32_t triangle, const glm::dvec3& p) const;
-    const TriangleShape& shape(std::uint32_t triangle) const;
+    const TriangleShape* shapes() const;  // of all triangles
+    const TriangleShape& shape(std::uint32_t triangle) const { return shapes()[triangle]; }
     std::int64_t triangle_count() const;
 
   private:

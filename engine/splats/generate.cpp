@@ -85,25 +85,27 @@ class Generator {
             const glm::i64vec3 first = row[b].at * block_cells + in_block;
             const std::uint64_t id =
                 kind == Positions::centres ? centre_id(lattice_, first) : corner_id(lattice_, first);
-            const FoundPoint* found =
-                worker.answers[b].data() + (in_block.z * block_cells + in_block.y) * block_cells;
-            for (std::uint64_t i = 0; i < block_cells; ++i) {
-                if (found[i].closest.triangle != ClosestPoint::none) store(found[i], id + i, worker, kept);
+            const BlockAnswers& answers = worker.answers[b];
+            for (std::size_t i = 0; i < block_cells; ++i) {
+                const std::size_t slot =
+                    block_slot(i, static_cast<std::size_t>(in_block.y), static_cast<std::size_t>(in_block.z));
+                if (answers.triangle[slot] != ClosestPoint::none) store(answers, slot, id + i, worker, kept);
             }
         }
     }
 
-    void store(const FoundPoint& found, std::uint64_t id, Worker& worker, KeptStore& kept) const {
-        const SurfaceTriangle& surface = surface_[found.closest.triangle];
-        const glm::vec2 uv = uv_at(surface, found.closest.barycentric);
+    void store(const BlockAnswers& answers, std::size_t slot, std::uint64_t id, Worker& worker,
+               KeptStore& kept) const {
+        const SurfaceTriangle& surface = surface_[answers.triangle[slot]];
+        const glm::vec2 uv = uv_at(surface, {answers.v[slot], answers.w[slot]});
         const TextureSample picture = sample(*surface.texture, uv, surface.box_texels);
         if (picture.alpha == 0.0f) {
             ++worker.zero_alpha;
             return;
         }
-        const auto distance = static_cast<float>(std::sqrt(found.closest.distance_squared));
-        kept.add(
-            {found.position, picture.color, picture.alpha, distance, id, uv, surface.normal, surface.mesh});
+        const glm::vec3 position(glm::dvec3(answers.x[slot], answers.y[slot], answers.z[slot]));
+        const auto distance = static_cast<float>(std::sqrt(answers.distance_squared[slot]));
+        kept.add({position, picture.color, picture.alpha, distance, id, uv, surface.normal, surface.mesh});
     }
 
     const ClosestPointIndex& index_;
@@ -179,7 +181,7 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     const std::vector<LatticeBlock> blocks = blocks_near(index, lattice, settings, progress);
 
     SplatSet set;
-    reserve(set, blocks.size() * 2 * BlockAnswers().size());
+    reserve(set, blocks.size() * 2 * block_positions);
     set.zero_alpha = run_blocks(Generator(index, surface, lattice, settings), blocks, progress, set);
     describe_set(meshes, lattice, max_distance, set);
     check_consistent(set);

@@ -1,0 +1,58 @@
+// The arithmetic of block queries, compiled once for every instruction set with the same bits on each. A
+// block's 64 positions go in groups of eight neighbours (2 x 2 x 2), so that one vector holds one coordinate
+// of a group and a triangle is measured against all eight at once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "splats/candidates.h"
+#include "splats/closest_point.h"
+
+namespace astrosplat {
+
+constexpr std::int64_t block_cells = 4;
+constexpr std::size_t block_positions = block_cells * block_cells * block_cells;
+
+/// Where position (i, j, k) of a block stands in arrays: group by group.
+constexpr std::size_t block_slot(std::size_t i, std::size_t j, std::size_t k) {
+    return ((k / 2 * 2 + j / 2) * 2 + i / 2) * 8 + k % 2 * 4 + j % 2 * 2 + i % 2;
+}
+
+/// The positions of a block of one kind: coordinates along the axes before jitter, and ids.
+struct BlockPlaces {
+    std::array<double, block_cells> x, y, z;
+    std::uint64_t first_id, row_ids, slice_ids;  // id = first + i + j * row_ids + k * slice_ids
+    glm::dvec3 half_range;                       // of the jitter, scene units
+    std::uint32_t seed;
+};
+
+/// One block's positions and their closest points, by block_slot. `triangle` is ClosestPoint::none where
+/// nothing is near enough.
+struct BlockAnswers {
+    template <class T>
+    using Array = std::array<T, block_positions>;
+    alignas(64) Array<double> x, y, z;  // scene units, jittered
+    alignas(64) Array<double> distance_squared, v, w;
+    alignas(64) Array<std::uint32_t> triangle;
+};
+
+/// Fills in the positions, to the bits of jittered_position.
+void place_block(const BlockPlaces& places, BlockAnswers& answers);
+
+struct BlockMeasure {
+    const TriangleShape* shapes;  // of all triangles
+    const CandidateList& candidates;
+    glm::dvec3 origin;      // of the candidates' coordinates
+    float slack;            // see ClosestPointIndex::slack, for all positions of the block
+    double max_distance;    // scene units
+    std::uint32_t nearest;  // a triangle that is probably near, or ClosestPoint::none
+};
+
+/// Fills in the closest points. A position for which the candidates include every triangle that could be
+/// closest gets the answer of ClosestPointIndex::closest_brute_force.
+void measure_block(const BlockMeasure& measure, NearCandidates& scratch, BlockAnswers& answers);
+
+}  // namespace astrosplat
