@@ -24,13 +24,22 @@ using Gesture = std::uint64_t;
 
 class Document {
   public:
-    /// Opens a scene file. Throws InputError. Keys given by `assignments` are remembered (see
-    /// set_by_command_line).
+    /// Opens a scene file. Throws InputError. What `assignments` (--set) change is an edit like any other:
+    /// the document begins as edited(), and saving writes it. Their keys are remembered (set_by_command_line)
+    /// until they are saved.
     static Document open(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
     /// A scene without a file: `toml` as if it lay at `place`, whose folder resolves its paths. Saving asks
-    /// for a file.
+    /// for a file; until the first edit there is nothing to save. Throws InputError.
     static Document untitled(const std::string& toml, const std::filesystem::path& place,
                              std::span<const Assignment> assignments = {});
+    /// What an autosave held, `toml` at `place`, as edits of `file`: edited(), and save() writes there. An
+    /// empty `file`: untitled. Throws InputError.
+    static Document recovered(const std::string& toml, const std::filesystem::path& place,
+                              const std::filesystem::path& file);
+
+    Document(Document&&) noexcept;
+    Document& operator=(Document&&) noexcept;
+    ~Document();
 
     const Scene& scene() const;
     /// Differs after every edit, undo, redo and load.
@@ -38,20 +47,25 @@ class Document {
     /// Empty when untitled.
     const std::filesystem::path& file() const;
     std::string name() const;  // "whirlpool.toml", "Untitled"
-    bool edited() const;       // differs from what lies on disk
+    bool edited() const;       // differs from what lies on disk; untitled: from what it began as
+    /// What lies on disk (untitled: what it began as), as far as this document knows.
+    const Scene& saved_scene() const;
 
     /// Applies `change` to a copy and makes it the scene as one undo step called `name` ("Opacity of dust").
     /// Throws what `change` throws, and InputError where the result breaks a rule between parameters; the
-    /// scene is then as before. An edit that changes nothing is not recorded.
+    /// scene is then as before. An edit that changes nothing is not recorded. Tracks of what the edit removed
+    /// go with it. The last 500 steps can be undone.
     void edit(const std::string& name, const std::function<void(Scene&)>& change, Gesture gesture = 0);
 
     /// Sets one parameter by its full key. A keyed parameter gets (or changes) the key at `frame`, any other
-    /// its value. Throws InputError as edit() does.
+    /// its value. A file's path may be relative to the scene's folder; the list a key names grows by one
+    /// element where that is missing. Throws InputError as edit() does.
     void set(const std::string& key, const Value& value, double frame, Gesture gesture = 0);
     /// Back to the default, animation of it removed.
     void reset(const std::string& key);
     /// The parameter's default in a new scene.
     static Value default_value(const ParameterSpec& spec);
+    /// `--set` gave this key the value it still has, and it was not saved.
     bool set_by_command_line(const std::string& key) const;
 
     bool can_undo() const;
@@ -62,24 +76,25 @@ class Document {
     void redo();
 
     /// Writes the scene's file, atomically, keeping comments and order. Throws OutputError, and InputError
-    /// when untitled.
+    /// when untitled or a preset the scene uses cannot be read any more.
     void save();
-    /// Writes to `file`, which the document then is. Throws OutputError.
+    /// Writes to `file`, which the document then is. Throws as save() does; the document is then as before.
     void save_as(const std::filesystem::path& file);
     /// The text that save_as(file) would write.
     std::string text_for(const std::filesystem::path& file) const;
 
     /// The file was changed by somebody else since it was read or saved (asked of the disk now).
     bool changed_on_disk() const;
-    /// Reads the file again as one undo step. Throws InputError; the scene is then as before.
+    /// Reads the file again as one undo step; `--set` that was not saved wins over it again. Throws
+    /// InputError; the scene is then as before.
     void reload();
     /// Keeps what is here; changed_on_disk() is false until the next change.
     void ignore_change_on_disk();
 
   private:
     struct State;
-    explicit Document(std::shared_ptr<State> state);
-    std::shared_ptr<State> state_;
+    explicit Document(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
 };
 
 }  // namespace astrosplat

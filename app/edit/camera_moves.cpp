@@ -1,0 +1,168 @@
+// Camera keys made of a camera, and whole moves as rows of keys. A move is sampled so densely that the smooth
+// curve through its keys is round to 0.1 % of its radius; the easing is in the samples, so keys outside the
+// move keep their own timing.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+
+#include "core/real.h"
+#include "edit/keys.h"
+#include "scene/animate.h"
+#include "scene/describe.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double move_seconds = 10.0;
+constexpr double samples_per_move = 48.0;
+constexpr double fly_in_share = 0.15;     // of the distance that is left at the end
+constexpr double face_on_tilt_deg = 0.1;  // exactly face-on, "up" would be undefined
+
+const char* const position_key = "camera.position";
+const char* const target_key = "camera.target";
+const char* const rotation_key = "camera.rotation";
+
+Value vector_value(const glm::dvec3& v) { return Value::List{v.x, v.y, v.z}; }
+
+double aspect_of(const Scene& scene) {
+    return static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height);
+}
+
+/// The quaternion x y z w of a rotation matrix (Shepperd 1978: the largest component first).
+glm::dvec4 quaternion_of(const glm::dmat3& m) {
+    const double trace = m[0][0] + m[1][1] + m[2][2];
+    if (trace > 0.0) {
+        const double s = 2.0 * std::sqrt(trace + 1.0);
+        return {(m[1][2] - m[2][1]) / s, (m[2][0] - m[0][2]) / s, (m[0][1] - m[1][0]) / s, 0.25 * s};
+    }
+    const int i = m[0][0] >= m[1][1] && m[0][0] >= m[2][2] ? 0 : m[1][1] >= m[2][2] ? 1 : 2;
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double s = 2.0 * std::sqrt(1.0 + m[i][i] - m[j][j] - m[k][k]);
+    glm::dvec4 q;
+    q[i] = 0.25 * s;
+    q[j] = (m[i][j] + m[j][i]) / s;
+    q[k] = (m[i][k] + m[k][i]) / s;
+    q[3] = (m[j][k] - m[k][j]) / s;
+    return q;
+}
+
+/// Every animated parameter of the camera gets its key; position and direction always do.
+void key_orientation(Scene& scene, const CameraParams& camera, double frame) {
+    const bool turns = scene.camera.rotation || camera.rotation || is_keyed(scene, rotation_key);
+    if (!turns) {
+        set_key(scene, target_key, frame, vector_value(camera.target));
+        return;
+    }
+    const double aspect = aspect_of(scene);
+    const glm::dvec4 q = quaternion_of(make_camera(camera, aspect, 1.0, {}).world_from_camera);
+    set_key(scene, rotation_key, frame, Value::List{q.x, q.y, q.z, q.w});
+}
+
+/// A place on the way, of the share 0..1 of the move that is done.
+using Path = std::function<glm::dvec3(double)>;
+
+double ease(double t) { return t * t * (3.0 - 2.0 * t); }
+
+void remove_keys_between(Scene& scene, const std::string& key, double first, double last) {
+    for (Track& track : scene.animation)
+        if (track.key == key)
+            std::erase_if(track.keys, [&](const auto& k) { return k.frame >= first && k.frame <= last; });
+    std::erase_if(scene.animation, [](const Track& track) { return track.keys.empty(); });
+}
+
+void set_smooth_key(Scene& scene, const char* key, double frame, const glm::dvec3& value) {
+    set_key(scene, key, frame, vector_value(value));
+    set_interpolation(scene, key, frame, Interpolation::smooth);
+}
+
+void add_path(Scene& scene, const Path& path, const glm::dvec3& target, double frame) {
+    const double frames = std::fmax(1.0, std::floor(move_seconds * scene.output.fps + 0.5));
+    const double step = std::fmax(1.0, std::floor(frames / samples_per_move + 0.5));
+    remove_track(scene, rotation_key);  // it would replace the target
+    scene.camera.rotation.reset();
+    for (const char* key : {position_key, target_key}) remove_keys_between(scene, key, frame, frame + frames);
+    for (double at = 0.0; at < frames + step; at += step) {
+        const double done = std::fmin(at, frames);
+        set_smooth_key(scene, position_key, frame + done, path(ease(done / frames)));
+        if (at >= frames) break;
+    }
+    set_smooth_key(scene, target_key, frame, target);
+    set_smooth_key(scene, target_key, frame + frames, target);
+    for (Track& track : scene.animation)
+        if (track.key == position_key) track.constant_speed = false;  // the samples carry the speed
+}
+
+/// Where the camera is at a frame; a camera without a position frames the box.
+glm::dvec3 camera_place(const Scene& scene, const Bounds& box, double frame) {
+    const CameraParams camera = scene_at(scene, frame).camera;
+    return camera.position ? *camera.position : make_camera(camera, aspect_of(scene), 1.0, box).eye;
+}
+
+Path orbit_path(const glm::dvec3& middle, const glm::dvec3& start) {
+    glm::dvec3 arm = start - middle;
+    const glm::dvec3 height(0.0, arm.y, 0.0);
+    arm.y = 0.0;
+    if (glm::length(arm) == 0.0) arm.z = std::fmax(std::fabs(height.y), 1e-6);
+    const glm::dvec3 across(arm.z, 0.0, -arm.x);  // towards +x from +z
+    return [=](double share) {
+        const double angle = share * 2.0 * real::pi;
+        return middle + height + arm * real::cos(angle) + across * real::sin(angle);
+    };
+}
+
+/// The distance shrinks by the same factor at every step of the share: the picture grows evenly.
+Path fly_in_path(const glm::dvec3& middle, const glm::dvec3& start) {
+    return [=](double share) { return middle + (start - middle) * real::pow(fly_in_share, share); };
+}
+
+/// The thin direction of what is seen: the first visible layer's axis.
+glm::dvec3 thin_direction(const Scene& scene) {
+    for (const LayerParams& layer : scene.layers)
+        if (layer.visible) return glm::normalize(rotation_from_degrees(layer.transform.rotate) * layer.axis);
+    return {0.0, 1.0, 0.0};
+}
+
+/// From above the thin direction to the side on which the camera is, at a distance that holds the whole box.
+Path face_on_path(const Scene& scene, const Bounds& box, const glm::dvec3& start) {
+    const glm::dvec3 middle = box.center(), axis = thin_direction(scene);
+    glm::dvec3 side = start - middle;
+    side -= axis * glm::dot(side, axis);
+    if (!(glm::length(side) > 1e-9 * glm::length(start - middle))) side = glm::dvec3(0.0, 0.0, 1.0);
+    side -= axis * glm::dot(side, axis);
+    if (!(glm::length(side) > 0.0)) side = glm::dvec3(1.0, 0.0, 0.0);
+    side = glm::normalize(side);
+    const Framing framing = frame_box(box, scene.camera.fov, aspect_of(scene));
+    const double distance = glm::length(framing.position - framing.target);
+    return [=](double share) {
+        const double angle = real::radians(face_on_tilt_deg + share * (90.0 - face_on_tilt_deg));
+        return middle + (axis * real::cos(angle) + side * real::sin(angle)) * distance;
+    };
+}
+
+}  // namespace
+
+void key_camera(Scene& scene, const CameraParams& camera, double frame) {
+    if (camera.position) set_key(scene, position_key, frame, vector_value(*camera.position));
+    key_orientation(scene, camera, frame);
+    Scene source = scene;
+    source.camera = camera;
+    for (const Parameter& parameter : describe(source).parameters) {
+        const std::string& key = parameter.spec.key;
+        if (key.rfind("camera.", 0) != 0 || key == position_key || key == target_key || key == rotation_key)
+            continue;
+        if (is_keyed(scene, key)) set_key(scene, key, frame, parameter.get());
+    }
+}
+
+void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame) {
+    Bounds seen = box;
+    if (seen.empty()) seen.add(glm::dvec3(0.0));
+    const glm::dvec3 middle = seen.center(), start = camera_place(scene, seen, frame);
+    const Path path = move == CameraMove::orbit    ? orbit_path(middle, start)
+                      : move == CameraMove::fly_in ? fly_in_path(middle, start)
+                                                   : face_on_path(scene, seen, start);
+    add_path(scene, path, middle, frame);
+}
+
+}  // namespace astrosplat

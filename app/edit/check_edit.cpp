@@ -1,0 +1,67 @@
+// Values are checked by reading and setting them: the description knows every range.
+#include "edit/check_edit.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "core/error.h"
+#include "scene/check.h"
+#include "scene/describe.h"
+
+namespace astrosplat {
+namespace {
+
+void check_names(const Scene& scene, const std::string& name) {
+    std::set<std::string> names;
+    for (const LayerParams& layer : scene.layers) {
+        check_layer_name(layer.name, name);
+        if (!names.insert(layer.name).second)
+            throw InputError(
+                fmt::format("{}: layer.name: expected each name once, found '{}' twice", name, layer.name));
+    }
+}
+
+void set_checked(const Parameter& parameter, const Value& value) {
+    try {
+        parameter.set(value);
+    } catch (const ValueError& error) {
+        throw InputError(fmt::format("{}: {}", parameter.spec.key, error.what()));
+    }
+}
+
+void check_track(const Track& track, const Parameter& parameter) {
+    const auto fail = [&](const char* message) {
+        throw InputError(fmt::format("{}: {}", track.key, message));
+    };
+    if (parameter.spec.animation == Animation::no) fail("this parameter cannot be animated");
+    if (track.keys.empty()) fail("expected at least one key, found none");
+    const Value value = parameter.get();
+    for (std::size_t i = 0; i < track.keys.size(); ++i) {
+        const auto& key = track.keys[i];
+        if (!std::isfinite(key.frame)) fail("expected a finite frame number, found another");
+        if (i > 0 && !(track.keys[i - 1].frame < key.frame))
+            fail("expected ascending frames, each once, found others");
+        if (key.value.size() != track.keys[0].value.size() || key.value.empty())
+            fail("expected as many numbers in every key, found another number");
+        for (const double x : key.value)
+            if (!std::isfinite(x)) fail("expected finite numbers in every key, found another");
+        set_checked(parameter, from_numbers(parameter.spec, key.value));
+    }
+    parameter.set(value);
+}
+
+}  // namespace
+
+void check_edited_scene(Scene& scene, const std::string& name) {
+    check_names(scene, name);
+    const Description description = describe(scene);
+    std::erase_if(scene.animation,
+                  [&](const Track& track) { return !find_parameter(description, track.key); });
+    for (const Parameter& parameter : description.parameters) set_checked(parameter, parameter.get());
+    for (const Track& track : scene.animation) check_track(track, *find_parameter(description, track.key));
+    check_scene(scene, name, {});
+}
+
+}  // namespace astrosplat

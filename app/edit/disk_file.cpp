@@ -1,0 +1,47 @@
+// Date and size first, then the bytes.
+#include "edit/disk_file.h"
+
+#include "core/error.h"
+#include "core/sha256.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+
+DiskFile::DiskFile(const fs::path& file, std::string_view content)
+    : file_(file), looked_at_(stamp()), hash_(Sha256().add(content).hex()) {}
+
+DiskFile::Stamp DiskFile::stamp() const {
+    std::error_code error;
+    const fs::file_time_type time = fs::last_write_time(file_, error);
+    if (error) return {};
+    const std::uintmax_t size = fs::file_size(file_, error);
+    if (error) return {};
+    return {time, size};
+}
+
+bool DiskFile::changed() {
+    if (file_.empty()) return false;
+    const Stamp now = stamp();
+    if (now == Stamp{}) return false;
+    if (now == looked_at_) return changed_;
+    try {
+        changed_ = sha256_of_file(file_) != hash_;
+    } catch (const InputError&) {
+        return false;
+    }
+    looked_at_ = now;
+    return changed_;
+}
+
+void DiskFile::accept() {
+    if (file_.empty()) return;
+    try {
+        looked_at_ = stamp();
+        hash_ = sha256_of_file(file_);
+        changed_ = false;
+    } catch (const InputError&) {
+        // gone: nothing to accept
+    }
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,309 @@
+// The history is a row of whole scenes: undo and redo walk along it, nothing is ever computed backwards.
+#include "edit/document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "edit/check_edit.h"
+#include "edit/disk_file.h"
+#include "edit/keys.h"
+#include "scene/describe.h"
+#include "scene/entries.h"
+#include "scene/path_text.h"
+#include "scene/save.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t most_undo_steps = 500;
+
+/// One scene of the history and the edit that made it of the one before.
+struct Step {
+    std::shared_ptr<const Scene> scene;
+    std::string name;
+    Gesture gesture = 0;
+};
+
+/// Grows through all documents, so that a revision never means two scenes.
+std::uint64_t next_revision() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+bool covers(const std::string& assigned, const std::string& key) {
+    return key.compare(0, assigned.size(), assigned) == 0 &&
+           (key.size() == assigned.size() || key[assigned.size()] == '.');
+}
+
+/// "Opacity of dust"; parameters of no layer have their label alone.
+std::string edit_name(const ParameterSpec& spec) {
+    if (spec.key.rfind("layer.", 0) != 0) return spec.label;
+    return spec.label + " of " + spec.key.substr(6, spec.key.find('.', 6) - 6);
+}
+
+/// The parameter of a key in `scene`, whose lists grow for it.
+Parameter parameter_for(Scene& scene, const std::string& key) {
+    try {
+        extend_lists(describe(scene), key);
+    } catch (const ValueError& error) {
+        throw InputError(fmt::format("{}: {}", key, error.what()));
+    }
+    const Description description = describe(scene);
+    if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
+    throw InputError(unknown_key(key, key, "layer."));
+}
+
+ParameterSpec spec_of(const Scene& scene, const std::string& key) {
+    Scene scratch = scene;
+    return parameter_for(scratch, key).spec;
+}
+
+}  // namespace
+
+struct Document::State {
+    fs::path file;        // empty: untitled
+    fs::path text_place;  // where `text` resolves its paths
+    std::string text;     // what saving edits
+    std::shared_ptr<const Scene> saved;
+    DiskFile disk;
+    std::vector<Assignment> assignments;
+    std::vector<std::string> assigned_keys;  // full
+    Scene assigned;                          // what the assignments made
+
+    std::deque<Step> history;
+    std::size_t now = 0;  // index into history
+    std::uint64_t revision = next_revision();
+
+    const Scene& scene() const { return *history[now].scene; }
+
+    void begin(Scene scene) {
+        history = {{std::make_shared<const Scene>(std::move(scene)), "", 0}};
+        now = 0;
+    }
+
+    void remember_assignments(std::span<const Assignment> given) {
+        assignments.assign(given.begin(), given.end());
+        assigned_keys.clear();
+        assigned = scene();
+        const Description description = describe(assigned);
+        for (const Assignment& assignment : assignments) {
+            const bool track = assignment.key.rfind("animation.", 0) == 0;
+            assigned_keys.push_back(full_key(description, assignment.key.substr(track ? 10 : 0)));
+        }
+    }
+
+    void forget_assignments() {
+        assignments.clear();
+        assigned_keys.clear();
+    }
+
+    /// A new step after the current one; what could be redone is gone.
+    void record(Step step) {
+        history.erase(history.begin() + static_cast<std::ptrdiff_t>(now) + 1, history.end());
+        const bool merges = step.gesture != 0 && now > 0 && history[now].gesture == step.gesture;
+        if (merges)
+            history[now].scene = step.scene;
+        else
+            history.push_back(std::move(step));
+        if (merges && *history[now].scene == *history[now - 1].scene) history.pop_back();  // dragged back
+        if (history.size() > most_undo_steps + 1) history.pop_front();
+        now = history.size() - 1;
+        revision = next_revision();
+    }
+
+    /// The document is now `new_file`: so is every scene that undo can bring back.
+    void move_to(const fs::path& new_file) {
+        if (file == new_file) return;
+        file = new_file;
+        for (Step& step : history) {
+            Scene moved = *step.scene;
+            moved.file = new_file;
+            step.scene = std::make_shared<const Scene>(std::move(moved));
+        }
+        revision = next_revision();
+    }
+};
+
+Document::Document(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Document::Document(Document&&) noexcept = default;
+Document& Document::operator=(Document&&) noexcept = default;
+Document::~Document() = default;
+
+Document Document::open(const fs::path& file, std::span<const Assignment> assignments) {
+    auto state = std::make_unique<State>();
+    state->file = state->text_place = fs::absolute(file);
+    state->text = read_file(file);
+    state->disk = DiskFile(state->file, state->text);
+    state->begin(parse_scene(state->text, state->file, assignments));
+    state->remember_assignments(assignments);
+    state->saved = assignments.empty()
+                       ? state->history[0].scene
+                       : std::make_shared<const Scene>(parse_unchecked(state->text, state->file));
+    return Document(std::move(state));
+}
+
+Document Document::untitled(const std::string& toml, const fs::path& place,
+                            std::span<const Assignment> assignments) {
+    auto state = std::make_unique<State>();
+    state->text_place = fs::absolute(place);
+    state->text = toml;
+    state->begin(parse_scene(toml, state->text_place, assignments));
+    state->remember_assignments(assignments);
+    state->saved = state->history[0].scene;
+    return Document(std::move(state));
+}
+
+Document Document::recovered(const std::string& toml, const fs::path& place, const fs::path& file) {
+    auto state = std::make_unique<State>();
+    Scene scene = parse_scene(toml, fs::absolute(place));
+    state->file = file;
+    state->text = toml;
+    state->text_place = fs::absolute(place);
+    state->saved = std::make_shared<const Scene>();
+    std::error_code ignored;
+    if (!file.empty() && fs::exists(file, ignored)) {
+        try {  // what is there now keeps its comments and order
+            const std::string text = read_file(file);
+            state->saved = std::make_shared<const Scene>(parse_unchecked(text, file));
+            state->text = text;
+            state->text_place = file;
+            state->disk = DiskFile(file, text);
+        } catch (const InputError&) {
+            // It cannot be read: saving will replace it by what was recovered.
+        }
+    }
+    if (!file.empty()) scene.file = file;
+    state->begin(std::move(scene));
+    return Document(std::move(state));
+}
+
+const Scene& Document::scene() const { return state_->scene(); }
+std::uint64_t Document::revision() const { return state_->revision; }
+const fs::path& Document::file() const { return state_->file; }
+std::string Document::name() const {
+    return state_->file.empty() ? "Untitled" : state_->file.filename().string();
+}
+const Scene& Document::saved_scene() const { return *state_->saved; }
+bool Document::edited() const {
+    return state_->history[state_->now].scene != state_->saved && !(scene() == *state_->saved);
+}
+
+void Document::edit(const std::string& name, const std::function<void(Scene&)>& change, Gesture gesture) {
+    Scene edited = scene();
+    change(edited);
+    edited.file = scene().file;
+    if (edited == scene()) return;
+    check_edited_scene(edited, this->name());
+    if (edited == scene()) return;
+    state_->record({std::make_shared<const Scene>(std::move(edited)), name, gesture});
+}
+
+void Document::set(const std::string& key, const Value& value, double frame, Gesture gesture) {
+    const ParameterSpec spec = spec_of(scene(), key);
+    const auto change = [&](Scene& edited) {
+        if (is_keyed(edited, spec.key)) {
+            set_key(edited, spec.key, frame, value);
+            return;
+        }
+        const Parameter parameter = parameter_for(edited, spec.key);
+        try {
+            parameter.set(resolve_paths(value, spec, edited.file.parent_path(), false));
+        } catch (const ValueError& error) {
+            throw InputError(fmt::format("{}: {}", spec.key, error.what()));
+        }
+    };
+    edit(edit_name(spec), change, gesture);
+}
+
+void Document::reset(const std::string& key) {
+    const ParameterSpec spec = spec_of(scene(), key);
+    edit("Reset " + edit_name(spec), [&](Scene& edited) {
+        remove_track(edited, spec.key);
+        parameter_for(edited, spec.key).set(default_value(spec));
+    });
+}
+
+Value Document::default_value(const ParameterSpec& spec) {
+    const auto& rows = parameter_rows();
+    const auto row = std::find_if(rows.begin(), rows.end(),
+                                  [&](const ParameterRow& r) { return r.spec.key == spec.generic_key; });
+    return row == rows.end() ? Value() : row->standard;
+}
+
+bool Document::set_by_command_line(const std::string& key) const {
+    const auto& keys = state_->assigned_keys;
+    if (!std::any_of(keys.begin(), keys.end(), [&](const std::string& k) { return covers(k, key); }))
+        return false;
+    Scene then = state_->assigned, current = scene();
+    const Description description_then = describe(then), description_now = describe(current);
+    const Parameter* before = find_parameter(description_then, key);
+    const Parameter* after = find_parameter(description_now, key);
+    if (!before || !after || !(before->get() == after->get())) return false;
+    const Track* track_then = find_track(then, key);
+    const Track* track_now = find_track(current, key);
+    return track_then && track_now ? *track_then == *track_now : track_then == track_now;
+}
+
+bool Document::can_undo() const { return state_->now > 0; }
+bool Document::can_redo() const { return state_->now + 1 < state_->history.size(); }
+std::string Document::undo_name() const { return can_undo() ? state_->history[state_->now].name : ""; }
+std::string Document::redo_name() const { return can_redo() ? state_->history[state_->now + 1].name : ""; }
+
+void Document::undo() {
+    if (!can_undo()) return;
+    --state_->now;
+    state_->revision = next_revision();
+}
+
+void Document::redo() {
+    if (!can_redo()) return;
+    ++state_->now;
+    state_->revision = next_revision();
+}
+
+std::string Document::text_for(const fs::path& file) const {
+    Scene placed = scene();
+    placed.file = state_->text_place;
+    return save_text(placed, state_->text, fs::absolute(file));
+}
+
+void Document::save() {
+    if (state_->file.empty()) throw InputError("Untitled: expected a file to save to, found none");
+    save_as(state_->file);
+}
+
+void Document::save_as(const fs::path& file) {
+    const fs::path target = fs::absolute(file);
+    const std::string text = text_for(target);
+    write_file_atomically(target, text);
+    state_->text = text;
+    state_->text_place = target;
+    state_->move_to(target);
+    state_->saved = state_->history[state_->now].scene;
+    state_->disk = DiskFile(target, text);
+    state_->forget_assignments();
+}
+
+bool Document::changed_on_disk() const { return state_->disk.changed(); }
+
+void Document::reload() {
+    if (state_->file.empty()) throw InputError("Untitled: expected a file to read again, found none");
+    const std::string text = read_file(state_->file);
+    const Scene scene = parse_scene(text, state_->file, state_->assignments);
+    state_->saved = std::make_shared<const Scene>(parse_unchecked(text, state_->file));
+    state_->text = text;
+    state_->text_place = state_->file;
+    state_->disk = DiskFile(state_->file, text);
+    edit("Reload", [&](Scene& edited) { edited = scene; });
+}
+
+void Document::ignore_change_on_disk() { state_->disk.accept(); }
+
+}  // namespace astrosplat

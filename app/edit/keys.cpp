@@ -1,0 +1,172 @@
+// Tracks stay sorted by frame; a parameter without a track has no keys.
+#include "edit/keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "scene/describe.h"
+
+namespace astrosplat {
+namespace {
+
+using TrackKey = Key<std::vector<double>>;
+
+Track* track_of(Scene& scene, const std::string& key) {
+    const auto found = std::find_if(scene.animation.begin(), scene.animation.end(),
+                                    [&](const Track& track) { return track.key == key; });
+    return found == scene.animation.end() ? nullptr : &*found;
+}
+
+std::vector<TrackKey>::iterator key_at(Track& track, double frame) {
+    return std::find_if(track.keys.begin(), track.keys.end(),
+                        [&](const TrackKey& key) { return key.frame == frame; });
+}
+
+/// Puts a key in its place, instead of one that is there.
+void insert_key(Track& track, TrackKey key) {
+    std::erase_if(track.keys, [&](const TrackKey& old) { return old.frame == key.frame; });
+    const auto after = std::find_if(track.keys.begin(), track.keys.end(),
+                                    [&](const TrackKey& other) { return other.frame > key.frame; });
+    track.keys.insert(after, std::move(key));
+}
+
+/// The numbers of a value that fits the parameter; sets it in passing.
+std::vector<double> numbers_for(const Parameter& parameter, const Value& value) {
+    try {
+        parameter.set(value);
+        std::vector<double> numbers = to_numbers(parameter.spec, value);
+        const bool nothing = numbers.empty() || (value.text() && value == parameter.spec.nothing);
+        const bool zero = std::all_of(numbers.begin(), numbers.end(), [](double x) { return x == 0.0; });
+        if (nothing || (zero && parameter.spec.type == ParameterType::rotation))
+            throw ValueError(
+                fmt::format("expected {}, found {}", expectation(parameter.spec), nothing ? "none" : "0"));
+        return numbers;
+    } catch (const ValueError& error) {
+        throw InputError(fmt::format("{}: {}", parameter.spec.key, error.what()));
+    }
+}
+
+/// A new track moves smoothly, as people expect of a camera or a slider; values that step have no way
+/// between.
+Track new_track(const ParameterSpec& spec) {
+    Track track;
+    track.key = spec.key;
+    if (spec.animation == Animation::yes) track.interpolation = Interpolation::smooth;
+    return track;
+}
+
+void erase_track(Scene& scene, const std::string& key) {
+    std::erase_if(scene.animation, [&](const Track& track) { return track.key == key; });
+}
+
+}  // namespace
+
+const Track* find_track(const Scene& scene, const std::string& key) {
+    return track_of(const_cast<Scene&>(scene), key);
+}
+
+bool is_keyed(const Scene& scene, const std::string& key) { return find_track(scene, key) != nullptr; }
+
+bool has_key_at(const Scene& scene, const std::string& key, double frame) {
+    const Track* track = find_track(scene, key);
+    return track && std::any_of(track->keys.begin(), track->keys.end(),
+                                [&](const TrackKey& k) { return k.frame == frame; });
+}
+
+void set_key(Scene& scene, const std::string& key, double frame, const Value& value) {
+    if (!std::isfinite(frame)) throw InputError(key + ": expected a finite frame number, found another");
+    Scene scratch = scene;  // values are checked by setting them
+    const Description description = describe(scratch);
+    const Parameter* parameter = find_parameter(description, key);
+    if (!parameter) throw InputError(key + ": expected a parameter of the scene, found none of that name");
+    if (parameter->spec.animation == Animation::no)
+        throw InputError(parameter->spec.key + ": this parameter cannot be animated");
+    std::vector<double> numbers = numbers_for(*parameter, value);
+    Track* track = track_of(scene, parameter->spec.key);
+    if (!track) {
+        scene.animation.push_back(new_track(parameter->spec));
+        track = &scene.animation.back();
+    }
+    const bool alone = track->keys.empty() || (track->keys.size() == 1 && track->keys[0].frame == frame);
+    if (!alone && track->keys[0].value.size() != numbers.size())
+        throw InputError(parameter->spec.key + ": expected as many points as in the other keys, found " +
+                         "another number");
+    const auto old = key_at(*track, frame);
+    const Interpolation way = old == track->keys.end() ? track->interpolation : old->interpolation;
+    insert_key(*track, {frame, std::move(numbers), way});
+}
+
+void remove_key(Scene& scene, const std::string& key, double frame) {
+    Track* track = track_of(scene, key);
+    if (!track) return;
+    const auto found = key_at(*track, frame);
+    if (found == track->keys.end()) return;
+    if (track->keys.size() > 1) {
+        track->keys.erase(found);
+        return;
+    }
+    const Description description = describe(scene);
+    if (const Parameter* parameter = find_parameter(description, key))
+        parameter->set(from_numbers(parameter->spec, found->value));
+    erase_track(scene, key);
+}
+
+void remove_track(Scene& scene, const std::string& key) { erase_track(scene, key); }
+
+void move_key(Scene& scene, const std::string& key, double from, double to) {
+    Track* track = track_of(scene, key);
+    if (!track || from == to || !std::isfinite(to)) return;
+    const auto found = key_at(*track, from);
+    if (found == track->keys.end()) return;
+    TrackKey moved = *found;
+    moved.frame = to;
+    track->keys.erase(found);
+    insert_key(*track, std::move(moved));
+}
+
+void copy_key(Scene& scene, const std::string& key, double from, double to) {
+    Track* track = track_of(scene, key);
+    if (!track || !std::isfinite(to)) return;
+    const auto found = key_at(*track, from);
+    if (found == track->keys.end()) return;
+    TrackKey copy = *found;
+    copy.frame = to;
+    insert_key(*track, std::move(copy));
+}
+
+void set_interpolation(Scene& scene, const std::string& key, double frame, Interpolation interpolation) {
+    Track* track = track_of(scene, key);
+    if (!track) return;
+    const auto found = key_at(*track, frame);
+    if (found != track->keys.end()) found->interpolation = interpolation;
+}
+
+void set_ends(Scene& scene, const std::string& key, Ends ends) {
+    if (Track* track = track_of(scene, key)) track->ends = ends;
+}
+
+std::vector<double> key_frames(const Scene& scene) {
+    std::vector<double> frames;
+    for (const Track& track : scene.animation)
+        for (const TrackKey& key : track.keys) frames.push_back(key.frame);
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    return frames;
+}
+
+double next_key_frame(const Scene& scene, double frame) {
+    const std::vector<double> frames = key_frames(scene);
+    const auto next = std::upper_bound(frames.begin(), frames.end(), frame);
+    return next == frames.end() ? frame : *next;
+}
+
+double previous_key_frame(const Scene& scene, double frame) {
+    const std::vector<double> frames = key_frames(scene);
+    const auto here = std::lower_bound(frames.begin(), frames.end(), frame);
+    return here == frames.begin() ? frame : *(here - 1);
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,101 @@
+// Layers are found by their place, tracks by the layer's name in their key.
+#include "edit/layers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "edit/new_from_file.h"
+#include "scene/check.h"
+#include "scene/load.h"
+#include "scene/value.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+bool is_taken(const Scene& scene, const std::string& name) {
+    return std::any_of(scene.layers.begin(), scene.layers.end(),
+                       [&](const LayerParams& layer) { return layer.name == name; });
+}
+
+std::string key_head(const std::string& layer) { return "layer." + layer + "."; }
+
+bool belongs_to(const Track& track, const std::string& layer) {
+    return track.key.rfind(key_head(layer), 0) == 0;
+}
+
+void rekey(Track& track, const std::string& from, const std::string& to) {
+    track.key = key_head(to) + track.key.substr(key_head(from).size());
+}
+
+}  // namespace
+
+std::string free_layer_name(const Scene& scene, const std::string& wanted) {
+    const std::string name = layer_name_of(wanted);
+    if (!is_taken(scene, name)) return name;
+    for (int number = 2;; ++number) {
+        const std::string numbered = fmt::format("{}_{}", name, number);
+        if (!is_taken(scene, numbered)) return numbered;
+    }
+}
+
+std::size_t add_layer(Scene& scene, const fs::path& file) {
+    const fs::path place = scene.file.empty() ? fs::absolute("untitled.toml") : scene.file;
+    LayerParams layer = parse_scene(scene_text_for(file, place), place).layers.at(0);
+    layer.name = free_layer_name(scene, layer.name);
+    scene.layers.push_back(std::move(layer));
+    return scene.layers.size() - 1;
+}
+
+std::size_t duplicate_layer(Scene& scene, std::size_t index) {
+    LayerParams copy = scene.layers.at(index);
+    const std::string original = copy.name;
+    copy.name = free_layer_name(scene, original);
+    std::vector<Track> tracks;
+    for (const Track& track : scene.animation) {
+        if (!belongs_to(track, original)) continue;
+        tracks.push_back(track);
+        rekey(tracks.back(), original, copy.name);
+    }
+    scene.animation.insert(scene.animation.end(), tracks.begin(), tracks.end());
+    scene.layers.insert(scene.layers.begin() + static_cast<std::ptrdiff_t>(index) + 1, std::move(copy));
+    return index + 1;
+}
+
+void remove_layer(Scene& scene, std::size_t index) {
+    const std::string name = scene.layers.at(index).name;
+    std::erase_if(scene.animation, [&](const Track& track) { return belongs_to(track, name); });
+    scene.layers.erase(scene.layers.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+void move_layer(Scene& scene, std::size_t from, std::size_t to) {
+    LayerParams moved = scene.layers.at(from);
+    scene.layers.erase(scene.layers.begin() + static_cast<std::ptrdiff_t>(from));
+    to = std::min(to, scene.layers.size());
+    scene.layers.insert(scene.layers.begin() + static_cast<std::ptrdiff_t>(to), std::move(moved));
+}
+
+void rename_layer(Scene& scene, std::size_t index, const std::string& name) {
+    LayerParams& layer = scene.layers.at(index);
+    if (layer.name == name) return;
+    check_layer_name(name, layer.name);
+    if (is_taken(scene, name))
+        throw InputError(
+            fmt::format("{}: layer.name: expected each name once, found '{}' twice", layer.name, name));
+    for (Track& track : scene.animation)
+        if (belongs_to(track, layer.name)) rekey(track, layer.name, name);
+    layer.name = name;
+}
+
+void apply_preset(LayerParams& layer, const fs::path& preset) {
+    const fs::path file = fs::absolute(preset);
+    const std::string text =
+        fmt::format("astrosplat = 1\n[[layer]]\nname = \"preset\"\npreset = {}\n", to_toml(file.string()));
+    const LayerParams loaded = parse_unchecked(text, file).layers.at(0);
+    layer.look = loaded.look;
+    layer.render = loaded.render;
+}
+
+}  // namespace astrosplat

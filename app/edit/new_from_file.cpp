@@ -1,0 +1,198 @@
+// Pictures go through engine/scene/new_scene.h; meshes and splats get a short text of their own.
+#include "edit/new_from_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "scene/new_scene.h"
+#include "scene/value.h"
+#include "source/mesh.h"
+#include "splats/splat_file.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+const std::map<std::string, FileKind> kinds{
+    {".obj", FileKind::mesh},      {".pda", FileKind::splats},   {".ply", FileKind::splats},
+    {".splats", FileKind::splats}, {".png", FileKind::picture},  {".jpg", FileKind::picture},
+    {".jpeg", FileKind::picture},  {".tif", FileKind::picture},  {".tiff", FileKind::picture},
+    {".exr", FileKind::picture},   {".fits", FileKind::picture}, {".fit", FileKind::picture},
+    {".fts", FileKind::picture},   {".toml", FileKind::scene}};
+
+std::string lower_ending(const fs::path& file) {
+    std::string ending = file.extension().string();
+    if (ending == ".gz") ending = file.stem().extension().string();  // CFITSIO reads x.fits.gz
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending;
+}
+
+bool has_layers(const fs::path& file) {
+    std::ifstream in(file);
+    if (!in) return true;
+    for (std::string line; std::getline(in, line);) {
+        line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t'; }),
+                   line.end());
+        if (line.rfind("[[layer", 0) == 0 || line.rfind("layer=", 0) == 0) return true;
+    }
+    return false;
+}
+
+/// The file as seen from the scene's folder, absolute where it lies elsewhere.
+std::string path_from(const fs::path& file, const fs::path& place) {
+    const fs::path full = fs::absolute(file).lexically_normal();
+    const fs::path relative = full.lexically_relative(fs::absolute(place).lexically_normal().parent_path());
+    const bool below = !relative.empty() && *relative.begin() != "..";
+    return to_toml((below ? relative : full).string());
+}
+
+constexpr const char* scene_format = R"(# {name}: a first scene. 'astrosplat parameters' lists every key.
+astrosplat = 1
+
+[output]
+resolution = [1920, 1080]         # px
+frames     = "1"                  # such as "1-240" or "1-100,120,200-300x2"
+path       = {path}  # the ending chooses the format: .exr .tif .png
+
+[camera]                          # without a position it frames everything, from 35 degrees above
+fov = 40.0                        # degrees, vertical
+
+[[layer]]
+name = "{name}"
+{layer})";
+
+std::string scene_text(const fs::path& file, const std::string& layer) {
+    const std::string name = layer_name_of(file.stem().string());
+    return fmt::format(scene_format, fmt::arg("name", name),
+                       fmt::arg("path", to_toml("frames/" + name + ".####.exr")), fmt::arg("layer", layer));
+}
+
+bool has_own_pictures(const Mesh& mesh) {
+    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Mesh::Triangle& face) {
+        return face.material < mesh.maps.size() && !mesh.maps[face.material].empty();
+    });
+}
+
+/// "disk.png" beside "disk.obj"; empty when there is none.
+fs::path picture_beside(const fs::path& mesh) {
+    for (const auto& [ending, kind] : kinds) {
+        if (kind != FileKind::picture) continue;
+        fs::path picture = mesh;
+        picture.replace_extension(ending);
+        std::error_code ignored;
+        if (fs::is_regular_file(picture, ignored)) return picture;
+    }
+    return {};
+}
+
+/// Where the mesh has no texture coordinates, its picture is seen along the thinnest side of its box.
+std::string projection_lines(const Mesh& mesh) {
+    const bool complete = std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
+                                      [](const Mesh::Triangle& face) { return face.uv[0] != Mesh::no_uv; });
+    if (complete) return "";
+    const glm::dvec3 side = bounds(mesh).extent();
+    const char* why = "  # the mesh has no texture coordinates";
+    if (side.y <= side.x && side.y <= side.z) return fmt::format("uv     = \"planar-xz\"{}\n", why);
+    return fmt::format("uv     = \"{}\"{}\n", side.z <= side.x ? "planar-xy" : "planar-yz", why);
+}
+
+std::string mesh_scene_text(const fs::path& file, const fs::path& place) {
+    const Mesh mesh = load_obj(file);
+    fs::path picture;
+    if (!has_own_pictures(mesh)) {
+        picture = picture_beside(file);
+        if (picture.empty())
+            bad_input(file.string(), "",
+                      fmt::format("a picture for every face: map_Kd in its material, or a picture '{}.png' "
+                                  "beside the mesh",
+                                  file.stem().string()),
+                      "neither");
+    }
+    return scene_text(
+        file, fmt::format("\n[layer.source]\nmeshes = [ {{ mesh = {}, texture = {} }} ]\n{}",
+                          path_from(file, place), picture.empty() ? "\"\"" : path_from(picture, place),
+                          projection_lines(mesh)));
+}
+
+/// Whether the beginning of a splat file promises radii. Native files are read to know.
+bool names_radii(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string head(65536, '\0');
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
+    const std::size_t end = std::min(head.find("end_header"), head.find("BEGIN DATA"));
+    std::istringstream words(head.substr(0, end));
+    for (std::string word; words >> word;)
+        if (word == "radius" || word == "radiusPP") return true;
+    return false;
+}
+
+/// Half the mean distance of neighbours, were they spread evenly through the box.
+double typical_radius(const SplatSet& set) {
+    const glm::dvec3 side = glm::max(bounds(set).extent(), glm::dvec3(1e-6));
+    return 0.5 *
+           std::cbrt(side.x * side.y * side.z / static_cast<double>(std::max<std::int64_t>(1, set.size())));
+}
+
+std::string splat_scene_text(const fs::path& file, const fs::path& place) {
+    std::string look;
+    if (!names_radii(file)) {
+        const SplatSet set = read_splats(file);
+        if (set.radius.empty()) {
+            const std::string radius = fmt::format("{:.3g}", typical_radius(set));
+            look = fmt::format("\n[layer.look]\nradius = {{ min = {0}, max = {0} }}  # the file has none\n",
+                               radius);
+        }
+    }
+    return scene_text(file, fmt::format("\n[layer.source]\nkind = \"splats\"\nfile = {}\n{}",
+                                        path_from(file, place), look));
+}
+
+}  // namespace
+
+std::string layer_name_of(const std::string& text) {
+    std::string name;
+    for (const char c : text) {
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        const bool later = (c >= '0' && c <= '9') || c == '_';
+        if (letter || (later && !name.empty())) name += c;
+        if (!letter && !later && !name.empty() && name.back() != '_') name += '_';
+    }
+    while (!name.empty() && name.back() == '_') name.pop_back();
+    return name.empty() ? "layer" : name;
+}
+
+FileKind kind_of_file(const fs::path& file) {
+    const auto kind = kinds.find(lower_ending(file));
+    if (kind == kinds.end()) return FileKind::unknown;
+    if (kind->second == FileKind::scene && !has_layers(file)) return FileKind::unknown;
+    return kind->second;
+}
+
+std::string scene_text_for(const fs::path& file, const fs::path& place) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(file, ignored))
+        bad_input(file.string(), "", "a picture, mesh or splat file",
+                  fs::exists(file, ignored) ? "a folder" : "nothing of that name");
+    switch (kind_of_file(file)) {
+        case FileKind::picture:
+            return new_scene_text(file, "plane", place);
+        case FileKind::mesh:
+            return mesh_scene_text(file, place);
+        case FileKind::splats:
+            return splat_scene_text(file, place);
+        default:
+            bad_input(file.string(), "", "a picture (FITS, PNG, TIFF, JPEG, EXR), OBJ mesh or splat file",
+                      "another kind of file");
+    }
+}
+
+}  // namespace astrosplat
