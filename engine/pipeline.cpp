@@ -8,9 +8,9 @@
 
 #include "core/log.h"
 #include "look/apply.h"
-#include "render/falloff.h"
 #include "scene/animate.h"
-#include "splats/lattice.h"
+#include "scene/layer_setup.h"
+#include "source/texture.h"
 
 namespace astrosplat {
 namespace {
@@ -39,52 +39,10 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-ColumnLaw column_law(Blend blend) {
-    switch (blend) {
-        case Blend::add:
-            return ColumnLaw::sum;
-        case Blend::lighten:
-            return ColumnLaw::maximum;
-        case Blend::over:
-        case Blend::screen:
-        case Blend::hybrid:
-            return ColumnLaw::transmittance;
-    }
-    return ColumnLaw::transmittance;
-}
-
-/// Bounds of a layer in world space: of the eight corners of its box, so that no splat lies outside.
-Bounds world_bounds(const Bounds& box, const RenderLayer& layer) {
-    Bounds result;
-    if (box.empty()) return result;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                           corner & 4 ? box.hi.z : box.lo.z);
-        result.add(layer.world_from_layer * (layer.scale * p) + layer.translate);
-    }
-    return result;
-}
-
-RenderLayer render_layer(const LayerParams& params) {
-    RenderLayer layer;
-    layer.name = params.name;
-    layer.render = params.render;
-    layer.world_from_layer = rotation_from_degrees(params.transform.rotate);
-    layer.scale = params.transform.scale;
-    layer.translate = params.transform.translate;
-    layer.axis = params.axis;
-    layer.seed = resolved_seed(params.source.seed, params.name);
-    return layer;
-}
-
 void count_set(const SplatSet& set, LayerStatistics& counts) {
     counts.test_positions = set.test_positions;
     counts.kept = set.size();
     counts.zero_alpha = set.zero_alpha;
-}
-
-bool has_environment(const EnvironmentParams& params) {
-    return !params.image.empty() || !params.cube.empty();
 }
 
 bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
@@ -154,8 +112,8 @@ LayerState Pipeline::State::take_layer(const std::string& name, const std::share
 /// Applies the look where anything that it depends on has changed since the last frame.
 void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Progress& progress) {
     LayerState& layer = layers[index];
-    const ShadingKey key{params.look, glm::vec3(params.axis), resolved_seed(params.source.seed, params.name),
-                         falloff_integral(params.render.falloff), column_law(params.render.blend)};
+    LookInputs inputs = look_inputs(params);
+    const ShadingKey key{params.look, inputs.axis, inputs.seed, inputs.falloff_integral, inputs.column};
     if (layer.key == key) return;
     if (layer.thickness_file != params.look.thickness.map) {
         layer.thickness_file.clear();  // should the next line throw
@@ -163,11 +121,6 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
             params.look.thickness.map.empty() ? Image{} : load_raw_image(params.look.thickness.map);
         layer.thickness_file = params.look.thickness.map;
     }
-    LookInputs inputs;
-    inputs.axis = key.axis;
-    inputs.seed = key.seed;
-    inputs.falloff_integral = key.falloff_integral;
-    inputs.column = key.column;
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
     layer.key.reset();  // an exception below must not leave old splats under a new key
     LookStatistics counts;

@@ -23,7 +23,8 @@ struct PreviewLayer {
     std::shared_ptr<const SplatSet> set;
     Look look;
     LookInputs inputs;
-    float share = 1.0f;  // of the set, 0..1
+    float share = 1.0f;      // of the whole set, 0..1; no more than `set` holds is drawn
+    std::int64_t whole = 0;  // splats of the whole set, of which `set` is a prefix; 0: `set` is all of it
 };
 
 class GlPreview {

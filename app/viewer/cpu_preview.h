@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "gl/preview.h"
+#include "viewer/preview_budget.h"
 
 namespace astrosplat {
 
@@ -13,9 +15,11 @@ class CpuPreview {
   public:
     CpuPreview();
     ~CpuPreview();
-    /// Renders into an image that stays valid until the next call. Throws as GlPreview::draw does.
+    /// Renders into an image that stays valid until the next call. Splats are not split up by level of
+    /// detail. Throws as GlPreview::draw does.
     const Image& draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
                       const Environment* environment, int width, int height, float pixel_filter);
+    /// Splats of the last draw, before the look dropped any.
     std::int64_t shown() const;
 
   private:

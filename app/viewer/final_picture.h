@@ -21,6 +21,7 @@ struct FinalRequest {
     double frame = 1.0;
     std::int64_t width = 0, height = 0;  // px
     Region region;                       // empty: all
+    bool depth = false;                  // also RenderedFrame::depth; changes no pixel of the beauty
 };
 
 class FinalPicture {
@@ -30,13 +31,15 @@ class FinalPicture {
 
     /// Cancels what is under way and begins anew. Returns at once.
     void start(FinalRequest request);
-    /// Cancels and returns at once; the thread stops within 50 ms of work.
+    /// Cancels and returns at once: state() is idle from then on, and the thread stops within 50 ms of work.
     void cancel();
 
     enum class State { idle, running, done, failed };
     State state() const;
     float progress() const;
     std::string error() const;
+    /// When done: from the thread's taking up the request to the last pixel.
+    double seconds() const;
     /// When done. Its beauty is region-sized.
     std::shared_ptr<const RenderedFrame> frame() const;
 

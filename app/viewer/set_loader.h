@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,10 +17,11 @@ namespace astrosplat {
 
 /// What the viewer keeps of one layer.
 struct LoadedLayer {
-    std::shared_ptr<const SplatSet> set;      // in order of id: for the final picture
-    std::shared_ptr<const SplatSet> preview;  // in stratified order, at most `preview_limit` splats
-    std::shared_ptr<const LayerHistograms> histograms;
-    Bounds box;  // layer space
+    std::shared_ptr<const SplatSet> set;                // in order of id: for the final picture
+    std::shared_ptr<const SplatSet> preview;            // in stratified order, at most `preview_limit` splats
+    std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
+    Bounds box;                                         // layer space
+    glm::dvec2 radius{0.0};  // smallest and largest, scene units: what look.radius 0, 0 means; 0: unknown
     SourceParams source;
     std::string name;  // which the seed may depend on
 };
@@ -39,13 +41,13 @@ class SetLoader {
     /// Stops one layer's loading; its old set, if any, stays.
     void cancel(const std::string& layer_name);
 
-    /// Grows whenever a layer of the wanted scene got its set or failed.
+    /// Grows whenever a layer of the wanted scene got its set or its histograms, or failed.
     std::uint64_t revision() const;
     /// The latest set of a layer, which may be older than its source; null: none yet.
     std::shared_ptr<const LoadedLayer> layer(const std::string& layer_name) const;
     /// loading, progress, found, stale, error, splats and histograms filled in.
     LayerStatus status(const LayerParams& layer) const;
-    /// Every wanted layer is there or has failed.
+    /// Every wanted layer is there with its histograms, or has failed or been cancelled.
     bool idle() const;
     void wait();
 

@@ -199,14 +199,37 @@ Buffer<std::int64_t> by_reversed_rank(const Buffer<KeyedRow>& sorted, const Prog
     return order;
 }
 
-template <class T>
-void take(const Buffer<T>& from, const Buffer<std::int64_t>& order, std::int64_t count, Buffer<T>& to) {
+template <class T, class RowAt>
+void copy_array(const Buffer<T>& from, std::int64_t count, const RowAt& row_at, Buffer<T>& to) {
     if (from.empty()) return;
     to.resize(static_cast<std::size_t>(count));
     parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            to[i] = from[static_cast<std::size_t>(order[i])];
+            to[i] = from[row_at(i)];
     });
+}
+
+/// Row i of the result is row row_at(i) of the set.
+template <class RowAt>
+SplatSet copy_arrays(const SplatSet& set, std::int64_t count, const RowAt& row_at) {
+    SplatSet taken;
+    copy_array(set.position, count, row_at, taken.position);
+    copy_array(set.color, count, row_at, taken.color);
+    copy_array(set.alpha, count, row_at, taken.alpha);
+    copy_array(set.distance, count, row_at, taken.distance);
+    copy_array(set.id, count, row_at, taken.id);
+    copy_array(set.uv, count, row_at, taken.uv);
+    copy_array(set.normal, count, row_at, taken.normal);
+    copy_array(set.mesh, count, row_at, taken.mesh);
+    copy_array(set.radius, count, row_at, taken.radius);
+    taken.spacing = set.spacing;
+    taken.max_distance = set.max_distance;
+    taken.generated = set.generated;
+    taken.divided = set.divided;
+    taken.test_positions = set.test_positions;
+    taken.zero_alpha = set.zero_alpha;
+    taken.credit = set.credit;
+    return taken;
 }
 
 }  // namespace
@@ -222,24 +245,12 @@ Buffer<std::int64_t> stratified_order(const SplatSet& set, const Progress& progr
 
 SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& order, std::int64_t count) {
     assert(count >= 0 && count <= static_cast<std::int64_t>(order.size()));
-    SplatSet taken;
-    taken.spacing = set.spacing;
-    taken.max_distance = set.max_distance;
-    taken.generated = set.generated;
-    taken.divided = set.divided;
-    taken.test_positions = set.test_positions;
-    taken.zero_alpha = set.zero_alpha;
-    taken.credit = set.credit;
-    take(set.position, order, count, taken.position);
-    take(set.color, order, count, taken.color);
-    take(set.alpha, order, count, taken.alpha);
-    take(set.distance, order, count, taken.distance);
-    take(set.id, order, count, taken.id);
-    take(set.uv, order, count, taken.uv);
-    take(set.normal, order, count, taken.normal);
-    take(set.mesh, order, count, taken.mesh);
-    take(set.radius, order, count, taken.radius);
-    return taken;
+    return copy_arrays(set, count, [&](std::size_t i) { return static_cast<std::size_t>(order[i]); });
+}
+
+SplatSet first_rows(const SplatSet& set, std::int64_t count) {
+    assert(count >= 0 && count <= set.size());
+    return copy_arrays(set, count, [](std::size_t i) { return i; });
 }
 
 }  // namespace astrosplat

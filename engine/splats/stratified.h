@@ -17,4 +17,7 @@ Buffer<std::int64_t> stratified_order(const SplatSet& set, const Progress& progr
 /// A set of the rows order[0 .. count), in that order (not by id), with all arrays the original has.
 SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& order, std::int64_t count);
 
+/// The first rows of a set, with all arrays it has.
+SplatSet first_rows(const SplatSet& set, std::int64_t count);
+
 }  // namespace astrosplat

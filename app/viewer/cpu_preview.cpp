@@ -1,0 +1,115 @@
+// What is kept from draw to draw: each layer's first rows, and those rows shaded and decimated, until the
+// share, the look or the set changes. A new camera costs nothing but render().
+#include "viewer/cpu_preview.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "look/apply.h"
+#include "look/decimate.h"
+#include "splats/stratified.h"
+
+namespace astrosplat {
+namespace {
+
+/// All that reaches apply_look and decimate beside the rows: while it stays equal, the shaded splats stay.
+struct ShadingKey {
+    Look look;
+    LookInputs inputs;
+    bool additive = false;
+    bool operator==(const ShadingKey& o) const {
+        const LookInputs &a = inputs, &b = o.inputs;
+        return additive == o.additive && a.axis == b.axis && a.seed == b.seed &&
+               a.falloff_integral == b.falloff_integral && a.column == b.column &&
+               a.thickness_map == b.thickness_map && look == o.look;
+    }
+};
+
+struct KeptLayer {
+    std::shared_ptr<const SplatSet> set;  // what `rows` was cut from
+    SplatSet rows;                        // its first ones
+    std::optional<ShadingKey> key;        // what `shaded` was made with
+    ShadedSplats shaded;
+};
+
+std::int64_t rows_to_show(const PreviewLayer& layer) {
+    const double whole = static_cast<double>(layer.whole > 0 ? layer.whole : layer.set->size());
+    const auto wanted = static_cast<std::int64_t>(std::llround(static_cast<double>(layer.share) * whole));
+    return std::min(std::max<std::int64_t>(wanted, 1), layer.set->size());
+}
+
+void cut(const PreviewLayer& layer, KeptLayer& kept) {
+    const std::int64_t rows = rows_to_show(layer);
+    if (kept.set == layer.set && kept.rows.size() == rows) return;
+    kept.rows = first_rows(*layer.set, rows);
+    kept.set = layer.set;
+    kept.key.reset();
+}
+
+void shade(const PreviewLayer& layer, KeptLayer& kept) {
+    ShadingKey key{layer.look, layer.inputs, layer.layer.render.blend == Blend::add};
+    if (kept.key == key) return;
+    kept.key.reset();  // an exception below must not leave old splats under a new key
+    apply_look(kept.rows, layer.look, layer.inputs, kept.shaded);
+    const std::int64_t whole = std::max(layer.whole, layer.set->size());
+    if (whole > 0)
+        decimate(kept.shaded, static_cast<float>(static_cast<double>(kept.rows.size()) / double(whole)),
+                 key.additive);
+    kept.key = std::move(key);
+}
+
+}  // namespace
+
+struct CpuPreview::State {
+    std::vector<KeptLayer> layers;
+    RenderCache cache;
+    Image picture;
+    std::int64_t shown = 0;
+
+    KeptLayer& layer_at(std::size_t index, const std::shared_ptr<const SplatSet>& set);
+};
+
+/// What is kept of the layer that shows this set: when a layer before it is hidden, the others stay as they
+/// are.
+KeptLayer& CpuPreview::State::layer_at(std::size_t index, const std::shared_ptr<const SplatSet>& set) {
+    const auto first = layers.begin() + static_cast<std::ptrdiff_t>(std::min(index, layers.size()));
+    const auto found = std::find_if(first, layers.end(), [&](const KeptLayer& k) { return k.set == set; });
+    if (found != layers.end())
+        std::iter_swap(layers.begin() + static_cast<std::ptrdiff_t>(index), found);
+    else
+        layers.emplace(first);
+    return layers[index];
+}
+
+CpuPreview::CpuPreview() : state_(std::make_unique<State>()) {}
+CpuPreview::~CpuPreview() = default;
+
+const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
+                              const Environment* environment, int width, int height, float pixel_filter) {
+    State& state = *state_;
+    state.shown = 0;
+    std::vector<RenderLayer> visible;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        KeptLayer& kept = state.layer_at(i, layers[i].set);
+        cut(layers[i], kept);
+        shade(layers[i], kept);
+        state.shown += kept.rows.size();
+        visible.push_back(layers[i].layer);
+        visible.back().render.lod.max_px = 0.0f;
+    }
+    state.layers.resize(layers.size());
+    for (std::size_t i = 0; i < layers.size(); ++i) visible[i].splats = &state.layers[i].shaded;
+    RenderSettings settings;
+    settings.width = width;
+    settings.height = height;
+    settings.pixel_filter = pixel_filter;
+    state.picture = render(visible, camera, environment, settings, {}, &state.cache).beauty;
+    return state.picture;
+}
+
+std::int64_t CpuPreview::shown() const { return state_->shown; }
+
+}  // namespace astrosplat

@@ -1,0 +1,216 @@
+// One thread with one pipeline. Each request is a Run of its own, so that what a cancelled one still writes
+// reaches nobody; tiles are copied into the run's canvas without a lock, since each is written once.
+#include "viewer/final_picture.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <thread>
+#include <utility>
+
+#include "core/error.h"
+#include "pipeline.h"
+
+namespace astrosplat {
+namespace {
+
+/// One request and what has come of it.
+struct Run {
+    FinalRequest request;
+    std::atomic<bool> cancelled{false};
+    std::atomic<float> progress{0.0f};
+    Image canvas;  // region-sized RGBA; a tile is whole before it appears in `fresh`
+
+    std::mutex mutex;  // for all below
+    FinalPicture::State state = FinalPicture::State::running;
+    std::vector<Region> fresh;  // px of the canvas
+    std::string error;
+    std::shared_ptr<const RenderedFrame> frame;
+    double seconds = 0.0;
+
+    void end(FinalPicture::State how, std::string why = {}) {
+        const std::lock_guard lock(mutex);
+        state = how;
+        error = std::move(why);
+    }
+};
+
+Region whole_region(const FinalRequest& request) {
+    const Region& r = request.region;
+    return r.width > 0 && r.height > 0 ? r : Region{0, 0, request.width, request.height};
+}
+
+void copy_tile(const Image& from, const Region& tile, Image& to) {
+    const auto bytes = static_cast<std::size_t>(tile.width * from.channels) * sizeof(float);
+    for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y)
+        std::memcpy(to.at(tile.x, y), from.at(tile.x, y), bytes);
+}
+
+/// The window's own thread goes first where there are more threads than cores.
+void lower_priority_of_this_thread() {
+#ifdef __linux__
+    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
+#endif
+}
+
+void render_run(Pipeline& pipeline, Run& run) {
+    const auto start = std::chrono::steady_clock::now();
+    const FinalRequest& request = run.request;
+    pipeline.set_scene(request.scene, request.sets);
+    RenderSettings settings = pipeline.settings(request.frame);
+    settings.width = request.width;
+    settings.height = request.height;
+    settings.region = request.region;
+    settings.aov_depth = request.depth;
+    settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
+    const Region region = whole_region(request);
+    Progress progress;
+    progress.cancelled = &run.cancelled;
+    progress.report = [&run](double fraction) { run.progress = static_cast<float>(fraction); };
+    const TileDone tile_done = [&run, region](const Region& tile, const RenderedFrame& frame) {
+        const Region here{tile.x - region.x, tile.y - region.y, tile.width, tile.height};
+        copy_tile(frame.beauty, here, run.canvas);
+        const std::lock_guard lock(run.mutex);
+        run.fresh.push_back(here);
+    };
+    auto frame =
+        std::make_shared<RenderedFrame>(pipeline.frame(request.frame, settings, progress, tile_done));
+    const std::lock_guard lock(run.mutex);
+    run.frame = std::move(frame);
+    run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run.state = FinalPicture::State::done;
+    run.progress = 1.0f;
+}
+
+}  // namespace
+
+struct FinalPicture::Impl {
+    std::mutex mutex;
+    std::condition_variable wake;
+    std::shared_ptr<Run> current;  // the latest; null before the first and after cancel()
+    std::shared_ptr<Run> next;     // not begun yet
+    bool ending = false;
+    std::thread thread;  // last: it uses all the others
+
+    Impl() : thread([this] { work(); }) {}
+    ~Impl() {
+        replace(nullptr);
+        {
+            const std::lock_guard lock(mutex);
+            ending = true;
+        }
+        wake.notify_one();
+        thread.join();
+    }
+
+    void replace(std::shared_ptr<Run> run) {
+        {
+            const std::lock_guard lock(mutex);
+            if (current) current->cancelled = true;
+            current = next = std::move(run);
+        }
+        wake.notify_one();
+    }
+
+    std::shared_ptr<Run> latest() {
+        const std::lock_guard lock(mutex);
+        return current;
+    }
+
+    void work();
+};
+
+void FinalPicture::Impl::work() {
+    lower_priority_of_this_thread();
+    Pipeline pipeline;
+    for (;;) {
+        std::shared_ptr<Run> run;
+        {
+            std::unique_lock lock(mutex);
+            wake.wait(lock, [&] { return ending || next; });
+            if (ending) return;
+            run = std::exchange(next, nullptr);
+        }
+        try {
+            const Region region = whole_region(run->request);
+            run->canvas = make_image(region.width, region.height, 4);
+            render_run(pipeline, *run);
+        } catch (const Cancelled&) {
+            run->end(State::idle);
+        } catch (const std::bad_alloc&) {
+            run->end(State::failed, "not enough memory for the final picture");
+        } catch (const std::exception& error) {
+            run->end(State::failed, error.what());
+        }
+    }
+}
+
+FinalPicture::FinalPicture() : impl_(std::make_unique<Impl>()) {}
+FinalPicture::~FinalPicture() = default;
+
+void FinalPicture::start(FinalRequest request) {
+    auto run = std::make_shared<Run>();
+    run->request = std::move(request);
+    impl_->replace(std::move(run));
+}
+
+void FinalPicture::cancel() { impl_->replace(nullptr); }
+
+FinalPicture::State FinalPicture::state() const {
+    const std::shared_ptr<Run> run = impl_->latest();
+    if (!run) return State::idle;
+    const std::lock_guard lock(run->mutex);
+    return run->state;
+}
+
+float FinalPicture::progress() const {
+    const std::shared_ptr<Run> run = impl_->latest();
+    return run ? run->progress.load() : 0.0f;
+}
+
+std::string FinalPicture::error() const {
+    const std::shared_ptr<Run> run = impl_->latest();
+    if (!run) return {};
+    const std::lock_guard lock(run->mutex);
+    return run->error;
+}
+
+double FinalPicture::seconds() const {
+    const std::shared_ptr<Run> run = impl_->latest();
+    if (!run) return 0.0;
+    const std::lock_guard lock(run->mutex);
+    return run->seconds;
+}
+
+std::shared_ptr<const RenderedFrame> FinalPicture::frame() const {
+    const std::shared_ptr<Run> run = impl_->latest();
+    if (!run) return nullptr;
+    const std::lock_guard lock(run->mutex);
+    return run->frame;
+}
+
+std::vector<Region> FinalPicture::take_tiles(Image& picture) {
+    const std::shared_ptr<Run> run = impl_->latest();
+    if (!run) return {};
+    const Region region = whole_region(run->request);
+    if (picture.width != region.width || picture.height != region.height || picture.channels != 4)
+        picture = make_image(region.width, region.height, 4);
+    std::vector<Region> tiles;
+    {
+        const std::lock_guard lock(run->mutex);
+        tiles.swap(run->fresh);
+    }
+    for (const Region& tile : tiles) copy_tile(run->canvas, tile, picture);
+    return tiles;
+}
+
+}  // namespace astrosplat

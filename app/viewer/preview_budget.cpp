@@ -1,0 +1,33 @@
+// The quickest of a few frames counts, because what disturbs a frame (a cut, another program) only ever makes
+// it slower.
+#include "viewer/preview_budget.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace astrosplat {
+
+float share_for_budget(std::span<const std::int64_t> sizes, std::int64_t budget) {
+    double sum = 0.0;
+    for (const std::int64_t size : sizes) sum += static_cast<double>(size);
+    if (sum <= static_cast<double>(budget)) return 1.0f;
+    return static_cast<float>(std::max<double>(1.0, static_cast<double>(budget)) / sum);
+}
+
+void PreviewBudget::measured(double milliseconds, double target_ms, std::int64_t shown) {
+    constexpr double dead_zone = 1.0 / 8.0, far_off = 2.0;
+    quickest_ms_ = frames_ == 0 ? milliseconds : std::min(quickest_ms_, milliseconds);
+    ++frames_;
+    const double wanted =
+        target_ms / std::max(quickest_ms_, 1e-3);  // times as many, were all costs per splat
+    const bool waits = frames_ < window && !(wanted * far_off < 1.0 && frames_ >= 2);
+    if (waits) return;
+    frames_ = 0;
+    if (std::fabs(wanted - 1.0) <= dead_zone) return;
+    if (wanted > 1.0 && shown < splats - splats / 8) return;
+    const double factor = std::clamp(std::sqrt(wanted), 0.5, 1.5);
+    const double moved = static_cast<double>(splats) * factor;
+    splats = std::clamp(static_cast<std::int64_t>(moved), least, most);
+}
+
+}  // namespace astrosplat

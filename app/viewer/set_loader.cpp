@@ -1,0 +1,339 @@
+// One thread that takes the newest wish from a list. An entry per layer name holds what was wanted last and
+// what there is; both are compared by all that makes a set (identity_of), so that a renamed or copied layer
+// finds its set again.
+#include "viewer/set_loader.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <exception>
+#include <list>
+#include <map>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "core/error.h"
+#include "pipeline.h"
+#include "splats/lattice.h"
+#include "splats/stratified.h"
+#include "viewer/histograms.h"
+
+namespace astrosplat {
+namespace {
+
+/// All that a set depends on: the source with its seed resolved where one is used.
+SourceParams identity_of(const SourceParams& source, const std::string& name) {
+    SourceParams identity = source;
+    identity.seed = source.kind == SourceKind::mesh ? resolved_seed(source.seed, name) : 0;
+    return identity;
+}
+
+enum class Stage { waiting, loading, ready, failed, cancelled };
+
+struct Entry {
+    std::optional<SourceParams> identity;  // of what was wanted last; none: nothing
+    Stage stage = Stage::waiting;
+    std::string error;
+    std::shared_ptr<const LoadedLayer> loaded;
+};
+
+/// What the thread is doing.
+struct Job {
+    std::string name;
+    SourceParams source, identity;
+    std::atomic<bool> cancelled{false};
+    std::atomic<float> progress{0.0f};
+};
+
+bool satisfies(const LoadedLayer& loaded, const SourceParams& identity) {
+    return identity_of(loaded.source, loaded.name) == identity;
+}
+
+/// Splats so far, where it is known how many there will be.
+std::int64_t splats_so_far(const SourceParams& source, float progress) {
+    const bool automatic = source.kind == SourceKind::mesh && !source.voxels && source.voxel_size == 0.0;
+    if (!automatic) return 0;
+    return static_cast<std::int64_t>(static_cast<double>(progress) * static_cast<double>(source.count));
+}
+
+/// One line that a person can read.
+std::string reason(const std::exception& error) {
+    if (dynamic_cast<const std::bad_alloc*>(&error)) return "not enough memory for this layer";
+    return error.what();
+}
+
+}  // namespace
+
+struct SetLoader::Impl {
+    SetCache cache;
+    std::int64_t preview_limit;
+
+    mutable std::mutex mutex;  // for all below
+    std::condition_variable wake, rest;
+    std::map<std::string, Entry> entries;  // by layer name
+    std::map<std::string, SourceParams> sources;
+    std::list<std::string> queue;        // names whose set is to be loaded; the next one first
+    std::list<std::string> undescribed;  // names whose histograms are missing; only once the queue is empty
+    std::shared_ptr<Job> job;
+    std::uint64_t revision = 0;
+    bool ending = false;
+    std::thread thread;  // last: it uses all the others
+
+    Impl(const SetCache& where, std::int64_t limit)
+        : cache(where), preview_limit(limit), thread([this] { work(); }) {}
+    ~Impl() {
+        {
+            const std::lock_guard lock(mutex);
+            ending = true;
+            if (job) job->cancelled = true;
+        }
+        wake.notify_one();
+        thread.join();
+    }
+
+    // With the mutex held.
+    std::shared_ptr<const LoadedLayer> find_loaded(const SourceParams& identity) const;
+    void stop(const std::string& name);
+    bool want_layer(const LayerParams& layer);
+    void forget_layers_not_in(const Scene& scene);
+    bool is_wanted(const Job& finished) const;
+    bool resting() const { return !job && queue.empty() && undescribed.empty(); }
+    std::shared_ptr<Job> next_job();
+
+    // The thread's.
+    void work();
+    void load(Job& current);
+    void describe(const Job& current);
+    void fail(const Job& current, const std::string& why);
+};
+
+std::shared_ptr<const LoadedLayer> SetLoader::Impl::find_loaded(const SourceParams& identity) const {
+    for (const auto& item : entries)
+        if (item.second.loaded && satisfies(*item.second.loaded, identity)) return item.second.loaded;
+    return nullptr;
+}
+
+void SetLoader::Impl::stop(const std::string& name) {
+    queue.remove(name);
+    undescribed.remove(name);
+    if (job && job->name == name) job->cancelled = true;
+}
+
+/// Whether the layer's set is to be loaded anew.
+bool SetLoader::Impl::want_layer(const LayerParams& layer) {
+    const SourceParams identity = identity_of(layer.source, layer.name);
+    Entry& entry = entries[layer.name];
+    sources[layer.name] = layer.source;
+    if (entry.identity == identity) return false;
+    stop(layer.name);
+    entry.identity = identity;
+    entry.error.clear();
+    if (std::shared_ptr<const LoadedLayer> known = find_loaded(identity)) {
+        if (!known->histograms) undescribed.push_back(layer.name);
+        entry.loaded = std::move(known);
+        entry.stage = Stage::ready;
+        ++revision;
+        return false;
+    }
+    entry.stage = Stage::waiting;
+    return true;
+}
+
+void SetLoader::Impl::forget_layers_not_in(const Scene& scene) {
+    for (auto it = entries.begin(); it != entries.end();) {
+        const auto layer = std::find_if(scene.layers.begin(), scene.layers.end(),
+                                        [&](const LayerParams& l) { return l.name == it->first; });
+        const bool absent = layer == scene.layers.end();
+        Entry& entry = it->second;
+        if (absent || !ever_visible(scene, *layer)) {
+            stop(it->first);
+            if (entry.stage != Stage::ready) entry.identity.reset();  // shown again: begins again
+        }
+        if (absent) sources.erase(it->first);
+        it = absent ? entries.erase(it) : std::next(it);
+    }
+}
+
+/// Whether a job's result is still what its layer asks for.
+bool SetLoader::Impl::is_wanted(const Job& finished) const {
+    const auto found = entries.find(finished.name);
+    return !finished.cancelled && found != entries.end() && found->second.identity == finished.identity;
+}
+
+std::shared_ptr<Job> SetLoader::Impl::next_job() {
+    std::list<std::string>& names = queue.empty() ? undescribed : queue;
+    auto next = std::make_shared<Job>();
+    next->name = names.front();
+    names.pop_front();
+    next->source = sources[next->name];
+    next->identity = *entries[next->name].identity;
+    return next;
+}
+
+void SetLoader::Impl::work() {
+    for (;;) {
+        std::shared_ptr<Job> current;
+        bool to_load = false;
+        {
+            std::unique_lock lock(mutex);
+            job.reset();
+            if (resting()) rest.notify_all();
+            wake.wait(lock, [&] { return ending || !queue.empty() || !undescribed.empty(); });
+            if (ending) return;
+            to_load = !queue.empty();
+            current = job = next_job();
+            if (to_load) entries[current->name].stage = Stage::loading;
+        }
+        try {
+            to_load ? load(*current) : describe(*current);
+        } catch (const Cancelled&) {  // whoever cancelled has said in the entry what comes next
+        } catch (const std::exception& error) {
+            fail(*current, reason(error));
+        }
+    }
+}
+
+/// The set, and what the preview needs to begin.
+void SetLoader::Impl::load(Job& current) {
+    Progress progress;
+    progress.cancelled = &current.cancelled;
+    progress.report = [&](double fraction) { current.progress = static_cast<float>(0.9 * fraction); };
+    auto loaded = std::make_shared<LoadedLayer>();
+    auto set =
+        std::make_shared<const SplatSet>(load_source(cache, current.source, current.name, progress).set);
+    progress.report = [&](double fraction) { current.progress = static_cast<float>(0.9 + 0.1 * fraction); };
+    const Buffer<std::int64_t> order = stratified_order(*set, progress);
+    loaded->preview =
+        std::make_shared<const SplatSet>(take_rows(*set, order, std::min(preview_limit, set->size())));
+    loaded->box = bounds(*set);
+    loaded->radius = unset_radius(*set);
+    loaded->set = std::move(set);
+    loaded->source = current.source;
+    loaded->name = current.name;
+
+    std::shared_ptr<const LoadedLayer> old;  // large: let go after the lock
+    const std::lock_guard lock(mutex);
+    if (!is_wanted(current)) return;
+    Entry& entry = entries[current.name];
+    old = std::exchange(entry.loaded, std::move(loaded));
+    entry.stage = Stage::ready;
+    undescribed.push_back(current.name);
+    ++revision;
+}
+
+/// The histograms, for which pictures are read once more: after everything that somebody waits for.
+void SetLoader::Impl::describe(const Job& current) {
+    std::shared_ptr<const LoadedLayer> plain;
+    {
+        const std::lock_guard lock(mutex);
+        plain = entries[current.name].loaded;
+    }
+    auto described = std::make_shared<LoadedLayer>(*plain);
+    described->histograms = std::make_shared<const LayerHistograms>(histograms(*plain->set, plain->source));
+    const std::lock_guard lock(mutex);
+    if (!is_wanted(current)) return;
+    entries[current.name].loaded = std::move(described);
+    ++revision;
+}
+
+void SetLoader::Impl::fail(const Job& current, const std::string& why) {
+    const std::lock_guard lock(mutex);
+    if (!is_wanted(current)) return;
+    Entry& entry = entries[current.name];
+    entry.stage = Stage::failed;
+    entry.error = why;
+    ++revision;
+}
+
+SetLoader::SetLoader(const SetCache& cache, std::int64_t preview_limit)
+    : impl_(std::make_unique<Impl>(cache, preview_limit)) {}
+SetLoader::~SetLoader() = default;
+
+void SetLoader::want(const Scene& scene) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        std::list<std::string> changed;
+        for (const LayerParams& layer : scene.layers)
+            if (ever_visible(scene, layer) && impl_->want_layer(layer)) changed.push_back(layer.name);
+        impl_->forget_layers_not_in(scene);  // after that, for a layer may have been renamed
+        impl_->queue.splice(impl_->queue.begin(), changed);
+    }
+    impl_->wake.notify_one();
+}
+
+void SetLoader::retry(const std::string& layer_name) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        const auto found = impl_->entries.find(layer_name);
+        if (found == impl_->entries.end() || !found->second.identity) return;
+        Entry& entry = found->second;
+        if (entry.stage != Stage::failed && entry.stage != Stage::cancelled) return;
+        entry.stage = Stage::waiting;
+        entry.error.clear();
+        impl_->queue.push_front(layer_name);
+    }
+    impl_->wake.notify_one();
+}
+
+void SetLoader::cancel(const std::string& layer_name) {
+    const std::lock_guard lock(impl_->mutex);
+    const auto found = impl_->entries.find(layer_name);
+    if (found == impl_->entries.end()) return;
+    Entry& entry = found->second;
+    if (entry.stage != Stage::waiting && entry.stage != Stage::loading) return;
+    impl_->stop(layer_name);
+    entry.stage = Stage::cancelled;
+}
+
+std::uint64_t SetLoader::revision() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->revision;
+}
+
+std::shared_ptr<const LoadedLayer> SetLoader::layer(const std::string& layer_name) const {
+    const std::lock_guard lock(impl_->mutex);
+    const auto found = impl_->entries.find(layer_name);
+    return found == impl_->entries.end() ? nullptr : found->second.loaded;
+}
+
+LayerStatus SetLoader::status(const LayerParams& layer) const {
+    LayerStatus status;
+    const SourceParams identity = identity_of(layer.source, layer.name);
+    const std::lock_guard lock(impl_->mutex);
+    const auto found = impl_->entries.find(layer.name);
+    if (found == impl_->entries.end()) return status;
+    const Entry& entry = found->second;
+    const bool current = entry.identity == identity;
+    status.loading = current && (entry.stage == Stage::waiting || entry.stage == Stage::loading);
+    if (current) status.error = entry.error;
+    if (current && entry.stage == Stage::loading && impl_->job && impl_->job->name == layer.name) {
+        status.progress = impl_->job->progress;
+        status.found = splats_so_far(layer.source, status.progress);
+    }
+    if (!entry.loaded) return status;
+    status.stale = !status.loading && !satisfies(*entry.loaded, identity);
+    const SplatSet& set = *entry.loaded->set;
+    const glm::dvec3 s = set.spacing;
+    status.splats = set.size();
+    status.radius_min = entry.loaded->radius.x;
+    status.radius_max = entry.loaded->radius.y;
+    status.spacing = std::cbrt(s.x * s.y * s.z);
+    status.histograms = entry.loaded->histograms;
+    return status;
+}
+
+bool SetLoader::idle() const {
+    const std::lock_guard lock(impl_->mutex);
+    return impl_->resting();
+}
+
+void SetLoader::wait() {
+    std::unique_lock lock(impl_->mutex);
+    impl_->rest.wait(lock, [&] { return impl_->resting(); });
+}
+
+}  // namespace astrosplat
