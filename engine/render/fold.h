@@ -1,6 +1,9 @@
-// The fold: a tile's splats, sorted near to far, into its pixels (DESIGN 7). Each pixel is one left fold in
-// total order with a transmittance per channel; vector code through Highway, the same bits on every
-// instruction set.
+// The fold: a tile's splats, near to far, into its pixels (DESIGN 7). Each pixel is one left fold in total
+// order with a transmittance per channel; vector code through Highway, the same bits on every instruction
+// set.
+//
+// A tile is made of cells of 32 x 32 px, a cell of 8 x 8 blocks of 4 x 4 px. Splats are prepared 64 at a
+// time; then each block folds those of them that touch it, with its pixels in registers.
 #pragma once
 
 #include <cstdint>
@@ -40,15 +43,16 @@ struct FoldSettings {
     bool orthographic = false;
 };
 
-/// One blend group's result over one tile, plane by plane. Rows are padded so that vectors may run over their
-/// end.
+/// One blend group's result over one tile, plane by plane; a plane holds cell after cell, block after block,
+/// so that a block's 16 pixels are one cache line.
 struct TilePlanes {
-    static constexpr int widest_px = 128;     // largest tile
-    static constexpr int widest_vector = 16;  // floats
-    std::int64_t x0 = 0, y0 = 0;              // px of the whole picture
-    int width = 0, height = 0;                // px in use
-    int stride = 0;                           // floats between rows
-    Buffer<float> color[3];                   // light towards the eye
+    static constexpr int widest_px = 128;  // largest tile
+    static constexpr int block_px = 4, block_pixels = block_px * block_px;
+    static constexpr int cell_blocks = 8, cell_px = cell_blocks * block_px, cell_pixels = cell_px * cell_px;
+    std::int64_t x0 = 0, y0 = 0;  // px of the whole picture
+    int width = 0, height = 0;    // px in use
+    int cell_columns = 0, cell_rows = 0;
+    Buffer<float> color[3];  // light towards the eye
     Buffer<float> alpha;
     Buffer<float> transmittance[4];  // r, g, b, alpha; FoldKind::over uses the first alone, add none
     Buffer<float> held;              // alpha taken away by holdouts
@@ -58,22 +62,19 @@ struct TilePlanes {
     std::vector<Buffer<float>> layer_light;  // 4 planes a layer: r, g, b, alpha
 
     /// Clears to "nothing yet" for a tile; `layer_count` layers' light is kept when settings.aovs.
-    void reset(const Region& tile, int tile_px, const FoldSettings& settings, std::size_t layer_count);
-    std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * stride + x); }
+    void reset(const Region& tile, const FoldSettings& settings, std::size_t layer_count);
+    /// Place of a pixel in every plane, x, y from the tile's corner.
+    std::size_t at(int x, int y) const {
+        const int cell = y / cell_px * cell_columns + x / cell_px;
+        const int block = y % cell_px / block_px * cell_blocks + x % cell_px / block_px;
+        const int pixel = y % block_px * block_px + x % block_px;
+        return static_cast<std::size_t>(cell * cell_pixels + block * block_pixels + pixel);
+    }
 };
 
-/// Sorts near to far: radix sort on depth, ties by in_front_of.
-class SplatSorter {
-  public:
-    void sort(std::vector<ScreenSplat>& splats, const Progress& progress);
-
-  private:
-    std::vector<std::uint64_t> keys_, other_;
-    std::vector<ScreenSplat> sorted_;
-};
-
-/// Folds `splats` (near to far) into the planes.
-void fold(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
-          const FoldSettings& settings, const Progress& progress, TilePlanes& planes);
+/// Folds `splats`, near to far in the order given by their indices, into the planes.
+void fold(std::span<const ScreenSplat> splats, std::span<const std::uint32_t> order,
+          std::span<const FoldLayer> layers, const FoldSettings& settings, const Progress& progress,
+          TilePlanes& planes);
 
 }  // namespace astrosplat

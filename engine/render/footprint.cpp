@@ -18,7 +18,6 @@ constexpr int samples = 3 * segments + 1;  // each cubic passes through four equ
 constexpr int steps_per_octave = 32;       // nodes per octave: the five top bits of the float's mantissa
 constexpr int first_exponent = -6;         // smallest tabulated radius: 2^-6 px
 constexpr int octaves = 16;                // up to 2^10 px
-constexpr double smallest_radius_px = 1.0 / 64.0;
 const double lattice_frequencies[3] = {1.0, std::sqrt(2.0), 2.0};  // of the pixel raster, cycles per px
 constexpr double ripple_limit_px = 32.0;  // beyond, the spectrum at one cycle per pixel is below 1e-4
 
@@ -286,8 +285,8 @@ FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_p
     parallel_for(static_cast<std::int64_t>(table.nodes.size()), [&](std::int64_t i, int) {
         progress.check();
         const double octave = static_cast<double>(std::uint64_t{1} << (i / steps_per_octave));
-        const double radius_px =
-            smallest_radius_px * octave * (1.0 + double(i % steps_per_octave) / steps_per_octave);
+        const double radius_px = double{FootprintTable::smallest_radius_px} * octave *
+                                 (1.0 + double(i % steps_per_octave) / steps_per_octave);
         table.nodes[i] = make_node(table, falloff, radius_px);
     });
     return table;
@@ -301,7 +300,7 @@ void footprint_at(const FootprintTable& table, float radius_px, float x_px, floa
     footprint.t = pair.t;
 
     constexpr float pi = static_cast<float>(real::pi);
-    const float smallest = static_cast<float>(smallest_radius_px);
+    constexpr float smallest = FootprintTable::smallest_radius_px;
     const float tabulated_px =
         std::max(radius_px, smallest);  // below, the shape is the filter's and light is R^2
     const float shrink = radius_px < smallest ? (radius_px / smallest) * (radius_px / smallest) : 1.0f;

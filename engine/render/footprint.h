@@ -13,6 +13,7 @@
 // first.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct alignas(64) FootprintNode {
 };
 
 struct FootprintTable {
+    static constexpr float smallest_radius_px = 1.0f / 64.0f;
     std::vector<FootprintNode> nodes;
     bool linear_in_distance = false;  // u linear in d, not in d^2
     bool flat_core = false;           // constant and trapezoid: exactly 1 inside, so only the edge is scaled
@@ -42,6 +44,10 @@ struct FootprintTable {
 
     /// Distance from the centre beyond which all weights are 0.
     float support_px(float radius_px) const { return radius_px * reach + 4.0f * pixel_filter_px; }
+    /// The same for the shape that is drawn: radii below the smallest tabulated one have its shape.
+    float drawn_support_px(float radius_px) const {
+        return support_px(std::max(radius_px, smallest_radius_px));
+    }
 };
 
 /// Everything the fold needs of one splat's footprint besides its centre. The cubics are node_a's, moved by

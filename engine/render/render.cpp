@@ -19,6 +19,7 @@
 #include "render/project.h"
 #include "render/resolve.h"
 #include "render/scatter.h"
+#include "render/splat_sorter.h"
 
 namespace astrosplat {
 namespace {
@@ -205,12 +206,12 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
     for (std::size_t g = 0; g < std::max<std::size_t>(1, job.groups.size()); ++g) {
         FoldSettings fold_settings = job.fold;
         if (g < job.groups.size()) fold_settings.kind = job.groups[g].kind;
-        worker.planes.reset(region, bins.grid().tile_px, fold_settings, job.layers.size());
+        worker.planes.reset(region, fold_settings, job.layers.size());
         if (g == 0) worker.resolver.begin(worker.planes, job.camera, job.environment);
         if (g == job.groups.size()) break;  // nothing but the environment
         bins.collect(tile, static_cast<int>(g), job.progress, worker.splats);
-        worker.sorter.sort(worker.splats, job.progress);
-        fold(worker.splats, job.fold_layers, fold_settings, job.progress, worker.planes);
+        const std::span<const std::uint32_t> order = worker.sorter.sort(worker.splats, job.progress);
+        fold(worker.splats, order, job.fold_layers, fold_settings, job.progress, worker.planes);
         worker.resolver.lay(job.groups[g], worker.planes);
     }
     worker.resolver.write(worker.planes, job.region.x, job.region.y, frame);

@@ -1,0 +1,236 @@
+// Vector code of the fold's innermost loop: a splat's weight at the pixels of a block, and the blends.
+// Included once per instruction set.
+#if defined(ASTROSPLAT_FOLD_BLEND_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef ASTROSPLAT_FOLD_BLEND_INL_H
+#undef ASTROSPLAT_FOLD_BLEND_INL_H
+#else
+#define ASTROSPLAT_FOLD_BLEND_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <type_traits>
+
+#include "render/fold_batch.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace astrosplat::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, TilePlanes::block_pixels>;
+using DI = hn::RebindToSigned<D>;
+using V = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+using M = hn::Mask<D>;
+constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr int segments = FootprintNode::segments;
+
+HWY_INLINE V load(const float* p) { return hn::Load(D(), p); }
+HWY_INLINE void store(V v, float* p) { hn::Store(v, D(), p); }
+HWY_INLINE void accumulate(float* p, V v) { store(hn::Add(load(p), v), p); }
+HWY_INLINE V all(float v) { return hn::Set(D(), v); }
+HWY_INLINE V clamp_one(V v) { return hn::Min(v, all(1.0f)); }
+HWY_INLINE V saturate(V v) { return clamp_one(hn::Max(v, hn::Zero(D()))); }
+
+/// One of sixteen coefficients per lane, by the lowest four bits of `segment`.
+HWY_INLINE V look_up(const float* c, VI segment) {
+    // The permute of full vectors ignores higher bits by itself; only Highway's own debug checks do not.
+    constexpr bool ignores_high_bits = lanes == segments && !HWY_IS_DEBUG_BUILD;
+    const VI low = ignores_high_bits ? segment : hn::And(segment, hn::Set(DI(), lanes - 1));
+    const auto index = hn::IndicesFromVec(D(), low);
+    V r = hn::TableLookupLanes(load(c), index);
+    if constexpr (lanes < segments) {
+        const VI whole = hn::And(segment, hn::Set(DI(), segments - 1));
+        for (int i = 1; i < segments / lanes; ++i) {
+            const auto here = hn::RebindMask(D(), hn::Gt(whole, hn::Set(DI(), i * lanes - 1)));
+            r = hn::IfThenElse(here, hn::TableLookupLanes(load(c + i * lanes), index), r);
+        }
+    }
+    return r;
+}
+
+/// Weight at squared distances from the centre, without the amplitude. Not clamped: the cubics may leave [0,
+/// 1] by a few 1e-5. kFlat: the footprint may have a flat inside.
+template <bool kFlat>
+HWY_INLINE V weight_at(const PreparedSplat& splat, bool linear_in_distance, V distance_squared) {
+    const D d;
+    const V place = linear_in_distance ? hn::Sqrt(distance_squared) : distance_squared;
+    V u = kFlat ? hn::Max(hn::Mul(hn::Sub(place, all(splat.lo)), all(splat.scale)), hn::Zero(d))
+                : hn::Mul(place, all(splat.scale));
+    // Rounding to the nearest whole number in the lowest bits of a float is the segment; on a segment's end
+    // either side will do. Far outside, both are nonsense that the mask takes away.
+    const V magic = all(12582912.0f);  // 1.5 * 2^23
+    const V rounded = hn::Add(hn::Sub(u, all(0.5f)), magic);
+    const VI segment = hn::BitCast(DI(), rounded);
+    const V f = hn::Sub(u, hn::Sub(rounded, magic));
+    V p = hn::Add(hn::Mul(look_up(splat.cubic[3], segment), f), look_up(splat.cubic[2], segment));
+    p = hn::Add(hn::Mul(p, f), look_up(splat.cubic[1], segment));
+    p = hn::Add(hn::Mul(p, f), look_up(splat.cubic[0], segment));
+    p = hn::IfThenElseZero(hn::Lt(u, all(static_cast<float>(segments))), p);
+    if (kFlat) p = hn::Add(p, hn::Mul(all(splat.edge_gain), hn::Mul(p, hn::Sub(all(1.0f), p))));
+    return p;
+}
+
+/// What a blend is told besides weights: the splat, and where its layer keeps its light at these pixels.
+struct FoldStep {
+    const PreparedSplat& splat;
+    bool bright_screen;
+    float* layer_light[4];  // with AOVs only
+};
+
+// Each blend holds the state of `lanes` pixels in registers. Transmittances run on below the stop threshold,
+// where the pixel is closed: they never grow, so "closed" is a comparison that no later splat has to wait
+// for. close() makes them exactly 0.
+
+/// Over: one transmittance.
+struct OverPixels {
+    static constexpr bool closes = true, aovs = false;
+    V color[3], alpha, t;
+
+    HWY_INLINE OverPixels(const TilePlanes& p, std::size_t i) : alpha(load(&p.alpha[i])) {
+        for (int k = 0; k < 3; ++k) color[k] = load(&p.color[k][i]);
+        t = load(&p.transmittance[0][i]);
+    }
+    HWY_INLINE void store_to(TilePlanes& p, std::size_t i) const {
+        for (int k = 0; k < 3; ++k) store(color[k], &p.color[k][i]);
+        store(alpha, &p.alpha[i]);
+        store(t, &p.transmittance[0][i]);
+    }
+    HWY_INLINE M open(V stop) const { return hn::Ge(t, stop); }
+    HWY_INLINE void fold(const FoldStep& step, V s, V, V stop) {
+        const V share = hn::IfThenElseZero(open(stop), hn::Mul(t, s));
+        for (int k = 0; k < 3; ++k) color[k] = hn::Add(color[k], hn::Mul(share, all(step.splat.color[k])));
+        alpha = hn::Add(alpha, share);
+        t = hn::Mul(t, hn::Sub(all(1.0f), s));
+    }
+    HWY_INLINE void close(V stop) {
+        const M is_open = open(stop);
+        alpha = hn::IfThenElse(is_open, alpha, all(1.0f));
+        t = hn::IfThenElseZero(is_open, t);
+    }
+};
+
+/// Add: nothing hides anything, and alpha is not kept.
+struct AddPixels {
+    static constexpr bool closes = false, aovs = false;
+    V color[3];
+
+    HWY_INLINE AddPixels(const TilePlanes& p, std::size_t i) {
+        for (int k = 0; k < 3; ++k) color[k] = load(&p.color[k][i]);
+    }
+    HWY_INLINE void store_to(TilePlanes& p, std::size_t i) const {
+        for (int k = 0; k < 3; ++k) store(color[k], &p.color[k][i]);
+    }
+    HWY_INLINE void fold(const FoldStep& step, V s, V, V) {
+        for (int k = 0; k < 3; ++k) color[k] = hn::Add(color[k], hn::Mul(s, all(step.splat.color[k])));
+    }
+};
+
+/// Depth, coverage and count beside a blend.
+struct AovPixels {
+    V depth_sum, uncovered, count;
+
+    HWY_INLINE AovPixels(const TilePlanes& p, std::size_t i)
+        : depth_sum(load(&p.depth_sum[i])), uncovered(load(&p.uncovered[i])), count(load(&p.count[i])) {}
+    HWY_INLINE void store_to(TilePlanes& p, std::size_t i) const {
+        store(depth_sum, &p.depth_sum[i]);
+        store(uncovered, &p.uncovered[i]);
+        store(count, &p.count[i]);
+    }
+    HWY_INLINE void fold(const FoldStep& step, V s, V weight, V alpha_share, M open) {
+        depth_sum = hn::Add(depth_sum, hn::Mul(alpha_share, all(step.splat.depth)));
+        const M touched = hn::And(hn::Gt(s, hn::Zero(D())), open);
+        count = hn::Add(count, hn::IfThenElseZero(touched, all(1.0f)));
+        const V rest = hn::Mul(uncovered, hn::Sub(all(1.0f), saturate(weight)));
+        uncovered = hn::IfThenElse(touched, rest, uncovered);
+    }
+};
+struct NoAovPixels {
+    HWY_INLINE NoAovPixels(const TilePlanes&, std::size_t) {}
+    HWY_INLINE void store_to(TilePlanes&, std::size_t) const {}
+    HWY_INLINE void fold(const FoldStep&, V, V, V, M) {}
+};
+template <bool kAovs>
+using Aovs = std::conditional_t<kAovs, AovPixels, NoAovPixels>;
+
+/// Lighten: the brightest splat per channel.
+template <bool kAovs>
+struct LightenPixels {
+    static constexpr bool closes = false, aovs = kAovs;
+    V color[3], alpha, t;
+    Aovs<kAovs> more;
+
+    HWY_INLINE LightenPixels(const TilePlanes& p, std::size_t i)
+        : alpha(load(&p.alpha[i])), t(load(&p.transmittance[3][i])), more(p, i) {
+        for (int k = 0; k < 3; ++k) color[k] = load(&p.color[k][i]);
+    }
+    HWY_INLINE void store_to(TilePlanes& p, std::size_t i) const {
+        for (int k = 0; k < 3; ++k) store(color[k], &p.color[k][i]);
+        store(alpha, &p.alpha[i]);
+        store(t, &p.transmittance[3][i]);
+        more.store_to(p, i);
+    }
+    HWY_INLINE void fold(const FoldStep& step, V s, V weight, V) {
+        for (int k = 0; k < 3; ++k) color[k] = hn::Max(color[k], hn::Mul(s, all(step.splat.color[k])));
+        const V share = hn::Mul(t, s);
+        alpha = hn::Add(alpha, share);
+        t = hn::Mul(t, hn::Sub(all(1.0f), s));
+        more.fold(step, s, weight, share, hn::Eq(s, s));
+    }
+};
+
+/// Any mix of the affine blends. kHolds: there are holdouts, whose alpha is taken away.
+template <bool kAovs, bool kHolds>
+struct GeneralPixels {
+    static constexpr bool closes = true, aovs = kAovs;
+    V color[3], alpha, held, t[4];
+    Aovs<kAovs> more;
+
+    HWY_INLINE GeneralPixels(const TilePlanes& p, std::size_t i)
+        : alpha(load(&p.alpha[i])), held(load(&p.held[i])), more(p, i) {
+        for (int k = 0; k < 3; ++k) color[k] = load(&p.color[k][i]);
+        for (int k = 0; k < 4; ++k) t[k] = load(&p.transmittance[k][i]);
+    }
+    HWY_INLINE void store_to(TilePlanes& p, std::size_t i) const {
+        for (int k = 0; k < 3; ++k) store(color[k], &p.color[k][i]);
+        for (int k = 0; k < 4; ++k) store(t[k], &p.transmittance[k][i]);
+        store(alpha, &p.alpha[i]);
+        if (kHolds) store(held, &p.held[i]);
+        more.store_to(p, i);
+    }
+    HWY_INLINE M open(V stop) const {
+        return hn::Ge(hn::Max(hn::Max(t[0], t[1]), hn::Max(t[2], t[3])), stop);
+    }
+    HWY_INLINE void fold(const FoldStep& step, V s, V weight, V stop) {
+        const M is_open = open(stop);
+        V sum = hn::Zero(D());
+        for (int k = 0; k < 3; ++k) {
+            const V reached = hn::IfThenElseZero(is_open, hn::Mul(t[k], s));
+            const V light = hn::Mul(reached, all(step.splat.color[k]));
+            color[k] = hn::Add(color[k], light);
+            if (kAovs) accumulate(step.layer_light[k], light);
+            const V hidden = clamp_one(hn::Mul(s, all(step.splat.occlusion[k])));
+            sum = hn::Add(sum, hidden);
+            t[k] = hn::Mul(t[k], hn::Sub(all(1.0f), hidden));
+        }
+        V hidden = clamp_one(hn::Mul(s, all(step.splat.occlusion[3])));
+        if (step.bright_screen) hidden = hn::Div(sum, all(3.0f));
+        const V share = hn::IfThenElseZero(is_open, hn::Mul(t[3], hidden));
+        const V shown = kHolds ? hn::Mul(share, all(step.splat.shows)) : share;
+        if (kHolds) held = hn::Add(held, hn::Sub(share, shown));
+        alpha = hn::Add(alpha, shown);
+        t[3] = hn::Mul(t[3], hn::Sub(all(1.0f), hidden));
+        if (kAovs) accumulate(step.layer_light[3], shown);
+        more.fold(step, s, weight, shown, is_open);
+    }
+    HWY_INLINE void close(V stop) {
+        const M is_open = open(stop);
+        alpha = hn::IfThenElse(is_open, alpha, hn::Sub(all(1.0f), held));
+        for (int k = 0; k < 4; ++k) t[k] = hn::IfThenElseZero(is_open, t[k]);
+    }
+};
+
+}  // namespace astrosplat::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // toggle
