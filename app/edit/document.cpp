@@ -88,6 +88,14 @@ struct Document::State {
         now = 0;
     }
 
+    /// `content` is what lies in the document's file. Throws InputError, and nothing has changed.
+    void know_disk(const std::string& content) {
+        saved = std::make_shared<const Scene>(parse_unchecked(content, file));
+        text = content;
+        text_place = file;
+        disk = DiskFile(file, content);
+    }
+
     void remember_assignments(std::span<const Assignment> given) {
         assignments.assign(given.begin(), given.end());
         assigned_keys.clear();
@@ -138,14 +146,11 @@ Document::~Document() = default;
 
 Document Document::open(const fs::path& file, std::span<const Assignment> assignments) {
     auto state = std::make_unique<State>();
-    state->file = state->text_place = fs::absolute(file);
-    state->text = read_file(file);
-    state->disk = DiskFile(state->file, state->text);
-    state->begin(parse_scene(state->text, state->file, assignments));
+    state->file = fs::absolute(file);
+    const std::string text = read_file(file);
+    state->begin(parse_scene(text, state->file, assignments));
     state->remember_assignments(assignments);
-    state->saved = assignments.empty()
-                       ? state->history[0].scene
-                       : std::make_shared<const Scene>(parse_unchecked(state->text, state->file));
+    state->know_disk(text);
     return Document(std::move(state));
 }
 
@@ -160,27 +165,24 @@ Document Document::untitled(const std::string& toml, const fs::path& place,
     return Document(std::move(state));
 }
 
-Document Document::recovered(const std::string& toml, const fs::path& place, const fs::path& file) {
+Document Document::recovered(const std::string& toml, const fs::path& place, const fs::path& file,
+                             bool titled) {
     auto state = std::make_unique<State>();
     Scene scene = parse_scene(toml, fs::absolute(place));
-    state->file = file;
+    scene.file = file;
+    state->begin(std::move(scene));
+    state->saved = std::make_shared<const Scene>();
     state->text = toml;
     state->text_place = fs::absolute(place);
-    state->saved = std::make_shared<const Scene>();
+    if (titled) state->file = file;
     std::error_code ignored;
-    if (!file.empty() && fs::exists(file, ignored)) {
-        try {  // what is there now keeps its comments and order
-            const std::string text = read_file(file);
-            state->saved = std::make_shared<const Scene>(parse_unchecked(text, file));
-            state->text = text;
-            state->text_place = file;
-            state->disk = DiskFile(file, text);
+    if (titled && fs::exists(file, ignored)) {
+        try {
+            state->know_disk(read_file(file));  // what is there keeps its comments and order
         } catch (const InputError&) {
             // It cannot be read: saving will replace it by what was recovered.
         }
     }
-    if (!file.empty()) scene.file = file;
-    state->begin(std::move(scene));
     return Document(std::move(state));
 }
 
@@ -297,10 +299,7 @@ void Document::reload() {
     if (state_->file.empty()) throw InputError("Untitled: expected a file to read again, found none");
     const std::string text = read_file(state_->file);
     const Scene scene = parse_scene(text, state_->file, state_->assignments);
-    state_->saved = std::make_shared<const Scene>(parse_unchecked(text, state_->file));
-    state_->text = text;
-    state_->text_place = state_->file;
-    state_->disk = DiskFile(state_->file, text);
+    state_->know_disk(text);
     edit("Reload", [&](Scene& edited) { edited = scene; });
 }
 

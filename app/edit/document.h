@@ -32,10 +32,10 @@ class Document {
     /// for a file; until the first edit there is nothing to save. Throws InputError.
     static Document untitled(const std::string& toml, const std::filesystem::path& place,
                              std::span<const Assignment> assignments = {});
-    /// What an autosave held, `toml` at `place`, as edits of `file`: edited(), and save() writes there. An
-    /// empty `file`: untitled. Throws InputError.
+    /// What an autosave held, `toml` at `place`, as edits of `file`: edited(), and save() writes there. Not
+    /// `titled`: an untitled scene that lay at `file`. Throws InputError.
     static Document recovered(const std::string& toml, const std::filesystem::path& place,
-                              const std::filesystem::path& file);
+                              const std::filesystem::path& file, bool titled);
 
     Document(Document&&) noexcept;
     Document& operator=(Document&&) noexcept;

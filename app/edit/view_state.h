@@ -25,7 +25,9 @@ struct FreeCamera {
     glm::dvec3 position{0.0, 0.0, 10.0}, pivot{0.0}, up{0.0, 1.0, 0.0};
     double fov_deg = 45.0;  // vertical
     bool orthographic = false;
-    double height = 10.0;  // scene units, orthographic
+    double height = 10.0;                            // scene units, orthographic
+    double near = 0.01, far = 0.0, near_fade = 0.0;  // as CameraParams has them
+    bool operator==(const FreeCamera&) const = default;
 };
 
 struct ViewState {

@@ -1,0 +1,38 @@
+// What the window remembers between sessions: sizes and recent files, nothing that reaches a scene or a
+// picture. A small JSON file in the person's configuration folder.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "edit/view_state.h"
+
+namespace astrosplat {
+
+struct Preferences {
+    static constexpr std::size_t most_recent_files = 12;
+    int window_width = 1600, window_height = 900;  // px at scale 1
+    bool maximized = false;
+    float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
+    bool timeline_open = true;
+    std::vector<std::filesystem::path> recent;  // newest first, absolute
+    bool operator==(const Preferences&) const = default;
+};
+
+/// config_folder()/viewer.json; empty without a home.
+std::filesystem::path preferences_file();
+
+/// Values that are missing, of another type or out of range have their defaults, recent files that are gone
+/// are left out. A damaged file gives the defaults and one warning; a missing one is no news.
+Preferences load_preferences(const std::filesystem::path& file = preferences_file());
+/// Atomically. A file that cannot be written costs one warning.
+void save_preferences(const Preferences& preferences, const std::filesystem::path& file = preferences_file());
+
+/// `file` becomes the first of the recent ones.
+void add_recent(Preferences& preferences, const std::filesystem::path& file);
+
+/// Panel sizes into a view, and out of it.
+void apply_preferences(ViewState& view, const Preferences& preferences);
+void remember_panels(Preferences& preferences, const ViewState& view);
+
+}  // namespace astrosplat

@@ -1,0 +1,31 @@
+// A named look, kept beside the document to compare with and to go back to. Lives as long as the session.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "edit/document.h"
+#include "edit/view_state.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// Everything as it was when it was taken.
+struct StoredLook {
+    std::string name;
+    std::shared_ptr<const Scene> scene;
+    double frame = 1.0;
+    ViewState view;
+};
+
+StoredLook store_look(const std::string& name, const Document& document, const ViewState& view);
+
+/// `scene` with the look of `stored`: look, render and visibility of the layers that both have by name, the
+/// output's exposure, and the animation of all these. Camera, sources, transforms and layers that `stored`
+/// lacks stay.
+Scene with_look_of(const Scene& scene, const Scene& stored);
+
+/// with_look_of as one undo step. Throws InputError as Document::edit does.
+void restore_look(Document& document, const StoredLook& stored);
+
+}  // namespace astrosplat

@@ -1,0 +1,23 @@
+#include "edit/user_folders.h"
+
+#include <cstdlib>
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path folder_in(const char* variable, const char* below_home) {
+    const char* base = std::getenv(variable);
+    if (base && fs::path(base).is_absolute())
+        return fs::path(base) / "astrosplat";  // relative ones do not count
+    const char* home = std::getenv("HOME");
+    if (!home || !*home) return {};
+    return fs::path(home) / below_home / "astrosplat";
+}
+
+}  // namespace
+
+fs::path state_folder() { return folder_in("XDG_STATE_HOME", ".local/state"); }
+fs::path config_folder() { return folder_in("XDG_CONFIG_HOME", ".config"); }
+
+}  // namespace astrosplat

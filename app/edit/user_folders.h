@@ -1,0 +1,13 @@
+// Where a person's own files of the program lie, as the XDG base directory specification has it.
+#pragma once
+
+#include <filesystem>
+
+namespace astrosplat {
+
+/// $XDG_STATE_HOME/astrosplat, else ~/.local/state/astrosplat; empty without a home.
+std::filesystem::path state_folder();
+/// $XDG_CONFIG_HOME/astrosplat, else ~/.config/astrosplat; empty without a home.
+std::filesystem::path config_folder();
+
+}  // namespace astrosplat
