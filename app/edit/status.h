@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,6 +40,7 @@ struct LayerStatus {
     std::string error;                          // why it could not be loaded, one line
     double radius_min = 0.0, radius_max = 0.0;  // what radius 0, 0 means for this set, scene units
     double spacing = 0.0;                       // lattice step, scene units; 0: unknown
+    std::optional<glm::vec3> color;             // mean of its splats, linear
     std::shared_ptr<const LayerHistograms> histograms;
 };
 

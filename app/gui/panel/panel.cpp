@@ -1,19 +1,151 @@
 // The panel as a whole: layers list above, tabs below.
 #include "gui/panel/panel.h"
 
+#include <algorithm>
+
+#include "gui/panel/context.h"
+#include "gui/panel/layer_list.h"
+#include "gui/panel/row.h"
+#include "gui/panel/section.h"
+#include "gui/panel/tabs.h"
+#include "gui/theme.h"
+
 namespace astrosplat {
 
 struct Panel::State {
+    panel::Memory memory;
     std::vector<DrawnRow> rows;
 };
+
+namespace {
+using namespace panel;
+
+struct Tab {
+    const char* label;
+    PanelTab tab;
+    void (*draw)(Context&);
+    bool of_layer;
+};
+constexpr Tab tabs[] = {{"Source", PanelTab::source, source_tab, true},
+                        {"Look", PanelTab::look, look_tab, true},
+                        {"Render", PanelTab::render, render_tab, true},
+                        {"Camera", PanelTab::camera, camera_tab, false},
+                        {"Output", PanelTab::output, output_tab, false}};
+
+void tab_row(ViewState& view) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = px(32);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddLine(corner, {corner.x + width, corner.y}, color::line);
+    float spare = width - px(12);
+    for (const Tab& tab : tabs) spare -= ImGui::CalcTextSize(tab.label).x;
+    const float padding = std::clamp(spare / 10.0f, px(3), px(12));
+    float x = corner.x + std::max(px(12) - padding, 0.0f);
+    for (const Tab& tab : tabs) {
+        const ImVec2 text = ImGui::CalcTextSize(tab.label);
+        const float tab_width = text.x + padding * 2.0f;
+        ImGui::SetCursorScreenPos({x, corner.y});
+        if (ImGui::InvisibleButton(tab.label, {tab_width, height})) view.tab = tab.tab;
+        const bool chosen = view.tab == tab.tab;
+        const ImU32 ink = chosen || ImGui::IsItemHovered() ? color::text : color::dim;
+        list->AddText({x + padding, corner.y + (height - text.y) * 0.5f}, ink, tab.label);
+        if (chosen)
+            list->AddRectFilled({x + padding, corner.y + height - px(2)},
+                                {x + padding + text.x, corner.y + height}, color::accent);
+        x += tab_width;
+    }
+    ImGui::SetCursorScreenPos({corner.x, corner.y + height});
+}
+
+void tab_content(Context& context) {
+    const auto tab = std::find_if(std::begin(tabs), std::end(tabs),
+                                  [&](const Tab& t) { return t.tab == context.view.tab; });
+    if (tab->of_layer && context.scene().layers.empty()) {
+        note("No layer yet.");
+        return;
+    }
+    // Sections of layers share their ids, so that a drag does not survive a change of layer.
+    ImGui::PushID(tab->of_layer ? context.prefix.c_str() : tab->label);
+    tab->draw(context);
+    ImGui::PopID();
+}
+
+// The room of the scroll bar is always kept, so that rows do not jump when one appears.
+void tab_body(Context& context) {
+    const bool scrolls = context.memory.scroll > 0.0f;
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(12), px(8)));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(8), px(row_gap)));
+    ImGui::PushStyleVar(ImGuiStyleVar_ScrollbarSize, px(8));
+    if (!scrolls) {
+        for (const ImGuiCol c :
+             {ImGuiCol_ScrollbarGrab, ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive})
+            ImGui::PushStyleColor(c, color::none);
+    }
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_AlwaysVerticalScrollbar;
+    ImGui::BeginChild("tab", {0.0f, 0.0f}, false, flags);
+    if (!scrolls) ImGui::PopStyleColor(3);
+    tab_content(context);
+    context.memory.scroll = ImGui::GetScrollMaxY();
+    ImGui::EndChild();
+    ImGui::PopStyleVar(3);
+}
+
+void forget_untouched(Touch& touch) {
+    if (!touch.seen) touch.drag = touch.entry = 0;
+    touch.to_next = false;
+}
+
+}  // namespace
 
 Panel::Panel() : state_(std::make_unique<State>()) {}
 Panel::~Panel() = default;
 
-void Panel::draw(Document&, ViewState&, const Status&, Commands&) { state_->rows.clear(); }
+void Panel::draw(Document& document, ViewState& view, const Status& status, Commands& commands) {
+    Memory& memory = state_->memory;
+    describe_current(memory, document, view.frame);
+    state_->rows.clear();
+    memory.touch.seen = false;
+    const std::size_t layers = memory.described.scene->layers.size();
+    view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;
+    Context context{document, view, status, commands, memory, state_->rows, ""};
+    const auto set_prefix = [&] {
+        if (view.layer < layers) context.prefix = "layer." + context.scene().layers[view.layer].name + ".";
+    };
+    set_prefix();
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
+    layer_list(context, std::min(layer_list_height(context), room.y * 0.4f));
+    tab_row(view);
+    ImGui::PopStyleVar();
+    view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;  // a layer was added or taken away
+    set_prefix();
+    tab_body(context);
+    forget_untouched(memory.touch);
+}
+
+std::optional<FileRequest> Panel::take_request() {
+    return std::exchange(state_->memory.request, std::nullopt);
+}
+
+void Panel::answer(const FileRequest& request, const std::filesystem::path& file, Document& document,
+                   const ViewState& view, Commands& commands) {
+    using Kind = FileRequest::Kind;
+    if (request.kind == Kind::import) commands.push_back({Command::Kind::import_file, file, "", 0});
+    if (request.kind == Kind::save_look) commands.push_back({Command::Kind::save_look, file, "", view.layer});
+    if (request.kind == Kind::apply_look)
+        commands.push_back({Command::Kind::apply_look, file, "", view.layer});
+    if (request.kind != Kind::parameter) return;
+    try {
+        document.set(request.key, file.string(), view.frame);
+    } catch (const InputError& error) {
+        state_->memory.error_key = request.key;
+        state_->memory.error = error.what();
+    }
+}
 
 const std::vector<DrawnRow>& Panel::rows() const { return state_->rows; }
 
-bool Panel::busy() const { return false; }
+bool Panel::busy() const { return panel::busy(state_->memory); }
 
 }  // namespace astrosplat

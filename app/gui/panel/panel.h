@@ -1,9 +1,12 @@
 // The right side panel (VIEWER.md): layers list, tabs, one row per parameter, plots. In: the document, what
-// the person looks at, the viewer's status. Out: edits of the document and the view state, and commands for
-// the viewer. Everything about a parameter comes from its description. No OpenGL.
+// the person looks at, the viewer's status. Out: edits of the document and the view state, commands for the
+// viewer, and wishes for a file dialog. Everything about a parameter comes from its description. No OpenGL.
 #pragma once
 
+#include <filesystem>
+#include <glm/vec2.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +17,19 @@
 
 namespace astrosplat {
 
-/// One parameter drawn by the last draw(): where its parts lie, window px. For tests and for a driver that
-/// wants to reach a control by its key.
+/// One parameter drawn by the last draw(): the middle of each of its parts, window px. For tests and for a
+/// driver that wants to reach a control by its key.
 struct DrawnRow {
-    std::string key;                  // full: "layer.dust.look.alpha.power"
-    glm::vec2 label, value, diamond;  // middle of each; diamond is (-1, -1) where it cannot be keyed
+    std::string key;           // full: "layer.dust.look.alpha.power"
+    glm::vec2 label, value;    // the first box of several
+    glm::vec2 diamond{-1.0f};  // (-1, -1) where it cannot be keyed
+};
+
+/// A wish for a file dialog; give the chosen file back with Panel::answer.
+struct FileRequest {
+    enum class Kind { import, parameter, save_look, apply_look };
+    Kind kind;
+    std::string key;  // parameter: its full key
 };
 
 class Panel {
@@ -27,6 +38,13 @@ class Panel {
     ~Panel();
     /// Draws over the content region of the current ImGui window, between NewFrame and Render.
     void draw(Document& document, ViewState& view, const Status& status, Commands& commands);
+
+    /// What was asked for since the last call.
+    std::optional<FileRequest> take_request();
+    /// The dialog's answer: an edit of the document, or a command.
+    void answer(const FileRequest& request, const std::filesystem::path& file, Document& document,
+                const ViewState& view, Commands& commands);
+
     /// Of the last draw(), top to bottom.
     const std::vector<DrawnRow>& rows() const;
     /// A value is being dragged or typed: the next frame must be drawn soon.

@@ -1,0 +1,109 @@
+// Reading through the description, writing through the document.
+#include "gui/panel/context.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+
+#include "edit/layers.h"
+#include "scene/animate.h"
+#include "scene/toml_read.h"
+
+namespace astrosplat::panel {
+
+const LayerStatus& Context::layer_status() const {
+    static const LayerStatus unknown;
+    return view.layer < status.layers.size() ? status.layers[view.layer] : unknown;
+}
+
+void describe_current(Memory& memory, const Document& document, double frame) {
+    Described& d = memory.described;
+    if (d.document == &document && d.revision == document.revision() && d.frame == frame && d.scene) return;
+    d.document = &document;
+    d.revision = document.revision();
+    d.frame = frame;
+    d.scene = std::make_unique<Scene>(scene_at(document.scene(), frame));
+    d.description = describe(*d.scene);
+    d.index.clear();
+    for (std::size_t i = 0; i < d.description.parameters.size(); ++i)
+        d.index.emplace(d.description.parameters[i].spec.key, i);
+}
+
+const Parameter* find(const Context& context, const std::string& key) {
+    const Described& d = context.memory.described;
+    const auto found = d.index.find(key);
+    return found == d.index.end() ? nullptr : &d.description.parameters[found->second];
+}
+
+const Value& default_of(Context& context, const ParameterSpec& spec) {
+    const auto found = context.memory.defaults.find(spec.generic_key);
+    if (found != context.memory.defaults.end()) return found->second;
+    return context.memory.defaults.emplace(spec.generic_key, Document::default_value(spec)).first->second;
+}
+
+Gesture begin_gesture(Context& context) {
+    // The upper half keeps these ids apart from those of other widgets, which count from 1.
+    static constexpr Gesture first = Gesture{1} << 32;
+    context.memory.gesture = std::max(context.memory.gesture + 1, first);
+    return context.memory.gesture;
+}
+
+namespace {
+
+void attempt(Context& context, const std::string& key, const std::function<void()>& change) {
+    Memory& memory = context.memory;
+    try {
+        change();
+        memory.error.clear();
+    } catch (const InputError& error) {
+        memory.error_key = key;
+        memory.error = error.what();
+    }
+}
+
+}  // namespace
+
+void set_value(Context& context, const std::string& key, const Value& value, Gesture gesture) {
+    const Parameter* parameter = find(context, key);
+    if (parameter && parameter->spec.generic_key == "layer.name" && value.text()) {
+        const std::size_t layer = context.view.layer;  // its keys and its solo follow the name
+        return edit(context, key, "Rename layer",
+                    [&](Scene& scene) { rename_layer(scene, layer, *value.text()); });
+    }
+    attempt(context, key, [&] { context.document.set(key, value, context.view.frame, gesture); });
+}
+
+void edit(Context& context, const std::string& key, const std::string& name,
+          const std::function<void(Scene&)>& change, Gesture gesture) {
+    attempt(context, key, [&] { context.document.edit(name, change, gesture); });
+}
+
+bool busy(const Memory& memory) {
+    return memory.touch.drag != 0 || memory.touch.entry != 0 || memory.dragged_layer >= 0 ||
+           !memory.renaming.empty();
+}
+
+Value value_from_text(const std::string& text, const ParameterSpec& spec) {
+    std::string raw = text;
+    const bool verbatim = spec.type == ParameterType::text || spec.type == ParameterType::file ||
+                          spec.type == ParameterType::pattern ||
+                          (spec.type == ParameterType::files && raw.rfind('[', 0) != 0);
+    if (verbatim) return raw;
+    const bool number = spec.type == ParameterType::number || spec.type == ParameterType::integer;
+    if (number && std::count(raw.begin(), raw.end(), ',') == 1)
+        std::replace(raw.begin(), raw.end(), ',', '.');
+    const bool list = spec.type == ParameterType::vector || spec.type == ParameterType::position ||
+                      spec.type == ParameterType::rotation || spec.type == ParameterType::color;
+    if (list && raw.find(',') != std::string::npos && raw.find('[') == std::string::npos)
+        raw = "[" + raw + "]";
+    if (number && !raw.empty() && raw.front() == '.') raw = "0" + raw;
+    try {
+        const toml::table table = toml::parse("value = " + raw);
+        if (table.size() == 1 && raw.find('\n') == std::string::npos) return value_of(*table.get("value"));
+    } catch (const toml::parse_error&) {
+        // a bare word
+    }
+    return raw;
+}
+
+}  // namespace astrosplat::panel

@@ -1,0 +1,112 @@
+// What every part of the panel gets: the document and its description at the current frame, and what the
+// panel remembers from frame to frame. Reading goes through the description, writing through the document,
+// so that a widget never holds a value of its own for longer than a drag.
+#pragma once
+
+#include <imgui.h>
+
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+#include "gui/panel/panel.h"
+#include "scene/describe.h"
+
+namespace astrosplat::panel {
+
+/// The scene as it stands at the current frame, described. Made anew when the document or the frame changes.
+struct Described {
+    const Document* document = nullptr;
+    std::uint64_t revision = 0;
+    double frame = 0.0;
+    std::unique_ptr<Scene> scene;  // the handles below point into it
+    Description description;
+    std::unordered_map<std::string, std::size_t> index;  // key -> place in description.parameters
+};
+
+/// A value being dragged or typed. There is only one at a time.
+struct Touch {
+    ImGuiID drag = 0, entry = 0;  // the widget; 0: none
+    double value = 0.0;           // dragged so far, not rounded
+    std::string text;             // typed so far
+    int entry_frames = 0;         // since the text field appeared
+    bool seen = false;            // its widget was drawn in this frame
+    bool to_next = false;         // Tab: the next field is typed into
+};
+
+/// Look and render of a layer, copied.
+struct CopiedLook {
+    Look look;
+    LayerRender render;
+};
+
+/// The field of a noise, drawn once: greys at the corners of cells, row by row.
+struct NoisePicture {
+    Noise noise;
+    double span = 0.0;  // scene units across
+    int columns = 0;
+    std::vector<ImU32> greys;
+};
+
+struct Memory {
+    Described described;
+    std::map<std::string, Value> defaults;  // by generic key
+    Touch touch;
+    Gesture gesture = 0;               // of the drag that runs; a new one for every press
+    std::string error_key;             // parameter whose last edit was refused
+    std::string error;                 // why
+    std::map<std::string, bool> open;  // sections, by title
+    std::string selected_curve;        // key of the curve whose point is selected
+    int selected_point = -1;
+    std::string renaming;  // layer whose name is typed
+    int dragged_layer = -1;
+    std::optional<CopiedLook> copied;
+    std::vector<NoisePicture> noises;  // by entry of the list
+    float scroll = 0.0f;               // how far the tab can be scrolled
+    std::string hovered;               // row under the mouse, and since when: tooltips wait a little
+    double hovered_since = 0.0;
+    std::optional<FileRequest> request;
+};
+
+struct Context {
+    Document& document;
+    ViewState& view;
+    const Status& status;
+    Commands& commands;
+    Memory& memory;
+    std::vector<DrawnRow>& rows;
+    std::string prefix;  // of the selected layer: "layer.dust."; empty without layers
+
+    const Scene& scene() const { return *memory.described.scene; }
+    /// The selected layer at the current frame; there must be one.
+    const LayerParams& layer() const { return scene().layers[view.layer]; }
+    /// Its status; an empty one while the viewer has not heard of the layer.
+    const LayerStatus& layer_status() const;
+};
+
+/// Brings memory.described up to date.
+void describe_current(Memory& memory, const Document& document, double frame);
+
+/// nullptr when there is no such parameter (any more).
+const Parameter* find(const Context& context, const std::string& key);
+
+/// Its default in a new scene.
+const Value& default_of(Context& context, const ParameterSpec& spec);
+
+/// A fresh id for edits of the press that begins now.
+Gesture begin_gesture(Context& context);
+
+/// Document::set at the current frame; a refusal becomes the row's message. `gesture` 0: a step of its own.
+void set_value(Context& context, const std::string& key, const Value& value, Gesture gesture = 0);
+
+/// Document::edit; a refusal becomes the message of the row `key`.
+void edit(Context& context, const std::string& key, const std::string& name,
+          const std::function<void(Scene&)>& change, Gesture gesture = 0);
+
+/// Whether a widget that is drawn only while it matters should count as a wish for the next frame.
+bool busy(const Memory& memory);
+
+/// TOML, or a bare word: what a person may paste or type. Numbers may have a comma.
+Value value_from_text(const std::string& text, const ParameterSpec& spec);
+
+}  // namespace astrosplat::panel

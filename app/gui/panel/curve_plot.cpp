@@ -1,0 +1,143 @@
+// The curve a person drags. Its points live in the document; the panel remembers only which one is selected.
+#include <algorithm>
+#include <cmath>
+
+#include "gui/panel/plot.h"
+#include "gui/panel/words.h"
+#include "gui/theme.h"
+#include "look/shared_uniforms.h"
+#include "scene/field.h"
+
+namespace astrosplat::panel {
+namespace {
+
+using Points = std::vector<glm::vec2>;
+constexpr float gap = 0.002f;  // smallest distance of two points in x
+
+// From the curve's 0..1 x 0..top to the window and back; as draw_curve has it.
+struct Chart {
+    Area area;
+    float top;
+    ImVec2 at(glm::vec2 p) const {
+        const float y = std::clamp(p.y / top, 0.0f, 1.0f);
+        return {area.corner.x + std::min(p.x, 1.0f) * area.size.x,
+                area.end().y - px(2) - y * (area.size.y - px(5))};
+    }
+    glm::vec2 point(ImVec2 p) const {
+        const float x = (p.x - area.corner.x) / area.size.x;
+        const float y = (area.end().y - px(2) - p.y) / (area.size.y - px(5)) * top;
+        return {std::clamp(x, 0.0f, 1.0f), std::clamp(y, 0.0f, top)};
+    }
+};
+
+int nearest(const Chart& chart, const Points& points, ImVec2 mouse) {
+    int best = -1;
+    float best_distance = px(9) * px(9);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const ImVec2 p = chart.at(points[i]);
+        const float dx = p.x - mouse.x, dy = p.y - mouse.y;
+        if (dx * dx + dy * dy < best_distance) {
+            best_distance = dx * dx + dy * dy;
+            best = static_cast<int>(i);
+        }
+    }
+    return best;
+}
+
+// Moves a point, keeping the order of x.
+void place(Points& points, int index, glm::vec2 to) {
+    const auto i = static_cast<std::size_t>(index);
+    const float lo = i > 0 ? points[i - 1].x + gap : 0.0f;
+    const float hi = i + 1 < points.size() ? points[i + 1].x - gap : std::max(1.0f, points[i].x);
+    const auto rounded = [](float x) { return static_cast<float>(rounded_to_step(double(x), 1e-3)); };
+    points[i] = {rounded(std::clamp(to.x, lo, std::max(lo, hi))), rounded(std::max(to.y, 0.0f))};
+}
+
+// Index of the new point; -1 where there is no room.
+int insert(Points& points, glm::vec2 p) {
+    if (points.size() >= static_cast<std::size_t>(shared_types::LOOK_MAX_POINTS)) return -1;
+    const auto after = std::find_if(points.begin(), points.end(), [&](glm::vec2 q) { return q.x > p.x; });
+    const int index = static_cast<int>(after - points.begin());
+    points.insert(after, p);
+    place(points, index, p);
+    return index;
+}
+
+void press(Context& context, const std::string& key, const Chart& chart, Points points) {
+    Memory& memory = context.memory;
+    begin_gesture(context);
+    memory.selected_curve = key;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    memory.selected_point = nearest(chart, points, mouse);
+    if (memory.selected_point >= 0) return;
+    memory.selected_point = insert(points, chart.point(mouse));
+    if (memory.selected_point >= 0) set_value(context, key, curve_value(points), memory.gesture);
+}
+
+void drag(Context& context, const std::string& key, const Chart& chart, Points points) {
+    const int index = context.memory.selected_point;
+    if (index < 0 || index >= static_cast<int>(points.size())) return;
+    place(points, index, chart.point(ImGui::GetIO().MousePos));
+    set_value(context, key, curve_value(points), context.memory.gesture);
+}
+
+void remove(Context& context, const std::string& key, const Chart& chart, Points points) {
+    const int index = nearest(chart, points, ImGui::GetIO().MousePos);
+    if (index < 0 || points.size() <= 2) return;
+    points.erase(points.begin() + index);
+    context.memory.selected_point = -1;
+    set_value(context, key, curve_value(points));
+}
+
+void nudge(Context& context, const std::string& key, const Chart& chart, Points points) {
+    const int index = context.memory.selected_point;
+    if (context.memory.selected_curve != key || index < 0 || index >= static_cast<int>(points.size())) return;
+    if (!ImGui::IsWindowFocused() || ImGui::GetIO().WantTextInput) return;
+    const auto pressed = [](ImGuiKey_ k) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(k)) ? 1.0f : 0.0f; };
+    const glm::vec2 steps{pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow),
+                          pressed(ImGuiKey_UpArrow) - pressed(ImGuiKey_DownArrow)};
+    if (steps == glm::vec2(0.0f)) return;
+    const float size = ImGui::GetIO().KeyShift ? 0.1f : 0.01f;
+    place(points, index, points[static_cast<std::size_t>(index)] + steps * glm::vec2(1.0f, chart.top) * size);
+    set_value(context, key, curve_value(points));
+}
+
+void draw_points(const Context& context, const std::string& key, const Chart& chart, const Points& points) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const int under = nearest(chart, points, ImGui::GetIO().MousePos);
+    for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+        const bool selected = context.memory.selected_curve == key && context.memory.selected_point == i;
+        const ImVec2 p = chart.at(points[static_cast<std::size_t>(i)]);
+        list->AddCircleFilled(p, px(selected || i == under ? 5.0f : 4.0f), color::window);
+        list->AddCircleFilled(p, px(selected || i == under ? 4.0f : 3.0f),
+                              selected ? color::accent : color::text);
+    }
+}
+
+}  // namespace
+
+void edit_curve(Context& context, const std::string& key, const Area& area, std::span<const float> samples) {
+    const Parameter* parameter = find(context, key);
+    if (!parameter) return;
+    Points points = curve_of(parameter->get(), parameter->spec);
+    if (points.size() < 2) points = {{0.0f, 1.0f}, {1.0f, 1.0f}};
+    float top = 1.0f;
+    for (const glm::vec2& p : points) top = std::max(top, p.y);
+    const Chart chart{area, top};
+    ImGui::PushID(key.c_str());
+    ImGui::SetCursorScreenPos(area.corner);
+    ImGui::InvisibleButton("curve", area.size);
+    if (ImGui::IsItemActivated())
+        press(context, key, chart, points);
+    else if (ImGui::IsItemActive() &&
+             (ImGui::GetIO().MouseDelta.x != 0.0f || ImGui::GetIO().MouseDelta.y != 0.0f))
+        drag(context, key, chart, points);
+    if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right))
+        remove(context, key, chart, points);
+    nudge(context, key, chart, points);
+    draw_curve(area, samples, top, color::accent);
+    draw_points(context, key, chart, points);
+    ImGui::PopID();
+}
+
+}  // namespace astrosplat::panel

@@ -1,0 +1,289 @@
+// The value of a row, one function per kind of parameter.
+#include <cfloat>
+#include <cmath>
+
+#include "core/color.h"
+#include "gui/icons.h"
+#include "gui/panel/row.h"
+#include "gui/panel/words.h"
+#include "gui/theme.h"
+#include "scene/field.h"
+
+namespace astrosplat::panel {
+namespace {
+
+using Type = ParameterType;
+
+double lowest(const ParameterSpec& spec) {
+    if (!spec.above_min) return std::max(spec.min, -1e15);
+    const double gap = spec.slider_min > spec.min ? spec.slider_min - spec.min : spec.slider_max - spec.min;
+    return spec.min + gap * 0.01;
+}
+
+double highest(const ParameterSpec& spec) {
+    if (!spec.below_max) return std::min(spec.max, 1e15);
+    return spec.max - (spec.max - spec.slider_max) * 0.01 - 1e-3;
+}
+
+float filled(const ParameterSpec& spec, double value) {
+    double lo = spec.slider_min, hi = spec.slider_max;
+    if (!(hi > lo) || lo < 0.0) return -1.0f;
+    if (spec.scale == Scale::logarithmic && lo > 0.0) {
+        lo = std::log(lo);
+        hi = std::log(hi);
+        value = std::log(std::max(value, 1e-12));
+    }
+    return static_cast<float>((value - lo) / (hi - lo));
+}
+
+BoxContent number_content(const ParameterSpec& spec, double value) {
+    BoxContent content;
+    content.whole = spec.type == Type::integer || (spec.type == Type::vector && spec.unit == "px");
+    content.shown = content.whole ? figures(std::int64_t(std::llround(value))) : figures(value);
+    content.typed = short_number(value);
+    content.value = value;
+    content.step = drag_step(spec, value);
+    content.min = lowest(spec);
+    content.max = highest(spec);
+    content.fill = filled(spec, value);
+    return content;
+}
+
+Value as_number(const ParameterSpec& spec, double value) {
+    if (spec.type == Type::integer) return static_cast<std::int64_t>(std::llround(value));
+    return value;
+}
+
+// A field that takes any text the parameter can be made of.
+void text_field(Context& context, const Row& row, const Area& area) {
+    const ParameterSpec& spec = row.parameter.spec;
+    BoxContent content;
+    content.shown = in_words(spec, row.value);
+    const std::string* text = row.value.text();
+    content.dimmed = row.value == spec.nothing && spec.type != Type::text;
+    if (content.shown.empty()) {
+        content.dimmed = true;
+        content.shown = "None";
+    }
+    content.typed = text ? *text : to_toml(row.value);
+    content.unit = content.dimmed || text ? "" : spec.unit;
+    const BoxEvent event = value_box(context, "text", area, content);
+    if (event.kind == BoxEvent::Kind::typed && event.text != content.typed)
+        set_value(context, row.key(), value_from_text(event.text, spec));
+}
+
+void number_field(Context& context, const Row& row) {
+    const ParameterSpec& spec = row.parameter.spec;
+    if (!row.value.is_number()) return text_field(context, row, row.layout.value);
+    BoxContent content = number_content(spec, row.value.number());
+    content.unit = spec.unit;
+    const BoxEvent event = value_box(context, "number", row.layout.value, content);
+    if (event.kind == BoxEvent::Kind::dragged)
+        set_value(context, row.key(), as_number(spec, event.value), context.memory.gesture);
+    if (event.kind == BoxEvent::Kind::typed && event.text != content.typed)
+        set_value(context, row.key(), value_from_text(event.text, spec));
+}
+
+Area part(const Area& area, int index, int count) {
+    const float gap = px(3);
+    const float width = (area.size.x - gap * static_cast<float>(count - 1)) / static_cast<float>(count);
+    return {{area.corner.x + (width + gap) * static_cast<float>(index), area.corner.y}, {width, area.size.y}};
+}
+
+void component_field(Context& context, const Row& row, const Area& area, std::size_t index) {
+    const ParameterSpec& spec = row.parameter.spec;
+    Value::List values = *row.value.list();
+    ImGui::PushID(static_cast<int>(index));
+    BoxContent content = number_content(spec, values[index].number());
+    content.fill = -1.0f;
+    const BoxEvent event = value_box(context, "component", area, content);
+    ImGui::PopID();
+    if (event.kind == BoxEvent::Kind::none) return;
+    const bool dragged = event.kind == BoxEvent::Kind::dragged;
+    if (!dragged && event.text == content.typed) return;
+    ParameterSpec number;  // one component, typed, is a number
+    const bool whole = std::holds_alternative<std::int64_t>(values[index].data);
+    if (dragged)
+        values[index] =
+            whole ? Value(static_cast<std::int64_t>(std::llround(event.value))) : Value(event.value);
+    else
+        values[index] = value_from_text(event.text, number);
+    set_value(context, row.key(), values, dragged ? context.memory.gesture : 0);
+}
+
+void vector_field(Context& context, const Row& row, const Area& area) {
+    const Value::List* values = row.value.list();
+    if (row.value.is_number()) return number_field(context, row);
+    if (!values || values->empty()) return text_field(context, row, area);
+    const int count = static_cast<int>(values->size());
+    for (int i = 0; i < count; ++i)
+        component_field(context, row, part(area, i, count), static_cast<std::size_t>(i));
+}
+
+void boolean_field(Context& context, const Row& row) {
+    const bool* on = std::get_if<bool>(&row.value.data);
+    const float size = px(16);
+    const Area& area = row.layout.value;
+    const Area box{{area.corner.x, area.middle().y - size * 0.5f}, {size, size}};
+    ImGui::SetCursorScreenPos(area.corner);
+    const bool clicked = ImGui::InvisibleButton("check", {px(28), area.size.y});
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImU32 back = *on ? color::accent : ImGui::IsItemHovered() ? color::hover : color::field;
+    list->AddRectFilled(box.corner, box.end(), back, px(3));
+    if (*on) {
+        const ImVec2 m = box.middle();
+        const ImVec2 points[3] = {{m.x - px(4), m.y}, {m.x - px(1), m.y + px(3)}, {m.x + px(4), m.y - px(3)}};
+        list->AddPolyline(points, 3, color::window, ImDrawFlags_None, px(1.8f));
+    }
+    if (clicked) set_value(context, row.key(), !*on);
+}
+
+void choice_field(Context& context, const Row& row) {
+    const ParameterSpec& spec = row.parameter.spec;
+    const Area& area = row.layout.value;
+    ImGui::SetCursorScreenPos(area.corner);
+    ImGui::SetNextItemWidth(area.size.x);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(px(8), (area.size.y - ImGui::GetFontSize()) * 0.5f));
+    if (ImGui::BeginCombo("##choice", in_words(spec, row.value).c_str())) {
+        for (const std::string& choice : spec.choices) {
+            const bool selected = row.value == choice_value(choice);
+            if (ImGui::Selectable(choice_label(choice).c_str(), selected) && !selected)
+                set_value(context, row.key(), choice_value(choice));
+        }
+        ImGui::EndCombo();
+    }
+    ImGui::PopStyleVar();
+}
+
+void shape_popup(Context& context, const Row& row) {
+    if (!ImGui::BeginPopup("shapes")) return;
+    for (const std::string& choice : row.parameter.spec.choices)
+        if (ImGui::MenuItem(choice_label(choice).c_str())) set_value(context, row.key(), choice);
+    ImGui::Separator();
+    if (ImGui::MenuItem("File..."))
+        context.memory.request = FileRequest{FileRequest::Kind::parameter, row.key()};
+    ImGui::EndPopup();
+}
+
+void file_field(Context& context, const Row& row) {
+    const Area& area = row.layout.value;
+    const float button = px(24);
+    text_field(context, row, {area.corner, {area.size.x - button - px(2), area.size.y}});
+    ImGui::SetCursorScreenPos({area.end().x - button, area.corner.y});
+    const bool shapes = !row.parameter.spec.choices.empty();
+    if (icon_button("browse", Icon::folder, {button, area.size.y}, px(12), color::dim, "Choose a file")) {
+        if (shapes)
+            ImGui::OpenPopup("shapes");
+        else
+            context.memory.request = FileRequest{FileRequest::Kind::parameter, row.key()};
+    }
+    shape_popup(context, row);
+}
+
+ImVec4 displayed(const Value::List& linear) {
+    const auto encoded = [&](std::size_t i) {
+        return static_cast<float>(real::linear_to_srgb(std::min(linear[i].number(), 1.0)));
+    };
+    return {encoded(0), encoded(1), encoded(2), 1.0f};
+}
+
+void color_picker(Context& context, const Row& row) {
+    if (!ImGui::BeginPopup("picker")) return;
+    const ImVec4 shown = displayed(*row.value.list());
+    float rgb[3] = {shown.x, shown.y, shown.z};
+    const ImGuiColorEditFlags flags = ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoInputs |
+                                      ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoLabel;
+    ImGui::SetNextItemWidth(px(200));
+    const bool changed = ImGui::ColorPicker3("##color", rgb, flags);
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) begin_gesture(context);
+    if (changed) {
+        Value::List linear;
+        for (const float c : rgb) linear.emplace_back(rounded_to_step(real::srgb_to_linear(double(c)), 1e-4));
+        set_value(context, row.key(), linear, context.memory.gesture);
+    }
+    ImGui::EndPopup();
+}
+
+void color_field(Context& context, const Row& row) {
+    const Area& area = row.layout.value;
+    const float size = area.size.y;
+    ImGui::SetCursorScreenPos(area.corner);
+    if (ImGui::InvisibleButton("swatch", {size, size})) ImGui::OpenPopup("picker");
+    ImGui::GetWindowDrawList()->AddRectFilled(area.corner, {area.corner.x + size, area.end().y},
+                                              ImGui::ColorConvertFloat4ToU32(displayed(*row.value.list())),
+                                              px(3));
+    color_picker(context, row);
+    const float used = size + px(3);
+    vector_field(context, row, {{area.corner.x + used, area.corner.y}, {area.size.x - used, area.size.y}});
+}
+
+// Words of a list as small switches, in as many lines as they need.
+bool words_field(Context& context, const Row& row) {
+    const Area& area = row.layout.value;
+    const Value::List& words = *row.value.list();
+    ImVec2 at = area.corner;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    for (const std::string& choice : row.parameter.spec.choices) {
+        const std::string label = choice_label(choice);
+        const float width = ImGui::CalcTextSize(label.c_str()).x + px(14);
+        if (at.x > area.corner.x && at.x + width > area.end().x)
+            at = {area.corner.x, at.y + px(row_height + row_gap)};
+        const Area chip{at, {width, area.size.y}};
+        ImGui::SetCursorScreenPos(at);
+        const bool clicked = ImGui::InvisibleButton(choice.c_str(), chip.size);
+        Value::List others;
+        for (const Value& word : words)
+            if (!(word == Value(choice))) others.push_back(word);
+        const bool on = others.size() < words.size();
+        list->AddRectFilled(chip.corner, chip.end(), on ? color::selection : color::field, px(3));
+        clipped_text(list, chip, px(7), on ? color::text : color::dim, label);
+        if (clicked) {
+            if (!on) others.emplace_back(choice);
+            set_value(context, row.key(), others);
+        }
+        at.x += width + px(3);
+    }
+    ImGui::SetCursorScreenPos(row.layout.whole.corner);
+    ImGui::Dummy({row.layout.whole.size.x, at.y - area.corner.y + px(row_height)});
+    return true;
+}
+
+}  // namespace
+
+bool value_field(Context& context, const Row& row) {
+    switch (row.parameter.spec.type) {
+        case Type::boolean:
+            boolean_field(context, row);
+            return false;
+        case Type::integer:
+        case Type::number:
+            number_field(context, row);
+            return false;
+        case Type::choice:
+            choice_field(context, row);
+            return false;
+        case Type::words:
+            return words_field(context, row);
+        case Type::file:
+        case Type::files:
+            file_field(context, row);
+            return false;
+        case Type::vector:
+        case Type::position:
+        case Type::rotation:
+            vector_field(context, row, row.layout.value);
+            return false;
+        case Type::color:
+            color_field(context, row);
+            return false;
+        case Type::text:
+        case Type::pattern:
+        case Type::curve:
+            text_field(context, row, row.layout.value);
+            return false;
+    }
+    return false;
+}
+
+}  // namespace astrosplat::panel

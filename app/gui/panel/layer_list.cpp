@@ -1,0 +1,314 @@
+// One row of 28 px a layer, a second one while it has something to say. Layers that are merged by depth hang
+// on one bracket; the others stand on their own, and only for them the order matters.
+#include "gui/panel/layer_list.h"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+#include "core/color.h"
+#include "edit/layers.h"
+#include "gui/icons.h"
+#include "gui/panel/row.h"
+#include "gui/panel/section.h"
+#include "gui/panel/tabs.h"
+#include "gui/panel/words.h"
+#include "gui/theme.h"
+
+namespace astrosplat::panel {
+namespace {
+
+constexpr float line_height = 28.0f;
+constexpr float margin = 12.0f;  // left and right of a row
+
+const LayerStatus* status_of(const Context& context, std::size_t i) {
+    return i < context.status.layers.size() ? &context.status.layers[i] : nullptr;
+}
+
+bool has_second_line(const Context& context, std::size_t i) {
+    const LayerStatus* status = status_of(context, i);
+    return status && (status->loading || status->stale || !status->error.empty());
+}
+
+bool merged(const LayerParams& layer) {
+    return !layer.render.isolate && layer.render.blend != Blend::lighten;
+}
+
+std::string key_of(const Context& context, std::size_t i, const char* name) {
+    return "layer." + context.scene().layers[i].name + "." + name;
+}
+
+ImU32 chip_color(const Context& context, std::size_t i) {
+    const LayerStatus* status = status_of(context, i);
+    const Grade& grade = context.scene().layers[i].look.grade;
+    const glm::vec3 own = status && status->color ? *status->color : glm::vec3(1.0f);
+    const glm::vec3 tinted = own * grade.tint;
+    const float largest = std::max({tinted.x, tinted.y, tinted.z, 1e-6f});
+    const auto byte = [&](float c) {
+        return static_cast<int>(255.0 * real::linear_to_srgb(double(c / largest)) + 0.5);
+    };
+    return IM_COL32(byte(tinted.x), byte(tinted.y), byte(tinted.z), 255);
+}
+
+// A letter or icon that is a switch; quiet while off.
+bool letter(const char* id, const char* text, ImVec2 corner, bool on, const char* tooltip) {
+    const ImVec2 size{px(20), px(line_height)};
+    ImGui::SetCursorScreenPos(corner);
+    const bool clicked = ImGui::InvisibleButton(id, size);
+    const bool hovered = ImGui::IsItemHovered();
+    if (hovered) ImGui::SetTooltip("%s", tooltip);
+    ImGui::PushFont(medium_font());
+    const ImVec2 extent = ImGui::CalcTextSize(text);
+    const ImU32 quiet = hovered ? color::text : color::with_opacity(color::dim, 0.45f);
+    ImGui::GetWindowDrawList()->AddText(
+        {corner.x + (size.x - extent.x) * 0.5f, corner.y + (size.y - extent.y) * 0.5f},
+        on ? color::accent : quiet, text);
+    ImGui::PopFont();
+    return clicked;
+}
+
+void toggle(Context& context, std::size_t i, const char* name, bool on) {
+    set_value(context, key_of(context, i, name), !on);
+}
+
+void switches(Context& context, std::size_t i, const Area& row) {
+    const LayerParams& layer = context.scene().layers[i];
+    float x = row.end().x - px(margin) - px(20) + px(6);
+    if (letter("isolate", "I", {x, row.corner.y}, layer.render.isolate,
+               "Isolate: rendered alone, then laid on whole"))
+        toggle(context, i, "render.isolate", layer.render.isolate);
+    x -= px(20);
+    if (letter("holdout", "H", {x, row.corner.y}, layer.render.holdout,
+               "Holdout: hides what lies behind, shows nothing itself"))
+        toggle(context, i, "render.holdout", layer.render.holdout);
+    x -= px(20);
+    const bool solo = context.view.solo.count(layer.name) > 0;
+    if (letter("solo", "S", {x, row.corner.y}, solo, "Solo: only layers with S are shown")) {
+        if (solo)
+            context.view.solo.erase(layer.name);
+        else
+            context.view.solo.insert(layer.name);
+    }
+}
+
+void finish_renaming(Context& context, std::size_t i, bool take, const std::string& name) {
+    context.memory.renaming.clear();
+    if (!take || name == context.scene().layers[i].name) return;
+    edit(context, key_of(context, i, "name"), "Rename layer",
+         [&](Scene& scene) { rename_layer(scene, i, name); });
+    if (context.memory.error.empty() && context.view.solo.erase(context.scene().layers[i].name) > 0)
+        context.view.solo.insert(name);
+}
+
+void name_entry(Context& context, std::size_t i, const Area& area) {
+    Touch& touch = context.memory.touch;
+    ImGui::SetCursorScreenPos({area.corner.x - px(4), area.corner.y + px(2)});
+    ImGui::SetNextItemWidth(area.size.x);
+    if (touch.entry_frames == 0) ImGui::SetKeyboardFocusHere();
+    ImGui::InputText("##name", &touch.text, ImGuiInputTextFlags_AutoSelectAll);
+    ++touch.entry_frames;
+    const bool lost = touch.entry_frames > 4 && !ImGui::IsItemActive();
+    const bool dropped = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    if (ImGui::IsItemDeactivated() || lost) finish_renaming(context, i, !dropped && !lost, touch.text);
+}
+
+void begin_renaming(Context& context, std::size_t i) {
+    context.memory.renaming = context.scene().layers[i].name;
+    context.memory.touch.text = context.memory.renaming;
+    context.memory.touch.entry_frames = 0;
+}
+
+void remove(Context& context, std::size_t i) {
+    edit(context, "", "Delete layer " + context.scene().layers[i].name,
+         [&](Scene& scene) { remove_layer(scene, i); });
+}
+
+void duplicate(Context& context, std::size_t i) {
+    std::size_t copy = i;
+    edit(context, "", "Duplicate layer " + context.scene().layers[i].name,
+         [&](Scene& scene) { copy = duplicate_layer(scene, i); });
+    context.view.layer = copy;
+}
+
+void layer_menu(Context& context, std::size_t i) {
+    if (!ImGui::BeginPopup("layer")) return;
+    if (ImGui::MenuItem("Rename")) begin_renaming(context, i);
+    if (ImGui::MenuItem("Duplicate")) duplicate(context, i);
+    if (ImGui::MenuItem("Delete")) remove(context, i);
+    ImGui::Separator();
+    if (ImGui::MenuItem("Frame", "F")) context.commands.push_back({Command::Kind::frame_layer, {}, "", i});
+    if (ImGui::MenuItem("Generate anew")) context.commands.push_back({Command::Kind::regenerate, {}, "", i});
+    ImGui::Separator();
+    look_menu(context);
+    ImGui::EndPopup();
+}
+
+// Layer into whose place the mouse would drop: rows may be 28 or 56 px high.
+int row_under(const std::vector<Area>& rows, float y) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (y < rows[i].end().y) return static_cast<int>(i);
+    return static_cast<int>(rows.size()) - 1;
+}
+
+void reorder(Context& context, const std::vector<Area>& rows) {
+    Memory& memory = context.memory;
+    if (memory.dragged_layer < 0 || memory.dragged_layer >= static_cast<int>(rows.size())) return;
+    const int to = row_under(rows, ImGui::GetIO().MousePos.y);
+    const auto place = static_cast<std::size_t>(to);
+    const float y = to > memory.dragged_layer ? rows[place].end().y : rows[place].corner.y;
+    ImGui::GetWindowDrawList()->AddLine({rows[place].corner.x + px(margin), y},
+                                        {rows[place].end().x - px(margin), y}, color::accent, px(2));
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+    const auto from = static_cast<std::size_t>(memory.dragged_layer);
+    memory.dragged_layer = -1;
+    if (from == place) return;
+    edit(context, "", "Move layer " + context.scene().layers[from].name,
+         [&](Scene& scene) { move_layer(scene, from, place); });
+    context.view.layer = place;
+}
+
+// Selecting, dragging, renaming and the menu: all of the row that is not a switch.
+void row_body(Context& context, std::size_t i, const Area& row) {
+    ImGui::SetCursorScreenPos({row.corner.x + px(38), row.corner.y});
+    ImGui::InvisibleButton("row", {row.size.x - px(38 + 72), px(line_height)});
+    const bool hovered = ImGui::IsItemHovered();
+    if (ImGui::IsItemActivated()) context.view.layer = i;
+    if (hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) begin_renaming(context, i);
+    if (ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, px(5)) &&
+        context.scene().layers.size() > 1)
+        context.memory.dragged_layer = static_cast<int>(i);
+    if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) {
+        context.view.layer = i;
+        context.prefix = "layer." + context.scene().layers[i].name + ".";
+        ImGui::OpenPopup("layer");
+    }
+    if (hovered && context.view.layer != i)
+        ImGui::GetWindowDrawList()->AddRectFilled(row.corner, row.end(), IM_COL32(255, 255, 255, 8));
+    layer_menu(context, i);
+}
+
+void count_text(const Context& context, std::size_t i, const Area& row, float& right) {
+    const LayerStatus* status = status_of(context, i);
+    if (!status || (status->splats == 0 && !status->loading)) return;
+    const std::string text = short_count(status->loading ? status->found : status->splats);
+    ImGui::PushFont(small_font());
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    right -= width;
+    ImGui::GetWindowDrawList()->AddText(
+        {right, row.corner.y + (px(line_height) - ImGui::GetFontSize()) * 0.5f}, color::dim, text.c_str());
+    ImGui::PopFont();
+}
+
+void second_line(Context& context, std::size_t i, const Area& row) {
+    const LayerStatus& status = *status_of(context, i);
+    ImGui::SetCursorScreenPos({row.corner.x + px(38), row.corner.y + px(line_height)});
+    ImGui::BeginGroup();
+    ImGui::PushItemWidth(row.size.x);
+    if (!status.error.empty()) {
+        const Area line{{row.corner.x + px(38), row.corner.y + px(line_height)},
+                        {row.size.x - px(38 + margin), px(row_height)}};
+        clipped_text(ImGui::GetWindowDrawList(), line, 0.0f, color::error, status.error);
+        ImGui::Dummy(line.size);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", status.error.c_str());
+    } else if (status.loading) {
+        const std::string text = fmt::format("{} %", static_cast<int>(status.progress * 100.0f));
+        if (progress_line(status.progress, text, "Cancel"))
+            context.commands.push_back({Command::Kind::cancel_load, {}, "", i});
+    } else if (progress_line(0.0f, "Needs regeneration", "Regenerate")) {
+        context.commands.push_back({Command::Kind::regenerate, {}, "", i});
+    }
+    ImGui::PopItemWidth();
+    ImGui::EndGroup();
+}
+
+void draw_layer(Context& context, std::size_t i, const Area& row) {
+    const LayerParams& layer = context.scene().layers[i];
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    if (context.view.layer == i) list->AddRectFilled(row.corner, row.end(), color::selection);
+    row_body(context, i, row);
+    ImGui::SetCursorScreenPos({row.corner.x + px(margin), row.corner.y});
+    const bool shown = context.view.solo.empty() ? layer.visible : context.view.solo.count(layer.name) > 0;
+    if (icon_button("eye", layer.visible ? Icon::eye : Icon::eye_closed, {px(24), px(line_height)}, px(14),
+                    shown ? color::text : color::dim, nullptr))
+        toggle(context, i, "visible", layer.visible);
+    const float chip = px(10), middle = row.corner.y + px(line_height) * 0.5f;
+    const ImVec2 at{row.corner.x + px(42), middle - chip * 0.5f};
+    list->AddRectFilled(at, {at.x + chip, at.y + chip}, chip_color(context, i), px(2));
+    float right = row.end().x - px(76);
+    count_text(context, i, row, right);
+    const Area name{{row.corner.x + px(60), row.corner.y}, {right - row.corner.x - px(64), px(line_height)}};
+    if (context.memory.renaming == layer.name)
+        name_entry(context, i, name);
+    else
+        clipped_text(list, name, 0.0f, shown ? color::text : color::dim, layer.name);
+    switches(context, i, row);
+    if (has_second_line(context, i)) second_line(context, i, row);
+}
+
+// The bracket reaches from the first merged layer to the last; isolated ones between have no tick.
+void draw_merge_bracket(const Context& context, const std::vector<Area>& rows) {
+    std::vector<float> ticks;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (merged(context.scene().layers[i])) ticks.push_back(rows[i].corner.y + px(line_height) * 0.5f);
+    if (ticks.size() < 2) return;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float x = rows.front().corner.x + px(6);
+    const ImU32 ink = color::with_opacity(color::dim, 0.7f);
+    draw_bracket(list, x, ticks.front(), ticks.back(), ink);
+    for (const float y : ticks) list->AddLine({x, y}, {x + px(4), y}, ink, px(1));
+    const Area zone{{x - px(6), ticks.front()}, {px(12), ticks.back() - ticks.front()}};
+    if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(zone.corner, zone.end()))
+        ImGui::SetTooltip("Merged by depth: the order of these does not matter");
+}
+
+void list_head(Context& context, float width) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::PushFont(medium_font());
+    const Area head{{corner.x + px(margin), corner.y}, {width, px(32)}};
+    clipped_text(ImGui::GetWindowDrawList(), head, 0.0f, color::text, "Layers");
+    ImGui::PopFont();
+    ImGui::SetCursorScreenPos({corner.x + width - px(margin) - px(20), corner.y + px(4)});
+    if (icon_button("add", Icon::plus, {px(26), px(24)}, px(11), color::text,
+                    "Add a picture, mesh or splat file"))
+        context.memory.request = FileRequest{FileRequest::Kind::import, ""};
+    ImGui::SetCursorScreenPos({corner.x, corner.y + px(32)});
+}
+
+}  // namespace
+
+float layer_list_height(const Context& context) {
+    float height = px(32);
+    for (std::size_t i = 0; i < context.scene().layers.size(); ++i)
+        height += px(has_second_line(context, i) ? line_height + row_height + 4.0f : line_height);
+    return height + px(context.scene().layers.empty() ? 28.0f : 6.0f);
+}
+
+void layer_list(Context& context, float height) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    list_head(context, width);
+    ImGui::BeginChild("layers", {width, height - px(32)}, false, ImGuiWindowFlags_NoBackground);
+    ImVec2 at = ImGui::GetCursorScreenPos();
+    std::vector<Area> rows;
+    if (context.scene().layers.empty()) {
+        ImGui::SetCursorScreenPos({at.x + px(margin), at.y});
+        note("Drop a picture, mesh or splat file here.");
+    }
+    for (std::size_t i = 0; i < context.scene().layers.size(); ++i) {
+        const float tall = px(has_second_line(context, i) ? line_height + row_height + 4.0f : line_height);
+        rows.push_back({at, {width, tall}});
+        at.y += tall;
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        ImGui::PushID(context.scene().layers[i].name.c_str());
+        draw_layer(context, i, rows[i]);
+        ImGui::PopID();
+    }
+    if (!rows.empty()) draw_merge_bracket(context, rows);
+    reorder(context, rows);
+    ImGui::SetCursorScreenPos(at);
+    ImGui::Dummy({1.0f, px(2)});
+    ImGui::EndChild();
+}
+
+}  // namespace astrosplat::panel

@@ -1,0 +1,46 @@
+// Plots: a field with a histogram and a curve in it, captions below. Values in, lines out; the profiles are
+// those of the look and the renderer, not copies.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gui/panel/row.h"
+
+namespace astrosplat::panel {
+
+inline constexpr float plot_height = 84.0f;  // px at scale 1
+
+/// The next plot's area across the panel; draws its ground.
+Area begin_plot(float height = plot_height);
+
+/// Bars over [0, 1] of the width; `stretch` widens the bins' own range: bin i covers
+/// [i, i + 1] * stretch / count. Shares of the fullest bin.
+void draw_bars(const Area& area, std::span<const float> shares, double stretch = 1.0);
+
+/// A line through values spread evenly over the width; 0 is the bottom, `top` the upper edge.
+void draw_curve(const Area& area, std::span<const float> values, float top, ImU32 color);
+
+/// Small texts below a plot, at its left and right edge. Leaves the cursor below.
+void captions(const std::string& left, const std::string& right);
+
+// Samples for draw_curve.
+std::vector<float> density_samples(const DensityCurve& pdf);
+std::vector<float> vertical_samples(const VerticalAlpha& vertical);
+std::vector<float> alpha_samples(const HorizontalAlpha& alpha);
+std::vector<float> falloff_samples(const Falloff& falloff);
+
+/// A plot of the curve whose points the parameter `key` holds: click adds, drag moves, right click deletes,
+/// arrows nudge. `samples` is the curve itself, over x in 0..1. The area takes the mouse.
+void edit_curve(Context& context, const std::string& key, const Area& area, std::span<const float> samples);
+
+/// The dot of a falloff and, beside it, its profile.
+void draw_falloff(const Falloff& falloff);
+/// The angles at which a hybrid changes from over to screen, as sectors between face-on and edge-on.
+void draw_hybrid(float from_deg, float to_deg);
+/// The field of a noise over `span` scene units of the plane across y; computed when it changes.
+void draw_noise(Context& context, std::size_t entry, const Noise& noise, double span);
+/// Spread of the picture's values; black and white are dragged on it.
+void edit_levels(Context& context);
+
+}  // namespace astrosplat::panel

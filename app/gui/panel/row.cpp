@@ -1,0 +1,190 @@
+// What surrounds a value: where things lie, label with tick, diamond, tooltip, menu, message.
+#include "gui/panel/row.h"
+
+#include <cmath>
+
+#include "edit/keys.h"
+#include "gui/icons.h"
+#include "gui/panel/words.h"
+#include "gui/theme.h"
+
+namespace astrosplat::panel {
+namespace {
+
+constexpr double tooltip_delay_s = 0.45;
+
+bool mouse_over(const Area& area) {
+    return ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(area.corner, area.end());
+}
+
+void draw_label(Context& context, const Row& row, const std::string& label) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ParameterSpec& spec = row.parameter.spec;
+    const bool by_command = context.document.set_by_command_line(spec.key);
+    if (by_command || !(row.value == default_of(context, spec))) {
+        const ImVec2 corner{row.layout.label.corner.x - px(8), row.layout.label.corner.y + px(5)};
+        list->AddRectFilled(corner, {corner.x + px(2), corner.y + px(14)},
+                            by_command ? color::key : color::accent);
+    }
+    clipped_text(list, row.layout.label, 0.0f, color::text, label);
+}
+
+void show_tooltip(Context& context, const Row& row) {
+    Memory& memory = context.memory;
+    if (!mouse_over(row.layout.whole) || ImGui::IsAnyItemActive()) {
+        if (memory.hovered == row.key()) memory.hovered.clear();
+        return;
+    }
+    if (memory.hovered != row.key()) {
+        memory.hovered = row.key();
+        memory.hovered_since = ImGui::GetTime();
+    }
+    if (ImGui::GetTime() - memory.hovered_since < tooltip_delay_s) return;
+    std::string text = tooltip_text(row.parameter.spec, default_of(context, row.parameter.spec));
+    if (context.document.set_by_command_line(row.key())) text += "\nSet by --set";
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(px(320));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void toggle_key(Context& context, const Row& row) {
+    const std::string key = row.key();
+    const double frame = std::round(context.view.frame);
+    const Value value = row.value;
+    if (has_key_at(context.document.scene(), key, frame))
+        edit(context, key, "Remove key of " + row.parameter.spec.label,
+             [&](Scene& scene) { remove_key(scene, key, frame); });
+    else
+        edit(context, key, "Key " + row.parameter.spec.label,
+             [&](Scene& scene) { set_key(scene, key, frame, value); });
+}
+
+void animation_menu(Context& context, const Row& row) {
+    if (row.parameter.spec.animation == Animation::no) return;
+    const std::string key = row.key();
+    const Scene& scene = context.document.scene();
+    const bool here = has_key_at(scene, key, std::round(context.view.frame));
+    if (ImGui::MenuItem(here ? "Remove key" : "Key")) toggle_key(context, row);
+    const bool keyed = is_keyed(scene, key);
+    if (ImGui::MenuItem("Remove animation", nullptr, false, keyed))
+        edit(context, key, "Remove animation of " + row.parameter.spec.label,
+             [&](Scene& changed) { remove_track(changed, key); });
+    if (ImGui::MenuItem("Show in graph", nullptr, false, keyed)) {
+        context.view.timeline_open = context.view.graph_open = true;
+        context.view.graph_key = key;
+    }
+    ImGui::Separator();
+}
+
+// "key=value", "--set key=value" or the value alone.
+std::string pasted_value(std::string text) {
+    for (const char* head : {"--set '", "--set "})
+        if (text.rfind(head, 0) == 0) {
+            text.erase(0, std::string(head).size());
+            if (!text.empty() && text.back() == '\'') text.pop_back();
+            break;
+        }
+    const std::size_t equals = text.find('=');
+    return equals == std::string::npos ? text : text.substr(equals + 1);
+}
+
+void paste(Context& context, const Row& row) {
+    const char* text = ImGui::GetClipboardText();
+    if (text && *text) set_value(context, row.key(), value_from_text(pasted_value(text), row.parameter.spec));
+}
+
+void row_menu(Context& context, const Row& row) {
+    if (mouse_over(row.layout.whole) && ImGui::IsMouseReleased(ImGuiMouseButton_Right))
+        ImGui::OpenPopup("menu");
+    if (!ImGui::BeginPopup("menu")) return;
+    if (ImGui::MenuItem("Reset")) context.document.reset(row.key());
+    ImGui::Separator();
+    animation_menu(context, row);
+    const std::string set = set_option(row.key(), row.value);
+    if (ImGui::MenuItem("Copy value")) ImGui::SetClipboardText(to_toml(row.value).c_str());
+    if (ImGui::MenuItem("Copy key path")) ImGui::SetClipboardText(row.key().c_str());
+    if (ImGui::MenuItem("Copy --set")) ImGui::SetClipboardText(set.c_str());
+    if (ImGui::MenuItem("Paste")) paste(context, row);
+    ImGui::EndPopup();
+}
+
+void message_row(Context& context, const Row& row) {
+    const Memory& memory = context.memory;
+    if (memory.error.empty() || memory.error_key != row.key()) return;
+    ImGui::PushFont(small_font());
+    ImGui::PushStyleColor(ImGuiCol_Text, color::error);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(memory.error.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+}
+
+}  // namespace
+
+RowLayout next_row() {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, height = px(row_height);
+    const float label = std::floor(width * 0.38f), diamond = px(22);
+    RowLayout layout;
+    layout.whole = {corner, {width, height}};
+    layout.label = {corner, {label - px(4), height}};
+    layout.value = {{corner.x + label, corner.y}, {width - label - diamond, height}};
+    layout.diamond = {corner.x + width - diamond * 0.5f + px(3), corner.y + height * 0.5f};
+    return layout;
+}
+
+void note_row(Context& context, const Row& row) {
+    const auto point = [](ImVec2 p) { return glm::vec2(p.x, p.y); };
+    DrawnRow drawn{row.key(), point(row.layout.label.middle()), point(row.layout.value.middle())};
+    if (row.parameter.spec.animation != Animation::no) drawn.diamond = point(row.layout.diamond);
+    context.rows.push_back(drawn);
+}
+
+void draw_diamond(Context& context, const Row& row) {
+    if (row.parameter.spec.animation == Animation::no) return;
+    const float size = px(18);
+    const ImVec2 middle = row.layout.diamond;
+    ImGui::SetCursorScreenPos({middle.x - size * 0.5f, middle.y - size * 0.5f});
+    if (ImGui::InvisibleButton("diamond", {size, size})) toggle_key(context, row);
+    const Scene& scene = context.document.scene();
+    const bool keyed = is_keyed(scene, row.key());
+    const bool here = keyed && has_key_at(scene, row.key(), std::round(context.view.frame));
+    const ImU32 quiet = ImGui::IsItemHovered() ? color::text : color::with_opacity(color::dim, 0.55f);
+    draw_icon(ImGui::GetWindowDrawList(), here ? Icon::diamond : Icon::diamond_empty, middle, px(9),
+              keyed ? color::key : quiet);
+}
+
+void begin_row(Context& context, const Row& row, const std::string& label) {
+    note_row(context, row);
+    ImGui::PushID(row.key().c_str());
+    draw_label(context, row, label);
+    draw_diamond(context, row);
+}
+
+void end_row(Context& context, const Row& row) {
+    show_tooltip(context, row);
+    row_menu(context, row);
+    ImGui::PopID();
+    message_row(context, row);
+}
+
+void parameter_row(Context& context, const std::string& key, const char* label) {
+    const Parameter* parameter = find(context, key);
+    if (!parameter) return;
+    const Row row{*parameter, parameter->get(), next_row()};
+    begin_row(context, row, label ? label : parameter->spec.label);
+    if (!value_field(context, row)) {
+        ImGui::SetCursorScreenPos(row.layout.whole.corner);
+        ImGui::Dummy({row.layout.whole.size.x, px(row_height)});
+    }
+    end_row(context, row);
+}
+
+void layer_row(Context& context, const std::string& key, const char* label) {
+    parameter_row(context, context.prefix + key, label);
+}
+
+}  // namespace astrosplat::panel

@@ -1,0 +1,105 @@
+// Heads, notes and buttons, drawn to the grid of the rows.
+#include "gui/panel/section.h"
+
+#include <cmath>
+
+#include "gui/icons.h"
+#include "gui/panel/row.h"
+#include "gui/theme.h"
+
+namespace astrosplat::panel {
+namespace {
+
+constexpr float head_height = 28.0f;
+
+void head_text(const Area& area, float left, const char* title, const std::string& state) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    ImGui::PushFont(medium_font());
+    const float used = clipped_text(list, area, left, color::text, title) + left + px(8);
+    ImGui::PopFont();
+    if (state.empty()) return;
+    ImGui::PushFont(small_font());
+    const float width = std::min(ImGui::CalcTextSize(state.c_str()).x + px(8), area.size.x - used);
+    const Area rest{{area.end().x - width, area.corner.y}, {width, area.size.y}};
+    clipped_text(list, rest, px(4), color::dim, state);
+    ImGui::PopFont();
+}
+
+}  // namespace
+
+bool section(Context& context, const char* title, const std::string& state, bool open_at_first) {
+    bool& open = context.memory.open.emplace(title, open_at_first).first->second;
+    const float bleed = px(12);  // the line over a head runs from edge to edge
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const Area area{corner, {ImGui::GetContentRegionAvail().x, px(head_height)}};
+    if (ImGui::InvisibleButton(title, area.size)) open = !open;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddLine({corner.x - bleed, corner.y}, {area.end().x + bleed, corner.y}, color::line);
+    const ImU32 sign = ImGui::IsItemHovered() ? color::text : color::dim;
+    draw_icon(list, open ? Icon::chevron_down : Icon::chevron_right, {corner.x + px(4), area.middle().y},
+              px(8), sign);
+    head_text(area, px(16), title, open ? "" : state);
+    if (open) ImGui::Dummy({0.0f, px(2)});
+    return open;
+}
+
+bool element_head(const char* title) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const Area area{corner, {ImGui::GetContentRegionAvail().x, px(row_height)}};
+    clipped_text(ImGui::GetWindowDrawList(), area, 0.0f, color::dim, title);
+    ImGui::SetCursorScreenPos({area.end().x - px(20), corner.y});
+    const bool removed =
+        icon_button("remove", Icon::cross, {px(22), px(row_height)}, px(9), color::dim, "Remove");
+    ImGui::SetCursorScreenPos(corner);
+    ImGui::Dummy(area.size);
+    return removed;
+}
+
+void note(const std::string& text, ImU32 color) {
+    ImGui::PushFont(small_font());
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+}
+
+void note(const std::string& text) { note(text, color::dim); }
+
+bool text_button(const char* label, float width) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(px(8), (px(row_height) - ImGui::GetFontSize()) * 0.5f));
+    const bool clicked = ImGui::Button(label, {width, px(row_height)});
+    ImGui::PopStyleVar();
+    return clicked;
+}
+
+int button_line(std::initializer_list<const char*> labels) {
+    const float gap = px(4), count = static_cast<float>(labels.size());
+    const float width = std::floor((ImGui::GetContentRegionAvail().x - gap * (count - 1.0f)) / count);
+    int clicked = -1, index = 0;
+    for (const char* label : labels) {
+        if (index > 0) ImGui::SameLine(0.0f, gap);
+        if (text_button(label, width)) clicked = index;
+        ++index;
+    }
+    return clicked;
+}
+
+bool progress_line(float share, const std::string& text, const char* button) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    const float button_width = ImGui::CalcTextSize(button).x + px(16);
+    const Area bar{corner, {width - button_width - px(4), px(row_height)}};
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(bar.corner, bar.end(), color::field, px(3));
+    if (share > 0.0f)
+        list->AddRectFilled(bar.corner, {corner.x + bar.size.x * std::min(share, 1.0f), bar.end().y},
+                            color::fill, px(3));
+    clipped_text(list, bar, px(8), color::text, text);
+    ImGui::SetCursorScreenPos({bar.end().x + px(4), corner.y});
+    return text_button(button, button_width);
+}
+
+}  // namespace astrosplat::panel

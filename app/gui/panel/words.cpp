@@ -1,0 +1,135 @@
+// Numbers with as many figures as they need, choices and files by their names.
+#include "gui/panel/words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace astrosplat::panel {
+namespace {
+
+// 2000000 -> "2 000 000"
+std::string grouped(std::string digits) {
+    const std::size_t first = digits.rfind('-', 0) == 0 ? 1 : 0;
+    if (digits.size() - first < 5) return digits;
+    for (std::size_t at = digits.size(); at > first + 3;) {
+        at -= 3;
+        digits.insert(at, " ");
+    }
+    return digits;
+}
+
+std::size_t places(const std::string& number) {
+    const std::size_t point = number.find('.');
+    return point == std::string::npos ? 0 : number.size() - point - 1;
+}
+
+std::string file_name(const std::string& text) {
+    const std::filesystem::path path(text);
+    return path.has_filename() ? path.filename().string() : text;
+}
+
+}  // namespace
+
+std::string figures(double number) {
+    const double size = std::fabs(number);
+    if (size >= 1e15 || (size > 0.0 && size < 1e-6)) return short_number(number);
+    const int magnitude = size > 0.0 ? static_cast<int>(std::floor(std::log10(size))) : 0;
+    const std::string whole = short_number(number);
+    const bool exponent = whole.find('e') != std::string::npos;
+    const int wanted = std::clamp(2 - magnitude, 0, 6);
+    const int own = exponent ? 6 : static_cast<int>(std::min<std::size_t>(places(whole), 6));
+    const std::string text = fmt::format("{:.{}f}", number, std::max(wanted, own));
+    return places(text) == 0 ? grouped(text) : text;
+}
+
+std::string figures(std::int64_t number) { return grouped(fmt::format("{}", number)); }
+
+std::string short_count(std::int64_t count) {
+    const double n = static_cast<double>(count);
+    if (count < 1000) return fmt::format("{}", count);
+    if (count < 999500)
+        return count < 9950 ? fmt::format("{:.1f} k", n / 1e3) : fmt::format("{:.0f} k", n / 1e3);
+    if (count < 999500000)
+        return count < 99500000 ? fmt::format("{:.1f} M", n / 1e6) : fmt::format("{:.0f} M", n / 1e6);
+    return fmt::format("{:.2f} G", n / 1e9);
+}
+
+std::string percent(double share) {
+    const double p = share * 100.0;
+    return p > 0.0 && p < 1.0 ? fmt::format("{:.1f} %", p) : fmt::format("{:.0f} %", p);
+}
+
+std::string choice_label(const std::string& choice) {
+    if (choice == "srgb") return "sRGB";
+    if (choice == "s106") return "S106";
+    if (choice == "") return "None";
+    if (choice == "true") return "Yes";
+    if (choice == "false") return "No";
+    std::string label = choice;
+    std::replace(label.begin(), label.end(), '-', ' ');
+    if (label[0] >= 'a' && label[0] <= 'z') label[0] = static_cast<char>(label[0] - 'a' + 'A');
+    return label;
+}
+
+std::string in_words(const ParameterSpec& spec, const Value& value) {
+    if (value == spec.nothing && spec.type != ParameterType::words) {
+        const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
+        if (!file) return "Auto";
+    }
+    if (const Value::List* list = value.list()) {
+        std::string text;
+        for (const Value& element : *list) text += (text.empty() ? "" : ", ") + in_words(spec, element);
+        return text;
+    }
+    if (const std::string* text = value.text()) {
+        if (spec.type == ParameterType::choice) return choice_label(*text);
+        const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
+        return file ? file_name(*text) : *text;
+    }
+    if (const bool* yes = std::get_if<bool>(&value.data)) return *yes ? "Yes" : "No";
+    if (const auto* integer = std::get_if<std::int64_t>(&value.data)) return figures(*integer);
+    return figures(value.number());
+}
+
+std::string tooltip_text(const ParameterSpec& spec, const Value& standard) {
+    std::string text = spec.help + "\n" + spec.key;
+    text += "\nTakes " + expectation(spec);
+    if (!spec.unit.empty()) text += ", " + spec.unit;
+    text += "; default " + to_toml(standard);
+    if (spec.animation == Animation::steps) text += "; animated in steps";
+    return text;
+}
+
+std::string set_option(const std::string& key, const Value& value) {
+    const std::string option = key + "=" + to_toml(value);
+    if (option.find_first_of(" \"'[]{}$&;()*?#<>|`\\") == std::string::npos) return "--set " + option;
+    std::string quoted;
+    for (const char c : option) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return "--set '" + quoted + "'";
+}
+
+double drag_step(const ParameterSpec& spec, double value) {
+    constexpr double pixels = 250.0;  // from one end of a short range to the other
+    const double range = spec.slider_max - spec.slider_min;
+    const bool closed = spec.min >= spec.slider_min && spec.max <= spec.slider_max;
+    const double size = std::fabs(value);
+    if (spec.scale == Scale::logarithmic) return std::max(size * 0.01, spec.slider_min * 0.01);
+    if (spec.type == ParameterType::integer) return std::max(std::min(range / pixels, size * 0.01), 0.05);
+    if (closed) return range / pixels;
+    if (spec.slider_min < 0.0) return std::min(range / pixels, std::max(size * 0.02, range / 1000.0));
+    return std::min(range / pixels, std::max(size * 0.02, range / 5000.0));
+}
+
+double rounded_to_step(double value, double step) {
+    if (!(step > 0.0)) return value;
+    const int digits = static_cast<int>(std::floor(std::log10(step)));
+    // Dividing by a whole power of ten gives the double nearest to the short decimal; multiplying by 0.001
+    // does not.
+    const double power = std::pow(10.0, std::abs(digits));
+    return digits < 0 ? std::round(value * power) / power : std::round(value / power) * power;
+}
+
+}  // namespace astrosplat::panel

@@ -1,0 +1,42 @@
+// Values in words and figures, as rows and heads show them. Pure functions; nothing depends on the locale.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "scene/parameter.h"
+
+namespace astrosplat::panel {
+
+/// Three figures at least, all that the number has up to six places: "0.350", "45.0", "12.345", "2 000 000".
+std::string figures(double number);
+
+/// Of an integer: groups of three from 10,000 on.
+std::string figures(std::int64_t number);
+
+/// "2.9 M", "812 k", "340".
+std::string short_count(std::int64_t count);
+
+/// "61 %"; `share` 0..1.
+std::string percent(double share);
+
+/// A choice as people write it: "gaussian" -> "Gaussian", "srgb" -> "sRGB".
+std::string choice_label(const std::string& choice);
+
+/// A value on one line, for tooltips and boxes that take any text: files by their names, nothing as "Auto".
+std::string in_words(const ParameterSpec& spec, const Value& value);
+
+/// Help, range and key: what a row's tooltip says.
+std::string tooltip_text(const ParameterSpec& spec, const Value& standard);
+
+/// `--set key=value` as one word of a shell.
+std::string set_option(const std::string& key, const Value& value);
+
+/// How much a parameter changes per pixel of dragging at `value`: a share of its range where that is short,
+/// of itself where it spans magnitudes.
+double drag_step(const ParameterSpec& spec, double value);
+
+/// `value` without the digits that a step this small cannot mean.
+double rounded_to_step(double value, double step);
+
+}  // namespace astrosplat::panel
