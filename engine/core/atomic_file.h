@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
@@ -34,6 +35,7 @@ class AtomicFile {
     std::filesystem::path resolved_;   // behind symbolic links
     std::filesystem::path temporary_;  // empty once committed
     int descriptor_ = -1;
+    std::int64_t written_ = 0, handed_over_ = 0;  // bytes of write(); of them on their way to the disk
 };
 
 /// The whole of `text` as file `target`, by the above.

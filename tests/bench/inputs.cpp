@@ -12,9 +12,13 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-void fill(SplatSet& set, std::size_t i) {
+// Row by row through a lattice, as ids go.
+void fill(SplatSet& set, std::size_t i, std::size_t side) {
     const auto k = static_cast<std::uint32_t>(i);
-    set.position[i] = (glm::vec3(random(k, 101), random(k, 102), random(k, 103)) - glm::vec3(0.5f)) * 10.0f;
+    const glm::vec3 cell(static_cast<float>(i % side), static_cast<float>(i / side % side),
+                         static_cast<float>(i / side / side));
+    const glm::vec3 jitter(random(k, 101), random(k, 102), random(k, 103));
+    set.position[i] = (cell + jitter) * (10.0f / static_cast<float>(side)) - 5.0f;
     set.color[i] = {random(k, 104), random(k, 105), random(k, 106)};
     set.alpha[i] = 0.05f + 0.9f * random(k, 107);
     set.distance[i] = 0.2f * random(k, 108);
@@ -58,8 +62,9 @@ SplatSet random_set(std::int64_t count) {
     set.uv.resize(n);
     set.normal.resize(n);
     set.mesh.resize(n);
+    const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(count))));
     parallel_chunks(count, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) fill(set, static_cast<std::size_t>(i));
+        for (std::int64_t i = begin; i < end; ++i) fill(set, static_cast<std::size_t>(i), side);
     });
     set.spacing = glm::dvec3(0.02);
     set.max_distance = 0.2;
