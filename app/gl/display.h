@@ -1,5 +1,5 @@
-// From linear pictures to what the screen shows: exposure, view transform, A/B wipe, difference, checker
-// behind transparency, letterbox.
+// From linear pictures to what the screen shows: exposure, view transform over black, A/B wipe, difference,
+// letterbox.
 #pragma once
 
 #include <memory>
@@ -40,6 +40,7 @@ struct DisplaySettings {
     // Where the picture lies in the target, px from its upper left; may be larger than the target (1:1).
     float x = 0, y = 0, width = 0, height = 0;
     float background[3] = {0, 0, 0};  // around the picture, display values
+    bool dither = false;              // as 8-bit files are: no bands in dark gradients
 };
 
 /// An 8-bit target for the widgets to show.

@@ -1,0 +1,32 @@
+// The environment as the bottom of the picture: the two mip levels that a camera needs as textures, and a
+// pass over the whole picture.
+#pragma once
+
+#include "camera/camera.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "render/environment.h"
+
+namespace astrosplat {
+
+class EnvironmentPass {
+  public:
+    EnvironmentPass();
+    /// Fills the bound picture: colour of the environment, alpha 1.
+    void draw(const Environment& environment, const Camera& camera);
+
+  private:
+    /// One mip level of all faces, uploaded where it is not the one already there.
+    struct Level {
+        GlTexture texture;
+        const float* pixels = nullptr;  // of the first face, and some of what they held
+        std::int64_t width = 0;
+        float probe = 0.0f;
+        void hold(const Environment& environment, std::size_t level);
+    };
+    GlProgram program_;
+    GlVertexArray nothing_;
+    Level fine_, coarse_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,147 @@
+#include "gl/group_splats.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "look/prepare.h"
+
+namespace astrosplat {
+namespace {
+
+bool same_inputs(const LookInputs& a, const LookInputs& b) {
+    return a.axis == b.axis && a.seed == b.seed && a.falloff_integral == b.falloff_integral &&
+           a.column == b.column && a.thickness_map == b.thickness_map;
+}
+
+/// A number that another picture at the same address hardly has.
+float probe_of(const Image* image) {
+    if (!image || image->pixels.empty()) return 0.0f;
+    float sum = static_cast<float>(image->width);
+    const std::size_t step = std::max<std::size_t>(1, image->pixels.size() / 97);
+    for (std::size_t i = 0; i < image->pixels.size(); i += step) sum = 0.75f * sum + image->pixels[i];
+    return sum;
+}
+
+/// No splat of the layer is larger, whatever its own random numbers and alpha are.
+float radius_bound(const SplatSet& set, const LookUniforms& u, float share, bool additive) {
+    float radius = std::max(u.radius_min, u.radius_max);
+    if (u.own_radius)
+        for (float own : set.radius) radius = std::max(radius, own);
+    radius *= std::max(1.0f, u.horizontal_scale) * std::max(1.0f, u.vertical_scale);
+    // radius'^2 = radius^2 alpha / (q alpha'), and alpha' >= alpha where alpha' is not alpha / q.
+    return additive ? radius : radius * std::sqrt(1.0f / share);
+}
+
+bool is_additive(const PreviewLayer& layer) {
+    return layer.layer.render.blend == Blend::add && !layer.layer.render.holdout;
+}
+
+}  // namespace
+
+RawSplats& RawSplatStore::of(const std::shared_ptr<const SplatSet>& set) {
+    Entry& entry = entries_[set.get()];
+    if (!entry.splats) entry.splats = std::make_unique<RawSplats>(set);
+    entry.used = true;
+    return *entry.splats;
+}
+
+void RawSplatStore::drop_unused() {
+    for (auto entry = entries_.begin(); entry != entries_.end();) {
+        const bool used = std::exchange(entry->second.used, false);
+        entry = used ? std::next(entry) : entries_.erase(entry);
+    }
+}
+
+std::int64_t shown_count(const PreviewLayer& layer) {
+    const auto size = layer.set ? layer.set->size() : 0;
+    const auto wanted = static_cast<std::int64_t>(std::ceil(double(layer.share) * double(size)));
+    return std::clamp(wanted, std::min<std::int64_t>(size, 1), size);
+}
+
+bool GroupSplats::lay_out(const std::vector<const PreviewLayer*>& layers) {
+    bool same = parts_.size() == layers.size();
+    for (std::size_t l = 0; l < layers.size() && same; ++l)
+        same = parts_[l].set == layers[l]->set && parts_[l].count == shown_count(*layers[l]);
+    if (same) return false;
+    parts_.clear();
+    parts_.resize(layers.size());
+    std::int64_t first = 0;
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+        parts_[l].set = layers[l]->set;
+        parts_[l].first = first;
+        parts_[l].count = shown_count(*layers[l]);
+        first += parts_[l].count;
+    }
+    buffers_.resize(first);
+    order_valid_ = false;
+    oldest_valid_version_ = requested_version_ + 1;  // orders on their way are for other splats
+    return true;
+}
+
+bool GroupSplats::shade(Part& part, const PreviewLayer& layer, RawSplatStore& raw, LookPass& pass) {
+    RawSplats& splats = raw.of(layer.set);
+    const bool additive = is_additive(layer);
+    const float probe = probe_of(layer.inputs.thickness_map);
+    const bool same_look = part.shaded && part.look == layer.look && same_inputs(part.inputs, layer.inputs) &&
+                           part.map_probe == probe;
+    if (same_look && part.additive == additive) return false;
+    if (!same_look) part.uniforms = prepare_look(*layer.set, layer.look, layer.inputs);
+    part.look = layer.look;
+    part.inputs = layer.inputs;
+    part.map_probe = probe;
+    part.additive = additive;
+    part.share = float(double(part.count) / double(std::max<std::int64_t>(layer.set->size(), 1)));
+    part.largest_radius = radius_bound(*layer.set, part.uniforms, part.share, additive);
+    part.shaded = true;
+    splats.hold(part.count);
+    pass.run(splats, {part.uniforms, layer.inputs.thickness_map, part.count, part.share, additive}, buffers_,
+             part.first);
+    return true;
+}
+
+void GroupSplats::read_places() {
+    places_ = std::make_shared<const Buffer<glm::vec4>>(buffers_.read_places());
+    ++places_version_;
+}
+
+void GroupSplats::update(const std::vector<const PreviewLayer*>& layers, RawSplatStore& raw, LookPass& pass,
+                         bool ordered) {
+    bool changed = lay_out(layers);
+    for (std::size_t l = 0; l < layers.size(); ++l)
+        if (parts_[l].count > 0) changed = shade(parts_[l], *layers[l], raw, pass) || changed;
+    if (changed) places_.reset();
+    if (ordered && !places_) read_places();
+}
+
+bool GroupSplats::request_order(const std::vector<LayerProjection>& projections, double far_from,
+                                OrderThread& thread, std::size_t slot) {
+    View view;
+    for (const LayerProjection& p : projections) {
+        view.camera_from_layer.push_back(p.camera_from_layer);
+        view.origin.push_back(p.origin_in_camera);
+    }
+    view.orthographic = !projections.empty() && projections[0].orthographic;
+    view.far_from = far_from;
+    view.places_version = places_version_;
+    if (view == requested_ && requested_version_ >= oldest_valid_version_) return false;
+    requested_ = view;
+    ++requested_version_;
+    OrderJob job{places_, {}, view.orthographic, far_from, requested_version_};
+    for (std::size_t l = 0; l < parts_.size(); ++l)
+        job.layers.push_back(
+            {parts_[l].first, parts_[l].count, view.camera_from_layer[l], view.origin[l], parts_[l].set});
+    thread.submit(slot, std::move(job));
+    return true;
+}
+
+void GroupSplats::take_order(OrderThread& thread, std::size_t slot) {
+    const std::optional<Order> order = thread.take(slot);
+    if (!order || order->version < oldest_valid_version_) return;
+    buffers_.set_order(order->splats);
+    ordered_count_ = static_cast<std::int64_t>(order->splats.size());
+    far_count_ = order->far_count;
+    order_version_ = order->version;
+    order_valid_ = true;
+}
+
+}  // namespace astrosplat

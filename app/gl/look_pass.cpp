@@ -1,0 +1,66 @@
+#include "gl/look_pass.h"
+
+#include <glm/vec4.hpp>
+
+#include "gl/look_block.h"
+
+namespace astrosplat {
+namespace {
+
+ProgramSource source() {
+    return {
+        {},
+        {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "decimate.glsl", "look_pass.glsl"},
+        {},
+        {"shaded_place", "shaded_color"}};
+}
+
+}  // namespace
+
+LookPass::LookPass() : program_(source()) {
+    program_.set_block("LookBlock", 0);
+    program_.set_sampler("thickness_map", 0);
+    upload_map(make_image(1, 1, 3));
+}
+
+void LookPass::upload_map(const Image& map) {
+    const GLenum format = map.channels == 1   ? GL_RED
+                          : map.channels == 2 ? GL_RG
+                          : map.channels == 3 ? GL_RGB
+                                              : GL_RGBA;
+    glBindTexture(GL_TEXTURE_2D, map_.get());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(map.width),
+                 static_cast<GLsizei>(map.height), 0, format, GL_FLOAT, map.pixels.data());
+    set_sampling(GL_TEXTURE_2D, GL_NEAREST);
+    // One channel counts for all three, as the engine reads it.
+    const bool gray = map.channels < 3;
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_G, gray ? GL_RED : GL_GREEN);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_SWIZZLE_B, gray ? GL_RED : GL_BLUE);
+}
+
+void LookPass::run(const RawSplats& raw, const LookPassInput& input, ShadedBuffers& out, std::int64_t first) {
+    if (input.count <= 0) return;
+    program_.use();
+    const std::vector<std::byte> block = look_block(input.look);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_.get());
+    glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size()), block.data(), GL_STREAM_DRAW);
+    glUniform1f(program_.uniform("share"), input.share);
+    glUniform1i(program_.uniform("additive"), input.additive ? 1 : 0);
+    if (input.map && input.look.key_count > 1) upload_map(*input.map);
+    bind_texture(0, GL_TEXTURE_2D, map_.name());
+    const auto offset = static_cast<GLintptr>(sizeof(glm::vec4)) * first;
+    const auto size = static_cast<GLsizeiptr>(sizeof(glm::vec4)) * input.count;
+    glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, out.places(), offset, size);
+    glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 1, out.colors(), offset, size);
+    glEnable(GL_RASTERIZER_DISCARD);
+    glBindVertexArray(raw.vertex_array());
+    glBeginTransformFeedback(GL_POINTS);
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(input.count));
+    glEndTransformFeedback();
+    glBindVertexArray(0);
+    glDisable(GL_RASTERIZER_DISCARD);
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+    glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 1, 0);
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,37 @@
+// The look on the GPU: raw splats through look_splat of shaders/shared into shaded buffers, by transform
+// feedback.
+#pragma once
+
+#include <cstdint>
+
+#include "core/image.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "gl/splat_buffers.h"
+#include "look/shared_uniforms.h"
+
+namespace astrosplat {
+
+struct LookPassInput {
+    const LookUniforms& look;
+    const Image* map = nullptr;  // raw values; read where there are several keys
+    std::int64_t count = 0;      // the first so many splats of the set
+    float share = 1.0f;          // of the layer that these are; alpha and radius make up for the rest
+    bool additive = false;       // the layer's blend adds
+};
+
+class LookPass {
+  public:
+    LookPass();
+    /// Writes to out[first], out[first + 1], ...; `raw` holds input.count splats.
+    void run(const RawSplats& raw, const LookPassInput& input, ShadedBuffers& out, std::int64_t first);
+
+  private:
+    void upload_map(const Image& map);
+
+    GlProgram program_;
+    GlBuffer block_;
+    GlTexture map_;
+};
+
+}  // namespace astrosplat

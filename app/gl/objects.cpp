@@ -1,0 +1,46 @@
+#include "gl/objects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace astrosplat {
+
+void set_sampling(GLenum target, GLenum filter) {
+    glTexParameteri(target, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(filter));
+    glTexParameteri(target, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(filter));
+    glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glTexParameteri(target, GL_TEXTURE_MAX_LEVEL, 0);
+}
+
+void GlTarget::resize(int width, int height, GLenum format) {
+    width = std::max(width, 1);
+    height = std::max(height, 1);
+    if (width == width_ && height == height_) return;
+    glBindTexture(GL_TEXTURE_2D, texture_.get());
+    const GLenum type = format == GL_RGBA8 ? GL_UNSIGNED_BYTE : GL_FLOAT;
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, GL_RGBA, type, nullptr);
+    set_sampling(GL_TEXTURE_2D, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw std::runtime_error(
+            fmt::format("OpenGL cannot draw into a picture of {} x {} px", width, height));
+    width_ = width;
+    height_ = height;
+}
+
+void GlTarget::bind() {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+    glViewport(0, 0, width_, height_);
+}
+
+void bind_texture(int unit, GLenum target, GLuint texture) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(target, texture);
+    glActiveTexture(GL_TEXTURE0);
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,149 @@
+// Radix sort of (inverted depth bits, index), as SplatSorter in the engine; equal depths by layer and id.
+#include "gl/order.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace astrosplat {
+namespace {
+
+constexpr int digit_bits = 11;
+constexpr std::uint32_t digits = 1u << digit_bits;
+
+/// ~depth in the upper half, so that ascending is far to near; the splat's index below.
+using Key = std::uint64_t;
+
+std::uint32_t depth_bits(const OrderLayer& layer, const glm::vec4& place, bool orthographic) {
+    const glm::vec3 p(layer.camera_from_layer * glm::dvec3(place) + layer.origin_in_camera);
+    const float depth = orthographic ? -p.z : p.x * p.x + p.y * p.y + p.z * p.z;
+    return depth > 0.0f ? std::bit_cast<std::uint32_t>(depth) : 0u;
+}
+
+std::vector<Key> make_keys(const OrderJob& job) {
+    std::vector<Key> keys;
+    keys.reserve(job.places->size());
+    for (const OrderLayer& layer : job.layers) {
+        for (std::int64_t i = layer.first; i < layer.first + layer.count; ++i) {
+            const glm::vec4& place = (*job.places)[static_cast<std::size_t>(i)];
+            if (place.w < 0.0f) continue;
+            keys.push_back(Key{~depth_bits(layer, place, job.orthographic)} << 32 | Key(i));
+        }
+    }
+    return keys;
+}
+
+void radix_sort(std::vector<Key>& keys) {
+    std::vector<Key> other(keys.size());
+    for (int shift = 32; shift < 64; shift += digit_bits) {
+        std::vector<std::size_t> start(digits + 1, 0);
+        for (Key key : keys) ++start[(key >> shift & (digits - 1u)) + 1];
+        if (std::find(start.begin(), start.end(), keys.size()) != start.end()) continue;  // one digit for all
+        for (std::uint32_t d = 0; d < digits; ++d) start[d + 1] += start[d];
+        for (Key key : keys) other[start[key >> shift & (digits - 1u)]++] = key;
+        keys.swap(other);
+    }
+}
+
+/// Layer and id of a splat: larger is farther at equal depth.
+struct TieBreak {
+    const OrderJob& job;
+    std::pair<std::size_t, std::uint64_t> of(Key key) const {
+        const auto i = static_cast<std::int64_t>(key & 0xffffffffu);
+        std::size_t l = job.layers.size() - 1;
+        while (l > 0 && i < job.layers[l].first) --l;
+        return {l, job.layers[l].set->id[static_cast<std::size_t>(i - job.layers[l].first)]};
+    }
+    bool operator()(Key a, Key b) const { return of(a) > of(b); }
+};
+
+void break_ties(const OrderJob& job, std::vector<Key>& keys) {
+    for (std::size_t i = 0; i < keys.size();) {
+        std::size_t end = i + 1;
+        while (end < keys.size() && keys[end] >> 32 == keys[i] >> 32) ++end;
+        if (end - i > 1)
+            std::sort(keys.begin() + std::ptrdiff_t(i), keys.begin() + std::ptrdiff_t(end), TieBreak{job});
+        i = end;
+    }
+}
+
+}  // namespace
+
+Order sort_far_to_near(const OrderJob& job) {
+    std::vector<Key> keys = make_keys(job);
+    radix_sort(keys);
+    break_ties(job, keys);
+    Order order;
+    order.version = job.version;
+    order.splats.resize(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) order.splats[i] = static_cast<std::uint32_t>(keys[i]);
+    const auto limit = static_cast<float>(job.orthographic ? job.far_from : job.far_from * job.far_from);
+    const Key nearest_far = Key{~std::bit_cast<std::uint32_t>(std::max(limit, 0.0f))} << 32;
+    order.far_count = std::lower_bound(keys.begin(), keys.end(), nearest_far) - keys.begin();
+    return order;
+}
+
+OrderThread::OrderThread() : thread_([this] { run(); }) {}
+
+OrderThread::~OrderThread() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+}
+
+void OrderThread::submit(std::size_t slot, OrderJob job) {
+    {
+        const std::lock_guard lock(mutex_);
+        jobs_[slot] = std::move(job);
+    }
+    wake_.notify_one();
+}
+
+std::optional<Order> OrderThread::take(std::size_t slot) {
+    const std::lock_guard lock(mutex_);
+    const auto found = orders_.find(slot);
+    if (found == orders_.end()) return std::nullopt;
+    std::optional<Order> order(std::move(found->second));
+    orders_.erase(found);
+    return order;
+}
+
+bool OrderThread::busy() const {
+    const std::lock_guard lock(mutex_);
+    return working_ || !jobs_.empty();
+}
+
+bool OrderThread::wait(std::chrono::microseconds at_most) {
+    std::unique_lock lock(mutex_);
+    return idle_.wait_for(lock, at_most, [this] { return !working_ && jobs_.empty(); });
+}
+
+void OrderThread::clear() {
+    const std::lock_guard lock(mutex_);
+    jobs_.clear();
+    orders_.clear();
+    ++generation_;
+}
+
+void OrderThread::run() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        wake_.wait(lock, [this] { return stop_ || !jobs_.empty(); });
+        if (stop_) return;
+        auto job = jobs_.extract(jobs_.begin());
+        const std::uint64_t generation = generation_;
+        working_ = true;
+        lock.unlock();
+        Order order = sort_far_to_near(job.mapped());
+        lock.lock();
+        working_ = false;
+        if (generation == generation_) orders_[job.key()] = std::move(order);
+        if (jobs_.empty()) idle_.notify_all();
+    }
+}
+
+}  // namespace astrosplat

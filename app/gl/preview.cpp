@@ -1,0 +1,257 @@
+// The flow of a frame: looks where something changed, orders asked for, environment, then one blend group
+// after the other from the farthest.
+#include "gl/preview.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "core/log.h"
+#include "gl/draw_pass.h"
+#include "gl/environment_pass.h"
+#include "gl/group_splats.h"
+#include "render/resolve.h"
+
+namespace astrosplat {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How long a frame waits for a new order: a short sort is then exact in the very frame, a long one is used a
+/// few frames later.
+constexpr auto patience = 6ms;
+
+/// One blend group of this frame.
+struct FrameGroup {
+    BlendGroup blend;
+    std::vector<const PreviewLayer*> layers;
+    std::vector<LayerProjection> projections;
+    std::vector<Falloff> falloffs;
+    bool ordered = false;
+    double far_from = 0.0;  // beyond, every splat is small enough for a point
+    bool all_far = false;
+};
+
+bool depends_on_order(FoldKind kind) { return kind == FoldKind::over || kind == FoldKind::general; }
+
+/// Isolated layers that cover or add do the same drawn straight onto what is behind them.
+bool needs_own_picture(const BlendGroup& group) {
+    if (!group.isolated || group.holdout) return false;
+    return group.blend != Blend::over && group.blend != Blend::add;
+}
+
+/// Distance from the eye (orthographic: 0 or infinity) beyond which no splat that reaches the picture is
+/// wider than a point may be, whatever its place: then z > z_limit, or it lies too far to the side.
+double far_distance(const LayerProjection& p, double radius, double widest_px, int width, int height) {
+    const double room_px = 0.5 * widest_px - double(p.margin_px) - 1.0;
+    const double focal = double(p.focal_px);
+    if (p.orthographic) return radius * focal < room_px ? -1.0 : 1e30;
+    const double z_limit = radius * focal / room_px;
+    const double half_diagonal = std::hypot(double(width), double(height)) + double(p.margin_px);
+    return std::hypot(radius + z_limit * half_diagonal / focal, z_limit);
+}
+
+/// Distance from the eye to the nearest splat a layer can have; 0 inside.
+double distance_to(const LayerProjection& p, const Bounds& box) {
+    const glm::dvec3 eye = -(glm::inverse(p.camera_from_layer) * p.origin_in_camera);
+    const glm::dvec3 outside = glm::max(glm::max(box.lo - eye, eye - box.hi), glm::dvec3(0.0));
+    return std::sqrt(glm::dot(outside, outside)) * double(p.radius_scale);
+}
+
+/// Copies with the merged groups cut into pieces that one pass can draw.
+std::vector<BlendGroup> drawable(std::vector<BlendGroup> groups) {
+    std::vector<BlendGroup> result;
+    for (BlendGroup& group : groups) {
+        if (group.layers.size() > DrawPass::most_layers)
+            log_warning(fmt::format("more than {} layers together: the preview sorts them in parts",
+                                    DrawPass::most_layers));
+        for (std::size_t at = 0; at < group.layers.size(); at += DrawPass::most_layers) {
+            BlendGroup part = group;
+            const std::size_t end = std::min(group.layers.size(), at + DrawPass::most_layers);
+            part.layers.assign(group.layers.begin() + std::ptrdiff_t(at),
+                               group.layers.begin() + std::ptrdiff_t(end));
+            result.push_back(part);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+struct GlPreview::State {
+    LookPass look;
+    DrawPass draw;
+    EnvironmentPass environment;
+    FootprintTextures footprints;
+    RawSplatStore raw;
+    std::map<std::size_t, GroupSplats> groups;  // by place in the frame
+    OrderThread orders;
+    GlTarget picture, own_picture;
+    GlProgram lay_covering{{{"LAYS 0"}, {"screen_vertex.glsl"}, {"lay_fragment.glsl"}, {}}};
+    GlProgram lay_screen{{{"LAYS 2"}, {"screen_vertex.glsl"}, {"lay_fragment.glsl"}, {}}};
+    GlVertexArray nothing;
+    std::map<const SplatSet*, std::pair<std::weak_ptr<const SplatSet>, Bounds>> boxes;
+    std::int64_t shown = 0;
+    bool sorting = false;
+
+    const Bounds& box_of(const std::shared_ptr<const SplatSet>& set) {
+        auto& entry = boxes[set.get()];
+        if (entry.first.lock() != set) entry = {set, bounds(*set)};
+        return entry.second;
+    }
+
+    std::vector<FrameGroup> make_frame(const std::vector<PreviewLayer>& layers, const Camera& camera,
+                                       int width, int height, float pixel_filter);
+    void update(std::vector<FrameGroup>& frame, int width, int height);
+    void wait_for_orders(std::vector<FrameGroup>& frame);
+    void draw_group(const FrameGroup& group, GroupSplats& splats);
+    void lay(const BlendGroup& group);
+    void begin_picture(const Camera& camera, const Environment* sky);
+};
+
+std::vector<FrameGroup> GlPreview::State::make_frame(const std::vector<PreviewLayer>& layers,
+                                                     const Camera& camera, int width, int height,
+                                                     float pixel_filter) {
+    RenderSettings settings;
+    settings.width = width;
+    settings.height = height;
+    settings.pixel_filter = pixel_filter;
+    std::vector<RenderLayer> render_layers;
+    for (const PreviewLayer& layer : layers) render_layers.push_back(layer.layer);
+    std::vector<FrameGroup> frame;
+    for (const BlendGroup& group : drawable(make_groups(render_layers, false))) {
+        FrameGroup& f = frame.emplace_back();
+        f.blend = group;
+        f.ordered = depends_on_order(group.kind);
+        for (std::size_t l : group.layers) {
+            f.layers.push_back(&layers[l]);
+            f.projections.push_back(
+                make_projection(render_layers[l], static_cast<std::uint16_t>(l), camera, settings));
+            f.falloffs.push_back(layers[l].layer.render.falloff);
+        }
+    }
+    return frame;
+}
+
+void GlPreview::State::update(std::vector<FrameGroup>& frame, int width, int height) {
+    shown = 0;
+    groups.erase(groups.lower_bound(frame.size()), groups.end());
+    for (std::size_t g = 0; g < frame.size(); ++g) {
+        FrameGroup& group = frame[g];
+        GroupSplats& splats = groups[g];
+        splats.update(group.layers, raw, look, group.ordered);
+        shown += splats.shown();
+        group.all_far = true;
+        for (std::size_t l = 0; l < group.layers.size(); ++l) {
+            const LayerProjection& p = group.projections[l];
+            const double radius = double(splats.largest_radius(l)) * double(p.radius_scale);
+            const double far_from = far_distance(p, radius, double(draw.widest_point_px()), width, height);
+            group.far_from = std::max(group.far_from, far_from);
+            if (!group.layers[l]->set) continue;
+            double jitter = 0.0;
+            for (const Noise& noise : group.layers[l]->look.noise) jitter += std::fabs(double(noise.jitter));
+            const double nearest = p.orthographic ? 0.0
+                                                  : distance_to(p, box_of(group.layers[l]->set)) -
+                                                        jitter * double(p.radius_scale);
+            group.all_far = group.all_far && nearest > far_from;
+        }
+        if (group.ordered) splats.request_order(group.projections, group.far_from, orders, g);
+    }
+    raw.drop_unused();
+}
+
+void GlPreview::State::wait_for_orders(std::vector<FrameGroup>& frame) {
+    bool missing = false;
+    for (std::size_t g = 0; g < frame.size(); ++g)
+        missing = missing || (frame[g].ordered && !groups[g].has_order());
+    orders.wait(missing ? std::chrono::microseconds(1h) : std::chrono::microseconds(patience));
+    sorting = false;
+    for (std::size_t g = 0; g < frame.size(); ++g) {
+        if (!frame[g].ordered) continue;
+        groups[g].take_order(orders, g);
+        sorting = sorting || !groups[g].order_is_current();
+    }
+}
+
+void GlPreview::State::begin_picture(const Camera& camera, const Environment* sky) {
+    picture.bind();
+    glClearColor(0.0f, 0.0f, 0.0f, sky ? 1.0f : 0.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    if (sky && !sky->faces.empty()) environment.draw(*sky, camera);
+}
+
+void GlPreview::State::draw_group(const FrameGroup& group, GroupSplats& splats) {
+    std::vector<DrawLayer> layers;
+    const std::vector<FootprintSlot> slots =
+        footprints.prepare(group.falloffs, group.projections[0].margin_px / 4.0f);
+    for (std::size_t l = 0; l < group.layers.size(); ++l)
+        layers.push_back({group.projections[l], slots[l], splats.first_of(l)});
+    DrawInput input{layers, group.blend.kind, picture.width(), picture.height(), group.ordered, 0, 0};
+    input.count = group.ordered ? splats.ordered_count() : splats.shown();
+    input.point_count = group.all_far ? input.count : group.ordered ? splats.far_count() : 0;
+    draw.draw(input, splats.buffers(), footprints);
+}
+
+void GlPreview::State::lay(const BlendGroup& group) {
+    picture.bind();
+    (group.blend == Blend::screen ? lay_screen : lay_covering).use();
+    bind_texture(0, GL_TEXTURE_2D, own_picture.texture());
+    begin_blending(group.blend == Blend::lighten ? FoldKind::lighten : FoldKind::general);
+    glBindVertexArray(nothing.get());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    end_blending();
+}
+
+GlPreview::GlPreview() : state_(std::make_unique<State>()) {}
+GlPreview::~GlPreview() = default;
+
+unsigned GlPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
+                         const Environment* environment, int width, int height, float pixel_filter) {
+    State& state = *state_;
+    std::vector<FrameGroup> frame = state.make_frame(layers, camera, width, height, pixel_filter);
+    state.update(frame, width, height);
+    // All falloffs at once, so that a group does not throw out another's.
+    std::vector<Falloff> falloffs;
+    for (const FrameGroup& group : frame)
+        falloffs.insert(falloffs.end(), group.falloffs.begin(), group.falloffs.end());
+    state.footprints.prepare(falloffs, pixel_filter);
+    state.picture.resize(width, height, GL_RGBA32F);
+    state.begin_picture(camera, environment);
+    state.wait_for_orders(frame);
+    for (std::size_t g = 0; g < frame.size(); ++g) {
+        const bool own = needs_own_picture(frame[g].blend);
+        if (own) {
+            state.own_picture.resize(width, height, GL_RGBA32F);
+            state.own_picture.bind();
+            glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+            glClear(GL_COLOR_BUFFER_BIT);
+        } else {
+            state.picture.bind();
+        }
+        state.draw_group(frame[g], state.groups[g]);
+        if (own) state.lay(frame[g].blend);
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return state.picture.texture();
+}
+
+bool GlPreview::sorting() const { return state_->sorting; }
+
+void GlPreview::wait_for_order() { state_->orders.wait(std::chrono::hours(1)); }
+
+Image GlPreview::read() const {
+    const GlTarget& picture = state_->picture;
+    Image image = make_image(picture.width(), picture.height(), 4);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer());
+    glReadPixels(0, 0, picture.width(), picture.height(), GL_RGBA, GL_FLOAT, image.pixels.data());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    return image;
+}
+
+std::int64_t GlPreview::shown() const { return state_->shown; }
+
+}  // namespace astrosplat

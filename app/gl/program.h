@@ -1,0 +1,45 @@
+// Programs from the files of shaders/. In: names of files and defines. Out: a linked program, or an error in
+// one readable text that names our file and line where the driver only counts strings.
+#pragma once
+
+#include <glad/gl.h>
+
+#include <string>
+#include <vector>
+
+namespace astrosplat {
+
+/// What a program is made of. Each stage is "#version 410 core", the defines and its files one after the
+/// other.
+struct ProgramSource {
+    std::vector<std::string> defines;   // "QUADS" or "KIND 2"
+    std::vector<std::string> vertex;    // names for shader_text()
+    std::vector<std::string> fragment;  // empty: no fragment stage
+    std::vector<std::string> feedback;  // vertex outputs to capture, each into its own buffer
+};
+
+class GlProgram {
+  public:
+    /// Throws std::runtime_error: "shader look.glsl:12: ..." in the driver's words.
+    explicit GlProgram(const ProgramSource& source);
+    ~GlProgram();
+    GlProgram(const GlProgram&) = delete;
+    GlProgram& operator=(const GlProgram&) = delete;
+
+    void use() const { glUseProgram(program_); }
+    GLuint name() const { return program_; }
+    /// -1 where the program does not use it, which OpenGL's glUniform calls ignore.
+    GLint uniform(const char* name) const { return glGetUniformLocation(program_, name); }
+    /// The sampler reads texture unit `unit`.
+    void set_sampler(const char* name, int unit) const;
+    /// The uniform block is read from binding point `binding`.
+    void set_block(const char* name, GLuint binding) const;
+
+  private:
+    GLuint program_ = 0;
+};
+
+/// The driver's compile log with "2:17" or "2(17)" at the start of a line written as "look.glsl:17".
+std::string readable_log(const std::string& log, const std::vector<std::string>& files);
+
+}  // namespace astrosplat

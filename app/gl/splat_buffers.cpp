@@ -1,0 +1,129 @@
+#include "gl/splat_buffers.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <glm/vec4.hpp>
+#include <numeric>
+
+namespace astrosplat {
+namespace {
+
+/// A float array as a vertex attribute; an array the set does not have reads as zeros.
+template <class T>
+void upload(GLuint location, GlBuffer& buffer, const Buffer<T>& values, std::int64_t count) {
+    if (values.empty()) {
+        glDisableVertexAttribArray(location);
+        glVertexAttrib4f(location, 0.0f, 0.0f, 0.0f, 0.0f);
+        return;
+    }
+    glBindBuffer(GL_ARRAY_BUFFER, buffer.get());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(T)) * count, values.data(), GL_STATIC_DRAW);
+    glEnableVertexAttribArray(location);
+    if constexpr (std::is_same_v<T, std::uint64_t>)  // low word first, as this machine stores it
+        glVertexAttribIPointer(location, 2, GL_UNSIGNED_INT, 0, nullptr);
+    else
+        glVertexAttribPointer(location, static_cast<GLint>(sizeof(T) / sizeof(float)), GL_FLOAT, GL_FALSE, 0,
+                              nullptr);
+}
+
+void set_float4(GLuint location, GLuint buffer) {
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glEnableVertexAttribArray(location);
+    glVertexAttribPointer(location, 4, GL_FLOAT, GL_FALSE, 0, nullptr);
+}
+
+void allocate(GLuint buffer, std::int64_t count) {
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(glm::vec4)) * count, nullptr,
+                 GL_DYNAMIC_COPY);
+}
+
+void attach(GLuint texture, GLuint buffer) {
+    glBindTexture(GL_TEXTURE_BUFFER, texture);
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, buffer);
+}
+
+Buffer<glm::vec4> read_float4(GLuint buffer, std::int64_t count) {
+    Buffer<glm::vec4> values(static_cast<std::size_t>(count));
+    if (count == 0) return values;
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glGetBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(sizeof(glm::vec4)) * count, values.data());
+    return values;
+}
+
+}  // namespace
+
+void RawSplats::hold(std::int64_t count) {
+    if (count <= held_ && vertices_.name() != 0) return;
+    // Somewhat more than asked for, so that a growing share does not upload at every step.
+    held_ = std::min(set_->size(), count + count / 2);
+    glBindVertexArray(vertices_.get());
+    upload(0, buffers_[0], set_->position, held_);
+    upload(1, buffers_[1], set_->color, held_);
+    upload(2, buffers_[2], set_->alpha, held_);
+    upload(3, buffers_[3], set_->distance, held_);
+    upload(4, buffers_[4], set_->id, held_);
+    upload(5, buffers_[5], set_->uv, held_);
+    upload(6, buffers_[6], set_->radius, held_);
+    glBindVertexArray(0);
+}
+
+void ShadedBuffers::resize(std::int64_t count) {
+    if (count == size_ && places_.name() != 0) return;
+    size_ = count;
+    allocate(places_.get(), std::max<std::int64_t>(count, 1));
+    allocate(colors_.get(), std::max<std::int64_t>(count, 1));
+    glBindVertexArray(points_.get());
+    set_float4(0, places_.name());
+    set_float4(1, colors_.name());
+    glBindVertexArray(0);
+    attach(place_texture_.get(), places_.name());
+    attach(color_texture_.get(), colors_.name());
+}
+
+Buffer<glm::vec4> ShadedBuffers::read_places() const { return read_float4(places_.name(), size_); }
+Buffer<glm::vec4> ShadedBuffers::read_colors() const { return read_float4(colors_.name(), size_); }
+
+void ShadedBuffers::set_order(const Buffer<std::uint32_t>& order) {
+    glBindBuffer(GL_ARRAY_BUFFER, order_.get());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(order.size() * sizeof(std::uint32_t)), order.data(),
+                 GL_STREAM_DRAW);
+}
+
+void ShadedBuffers::draw_points(bool ordered, std::int64_t first, std::int64_t count) {
+    if (count <= 0) return;
+    glBindVertexArray(points_.get());
+    if (ordered) {
+        glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, order_.get());
+        const auto offset = static_cast<std::uintptr_t>(first) * sizeof(std::uint32_t);
+        glDrawElements(GL_POINTS, static_cast<GLsizei>(count), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(offset));
+    } else {
+        glDrawArrays(GL_POINTS, static_cast<GLint>(first), static_cast<GLsizei>(count));
+    }
+    glBindVertexArray(0);
+}
+
+void ShadedBuffers::draw_quads(bool ordered, std::int64_t first, std::int64_t count, int unit) {
+    if (count <= 0) return;
+    if (!ordered && counted_ < size_) {
+        Buffer<std::uint32_t> numbers(static_cast<std::size_t>(size_));
+        std::iota(numbers.begin(), numbers.end(), 0u);
+        glBindBuffer(GL_ARRAY_BUFFER, counting_.get());
+        glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(numbers.size() * sizeof(std::uint32_t)),
+                     numbers.data(), GL_STATIC_DRAW);
+        counted_ = size_;
+    }
+    bind_texture(unit, GL_TEXTURE_BUFFER, place_texture_.name());
+    bind_texture(unit + 1, GL_TEXTURE_BUFFER, color_texture_.name());
+    glBindVertexArray(quads_.get());
+    glBindBuffer(GL_ARRAY_BUFFER, ordered ? order_.get() : counting_.get());
+    glEnableVertexAttribArray(2);
+    const auto offset = static_cast<std::uintptr_t>(first) * sizeof(std::uint32_t);
+    glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, 0, reinterpret_cast<const void*>(offset));
+    glVertexAttribDivisor(2, 1);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
+    glBindVertexArray(0);
+}
+
+}  // namespace astrosplat

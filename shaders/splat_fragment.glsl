@@ -1,0 +1,30 @@
+// One pixel of a dot: its weight from the footprint's profile, and what it adds and hides. KIND is the number of the
+// group's FoldKind: 0 over, 1 add, 2 general (dual-source: colour = light + through * behind), 3 lighten.
+
+uniform sampler2DArray footprint_profiles;  // weight over distance, a row per radius, a layer per falloff
+
+flat in vec4 dot_place;
+flat in vec4 dot_table;
+flat in vec4 dot_light;
+#if KIND == 2
+flat in vec4 dot_occlusion;
+layout(location = 0, index = 1) out vec4 through;
+layout(location = 0, index = 0) out vec4 light;
+#else
+layout(location = 0) out vec4 light;
+#endif
+
+void main() {
+    float place = dot_place.z + dot_place.w * distance(gl_FragCoord.xy, dot_place.xy);
+    float w = textureLod(footprint_profiles, vec3(place, dot_table.xy), 0.0).r;
+    w += dot_table.z * (w * (1.0 - w));
+    float s = clamp(dot_light.w * w, 0.0, dot_table.w);
+#if KIND == 2
+    vec3 hidden = min(vec3(1.0), s * dot_occlusion.rgb);
+    float hidden_alpha = (hidden.r + hidden.g + hidden.b) * (1.0 / 3.0);
+    light = vec4(s * dot_light.rgb, hidden_alpha * dot_occlusion.a);
+    through = vec4(1.0 - hidden, 1.0 - hidden_alpha);
+#else
+    light = vec4(s * dot_light.rgb, KIND == 1 ? 0.0 : s);
+#endif
+}
