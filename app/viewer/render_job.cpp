@@ -11,10 +11,11 @@
 #include <algorithm>
 #include <optional>
 #include <system_error>
+#include <utility>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "scene/save.h"
 
 extern char** environ;
 
@@ -87,7 +88,7 @@ struct RenderJob::Impl {
     Process process;
     std::string partial, last_line;
     float progress = 0.0f;
-    fs::path scene_file, scratch;
+    fs::path folder;
 
     void begin_step() {
         process = spawn(steps[step].arguments);
@@ -120,10 +121,8 @@ struct RenderJob::Impl {
     }
     void clean() {
         std::error_code ignored;
-        if (!scene_file.empty()) fs::remove(scene_file, ignored);
-        if (!scratch.empty()) fs::remove_all(scratch, ignored);
-        scene_file.clear();
-        scratch.clear();
+        if (!folder.empty()) fs::remove_all(folder, ignored);
+        folder.clear();
     }
 };
 
@@ -138,19 +137,16 @@ RenderJob::~RenderJob() {
     }
 }
 
-void RenderJob::start(const Scene& scene, const std::string& original_text,
-                      const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards,
-                      const fs::path& scratch) {
+void RenderJob::start(const fs::path& folder, const std::string& scene_text,
+                      const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards) {
     if (impl_->process.id > 0) throw InputError("a rendering is under way: cancel it first, or wait");
     *impl_ = Impl{};
-    impl_->scratch = scratch;
-    impl_->scene_file =
-        fs::temp_directory_path() /
-        fmt::format("astrosplat-{}-{:x}.toml", getpid(), reinterpret_cast<std::uintptr_t>(impl_.get()));
-    write_text_file(impl_->scene_file, save_text(scene, original_text, impl_->scene_file));
-    ProcessStep render{"Rendering",
-                       {fs::read_symlink("/proc/self/exe").string(), "--batch", impl_->scene_file.string(),
-                        "--progress", "plain"}};
+    impl_->folder = folder;
+    const fs::path scene = folder / "scene.toml";
+    write_file_atomically(scene, scene_text);
+    ProcessStep render{
+        "Rendering",
+        {fs::read_symlink("/proc/self/exe").string(), "--batch", scene.string(), "--progress", "plain"}};
     render.arguments.insert(render.arguments.end(), arguments.begin(), arguments.end());
     impl_->steps.push_back(std::move(render));
     for (ProcessStep& step : afterwards) impl_->steps.push_back(std::move(step));

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
-
 namespace astrosplat {
 
 /// One step of a job.
@@ -23,11 +21,11 @@ class RenderJob {
     RenderJob();
     ~RenderJob();  // cancels and waits
 
-    /// Frames as `arguments` after --batch SCENE say; `scene` is written to a temporary file first. Throws
-    /// OutputError where that fails, InputError while a job runs.
-    void start(const Scene& scene, const std::string& original_text,
-               const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards = {},
-               const std::filesystem::path& scratch = {});
+    /// Frames of the scene `scene_text` as `arguments` after --batch SCENE say, then `afterwards`. `folder`
+    /// is the job's own: scene.toml is written there, and it is removed at the end. Throws OutputError, and
+    /// InputError while a job runs.
+    void start(const std::filesystem::path& folder, const std::string& scene_text,
+               const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards = {});
     void cancel();
 
     enum class State { none, running, done, failed, cancelled };

@@ -21,12 +21,12 @@ int run_viewer(const ViewerOptions& options);
 
 struct ScreenshotOptions {
     ViewerOptions scene;
-    std::filesystem::path output;   // .png, or .exr with `settled`
-    int width = 960, height = 540;  // px: of the picture, with `ui` of the window
-    std::optional<double> frame;
-    bool ui = false;       // with the panels
-    bool settled = false;  // the final picture
-    bool opengl = false;   // the preview drawn by OpenGL where the processor would be faster
+    std::filesystem::path output;      // .png, or .exr with `settled`
+    std::optional<std::string> size;   // "960x540" px: of the picture, with `ui` of the window
+    std::optional<std::string> frame;  // default: the first
+    bool ui = false;                   // with the panels
+    bool settled = false;              // the final picture
+    bool opengl = false;               // the preview drawn by OpenGL where the processor would be faster
 };
 /// Throws InputError, OutputError.
 int run_screenshot(const ScreenshotOptions& options);

@@ -1,0 +1,251 @@
+#include "viewer/picture.h"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <optional>
+
+#include "core/error.h"
+#include "look/apply.h"
+#include "scene/layer_setup.h"
+#include "source/texture.h"
+
+namespace astrosplat {
+
+/// Pictures by file, loaded when first asked for and kept while the viewer runs.
+class PictureFiles {
+  public:
+    const Image& map(const std::filesystem::path& file) {
+        std::unique_ptr<Image>& image = maps_[file];
+        if (!image) image = std::make_unique<Image>(load_raw_image(file));
+        return *image;
+    }
+    /// With gain and rotation of `params`; null where there is none to be seen.
+    const Environment* environment(const EnvironmentParams& params) {
+        if (!has_environment(params) || !params.visible) return nullptr;
+        if (!environment_ || files_ != std::pair(params.image, params.cube)) {
+            environment_.emplace(load_environment(params));
+            files_ = {params.image, params.cube};
+        }
+        set_environment_params(*environment_, params);
+        return &*environment_;
+    }
+
+  private:
+    std::map<std::filesystem::path, std::unique_ptr<Image>> maps_;
+    std::optional<Environment> environment_;
+    std::pair<std::filesystem::path, std::vector<std::filesystem::path>> files_;
+};
+
+std::shared_ptr<PictureFiles> make_picture_files() { return std::make_shared<PictureFiles>(); }
+
+namespace {
+
+/// Histograms may come later than the set.
+bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr<const LoadedLayer>& b) {
+    return (a ? a->set : nullptr) == (b ? b->set : nullptr);
+}
+
+}  // namespace
+
+bool PictureRequest::operator==(const PictureRequest& other) const {
+    return width == other.width && height == other.height && region.x == other.region.x &&
+           region.y == other.region.y && region.width == other.region.width &&
+           region.height == other.region.height &&
+           std::equal(layers.begin(), layers.end(), other.layers.begin(), other.layers.end(), same_set) &&
+           scene == other.scene;
+}
+
+Camera camera_of(const PictureRequest& request) {
+    return make_camera(request.scene.camera, request.width, request.height, request.box);
+}
+
+namespace {
+
+constexpr double rest_s = 0.3;  // without a change, before the final picture begins
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+Region whole(const PictureRequest& request) {
+    if (request.region.width > 0) return request.region;
+    return {0, 0, request.width, request.height};
+}
+
+}  // namespace
+
+struct ViewPicture::Impl {
+    std::shared_ptr<PictureFiles> files;
+    std::optional<PictureRequest> request;
+    PreviewChoice choice;
+    CpuPreview cpu;
+    std::unique_ptr<GlPreview> gl;  // made when first wanted
+    PreviewBudget budget;
+    FinalPicture final;
+    bool final_started = false;
+    double changed_at = 0.0;
+    PictureTexture canvas_texture;
+    const Image* drawn = nullptr;  // the processor's preview; null while the GPU's is shown
+    Image canvas;                  // preview and tiles of the final picture, once that has begun
+    unsigned texture = 0;
+    PictureStatus status;
+    std::vector<std::int64_t> shown;
+
+    std::vector<PreviewLayer> preview_layers();
+    void draw_preview();
+    void take_final();
+    void begin_final();
+};
+
+std::vector<PreviewLayer> ViewPicture::Impl::preview_layers() {
+    std::vector<PreviewLayer> layers;
+    std::vector<std::int64_t> sizes;  // of the layers seen
+    std::vector<std::size_t> places;  // and where they are in the scene
+    shown.assign(request->layers.size(), 0);
+    status.total = 0;
+    for (std::size_t i = 0; i < request->layers.size(); ++i) {
+        const LayerParams& params = request->scene.layers[i];
+        const std::shared_ptr<const LoadedLayer>& loaded = request->layers[i];
+        if (!params.visible || !loaded || loaded->set->size() == 0) continue;
+        PreviewLayer layer;
+        layer.layer = render_layer(params);
+        layer.set = loaded->preview;
+        layer.whole = loaded->set->size();
+        layer.look = params.look;
+        layer.inputs = look_inputs(params);
+        if (!params.look.thickness.map.empty())
+            layer.inputs.thickness_map = &files->map(params.look.thickness.map);
+        status.total += loaded->set->size();
+        sizes.push_back(loaded->set->size());
+        places.push_back(i);
+        layers.push_back(std::move(layer));
+    }
+    const float share = choice.share > 0.0f ? choice.share : share_for_budget(sizes, budget.splats);
+    for (std::size_t n = 0; n < layers.size(); ++n) {
+        layers[n].share = share;
+        shown[places[n]] = static_cast<std::int64_t>(share * static_cast<float>(sizes[n]));
+    }
+    return layers;
+}
+
+void ViewPicture::Impl::draw_preview() {
+    const auto start = std::chrono::steady_clock::now();
+    Camera camera = camera_of(*request);
+    const Region part = whole(*request);
+    camera.center_x_px -= static_cast<double>(part.x);
+    camera.center_y_px -= static_cast<double>(part.y);
+    const std::vector<PreviewLayer> layers = preview_layers();
+    const Environment* environment = files->environment(request->scene.environment);
+    const auto filter = static_cast<float>(request->scene.output.pixel_filter);
+    const int width = static_cast<int>(part.width), height = static_cast<int>(part.height);
+    if (choice.opengl) {
+        if (!gl) gl = std::make_unique<GlPreview>();
+        texture = gl->draw(layers, camera, environment, width, height, filter);
+        drawn = nullptr;
+        status.shown = gl->shown();
+    } else {
+        drawn = &cpu.draw(layers, camera, environment, width, height, filter);
+        canvas_texture.upload(*drawn);
+        texture = canvas_texture.handle();
+        status.shown = cpu.shown();
+    }
+    budget.measured(milliseconds_since(start), choice.target_ms, status.shown);
+    status.state = PictureState::preview;
+    status.width = width;
+    status.height = height;
+    status.error.clear();
+}
+
+void ViewPicture::Impl::begin_final() {
+    FinalRequest wanted;
+    wanted.scene = request->scene;
+    for (std::size_t i = 0; i < request->layers.size(); ++i) {
+        const std::shared_ptr<const LoadedLayer>& loaded = request->layers[i];
+        wanted.sets.push_back(loaded && request->scene.layers[i].visible ? loaded->set : nullptr);
+    }
+    wanted.width = request->width;
+    wanted.height = request->height;
+    wanted.region = request->region;
+    wanted.depth = !request->scene.output.aovs.empty();
+    canvas = drawn ? *drawn : gl->read();  // which the tiles replace
+    if (!drawn) canvas_texture.upload(canvas);
+    texture = canvas_texture.handle();
+    final.start(std::move(wanted));
+    final_started = true;
+    status.state = PictureState::refining;
+    status.progress = 0.0f;
+}
+
+void ViewPicture::Impl::take_final() {
+    for (const Region& tile : final.take_tiles(canvas)) canvas_texture.upload(canvas, tile);
+    texture = canvas_texture.handle();
+    status.progress = final.progress();
+    if (final.state() == FinalPicture::State::done) {
+        status.state = PictureState::final;
+        status.seconds = final.seconds();
+    } else if (final.state() == FinalPicture::State::failed) {
+        status.state = PictureState::failed;
+        status.error = final.error();
+    }
+}
+
+ViewPicture::ViewPicture(std::shared_ptr<PictureFiles> files) : impl_(std::make_unique<Impl>()) {
+    impl_->files = std::move(files);
+}
+ViewPicture::~ViewPicture() = default;
+
+void ViewPicture::show(const PictureRequest& request, const PreviewChoice& choice, bool settle, double now,
+                       bool hurry) {
+    Impl& self = *impl_;
+    const bool redraw = self.choice.opengl != choice.opengl || self.choice.share != choice.share;
+    if (!self.request || redraw || !(*self.request == request) || (self.gl && self.gl->sorting())) {
+        self.final.cancel();
+        self.final_started = false;
+        if (!self.request || redraw || !(*self.request == request)) self.changed_at = now;
+        self.request = request;
+        self.choice = choice;
+        try {
+            self.draw_preview();
+        } catch (const InputError& error) {
+            self.status.state = PictureState::failed;
+            self.status.error = error.what();
+            self.final_started = true;  // which would meet the same
+        }
+        return;
+    }
+    if (self.status.state == PictureState::failed) return;
+    if (!self.final_started) {
+        if (settle && (hurry || now - self.changed_at >= rest_s)) self.begin_final();
+    } else if (self.status.state == PictureState::refining) {
+        self.take_final();
+    }
+}
+
+void ViewPicture::stop() {
+    impl_->final.cancel();
+    if (impl_->status.state == PictureState::refining) impl_->status.state = PictureState::preview;
+    impl_->final_started = false;
+}
+
+unsigned ViewPicture::texture() const { return impl_->texture; }
+const PictureStatus& ViewPicture::status() const { return impl_->status; }
+bool ViewPicture::waiting() const {
+    return impl_->status.state == PictureState::preview || impl_->status.state == PictureState::refining;
+}
+const std::vector<std::int64_t>& ViewPicture::shown() const { return impl_->shown; }
+
+const Image* ViewPicture::pixels() const {
+    if (impl_->final_started && impl_->canvas.width > 0) return &impl_->canvas;
+    return impl_->drawn;
+}
+
+double ViewPicture::due(double now) const { return std::max(0.0, impl_->changed_at + rest_s - now); }
+
+bool ViewPicture::exact() const { return impl_->request && !(impl_->gl && impl_->gl->sorting()); }
+
+std::shared_ptr<const RenderedFrame> ViewPicture::final_frame() const {
+    return impl_->status.state == PictureState::final ? impl_->final.frame() : nullptr;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,110 @@
+// The window's loop: wait for events, advance the session, draw widgets and picture, show the frame.
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "edit/preferences.h"
+#include "interrupt.h"
+#include "viewer/session.h"
+#include "viewer/viewer.h"
+#include "viewer/window.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int exit_done = 0, exit_own_fault = 1;
+
+double seconds_now() {
+    using namespace std::chrono;
+    return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+/// Frames drawn after the last event, so that hovers, tooltips and layouts come to rest.
+constexpr int frames_after_event = 4;
+
+class Loop {
+  public:
+    Loop(const ViewerOptions& options, const Preferences& preferences)
+        : window_(preferences.window_width, preferences.window_height, "astrosplat"),
+          session_(options, window_.gl()) {
+        apply_theme(window_.content_scale());
+    }
+
+    void run() {
+        while (!session_.quitting()) {
+            wait();
+            frame();
+        }
+        int width = 0, height = 0;
+        window_.size(width, height);
+        session_.close(width, height);
+    }
+
+  private:
+    void wait() {
+        const double due = session_.next_due(seconds_now());
+        if (frames_left_ > 0 || gui_.busy() || due <= 0.0) {
+            window_.wait(0.0);
+            frames_left_ = std::max(0, frames_left_ - 1);
+        } else {
+            const double before = seconds_now();
+            window_.wait(due);
+            // Woken by an event rather than by the clock: let the widgets come to rest again.
+            if (seconds_now() - before < due - 0.001) frames_left_ = frames_after_event;
+        }
+    }
+
+    void frame() {
+        if (interrupted()) session_.interrupt();
+        if (window_.close_requested()) gui_.ask_to_quit(session_.document());
+        const std::vector<std::filesystem::path> dropped = window_.take_dropped();
+        if (!dropped.empty()) session_.drop(dropped);
+        const double now = seconds_now();
+        session_.advance(now);
+        if (session_.title() != title_) window_.set_title(title_ = session_.title());
+        if (!window_.begin_frame()) return;
+        Commands commands = session_.take_dropped();
+        gui_.draw(session_.document(), session_.view(), session_.status(), commands);
+        session_.navigate(gui_.viewport_input(), now);
+        session_.obey(commands, now);
+        const ImGuiIO& io = ImGui::GetIO();
+        const Layout layout =
+            make_layout(session_.view(), io.DisplaySize.x, io.DisplaySize.y, window_.content_scale());
+        session_.draw(static_cast<int>(layout.viewport.width * io.DisplayFramebufferScale.x),
+                      static_cast<int>(layout.viewport.height * io.DisplayFramebufferScale.y), now);
+        window_.end_frame();
+        if (const auto text = session_.take_clipboard()) ImGui::SetClipboardText(text->c_str());
+        if (const auto file = session_.take_screenshot_request()) {
+            int width = 0, height = 0;
+            const std::vector<unsigned char> pixels = window_.read(width, height);
+            session_.save_screenshot(*file, width, height, pixels);
+        }
+    }
+
+    Window window_;
+    Session session_;
+    Gui gui_;
+    std::string title_;
+    int frames_left_ = frames_after_event;
+};
+
+}  // namespace
+
+int run_viewer(const ViewerOptions& options) {
+    std::unique_ptr<Loop> loop;
+    try {
+        loop = std::make_unique<Loop>(options, load_preferences());
+    } catch (const NoContext& error) {
+        log_error(std::string("no window: ") + error.what() +
+                  "; frames render without one: astrosplat --batch SCENE");
+        return exit_own_fault;
+    }
+    loop->run();
+    return exit_done;
+}
+
+}  // namespace astrosplat

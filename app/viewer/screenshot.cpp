@@ -1,0 +1,202 @@
+// One picture of what the window would show, without a display: the viewport alone, or with the panels.
+#include <backends/imgui_impl_opengl3.h>
+#include <glad/gl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "core/text.h"
+#include "output/write.h"
+#include "output/write_picture.h"
+#include "viewer/session.h"
+#include "viewer/viewer.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int exit_done = 0, exit_own_fault = 1;
+
+double seconds_now() {
+    using namespace std::chrono;
+    return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+/// Dear ImGui drawing into a framebuffer of its own.
+class WidgetTarget {
+  public:
+    WidgetTarget(int width, int height) : width_(width), height_(height) {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        io.DisplaySize = ImVec2(static_cast<float>(width), static_cast<float>(height));
+        io.DeltaTime = 1.0f / 60.0f;
+        apply_theme(1.0f);
+        ImGui_ImplOpenGL3_Init("#version 410 core");
+        glGenTextures(1, &texture_);
+        glBindTexture(GL_TEXTURE_2D, texture_);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        glGenFramebuffers(1, &framebuffer_);
+        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
+    }
+    ~WidgetTarget() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui::DestroyContext();
+        glDeleteFramebuffers(1, &framebuffer_);
+        glDeleteTextures(1, &texture_);
+    }
+    WidgetTarget(const WidgetTarget&) = delete;
+    WidgetTarget& operator=(const WidgetTarget&) = delete;
+
+    void begin() {
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui::NewFrame();
+    }
+    void end() {
+        ImGui::Render();
+        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+        glViewport(0, 0, width_, height_);
+        glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+        glClear(GL_COLOR_BUFFER_BIT);
+        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    }
+    std::vector<unsigned char> read() const {
+        const std::size_t row = static_cast<std::size_t>(width_) * 4,
+                          rows = static_cast<std::size_t>(height_);
+        std::vector<unsigned char> bottom_up(row * rows), top_down(row * rows);
+        glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+        glPixelStorei(GL_PACK_ALIGNMENT, 1);
+        glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, bottom_up.data());
+        for (std::size_t y = 0; y < rows; ++y)
+            std::copy_n(&bottom_up[(rows - 1 - y) * row], row, &top_down[y * row]);
+        return top_down;
+    }
+
+  private:
+    int width_, height_;
+    unsigned texture_ = 0, framebuffer_ = 0;
+};
+
+/// Advances until the sets are there and the picture is what was asked for.
+template <class DrawFrame>
+void wait_for_picture(Session& session, bool settled, const DrawFrame& draw_frame) {
+    for (;;) {
+        const double now = seconds_now();
+        session.advance(now);
+        draw_frame(now);
+        if (session.status().picture.state == PictureState::failed)
+            throw InputError(session.status().picture.error);
+        for (const LayerStatus& layer : session.status().layers)
+            if (!layer.error.empty()) throw InputError(layer.error);
+        if (session.loaded() && (settled ? session.settled() : session.preview_exact())) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+}
+
+struct Size {
+    int width = 960, height = 540;  // px
+};
+
+Size parse_size(const std::string& text) {
+    const std::size_t x = text.find('x');
+    const auto width = parse_int64(text.substr(0, x));
+    const auto height = x == std::string::npos ? std::nullopt : parse_int64(text.substr(x + 1));
+    constexpr std::int64_t most = 16384;
+    if (!width || !height || *width < 16 || *height < 16 || *width > most || *height > most)
+        bad_input("--size", "", "a size from 16x16 to 16384x16384, such as 960x540", "'" + text + "'");
+    return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+double parse_frame(const std::string& text) {
+    const auto frame = parse_double(text);
+    if (!frame || !std::isfinite(*frame)) bad_input("--frame", "", "a number", "'" + text + "'");
+    return *frame;
+}
+
+void write_exr(const ScreenshotOptions& options, const Size& size, Session& session) {
+    const std::shared_ptr<const RenderedFrame> frame = session.final_frame();
+    OutputParams output = session.document().scene().output;
+    output.path = options.output.string();
+    output.depth = OutputParams::Depth::float32;
+    output.compression = OutputParams::Compression::automatic;
+    output.view = OutputParams::View::automatic;
+    output.alpha = OutputParams::Alpha::automatic;
+    FrameMetadata metadata;
+    metadata.frame = static_cast<std::int64_t>(session.view().frame);
+    metadata.fps = output.fps;
+    metadata.pixel_hash = pixel_hash(frame->beauty);
+    metadata.provenance = session.document().scene().provenance;
+    write_frame(options.output, *frame, {}, output, size.width, size.height, {0, 0, size.width, size.height},
+                metadata);
+}
+
+/// The viewport alone.
+void take_picture(const ScreenshotOptions& options, const Size& size, bool exr, Session& session) {
+    session.set_viewport_is_picture(true);
+    wait_for_picture(session, options.settled,
+                     [&](double now) { session.draw(size.width, size.height, now, true); });
+    if (exr) return write_exr(options, size, session);
+    write_picture(options.output, size.width, size.height, session.shown_pixels());
+}
+
+/// The window with its panels.
+void take_window(const ScreenshotOptions& options, const Size& size, Session& session) {
+    WidgetTarget target(size.width, size.height);
+    Gui gui;
+    const auto draw_frame = [&](double now) {
+        target.begin();
+        Commands commands;
+        gui.draw(session.document(), session.view(), session.status(), commands);
+        const Layout layout = make_layout(session.view(), static_cast<float>(size.width),
+                                          static_cast<float>(size.height), 1.0f);
+        session.draw(static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height), now,
+                     true);
+        target.end();
+    };
+    wait_for_picture(session, options.settled, draw_frame);
+    for (int i = 0; i < 3; ++i) {  // until the widgets have seen the last status
+        session.advance(seconds_now());
+        draw_frame(seconds_now());
+    }
+    write_picture(options.output, size.width, size.height, target.read());
+}
+
+void take(const ScreenshotOptions& options, const GlInfo& gl) {
+    const Size size = options.size ? parse_size(*options.size) : Size{};
+    std::string ending = options.output.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+    const bool exr = ending == ".exr";
+    if (!exr && ending != ".png")
+        bad_input("--screenshot", "", "a .png or .exr file", options.output.string());
+    if (exr && (!options.settled || options.ui))
+        bad_input("--screenshot", "", "--settled and no --ui with an .exr file", options.output.string());
+    Session session(options.scene, gl);
+    if (options.frame) session.view().frame = parse_frame(*options.frame);
+    session.view().settle = options.settled;
+    session.view().hint_open = false;
+    if (options.opengl) session.view().engine = PreviewEngine::opengl;
+    options.ui ? take_window(options, size, session) : take_picture(options, size, exr, session);
+}
+
+}  // namespace
+
+int run_screenshot(const ScreenshotOptions& options) {
+    std::unique_ptr<OffscreenContext> context;
+    try {
+        context = std::make_unique<OffscreenContext>();
+    } catch (const NoContext& error) {
+        log_error(std::string("no OpenGL: ") + error.what() +
+                  "; frames render without it: astrosplat --batch SCENE");
+        return exit_own_fault;
+    }
+    take(options, context->info());
+    return exit_done;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,81 @@
+// Everything of the viewer but the window: the document, its sets, the pictures and jobs, brought forward
+// once per frame. The window and the screenshot both drive it. Needs a current OpenGL context.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edit/commands.h"
+#include "edit/document.h"
+#include "edit/status.h"
+#include "edit/view_state.h"
+#include "gl/context.h"
+#include "gui/gui.h"
+#include "viewer/picture.h"
+#include "viewer/viewer.h"
+
+namespace astrosplat {
+
+class Session {
+  public:
+    /// Opens options.input, or the demo. Throws InputError.
+    Session(const ViewerOptions& options, const GlInfo& gl);
+    ~Session();
+
+    Document& document();
+    ViewState& view();
+    const Status& status() const;
+
+    /// Loads what the scene needs and takes what jobs have to say. `now` in seconds.
+    void advance(double now);
+    /// What mouse and keys did over the viewport, after the widgets drew.
+    void navigate(const ViewportInput& input, double now);
+    void obey(Commands& commands, double now);
+    /// Files dropped on the window.
+    void drop(const std::vector<std::filesystem::path>& files);
+    /// What they ask for, to be shown to the widgets (which ask about unsaved changes) before obey().
+    Commands take_dropped();
+    /// Draws the viewport's content at its size in px; Status::picture_texture shows it. `hurry`: the final
+    /// picture at once.
+    void draw(int viewport_width, int viewport_height, double now, bool hurry = false);
+
+    /// Seconds until something is due by itself; 0: draw again at once.
+    double next_due(double now) const;
+    /// Every set is there, or has failed.
+    bool loaded() const;
+    /// The preview is that of the present camera, look and sets.
+    bool preview_exact() const;
+    /// The picture is final.
+    bool settled() const;
+    /// For the message line.
+    void say(const std::string& text, bool error = false);
+    bool quitting() const;
+    std::string title() const;
+    /// The whole viewport is the picture, whatever the output's aspect: for screenshots without panels.
+    void set_viewport_is_picture(bool on);
+
+    /// A screenshot that was asked for; the caller reads the window and hands the pixels back.
+    std::optional<std::filesystem::path> take_screenshot_request();
+    void save_screenshot(const std::filesystem::path& file, int width, int height,
+                         const std::vector<unsigned char>& rgba);
+    /// Text for the clipboard.
+    std::optional<std::string> take_clipboard();
+
+    std::shared_ptr<const RenderedFrame> final_frame() const;
+    /// The viewport as shown, 8-bit RGBA, top row first.
+    std::vector<unsigned char> shown_pixels() const;
+
+    /// For SIGTERM: writes an autosave, which stays, and throws Cancelled.
+    [[noreturn]] void interrupt();
+    /// A clean end: autosaves of this session are removed, preferences written.
+    void close(int window_width, int window_height);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace astrosplat
