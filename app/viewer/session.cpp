@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "core/cgroup.h"
 #include "core/error.h"
@@ -16,6 +17,7 @@
 #include "output/write_picture.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "viewer/overlay.h"
 #include "viewer/programs.h"
 #include "viewer/session_impl.h"
 
@@ -200,6 +202,32 @@ Region visible_part(const Rect& place, int width, int height, int viewport_width
 
 }  // namespace
 
+/// The scene's camera and its path, seen from outside.
+void Session::Impl::draw_overlay(const Scene& now, const Rect& place) {
+    status.overlay_lines.clear();
+    if (view.view == ViewKind::camera || !view.camera_path) return;
+    try {
+        if (path_revision != document.revision()) {
+            path = camera_path(document.scene(), status.box);
+            path_revision = document.revision();
+        }
+        const Camera seen_through = camera_of(request);
+        const double width = static_cast<double>(now.output.width),
+                     height = static_cast<double>(now.output.height);
+        const Camera camera = make_camera(now.camera, width, height, status.box);
+        const double size = status.box.empty() ? 10.0 : glm::length(status.box.extent());
+        std::vector<std::vector<glm::dvec3>> lines = frustum(camera, width, height, 0.08 * size);
+        lines.push_back(path);
+        const float scale = place.width / static_cast<float>(request.width);
+        for (const std::vector<glm::dvec3>& line : lines)
+            for (std::vector<glm::vec2>& part : project_line(seen_through, line)) {
+                for (glm::vec2& p : part) p = glm::vec2(place.x, place.y) + scale * p;
+                status.overlay_lines.push_back(std::move(part));
+            }
+    } catch (const InputError&) {  // a camera that cannot be made says so in the picture's badge
+    }
+}
+
 void Session::draw(int viewport_width, int viewport_height, double now, bool hurry) {
     Impl& self = *impl_;
     self.viewport_width = std::max(1, viewport_width);
@@ -208,6 +236,7 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
     self.request = self.make_request(scene);
     const Rect port{0, 0, static_cast<float>(self.viewport_width), static_cast<float>(self.viewport_height)};
     Rect place = place_picture(self.view, port, self.request.width, self.request.height);
+    self.draw_overlay(scene, place);
     if (self.view.size == SizeMode::one_to_one) {
         const float scale = place.width / static_cast<float>(self.request.width);
         self.request.region = visible_part(place, self.request.width, self.request.height,

@@ -63,6 +63,8 @@ struct Session::Impl {
     // The picture at hand: of the last draw().
     PictureRequest request;
     int viewport_width = 0, viewport_height = 0;
+    std::uint64_t path_revision = 0;  // of the document, that `path` was made of
+    std::vector<glm::dvec3> path;     // of the scene's camera
 
     void take_document(Document next);
     void open(const std::filesystem::path& file);
@@ -80,6 +82,7 @@ struct Session::Impl {
     /// Any scene as it stands at the view's frame, with solo.
     Scene evaluated(const Scene& scene) const;
     PictureRequest make_request(Scene now) const;
+    void draw_overlay(const Scene& now, const Rect& place);
     Bounds layer_box(std::size_t index) const;
 
     void navigate(const ViewportInput& input, double elapsed_s);

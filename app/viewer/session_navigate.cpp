@@ -134,6 +134,7 @@ void Session::navigate(const ViewportInput& input, double now) {
     const double elapsed = self.navigated_at < 0.0 ? 0.0 : std::min(0.1, now - self.navigated_at);
     self.navigated_at = now;
     if (self.request.width <= 0) return;
+    self.probe(input.hovered ? input.mouse_px : glm::dvec2(-1.0));
     if (self.view.size == SizeMode::one_to_one) return;  // the widgets move and zoom the picture
     self.navigate(input, elapsed);
 }
