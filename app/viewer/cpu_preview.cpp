@@ -10,6 +10,7 @@
 
 #include "look/apply.h"
 #include "look/decimate.h"
+#include "render/backdrop.h"
 #include "splats/stratified.h"
 
 namespace astrosplat {
@@ -66,7 +67,7 @@ void shade(const PreviewLayer& layer, KeptLayer& kept) {
 struct CpuPreview::State {
     std::vector<KeptLayer> layers;
     RenderCache cache;
-    Image picture;
+    Image picture, backdrop;
     std::int64_t shown = 0;
 
     KeptLayer& layer_at(std::size_t index, const std::shared_ptr<const SplatSet>& set);
@@ -106,7 +107,11 @@ const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Cam
     settings.width = width;
     settings.height = height;
     settings.pixel_filter = pixel_filter;
-    state.picture = render(visible, camera, environment, settings, {}, &state.cache).beauty;
+    if (environment && !environment->faces.empty()) {
+        draw_backdrop(*environment, camera, width, height, state.backdrop);
+        settings.backdrop = &state.backdrop;
+    }
+    state.picture = render(visible, camera, nullptr, settings, {}, &state.cache).beauty;
     return state.picture;
 }
 

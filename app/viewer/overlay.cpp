@@ -1,0 +1,82 @@
+#include "viewer/overlay.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "scene/animate.h"
+#include "scene/load.h"
+
+namespace astrosplat {
+namespace {
+
+glm::vec2 to_px(const Camera& camera, const glm::dvec3& p) {
+    const double scale =
+        camera.projection == Projection::orthographic ? camera.focal_px : camera.focal_px / -p.z;
+    return {static_cast<float>(camera.center_x_px + scale * p.x),
+            static_cast<float>(camera.center_y_px - scale * p.y)};
+}
+
+}  // namespace
+
+std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
+    constexpr double most = 256.0;
+    const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
+    const auto first = static_cast<double>(frames.front()), last = static_cast<double>(frames.back());
+    const double step = std::max(1.0, (last - first) / (most - 1.0));
+    std::vector<glm::dvec3> path;
+    for (double frame = first; frame <= last; frame += step) {
+        const Scene now = scene_at(scene, frame);
+        const glm::dvec3 eye = make_camera(now.camera, static_cast<double>(now.output.width),
+                                           static_cast<double>(now.output.height), box)
+                                   .eye;
+        if (path.empty() || path.back() != eye) path.push_back(eye);
+    }
+    return path;
+}
+
+std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_px, double height_px,
+                                             double length) {
+    const auto corner = [&](double x_px, double y_px) {
+        const double x = (x_px - camera.center_x_px) / camera.focal_px,
+                     y = (camera.center_y_px - y_px) / camera.focal_px;
+        const bool flat = camera.projection == Projection::orthographic;
+        const glm::dvec3 p = flat ? glm::dvec3(x, y, -length) : length * glm::dvec3(x, y, -1.0);
+        return camera.eye + camera.world_from_camera * p;
+    };
+    const glm::dvec3 corners[] = {corner(0, 0), corner(width_px, 0), corner(width_px, height_px),
+                                  corner(0, height_px)};
+    std::vector<std::vector<glm::dvec3>> lines;
+    for (const glm::dvec3& c : corners) lines.push_back({camera.eye, c});
+    lines.push_back({corners[0], corners[1], corners[2], corners[3], corners[0]});
+    lines.push_back({corner(0.4 * width_px, -0.04 * height_px), corner(0.5 * width_px, -0.16 * height_px),
+                     corner(0.6 * width_px, -0.04 * height_px), corner(0.4 * width_px, -0.04 * height_px)});
+    return lines;
+}
+
+std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std::vector<glm::dvec3>& line) {
+    const glm::dmat3 camera_from_world = glm::transpose(camera.world_from_camera);
+    const double front = camera.projection == Projection::orthographic ? 1e300 : -std::max(1e-6, camera.near);
+    std::vector<std::vector<glm::vec2>> parts;
+    bool open = false;
+    glm::dvec3 before(0.0);
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const glm::dvec3 p = camera_from_world * (line[i] - camera.eye);
+        const bool seen = p.z <= front;
+        if (i > 0 && seen != (before.z <= front)) {
+            const glm::dvec3 cut = before + (p - before) * ((front - before.z) / (p.z - before.z));
+            if (!open) parts.emplace_back();
+            parts.back().push_back(to_px(camera, cut));
+            open = seen;
+        }
+        if (seen) {
+            if (!open) parts.emplace_back();
+            open = true;
+            parts.back().push_back(to_px(camera, p));
+        }
+        before = p;
+    }
+    return parts;
+}
+
+}  // namespace astrosplat
