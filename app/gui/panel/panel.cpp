@@ -121,6 +121,7 @@ void Panel::draw(Document& document, ViewState& view, const Status& status, Comm
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;  // a layer was added or taken away
     set_prefix();
     tab_body(context);
+    memory.all_open = false;
     forget_untouched(memory.touch);
 }
 
@@ -143,6 +144,8 @@ void Panel::answer(const FileRequest& request, const std::filesystem::path& file
         state_->memory.error = error.what();
     }
 }
+
+void Panel::open_all() { state_->memory.all_open = true; }
 
 const std::vector<DrawnRow>& Panel::rows() const { return state_->rows; }
 

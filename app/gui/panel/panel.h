@@ -45,6 +45,8 @@ class Panel {
     void answer(const FileRequest& request, const std::filesystem::path& file, Document& document,
                 const ViewState& view, Commands& commands);
 
+    /// Unfolds every section, as a person could one by one.
+    void open_all();
     /// Of the last draw(), top to bottom.
     const std::vector<DrawnRow>& rows() const;
     /// A value is being dragged or typed: the next frame must be drawn soon.

@@ -29,6 +29,7 @@ void head_text(const Area& area, float left, const char* title, const std::strin
 
 bool section(Context& context, const char* title, const std::string& state, bool open_at_first) {
     bool& open = context.memory.open.emplace(title, open_at_first).first->second;
+    open = open || context.memory.all_open;
     const float bleed = px(12);  // the line over a head runs from edge to edge
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const Area area{corner, {ImGui::GetContentRegionAvail().x, px(head_height)}};
