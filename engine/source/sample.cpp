@@ -26,31 +26,56 @@ glm::vec4 texel(const Texture& texture, std::int64_t x, std::int64_t y) {
     return {p[0], p[1], p[2], p[3]};
 }
 
+// floor for |x| < 2^63, without the library call that processors before SSE4.1 need.
+std::int64_t whole(double x) {
+    const auto truncated = static_cast<std::int64_t>(x);
+    return truncated - (static_cast<double>(truncated) > x ? 1 : 0);
+}
+
 // Position along an axis of n texels, whose edges are integers; kept within reach of 64-bit indices.
 double place(double coordinate, std::int64_t n, Wrap wrap) {
-    if (wrap == Wrap::repeat) coordinate -= std::floor(coordinate);
+    constexpr double all_whole = 4503599627370496.0;  // 2^52, from where on doubles have no fraction
+    if (wrap == Wrap::repeat)
+        coordinate =
+            std::fabs(coordinate) < all_whole ? coordinate - static_cast<double>(whole(coordinate)) : 0.0;
     return std::clamp(coordinate, -2.0, 3.0) * static_cast<double>(n);
 }
 
+struct Texel {
+    float channel[4];
+};
+
 // Exact at both ends, and of equal values exactly that value. Started from the nearer end, so that beside an
-// empty texel the faint rest of colour and alpha keeps its digits and their quotient the colour.
-glm::vec4 mix(const glm::vec4& a, const glm::vec4& b, float t) {
-    return t < 0.5f ? a + (b - a) * t : b - (b - a) * (1.0f - t);
+// empty texel the faint rest of colour and alpha keeps its digits and their quotient the colour. No branch:
+// which end is nearer is chance.
+Texel mix(const float* a, const float* b, float t) {
+    const bool first = t < 0.5f;
+    const float* const nearer = first ? a : b;
+    const float share = first ? t : t - 1.0f;
+    Texel result;
+    for (int c = 0; c < 4; ++c) result.channel[c] = nearer[c] + (b[c] - a[c]) * share;
+    return result;
+}
+
+glm::vec4 mix4(const float* c00, const float* c10, const float* c01, const float* c11, float s, float t) {
+    const Texel top = mix(c00, c10, s), bottom = mix(c01, c11, s);
+    const Texel p = mix(top.channel, bottom.channel, t);
+    return {p.channel[0], p.channel[1], p.channel[2], p.channel[3]};
 }
 
 glm::vec4 bilinear(const Texture& texture, double x, double y) {
-    const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
-    const auto i = static_cast<std::int64_t>(left), j = static_cast<std::int64_t>(top);
-    const auto s = static_cast<float>(x - 0.5 - left), t = static_cast<float>(y - 0.5 - top);
+    const std::int64_t i = whole(x - 0.5), j = whole(y - 0.5);
+    const auto s = static_cast<float>(x - 0.5 - static_cast<double>(i)),
+               t = static_cast<float>(y - 0.5 - static_cast<double>(j));
     const Image& image = texture.image;
     if (i >= 0 && j >= 0 && i + 1 < image.width && j + 1 < image.height) {  // nearly always
         const float* p = image.at(i, j);
         const float* q = image.at(i, j + 1);
-        return mix(mix({p[0], p[1], p[2], p[3]}, {p[4], p[5], p[6], p[7]}, s),
-                   mix({q[0], q[1], q[2], q[3]}, {q[4], q[5], q[6], q[7]}, s), t);
+        return mix4(p, p + 4, q, q + 4, s, t);
     }
-    return mix(mix(texel(texture, i, j), texel(texture, i + 1, j), s),
-               mix(texel(texture, i, j + 1), texel(texture, i + 1, j + 1), s), t);
+    const glm::vec4 c00 = texel(texture, i, j), c10 = texel(texture, i + 1, j),
+                    c01 = texel(texture, i, j + 1), c11 = texel(texture, i + 1, j + 1);
+    return mix4(&c00.x, &c10.x, &c01.x, &c11.x, s, t);
 }
 
 // How much of texel i (from i to i + 1) lies between lo and hi.
@@ -84,8 +109,7 @@ TextureSample sample(const Texture& texture, glm::vec2 uv, glm::vec2 box_texels)
     const double y = place(1.0 - static_cast<double>(uv.y), texture.image.height, texture.wrap);
     glm::vec4 p;
     if (texture.filter == TextureSettings::Filter::nearest)
-        p = texel(texture, static_cast<std::int64_t>(std::floor(x)),
-                  static_cast<std::int64_t>(std::floor(y)));
+        p = texel(texture, whole(x), whole(y));
     else if (texture.filter == TextureSettings::Filter::area)
         p = box_mean(texture, x, y, box_texels);
     else

@@ -42,9 +42,19 @@ void unpack(const Move& move, SplatSet& set) {
 
 }  // namespace
 
+// A run that reaches the end of its block goes on as another.
+void KeptStore::next_block() {
+    constexpr std::size_t block_splats = (std::size_t{4} << 20) / sizeof(KeptSplat);  // whole huge pages
+    if (used_ == blocks_.size()) blocks_.emplace_back(block_splats);
+    next_ = blocks_[used_++].data();
+    end_ = next_ + block_splats;
+    open_ = false;
+}
+
 void KeptStore::clear() {
-    splats_.clear();
     runs_.clear();
+    used_ = 0;
+    next_ = end_ = nullptr;
     open_ = false;
 }
 
@@ -55,8 +65,7 @@ void reserve(SplatSet& set, std::size_t count) {
 void append_sorted(std::span<KeptStore> stores, SplatSet& set) {
     std::vector<Move> moves;
     for (const KeptStore& store : stores) {
-        for (const KeptStore::Run& run : store.runs())
-            moves.push_back({store.splats() + run.begin, run.count, 0});
+        for (const KeptStore::Run& run : store.runs()) moves.push_back({run.splats, run.count, 0});
     }
     std::sort(moves.begin(), moves.end(),
               [](const Move& a, const Move& b) { return a.from->id < b.from->id; });

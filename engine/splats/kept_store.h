@@ -22,26 +22,32 @@ struct KeptSplat {
 };
 constexpr std::int64_t kept_splat_bytes = 3 * 12 + 8 + 8 + 2 * 4 + 4;  // in a SplatSet's arrays
 
-/// One thread's splats. A run has ascending ids, and no other run has ids in between.
+/// One thread's splats, in blocks that stay where they are and serve again after clear(). A run has ascending
+/// ids, and no other run has ids in between.
 class KeptStore {
   public:
     struct Run {
-        std::size_t begin, count;
+        const KeptSplat* splats;
+        std::size_t count;
     };
     void begin_run() { open_ = false; }
     void add(const KeptSplat& splat) {
-        if (!open_) runs_.push_back({splats_.size(), 0});
+        if (next_ == end_) next_block();
+        if (!open_) runs_.push_back({next_, 0});
         open_ = true;
         ++runs_.back().count;
-        splats_.push_back(splat);
+        *next_++ = splat;
     }
     const std::vector<Run>& runs() const { return runs_; }
-    const KeptSplat* splats() const { return splats_.data(); }
-    void clear();  // keeps the memory for the next splats
+    void clear();
 
   private:
-    std::vector<KeptSplat> splats_;
+    void next_block();
+
+    std::vector<Buffer<KeptSplat>> blocks_;
     std::vector<Run> runs_;
+    std::size_t used_ = 0;  // blocks
+    KeptSplat *next_ = nullptr, *end_ = nullptr;
     bool open_ = false;
 };
 
