@@ -4,9 +4,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "edit/commands.h"
 #include "edit/document.h"
@@ -23,11 +27,19 @@ struct Rect {
     float x = 0, y = 0, width = 0, height = 0;
 };
 
-/// Where things lie for a window of this size.
+/// Where things lie for a window of this size. What is hidden has no height or width.
 struct Layout {
-    Rect menu, tools, viewport, panel, timeline, status;
+    Rect menu, tools;
+    Rect notice;  // one line under the tools: the hint, or that the file changed on disk
+    Rect viewport;
+    Rect snapshots;  // strip between viewport and timeline
+    Rect panel, timeline, status;
 };
 Layout make_layout(const ViewState& view, float width_px, float height_px, float content_scale);
+
+/// Where a picture of this size is shown, px of the window. Fit: as large as the viewport allows, in its
+/// middle; 1:1: zoomed and moved as `view` says. It may reach beyond the viewport.
+Rect place_picture(const ViewState& view, const Rect& viewport, int width_px, int height_px);
 
 /// What mouse and keys did over the viewport this frame. px are relative to the viewport's upper left.
 struct ViewportInput {
@@ -38,14 +50,35 @@ struct ViewportInput {
     bool drag_begins = false, drag_ends = false;
     bool double_click = false;
     glm::dvec3 fly{0.0};  // -1..1 right, up, forward while looking around
-    double speed = 1.0;   // of flying and dragging: Shift 10, Alt 0.1
+    double speed = 1.0;   // of flying: Shift 10, Alt 0.1; 1 in other drags
 };
+
+/// A file the person is to choose.
+struct FileQuery {
+    std::string title;                    // "Open a scene"
+    bool saving = false;                  // the file need not exist, and is asked for again where it does
+    std::string kind;                     // "Scenes", of the filter
+    std::vector<std::string> extensions;  // ".toml", lower case; empty: any
+    std::filesystem::path folder;         // to begin in
+    std::string name;                     // suggested, when saving
+};
+
+/// A control of the last frame and the middle of it, px of the window: for tests and for a driver that wants
+/// to reach one by its name.
+struct DrawnItem {
+    std::string name;  // "File/Open...", "play", "key camera.position 12"
+    glm::vec2 middle;
+};
+
+class Panel;
 
 class Gui {
   public:
     Gui();
     ~Gui();
-    /// Draws one frame of widgets, between ImGui::NewFrame and ImGui::Render.
+    /// Draws one frame of widgets, between ImGui::NewFrame and ImGui::Render. Commands come out complete:
+    /// where a path was missing a dialog has asked for it, and where unsaved changes would be lost the person
+    /// has agreed.
     void draw(Document& document, ViewState& view, const Status& status, Commands& commands);
     /// Of the last draw().
     const ViewportInput& viewport_input() const;
@@ -53,6 +86,13 @@ class Gui {
     void ask_to_quit(const Document& document);
     /// Something moves or waits (a drag, a text cursor, an open dialog): the next frame must be drawn soon.
     bool busy() const;
+    /// Files are chosen through `chooser` instead of the own dialog where it returns true;
+    /// it must then call file_chosen later, with nothing when the person thought better of it.
+    void set_file_chooser(std::function<bool(const FileQuery&)> chooser);
+    void file_chosen(const std::optional<std::filesystem::path>& file);
+    /// Controls of the last draw(), those of the side panel excepted (Panel::rows).
+    const std::vector<DrawnItem>& drawn_items() const;
+    const Panel& panel() const;
 
   private:
     struct State;

@@ -1,0 +1,196 @@
+// Actions that edit the scene or the view, and the questions whether they can be done now.
+#include "gui/action_functions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "edit/keys.h"
+#include "edit/layers.h"
+#include "scene/animate.h"
+#include "scene/describe.h"
+
+namespace astrosplat {
+namespace {
+
+const std::string& selected_name(const GuiFrame& f) { return f.document.scene().layers[f.view.layer].name; }
+
+void edit(GuiFrame& f, const std::string& name, const std::function<void(Scene&)>& change) {
+    try_edit([&] { f.document.edit(name, change); });
+}
+
+void go_to(GuiFrame& f, double frame) {
+    const FrameRange range = frame_range(f.document.scene());
+    f.view.frame = std::clamp(frame, range.first, range.last);
+}
+
+// The camera that the view looks through, as a scene's camera. Views along an axis have none of their own.
+CameraParams camera_of_view(const GuiFrame& f) {
+    CameraParams camera = scene_at(f.document.scene(), f.view.frame).camera;
+    if (!in_free_view(f)) return camera;
+    const FreeCamera& free = f.view.free;
+    camera.position = free.position;
+    camera.target = free.pivot;
+    camera.up = free.up;
+    camera.rotation.reset();
+    camera.roll = 0.0;
+    camera.projection = free.orthographic ? Projection::orthographic : Projection::perspective;
+    camera.fov = free.fov_deg;
+    camera.focal_length = 0.0;
+    camera.height = free.height;
+    return camera;
+}
+
+Value value_now(const GuiFrame& f, const std::string& key) {
+    Scene still = scene_at(f.document.scene(), f.view.frame);
+    const Description description = describe(still);
+    const Parameter* parameter = find_parameter(description, key);
+    return parameter ? parameter->get() : Value();
+}
+
+}  // namespace
+
+void undo(GuiFrame& f) {
+    try_edit([&] { f.document.undo(); });
+}
+void redo(GuiFrame& f) {
+    try_edit([&] { f.document.redo(); });
+}
+bool can_undo(const GuiFrame& f) { return f.document.can_undo(); }
+bool can_redo(const GuiFrame& f) { return f.document.can_redo(); }
+std::string undo_label(const GuiFrame& f) { return can_undo(f) ? "Undo " + f.document.undo_name() : "Undo"; }
+std::string redo_label(const GuiFrame& f) { return can_redo(f) ? "Redo " + f.document.redo_name() : "Redo"; }
+void take_snapshot(GuiFrame& f) {
+    request(f, Command::Kind::take_snapshot);
+    f.view.snapshots_open = true;
+}
+
+bool has_file(const GuiFrame& f) { return !f.document.file().empty(); }
+bool has_layer(const GuiFrame& f) { return f.view.layer < f.document.scene().layers.size(); }
+bool has_box(const GuiFrame& f) { return !f.status.box.empty(); }
+bool has_job(const GuiFrame& f) { return !f.status.job.name.empty(); }
+bool has_ffmpeg(const GuiFrame& f) { return f.status.has_ffmpeg; }
+std::string range_label(const GuiFrame& f) { return "Range " + f.document.scene().output.frames; }
+std::string movie_label(const GuiFrame& f) { return has_ffmpeg(f) ? "Movie..." : "Movie... (needs ffmpeg)"; }
+
+void three_quarter(GuiFrame& f) {
+    const OutputParams& output = f.document.scene().output;
+    const double aspect = static_cast<double>(output.width) / static_cast<double>(output.height);
+    const Framing framing = frame_box(f.status.box, f.view.free.fov_deg, aspect);
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(1.0, 0.8, 1.0));
+    f.view.free.pivot = framing.target;
+    f.view.free.position = framing.target + direction * glm::length(framing.position - framing.target);
+    f.view.free.up = {0.0, 1.0, 0.0};
+    f.view.free.height = framing.height;
+    f.view.view = ViewKind::free;
+}
+void toggle_one_to_one(GuiFrame& f) {
+    f.view.size = is_one_to_one(f) ? SizeMode::fit : SizeMode::one_to_one;
+    f.view.pan_px = {0.0, 0.0};
+    f.view.zoom = 1.0;
+}
+bool is_one_to_one(const GuiFrame& f) { return f.view.size == SizeMode::one_to_one; }
+
+void set_compare(GuiFrame& f, CompareMode mode) {
+    const bool needs_reference = mode == CompareMode::reference || mode == CompareMode::difference;
+    if (needs_reference && f.view.reference.empty()) request(f, Command::Kind::set_reference);
+    f.view.compare = mode;
+}
+void swap_a_b(GuiFrame& f) {
+    f.view.compare = f.view.compare == CompareMode::b ? CompareMode::a : CompareMode::b;
+}
+
+void duplicate_selected_layer(GuiFrame& f) {
+    edit(f, "Duplicate " + selected_name(f),
+         [&](Scene& scene) { f.view.layer = duplicate_layer(scene, f.view.layer); });
+}
+void remove_selected_layer(GuiFrame& f) {
+    edit(f, "Remove " + selected_name(f), [&](Scene& scene) { remove_layer(scene, f.view.layer); });
+    const std::size_t count = f.document.scene().layers.size();
+    f.view.layer = std::min(f.view.layer, count == 0 ? 0 : count - 1);
+}
+void hide_layer(GuiFrame& f) {
+    const bool visible = layer_visible(f);
+    edit(f, (visible ? "Hide " : "Show ") + selected_name(f),
+         [&](Scene& scene) { scene.layers[f.view.layer].visible = !visible; });
+}
+void solo_layer(GuiFrame& f) {
+    const std::string name = selected_name(f);
+    if (f.view.solo.erase(name) == 0) f.view.solo.insert(name);
+}
+bool layer_visible(const GuiFrame& f) {
+    return has_layer(f) && f.document.scene().layers[f.view.layer].visible;
+}
+bool layer_solo(const GuiFrame& f) { return has_layer(f) && f.view.solo.count(selected_name(f)) > 0; }
+void move_layer_up(GuiFrame& f) {
+    edit(f, "Move " + selected_name(f),
+         [&](Scene& scene) { move_layer(scene, f.view.layer, f.view.layer - 1); });
+    --f.view.layer;
+}
+void move_layer_down(GuiFrame& f) {
+    edit(f, "Move " + selected_name(f),
+         [&](Scene& scene) { move_layer(scene, f.view.layer, f.view.layer + 1); });
+    ++f.view.layer;
+}
+bool can_move_up(const GuiFrame& f) { return has_layer(f) && f.view.layer > 0; }
+bool can_move_down(const GuiFrame& f) { return f.view.layer + 1 < f.document.scene().layers.size(); }
+bool layer_stale(const GuiFrame& f) {
+    return f.view.layer < f.status.layers.size() && f.status.layers[f.view.layer].stale;
+}
+
+bool in_free_view(const GuiFrame& f) { return f.view.view == ViewKind::free; }
+void key_camera_here(GuiFrame& f) {
+    const CameraParams camera = camera_of_view(f);
+    edit(f, "Key camera", [&](Scene& scene) {
+        // What is not animated must hold the same view.
+        const std::optional<glm::dvec3> before = scene.camera.position;
+        scene.camera = camera;
+        if (!scene.camera.position) scene.camera.position = before;
+        key_camera(scene, camera, f.view.frame);
+    });
+}
+void camera_from_view(GuiFrame& f) {
+    const CameraParams camera = camera_of_view(f);
+    const bool animated =
+        std::any_of(f.document.scene().animation.begin(), f.document.scene().animation.end(),
+                    [](const Track& track) { return track.key.rfind("camera.", 0) == 0; });
+    if (animated) return key_camera_here(f);
+    edit(f, "Camera from view", [&](Scene& scene) { scene.camera = camera; });
+}
+
+void next_frame(GuiFrame& f) { go_to(f, std::floor(f.view.frame) + 1.0); }
+void previous_frame(GuiFrame& f) { go_to(f, std::ceil(f.view.frame) - 1.0); }
+void next_key(GuiFrame& f) { f.view.frame = next_key_frame(f.document.scene(), f.view.frame); }
+void previous_key(GuiFrame& f) { f.view.frame = previous_key_frame(f.document.scene(), f.view.frame); }
+void first_frame(GuiFrame& f) { f.view.frame = frame_range(f.document.scene()).first; }
+void last_frame(GuiFrame& f) { f.view.frame = frame_range(f.document.scene()).last; }
+
+void key_here(GuiFrame& f) {
+    const std::string key = f.view.hovered_key;
+    if (key.empty()) return key_camera_here(f);
+    const Value value = value_now(f, key);
+    edit(f, "Key " + key, [&](Scene& scene) { set_key(scene, key, f.view.frame, value); });
+}
+void remove_key_here(GuiFrame& f) {
+    const std::string key = f.view.hovered_key;
+    edit(f, key.empty() ? "Remove camera key" : "Remove key of " + key, [&](Scene& scene) {
+        std::vector<std::string> keys;
+        for (const Track& track : scene.animation)
+            if (key.empty() ? track.key.rfind("camera.", 0) == 0 : track.key == key)
+                keys.push_back(track.key);
+        for (const std::string& k : keys)
+            if (has_key_at(scene, k, f.view.frame)) remove_key(scene, k, f.view.frame);
+    });
+}
+void cancel(GuiFrame& f) {
+    if (f.view.help_open || f.view.log_open) {
+        f.view.help_open = f.view.log_open = false;
+    } else if (has_job(f)) {
+        request(f, Command::Kind::cancel_render);
+    } else {
+        for (std::size_t i = 0; i < f.status.layers.size(); ++i)
+            if (f.status.layers[i].loading) request(f, Command::Kind::cancel_load, i);
+    }
+}
+
+}  // namespace astrosplat

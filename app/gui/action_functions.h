@@ -1,0 +1,58 @@
+// What the actions of actions.cpp do where it takes more than one line, and when they can be done.
+#pragma once
+
+#include <string>
+
+#include "gui/gui_frame.h"
+
+namespace astrosplat {
+
+void undo(GuiFrame& f);
+void redo(GuiFrame& f);
+bool can_undo(const GuiFrame& f);
+bool can_redo(const GuiFrame& f);
+std::string undo_label(const GuiFrame& f);  // "Undo Opacity of dust"
+std::string redo_label(const GuiFrame& f);
+void take_snapshot(GuiFrame& f);
+
+bool has_file(const GuiFrame& f);
+bool has_layer(const GuiFrame& f);
+bool has_box(const GuiFrame& f);
+bool has_job(const GuiFrame& f);
+bool has_ffmpeg(const GuiFrame& f);
+std::string range_label(const GuiFrame& f);  // "Range 1-240"
+std::string movie_label(const GuiFrame& f);
+
+void three_quarter(GuiFrame& f);
+void toggle_one_to_one(GuiFrame& f);
+bool is_one_to_one(const GuiFrame& f);
+void set_compare(GuiFrame& f, CompareMode mode);  // asks for a reference where there is none yet
+void swap_a_b(GuiFrame& f);
+
+void duplicate_selected_layer(GuiFrame& f);
+void remove_selected_layer(GuiFrame& f);
+void hide_layer(GuiFrame& f);
+void solo_layer(GuiFrame& f);
+bool layer_visible(const GuiFrame& f);
+bool layer_solo(const GuiFrame& f);
+void move_layer_up(GuiFrame& f);
+void move_layer_down(GuiFrame& f);
+bool can_move_up(const GuiFrame& f);
+bool can_move_down(const GuiFrame& f);
+bool layer_stale(const GuiFrame& f);
+
+bool in_free_view(const GuiFrame& f);
+void key_camera_here(GuiFrame& f);
+void camera_from_view(GuiFrame& f);
+
+void next_frame(GuiFrame& f);
+void previous_frame(GuiFrame& f);
+void next_key(GuiFrame& f);
+void previous_key(GuiFrame& f);
+void first_frame(GuiFrame& f);
+void last_frame(GuiFrame& f);
+void key_here(GuiFrame& f);
+void remove_key_here(GuiFrame& f);
+void cancel(GuiFrame& f);
+
+}  // namespace astrosplat

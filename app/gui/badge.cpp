@@ -1,0 +1,121 @@
+// The badge: a dot in the state's colour, what the state is, and what can be done about it.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/icons.h"
+#include "gui/theme.h"
+#include "gui/viewport_overlay.h"
+#include "gui/widgets.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float height = 26, inset = 12, padding = 10, dot = 4, gap = 8;
+constexpr double little_shown = 0.1;  // of all splats: the badge says so below
+
+const LayerStatus* loading_layer(const Status& status, std::size_t& index) {
+    for (index = 0; index < status.layers.size(); ++index)
+        if (status.layers[index].loading) return &status.layers[index];
+    return nullptr;
+}
+
+// A word at the badge's right end that can be clicked; `x` is where it begins.
+bool word_button(GuiFrame& frame, const char* word, float x, float y) {
+    const ImVec2 size = ImGui::CalcTextSize(word);
+    ImGui::SetCursorScreenPos({x, y});
+    const bool clicked = ImGui::InvisibleButton(word, {size.x, px(height)});
+    note_item(frame, std::string("badge/") + word);
+    const bool hovered = ImGui::IsItemHovered();
+    if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    ImGui::GetWindowDrawList()->AddText({x, y + std::floor((px(height) - size.y) * 0.5f)},
+                                        hovered ? color::text : color::accent, word);
+    return clicked;
+}
+
+// Words of the button that belongs to the state; nullptr: none.
+const char* button_word(const Status& status) {
+    std::size_t index = 0;
+    if (loading_layer(status, index)) return "Cancel";
+    return status.picture.state == PictureState::failed ? "Copy" : nullptr;
+}
+
+void press_button(GuiFrame& frame) {
+    std::size_t index = 0;
+    if (loading_layer(frame.status, index))
+        request(frame, Command::Kind::cancel_load, index);
+    else
+        frame.requested.push_back({Command::Kind::copy_text, {}, frame.status.picture.error, 0});
+}
+
+}  // namespace
+
+BadgeText badge_text(const Scene& scene, const Status& status) {
+    const PictureStatus& picture = status.picture;
+    std::size_t index = 0;
+    if (const LayerStatus* layer = loading_layer(status, index)) {
+        const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";
+        return {fmt::format("Generating {} {:.0f} %", name, layer->progress * 100.0f),
+                short_count(layer->found) + " splats", color::accent};
+    }
+    const std::string total = short_count(picture.total) + " splats";
+    switch (picture.state) {
+        case PictureState::loading:
+            return {"Loading", "", color::accent};
+        case PictureState::refining:
+            return {fmt::format("Refining {:.0f} %", picture.progress * 100.0f), total, color::key};
+        case PictureState::final:
+            return {fmt::format("Final {:.1f} s", picture.seconds), total, color::good};
+        case PictureState::failed:
+            return {"Cannot render: " + picture.error, "", color::error};
+        case PictureState::preview:
+            break;
+    }
+    if (picture.shown >= picture.total) return {"Preview", total, color::accent};
+    const bool little =
+        static_cast<double>(picture.shown) < little_shown * static_cast<double>(picture.total);
+    return {fmt::format("Preview {} of {}", short_count(picture.shown), short_count(picture.total)),
+            little ? "less than a tenth of the splats" : "", color::accent, little};
+}
+
+void draw_badge(GuiFrame& frame, const Rect& area) {
+    BadgeText badge = badge_text(frame.document.scene(), frame.status);
+    const char* word = button_word(frame.status);
+    ImGui::PushFont(small_font());
+    const float word_width = word ? ImGui::CalcTextSize(word).x + px(gap) * 2 : 0.0f;
+    const float left = px(padding) + px(dot) * 2 + px(gap);
+    const float room = area.width - 2 * px(inset) - left - word_width - px(padding);
+    const std::string whole = badge.text;
+    badge.text = fitting(badge.text, room);
+    const float text_width = ImGui::CalcTextSize(badge.text.c_str()).x;
+    const float sign = badge.warns ? px(14) + px(gap) / 2 : 0.0f;
+    float beside_width =
+        badge.beside.empty() ? 0.0f : ImGui::CalcTextSize(badge.beside.c_str()).x + px(gap) * 1.5f + sign;
+    if (text_width + beside_width > room) beside_width = 0.0f;
+
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float x = area.x + px(inset), y = area.y + area.height - px(inset) - px(height);
+    const float width = left + text_width + beside_width + word_width + px(padding);
+    list->AddRectFilled({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f),
+                        px(3));
+    list->AddCircleFilled({x + px(padding) + px(dot), y + px(height) * 0.5f}, px(dot), badge.color, 16);
+    const float text_y = y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f);
+    list->AddText({x + left, text_y}, color::text, badge.text.c_str());
+    if (beside_width > 0) {
+        float at = x + left + text_width + px(gap) * 1.5f;
+        if (badge.warns) {
+            draw_icon(list, Icon::warning, {at + px(7), y + px(height) * 0.5f}, px(12), color::key);
+            at += sign;
+        }
+        list->AddText({at, text_y}, badge.warns ? color::key : color::dim, badge.beside.c_str());
+    }
+    if (word && word_button(frame, word, x + width - px(padding) - word_width + px(gap) * 2, y))
+        press_button(frame);
+    if (badge.text != whole && ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))
+        ImGui::SetTooltip("%s", whole.c_str());
+    ImGui::PopFont();
+}
+
+}  // namespace astrosplat

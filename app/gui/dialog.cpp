@@ -1,0 +1,76 @@
+// Dialogs' frame.
+#include "gui/dialog.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "gui/key_codes.h"
+#include "gui/theme.h"
+#include "gui/widgets.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float least_button = 84;
+
+float button_width(const char* label) {
+    return std::max(px(least_button), ImGui::CalcTextSize(label).x + px(24));
+}
+
+}  // namespace
+
+bool begin_dialog(const char* id, const std::string& title, bool open, float width, float height) {
+    if (open && !ImGui::IsPopupOpen(id)) ImGui::OpenPopup(id);
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float w = std::min(px(width), screen.x - px(40));
+    const float h = height > 0 ? std::min(px(height), screen.y - px(40)) : 0.0f;
+    ImGui::SetNextWindowPos({screen.x * 0.5f, screen.y * 0.5f}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({w, h});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(20), px(16)));
+    const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                   (height > 0 ? 0 : ImGuiWindowFlags_AlwaysAutoResize);
+    const bool shown = ImGui::BeginPopupModal(id, nullptr, flags);
+    ImGui::PopStyleVar();
+    if (!shown) return false;
+    if (!open) {
+        ImGui::CloseCurrentPopup();
+        ImGui::EndPopup();
+        return false;
+    }
+    ImGui::PushFont(medium_font());
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(title.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopFont();
+    ImGui::Dummy({0, px(6)});
+    return true;
+}
+
+void end_dialog() { ImGui::EndPopup(); }
+
+bool dialog_escape() {
+    return ImGui::IsKeyPressed(key_code::escape, false) &&
+           ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
+}
+
+int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const char*> labels, bool enter) {
+    float width = -px(8);
+    for (const char* label : labels) width += button_width(label) + px(8);
+    ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - width);
+    int chosen = -1, index = 0;
+    for (const char* label : labels) {
+        const bool is_default = index + 1 == static_cast<int>(labels.size());
+        if (index > 0) ImGui::SameLine(0, px(8));
+        if (dialog_button(label, is_default, least_button)) chosen = index;
+        note_item(frame, std::string(id) + "/" + label);
+        if (is_default && enter &&
+            (ImGui::IsKeyPressed(key_code::enter, false) || ImGui::IsKeyPressed(key_code::pad_enter, false)))
+            chosen = index;
+        ++index;
+    }
+    return chosen;
+}
+
+}  // namespace astrosplat

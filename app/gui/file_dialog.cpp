@@ -1,0 +1,218 @@
+// Places at the left, files at the right, the path above them, the answer below.
+#include "gui/file_dialog.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/dialog.h"
+#include "gui/icons.h"
+#include "gui/key_codes.h"
+#include "gui/theme.h"
+#include "gui/widgets.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr float width = 760, height = 520, places_width = 168, row_height = 26;
+
+std::string size_text(std::uintmax_t bytes) {
+    const double n = static_cast<double>(bytes);
+    if (n < 1e3) return fmt::format("{} B", bytes);
+    if (n < 1e6) return fmt::format("{:.0f} kB", n / 1e3);
+    if (n < 1e9) return fmt::format("{:.1f} MB", n / 1e6);
+    return fmt::format("{:.1f} GB", n / 1e9);
+}
+
+// Tab: lengthens what is typed; `folder` is what relative paths are relative to.
+int on_tab(ImGuiInputTextCallbackData* data) {
+    const auto& folder = *static_cast<const fs::path*>(data->UserData);
+    const std::string longer = complete_path(std::string(data->Buf, data->Buf + data->BufTextLen), folder);
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, longer.c_str());
+    return 0;
+}
+
+// A row with an icon: clicked once or twice.
+struct Click {
+    bool once = false, twice = false;
+};
+Click icon_row(const char* id, Icon icon, const std::string& text, const std::string& beside, bool chosen) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float row = px(row_height), room = ImGui::GetContentRegionAvail().x;
+    Click click;
+    click.once = ImGui::InvisibleButton(id, {room, row});
+    click.twice = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImU32 back = chosen ? color::selection : ImGui::IsItemHovered() ? color::hover : color::none;
+    list->AddRectFilled(corner, {corner.x + room, corner.y + row}, back, px(3));
+    draw_icon(list, icon, {corner.x + px(14), corner.y + row * 0.5f}, px(13), color::dim);
+    const float y = corner.y + std::floor((row - ImGui::GetFontSize()) * 0.5f);
+    const float beside_width = beside.empty() ? 0.0f : ImGui::CalcTextSize(beside.c_str()).x + px(20);
+    list->AddText({corner.x + px(28), y}, color::text, fitting(text, room - px(36) - beside_width).c_str());
+    if (!beside.empty())
+        list->AddText({corner.x + room - beside_width + px(12), y}, color::dim, beside.c_str());
+    return click;
+}
+
+}  // namespace
+
+void FileDialog::open(const FileQuery& query) {
+    query_ = query;
+    open_ = true;
+    all_files_ = replaces_ = false;
+    focus_path_ = true;
+    std::error_code ignored;
+    go_to(fs::is_directory(query.folder, ignored) ? query.folder : home_folder());
+    typed_ = query.name;
+}
+
+void FileDialog::go_to(const fs::path& folder) {
+    std::error_code ignored;
+    folder_ = fs::weakly_canonical(folder, ignored);
+    entries_ = list_folder(folder_, all_files_ ? std::vector<std::string>{} : query_.extensions);
+    complaint_.clear();
+    if (!query_.saving) typed_.clear();
+}
+
+void FileDialog::draw_places(const GuiFrame& frame) {
+    std::vector<std::pair<std::string, fs::path>> places;
+    if (!frame.document.file().empty())
+        places.emplace_back("Scene folder", frame.document.file().parent_path());
+    places.emplace_back("Home", home_folder());
+    places.emplace_back("Computer", "/");
+    for (const fs::path& file : frame.status.recent) {
+        const fs::path folder = file.parent_path();
+        const bool known =
+            std::any_of(places.begin(), places.end(), [&](const auto& p) { return p.second == folder; });
+        if (!known && places.size() < 9) places.emplace_back(folder.filename().string(), folder);
+    }
+    for (const auto& [name, folder] : places) {
+        if (icon_row(folder.c_str(), Icon::folder, name, "", folder == folder_).once) go_to(folder);
+        tooltip(folder.c_str());
+    }
+}
+
+void FileDialog::draw_path(GuiFrame& frame) {
+    if (icon_button("up", Icon::chevron_right, {px(28), px(28)}, px(11), color::dim, nullptr))
+        go_to(folder_.parent_path());
+    ImGui::SameLine(0, px(4));
+    row_text(fitting(folder_.string() + (folder_ == folder_.root_path() ? "" : "/"), px(width - 60)), px(28),
+             color::dim);
+    if (focus_path_) ImGui::SetKeyboardFocusHere();
+    focus_path_ = false;
+    ImGui::SetNextItemWidth(-1);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(8), px(6)));
+    const std::string before = typed_;
+    ImGui::InputTextWithHint("##path", "File, or a path; Tab completes it", &typed_,
+                             ImGuiInputTextFlags_CallbackCompletion, on_tab, &folder_);
+    ImGui::PopStyleVar();
+    note_item(frame, "file/path");
+    if (typed_ != before) {
+        replaces_ = false;
+        complaint_.clear();
+    }
+}
+
+bool FileDialog::draw_entries(GuiFrame& frame) {
+    bool chosen = false;
+    fs::path enter;
+    for (const FileEntry& entry : entries_) {
+        const Click click = icon_row(entry.name.c_str(), entry.folder ? Icon::folder : Icon::file, entry.name,
+                                     entry.folder ? "" : size_text(entry.bytes), entry.name == typed_);
+        note_item(frame, "file/" + entry.name);
+        if (entry.folder && click.once) enter = folder_ / entry.name;
+        if (!entry.folder && click.once) {
+            typed_ = entry.name;
+            replaces_ = false;
+        }
+        if (!entry.folder && click.twice) chosen = true;
+    }
+    if (entries_.empty()) {
+        ImGui::SetCursorPosX(px(12));
+        row_text(all_files_ ? "This folder is empty." : "No " + query_.kind + " here.", px(row_height),
+                 color::dim);
+    }
+    if (!enter.empty()) go_to(enter);
+    return chosen;
+}
+
+std::optional<fs::path> FileDialog::accept() {
+    if (typed_.empty()) return std::nullopt;
+    fs::path file = typed_path(typed_, folder_).lexically_normal();
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored)) {
+        typed_.clear();
+        go_to(file);
+        return std::nullopt;
+    }
+    if (!query_.saving) {
+        if (fs::exists(file, ignored)) return file;
+        complaint_ = "There is no file of this name.";
+        return std::nullopt;
+    }
+    if (!file.has_extension() && !query_.extensions.empty()) file += query_.extensions.front();
+    if (!fs::is_directory(file.parent_path(), ignored)) {
+        complaint_ = "There is no folder " + file.parent_path().string() + ".";
+        return std::nullopt;
+    }
+    if (fs::exists(file, ignored) && !replaces_) {
+        complaint_ = file.filename().string() + " exists already.";
+        replaces_ = true;
+        return std::nullopt;
+    }
+    return file;
+}
+
+FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
+    ImGui::Dummy({0, px(4)});
+    const float y = ImGui::GetCursorPosY();
+    if (!complaint_.empty())
+        row_text(fitting(complaint_, px(400)), px(28), color::key);
+    else if (!query_.extensions.empty()) {
+        ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(4), px(4)));
+        if (ImGui::Checkbox("All files", &all_files_))
+            entries_ = list_folder(folder_, all_files_ ? std::vector<std::string>{} : query_.extensions);
+        ImGui::PopStyleVar();
+        note_item(frame, "file/All files");
+    }
+    ImGui::SameLine();
+    ImGui::SetCursorPosY(y);
+    const char* does = replaces_ ? "Replace" : query_.saving ? "Save" : "Open";
+    const int button = dialog_buttons(frame, "file", {"Cancel", does}, true);
+    if (button == 0 || dialog_escape()) return {true, std::nullopt};
+    if (button != 1 && !chosen) return {};
+    const std::optional<fs::path> file = accept();
+    return {file.has_value(), file};
+}
+
+FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
+    if (!begin_dialog("file dialog", query_.title, open_, width, height)) return {};
+    draw_path(frame);
+    ImGui::Dummy({0, px(4)});
+    const float list_height = ImGui::GetContentRegionAvail().y - px(44);
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::window));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));
+    ImGui::BeginChild("places", {px(places_width), list_height});
+    draw_places(frame);
+    ImGui::EndChild();
+    ImGui::SameLine(0, px(8));
+    ImGui::BeginChild("entries", {0, list_height});
+    const bool chosen = draw_entries(frame);
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+    const Answer answer = draw_bottom(frame, chosen);
+    if (answer.done) {
+        open_ = false;
+        ImGui::CloseCurrentPopup();
+    }
+    end_dialog();
+    return answer;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,43 @@
+// The window's own file dialog: a path that completes with Tab, the folder's files of the wanted kind, places
+// to jump to, and a question before a file is replaced.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gui/file_list.h"
+#include "gui/gui_frame.h"
+
+namespace astrosplat {
+
+class FileDialog {
+  public:
+    void open(const FileQuery& query);
+    bool is_open() const { return open_; }
+
+    struct Answer {
+        bool done = false;  // the dialog has closed
+        std::optional<std::filesystem::path> file;
+    };
+    /// Draws it while it is open.
+    Answer draw(GuiFrame& frame);
+
+  private:
+    void go_to(const std::filesystem::path& folder);
+    void draw_places(const GuiFrame& frame);
+    void draw_path(GuiFrame& frame);
+    bool draw_entries(GuiFrame& frame);
+    Answer draw_bottom(GuiFrame& frame, bool chosen);
+    std::optional<std::filesystem::path> accept();
+
+    FileQuery query_;
+    bool open_ = false, all_files_ = false, focus_path_ = false;
+    bool replaces_ = false;  // the file exists and the person was told
+    std::filesystem::path folder_;
+    std::string typed_, complaint_;
+    std::vector<FileEntry> entries_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,81 @@
+// Folders read and paths completed.
+#include "gui/file_list.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+std::string lower(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+bool wanted(const FileEntry& entry, const std::vector<std::string>& extensions) {
+    if (entry.folder || extensions.empty()) return true;
+    const std::string ending = lower(fs::path(entry.name).extension().string());
+    return std::find(extensions.begin(), extensions.end(), ending) != extensions.end();
+}
+
+std::size_t common_length(const std::string& a, const std::string& b) {
+    std::size_t n = 0;
+    while (n < a.size() && n < b.size() && a[n] == b[n]) ++n;
+    // Not in the middle of a UTF-8 character.
+    while (n > 0 && n < a.size() && (static_cast<unsigned char>(a[n]) & 0xC0) == 0x80) --n;
+    return n;
+}
+
+}  // namespace
+
+std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std::string>& extensions) {
+    std::vector<FileEntry> entries;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        std::error_code ignored;
+        FileEntry entry{it->path().filename().string(), it->is_directory(ignored), 0};
+        if (entry.name.empty() || entry.name[0] == '.' || !wanted(entry, extensions)) continue;
+        if (!entry.folder) {
+            entry.bytes = it->file_size(ignored);
+            if (ignored) entry.bytes = 0;
+        }
+        entries.push_back(std::move(entry));
+    }
+    std::sort(entries.begin(), entries.end(), [](const FileEntry& a, const FileEntry& b) {
+        if (a.folder != b.folder) return a.folder;
+        const std::string la = lower(a.name), lb = lower(b.name);
+        return la != lb ? la < lb : a.name < b.name;
+    });
+    return entries;
+}
+
+fs::path home_folder() {
+    const char* home = std::getenv("HOME");
+    return home && *home ? fs::path(home) : fs::path("/");
+}
+
+fs::path typed_path(const std::string& typed, const fs::path& folder) {
+    if (typed == "~") return home_folder();
+    if (typed.rfind("~/", 0) == 0) return home_folder() / typed.substr(2);
+    return folder / typed;  // an absolute path stays as it is
+}
+
+std::string complete_path(const std::string& typed, const fs::path& folder) {
+    const std::size_t slash = typed.rfind('/');
+    const std::string head = slash == std::string::npos ? "" : typed.substr(0, slash + 1);
+    const std::string begun = typed.substr(head.size());
+    std::string common;
+    int matches = 0;
+    bool is_folder = false;
+    for (const FileEntry& entry : list_folder(typed_path(head, folder), {})) {
+        if (entry.name.rfind(begun, 0) != 0) continue;
+        common = matches++ == 0 ? entry.name : common.substr(0, common_length(common, entry.name));
+        is_folder = entry.folder;
+    }
+    if (matches == 0) return typed;
+    return head + common + (matches == 1 && is_folder ? "/" : "");
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,33 @@
+// What a file dialog shows and completes, without widgets: entries of a folder, and the rest of a path whose
+// beginning is typed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace astrosplat {
+
+struct FileEntry {
+    std::string name;
+    bool folder = false;
+    std::uintmax_t bytes = 0;
+};
+
+/// Folders first, then files, each by name without regard to case; hidden ones left out. `extensions`
+/// (".toml", lower case) limit the files; empty: all. An unreadable folder is empty.
+std::vector<FileEntry> list_folder(const std::filesystem::path& folder,
+                                   const std::vector<std::string>& extensions);
+
+/// `typed` as a path: "~/x" in the home folder, relative ones in `folder`.
+std::filesystem::path typed_path(const std::string& typed, const std::filesystem::path& folder);
+
+/// `typed` lengthened as far as the files there leave no choice; a folder that is the only choice gets its
+/// "/".
+std::string complete_path(const std::string& typed, const std::filesystem::path& folder);
+
+/// $HOME, or the root.
+std::filesystem::path home_folder();
+
+}  // namespace astrosplat

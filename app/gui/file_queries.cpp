@@ -1,0 +1,81 @@
+// Titles, kinds and folders of the file dialogs.
+#include <algorithm>
+#include <cctype>
+
+#include "gui/command_flow.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+using Extensions = std::vector<std::string>;
+const Extensions pictures{".png",  ".jpg", ".jpeg", ".exr", ".tif", ".tiff",
+                          ".fits", ".fit", ".fts",  ".hdr", ".dpx"};
+const Extensions sources{".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff",   ".fits", ".fit",
+                         ".fts", ".hdr", ".obj",  ".ply", ".pda", ".splats", ".csv",  ".txt"};
+const Extensions frames{".exr", ".png", ".tif"};
+
+fs::path folder_of_document(const Document& document) {
+    if (!document.file().empty()) return document.file().parent_path();
+    std::error_code ignored;
+    return fs::current_path(ignored);
+}
+
+std::string stem(const Document& document) { return fs::path(document.name()).stem().string(); }
+
+FileQuery reading(const char* title, const char* kind, const Extensions& extensions,
+                  const Document& document) {
+    return {title, false, kind, extensions, folder_of_document(document), ""};
+}
+FileQuery writing(const char* title, const char* kind, const Extensions& extensions, const Document& document,
+                  const std::string& name) {
+    return {title, true, kind, extensions, folder_of_document(document), name};
+}
+
+}  // namespace
+
+std::optional<FileQuery> query_for(Command::Kind kind, const Document& document) {
+    using Kind = Command::Kind;
+    switch (kind) {
+        case Kind::new_from_file:
+            return reading("New scene from a picture, mesh or splat file", "pictures", sources, document);
+        case Kind::open:
+            return reading("Open a scene", "scenes", {".toml"}, document);
+        case Kind::import_file:
+            return reading("Import as a layer", "pictures, meshes or splats", sources, document);
+        case Kind::set_reference:
+            return reading("Picture to compare with", "pictures", pictures, document);
+        case Kind::apply_look:
+            return reading("Apply a look to the selected layer", "looks", {".toml"}, document);
+        case Kind::save_as:
+            return writing("Save the scene as", "scenes", {".toml"}, document, stem(document) + ".toml");
+        case Kind::save_look:
+            return writing("Export the selected layer's look", "looks", {".toml"}, document, "look.toml");
+        case Kind::render_frame:
+            return writing("Render this frame to", "pictures", frames, document, stem(document) + ".exr");
+        case Kind::render_movie:
+            return writing("Render a movie to", "movies", {".mp4", ".mov", ".mkv"}, document,
+                           stem(document) + ".mp4");
+        case Kind::screenshot:
+            return writing("Save what the window shows", "pictures", {".png", ".exr"}, document,
+                           stem(document) + ".png");
+        default:
+            return std::nullopt;
+    }
+}
+
+std::optional<FileQuery> query_for(const FileRequest& request, const Document& document) {
+    switch (request.kind) {
+        case FileRequest::Kind::import:
+            return query_for(Command::Kind::import_file, document);
+        case FileRequest::Kind::save_look:
+            return query_for(Command::Kind::save_look, document);
+        case FileRequest::Kind::apply_look:
+            return query_for(Command::Kind::apply_look, document);
+        case FileRequest::Kind::parameter:
+            break;
+    }
+    return FileQuery{"File for " + request.key, false, "files", {}, folder_of_document(document), ""};
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,128 @@
+// One frame of the window: parts in their places, then the dialogs, then what was asked for.
+#include "gui/gui.h"
+
+#include <imgui.h>
+
+#include "gui/actions.h"
+#include "gui/command_flow.h"
+#include "gui/menu_bar.h"
+#include "gui/notice.h"
+#include "gui/panel/panel.h"
+#include "gui/sheets.h"
+#include "gui/snapshots.h"
+#include "gui/splitters.h"
+#include "gui/status_bar.h"
+#include "gui/theme.h"
+#include "gui/timeline.h"
+#include "gui/tool_row.h"
+#include "gui/viewport.h"
+
+namespace astrosplat {
+namespace {
+
+// The one window everything but dialogs is in.
+void begin_host() {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, color4(color::window));
+    ImGui::Begin("astrosplat", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse |
+                     ImGuiWindowFlags_NoNav);
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar(3);
+}
+
+// A child window over `area`; false (and nothing to end) where there is none.
+bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags) {
+    if (area.width <= 0 || area.height <= 0) return false;
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::BeginChild(name, {area.width, area.height}, false, flags);
+    ImGui::PopStyleVar();
+    return true;
+}
+
+bool keys_are_free() {
+    return !ImGui::GetIO().WantTextInput && !ImGui::IsAnyItemActive() &&
+           !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
+}  // namespace
+
+struct Gui::State {
+    Viewport viewport;
+    Timeline timeline;
+    StatusBar status_bar;
+    Panel panel;
+    CommandFlow flow;
+    std::vector<DrawnItem> drawn;
+    bool popup = false;
+
+    void draw_parts(GuiFrame& frame, const Layout& layout, Commands& commands);
+};
+
+void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& commands) {
+    constexpr ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+    draw_menu_bar(frame, layout.menu);
+    draw_tool_row(frame, layout.tools);
+    draw_notice(frame, layout.notice);
+    if (begin_part("viewport", layout.viewport, still)) {
+        viewport.draw(frame, layout.viewport);
+        ImGui::EndChild();
+    }
+    draw_snapshots(frame, layout.snapshots);
+    timeline.draw(frame, layout.timeline);
+    if (begin_part("panel", layout.panel, still)) {
+        panel.draw(frame.document, frame.view, frame.status, frame.requested);
+        ImGui::EndChild();
+    }
+    if (begin_part("status", layout.status, still)) {
+        status_bar.draw(frame, layout.status);
+        ImGui::EndChild();
+    }
+    draw_splitters(frame, layout);
+    draw_key_sheet(frame);
+    draw_log(frame);
+    flow.run(frame, panel, commands);
+}
+
+Gui::Gui() : state_(std::make_unique<State>()) {}
+Gui::~Gui() = default;
+
+void Gui::draw(Document& document, ViewState& view, const Status& status, Commands& commands) {
+    State& state = *state_;
+    state.drawn.clear();
+    Commands requested;
+    GuiFrame frame{document, view, status, requested, state.drawn};
+    view.changed_on_disk = status.changed_on_disk;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    if (keys_are_free()) run_shortcuts(frame);
+    begin_host();
+    const Layout layout = make_layout(view, size.x, size.y, px(1));
+    state.draw_parts(frame, layout, commands);
+    ImGui::End();
+    state.popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
+const ViewportInput& Gui::viewport_input() const { return state_->viewport.input(); }
+
+void Gui::ask_to_quit(const Document&) { state_->flow.ask({Command::Kind::quit, {}, {}, 0}); }
+
+bool Gui::busy() const {
+    return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput || state_->popup || state_->flow.busy() ||
+           state_->timeline.busy() || state_->panel.busy();
+}
+
+void Gui::set_file_chooser(std::function<bool(const FileQuery&)> chooser) {
+    state_->flow.set_chooser(std::move(chooser));
+}
+void Gui::file_chosen(const std::optional<std::filesystem::path>& file) { state_->flow.file_chosen(file); }
+
+const std::vector<DrawnItem>& Gui::drawn_items() const { return state_->drawn; }
+const Panel& Gui::panel() const { return state_->panel; }
+
+}  // namespace astrosplat

@@ -1,0 +1,63 @@
+// The few things all parts of the window do.
+#include "gui/gui_frame.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "scene/load.h"
+
+namespace astrosplat {
+
+void request(GuiFrame& frame, Command::Kind kind, std::size_t index) {
+    frame.requested.push_back({kind, {}, {}, index});
+}
+void request_path(GuiFrame& frame, Command::Kind kind, const std::filesystem::path& path) {
+    frame.requested.push_back({kind, path, {}, 0});
+}
+
+void try_edit(const std::function<void()>& edit) {
+    try {
+        edit();
+    } catch (const InputError& error) {
+        log_error(error.what());
+    } catch (const OutputError& error) {
+        log_error(error.what());
+    }
+}
+
+Gesture new_gesture() {
+    static Gesture last = Gesture{1} << 63;
+    return ++last;
+}
+
+void note_item(GuiFrame& frame, const std::string& name) {
+    const ImVec2 lo = ImGui::GetItemRectMin(), hi = ImGui::GetItemRectMax();
+    note_item(frame, name, {(lo.x + hi.x) * 0.5f, (lo.y + hi.y) * 0.5f});
+}
+void note_item(GuiFrame& frame, const std::string& name, glm::vec2 middle_px) {
+    frame.drawn.push_back({name, middle_px});
+}
+
+FrameRange frame_range(const Scene& scene) {
+    try {
+        const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
+        if (!frames.empty()) return {static_cast<double>(frames.front()), static_cast<double>(frames.back())};
+    } catch (const InputError&) {
+        // Said where it is typed; the timeline shows one frame meanwhile.
+    }
+    return {};
+}
+
+std::string short_count(std::int64_t count) {
+    const double n = static_cast<double>(count);
+    if (count < 1000) return fmt::format("{}", count);
+    if (n < 9.95e3) return fmt::format("{:.1f} k", n / 1e3);
+    if (n < 999.5e3) return fmt::format("{:.0f} k", n / 1e3);
+    if (n < 99.95e6) return fmt::format("{:.1f} M", n / 1e6);
+    if (n < 999.5e6) return fmt::format("{:.0f} M", n / 1e6);
+    return fmt::format("{:.1f} G", n / 1e9);
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,48 @@
+// What every part of the window is given for one frame, and the few things all parts do: ask for something,
+// edit without letting an error out, say where a control lies.
+#pragma once
+
+#include <functional>
+#include <glm/vec2.hpp>
+#include <string>
+#include <vector>
+
+#include "edit/commands.h"
+#include "edit/document.h"
+#include "edit/status.h"
+#include "edit/view_state.h"
+#include "gui/gui.h"
+
+namespace astrosplat {
+
+struct GuiFrame {
+    Document& document;
+    ViewState& view;
+    const Status& status;
+    Commands& requested;  // completed by CommandFlow: files asked for, unsaved changes saved or not
+    std::vector<DrawnItem>& drawn;
+};
+
+void request(GuiFrame& frame, Command::Kind kind, std::size_t index = 0);
+void request_path(GuiFrame& frame, Command::Kind kind, const std::filesystem::path& path);
+
+/// Runs an edit; bad input becomes a line of the message bar and the scene stays as it was.
+void try_edit(const std::function<void()>& edit);
+
+/// A gesture that no other drag has. The side panel's have the highest bit clear.
+Gesture new_gesture();
+
+/// Remembers where ImGui's last item lies, under a name ("File/Open...").
+void note_item(GuiFrame& frame, const std::string& name);
+void note_item(GuiFrame& frame, const std::string& name, glm::vec2 middle_px);
+
+/// First and last frame of [output] frames; 1, 1 where they cannot be read.
+struct FrameRange {
+    double first = 1.0, last = 1.0;
+};
+FrameRange frame_range(const Scene& scene);
+
+/// "240", "24 k", "12.4 M": three digits at most.
+std::string short_count(std::int64_t count);
+
+}  // namespace astrosplat

@@ -1,0 +1,23 @@
+// Numbers of the keys that ImGui does not name itself, as they index ImGuiIO::KeysDown. They are GLFW's:
+// letters and digits are their ASCII codes. Written out so that the widgets need no window library.
+#pragma once
+
+namespace astrosplat {
+
+namespace key_code {
+inline constexpr int space = 32, n0 = 48, n1 = 49, n3 = 51, n7 = 55, n9 = 57;
+inline constexpr int escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260, del = 261;
+inline constexpr int right = 262, left = 263, down = 264, up = 265;
+inline constexpr int page_up = 266, page_down = 267, home = 268, end = 269;
+inline constexpr int f1 = 290, f11 = 300, f12 = 301;
+inline constexpr int pad_enter = 335;
+}  // namespace key_code
+
+/// Tells ImGui which of these are its own keys, as the window library's backend does; for a context without
+/// one (pictures off screen, tests).
+void set_key_map();
+
+/// What is written on the key, for menus and the sheet of keys; "" for key 0.
+const char* key_name(int key);
+
+}  // namespace astrosplat

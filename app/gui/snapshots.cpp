@@ -1,0 +1,105 @@
+// A row of cards that scrolls sideways, and the button that takes another.
+#include "gui/snapshots.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+
+#include "gui/icons.h"
+#include "gui/theme.h"
+#include "gui/widgets.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float picture_width = 128, picture_height = 72, card_height = 108, margin = 8;
+
+std::string snapshot_line(const Snapshot& snapshot) {
+    const std::string splats = short_count(snapshot.splats);
+    return snapshot.seconds > 0 ? fmt::format("{}, {:.1f} s", splats, snapshot.seconds)
+                                : splats + ", preview";
+}
+
+// The thumbnail as large as its frame allows; its first row is the lowest.
+void draw_thumbnail(ImDrawList* list, const Snapshot& snapshot, ImVec2 corner) {
+    const float w = px(picture_width), h = px(picture_height);
+    list->AddRectFilled(corner, {corner.x + w, corner.y + h}, IM_COL32_BLACK, px(3));
+    if (!snapshot.thumbnail || snapshot.aspect <= 0) return;
+    const float shown_w = std::min(w, h * snapshot.aspect), shown_h = shown_w / snapshot.aspect;
+    const float x = corner.x + (w - shown_w) * 0.5f, y = corner.y + (h - shown_h) * 0.5f;
+    list->AddImage(snapshot.thumbnail, {x, y}, {x + shown_w, y + shown_h}, {0, 1}, {1, 0});
+}
+
+void card_menu(GuiFrame& frame, std::size_t index) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), px(8)));
+    const bool open = ImGui::BeginPopupContextItem("card menu");
+    ImGui::PopStyleVar();
+    if (!open) return;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
+    if (ImGui::MenuItem("Compare as B")) request(frame, Command::Kind::compare_snapshot, index);
+    note_item(frame, "snapshot/Compare as B");
+    if (ImGui::MenuItem("Restore")) request(frame, Command::Kind::restore_snapshot, index);
+    note_item(frame, "snapshot/Restore");
+    ImGui::Separator();
+    if (ImGui::MenuItem("Delete")) request(frame, Command::Kind::delete_snapshot, index);
+    note_item(frame, "snapshot/Delete");
+    ImGui::PopStyleVar();
+    ImGui::EndPopup();
+}
+
+void draw_card(GuiFrame& frame, std::size_t index) {
+    const Snapshot& snapshot = frame.status.snapshots[index];
+    ImGui::PushID(static_cast<int>(index));
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    if (ImGui::InvisibleButton("card", {px(picture_width), px(card_height)}))
+        request(frame, Command::Kind::compare_snapshot, index);
+    note_item(frame, fmt::format("snapshot {}", index));
+    const bool hovered = ImGui::IsItemHovered(), is_b = frame.status.b_snapshot == static_cast<int>(index);
+    tooltip("Click: compare as B. Right click: restore, delete");
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    draw_thumbnail(list, snapshot, corner);
+    const ImVec2 end{corner.x + px(picture_width), corner.y + px(picture_height)};
+    if (is_b || hovered) list->AddRect(corner, end, is_b ? color::accent : color::dim, px(3), 0, px(1.5f));
+    ImGui::PushFont(small_font());
+    const std::string name = (is_b ? "B  " : "") + snapshot.name;
+    list->AddText({corner.x, end.y + px(3)}, is_b ? color::accent : color::text,
+                  fitting(name, px(picture_width)).c_str());
+    list->AddText({corner.x, end.y + px(18)}, color::dim, snapshot_line(snapshot).c_str());
+    ImGui::PopFont();
+    card_menu(frame, index);
+    ImGui::PopID();
+}
+
+void draw_take_button(GuiFrame& frame) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), size{px(72), px(picture_height)};
+    if (icon_button("take snapshot", Icon::plus, size, px(14), color::dim,
+                    "Keep the look and the picture as they are now"))
+        request(frame, Command::Kind::take_snapshot);
+    note_item(frame, "take snapshot");
+    ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3));
+}
+
+}  // namespace
+
+void draw_snapshots(GuiFrame& frame, const Rect& area) {
+    if (area.height <= 0) return;
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::BeginChild("snapshots", {area.width, area.height}, false, ImGuiWindowFlags_HorizontalScrollbar);
+    ImGui::PopStyleVar();
+    ImGui::SetCursorPos({px(margin), px(margin)});
+    draw_take_button(frame);
+    for (std::size_t i = 0; i < frame.status.snapshots.size(); ++i) {
+        ImGui::SameLine(0, px(margin));
+        draw_card(frame, i);
+    }
+    if (frame.status.snapshots.empty()) {
+        ImGui::SameLine(0, px(12));
+        row_text("Snapshots keep a look with its picture, to compare with and to come back to.",
+                 px(picture_height), color::dim);
+    }
+    ImGui::EndChild();
+}
+
+}  // namespace astrosplat

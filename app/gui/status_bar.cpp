@@ -1,0 +1,111 @@
+// The status bar: right parts first, the message gets what is left.
+#include "gui/status_bar.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/icons.h"
+#include "gui/theme.h"
+#include "gui/widgets.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float margin = 12, gap = 24, probe_width = 348, bar_width = 120;
+
+// ".214", "1.25", "12.5": as many digits as are read at a glance, always as wide as its neighbours of one
+// size.
+std::string light_text(float value) {
+    std::string text = fmt::format("{:.3f}", value);
+    if (text.rfind("0.", 0) == 0) text.erase(0, 1);
+    if (text.rfind("-0.", 0) == 0) text.erase(1, 1);
+    return text;
+}
+
+std::string machine_text(const Status& status) {
+    const double gigabytes = static_cast<double>(status.memory_bytes) / 1e9;
+    const char* cores = status.threads == 1 ? "core" : "cores";
+    return fmt::format("{:.1f} GB, {} {}", gigabytes, status.threads, cores);
+}
+
+// Ends at `right`; returns where it begins.
+float right_text(const std::string& text, float right, const Rect& area, ImU32 c) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const float x = std::floor(right - size.x);
+    ImGui::GetWindowDrawList()->AddText({x, area.y + std::floor((area.height - size.y) * 0.5f)}, c,
+                                        text.c_str());
+    return x;
+}
+
+float draw_job(GuiFrame& frame, float right, const Rect& area) {
+    const JobStatus& job = frame.status.job;
+    if (job.name.empty()) return right;
+    const float side = area.height;
+    ImGui::SetCursorScreenPos({right - side, area.y});
+    if (icon_button("cancel job", Icon::cross, {side, side}, px(10), color::dim, "Cancel (Esc)"))
+        request(frame, Command::Kind::cancel_render);
+    note_item(frame, "cancel job");
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float x1 = right - side - px(4), x0 = x1 - px(bar_width);
+    const float y0 = std::floor(area.y + area.height * 0.5f - px(2)), y1 = y0 + px(4);
+    const float done = x0 + (x1 - x0) * std::clamp(job.progress, 0.0f, 1.0f);
+    list->AddRectFilled({x0, y0}, {x1, y1}, color::field, px(2));
+    list->AddRectFilled({x0, y0}, {done, y1}, color::accent, px(2));
+    return right_text(job.name, x0 - px(8), area, color::text) - px(gap);
+}
+
+}  // namespace
+
+std::string probe_text(const PixelProbe& probe) {
+    std::string text =
+        fmt::format("x {:<4} y {:<4}  R {}  G {}  B {}  A {}", probe.x, probe.y, light_text(probe.rgba[0]),
+                    light_text(probe.rgba[1]), light_text(probe.rgba[2]), light_text(probe.rgba[3]));
+    if (probe.depth) text += fmt::format("  Z {:.4g}", *probe.depth);
+    return text;
+}
+
+void StatusBar::take_message(const Status& status) {
+    const std::string& text = status.message.text;
+    if (text == last_) return;
+    last_ = text;
+    if (status.message.error) unread_ = text;
+}
+
+void StatusBar::draw(GuiFrame& frame, const Rect& area) {
+    take_message(frame.status);
+    ImGui::PushFont(small_font());
+    float right = right_text(machine_text(frame.status), area.x + area.width - px(margin), area, color::dim);
+    right = draw_job(frame, right - px(gap), area);
+    // Begins at a fixed place, so that it does not wander while numbers change.
+    if (frame.status.probe) {
+        const float x = right - px(probe_width);
+        ImGui::GetWindowDrawList()->AddText(
+            {std::floor(x), area.y + std::floor((area.height - ImGui::GetFontSize()) * 0.5f)}, color::text,
+            probe_text(*frame.status.probe).c_str());
+        right = x - px(gap);
+    }
+    const bool error = !unread_.empty();
+    const std::string whole = error                        ? unread_
+                              : frame.status.message.error ? ""  // was read
+                                                           : frame.status.message.text;
+    const float room = right - area.x - px(margin);
+    const std::string text = fitting(whole, error ? room - px(20) : room);
+    ImGui::SetCursorScreenPos({area.x + px(margin), area.y});
+    if (error) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        draw_icon(ImGui::GetWindowDrawList(), Icon::warning, {at.x + px(6), at.y + area.height * 0.5f},
+                  px(12), color::error);
+        ImGui::SetCursorScreenPos({at.x + px(20), area.y});
+    }
+    row_text(text, area.height, error ? color::error : color::dim);
+    note_item(frame, "message");
+    if (ImGui::IsItemHovered() && error) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (text != whole || error) tooltip((whole + (error ? "\nClick: read" : "")).c_str());
+    if (error && ImGui::IsItemClicked()) unread_.clear();
+    ImGui::PopFont();
+}
+
+}  // namespace astrosplat

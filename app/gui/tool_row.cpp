@@ -1,0 +1,178 @@
+// Tools at the left are always there; those at the right move into a menu, the rarest first, where the row is
+// too narrow for them.
+#include "gui/tool_row.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "gui/action_functions.h"
+#include "gui/icons.h"
+#include "gui/theme.h"
+#include "gui/widgets.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float control_height = 24, gap = 12, small_gap = 4;
+
+// A segmented control and the names tests know its buttons by.
+int choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segments, int chosen) {
+    std::array<ImVec2, 8> middles;
+    const int clicked = segmented(id, segments, chosen, px(control_height), middles.data());
+    std::size_t i = 0;
+    for (const Segment& segment : segments) {
+        note_item(frame, std::string(id) + "/" + segment.label, {middles[i].x, middles[i].y});
+        ++i;
+    }
+    return clicked;
+}
+
+void view_choice(GuiFrame& frame) {
+    const int clicked = choice(frame, "view",
+                               {{"Camera", "Through the scene's camera (0)"},
+                                {"Free", "A camera of the window, the scene's stays (drag in the picture)"},
+                                {"Front", "Along z, without perspective (1)"},
+                                {"Top", "From above (7)"},
+                                {"Side", "Along x (3)"}},
+                               static_cast<int>(frame.view.view));
+    if (clicked >= 0) frame.view.view = static_cast<ViewKind>(clicked);
+}
+
+void size_choice(GuiFrame& frame) {
+    const int clicked =
+        choice(frame, "size",
+               {{"Fit", "The picture at the size of the window (Z)"},
+                {"1:1", "The picture at the size of the output: wheel zooms, middle drag moves (Z)"}},
+               static_cast<int>(frame.view.size));
+    if (clicked >= 0 && clicked != static_cast<int>(frame.view.size)) toggle_one_to_one(frame);
+}
+
+void compare_choice(GuiFrame& frame) {
+    const int clicked = choice(frame, "compare",
+                               {{"A", "The look as it is now (Tab)"},
+                                {"A|B", "Wipe between now and B"},
+                                {"B", "The stored look; B stores one (Tab)"},
+                                {"Ref", "Over the reference picture"},
+                                {"Diff", "Difference from the reference picture"}},
+                               static_cast<int>(frame.view.compare));
+    if (clicked >= 0) set_compare(frame, static_cast<CompareMode>(clicked));
+    ViewState& view = frame.view;
+    ImGui::SameLine(0, px(small_gap));
+    if (view.compare == CompareMode::reference) {
+        float percent = view.reference_opacity * 100.0f;
+        if (drag_field("##opacity", percent, 0.5f, 0, 100, "%.0f %%", px(52), color::text))
+            view.reference_opacity = percent / 100.0f;
+        tooltip("How much of the reference is seen");
+    } else if (view.compare == CompareMode::difference) {
+        drag_field("##gain", view.difference_gain, 0.02f, 0.1f, 100, "x %.1f", px(52), color::text);
+        tooltip("The difference is multiplied by this");
+    }
+}
+
+// A field that opens a list of choices.
+template <class Enum>
+void combo(const char* id, Enum& value, const std::vector<const char*>& names, float width) {
+    ImGui::SetNextItemWidth(width);
+    const auto index = static_cast<std::size_t>(value);
+    if (!ImGui::BeginCombo(id, names[index], ImGuiComboFlags_NoArrowButton)) return;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (ImGui::Selectable(names[i], i == index)) value = static_cast<Enum>(i);
+    ImGui::EndCombo();
+}
+
+void display_control(GuiFrame& frame) {
+    combo("##display", frame.view.display, {"As output", "Linear", "sRGB", "Soft"}, px(84));
+    note_item(frame, "display");
+    tooltip("How the picture's linear light is shown; rendered files follow [output] view");
+}
+
+void exposure_control(GuiFrame& frame) {
+    float& stops = frame.view.inspect_exposure;
+    drag_field("##exposure", stops, 0.02f, -20, 20, "%+.1f EV", px(72), stops != 0 ? color::key : color::dim);
+    note_item(frame, "exposure");
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) stops = 0.0f;
+    tooltip("Exposure of this window only, to look into dark and bright parts. Never saved. Right click: 0");
+}
+
+void preview_control(GuiFrame& frame) {
+    float percent = frame.view.preview_share * 100.0f;
+    const char* format = percent > 0 ? "Preview %.0f %%" : "Preview auto";
+    if (drag_field("##preview", percent, 0.2f, 0, 100, format, px(108), color::dim))
+        frame.view.preview_share = percent < 0.5f ? 0.0f : percent / 100.0f;
+    note_item(frame, "preview");
+    tooltip("Share of every layer's dots drawn while something moves; at 0 it is sized to stay fluid");
+}
+
+void engine_control(GuiFrame& frame) {
+    combo("##engine", frame.view.engine, {"Engine auto", "OpenGL", "Processor"}, px(96));
+    note_item(frame, "engine");
+    const std::string text = "What draws the preview. Now: " + frame.status.engine;
+    tooltip(text.c_str());
+}
+
+struct Tool {
+    float width;  // at scale 1
+    void (*draw)(GuiFrame&);
+};
+constexpr std::array<Tool, 4> right_tools{
+    {{84, display_control}, {72, exposure_control}, {108, preview_control}, {96, engine_control}}};
+
+void rest_of_tools(GuiFrame& frame, std::size_t from) {
+    const bool clicked = icon_button("more", Icon::dots, {px(control_height), px(control_height)}, px(12),
+                                     color::dim, nullptr);
+    note_item(frame, "more tools");
+    if (clicked) ImGui::OpenPopup("rest");
+    if (!ImGui::BeginPopup("rest")) return;
+    for (std::size_t i = from; i < right_tools.size(); ++i) right_tools[i].draw(frame);
+    ImGui::EndPopup();
+}
+
+void draw_right_tools(GuiFrame& frame, const Rect& area, float left_end) {
+    const float more = px(control_height) + px(small_gap);
+    const float right = area.x + area.width - px(8);
+    const auto width_of = [](std::size_t count) {
+        float width = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            width += px(right_tools[i].width) + (i > 0 ? px(small_gap) : 0);
+        return width;
+    };
+    std::size_t fits = right_tools.size();
+    while (fits > 0 && left_end + px(gap) + width_of(fits) + (fits < right_tools.size() ? more : 0) > right)
+        --fits;
+    const bool rest = fits < right_tools.size();
+    ImGui::SetCursorScreenPos({std::floor(right - width_of(fits) - (rest ? more : 0)), area.y + px(4)});
+    for (std::size_t i = 0; i < fits; ++i) {
+        right_tools[i].draw(frame);
+        ImGui::SameLine(0, px(small_gap));
+    }
+    if (rest) rest_of_tools(frame, fits);
+}
+
+}  // namespace
+
+void draw_tool_row(GuiFrame& frame, const Rect& area) {
+    if (area.height <= 0) return;
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::BeginChild("tools", {area.width, area.height}, false, ImGuiWindowFlags_NoScrollbar);
+    ImGui::PopStyleVar();
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(px(8), (px(control_height) - ImGui::GetFontSize()) / 2));
+    ImGui::SetCursorScreenPos({area.x + px(8), area.y + px(4)});
+    view_choice(frame);
+    ImGui::SameLine(0, px(gap));
+    size_choice(frame);
+    ImGui::SameLine(0, px(gap));
+    compare_choice(frame);
+    ImGui::SameLine(0, 0);
+    draw_right_tools(frame, area, ImGui::GetCursorScreenPos().x);
+    ImGui::PopStyleVar();
+    ImGui::EndChild();
+}
+
+}  // namespace astrosplat

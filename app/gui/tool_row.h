@@ -1,0 +1,10 @@
+// The row of tools over the picture: from where it is seen, at what size, compared with what, and how shown.
+#pragma once
+
+#include "gui/gui_frame.h"
+
+namespace astrosplat {
+
+void draw_tool_row(GuiFrame& frame, const Rect& area);
+
+}  // namespace astrosplat

@@ -1,0 +1,135 @@
+// Picture and mouse of the viewport.
+#include "gui/viewport.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/theme.h"
+#include "gui/viewport_overlay.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float wipe_grip = 6;  // px at either side
+constexpr double zoom_least = 1.0 / 16, zoom_most = 32;
+constexpr double zoom_step = 1.189207115002721;  // a quarter of doubling, for a notch of the wheel
+
+bool near_wipe(const GuiFrame& frame, const Rect& picture) {
+    if (frame.view.compare != CompareMode::wipe) return false;
+    const float edge = picture.x + picture.width * frame.view.wipe;
+    return std::fabs(ImGui::GetIO().MousePos.x - edge) <= px(wipe_grip);
+}
+
+void draw_picture(const GuiFrame& frame, const Rect& area, const Rect& picture) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height}, IM_COL32_BLACK);
+    if (!frame.status.picture_texture) return;
+    // The texture's first row is the picture's lowest.
+    list->AddImage(frame.status.picture_texture, {picture.x, picture.y},
+                   {picture.x + picture.width, picture.y + picture.height}, {0, 1}, {1, 0});
+}
+
+glm::dvec3 fly_keys() {
+    const auto axis = [](int plus, int minus) {
+        return (ImGui::IsKeyDown(plus) ? 1.0 : 0.0) - (ImGui::IsKeyDown(minus) ? 1.0 : 0.0);
+    };
+    return {axis('D', 'A'), axis('E', 'Q'), axis('W', 'S')};
+}
+
+}  // namespace
+
+ViewportInput::Drag drag_of(int button, bool shift, bool alt) {
+    using Drag = ViewportInput::Drag;
+    if (alt) return button == 0 ? Drag::orbit : button == 2 ? Drag::pan : Drag::dolly;
+    if (button == 0) return shift ? Drag::pan : Drag::orbit;
+    return button == 2 ? Drag::pan : Drag::look;
+}
+
+void Viewport::begin_drag(GuiFrame& frame, const Rect& picture) {
+    const ImGuiIO& io = ImGui::GetIO();
+    for (int button = 0; button < 3; ++button)
+        if (io.MouseClicked[button]) button_ = button;
+    input_.drag = button_ == 0 && near_wipe(frame, picture) ? ViewportInput::Drag::wipe
+                                                            : drag_of(button_, io.KeyShift, io.KeyAlt);
+    input_.drag_begins = true;
+    moves_picture_ = input_.drag == ViewportInput::Drag::pan && frame.view.size == SizeMode::one_to_one;
+}
+
+// 1:1: pan and wheel move the picture in the window; the camera stays.
+void Viewport::move_picture(GuiFrame& frame, const Rect& area) {
+    ViewState& view = frame.view;
+    if (view.size != SizeMode::one_to_one) return;
+    if (moves_picture_ && input_.drag == ViewportInput::Drag::pan) {
+        view.pan_px += input_.delta_px;
+        input_.drag = ViewportInput::Drag::none;
+        input_.drag_begins = false;
+    }
+    if (input_.wheel == 0.0f || input_.drag == ViewportInput::Drag::look) return;
+    double zoom = view.zoom;
+    for (int i = 0; i < std::abs(static_cast<int>(std::round(input_.wheel))); ++i)
+        zoom *= input_.wheel > 0 ? zoom_step : 1.0 / zoom_step;
+    zoom = std::clamp(zoom, zoom_least, zoom_most);
+    if (std::fabs(zoom - std::round(zoom)) < 0.01) zoom = std::round(zoom);
+    // What lies under the mouse stays there.
+    const glm::dvec2 from_middle = input_.mouse_px - glm::dvec2(area.width, area.height) * 0.5;
+    view.pan_px = from_middle - (from_middle - view.pan_px) * (zoom / view.zoom);
+    view.zoom = zoom;
+    input_.wheel = 0.0f;
+}
+
+void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& picture) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const ViewportInput::Drag before = input_.drag;
+    const bool moved_before = moves_picture_;
+    input_ = {};
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::InvisibleButton("picture", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
+                               ImGuiButtonFlags_MouseButtonRight);
+    note_item(frame, "picture");
+    ImGui::SetItemAllowOverlap();
+    input_.hovered = ImGui::IsItemHovered();
+    input_.mouse_px = {io.MousePos.x - area.x, io.MousePos.y - area.y};
+    input_.double_click = input_.hovered && io.MouseDoubleClicked[0] && !io.KeyAlt && !io.KeyShift;
+    if (input_.hovered || ImGui::IsItemActive()) input_.wheel = io.MouseWheel;
+    if (ImGui::IsItemActivated()) {
+        begin_drag(frame, picture);
+    } else if (ImGui::IsItemActive()) {
+        input_.drag = moved_before ? ViewportInput::Drag::pan : before;
+        input_.delta_px = {io.MouseDelta.x, io.MouseDelta.y};
+    } else {
+        input_.drag_ends = before != ViewportInput::Drag::none;
+        moves_picture_ = false;
+    }
+    if (input_.drag == ViewportInput::Drag::look) {
+        input_.fly = fly_keys();
+        input_.speed = io.KeyShift ? 10.0 : io.KeyAlt ? 0.1 : 1.0;
+    }
+    const bool wiping = input_.drag == ViewportInput::Drag::wipe;
+    if (wiping)
+        frame.view.wipe = std::clamp((io.MousePos.x - picture.x) / std::max(picture.width, 1.0f), 0.0f, 1.0f);
+    if (wiping || (input_.hovered && near_wipe(frame, picture)))
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    move_picture(frame, area);
+}
+
+void Viewport::draw(GuiFrame& frame, const Rect& area) {
+    const auto place = [&] {
+        const PictureStatus& picture = frame.status.picture;
+        return picture.width > 0 ? place_picture(frame.view, area, picture.width, picture.height) : area;
+    };
+    read_mouse(frame, area, place());
+    const Rect picture = place();
+    ImGui::PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
+    draw_picture(frame, area, picture);
+    draw_overlay_lines(frame, area);
+    draw_gate(frame, area, picture);
+    draw_wipe(frame, area, picture);
+    draw_view_line(frame, area);
+    draw_badge(frame, area);
+    ImGui::PopClipRect();
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,132 @@
+// Marks over the picture: thin, grey, and only those that were asked for; and the badge in its corner.
+#include "gui/viewport_overlay.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "gui/icons.h"
+#include "gui/theme.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float inset = 12;
+
+ImVec2 lo(const Rect& r) { return {r.x, r.y}; }
+ImVec2 hi(const Rect& r) { return {r.x + r.width, r.y + r.height}; }
+
+Rect shrunk(const Rect& r, float share) {
+    const float w = r.width * share, h = r.height * share;
+    return {r.x + (r.width - w) * 0.5f, r.y + (r.height - h) * 0.5f, w, h};
+}
+
+// "16:9" where the numbers are small, else "2.39:1".
+std::string aspect_text(std::int64_t width, std::int64_t height) {
+    const std::int64_t divisor = std::gcd(width, height);
+    if (divisor > 0 && width / divisor < 30 && height / divisor < 30)
+        return fmt::format("{}:{}", width / divisor, height / divisor);
+    return fmt::format("{:.2f}:1", static_cast<double>(width) / static_cast<double>(height));
+}
+
+const char* view_name(ViewKind view) {
+    switch (view) {
+        case ViewKind::camera:
+            return "Camera";
+        case ViewKind::free:
+            return "Free view, 0 returns to the camera";
+        case ViewKind::front:
+            return "Front";
+        case ViewKind::top:
+            return "Top";
+        case ViewKind::side:
+            return "Side";
+    }
+    return "";
+}
+
+// The part of the picture that the output shows: as high as it, as the camera's angle is vertical.
+Rect gate_of(const Scene& scene, const Rect& picture) {
+    const float aspect = static_cast<float>(static_cast<double>(scene.output.width) /
+                                            static_cast<double>(scene.output.height));
+    const float width = std::round(picture.height * aspect);
+    return {std::round(picture.x + (picture.width - width) * 0.5f), picture.y, width, picture.height};
+}
+
+// Dims the picture at the left and right of the gate.
+void dim_outside(ImDrawList* list, const Rect& area, const Rect& gate) {
+    const ImU32 shade = color::with_opacity(IM_COL32_BLACK, 0.55f);
+    if (gate.x > area.x) list->AddRectFilled(lo(area), {gate.x, area.y + area.height}, shade);
+    if (gate.x + gate.width < area.x + area.width)
+        list->AddRectFilled({gate.x + gate.width, area.y}, hi(area), shade);
+}
+
+// Text that can be read over black and over white.
+void shadowed(ImDrawList* list, ImVec2 at, ImU32 c, const std::string& text) {
+    list->AddText({at.x + 1, at.y + 1}, color::with_opacity(IM_COL32_BLACK, 0.8f), text.c_str());
+    list->AddText(at, c, text.c_str());
+}
+
+}  // namespace
+
+void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& picture) {
+    const ViewState& view = frame.view;
+    const bool through_camera = view.view == ViewKind::camera;
+    if (!through_camera || frame.status.picture.width <= 0) return;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const Rect gate = gate_of(frame.document.scene(), picture);
+    const ImU32 grey = color::with_opacity(color::dim, 0.7f);
+    if (view.gate) {
+        dim_outside(list, area, gate);
+        list->AddRect(lo(gate), hi(gate), grey);
+    }
+    if (!view.safe_areas) return;
+    // SMPTE ST 2046-1: 93 % for action, 90 % for titles.
+    for (const float share : {0.93f, 0.9f}) {
+        const Rect safe = shrunk(gate, share);
+        list->AddRect(lo(safe), hi(safe), color::with_opacity(color::dim, 0.45f));
+    }
+}
+
+void draw_overlay_lines(const GuiFrame& frame, const Rect& area) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    for (const auto& line : frame.status.overlay_lines) {
+        for (const glm::vec2& p : line) list->PathLineTo({area.x + p.x, area.y + p.y});
+        list->PathStroke(color::with_opacity(color::key, 0.75f), ImDrawFlags_None, px(1.2f));
+    }
+}
+
+void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& picture) {
+    if (frame.view.compare != CompareMode::wipe) return;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float x = std::round(picture.x + picture.width * frame.view.wipe) + 0.5f;
+    list->AddLine({x, area.y}, {x, area.y + area.height}, color::with_opacity(color::text, 0.8f));
+    const ImVec2 grip{x, area.y + area.height * 0.5f};
+    list->AddRectFilled({grip.x - px(3), grip.y - px(18)}, {grip.x + px(3), grip.y + px(18)}, color::text,
+                        px(3));
+    ImGui::PushFont(small_font());
+    const std::string b = frame.status.b_name.empty() ? "B" : "B  " + frame.status.b_name;
+    const float y = area.y + px(inset);
+    shadowed(list, {x - px(inset) - ImGui::CalcTextSize("A").x, y}, color::text, "A");
+    shadowed(list, {x + px(inset), y}, color::text, b);
+    ImGui::PopFont();
+}
+
+void draw_view_line(const GuiFrame& frame, const Rect& area) {
+    const OutputParams& output = frame.document.scene().output;
+    std::string text = view_name(frame.view.view);
+    text += fmt::format("   frame {:g}", frame.view.frame);
+    if (frame.view.view == ViewKind::camera && frame.view.gate)
+        text += "   " + aspect_text(output.width, output.height) + " gate";
+    if (frame.view.lock_to_camera) text += "   locked to the camera";
+    if (frame.view.size == SizeMode::one_to_one)
+        text += fmt::format("   {}x{} at {:.0f} %", output.width, output.height, frame.view.zoom * 100.0);
+    ImGui::PushFont(small_font());
+    shadowed(ImGui::GetWindowDrawList(), {area.x + px(inset), area.y + px(inset)}, color::dim, text);
+    ImGui::PopFont();
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,125 @@
+// Shared controls.
+#include "gui/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "gui/theme.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float segment_padding = 10.0f;
+constexpr float wait_s = 0.5f;  // before a tooltip
+
+float segment_width(const char* label) {
+    return std::round(ImGui::CalcTextSize(label).x + 2 * px(segment_padding));
+}
+
+// Length of the UTF-8 character that begins at `at`; bytes that begin none count as one.
+std::size_t character_length(const std::string& text, std::size_t at) {
+    std::size_t end = at + 1;
+    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) ++end;
+    return end - at;
+}
+
+}  // namespace
+
+void tooltip(const char* text) {
+    if (!text || !ImGui::IsItemHovered()) return;
+    static ImVec2 resting;  // where the mouse came to rest, and when: one mouse, one tooltip
+    static double since = 0.0;
+    const ImVec2 mouse = ImGui::GetMousePos();
+    if (mouse.x != resting.x || mouse.y != resting.y) {
+        resting = mouse;
+        since = ImGui::GetTime();
+    }
+    if (ImGui::GetTime() - since >= wait_s) ImGui::SetTooltip("%s", text);
+}
+
+float segmented_width(std::initializer_list<Segment> segments) {
+    float width = 0.0f;
+    for (const Segment& segment : segments) width += segment_width(segment.label);
+    return width;
+}
+
+int segmented(const char* id, std::initializer_list<Segment> segments, int chosen, float height,
+              ImVec2* middles) {
+    ImGui::PushID(id);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float total = segmented_width(segments), radius = px(3);
+    list->AddRectFilled(corner, {corner.x + total, corner.y + height}, color::field, radius);
+    int clicked = -1, index = 0;
+    float x = corner.x;
+    for (const Segment& segment : segments) {
+        const float width = segment_width(segment.label);
+        const ImVec2 lo{x, corner.y}, hi{x + width, corner.y + height};
+        ImGui::SetCursorScreenPos(lo);
+        if (ImGui::InvisibleButton(segment.label, {width, height})) clicked = index;
+        if (index == chosen)
+            list->AddRectFilled(lo, hi, color::selection, radius);
+        else if (ImGui::IsItemHovered())
+            list->AddRectFilled(lo, hi, color::hover, radius);
+        tooltip(segment.tooltip);
+        const ImVec2 size = ImGui::CalcTextSize(segment.label);
+        list->AddText(
+            {std::floor(x + (width - size.x) * 0.5f), std::floor(corner.y + (height - size.y) * 0.5f)},
+            index == chosen ? color::text : color::dim, segment.label);
+        if (middles) middles[index] = {x + width * 0.5f, corner.y + height * 0.5f};
+        x = hi.x;
+        ++index;
+    }
+    ImGui::PopID();
+    return clicked;
+}
+
+bool drag_field(const char* id, float& value, float speed, float lo, float hi, const char* format,
+                float width, ImU32 text_color) {
+    ImGui::SetNextItemWidth(width);
+    ImGui::PushStyleColor(ImGuiCol_Text, text_color);
+    const bool changed = ImGui::DragFloat(id, &value, speed, lo, hi, format, ImGuiSliderFlags_AlwaysClamp);
+    ImGui::PopStyleColor();
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    return changed;
+}
+
+void row_text(const std::string& text, float row_height, ImU32 text_color) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    ImGui::GetWindowDrawList()->AddText({at.x, at.y + std::floor((row_height - size.y) * 0.5f)}, text_color,
+                                        text.c_str());
+    ImGui::Dummy({size.x, row_height});
+}
+
+bool dialog_button(const char* label, bool is_default, float least) {
+    const float width = std::max(px(least), ImGui::CalcTextSize(label).x + px(24));
+    if (is_default) {
+        ImGui::PushStyleColor(ImGuiCol_Button, color4(color::with_opacity(color::accent, 0.55f)));
+        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, color4(color::with_opacity(color::accent, 0.75f)));
+    }
+    const bool clicked = ImGui::Button(label, {width, px(28)});
+    if (is_default) ImGui::PopStyleColor(2);
+    return clicked;
+}
+
+std::string fitting(const std::string& text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    std::vector<std::string> characters;
+    for (std::size_t i = 0; i < text.size(); i += characters.back().size())
+        characters.push_back(text.substr(i, character_length(text, i)));
+    // Takes characters out of the middle, one after the other.
+    std::size_t head = characters.size() / 2, tail = characters.size() - head;
+    while (head + tail > 2) {
+        (head > tail ? head : tail)--;
+        std::string shorter;
+        for (std::size_t i = 0; i < head; ++i) shorter += characters[i];
+        shorter += "\xE2\x80\xA6";
+        for (std::size_t i = characters.size() - tail; i < characters.size(); ++i) shorter += characters[i];
+        if (ImGui::CalcTextSize(shorter.c_str()).x <= width) return shorter;
+    }
+    return "\xE2\x80\xA6";
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,37 @@
+// Controls that several parts of the window share, in the theme's manner.
+#pragma once
+
+#include <imgui.h>
+
+#include <initializer_list>
+#include <string>
+
+namespace astrosplat {
+
+/// A tooltip of the last item after a short wait.
+void tooltip(const char* text);
+
+/// Buttons joined to one row, of which one is chosen: returns the one clicked, else -1. The last item is then
+/// the whole row; `middles` (may be nullptr) receives the middle of every button.
+struct Segment {
+    const char* label;
+    const char* tooltip;
+};
+int segmented(const char* id, std::initializer_list<Segment> segments, int chosen, float height,
+              ImVec2* middles);
+float segmented_width(std::initializer_list<Segment> segments);
+
+/// A field that is dragged, or typed into after a double click. True when it changed the value.
+bool drag_field(const char* id, float& value, float speed, float lo, float hi, const char* format,
+                float width, ImU32 text_color);
+
+/// Text in the vertical middle of a row of this height, at the cursor.
+void row_text(const std::string& text, float row_height, ImU32 text_color);
+
+/// A button as wide as its text and at least `least` px; the accent for what Enter would do.
+bool dialog_button(const char* label, bool is_default, float least);
+
+/// Shortened in its middle ("whirl...final.toml") to fit `width` px of the current font.
+std::string fitting(const std::string& text, float width);
+
+}  // namespace astrosplat
