@@ -44,12 +44,6 @@ const std::array<CubeAxes, 6> cube_axes = {{
 
 std::int64_t inner(std::int64_t stored) { return stored - 2 * border; }
 
-// OpenEXR's latlong: latitude +pi/2 on top, longitude +pi on the left, 0 towards +z, pi/2 towards +x.
-Place latlong_place(const glm::dvec3& d, double width, double height) {
-    double longitude = real::atan2(d.x, d.z), latitude = real::asin(d.y);
-    return {0, (0.5 - longitude / (2.0 * real::pi)) * width, (0.5 - latitude / real::pi) * height};
-}
-
 Place cube_place(const glm::dvec3& d, double size) {
     glm::dvec3 a = glm::abs(d);
     std::size_t axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
@@ -205,7 +199,11 @@ void check_cube(const std::vector<std::filesystem::path>& files,
 glm::vec3 sample_level(const std::vector<std::vector<Image>>& faces, std::size_t level, const glm::dvec3& d) {
     const Image& first = faces[0][level];
     auto w = static_cast<double>(inner(first.width)), h = static_cast<double>(inner(first.height));
-    Place place = faces.size() == 1 ? latlong_place(d, w, h) : cube_place(d, w);
+    if (faces.size() == 1) {
+        glm::dvec2 place = latlong_place(d);
+        return bilinear(first, place.x * w, place.y * h);
+    }
+    Place place = cube_place(d, w);
     return bilinear(faces[place.face][level], place.x, place.y);
 }
 
@@ -231,6 +229,8 @@ Environment load_environment(const EnvironmentParams& params) {
         Image picture = load_linear_image(file);
         environment.faces.emplace_back();
         environment.faces.back().push_back(with_border(picture));
+        environment.largest_texel =
+            std::max(environment.largest_texel, largest_value(environment.faces.back()[0]));
     }
     if (files.size() == 6) check_cube(files, environment.faces);
     if (!files.empty()) build_levels(environment.faces);
@@ -241,9 +241,12 @@ Environment load_environment(const EnvironmentParams& params) {
 void set_environment_params(Environment& environment, const EnvironmentParams& params) {
     environment.environment_from_world = glm::transpose(rotation_from_degrees(params.rotation));
     environment.gain = params.gain;
-    environment.largest = 0.0f;
-    for (const std::vector<Image>& face : environment.faces)
-        environment.largest = std::max(environment.largest, largest_value(face[0]) * params.gain);
+    environment.largest = environment.largest_texel * params.gain;
+}
+
+glm::dvec2 latlong_place(const glm::dvec3& direction) {
+    double longitude = real::atan2(direction.x, direction.z), latitude = real::asin(direction.y);
+    return {0.5 - longitude / (2.0 * real::pi), 0.5 - latitude / real::pi};
 }
 
 glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& direction, double spread) {

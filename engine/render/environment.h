@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -25,13 +26,19 @@ struct Environment {
     std::vector<std::vector<Image>> faces;  // [face][mip level]: 1 face (equirectangular) or 6; RGB, linear
     glm::dmat3 environment_from_world{1.0};
     float gain = 1.0f;
-    float largest = 0.0f;  // largest channel value of the pictures times gain
+    float largest_texel = 0.0f;  // largest channel value of the pictures
+    float largest = 0.0f;        // the same times gain
 };
 
 /// Loads the pictures and builds their mip levels (box filter). Throws InputError. The picture part is
 /// independent of gain and rotation, which may be animated: see set_environment_params.
 Environment load_environment(const EnvironmentParams& params);
 void set_environment_params(Environment& environment, const EnvironmentParams& params);
+
+/// Where an equirectangular picture shows a unit direction (environment space), from its upper left corner, 0
+/// to 1: OpenEXR's latlong, latitude +90 degrees on top, longitude +180 on the left, 0 towards +z, 90 towards
+/// +x.
+glm::dvec2 latlong_place(const glm::dvec3& direction);
 
 /// Colour seen along a unit direction in world space; `spread` is the angle in radians between neighbouring
 /// pixels, which picks the mip level (trilinear).

@@ -77,8 +77,9 @@ TileResolver::TileResolver(std::span<const RenderLayer> layers, const RenderSett
 void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Environment* environment) {
     const std::size_t size = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
     pixels_.assign(size, {});
-    environment_ = environment != nullptr;
+    environment_ = environment || settings_.backdrop;
     if (settings_.aov_layers) light_.assign(size * layer_count_ * 4, 0.0f);
+    if (settings_.backdrop) return begin_with_backdrop(tile);
     if (!environment) return;
     const double spread = camera.projection == Projection::orthographic ? 0.0 : 1.0 / camera.focal_px;
     for (int y = 0; y < tile.height; ++y) {
@@ -88,6 +89,17 @@ void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Env
                                                  static_cast<double>(tile.y0 + y) + 0.5);
             const glm::vec3 color = sample_environment(*environment, ray, spread);
             for (int k = 0; k < 3; ++k) pixel.color[k] = color[k];
+            pixel.alpha = 1.0f;
+        }
+    }
+}
+
+void TileResolver::begin_with_backdrop(const TilePlanes& tile) {
+    for (int y = 0; y < tile.height; ++y) {
+        const float* color = settings_.backdrop->at(tile.x0, tile.y0 + y);
+        for (int x = 0; x < tile.width; ++x) {
+            PixelState& pixel = pixels_[static_cast<std::size_t>(y * tile.width + x)];
+            std::copy_n(color + 3 * x, 3, pixel.color);
             pixel.alpha = 1.0f;
         }
     }

@@ -46,6 +46,8 @@ class TileResolver {
     void write(const TilePlanes& tile, std::int64_t x0, std::int64_t y0, RenderedFrame& frame) const;
 
   private:
+    void begin_with_backdrop(const TilePlanes& tile);
+
     std::size_t layer_count_;
     RenderSettings settings_;
     bool environment_ = false;

@@ -38,8 +38,10 @@ std::uint64_t spread(std::uint64_t v) {
 /// Cells are cubes, so that a thin disk is sampled evenly over its face before its thickness matters.
 class MortonKeys {
   public:
-    explicit MortonKeys(const SplatSet& set) : set_(set), lo_(bounds(set).lo) {
-        const glm::dvec3 extent = bounds(set).extent();
+    explicit MortonKeys(const SplatSet& set) : set_(set) {
+        const Bounds box = bounds(set);
+        lo_ = box.lo;
+        const glm::dvec3 extent = box.extent();
         const double edge = std::max({extent.x, extent.y, extent.z});
         cells_per_unit_ = edge > 0.0 ? static_cast<double>(last_cell) / edge : 0.0;
     }
@@ -57,30 +59,28 @@ class MortonKeys {
     }
 
     const SplatSet& set_;
-    glm::dvec3 lo_;
+    glm::dvec3 lo_{0.0};
     double cells_per_unit_ = 0.0;
 };
 
 std::size_t part_of(std::uint64_t key) { return static_cast<std::size_t>(key >> (key_bits - part_bits)); }
 
 /// Rows grouped by the highest bits of their key, in order of row inside a part; starts[part] is where it
-/// begins.
+/// begins. Keys are made twice: that costs less than the memory to keep them.
 Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
                                   std::vector<std::int64_t>& starts) {
     const MortonKeys key_of(set);
     const std::int64_t chunks = (set.size() + chunk - 1) / chunk;
-    Buffer<KeyedRow> keyed(static_cast<std::size_t>(set.size()));
     std::vector<std::array<std::int64_t, parts>> next(static_cast<std::size_t>(chunks));
-    parallel_for(chunks, [&](std::int64_t c, int) {
+    const auto each_row = [&](std::int64_t c, const auto& visit) {
         progress.check();
-        auto& counts = next[static_cast<std::size_t>(c)];
-        counts.fill(0);
         const std::int64_t end = std::min(set.size(), (c + 1) * chunk);
-        for (std::int64_t row = c * chunk; row < end; ++row) {
-            const KeyedRow keyed_row = key_of(row);
-            keyed[static_cast<std::size_t>(row)] = keyed_row;
-            ++counts[part_of(keyed_row.key)];
-        }
+        for (std::int64_t row = c * chunk; row < end; ++row)
+            visit(key_of(row), next[static_cast<std::size_t>(c)]);
+    };
+    parallel_for(chunks, [&](std::int64_t c, int) {
+        next[static_cast<std::size_t>(c)].fill(0);
+        each_row(c, [](const KeyedRow& r, auto& counts) { ++counts[part_of(r.key)]; });
     });
     starts.assign(parts + 1, 0);
     std::int64_t sum = 0;
@@ -89,15 +89,11 @@ Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
         for (auto& counts : next) sum += std::exchange(counts[part], sum);
     }
     starts[parts] = sum;
-    Buffer<KeyedRow> sorted(keyed.size());
+    Buffer<KeyedRow> sorted(set.position.size());
     parallel_for(chunks, [&](std::int64_t c, int) {
-        progress.check();
-        auto& places = next[static_cast<std::size_t>(c)];
-        const std::int64_t end = std::min(set.size(), (c + 1) * chunk);
-        for (std::int64_t row = c * chunk; row < end; ++row) {
-            const KeyedRow& keyed_row = keyed[static_cast<std::size_t>(row)];
-            sorted[static_cast<std::size_t>(places[part_of(keyed_row.key)]++)] = keyed_row;
-        }
+        each_row(c, [&](const KeyedRow& r, auto& places) {
+            sorted[static_cast<std::size_t>(places[part_of(r.key)]++)] = r;
+        });
     });
     return sorted;
 }
@@ -236,7 +232,7 @@ SplatSet copy_arrays(const SplatSet& set, std::int64_t count, const RowAt& row_a
 
 Buffer<std::int64_t> stratified_order(const SplatSet& set, const Progress& progress) {
     if (set.size() == 0) return {};
-    claim_memory(set.size() * static_cast<std::int64_t>(2 * sizeof(KeyedRow) + sizeof(std::int64_t)),
+    claim_memory(set.size() * static_cast<std::int64_t>(sizeof(KeyedRow) + sizeof(std::int64_t)),
                  "the order of a preview");
     Buffer<std::int64_t> order = by_reversed_rank(morton_order(set, progress), progress);
     progress.at(1.0);

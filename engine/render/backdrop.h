@@ -1,0 +1,20 @@
+// The environment as one camera sees it, for pictures in motion: a ready picture that render() lays behind
+// the splats instead of asking the environment at every pixel, where exact directions cost more than all
+// splats of a preview.
+#pragma once
+
+#include <cstdint>
+
+#include "camera/camera.h"
+#include "core/image.h"
+#include "render/environment.h"
+
+namespace astrosplat {
+
+/// RGB, width x height px, as sample_environment has it but for two things: places on an equirectangular
+/// picture are exact at every eighth pixel only and interpolated in between, and the nearest mip level is
+/// taken, not a mix of two. Uses the picture's memory again where the size stays.
+void draw_backdrop(const Environment& environment, const Camera& camera, std::int64_t width,
+                   std::int64_t height, Image& picture);
+
+}  // namespace astrosplat
