@@ -23,6 +23,7 @@
 #include "core/sha256.h"
 #include "core/text.h"
 #include "edit/user_folders.h"
+#include "scene/save.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
@@ -68,6 +69,17 @@ bool process_of_name_lives(const fs::path& autosave) {
     if (pid == std::string::npos) return false;
     const std::optional<std::int64_t> number = parse_int64(stem.substr(pid + 1, hash - pid - 1));
     return number && *number > 0 && (kill(static_cast<pid_t>(*number), 0) == 0 || errno == EPERM);
+}
+
+/// Where a preset of the scene is gone, its values stand in the autosave itself.
+std::string autosave_text(const Document& document, const fs::path& target) {
+    try {
+        return document.text_for(target);
+    } catch (const InputError&) {
+        Scene scene = document.scene();
+        for (LayerParams& layer : scene.layers) layer.preset.clear();
+        return save_text(scene, "", target);
+    }
 }
 
 bool is_abandoned(const fs::path& autosave) {
@@ -118,7 +130,7 @@ bool Autosave::write(const Document& document) {
             lock_ = std::make_unique<FileLock>(lock_of(target));
             if (lock_->try_lock() != FileLock::State::held) lock_.reset();
         }
-        write_file_atomically(target, header_line(document) + document.text_for(target));
+        write_file_atomically(target, header_line(document) + autosave_text(document, target));
     } catch (const std::exception& error) {
         log_warning(fmt::format("no autosave of {}: {}", document.name(), error.what()));
         return false;

@@ -13,6 +13,7 @@
 #include "edit/check_edit.h"
 #include "edit/disk_file.h"
 #include "edit/keys.h"
+#include "edit/layers.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
 #include "scene/path_text.h"
@@ -48,6 +49,13 @@ std::string edit_name(const ParameterSpec& spec) {
     return spec.label + " of " + spec.key.substr(6, spec.key.find('.', 6) - 6);
 }
 
+/// The layer that a key such as "layer.stars.name" is of.
+std::size_t layer_index(const Scene& scene, const std::string& key) {
+    std::size_t index = 0;
+    while (key.rfind("layer." + scene.layers.at(index).name + ".", 0) != 0) ++index;
+    return index;
+}
+
 /// The parameter of a key in `scene`, whose lists grow for it.
 Parameter parameter_for(Scene& scene, const std::string& key) {
     try {
@@ -57,7 +65,18 @@ Parameter parameter_for(Scene& scene, const std::string& key) {
     }
     const Description description = describe(scene);
     if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
-    throw InputError(unknown_key(key, key, "layer."));
+    const std::size_t dot = key.rfind("layer.", 0) == 0 ? key.find('.', 6) : std::string::npos;
+    throw InputError(unknown_key(key, key, dot == std::string::npos ? "layer." : key.substr(0, dot + 1)));
+}
+
+/// A preset that cannot be read would be met only at saving.
+void check_new_presets(const Scene& before, const Scene& after) {
+    for (const LayerParams& layer : after.layers) {
+        const bool known = std::any_of(before.layers.begin(), before.layers.end(),
+                                       [&](const LayerParams& old) { return old.preset == layer.preset; });
+        LayerParams scratch;
+        if (!known && !layer.preset.empty()) apply_preset(scratch, layer.preset);
+    }
 }
 
 ParameterSpec spec_of(const Scene& scene, const std::string& key) {
@@ -203,6 +222,7 @@ void Document::edit(const std::string& name, const std::function<void(Scene&)>& 
     edited.file = scene().file;
     if (edited == scene()) return;
     check_edited_scene(edited, this->name());
+    check_new_presets(scene(), edited);
     if (edited == scene()) return;
     state_->record({std::make_shared<const Scene>(std::move(edited)), name, gesture});
 }
@@ -210,6 +230,10 @@ void Document::edit(const std::string& name, const std::function<void(Scene&)>& 
 void Document::set(const std::string& key, const Value& value, double frame, Gesture gesture) {
     const ParameterSpec spec = spec_of(scene(), key);
     const auto change = [&](Scene& edited) {
+        if (spec.generic_key == "layer.name" && value.text()) {
+            rename_layer(edited, layer_index(edited, spec.key), *value.text());
+            return;
+        }
         if (is_keyed(edited, spec.key)) {
             set_key(edited, spec.key, frame, value);
             return;

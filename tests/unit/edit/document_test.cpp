@@ -1,0 +1,393 @@
+// The document: undo and redo, gestures, refused edits, saving, the file on disk.
+#include "edit/document.h"
+
+#include <gtest/gtest.h>
+
+#include "edit/keys.h"
+#include "scenes.h"
+
+namespace astrosplat {
+namespace {
+
+using test::edit_scene;
+using test::SceneFolder;
+using test::value_of;
+
+const std::string opacity = "layer.stars.render.opacity";
+
+TEST(Document, OpensAsTheLoaderReads) {
+    const SceneFolder f;
+    const Document document = Document::open(f.file);
+    EXPECT_EQ(document.scene(), load_scene(f.file));
+    EXPECT_EQ(document.file(), f.file);
+    EXPECT_EQ(document.name(), "szene ä.toml");
+    EXPECT_FALSE(document.edited());
+    EXPECT_FALSE(document.can_undo());
+    EXPECT_FALSE(document.can_redo());
+    EXPECT_EQ(document.undo_name(), "");
+}
+
+TEST(Document, OneEditIsOneStep) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    const Scene before = document.scene();
+    const std::uint64_t revision = document.revision();
+    document.set(opacity, 0.25, 1.0);
+    EXPECT_EQ(value_of(document, opacity), Value(0.25));
+    EXPECT_TRUE(document.edited());
+    EXPECT_NE(document.revision(), revision);
+    EXPECT_EQ(document.undo_name(), "Opacity of stars");
+    document.undo();
+    EXPECT_EQ(document.scene(), before);
+    EXPECT_FALSE(document.edited());
+    EXPECT_NE(document.revision(), revision);
+    EXPECT_EQ(document.redo_name(), "Opacity of stars");
+    document.redo();
+    EXPECT_EQ(value_of(document, opacity), Value(0.25));
+    EXPECT_FALSE(document.can_redo());
+}
+
+TEST(Document, AGestureIsOneStep) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    for (int i = 1; i <= 9; ++i) document.set(opacity, i * 0.1, 1.0, 7);
+    document.set(opacity, 0.05, 1.0, 8);
+    document.undo();
+    EXPECT_EQ(value_of(document, opacity), Value(0.9));
+    document.undo();
+    EXPECT_FALSE(document.can_undo());
+    EXPECT_FALSE(document.edited());
+}
+
+TEST(Document, AGestureThatComesBackIsNoStep) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set("camera.fov", 50.0, 1.0);
+    document.set(opacity, 0.7, 1.0, 7);
+    document.set(opacity, 0.5, 1.0, 7);
+    EXPECT_EQ(document.undo_name(), "Field of view");
+    document.set(opacity, 0.6, 1.0, 7);  // and goes on
+    EXPECT_EQ(document.undo_name(), "Opacity of stars");
+    document.undo();
+    EXPECT_EQ(value_of(document, "camera.fov"), Value(50.0));
+    EXPECT_EQ(value_of(document, opacity), Value(0.5));
+}
+
+TEST(Document, AnEditThatChangesNothingIsNotRecorded) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    const std::uint64_t revision = document.revision();
+    document.set(opacity, 0.5, 1.0);
+    document.edit("Nothing", [](Scene&) {});
+    EXPECT_FALSE(document.can_undo());
+    EXPECT_EQ(document.revision(), revision);
+}
+
+TEST(Document, AnEditAfterUndoEndsRedo) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set(opacity, 0.25, 1.0);
+    document.undo();
+    document.set("camera.fov", 30.0, 1.0);
+    EXPECT_FALSE(document.can_redo());
+    document.undo();
+    EXPECT_EQ(value_of(document, opacity), Value(0.5));
+}
+
+TEST(Document, FiveHundredStepsCanBeUndone) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    for (int i = 1; i <= 510; ++i) document.set("camera.roll", static_cast<double>(i) / 10, 1.0);
+    int steps = 0;
+    for (; document.can_undo(); ++steps) document.undo();
+    EXPECT_EQ(steps, 500);
+    EXPECT_EQ(value_of(document, "camera.roll"), Value(1.0));
+    EXPECT_TRUE(document.edited());
+}
+
+TEST(Document, RefusedEditsChangeNothing) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    const Scene before = document.scene();
+    const std::uint64_t revision = document.revision();
+    const auto message = [&](const std::function<void()>& edit) { return message_of<InputError>(edit); };
+    EXPECT_EQ(message([&] { document.set("camera.fov", 180.0, 1.0); }),
+              "camera.fov: expected a number above 0 and below 180, found 180");
+    EXPECT_EQ(message([&] { document.set("camera.fov", "wide", 1.0); }),
+              "camera.fov: expected a number, found a string");
+    EXPECT_EQ(message([&] { document.set("layer.dust.look.alpha.powr", 1.0, 1.0); }),
+              "unknown key 'layer.dust.look.alpha.powr'; did you mean 'layer.dust.look.alpha.power'?");
+    EXPECT_EQ(message([&] { document.set("layer.dust.look.radius.min", 0.5, 1.0); }),
+              "szene ä.toml: layer.dust.look.radius.min: expected min not above max, found 0.5 and 0");
+    EXPECT_EQ(message([&] { document.set("layer.dust.preset", "fehlt.toml", 1.0); }),
+              (f.folder / "fehlt.toml").string() + ": cannot be read: No such file or directory");
+    EXPECT_EQ(message([&] { document.edit("Empty", [](Scene& s) { s.layers.clear(); }); }),
+              "szene ä.toml: expected at least one [[layer]], found none");
+    EXPECT_EQ(message([&] { document.edit("Fov", [](Scene& s) { s.camera.fov = -1.0; }); }),
+              "camera.fov: expected a number above 0 and below 180, found -1");
+    EXPECT_EQ(message([&] { document.edit("Twin", [](Scene& s) { s.layers[0].name = "stars"; }); }),
+              "szene ä.toml: layer.name: expected each name once, found 'stars' twice");
+    EXPECT_EQ(
+        message([&] { document.edit("Name", [](Scene& s) { s.layers[0].name = "a b"; }); }),
+        "szene ä.toml: layer.name: expected letters, digits and _ beginning with a letter, found 'a b'");
+    EXPECT_EQ(message([&] {
+                  document.edit("Keys",
+                                [](Scene& s) { std::swap(s.animation[0].keys[0], s.animation[0].keys[1]); });
+              }),
+              "layer.stars.render.core: expected ascending frames, each once, found others");
+    EXPECT_EQ(message_of<std::runtime_error>([&] {
+                  document.edit("Own", [](Scene& s) {
+                      s.camera.fov = 10.0;
+                      throw std::runtime_error("own error");
+                  });
+              }),
+              "own error");
+    EXPECT_EQ(document.scene(), before);
+    EXPECT_EQ(document.revision(), revision);
+    EXPECT_FALSE(document.can_undo());
+}
+
+TEST(Document, SettingAKeyedParameterSetsItsKey) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    const std::string core = "layer.stars.render.core";
+    document.set(core, 0.75, 12.0);
+    const Track& track = *find_track(document.scene(), core);
+    ASSERT_EQ(track.keys.size(), 3u);
+    EXPECT_EQ(track.keys[1].frame, 12.0);
+    EXPECT_EQ(track.keys[1].value, std::vector<double>{0.75});
+    EXPECT_EQ(value_of(document, core), Value(0.5));  // the value below the track
+    document.undo();
+    EXPECT_EQ(find_track(document.scene(), core)->keys.size(), 2u);
+}
+
+TEST(Document, ResetGivesTheDefaultAndEndsTheAnimation) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.reset("layer.stars.render.core");
+    EXPECT_FALSE(is_keyed(document.scene(), "layer.stars.render.core"));
+    document.reset(opacity);
+    EXPECT_EQ(value_of(document, opacity), Value(1.0));
+    EXPECT_EQ(document.undo_name(), "Reset Opacity of stars");
+    document.reset("layer.dust.look.noise.0.cull");
+    EXPECT_EQ(value_of(document, "layer.dust.look.noise.0.cull"), Value(0.0));
+}
+
+TEST(Document, RenamingALayerTakesItsTracksAlong) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set("layer.stars.name", "suns", 1.0);
+    EXPECT_TRUE(is_keyed(document.scene(), "layer.suns.render.core"));
+    document.save();
+    EXPECT_EQ(load_scene(f.file), document.scene());
+}
+
+TEST(Document, TracksOfRemovedElementsGo) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.edit("Remove noise", [](Scene& s) { s.layers[0].look.noise.pop_back(); });
+    EXPECT_FALSE(is_keyed(document.scene(), "layer.dust.look.noise.1.jitter"));
+    document.save();
+    EXPECT_EQ(load_scene(f.file), document.scene());
+}
+
+TEST(Document, AListGrowsForItsNextElement) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set("layer.stars.look.noise.cull", 0.5, 1.0);
+    ASSERT_EQ(document.scene().layers[1].look.noise.size(), 1u);
+    EXPECT_EQ(document.scene().layers[1].look.noise[0].cull, 0.5f);
+}
+
+TEST(Document, TypedPathsAreRelativeToTheScene) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set("layer.dust.look.thickness.map", "neue karte.png", 1.0);
+    EXPECT_EQ(document.scene().layers[0].look.thickness.map, f.folder / "neue karte.png");
+    document.save();
+    EXPECT_NE(f.text().find("map = \"neue karte.png\""), std::string::npos);
+}
+
+TEST(Document, SavingTouchesOnlyWhatChanged) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set(opacity, 0.25, 1.0);
+    document.save();
+    std::string expected = edit_scene;
+    expected.replace(expected.find("opacity = 0.5"), 13, "opacity = 0.25");
+    EXPECT_EQ(f.text(), expected);
+    EXPECT_FALSE(document.edited());
+    EXPECT_FALSE(document.changed_on_disk());
+    document.undo();
+    EXPECT_TRUE(document.edited());
+    document.save();
+    EXPECT_EQ(f.text(), edit_scene);
+}
+
+TEST(Document, SavingElsewhereMovesTheDocument) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set(opacity, 0.25, 1.0);
+    std::filesystem::create_directories(f.folder / "neu ü");
+    const std::filesystem::path target = f.folder / "neu ü/zweite szene.toml";
+    const std::string text = document.text_for(target);
+    document.save_as(target);
+    EXPECT_EQ(f.text(), edit_scene);
+    EXPECT_EQ(document.file(), target);
+    EXPECT_FALSE(document.edited());
+    EXPECT_EQ(load_scene(target), document.scene());
+    EXPECT_EQ(load_scene(target).layers[0].source.meshes[0].texture[0], f.folder / "Bilder/m 51 ä.png");
+    EXPECT_NE(text.find("# by hand, keep this"), std::string::npos);
+    document.undo();  // the old scene, but of the new file
+    EXPECT_EQ(document.scene().file, target);
+    EXPECT_TRUE(document.edited());
+    document.save();
+    EXPECT_EQ(load_scene(target), document.scene());
+}
+
+TEST(Document, UntitledAsksForAFile) {
+    const TempFolder folder;
+    Document document = Document::untitled(edit_scene, folder / "untitled.toml");
+    EXPECT_EQ(document.name(), "Untitled");
+    EXPECT_TRUE(document.file().empty());
+    EXPECT_FALSE(document.edited());
+    EXPECT_FALSE(document.changed_on_disk());
+    EXPECT_EQ(message_of<InputError>([&] { document.save(); }),
+              "Untitled: expected a file to save to, found none");
+    EXPECT_EQ(message_of<InputError>([&] { document.reload(); }),
+              "Untitled: expected a file to read again, found none");
+    document.set(opacity, 0.25, 1.0);
+    EXPECT_TRUE(document.edited());
+    document.save_as(folder / "szene.toml");
+    EXPECT_EQ(document.name(), "szene.toml");
+    EXPECT_FALSE(document.edited());
+    EXPECT_EQ(load_scene(folder / "szene.toml"), document.scene());
+}
+
+TEST(Document, AFileThatCannotBeWrittenLeavesTheDocument) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set(opacity, 0.25, 1.0);
+    const std::filesystem::path blocked = f.file / "inside a file.toml";
+    EXPECT_EQ(message_of<OutputError>([&] { document.save_as(blocked); }),
+              blocked.string() + ": cannot be written: Not a directory");
+    EXPECT_EQ(document.file(), f.file);
+    EXPECT_TRUE(document.edited());
+    document.save();
+    EXPECT_FALSE(document.edited());
+}
+
+TEST(Document, AssignmentsAreEdits) {
+    const SceneFolder f;
+    const std::vector<Assignment> assignments{{opacity, "0.25"}, {"layer.dust.look.alpha", "{power=3}"}};
+    Document document = Document::open(f.file, assignments);
+    EXPECT_EQ(document.scene(), load_scene(f.file, assignments));
+    EXPECT_TRUE(document.edited());
+    EXPECT_FALSE(document.can_undo());
+    EXPECT_TRUE(document.set_by_command_line(opacity));
+    EXPECT_TRUE(document.set_by_command_line("layer.dust.look.alpha.power"));
+    EXPECT_FALSE(document.set_by_command_line("layer.dust.look.density"));
+    EXPECT_FALSE(document.set_by_command_line("layer.stars.render.core"));
+    document.set(opacity, 0.3, 1.0);
+    EXPECT_FALSE(document.set_by_command_line(opacity));
+    document.undo();
+    EXPECT_TRUE(document.set_by_command_line(opacity));
+    document.save();
+    EXPECT_EQ(load_scene(f.file), document.scene());
+    EXPECT_FALSE(document.set_by_command_line(opacity));
+}
+
+TEST(Document, AnAssignedListElementIsMarkedWithoutItsIndex) {
+    const SceneFolder f;
+    const std::vector<Assignment> assignments{{"layer.dust.look.noise.cull", "0.25"}};
+    const Document document = Document::open(f.file, assignments);
+    EXPECT_TRUE(document.set_by_command_line("layer.dust.look.noise.0.cull"));
+    EXPECT_FALSE(document.set_by_command_line("layer.dust.look.noise.1.cull"));
+}
+
+TEST(Document, NoticesOtherHands) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    EXPECT_FALSE(document.changed_on_disk());
+    const auto time = std::filesystem::last_write_time(f.file);
+    std::filesystem::last_write_time(f.file, time + std::chrono::seconds(5));
+    EXPECT_FALSE(document.changed_on_disk());  // touched, but the same
+    std::string other = edit_scene;
+    other.replace(other.find("fov = 40.0"), 10, "fov = 35.0");
+    f.folder.file("szene ä.toml", other);
+    std::filesystem::last_write_time(f.file, time + std::chrono::seconds(10));
+    EXPECT_TRUE(document.changed_on_disk());
+    EXPECT_TRUE(document.changed_on_disk());
+    document.ignore_change_on_disk();
+    EXPECT_FALSE(document.changed_on_disk());
+    std::filesystem::remove(f.file);
+    EXPECT_FALSE(document.changed_on_disk());
+}
+
+TEST(Document, ReloadIsOneStep) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set(opacity, 0.25, 1.0);
+    const Scene mine = document.scene();
+    std::string other = edit_scene;
+    other.replace(other.find("fov = 40.0"), 10, "fov = 35.0");
+    f.folder.file("szene ä.toml", other);
+    document.reload();
+    EXPECT_EQ(document.scene(), load_scene(f.file));
+    EXPECT_FALSE(document.edited());
+    EXPECT_FALSE(document.changed_on_disk());
+    EXPECT_EQ(document.undo_name(), "Reload");
+    document.undo();
+    EXPECT_EQ(document.scene(), mine);
+    EXPECT_TRUE(document.edited());
+    document.save();
+    EXPECT_EQ(load_scene(f.file), mine);
+}
+
+TEST(Document, AReloadThatFailsChangesNothing) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    const Scene before = document.scene();
+    f.folder.file("szene ä.toml", "astrosplat = 1\n[camera]\nfov = \"wide\"\n");
+    EXPECT_EQ(message_of<InputError>([&] { document.reload(); }),
+              f.file.string() + ":3: camera.fov: expected a number, found a string");
+    EXPECT_EQ(document.scene(), before);
+    EXPECT_FALSE(document.can_undo());
+}
+
+TEST(Document, ReloadKeepsAssignmentsThatWereNotSaved) {
+    const SceneFolder f;
+    const std::vector<Assignment> assignments{{opacity, "0.25"}};
+    Document document = Document::open(f.file, assignments);
+    document.reload();
+    EXPECT_EQ(value_of(document, opacity), Value(0.25));
+    document.save();
+    f.folder.file("szene ä.toml", edit_scene);
+    document.reload();
+    EXPECT_EQ(value_of(document, opacity), Value(0.5));
+}
+
+TEST(Document, ACommaLocaleChangesNothing) {
+    const SceneFolder f;
+    const test::CommaLocale comma;
+    Document document = Document::open(f.file);
+    document.set(opacity, 0.125, 1.0);
+    document.set("layer.dust.source.count", std::int64_t{1234567}, 1.0);
+    document.save();
+    EXPECT_NE(f.text().find("opacity = 0.125"), std::string::npos);
+    EXPECT_NE(f.text().find("count = 1234567"), std::string::npos);
+    EXPECT_EQ(load_scene(f.file), document.scene());
+}
+
+TEST(Document, ValuesOfOtherTypesAreAsInTheFile) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set("output.depth", std::int64_t{16}, 1.0);
+    EXPECT_EQ(value_of(document, "output.depth"), Value("16"));
+    document.set("layer.dust.source.unpremultiply", true, 1.0);
+    document.save();
+    EXPECT_EQ(load_scene(f.file), document.scene());
+}
+
+}  // namespace
+}  // namespace astrosplat

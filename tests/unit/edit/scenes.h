@@ -1,0 +1,88 @@
+// Scenes for the tests of editing, and the comma locale that must not matter.
+#pragma once
+
+#include <locale>
+#include <string>
+
+#include "edit/document.h"
+#include "scene/describe.h"
+#include "support/errors.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat::test {
+
+inline const char* const edit_scene = R"toml(# by hand, keep this
+astrosplat = 1
+
+[output]
+resolution = [640, 360]  # px
+frames = "1-48"
+fps = 24.0
+
+[camera]
+position = [0.0, 4.0, 10.0]
+fov = 40.0  # a comment
+
+[[layer]]
+name = "dust"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "Bilder/m 51 ä.png" } ]
+[layer.look]
+noise = [ { frequency = 2.0, cull = 0.5 }, { jitter = 0.1 } ]
+thickness = { map = "map.png", keys = [ { scale = 0.5 }, { scale = 2.0, shape = "linear" } ] }
+alpha = { power = 2.0 }  # soft
+
+# the second layer
+[[layer]]
+name = "stars"
+[layer.source]
+kind = "splats"
+file = "stars.ply"
+[layer.render]
+blend = "screen"
+opacity = 0.5
+
+[animation]
+"layer.stars.render.core" = { keys = [[1, 1.0], [24, 0.5]], interpolation = "smooth" }
+"layer.dust.look.noise.1.jitter" = { keys = [[1, 0.0], [48, 0.2]] }
+)toml";
+
+/// A folder with edit_scene as "szene ä.toml".
+struct SceneFolder {
+    TempFolder folder;
+    std::filesystem::path file = folder.file("szene ä.toml", edit_scene);
+
+    std::string text() const {
+        std::ifstream in(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+};
+
+inline Value value_of(const Document& document, const std::string& key) {
+    Scene scene = document.scene();
+    const Description description = describe(scene);
+    return find_parameter(description, key)->get();
+}
+
+inline LayerParams& layer(Scene& scene, const std::string& name) {
+    for (LayerParams& one : scene.layers)
+        if (one.name == name) return one;
+    throw std::out_of_range(name);
+}
+
+/// Numbers are written with a comma while this lives, by everything that asks the locale.
+class CommaLocale {
+  public:
+    CommaLocale() { std::locale::global(std::locale(std::locale::classic(), new Comma)); }
+    ~CommaLocale() { std::locale::global(before_); }
+
+  private:
+    struct Comma : std::numpunct<char> {
+        char do_decimal_point() const override { return ','; }
+        char do_thousands_sep() const override { return '.'; }
+        std::string do_grouping() const override { return "\3"; }
+    };
+    std::locale before_;
+};
+
+}  // namespace astrosplat::test
