@@ -57,6 +57,7 @@ struct Memory {
     std::string error;                 // why
     std::map<std::string, bool> open;  // sections, by title
     bool all_open = false;             // in the next frame every section unfolds
+    bool after_open = false;           // the section above is unfolded: leave some room
     std::string selected_curve;        // key of the curve whose point is selected
     int selected_point = -1;
     std::string renaming;  // layer whose name is typed

@@ -145,7 +145,12 @@ void choice_field(Context& context, const Row& row) {
     ImGui::SetNextItemWidth(area.size.x);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(px(8), (area.size.y - ImGui::GetFontSize()) * 0.5f));
-    if (ImGui::BeginCombo("##choice", in_words(spec, row.value).c_str())) {
+    const bool open =
+        ImGui::BeginCombo("##choice", in_words(spec, row.value).c_str(), ImGuiComboFlags_NoArrowButton);
+    if (!open)
+        draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down, {area.end().x - px(12), area.middle().y},
+                  px(8), color::dim);
+    if (open) {
         for (const std::string& choice : spec.choices) {
             const bool selected = row.value == choice_value(choice);
             if (ImGui::Selectable(choice_label(choice).c_str(), selected) && !selected)

@@ -79,8 +79,11 @@ void switches(Context& context, std::size_t i, const Area& row) {
                "Isolate: rendered alone, then laid on whole"))
         toggle(context, i, "render.isolate", layer.render.isolate);
     x -= px(20);
-    if (letter("holdout", "H", {x, row.corner.y}, layer.render.holdout,
-               "Holdout: hides what lies behind, shows nothing itself"))
+    ImGui::SetCursorScreenPos({x, row.corner.y});
+    const ImU32 quiet = color::with_opacity(color::dim, 0.45f);
+    if (icon_button("holdout", layer.render.holdout ? Icon::ring_cut : Icon::ring, {px(20), px(line_height)},
+                    px(11), layer.render.holdout ? color::accent : quiet,
+                    "Holdout: hides what lies behind, shows nothing itself"))
         toggle(context, i, "render.holdout", layer.render.holdout);
     x -= px(20);
     const bool solo = context.view.solo.count(layer.name) > 0;
@@ -202,24 +205,21 @@ void count_text(const Context& context, std::size_t i, const Area& row, float& r
 
 void second_line(Context& context, std::size_t i, const Area& row) {
     const LayerStatus& status = *status_of(context, i);
-    ImGui::SetCursorScreenPos({row.corner.x + px(38), row.corner.y + px(line_height)});
-    ImGui::BeginGroup();
-    ImGui::PushItemWidth(row.size.x);
+    const float width = row.size.x - px(42 + margin);
+    ImGui::SetCursorScreenPos({row.corner.x + px(42), row.corner.y + px(line_height)});
     if (!status.error.empty()) {
-        const Area line{{row.corner.x + px(38), row.corner.y + px(line_height)},
-                        {row.size.x - px(38 + margin), px(row_height)}};
+        const Area line{{row.corner.x + px(42), row.corner.y + px(line_height)},
+                        {row.size.x - px(42 + margin), px(row_height)}};
         clipped_text(ImGui::GetWindowDrawList(), line, 0.0f, color::error, status.error);
         ImGui::Dummy(line.size);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", status.error.c_str());
     } else if (status.loading) {
         const std::string text = fmt::format("{} %", static_cast<int>(status.progress * 100.0f));
-        if (progress_line(status.progress, text, "Cancel"))
+        if (progress_line(width, std::max(status.progress, 0.001f), text, "Cancel"))
             context.commands.push_back({Command::Kind::cancel_load, {}, "", i});
-    } else if (progress_line(0.0f, "Needs regeneration", "Regenerate")) {
+    } else if (progress_line(width, 0.0f, "Needs regeneration", "Regenerate")) {
         context.commands.push_back({Command::Kind::regenerate, {}, "", i});
     }
-    ImGui::PopItemWidth();
-    ImGui::EndGroup();
 }
 
 void draw_layer(Context& context, std::size_t i, const Area& row) {

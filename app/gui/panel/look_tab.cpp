@@ -19,13 +19,23 @@ std::string reach_caption(const Context& context) {
     return reach > 0.0 ? "reach " + figures(reach) : std::string("reach");
 }
 
+void draw_distances(const Context& context, const Area& area, double reach) {
+    const auto& histograms = context.layer_status().histograms;
+    if (histograms && histograms->max_distance > 0.0 && reach > 0.0)
+        draw_bars(area, histograms->distance, histograms->max_distance / reach);
+}
+
+// A map's colour, bright enough for a line on the plot's ground.
+ImU32 key_ink(const glm::vec3& color) {
+    const auto byte = [](float c) { return static_cast<int>(70.0f + 185.0f * std::clamp(c, 0.0f, 1.0f)); };
+    return IM_COL32(byte(color.x), byte(color.y), byte(color.z), 255);
+}
+
 // The shape of a density: plot over the histogram of distances, then its rows. `key` ends in "shape".
 void density_rows(Context& context, const DensityCurve& pdf, const std::string& head, double reach) {
     const Area area = begin_plot();
     const ImVec2 below = ImGui::GetCursorScreenPos();
-    const auto& histograms = context.layer_status().histograms;
-    if (histograms && histograms->max_distance > 0.0 && reach > 0.0)
-        draw_bars(area, histograms->distance, histograms->max_distance / reach);
+    draw_distances(context, area, reach);
     const std::vector<float> samples = density_samples(pdf);
     const bool custom = pdf.shape == DensityCurve::Shape::curve;
     if (custom)
@@ -40,6 +50,17 @@ void density_rows(Context& context, const DensityCurve& pdf, const std::string& 
     if (custom) layer_row(context, head + "points");
 }
 
+// What the thickness keys make of it: each key's shape in the colour it stands for, over distances.
+void all_densities(Context& context) {
+    const Area area = begin_plot();
+    const double reach = reach_of(context);
+    draw_distances(context, area, reach);
+    for (const ThicknessKey& key : context.layer().look.thickness.keys)
+        draw_curve(area, density_samples(key.pdf), 1.05f, key_ink(key.color), key.scale);
+    captions("surface", reach_caption(context));
+    note("Each key of the thickness map has its own shape.");
+}
+
 void density_section(Context& context) {
     const LayerStatus& status = context.layer_status();
     const std::string kept =
@@ -50,7 +71,7 @@ void density_section(Context& context) {
     if (look.thickness.keys.empty())
         density_rows(context, look.pdf, "look.pdf.", reach_of(context));
     else
-        note("Each key of the thickness map has its own shape.");
+        all_densities(context);
     layer_row(context, "look.density", "Density");
     layer_row(context, "look.reach");
     if (!kept.empty()) note(kept + " of " + short_count(status.splats) + " splats");
@@ -150,7 +171,7 @@ void noise_section(Context& context) {
     if (!section(context, "Noise", state)) return;
     for (std::size_t i = 0; i < noise.size(); ++i) noise_entry(context, i);
     const std::size_t layer = context.view.layer;
-    if (noise.size() < 4 && button_line({"Add noise"}) == 0)
+    if (noise.size() < 4 && add_line("Add noise"))
         edit(context, context.prefix, "Add noise",
              [&](Scene& scene) { scene.layers[layer].look.noise.emplace_back(); });
 }
@@ -184,7 +205,7 @@ void thickness_section(Context& context) {
     if (thickness.map.empty() && count > 1) note("Without a picture the first key counts.", color::key);
     for (std::size_t i = 0; i < count; ++i) thickness_key(context, i);
     const std::size_t layer = context.view.layer;
-    if (count < 8 && button_line({"Add key"}) == 0)
+    if (count < 8 && add_line("Add key"))
         edit(context, context.prefix, "Add thickness key", [&](Scene& scene) {
             Look& look = scene.layers[layer].look;
             ThicknessKey key;

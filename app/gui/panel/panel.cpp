@@ -64,6 +64,7 @@ void tab_content(Context& context) {
         note("No layer yet.");
         return;
     }
+    context.memory.after_open = false;
     // Sections of layers share their ids, so that a drag does not survive a change of layer.
     ImGui::PushID(tab->of_layer ? context.prefix.c_str() : tab->label);
     tab->draw(context);

@@ -43,10 +43,11 @@ void draw_bars(const Area& area, std::span<const float> shares, double stretch) 
     }
 }
 
-void draw_curve(const Area& area, std::span<const float> values, float top, ImU32 color) {
+void draw_curve(const Area& area, std::span<const float> values, float top, ImU32 color, float stretch) {
     std::vector<ImVec2> line;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const float x = static_cast<float>(i) / static_cast<float>(values.size() - 1);
+        const float x = stretch * static_cast<float>(i) / static_cast<float>(values.size() - 1);
+        if (x > 1.0f) break;
         const float y = std::clamp(values[i] / top, 0.0f, 1.0f);
         line.push_back({area.corner.x + x * area.size.x, area.end().y - px(2) - y * (area.size.y - px(5))});
     }

@@ -18,8 +18,9 @@ Area begin_plot(float height = plot_height);
 /// [i, i + 1] * stretch / count. Shares of the fullest bin.
 void draw_bars(const Area& area, std::span<const float> shares, double stretch = 1.0);
 
-/// A line through values spread evenly over the width; 0 is the bottom, `top` the upper edge.
-void draw_curve(const Area& area, std::span<const float> values, float top, ImU32 color);
+/// A line through values spread evenly over `stretch` of the width; 0 is the bottom, `top` the upper edge.
+void draw_curve(const Area& area, std::span<const float> values, float top, ImU32 color,
+                float stretch = 1.0f);
 
 /// Small texts below a plot, at its left and right edge. Leaves the cursor below.
 void captions(const std::string& left, const std::string& right);

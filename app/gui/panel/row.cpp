@@ -22,7 +22,7 @@ void draw_label(Context& context, const Row& row, const std::string& label) {
     const ParameterSpec& spec = row.parameter.spec;
     const bool by_command = context.document.set_by_command_line(spec.key);
     if (by_command || !(row.value == default_of(context, spec))) {
-        const ImVec2 corner{row.layout.label.corner.x - px(8), row.layout.label.corner.y + px(5)};
+        const ImVec2 corner{row.layout.label.corner.x - px(6), row.layout.label.corner.y + px(5)};
         list->AddRectFilled(corner, {corner.x + px(2), corner.y + px(14)},
                             by_command ? color::key : color::accent);
     }

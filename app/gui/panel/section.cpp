@@ -25,22 +25,30 @@ void head_text(const Area& area, float left, const char* title, const std::strin
     ImGui::PopFont();
 }
 
+// From edge to edge of the window, beyond the padding its contents are clipped to.
+void edge_line(float y) {
+    const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    ImGui::PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, false);
+    ImGui::GetWindowDrawList()->AddLine({corner.x, y}, {corner.x + size.x, y}, color::line);
+    ImGui::PopClipRect();
+}
+
 }  // namespace
 
 bool section(Context& context, const char* title, const std::string& state, bool open_at_first) {
-    bool& open = context.memory.open.emplace(title, open_at_first).first->second;
-    open = open || context.memory.all_open;
-    const float bleed = px(12);  // the line over a head runs from edge to edge
+    Memory& memory = context.memory;
+    bool& open = memory.open.emplace(title, open_at_first).first->second;
+    open = open || memory.all_open;
+    if (memory.after_open) ImGui::Dummy({0.0f, px(6)});
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const Area area{corner, {ImGui::GetContentRegionAvail().x, px(head_height)}};
     if (ImGui::InvisibleButton(title, area.size)) open = !open;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddLine({corner.x - bleed, corner.y}, {area.end().x + bleed, corner.y}, color::line);
+    edge_line(corner.y);
     const ImU32 sign = ImGui::IsItemHovered() ? color::text : color::dim;
-    draw_icon(list, open ? Icon::chevron_down : Icon::chevron_right, {corner.x + px(4), area.middle().y},
-              px(8), sign);
+    draw_icon(ImGui::GetWindowDrawList(), open ? Icon::chevron_down : Icon::chevron_right,
+              {corner.x + px(4), area.middle().y}, px(8), sign);
     head_text(area, px(16), title, open ? "" : state);
-    if (open) ImGui::Dummy({0.0f, px(2)});
+    memory.after_open = open;
     return open;
 }
 
@@ -88,17 +96,26 @@ int button_line(std::initializer_list<const char*> labels) {
     return clicked;
 }
 
-bool progress_line(float share, const std::string& text, const char* button) {
+bool add_line(const char* label) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x;
+    const Area area{corner, {px(28) + ImGui::CalcTextSize(label).x, px(row_height)}};
+    const bool clicked = ImGui::InvisibleButton(label, area.size);
+    const ImU32 ink = ImGui::IsItemHovered() ? color::text : color::dim;
+    draw_icon(ImGui::GetWindowDrawList(), Icon::plus, {corner.x + px(5), area.middle().y}, px(9), ink);
+    clipped_text(ImGui::GetWindowDrawList(), area, px(16), ink, label);
+    return clicked;
+}
+
+bool progress_line(float width, float share, const std::string& text, const char* button) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float button_width = ImGui::CalcTextSize(button).x + px(16);
     const Area bar{corner, {width - button_width - px(4), px(row_height)}};
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(bar.corner, bar.end(), color::field, px(3));
+    list->AddRectFilled(bar.corner, bar.end(), color::window, px(3));
     if (share > 0.0f)
         list->AddRectFilled(bar.corner, {corner.x + bar.size.x * std::min(share, 1.0f), bar.end().y},
                             color::fill, px(3));
-    clipped_text(list, bar, px(8), color::text, text);
+    clipped_text(list, bar, px(8), share > 0.0f ? color::text : color::key, text);
     ImGui::SetCursorScreenPos({bar.end().x + px(4), corner.y});
     return text_button(button, button_width);
 }

@@ -23,7 +23,11 @@ bool text_button(const char* label, float width = 0.0f);
 /// Buttons that share one line evenly: index of the one clicked, -1 none.
 int button_line(std::initializer_list<const char*> labels);
 
-/// A thin bar with text over it, and a button at its right; true when the button was clicked.
-bool progress_line(float share, const std::string& text, const char* button);
+/// A quiet "+ label" that adds an element to a list; true when clicked.
+bool add_line(const char* label);
+
+/// A bar with text over it, and a button at its right; true when the button was clicked. A share of 0 is no
+/// progress but something that waits for the button.
+bool progress_line(float width, float share, const std::string& text, const char* button);
 
 }  // namespace astrosplat::panel

@@ -36,14 +36,15 @@ std::string files_state(const LayerParams& layer) {
 
 void state_lines(Context& context) {
     const LayerStatus& status = context.layer_status();
+    const float width = ImGui::GetContentRegionAvail().x;
     if (status.loading) {
         const std::string text = status.found > 0
                                      ? fmt::format("Generating, {} splats", short_count(status.found))
                                      : std::string("Generating");
-        if (progress_line(status.progress, text, "Cancel"))
+        if (progress_line(width, std::max(status.progress, 0.001f), text, "Cancel"))
             context.commands.push_back({Command::Kind::cancel_load, {}, "", context.view.layer});
     } else if (status.stale) {
-        if (progress_line(0.0f, "Source changed", "Regenerate"))
+        if (progress_line(width, 0.0f, "Source changed", "Regenerate"))
             context.commands.push_back({Command::Kind::regenerate, {}, "", context.view.layer});
     } else {
         note("Changing these generates the splats anew.");
@@ -69,7 +70,7 @@ void meshes_rows(Context& context) {
         if (context.layer().source.meshes[i].mesh == "relief") layer_row(context, key + "relief");
         ImGui::PopID();
     }
-    if (button_line({"Add mesh"}) == 0)
+    if (add_line("Add mesh"))
         edit(context, context.prefix, "Add mesh", [&](Scene& scene) {
             scene.layers[layer].source.meshes.push_back({"plane", {}, 0.15});
         });
