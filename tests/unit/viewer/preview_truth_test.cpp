@@ -1,0 +1,174 @@
+// A share of a large layer must show the light of the whole: mean brightness and blocks of 64x64 px of the
+// processor's preview against the same layer with all its splats (DESIGN 10).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/real.h"
+#include "core/shared_maths.h"
+#include "render/falloff.h"
+#include "splats/stratified.h"
+#include "viewer/cpu_preview.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int width = 960, height = 540;
+
+float uniform(std::uint32_t i, std::uint32_t which) {
+    return shared::as_uniform(shared::as_hash(11u, i, 0u, which));
+}
+
+/// Alpha of a two-armed spiral with a bulge at (x, z), radius 5.
+double spiral(double x, double z) {
+    const double r = std::sqrt(x * x + z * z);
+    const double turn = real::atan2(z, x) - 1.6 * real::log(r + 0.2);
+    const double arms = 0.5 + 0.5 * real::cos(2.0 * turn);
+    const double disk = real::exp(-r / 2.2);
+    return std::min(1.0, 0.9 * real::exp(-r * r / 0.8) + disk * (0.15 + 0.85 * arms * arms * arms));
+}
+
+/// A thick disk as generation leaves it: 8 million jittered lattice positions around the plane y = 0.
+std::shared_ptr<const SplatSet> galaxy() {
+    constexpr std::int64_t across = 452, up = 50;
+    const glm::dvec3 spacing(10.0 / across, 0.8 / up, 10.0 / across);
+    auto set = std::make_shared<SplatSet>();
+    for (std::int64_t k = 0; k < across; ++k)
+        for (std::int64_t j = 0; j < up; ++j)
+            for (std::int64_t i = 0; i < across; ++i) {
+                const auto n = static_cast<std::uint32_t>((k * up + j) * across + i);
+                const glm::dvec3 p =
+                    (glm::dvec3(i, j, k) + glm::dvec3(uniform(n, 1), uniform(n, 2), uniform(n, 3))) *
+                        spacing -
+                    glm::dvec3(5.0, 0.4, 5.0);
+                if (p.x * p.x + p.z * p.z > 25.0) continue;
+                const auto a = static_cast<float>(spiral(p.x, p.z));
+                set->position.push_back(glm::vec3(p));
+                set->alpha.push_back(a);
+                set->color.push_back(glm::vec3(0.4f + 0.5f * a, 0.5f, 0.8f - 0.4f * a));
+                set->distance.push_back(static_cast<float>(std::fabs(p.y)));
+                set->id.push_back(n);
+            }
+    set->spacing = spacing;
+    set->max_distance = 0.4;
+    set->generated = true;
+    return set;
+}
+
+Look galaxy_look() {
+    Look look;
+    look.pdf.shape = DensityCurve::Shape::smooth;
+    look.vertical.shape = VerticalAlpha::Shape::linear;
+    look.noise.resize(1);
+    look.noise[0].silhouette = 0.4f;
+    look.radius.min = 0.02f;
+    look.radius.max = 0.05f;
+    return look;
+}
+
+Camera camera_at(const glm::dvec3& position) {
+    CameraParams params;
+    params.position = position;
+    params.fov = 40.0;
+    Bounds box;
+    box.add({-5.0, -0.4, -5.0});
+    box.add({5.0, 0.4, 5.0});
+    return make_camera(params, width, height, box);
+}
+
+double brightness(const Image& picture, const Region& part) {
+    double sum = 0.0;
+    for (std::int64_t y = part.y; y < part.y + part.height; ++y)
+        for (std::int64_t x = part.x; x < part.x + part.width; ++x) {
+            const float* p = picture.at(x, y);
+            sum += 0.2126 * double(p[0]) + 0.7152 * double(p[1]) + 0.0722 * double(p[2]);
+        }
+    return sum / static_cast<double>(part.width * part.height);
+}
+
+std::vector<double> block_brightness(const Image& picture) {
+    std::vector<double> blocks;
+    for (std::int64_t y = 0; y + 64 <= height; y += 64)
+        for (std::int64_t x = 0; x + 64 <= width; x += 64)
+            blocks.push_back(brightness(picture, {x, y, 64, 64}));
+    return blocks;
+}
+
+struct View {
+    const char* name;
+    Blend blend;
+    glm::dvec3 eye;
+};
+
+class PreviewTruth : public testing::TestWithParam<View> {
+  protected:
+    static void SetUpTestSuite() {
+        whole = galaxy();
+        preview =
+            std::make_shared<const SplatSet>(take_rows(*whole, stratified_order(*whole), whole->size() / 8));
+    }
+    static void TearDownTestSuite() {
+        whole.reset();
+        preview.reset();
+    }
+
+    static PreviewLayer layer(float share) {
+        PreviewLayer layer;
+        layer.layer.render.blend = GetParam().blend;
+        layer.set = share < 1.0f ? preview : whole;
+        layer.whole = whole->size();
+        layer.look = galaxy_look();
+        if (GetParam().blend == Blend::add) layer.look.alpha.gain = 0.1f;
+        layer.inputs.falloff_integral = falloff_integral(layer.layer.render.falloff);
+        if (GetParam().blend == Blend::add) layer.inputs.column = ColumnLaw::sum;
+        layer.share = share;
+        return layer;
+    }
+
+    static Image draw(float share) {
+        CpuPreview preview_of_it;
+        return preview_of_it.draw({layer(share)}, camera_at(GetParam().eye), nullptr, width, height, 0.5f);
+    }
+
+    static std::shared_ptr<const SplatSet> whole, preview;
+};
+std::shared_ptr<const SplatSet> PreviewTruth::whole, PreviewTruth::preview;
+
+TEST_P(PreviewTruth, AShareShowsTheLightOfTheWhole) {
+    ASSERT_GT(whole->size(), 8000000);
+    const Image full = draw(1.0f);
+    const std::vector<double> wanted = block_brightness(full);
+    const double brightest = *std::max_element(wanted.begin(), wanted.end());
+    for (const float share : {0.1f, 0.05f}) {
+        const Image part = draw(share);
+        const Region all{0, 0, width, height};
+        const double mean = brightness(part, all) / brightness(full, all);
+        EXPECT_NEAR(mean, 1.0, 0.02) << "share " << share;
+        const std::vector<double> shown = block_brightness(part);
+        int bright = 0, near = 0;
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            if (wanted[i] < 0.1 * brightest) continue;
+            ++bright;
+            near += std::fabs(shown[i] / wanted[i] - 1.0) <= 0.2;
+        }
+        EXPECT_GT(bright, 5);
+        EXPECT_GE(near, 0.95 * bright) << "share " << share << ": of " << bright << " blocks";
+        RecordProperty(share < 0.07f ? "mean_at_5_percent" : "mean_at_10_percent", std::to_string(mean));
+    }
+}
+
+const glm::dvec3 tilted(3.0, 6.2, 8.4), edge_on(0.0, 0.6, 9.0), close(1.0, 0.8, 3.0);
+INSTANTIATE_TEST_SUITE_P(
+    Views, PreviewTruth,
+    testing::Values(View{"OverTilted", Blend::over, tilted}, View{"OverEdgeOn", Blend::over, edge_on},
+                    View{"OverClose", Blend::over, close}, View{"ScreenTilted", Blend::screen, tilted},
+                    View{"ScreenEdgeOn", Blend::screen, edge_on}, View{"AddTilted", Blend::add, tilted},
+                    View{"AddEdgeOn", Blend::add, edge_on}),
+    [](const auto& view) { return std::string(view.param.name); });
+
+}  // namespace
+}  // namespace astrosplat
