@@ -99,8 +99,8 @@ HWY_INLINE Vector3 set(const glm::dvec3& p) {
 }
 
 // Ericson's regions as masks: closest_on_triangle without branches, to the same bits, for one vector of
-// positions.
-HWY_INLINE void offer(const TriangleShape& s, double number, Group& g, std::size_t i) {
+// positions. True when the triangle is nearest for one of them.
+HWY_INLINE bool offer(const TriangleShape& s, double number, Group& g, std::size_t i) {
     const Doubles d;
     const auto zero = hn::Zero(d), one = hn::Set(d, 1.0);
     const Vector3 ab = set(s.ab), ac = set(s.ac), a = set(s.a);
@@ -143,23 +143,28 @@ HWY_INLINE void offer(const TriangleShape& s, double number, Group& g, std::size
     const auto this_one = hn::Set(d, number);
     const auto tie_won = hn::And(hn::Eq(squared, best), hn::Lt(this_one, triangle));
     const auto nearer = hn::Or(hn::Lt(squared, best), tie_won);
+    if (hn::AllFalse(d, nearer)) return false;
     hn::Store(hn::IfThenElse(nearer, squared, best), d, g.squared + i);
     hn::Store(hn::IfThenElse(nearer, this_one, triangle), d, g.triangle + i);
     hn::Store(hn::IfThenElse(nearer, v, hn::Load(d, g.v + i)), d, g.v + i);
     hn::Store(hn::IfThenElse(nearer, w, hn::Load(d, g.w + i)), d, g.w + i);
+    return true;
 }
 
 // Triangles without a usable inside, by the scalar code.
-void offer_thin(const TriangleShape& shape, double number, Group& g) {
+bool offer_thin(const TriangleShape& shape, double number, Group& g) {
+    bool any = false;
     for (std::size_t i = 0; i < group; ++i) {
         const ClosestPoint c = closest_on_triangle({g.x[i], g.y[i], g.z[i]}, shape);
         const bool tie_won = c.distance_squared == g.squared[i] && number < g.triangle[i];
         if (!(c.distance_squared < g.squared[i] || tie_won)) continue;
+        any = true;
         g.squared[i] = c.distance_squared;
         g.triangle[i] = number;
         g.v[i] = c.barycentric.x;
         g.w[i] = c.barycentric.y;
     }
+    return any;
 }
 
 class GroupQuery {
@@ -185,16 +190,12 @@ class GroupQuery {
         if (found_.count == 0) return;
         const float* nearest = std::min_element(found_.squared.data(), found_.squared.data() + found_.count);
         const std::uint32_t first = number(static_cast<std::size_t>(nearest - found_.squared.data()));
-        if (first != hint) {
-            measure(first);
-            update_limits();
-        }
+        if (first != hint && measure(first)) update_limits();
         for (std::size_t i = 0; i < found_.count; ++i) {
             const std::uint32_t triangle = number(i);
             if (triangle == hint || triangle == first) continue;
             if (found_.squared[i] > g_.widest * g_.widest || !matters(found_.place[i])) continue;
-            measure(triangle);
-            update_limits();
+            if (measure(triangle)) update_limits();
         }
     }
 
@@ -214,49 +215,64 @@ class GroupQuery {
 
     void find_middle() {
         g_.middle = {middle_of(g_.local_x), middle_of(g_.local_y), middle_of(g_.local_z)};
-        for (std::size_t i = 0; i < group; ++i) {
-            const float x = g_.local_x[i] - g_.middle.x, y = g_.local_y[i] - g_.middle.y,
-                        z = g_.local_z[i] - g_.middle.z;
-            g_.from_middle[i] = std::sqrt(x * x + y * y + z * z) * 1.00001f;
+        const Floats d;
+        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
+            const auto x = hn::Sub(hn::Load(d, g_.local_x + i), hn::Set(d, g_.middle.x));
+            const auto y = hn::Sub(hn::Load(d, g_.local_y + i), hn::Set(d, g_.middle.y));
+            const auto z = hn::Sub(hn::Load(d, g_.local_z + i), hn::Set(d, g_.middle.z));
+            const auto squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+            hn::Store(hn::Mul(hn::Sqrt(squared), hn::Set(d, 1.00001f)), d, g_.from_middle + i);
         }
     }
     static float middle_of(const float* values) {
-        float lowest = values[0], highest = values[0];
-        for (std::size_t i = 1; i < group; ++i) {
-            lowest = std::min(lowest, values[i]);
-            highest = std::max(highest, values[i]);
+        const Floats d;
+        auto lowest = hn::Load(d, values), highest = lowest;
+        for (std::size_t i = hn::Lanes(d); i < group; i += hn::Lanes(d)) {
+            lowest = hn::Min(lowest, hn::Load(d, values + i));
+            highest = hn::Max(highest, hn::Load(d, values + i));
         }
-        return 0.5f * (lowest + highest);
+        return 0.5f * (hn::GetLane(hn::MinOfLanes(d, lowest)) + hn::GetLane(hn::MaxOfLanes(d, highest)));
     }
 
-    void measure(std::uint32_t triangle) {
+    // True when the triangle is nearest for a position of the group.
+    bool measure(std::uint32_t triangle) {
         const TriangleShape& s = m_.shapes[triangle];
         if (has_no_inside(s)) return offer_thin(s, triangle, g_);
-        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles())) offer(s, triangle, g_, i);
+        bool any = false;
+        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles())) any |= offer(s, triangle, g_, i);
+        return any;
     }
 
     // As ClosestPointIndex's queries widen their radius.
     void update_limits() {
-        float widest = 0.0f;
-        for (std::size_t i = 0; i < group; ++i) {
-            const float limit = static_cast<float>(1.00001 * std::sqrt(g_.squared[i])) + m_.slack;
-            g_.limit[i] = limit * limit;
-            widest = std::max(widest, limit + g_.from_middle[i]);
+        alignas(64) float distance[group];
+        for (std::size_t i = 0; i < group; ++i) distance[i] = static_cast<float>(std::sqrt(g_.squared[i]));
+        const Floats d;
+        auto widest = hn::Zero(d);
+        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
+            const auto limit =
+                hn::Add(hn::Mul(hn::Load(d, distance + i), hn::Set(d, 1.00001f)), hn::Set(d, m_.slack));
+            hn::Store(hn::Mul(limit, limit), d, g_.limit + i);
+            widest = hn::Max(widest, hn::Add(limit, hn::Load(d, g_.from_middle + i)));
         }
-        g_.widest = widest * 1.00001f + m_.slack;
+        g_.widest = hn::GetLane(hn::MaxOfLanes(d, widest)) * 1.00001f + m_.slack;
     }
 
-    // Square of at most the distance of a point from a disc, for lanes of candidates or of positions. The
-    // small factors outweigh the rounding of the normal and of the subtraction of nearly equal squares.
+    // Square of at most the distance of a point from a disc, for lanes of candidates or of positions; right
+    // wherever the disc is within `widest`. The small numbers outweigh the rounding of the normal, of the
+    // subtraction of nearly equal squares, and of the approximate root.
     template <class D, class V = hn::Vec<D>>
-    static HWY_INLINE V from_disc(D d, V x, V y, V z, V normal_x, V normal_y, V normal_z, V radius) {
+    HWY_INLINE V from_disc(D d, V x, V y, V z, V normal_x, V normal_y, V normal_z, V radius) const {
         const V squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
         const V height =
             hn::Abs(hn::Add(hn::Add(hn::Mul(x, normal_x), hn::Mul(y, normal_y)), hn::Mul(z, normal_z)));
-        const V across_squared = hn::Sub(hn::Mul(squared, hn::Set(d, 1.0f - 4e-6f)), hn::Mul(height, height));
-        const V across = hn::Sqrt(hn::Max(across_squared, hn::Zero(d)));
+        const V across_squared = hn::Max(
+            hn::Sub(hn::Mul(squared, hn::Set(d, 1.0f - 4e-6f)), hn::Mul(height, height)), hn::Set(d, 1e-30f));
+        const V across = hn::Mul(hn::Mul(across_squared, hn::ApproximateReciprocalSqrt(across_squared)),
+                                 hn::Set(d, 0.9995f));
         const V outside = hn::Max(hn::Sub(across, radius), hn::Zero(d));
-        const V above = hn::Max(hn::Sub(height, hn::Mul(hn::Sqrt(squared), hn::Set(d, 2e-6f))), hn::Zero(d));
+        const V margin = hn::Mul(hn::Add(radius, hn::Set(d, g_.widest)), hn::Set(d, 2e-6f));
+        const V above = hn::Max(hn::Sub(height, margin), hn::Zero(d));
         return hn::Add(hn::Mul(outside, outside), hn::Mul(above, above));
     }
 
