@@ -52,6 +52,8 @@ void LookPass::run(const RawSplats& raw, const LookPassInput& input, ShadedBuffe
     const auto size = static_cast<GLsizeiptr>(sizeof(glm::vec4)) * input.count;
     glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, out.places(), offset, size);
     glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 1, out.colors(), offset, size);
+    unused_.resize(1, 1, GL_RGBA8);
+    unused_.bind();
     glEnable(GL_RASTERIZER_DISCARD);
     glBindVertexArray(raw.vertex_array());
     glBeginTransformFeedback(GL_POINTS);

@@ -32,6 +32,7 @@ class LookPass {
     GlProgram program_;
     GlBuffer block_;
     GlTexture map_;
+    GlTarget unused_;  // without a window OpenGL draws nothing where no picture is bound
 };
 
 }  // namespace astrosplat
