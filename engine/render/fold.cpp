@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "render/fold_batch.h"
-#include "render/shared_render.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/fold.cpp"
@@ -16,84 +14,10 @@
 #include <hwy/highway.h>
 
 #include "render/fold_blend-inl.h"
+#include "render/fold_prepare-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {
-
-/// Cubics between the footprint's two nodes.
-HWY_INLINE void prepare_cubics(const Footprint& f, PreparedSplat& to) {
-    const V t = all(f.t);
-    for (int power = 0; power < 4; ++power)
-        for (int i = 0; i < segments; i += lanes) {
-            const V a = load(f.node_a->cubic[power] + i), b = load(f.node_b->cubic[power] + i);
-            store(hn::Add(a, hn::Mul(hn::Sub(b, a), t)), to.cubic[power] + i);
-        }
-}
-
-/// Everything of splat `i` of the batch but its cubics.
-void prepare_constants(const ScreenSplat& splat, const FoldLayer& layer, const Footprint& footprint,
-                       const FoldSettings& settings, SplatBatch& batch, int i) {
-    PreparedSplat& p = batch.splats[i];
-    const float h = static_cast<float>(splat.hybrid) * (1.0f / 65535.0f);
-    const int blend = layer.holdout ? shared::BLEND_OVER : static_cast<int>(layer.blend);
-    p.x_px = splat.x_px;
-    p.y_px = splat.y_px;
-    p.lo = footprint.lo;
-    p.scale = footprint.scale;
-    p.edge_gain = footprint.edge_gain;
-    p.opacity = splat.opacity * footprint.amplitude;
-    p.weight_gain = footprint.amplitude;
-    p.shows = layer.holdout ? 0.0f : 1.0f;
-    batch.linear_in_distance[i] = layer.footprints->linear_in_distance;
-    batch.layer[i] = splat.layer;
-    float sum = 0.0f;
-    bool bright = false;
-    for (int k = 0; k < 3; ++k) {
-        p.color[k] = layer.holdout ? 0.0f : splat.color[k];
-        p.occlusion[k] = shared::blend_occlusion(blend, splat.color[k], h);
-        sum += p.occlusion[k];
-        bright = bright || (blend == shared::BLEND_SCREEN && splat.color[k] > 1.0f);
-    }
-    p.occlusion[3] = sum / 3.0f;
-    batch.bright_screen[i] = bright;
-    if (!settings.aovs) return;
-    const float x = (splat.x_px - settings.center_x_px) / settings.focal_px;
-    const float y = (splat.y_px - settings.center_y_px) / settings.focal_px;
-    const float key = std::bit_cast<float>(splat.depth);
-    p.depth = settings.orthographic ? key : std::sqrt(key / (1.0f + x * x + y * y));
-}
-
-/// Squared distance along one axis from `lanes` splats to the nearest pixel centre of a row or column of
-/// blocks.
-HWY_INLINE V distance_to_block(V center, float first_px) {
-    const float half = 0.5f * static_cast<float>(TilePlanes::block_px - 1);
-    const V middle = all(first_px + 0.5f * static_cast<float>(TilePlanes::block_px));
-    const V distance = hn::Max(hn::Sub(hn::Abs(hn::Sub(center, middle)), all(half)), hn::Zero(D()));
-    return hn::Mul(distance, distance);
-}
-
-HWY_INLINE void set_bits(M mask, int first, std::uint64_t& word) {
-    std::uint8_t bytes[8] = {};  // StoreMaskBits may write more than it needs
-    hn::StoreMaskBits(D(), mask, bytes);
-    word |= (std::uint64_t{bytes[0]} | std::uint64_t{bytes[1]} << 8) << first;
-}
-
-/// Which splats of the batch may have weight in which blocks of a cell whose corner is (x0, y0).
-void find_touched_blocks(SplatBatch& batch, float x0_px, float y0_px) {
-    constexpr int side = TilePlanes::cell_blocks;
-    std::fill_n(batch.touches, SplatBatch::blocks, std::uint64_t{0});
-    for (int n = 0; n < batch.count; n += lanes) {
-        const V x = load(batch.x_px + n), y = load(batch.y_px + n), reach = load(batch.reach_squared + n);
-        V dx[side];
-        for (int c = 0; c < side; ++c)
-            dx[c] = distance_to_block(x, x0_px + static_cast<float>(c * TilePlanes::block_px));
-        for (int r = 0; r < side; ++r) {
-            const V dy = distance_to_block(y, y0_px + static_cast<float>(r * TilePlanes::block_px));
-            for (int c = 0; c < side; ++c)
-                set_bits(hn::Le(hn::Add(dx[c], dy), reach), n, batch.touches[r * side + c]);
-        }
-    }
-}
 
 /// One cell being folded.
 struct Cell {
@@ -123,16 +47,14 @@ bool fold_block(const SplatBatch& batch, std::uint64_t bits, const Cell& cell, i
         Pixels pixels(planes, at);
         for (std::uint64_t rest = bits; rest != 0; rest &= rest - 1) {
             const int i = std::countr_zero(rest);
-            const PreparedSplat& splat = batch.splats[i];
-            const V dx = hn::Sub(x, all(splat.x_px)), dy = hn::Sub(y, all(splat.y_px));
-            const V w = weight_at<kFlat>(splat, batch.linear_in_distance[i],
-                                         hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
-            FoldStep step{splat, batch.bright_screen[i] != 0, {}};
+            const V dx = hn::Sub(x, all(batch.x_px[i])), dy = hn::Sub(y, all(batch.y_px[i]));
+            const V w = weight_at<kFlat>(batch, i, hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
+            FoldStep step{batch, i, {}};
             if constexpr (Pixels::aovs)
                 for (std::size_t k = 0; k < 4; ++k)
                     step.layer_light[k] = planes.layer_light[4 * std::size_t{batch.layer[i]} + k].data() + at;
-            pixels.fold(step, saturate(hn::Mul(all(splat.opacity), w)), hn::Mul(w, all(splat.weight_gain)),
-                        stop);
+            pixels.fold(step, saturate(hn::Mul(all(batch.opacity[i]), w)),
+                        hn::Mul(w, all(batch.weight_gain[i])), stop);
         }
         pixels.store_to(planes, at);
         if constexpr (Pixels::closes) open = open || !hn::AllFalse(D(), pixels.open(stop));
@@ -140,10 +62,11 @@ bool fold_block(const SplatBatch& batch, std::uint64_t bits, const Cell& cell, i
     return open;
 }
 
-/// Prepares those splats of the batch that touch an open block, and folds the batch.
+/// Prepares those splats of the batch that touch an open block, and folds the batch. `table`: the footprint
+/// table of all layers, or null when they differ.
 template <class Pixels, bool kFlat>
-void fold_batch(std::span<const ScreenSplat> splats, std::span<const FoldLayer> layers,
-                const FoldSettings& settings, SplatBatch& batch, Cell& cell, TilePlanes& planes) {
+void fold_batch(const FoldJob& job, const FootprintTable* table, SplatBatch& batch, Cell& cell,
+                TilePlanes& planes) {
     for (int i = batch.count; i % lanes != 0; ++i) {
         batch.x_px[i] = batch.y_px[i] = 0.0f;
         batch.reach_squared[i] = -1.0f;
@@ -152,19 +75,11 @@ void fold_batch(std::span<const ScreenSplat> splats, std::span<const FoldLayer> 
     std::uint64_t touching = 0;
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1)
         touching |= batch.touches[std::countr_zero(rest)];
-    for (; touching != 0; touching &= touching - 1) {
-        const int i = std::countr_zero(touching);
-        const ScreenSplat& splat = splats[batch.index[i]];
-        const FoldLayer& layer = layers[splat.layer];
-        Footprint footprint;
-        footprint_at(*layer.footprints, splat.radius_px, splat.x_px, splat.y_px, footprint);
-        prepare_cubics(footprint, batch.splats[i]);
-        prepare_constants(splat, layer, footprint, settings, batch, i);
-    }
+    if (touching != 0) prepare_splats<Pixels>(job, table, touching, batch);
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1) {
         const int block = std::countr_zero(rest);
         if (batch.touches[block] == 0) continue;
-        if (!fold_block<Pixels, kFlat>(batch, batch.touches[block], cell, block, settings.stop, planes))
+        if (!fold_block<Pixels, kFlat>(batch, batch.touches[block], cell, block, job.settings.stop, planes))
             cell.open &= ~(std::uint64_t{1} << block);
     }
     batch.count = 0;
@@ -209,13 +124,17 @@ void close_cell(const Cell& cell, float stop, TilePlanes& planes) {
     }
 }
 
+const FootprintTable* common_table(std::span<const FoldLayer> layers) {
+    const auto same = [&](const FoldLayer& layer) { return layer.footprints == layers[0].footprints; };
+    return std::all_of(layers.begin(), layers.end(), same) ? layers[0].footprints : nullptr;
+}
+
 template <class Pixels, bool kFlat>
-void fold_cells(std::span<const ScreenSplat> splats, std::span<const std::uint32_t> order,
-                std::span<const FoldLayer> layers, const FoldSettings& settings, const Progress& progress,
-                TilePlanes& planes) {
+void fold_cells(const FoldJob& job, TilePlanes& planes) {
     constexpr std::size_t check_every = 1024;
-    static thread_local std::unique_ptr<SplatBatch> batch_memory = std::make_unique<SplatBatch>();
+    static thread_local const std::unique_ptr<SplatBatch> batch_memory = std::make_unique<SplatBatch>();
     SplatBatch& batch = *batch_memory;
+    const FootprintTable* table = common_table(job.layers);
     for (int n = 0; n < planes.cell_columns * planes.cell_rows; ++n) {
         const int column = n % planes.cell_columns, row = n / planes.cell_columns;
         Cell cell{static_cast<std::size_t>(n * TilePlanes::cell_pixels),
@@ -223,53 +142,45 @@ void fold_cells(std::span<const ScreenSplat> splats, std::span<const std::uint32
                   static_cast<float>(planes.y0 + row * TilePlanes::cell_px),
                   used_blocks(planes, column, row)};
         batch.count = 0;
-        for (std::size_t i = 0; i < order.size() && cell.open != 0; ++i) {
-            if (i % check_every == 0) progress.check();
-            const ScreenSplat& splat = splats[order[i]];
-            gather(splat, order[i], layers[splat.layer], cell, batch);
-            if (batch.count == SplatBatch::size)
-                fold_batch<Pixels, kFlat>(splats, layers, settings, batch, cell, planes);
+        for (std::size_t i = 0; i < job.order.size() && cell.open != 0; ++i) {
+            if (i % check_every == 0) job.progress.check();
+            const ScreenSplat& splat = job.splats[job.order[i]];
+            gather(splat, job.order[i], job.layers[splat.layer], cell, batch);
+            if (batch.count == SplatBatch::size) fold_batch<Pixels, kFlat>(job, table, batch, cell, planes);
         }
-        fold_batch<Pixels, kFlat>(splats, layers, settings, batch, cell, planes);
-        if constexpr (Pixels::closes) close_cell<Pixels>(cell, settings.stop, planes);
+        fold_batch<Pixels, kFlat>(job, table, batch, cell, planes);
+        if constexpr (Pixels::closes) close_cell<Pixels>(cell, job.settings.stop, planes);
     }
 }
 
 template <class Pixels>
-void fold_pixels(std::span<const ScreenSplat> splats, std::span<const std::uint32_t> order,
-                 std::span<const FoldLayer> layers, const FoldSettings& settings, const Progress& progress,
-                 TilePlanes& planes) {
-    const bool flat = std::any_of(layers.begin(), layers.end(),
+void fold_pixels(const FoldJob& job, TilePlanes& planes) {
+    const bool flat = std::any_of(job.layers.begin(), job.layers.end(),
                                   [](const FoldLayer& layer) { return layer.footprints->flat_core; });
-    flat ? fold_cells<Pixels, true>(splats, order, layers, settings, progress, planes)
-         : fold_cells<Pixels, false>(splats, order, layers, settings, progress, planes);
+    flat ? fold_cells<Pixels, true>(job, planes) : fold_cells<Pixels, false>(job, planes);
 }
 
 template <bool kAovs>
-void fold_kind(std::span<const ScreenSplat> splats, std::span<const std::uint32_t> order,
-               std::span<const FoldLayer> layers, const FoldSettings& settings, const Progress& progress,
-               TilePlanes& planes) {
-    const bool holds =
-        std::any_of(layers.begin(), layers.end(), [](const FoldLayer& layer) { return layer.holdout; });
-    if (settings.kind == FoldKind::lighten)
-        fold_pixels<LightenPixels<kAovs>>(splats, order, layers, settings, progress, planes);
+void fold_kind(const FoldJob& job, TilePlanes& planes) {
+    const bool holds = std::any_of(job.layers.begin(), job.layers.end(),
+                                   [](const FoldLayer& layer) { return layer.holdout; });
+    if (job.settings.kind == FoldKind::lighten)
+        fold_pixels<LightenPixels<kAovs>>(job, planes);
     else if (holds)
-        fold_pixels<GeneralPixels<kAovs, true>>(splats, order, layers, settings, progress, planes);
+        fold_pixels<GeneralPixels<kAovs, true>>(job, planes);
     else
-        fold_pixels<GeneralPixels<kAovs, false>>(splats, order, layers, settings, progress, planes);
+        fold_pixels<GeneralPixels<kAovs, false>>(job, planes);
 }
 
-void fold_here(std::span<const ScreenSplat> splats, std::span<const std::uint32_t> order,
-               std::span<const FoldLayer> layers, const FoldSettings& settings, const Progress& progress,
-               TilePlanes& planes) {
-    if (settings.kind == FoldKind::over)
-        fold_pixels<OverPixels>(splats, order, layers, settings, progress, planes);
-    else if (settings.kind == FoldKind::add)
-        fold_pixels<AddPixels>(splats, order, layers, settings, progress, planes);
-    else if (settings.aovs)
-        fold_kind<true>(splats, order, layers, settings, progress, planes);
+void fold_here(const FoldJob& job, TilePlanes& planes) {
+    if (job.settings.kind == FoldKind::over)
+        fold_pixels<OverPixels>(job, planes);
+    else if (job.settings.kind == FoldKind::add)
+        fold_pixels<AddPixels>(job, planes);
+    else if (job.settings.aovs)
+        fold_kind<true>(job, planes);
     else
-        fold_kind<false>(splats, order, layers, settings, progress, planes);
+        fold_kind<false>(job, planes);
 }
 
 }  // namespace astrosplat::HWY_NAMESPACE
@@ -280,11 +191,7 @@ namespace astrosplat {
 
 HWY_EXPORT(fold_here);
 
-void fold(std::span<const ScreenSplat> splats, std::span<const std::uint32_t> order,
-          std::span<const FoldLayer> layers, const FoldSettings& settings, const Progress& progress,
-          TilePlanes& planes) {
-    HWY_DYNAMIC_DISPATCH(fold_here)(splats, order, layers, settings, progress, planes);
-}
+void fold(const FoldJob& job, TilePlanes& planes) { HWY_DYNAMIC_DISPATCH(fold_here)(job, planes); }
 
 void TilePlanes::reset(const Region& tile, const FoldSettings& settings, std::size_t layer_count) {
     x0 = tile.x;

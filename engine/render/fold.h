@@ -72,9 +72,16 @@ struct TilePlanes {
     }
 };
 
-/// Folds `splats`, near to far in the order given by their indices, into the planes.
-void fold(std::span<const ScreenSplat> splats, std::span<const std::uint32_t> order,
-          std::span<const FoldLayer> layers, const FoldSettings& settings, const Progress& progress,
-          TilePlanes& planes);
+/// What is to be folded.
+struct FoldJob {
+    std::span<const ScreenSplat> splats;
+    std::span<const std::uint32_t> order;  // indices of `splats`, near to far
+    std::span<const FoldLayer> layers;
+    const FoldSettings& settings;
+    const Progress& progress;
+};
+
+/// Folds the splats into the planes. Throws Cancelled.
+void fold(const FoldJob& job, TilePlanes& planes);
 
 }  // namespace astrosplat

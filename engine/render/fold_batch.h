@@ -1,5 +1,4 @@
-// What the fold knows of the splats it is about to fold: up to 64 at a time, in total order, all that the
-// blocks of a cell ask of them side by side.
+// What the fold knows of the splats it is about to fold: up to 64 at a time, in total order, value by value.
 #pragma once
 
 #include <cstdint>
@@ -9,35 +8,41 @@
 
 namespace astrosplat {
 
-/// One splat, ready to be folded: five cache lines.
-struct alignas(64) PreparedSplat {
-    float cubic[4][FootprintNode::segments];  // of the weight, [power][segment]
-    float x_px, y_px;                         // of the whole picture
-    float lo, scale;                          // as in Footprint
-    float edge_gain;
-    float opacity;       // times the footprint's amplitude
-    float weight_gain;   // amplitude alone, for coverage
-    float color[3];      // 0 for holdouts
-    float occlusion[4];  // o per channel; [3] for alpha
-    float shows;         // 0 for holdouts
-    float depth;         // scene units along the view axis
-};
-static_assert(sizeof(PreparedSplat) == 320);
-
 struct SplatBatch {
     static constexpr int size = 64;
     static constexpr int blocks = TilePlanes::cell_blocks * TilePlanes::cell_blocks;
-    PreparedSplat splats[size];
-    std::uint8_t linear_in_distance[size];  // as in FootprintTable
-    std::uint8_t
-        bright_screen[size];  // a colour above 1 under screen: alpha is the mean of the clamped channels
+    int count = 0;
+    std::uint32_t index[size];  // of the splat among the tile's
     std::uint16_t layer[size];
+    std::uint8_t linear_in_distance[size];  // as in FootprintTable
+    std::uint8_t bright_screen[size];       // alpha is the mean of the clamped channels, see prepare_blend
     alignas(64) std::uint64_t touches[blocks];  // bit i: splat i may have weight in the block
 
-    // Gathered first, for the test against the blocks; places beyond `count` have a reach below 0.
-    int count = 0;
-    std::uint32_t index[size];
-    alignas(64) float x_px[size], y_px[size], reach_squared[size];
+    // Of the whole picture; places beyond `count` have a reach below 0.
+    alignas(64) float x_px[size];
+    alignas(64) float y_px[size];
+    alignas(64) float reach_squared[size];
+
+    // The weight, as in Footprint.
+    alignas(64) float cubic[size][4][FootprintNode::segments];  // [splat][power][segment]
+    alignas(64) float lo[size];
+    alignas(64) float scale[size];
+    alignas(64) float edge_gain[size];
+    alignas(64) float weight_gain[size];  // amplitude alone, for coverage
+
+    alignas(64) float opacity[size];       // times the footprint's amplitude
+    alignas(64) float color[3][size];      // 0 for holdouts
+    alignas(64) float occlusion[4][size];  // o per channel; [3] for alpha
+    alignas(64) float shows[size];         // 0 for holdouts
+    alignas(64) float depth[size];         // scene units along the view axis
+
+    // What the weights are made of, while they are prepared.
+    alignas(64) float radius_px[size];
+    alignas(64) float alpha[size];     // opacity as the splat has it
+    alignas(64) float cosine_x[size];  // phase of the centre relative to the pixels
+    alignas(64) float cosine_y[size];
+    alignas(64) float tabulated[size];      // 1; 0 for radii beyond the table
+    alignas(64) float moments[3][size][4];  // of FootprintMoments, four by four
 };
 
 }  // namespace astrosplat

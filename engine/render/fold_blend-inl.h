@@ -52,29 +52,30 @@ HWY_INLINE V look_up(const float* c, VI segment) {
 /// Weight at squared distances from the centre, without the amplitude. Not clamped: the cubics may leave [0,
 /// 1] by a few 1e-5. kFlat: the footprint may have a flat inside.
 template <bool kFlat>
-HWY_INLINE V weight_at(const PreparedSplat& splat, bool linear_in_distance, V distance_squared) {
+HWY_INLINE V weight_at(const SplatBatch& batch, int i, V distance_squared) {
     const D d;
-    const V place = linear_in_distance ? hn::Sqrt(distance_squared) : distance_squared;
-    V u = kFlat ? hn::Max(hn::Mul(hn::Sub(place, all(splat.lo)), all(splat.scale)), hn::Zero(d))
-                : hn::Mul(place, all(splat.scale));
+    const float(&cubic)[4][segments] = batch.cubic[i];
+    const V place = batch.linear_in_distance[i] ? hn::Sqrt(distance_squared) : distance_squared;
+    V u = kFlat ? hn::Max(hn::Mul(hn::Sub(place, all(batch.lo[i])), all(batch.scale[i])), hn::Zero(d))
+                : hn::Mul(place, all(batch.scale[i]));
     // Rounding to the nearest whole number in the lowest bits of a float is the segment; on a segment's end
     // either side will do. Far outside, both are nonsense that the mask takes away.
     const V magic = all(12582912.0f);  // 1.5 * 2^23
     const V rounded = hn::Add(hn::Sub(u, all(0.5f)), magic);
     const VI segment = hn::BitCast(DI(), rounded);
     const V f = hn::Sub(u, hn::Sub(rounded, magic));
-    V p = hn::Add(hn::Mul(look_up(splat.cubic[3], segment), f), look_up(splat.cubic[2], segment));
-    p = hn::Add(hn::Mul(p, f), look_up(splat.cubic[1], segment));
-    p = hn::Add(hn::Mul(p, f), look_up(splat.cubic[0], segment));
+    V p = hn::Add(hn::Mul(look_up(cubic[3], segment), f), look_up(cubic[2], segment));
+    p = hn::Add(hn::Mul(p, f), look_up(cubic[1], segment));
+    p = hn::Add(hn::Mul(p, f), look_up(cubic[0], segment));
     p = hn::IfThenElseZero(hn::Lt(u, all(static_cast<float>(segments))), p);
-    if (kFlat) p = hn::Add(p, hn::Mul(all(splat.edge_gain), hn::Mul(p, hn::Sub(all(1.0f), p))));
+    if (kFlat) p = hn::Add(p, hn::Mul(all(batch.edge_gain[i]), hn::Mul(p, hn::Sub(all(1.0f), p))));
     return p;
 }
 
 /// What a blend is told besides weights: the splat, and where its layer keeps its light at these pixels.
 struct FoldStep {
-    const PreparedSplat& splat;
-    bool bright_screen;
+    const SplatBatch& batch;
+    int i;                  // of the splat in the batch
     float* layer_light[4];  // with AOVs only
 };
 
@@ -84,7 +85,7 @@ struct FoldStep {
 
 /// Over: one transmittance.
 struct OverPixels {
-    static constexpr bool closes = true, aovs = false;
+    static constexpr bool closes = true, aovs = false, general = false;
     V color[3], alpha, t;
 
     HWY_INLINE OverPixels(const TilePlanes& p, std::size_t i) : alpha(load(&p.alpha[i])) {
@@ -99,7 +100,8 @@ struct OverPixels {
     HWY_INLINE M open(V stop) const { return hn::Ge(t, stop); }
     HWY_INLINE void fold(const FoldStep& step, V s, V, V stop) {
         const V share = hn::IfThenElseZero(open(stop), hn::Mul(t, s));
-        for (int k = 0; k < 3; ++k) color[k] = hn::Add(color[k], hn::Mul(share, all(step.splat.color[k])));
+        for (int k = 0; k < 3; ++k)
+            color[k] = hn::Add(color[k], hn::Mul(share, all(step.batch.color[k][step.i])));
         alpha = hn::Add(alpha, share);
         t = hn::Mul(t, hn::Sub(all(1.0f), s));
     }
@@ -112,7 +114,7 @@ struct OverPixels {
 
 /// Add: nothing hides anything, and alpha is not kept.
 struct AddPixels {
-    static constexpr bool closes = false, aovs = false;
+    static constexpr bool closes = false, aovs = false, general = false;
     V color[3];
 
     HWY_INLINE AddPixels(const TilePlanes& p, std::size_t i) {
@@ -122,7 +124,8 @@ struct AddPixels {
         for (int k = 0; k < 3; ++k) store(color[k], &p.color[k][i]);
     }
     HWY_INLINE void fold(const FoldStep& step, V s, V, V) {
-        for (int k = 0; k < 3; ++k) color[k] = hn::Add(color[k], hn::Mul(s, all(step.splat.color[k])));
+        for (int k = 0; k < 3; ++k)
+            color[k] = hn::Add(color[k], hn::Mul(s, all(step.batch.color[k][step.i])));
     }
 };
 
@@ -138,7 +141,7 @@ struct AovPixels {
         store(count, &p.count[i]);
     }
     HWY_INLINE void fold(const FoldStep& step, V s, V weight, V alpha_share, M open) {
-        depth_sum = hn::Add(depth_sum, hn::Mul(alpha_share, all(step.splat.depth)));
+        depth_sum = hn::Add(depth_sum, hn::Mul(alpha_share, all(step.batch.depth[step.i])));
         const M touched = hn::And(hn::Gt(s, hn::Zero(D())), open);
         count = hn::Add(count, hn::IfThenElseZero(touched, all(1.0f)));
         const V rest = hn::Mul(uncovered, hn::Sub(all(1.0f), saturate(weight)));
@@ -156,7 +159,7 @@ using Aovs = std::conditional_t<kAovs, AovPixels, NoAovPixels>;
 /// Lighten: the brightest splat per channel.
 template <bool kAovs>
 struct LightenPixels {
-    static constexpr bool closes = false, aovs = kAovs;
+    static constexpr bool closes = false, aovs = kAovs, general = false;
     V color[3], alpha, t;
     Aovs<kAovs> more;
 
@@ -171,7 +174,8 @@ struct LightenPixels {
         more.store_to(p, i);
     }
     HWY_INLINE void fold(const FoldStep& step, V s, V weight, V) {
-        for (int k = 0; k < 3; ++k) color[k] = hn::Max(color[k], hn::Mul(s, all(step.splat.color[k])));
+        for (int k = 0; k < 3; ++k)
+            color[k] = hn::Max(color[k], hn::Mul(s, all(step.batch.color[k][step.i])));
         const V share = hn::Mul(t, s);
         alpha = hn::Add(alpha, share);
         t = hn::Mul(t, hn::Sub(all(1.0f), s));
@@ -182,7 +186,7 @@ struct LightenPixels {
 /// Any mix of the affine blends. kHolds: there are holdouts, whose alpha is taken away.
 template <bool kAovs, bool kHolds>
 struct GeneralPixels {
-    static constexpr bool closes = true, aovs = kAovs;
+    static constexpr bool closes = true, aovs = kAovs, general = true;
     V color[3], alpha, held, t[4];
     Aovs<kAovs> more;
 
@@ -206,17 +210,17 @@ struct GeneralPixels {
         V sum = hn::Zero(D());
         for (int k = 0; k < 3; ++k) {
             const V reached = hn::IfThenElseZero(is_open, hn::Mul(t[k], s));
-            const V light = hn::Mul(reached, all(step.splat.color[k]));
+            const V light = hn::Mul(reached, all(step.batch.color[k][step.i]));
             color[k] = hn::Add(color[k], light);
             if (kAovs) accumulate(step.layer_light[k], light);
-            const V hidden = clamp_one(hn::Mul(s, all(step.splat.occlusion[k])));
+            const V hidden = clamp_one(hn::Mul(s, all(step.batch.occlusion[k][step.i])));
             sum = hn::Add(sum, hidden);
             t[k] = hn::Mul(t[k], hn::Sub(all(1.0f), hidden));
         }
-        V hidden = clamp_one(hn::Mul(s, all(step.splat.occlusion[3])));
-        if (step.bright_screen) hidden = hn::Div(sum, all(3.0f));
+        V hidden = clamp_one(hn::Mul(s, all(step.batch.occlusion[3][step.i])));
+        if (step.batch.bright_screen[step.i]) hidden = hn::Div(sum, all(3.0f));
         const V share = hn::IfThenElseZero(is_open, hn::Mul(t[3], hidden));
-        const V shown = kHolds ? hn::Mul(share, all(step.splat.shows)) : share;
+        const V shown = kHolds ? hn::Mul(share, all(step.batch.shows[step.i])) : share;
         if (kHolds) held = hn::Add(held, hn::Sub(share, shown));
         alpha = hn::Add(alpha, shown);
         t[3] = hn::Mul(t[3], hn::Sub(all(1.0f), hidden));

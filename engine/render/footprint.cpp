@@ -1,9 +1,9 @@
 #include "render/footprint.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 #include "core/parallel.h"
 #include "core/quadrature.h"
@@ -198,17 +198,17 @@ FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, dou
         moments[3] +=
             integrate_panel(0.0, 1.0, [&](double f) { return value(f) * (1.0 - value(f)) * place(f); });
     }
-    node.mean = static_cast<float>(moments[0] / segments);
-    node.first_moment = static_cast<float>(moments[1] / segments);
-    node.edge_mean = static_cast<float>(moments[2] / segments);
-    node.edge_first_moment = static_cast<float>(moments[3] / segments);
+    node.moments.mean = static_cast<float>(moments[0] / segments);
+    node.moments.first_moment = static_cast<float>(moments[1] / segments);
+    node.moments.edge_mean = static_cast<float>(moments[2] / segments);
+    node.moments.edge_first_moment = static_cast<float>(moments[3] / segments);
     if (radius_px < ripple_limit_px) {
         const Profile profile(falloff, radius_px, table.pixel_filter_px);
         for (int i = 0; i < 3; ++i) {
-            node.ripple[i] =
+            node.moments.ripple[i] =
                 static_cast<float>(profile.relative_spectrum(lattice_frequencies[i], table.integral));
             if (table.flat_core)
-                node.edge_ripple[i] =
+                node.moments.edge_ripple[i] =
                     static_cast<float>(edge_spectrum(table, node, radius_px, lattice_frequencies[i]) /
                                        edge_spectrum(table, node, radius_px, 0.0));
         }
@@ -223,40 +223,11 @@ std::array<float, 256> make_cosines() {
     return table;
 }
 
-/// cos of the phase of a coordinate, snapped to 1/256 px, relative to the pixel centres.
-float pixel_cosine(float coordinate_px) {
-    static const std::array<float, 256> cosines = make_cosines();
-    constexpr float far_px = 1e6f;  // so far out nothing of a splat this small shows
-    const float inside = std::min(std::max(coordinate_px, -far_px), far_px);
-    return -cosines[static_cast<std::size_t>(static_cast<int>(inside * 256.0f) & 255)];
-}
-
-/// Interpolation between two neighbouring nodes.
-struct NodePair {
-    const FootprintNode* a;
-    const FootprintNode* b;
-    float t;
-    float operator()(float FootprintNode::*field) const { return a->*field + (b->*field - a->*field) * t; }
-};
-
-NodePair nodes_at(const FootprintTable& table, float radius_px) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &radius_px, sizeof bits);
-    constexpr std::uint32_t step_bits = 23 - 5;  // steps_per_octave = 2^5
-    const std::int64_t first = std::int64_t{127 + first_exponent} << 5;
-    const std::int64_t index = (bits >> step_bits) - first;
-    if (index < 0) return {&table.nodes.front(), &table.nodes.front(), 0.0f};
-    if (index + 1 >= static_cast<std::int64_t>(table.nodes.size()))
-        return {&table.nodes.back(), &table.nodes.back(), 0.0f};
-    const float t = static_cast<float>(bits & ((1u << step_bits) - 1u)) / static_cast<float>(1u << step_bits);
-    return {&table.nodes[index], &table.nodes[index + 1], t};
-}
-
 /// Relative excess of the sum over all pixels over the integral, for a spectrum of either kind.
-float ripple(const NodePair& pair, float (FootprintNode::*spectrum)[3], float x_px, float y_px) {
+float ripple(const FootprintNodes& nodes, float (FootprintMoments::*spectrum)[3], float x_px, float y_px) {
     const auto at = [&](int i) {
-        const float a = (pair.a->*spectrum)[i], b = (pair.b->*spectrum)[i];
-        return a + (b - a) * pair.t;
+        const float a = (nodes.a->moments.*spectrum)[i], b = (nodes.b->moments.*spectrum)[i];
+        return a + (b - a) * nodes.t;
     };
     if (std::fabs(at(0)) < 1e-6f) return 0.0f;
     const float cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
@@ -292,9 +263,33 @@ FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_p
     return table;
 }
 
+FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px) {
+    const auto bits = std::bit_cast<std::uint32_t>(radius_px);
+    constexpr std::uint32_t step_bits = 23 - 5;  // steps_per_octave = 2^5
+    const std::int64_t first = std::int64_t{127 + first_exponent} << 5;
+    const std::int64_t index = (bits >> step_bits) - first;
+    if (index < 0) return {&table.nodes.front(), &table.nodes.front(), 0.0f};
+    if (index + 1 >= static_cast<std::int64_t>(table.nodes.size()))
+        return {&table.nodes.back(), &table.nodes.back(), 0.0f};
+    const float t = static_cast<float>(bits & ((1u << step_bits) - 1u)) * (1.0f / (1u << step_bits));
+    return {&table.nodes[static_cast<std::size_t>(index)], &table.nodes[static_cast<std::size_t>(index + 1)],
+            t};
+}
+
+float pixel_cosine(float coordinate_px) {
+    static const std::array<float, 256> cosines = make_cosines();
+    constexpr float far_px = 1e6f;  // so far out nothing of a splat this small shows
+    const float inside = std::min(std::max(coordinate_px, -far_px), far_px);
+    return -cosines[static_cast<std::size_t>(static_cast<int>(inside * 256.0f) & 255)];
+}
+
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px,
                   Footprint& footprint) {
-    const NodePair pair = nodes_at(table, radius_px);
+    const FootprintNodes pair = footprint_nodes(table, radius_px);
+    const auto moment = [&](float FootprintMoments::*field) {
+        const float a = pair.a->moments.*field, b = pair.b->moments.*field;
+        return a + (b - a) * pair.t;
+    };
     footprint.node_a = pair.a;
     footprint.node_b = pair.b;
     footprint.t = pair.t;
@@ -307,14 +302,15 @@ void footprint_at(const FootprintTable& table, float radius_px, float x_px, floa
     const float margin = 4.0f * table.pixel_filter_px;
     const float lo = std::max(0.0f, tabulated_px * table.core - margin);
     const float hi = tabulated_px * table.reach + margin;
-    const float mean = pair(&FootprintNode::mean), edge_mean = pair(&FootprintNode::edge_mean);
+    const float mean = moment(&FootprintMoments::mean), edge_mean = moment(&FootprintMoments::edge_mean);
     float mass, edge_mass;
     if (table.linear_in_distance) {
         const float width = hi - lo;
         footprint.lo = lo;
         footprint.scale = static_cast<float>(segments) / width;
-        mass = pi * (lo * lo + 2.0f * width * (lo * mean + width * pair(&FootprintNode::first_moment)));
-        edge_mass = pi * 2.0f * width * (lo * edge_mean + width * pair(&FootprintNode::edge_first_moment));
+        mass = pi * (lo * lo + 2.0f * width * (lo * mean + width * moment(&FootprintMoments::first_moment)));
+        edge_mass =
+            pi * 2.0f * width * (lo * edge_mean + width * moment(&FootprintMoments::edge_first_moment));
     } else {
         const float width = hi * hi - lo * lo;
         footprint.lo = lo * lo;
@@ -326,13 +322,13 @@ void footprint_at(const FootprintTable& table, float radius_px, float x_px, floa
     // mend.
     const bool tabulated = pair.b != &table.nodes.back() || pair.t > 0.0f;
     const float wanted = table.integral * tabulated_px * tabulated_px;
-    const float found = mass * (1.0f + ripple(pair, &FootprintNode::ripple, x_px, y_px));
+    const float found = mass * (1.0f + ripple(pair, &FootprintMoments::ripple, x_px, y_px));
     footprint.support_px = table.support_px(tabulated_px);
     footprint.amplitude = shrink;
     footprint.edge_gain = 0.0f;
     if (tabulated && table.flat_core)
-        footprint.edge_gain =
-            (wanted - found) / (edge_mass * (1.0f + ripple(pair, &FootprintNode::edge_ripple, x_px, y_px)));
+        footprint.edge_gain = (wanted - found) /
+                              (edge_mass * (1.0f + ripple(pair, &FootprintMoments::edge_ripple, x_px, y_px)));
     else if (tabulated)
         footprint.amplitude = shrink * (wanted / found);
 }

@@ -22,14 +22,22 @@
 
 namespace astrosplat {
 
+/// What normalising a profile needs, in fours: so it is interpolated.
+struct FootprintMoments {
+    float mean;       // integral of P du
+    float ripple[3];  // spectrum of P at frequencies (1,0), (1,1), (2,0) per px, relative to its integral
+    float edge_mean;  // the same two of P (1 - P), for flat cores
+    float edge_ripple[3];
+    float first_moment;  // integral of P u du
+    float edge_first_moment;
+    float unused[2];
+};
+
 /// Profile of one radius: cubic coefficients [power][segment], and what normalising needs.
 struct alignas(64) FootprintNode {
     static constexpr int segments = 16;
     float cubic[4][segments];
-    float mean, first_moment;            // of P over u: integral P du, integral P u du
-    float edge_mean, edge_first_moment;  // the same of P (1 - P)
-    float ripple[3];  // spectrum of P at frequencies (1,0), (1,1), (2,0) per px, relative to its integral
-    float edge_ripple[3];  // the same of P (1 - P), for flat cores
+    FootprintMoments moments;
 };
 
 struct FootprintTable {
@@ -65,6 +73,17 @@ struct Footprint {
 /// Builds the table for every radius from 2^-6 to 2^10 px (larger ones reuse the last shape). About 30 ms.
 FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px,
                                     const Progress& progress = {});
+
+/// The nodes on either side of a radius, and the share of the second.
+struct FootprintNodes {
+    const FootprintNode* a;
+    const FootprintNode* b;
+    float t;
+};
+FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px);
+
+/// cos of the phase of a coordinate, snapped to 1/256 px, relative to the pixel centres.
+float pixel_cosine(float coordinate_px);
 
 /// The footprint of one splat; x_px, y_px are its centre, snapped to 1/256 px by the caller.
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px, Footprint& footprint);

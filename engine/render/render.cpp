@@ -211,7 +211,7 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
         if (g == job.groups.size()) break;  // nothing but the environment
         bins.collect(tile, static_cast<int>(g), job.progress, worker.splats);
         const std::span<const std::uint32_t> order = worker.sorter.sort(worker.splats, job.progress);
-        fold(worker.splats, order, job.fold_layers, fold_settings, job.progress, worker.planes);
+        fold({worker.splats, order, job.fold_layers, fold_settings, job.progress}, worker.planes);
         worker.resolver.lay(job.groups[g], worker.planes);
     }
     worker.resolver.write(worker.planes, job.region.x, job.region.y, frame);

@@ -1,0 +1,212 @@
+// Vector code that prepares a batch of splats for the fold: which blocks they touch, their weights' cubics
+// and normalisation, and their blending. Gives the footprints of footprint_at. Included once per instruction
+// set.
+#if defined(ASTROSPLAT_FOLD_PREPARE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef ASTROSPLAT_FOLD_PREPARE_INL_H
+#undef ASTROSPLAT_FOLD_PREPARE_INL_H
+#else
+#define ASTROSPLAT_FOLD_PREPARE_INL_H
+#endif
+
+#include <bit>
+#include <cmath>
+
+#include "core/real.h"
+#include "render/fold_blend-inl.h"
+#include "render/shared_render.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace astrosplat::HWY_NAMESPACE {
+
+/// Squared distance along one axis from `lanes` splats to the nearest pixel centre of a row or column of
+/// blocks.
+HWY_INLINE V distance_to_block(V center, float first_px) {
+    const float half = 0.5f * static_cast<float>(TilePlanes::block_px - 1);
+    const V middle = all(first_px + 0.5f * static_cast<float>(TilePlanes::block_px));
+    const V distance = hn::Max(hn::Sub(hn::Abs(hn::Sub(center, middle)), all(half)), hn::Zero(D()));
+    return hn::Mul(distance, distance);
+}
+
+/// Bits [first, first + lanes) of a word; the word is 0 there.
+HWY_INLINE void set_bits(M mask, int first, std::uint64_t& word) {
+    if constexpr (lanes % 8 == 0) {  // whole bytes, of a little-endian word
+        hn::StoreMaskBits(D(), mask, reinterpret_cast<std::uint8_t*>(&word) + first / 8);
+    } else {
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(D(), mask, bytes);
+        word |= std::uint64_t{bytes[0]} << first;
+    }
+}
+static_assert(std::endian::native == std::endian::little);
+
+/// Which splats of the batch may have weight in which blocks of a cell whose corner is (x0, y0).
+inline void find_touched_blocks(SplatBatch& batch, float x0_px, float y0_px) {
+    constexpr int side = TilePlanes::cell_blocks;
+    for (std::uint64_t& word : batch.touches) word = 0;
+    for (int n = 0; n < batch.count; n += lanes) {
+        const V x = load(batch.x_px + n), y = load(batch.y_px + n), reach = load(batch.reach_squared + n);
+        V dx[side];
+        for (int c = 0; c < side; ++c)
+            dx[c] = distance_to_block(x, x0_px + static_cast<float>(c * TilePlanes::block_px));
+        for (int r = 0; r < side; ++r) {
+            const V dy = distance_to_block(y, y0_px + static_cast<float>(r * TilePlanes::block_px));
+            for (int c = 0; c < side; ++c)
+                set_bits(hn::Le(hn::Add(dx[c], dy), reach), n, batch.touches[r * side + c]);
+        }
+    }
+}
+
+/// Values between two nodes.
+template <class Tag>
+HWY_INLINE void interpolate(Tag d, const float* a, const float* b, float t, float* to) {
+    const auto from = hn::Load(d, a);
+    hn::Store(hn::Add(from, hn::Mul(hn::Sub(hn::Load(d, b), from), hn::Set(d, t))), d, to);
+}
+
+HWY_INLINE void interpolate_cubics(const FootprintNode& a, const FootprintNode& b, float t, SplatBatch& batch,
+                                   int i) {
+    for (int power = 0; power < 4; ++power)
+        for (int s = 0; s < segments; s += lanes)
+            interpolate(D(), a.cubic[power] + s, b.cubic[power] + s, t, batch.cubic[i][power] + s);
+}
+
+/// The part of a footprint that is looked up: cubics and moments between the table's nodes.
+HWY_INLINE void look_up_footprint(const FootprintTable& table, SplatBatch& batch, int i) {
+    const hn::CappedTag<float, 4> four;
+    const FootprintNodes nodes = footprint_nodes(table, batch.radius_px[i]);
+    interpolate_cubics(*nodes.a, *nodes.b, nodes.t, batch, i);
+    const int quads = table.linear_in_distance ? 3 : table.flat_core ? 2 : 1;
+    for (int q = 0; q < quads; ++q)
+        interpolate(four, &nodes.a->moments.mean + 4 * q, &nodes.b->moments.mean + 4 * q, nodes.t,
+                    batch.moments[q][i]);
+    batch.tabulated[i] = nodes.b != &table.nodes.back() || nodes.t > 0.0f ? 1.0f : 0.0f;
+    batch.cosine_x[i] = pixel_cosine(batch.x_px[i]);
+    batch.cosine_y[i] = pixel_cosine(batch.y_px[i]);
+}
+
+/// Four moments of `lanes` splats from splat n on.
+struct Moments {
+    V v[4];
+    HWY_INLINE Moments(const SplatBatch& batch, int quad, int n) {
+        hn::LoadInterleaved4(D(), batch.moments[quad][n], v[0], v[1], v[2], v[3]);
+    }
+};
+
+/// Relative excess of the sum over all pixels over the integral; moments 1 to 3 are the spectrum.
+HWY_INLINE V ripple(const Moments& m, V cx, V cy) {
+    const V one = all(1.0f), two = all(2.0f);
+    const V c2 =
+        hn::Add(hn::Sub(hn::Mul(hn::Mul(two, cx), cx), one), hn::Sub(hn::Mul(hn::Mul(two, cy), cy), one));
+    const V sum = hn::Add(hn::Add(hn::Mul(hn::Mul(two, m.v[1]), hn::Add(cx, cy)),
+                                  hn::Mul(hn::Mul(all(4.0f), m.v[2]), hn::Mul(cx, cy))),
+                          hn::Mul(hn::Mul(two, m.v[3]), c2));
+    return hn::IfThenZeroElse(hn::Lt(hn::Abs(m.v[1]), all(1e-6f)), sum);
+}
+
+/// The part of the footprint that is computed, for splats n to n + lanes: footprint_at, many at once.
+HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& batch, int n) {
+    constexpr float smallest = FootprintTable::smallest_radius_px;
+    const V zero = hn::Zero(D()), one = all(1.0f), pi = all(static_cast<float>(real::pi));
+    const V radius = load(batch.radius_px + n), tabulated_px = hn::Max(radius, all(smallest));
+    const V ratio = hn::Div(radius, all(smallest));
+    const V shrink = hn::IfThenElse(hn::Lt(radius, all(smallest)), hn::Mul(ratio, ratio), one);
+    const V margin = all(4.0f * table.pixel_filter_px);
+    const V inner = hn::Max(zero, hn::Sub(hn::Mul(tabulated_px, all(table.core)), margin));
+    const V outer = hn::Add(hn::Mul(tabulated_px, all(table.reach)), margin);
+    const Moments plain(batch, 0, n);
+    V lo = inner, width = hn::Sub(outer, inner), mass, edge_mass = one;
+    if (table.linear_in_distance) {
+        const Moments edge(batch, 1, n), first(batch, 2, n);
+        const auto integral = [&](V mean, V first_moment) {
+            return hn::Add(hn::Mul(inner, mean), hn::Mul(width, first_moment));
+        };
+        mass = hn::Mul(pi, hn::Add(hn::Mul(inner, inner),
+                                   hn::Mul(hn::Mul(all(2.0f), width), integral(plain.v[0], first.v[0]))));
+        edge_mass = hn::Mul(hn::Mul(hn::Mul(pi, all(2.0f)), width), integral(edge.v[0], first.v[1]));
+    } else {
+        lo = hn::Mul(inner, inner);
+        width = hn::Sub(hn::Mul(outer, outer), lo);
+        mass = hn::Mul(pi, hn::Add(lo, hn::Mul(width, plain.v[0])));
+        if (table.flat_core) edge_mass = hn::Mul(hn::Mul(pi, width), Moments(batch, 1, n).v[0]);
+    }
+    const V cx = load(batch.cosine_x + n), cy = load(batch.cosine_y + n);
+    const V wanted = hn::Mul(hn::Mul(all(table.integral), tabulated_px), tabulated_px);
+    const V found = hn::Mul(mass, hn::Add(one, ripple(plain, cx, cy)));
+    const auto tabulated = hn::Gt(load(batch.tabulated + n), zero);
+    V amplitude = shrink, edge_gain = zero;
+    if (table.flat_core) {
+        const V edge_found = hn::Mul(edge_mass, hn::Add(one, ripple(Moments(batch, 1, n), cx, cy)));
+        edge_gain = hn::IfThenElseZero(tabulated, hn::Div(hn::Sub(wanted, found), edge_found));
+    } else {
+        amplitude = hn::IfThenElse(tabulated, hn::Mul(shrink, hn::Div(wanted, found)), shrink);
+    }
+    store(lo, batch.lo + n);
+    store(hn::Div(all(static_cast<float>(segments)), width), batch.scale + n);
+    store(edge_gain, batch.edge_gain + n);
+    store(amplitude, batch.weight_gain + n);
+}
+
+/// Weights of a splat whose layer is not the only one.
+HWY_INLINE void prepare_weight(const FootprintTable& table, SplatBatch& batch, int i) {
+    Footprint f;
+    footprint_at(table, batch.radius_px[i], batch.x_px[i], batch.y_px[i], f);
+    interpolate_cubics(*f.node_a, *f.node_b, f.t, batch, i);
+    batch.lo[i] = f.lo;
+    batch.scale[i] = f.scale;
+    batch.edge_gain[i] = f.edge_gain;
+    batch.weight_gain[i] = f.amplitude;
+}
+
+/// Occlusion colours: what the general fold alone asks for.
+HWY_INLINE void prepare_occlusion(const ScreenSplat& splat, const FoldLayer& layer, SplatBatch& batch,
+                                  int i) {
+    const float h = static_cast<float>(splat.hybrid) * (1.0f / 65535.0f);
+    const int blend = layer.holdout ? shared::BLEND_OVER : static_cast<int>(layer.blend);
+    batch.shows[i] = layer.holdout ? 0.0f : 1.0f;
+    float sum = 0.0f;
+    bool bright = false;
+    for (int k = 0; k < 3; ++k) {
+        if (layer.holdout) batch.color[k][i] = 0.0f;
+        batch.occlusion[k][i] = shared::blend_occlusion(blend, splat.color[k], h);
+        sum += batch.occlusion[k][i];
+        bright = bright || (blend == shared::BLEND_SCREEN && splat.color[k] > 1.0f);
+    }
+    batch.occlusion[3][i] = sum / 3.0f;
+    batch.bright_screen[i] = bright;
+}
+
+inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {
+    const float x = (splat.x_px - settings.center_x_px) / settings.focal_px;
+    const float y = (splat.y_px - settings.center_y_px) / settings.focal_px;
+    const float key = std::bit_cast<float>(splat.depth);
+    return settings.orthographic ? key : std::sqrt(key / (1.0f + x * x + y * y));
+}
+
+/// Everything about the splats `which` of the batch. `table`: the one footprint table of all layers, or null.
+template <class Pixels>
+void prepare_splats(const FoldJob& job, const FootprintTable* table, std::uint64_t which, SplatBatch& batch) {
+    for (std::uint64_t rest = which; rest != 0; rest &= rest - 1) {
+        const int i = std::countr_zero(rest);
+        const ScreenSplat& splat = job.splats[batch.index[i]];
+        const FoldLayer& layer = job.layers[splat.layer];
+        batch.radius_px[i] = splat.radius_px;
+        batch.alpha[i] = splat.opacity;
+        for (int k = 0; k < 3; ++k) batch.color[k][i] = splat.color[k];
+        batch.linear_in_distance[i] = layer.footprints->linear_in_distance;
+        table ? look_up_footprint(*table, batch, i) : prepare_weight(*layer.footprints, batch, i);
+        if constexpr (Pixels::general) prepare_occlusion(splat, layer, batch, i);
+        if constexpr (Pixels::aovs) {
+            batch.layer[i] = splat.layer;
+            batch.depth[i] = depth_of(splat, job.settings);
+        }
+    }
+    for (int n = 0; n < batch.count; n += lanes) {
+        if (table) normalise_footprints(*table, batch, n);
+        store(hn::Mul(load(batch.alpha + n), load(batch.weight_gain + n)), batch.opacity + n);
+    }
+}
+
+}  // namespace astrosplat::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // toggle
