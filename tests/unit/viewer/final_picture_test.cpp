@@ -1,0 +1,183 @@
+// The settled picture is the pipeline's, bit for bit, whatever was begun and cancelled before it.
+#include "viewer/final_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "core/shared_maths.h"
+#include "output/write.h"
+#include "pipeline.h"
+#include "splats/generate.h"
+#include "support/small_scene.h"
+
+namespace astrosplat {
+namespace {
+
+using State = FinalPicture::State;
+
+class FinalPictureTest : public testing::Test {
+  protected:
+    FinalPictureTest() {
+        for (const LayerParams& layer : small.scene.layers)
+            sets.push_back(std::make_shared<const SplatSet>(load_source(layer.source, layer.name)));
+    }
+
+    /// One of a few pictures that differ in look, camera or size.
+    FinalRequest request(std::uint32_t which) const {
+        FinalRequest wanted;
+        wanted.scene = small.scene;
+        wanted.sets = sets;
+        wanted.width = which % 2 ? 200 : 161;
+        wanted.height = 99;
+        wanted.scene.layers[0].look.grade.gain = 1.0f + 0.1f * static_cast<float>(which / 2 % 2);
+        wanted.scene.camera.position = glm::dvec3(4.0, 6.0 + which / 4, 12.0);
+        return wanted;
+    }
+
+    static std::string hash_of(const FinalRequest& wanted) {
+        Pipeline pipeline;
+        pipeline.set_scene(wanted.scene, wanted.sets);
+        RenderSettings settings = pipeline.settings(wanted.frame);
+        settings.width = wanted.width;
+        settings.height = wanted.height;
+        settings.region = wanted.region;
+        return pixel_hash(pipeline.frame(wanted.frame, settings).beauty);
+    }
+
+    static void wait(const FinalPicture& picture) {
+        while (picture.state() == State::running) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+
+    SmallScene small;
+    std::vector<std::shared_ptr<const SplatSet>> sets;
+};
+
+TEST_F(FinalPictureTest, SettlesToThePipelinesPixels) {
+    FinalPicture picture;
+    EXPECT_EQ(picture.state(), State::idle);
+    picture.start(request(0));
+    wait(picture);
+    ASSERT_EQ(picture.state(), State::done) << picture.error();
+    const std::string wanted = hash_of(request(0));
+    EXPECT_EQ(pixel_hash(picture.frame()->beauty), wanted);
+    EXPECT_TRUE(picture.frame()->depth.pixels.empty());
+    EXPECT_EQ(picture.progress(), 1.0f);
+    Image tiles;
+    EXPECT_FALSE(picture.take_tiles(tiles).empty());
+    EXPECT_EQ(pixel_hash(tiles), wanted);
+    EXPECT_TRUE(picture.take_tiles(tiles).empty());
+}
+
+TEST_F(FinalPictureTest, DepthComesWithTheSamePixels) {
+    FinalRequest wanted = request(0);
+    wanted.depth = true;
+    FinalPicture picture;
+    picture.start(wanted);
+    wait(picture);
+    ASSERT_EQ(picture.state(), State::done) << picture.error();
+    EXPECT_EQ(pixel_hash(picture.frame()->beauty), hash_of(request(0)));
+    EXPECT_EQ(picture.frame()->depth.width, wanted.width);
+}
+
+TEST_F(FinalPictureTest, ARegionIsThatPartOfThePicture) {
+    FinalRequest wanted = request(1);
+    wanted.region = {37, 20, 90, 51};
+    FinalPicture picture;
+    picture.start(wanted);
+    wait(picture);
+    ASSERT_EQ(picture.state(), State::done) << picture.error();
+    Image tiles;
+    picture.take_tiles(tiles);
+    EXPECT_EQ(tiles.width, 90);
+    EXPECT_EQ(pixel_hash(tiles), hash_of(wanted));
+}
+
+TEST_F(FinalPictureTest, CancelsAndRestartsInAnyOrderLeaveNoTrace) {
+    std::array<std::string, 8> wanted;
+    for (std::uint32_t i = 0; i < 8; ++i) wanted[i] = hash_of(request(i));
+    FinalPicture picture;
+    Image tiles;
+    std::uint32_t current = 0;
+    for (std::uint32_t step = 0; step < 120; ++step) {
+        const std::uint32_t chance = shared::as_hash(3u, step, 0u, 1u);
+        const std::uint32_t action = chance % 5;
+        if (action == 0) picture.cancel();
+        if (action <= 2) picture.start(request(current = (chance >> 8) % 8));
+        if (action == 3) picture.take_tiles(tiles);
+        if (action == 4) std::this_thread::sleep_for(std::chrono::milliseconds((chance >> 8) % 12));
+        if (step % 20 != 19) continue;
+        picture.start(request(current));
+        while (picture.state() == State::running) picture.take_tiles(tiles);
+        picture.take_tiles(tiles);
+        ASSERT_EQ(picture.state(), State::done) << picture.error();
+        ASSERT_EQ(pixel_hash(picture.frame()->beauty), wanted[current]) << "step " << step;
+        ASSERT_EQ(pixel_hash(tiles), wanted[current]) << "step " << step;
+    }
+}
+
+TEST_F(FinalPictureTest, ACancelledPictureStaysUnfinished) {
+    FinalRequest large = request(0);
+    large.width = large.height = 6000;
+    FinalPicture picture;
+    Image tiles;
+    std::size_t finished = 0;
+    picture.start(large);
+    while (finished == 0) finished += picture.take_tiles(tiles).size();
+    picture.cancel();
+    EXPECT_EQ(picture.state(), State::idle);
+    EXPECT_EQ(picture.progress(), 0.0f);
+    EXPECT_FALSE(picture.frame());
+    EXPECT_TRUE(picture.take_tiles(tiles).empty());
+    EXPECT_LT(finished, 6000u * 6000u / (128u * 128u));  // no tile is larger than that
+
+    const auto begin = std::chrono::steady_clock::now();
+    FinalRequest next = request(1);
+    next.region = {0, 0, 1, 1};
+    picture.start(next);
+    wait(picture);
+    EXPECT_EQ(picture.state(), State::done);
+    const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
+    std::printf("from cancel to the next picture's pixel: %.1f ms\n", taken.count());
+}
+
+TEST_F(FinalPictureTest, AFailureIsOneLineAndTheNextPictureWorks) {
+    FinalRequest bad = request(0);
+    bad.scene.layers[0].look.thickness.map = small.folder / "missing.png";
+    FinalPicture picture;
+    picture.start(bad);
+    wait(picture);
+    EXPECT_EQ(picture.state(), State::failed);
+    EXPECT_NE(picture.error().find("missing.png"), std::string::npos);
+    EXPECT_EQ(picture.error().find('\n'), std::string::npos);
+    EXPECT_FALSE(picture.frame());
+    picture.start(request(0));
+    wait(picture);
+    EXPECT_EQ(picture.state(), State::done);
+    EXPECT_EQ(picture.error(), "");
+    EXPECT_EQ(pixel_hash(picture.frame()->beauty), hash_of(request(0)));
+}
+
+TEST_F(FinalPictureTest, LayersStillLoadingAreLeftOut) {
+    FinalRequest wanted = request(0);
+    wanted.sets[0] = nullptr;
+    FinalPicture picture;
+    picture.start(wanted);
+    wait(picture);
+    ASSERT_EQ(picture.state(), State::done) << picture.error();
+    EXPECT_EQ(pixel_hash(picture.frame()->beauty), hash_of(wanted));
+    EXPECT_NE(pixel_hash(picture.frame()->beauty), hash_of(request(0)));
+}
+
+TEST_F(FinalPictureTest, EndsInTheMiddleOfAPicture) {
+    FinalRequest large = request(0);
+    large.width = large.height = 4000;
+    FinalPicture picture;
+    picture.start(large);
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,97 @@
+// The budget against machines of known speed, and the shares it comes to.
+#include "viewer/preview_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace astrosplat {
+namespace {
+
+/// Milliseconds of a frame: a fixed part and so much per thousand splats.
+struct Machine {
+    double fixed_ms, ms_per_thousand;
+    double frame(std::int64_t splats) const {
+        return fixed_ms + ms_per_thousand * static_cast<double>(splats) / 1000.0;
+    }
+};
+
+/// Runs `frames` frames with all the splats one may ask for.
+void run(PreviewBudget& budget, const Machine& machine, double target_ms, int frames) {
+    for (int i = 0; i < frames; ++i) budget.measured(machine.frame(budget.splats), target_ms, budget.splats);
+}
+
+class Budget : public testing::TestWithParam<Machine> {};
+
+TEST_P(Budget, ReachesTheTargetAndStaysThere) {
+    for (const std::int64_t start : {30000, 200000, 3000000}) {
+        PreviewBudget budget;
+        budget.splats = start;
+        run(budget, GetParam(), 25.0, 150);
+        const double reached = GetParam().frame(budget.splats);
+        EXPECT_GT(reached, 25.0 / 1.13) << "from " << start;
+        EXPECT_LT(reached, 25.0 / 0.87) << "from " << start;
+        const std::int64_t steady = budget.splats;
+        for (int i = 0; i < 50; ++i) {
+            run(budget, GetParam(), 25.0, 1);
+            ASSERT_EQ(budget.splats, steady);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Machines, Budget,
+                         testing::Values(Machine{6.0, 0.05}, Machine{15.0, 0.1}, Machine{1.0, 0.02},
+                                         Machine{0.0, 0.3}));
+
+TEST(PreviewBudgetTest, NeverFallsBelowTheLeast) {
+    PreviewBudget budget;
+    run(budget, {100.0, 1.0}, 25.0, 100);
+    EXPECT_EQ(budget.splats, budget.least);
+}
+
+TEST(PreviewBudgetTest, NeverRisesAboveTheMost) {
+    PreviewBudget budget;
+    run(budget, {1.0, 0.0}, 25.0, 200);
+    EXPECT_EQ(budget.splats, budget.most);
+}
+
+TEST(PreviewBudgetTest, ASlowFrameAmongOthersChangesNothing) {
+    PreviewBudget budget;
+    const std::int64_t before = budget.splats;
+    for (int i = 0; i < 100; ++i) budget.measured(i % 5 == 3 ? 90.0 : 25.0, 25.0, budget.splats);
+    EXPECT_EQ(budget.splats, before);
+}
+
+TEST(PreviewBudgetTest, FewerSplatsThanTheBudgetDoNotRaiseIt) {
+    PreviewBudget budget;
+    const std::int64_t before = budget.splats;
+    for (int i = 0; i < 50; ++i) budget.measured(3.0, 25.0, 6000);
+    EXPECT_EQ(budget.splats, before);
+}
+
+TEST(PreviewBudgetTest, FarTooSlowIsMendedWithinAFewFrames) {
+    PreviewBudget budget;
+    budget.splats = 2000000;
+    const Machine machine{5.0, 0.1};
+    run(budget, machine, 25.0, 12);
+    EXPECT_LT(machine.frame(budget.splats), 50.0);
+}
+
+TEST(ShareForBudget, IsOneForAllLayers) {
+    const std::vector<std::int64_t> sizes = {3000000, 900000, 100000};
+    const float share = share_for_budget(sizes, 400000);
+    EXPECT_FLOAT_EQ(share, 0.1f);
+}
+
+TEST(ShareForBudget, NeverMoreThanAllNorNothing) {
+    const std::array<std::int64_t, 2> sizes = {1000, 500};
+    EXPECT_EQ(share_for_budget(sizes, 400000), 1.0f);
+    EXPECT_EQ(share_for_budget(sizes, 1500), 1.0f);
+    EXPECT_GT(share_for_budget(sizes, 0), 0.0f);
+    EXPECT_EQ(share_for_budget({}, 400000), 1.0f);
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,249 @@
+// Sets in the background: what comes, what stays, what is begun again and what is not.
+#include "viewer/set_loader.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "splats/generate.h"
+#include "splats/ply.h"
+#include "splats/stratified.h"
+#include "support/small_scene.h"
+
+namespace astrosplat {
+namespace {
+
+class SetLoaderTest : public testing::Test {
+  protected:
+    SmallScene small;
+    SetLoader loader{SetCache{}, 5000};
+
+    std::shared_ptr<const LoadedLayer> loaded(const std::string& name) {
+        loader.want(small.scene);
+        loader.wait();
+        return loader.layer(name);
+    }
+    LayerStatus status(std::size_t layer) const { return loader.status(small.scene.layers[layer]); }
+};
+
+TEST_F(SetLoaderTest, BringsWhatLoadingBrings) {
+    const std::uint64_t before = loader.revision();
+    for (std::size_t i = 0; i < 2; ++i) {
+        const LayerParams& layer = small.scene.layers[i];
+        const auto found = loaded(layer.name);
+        ASSERT_TRUE(found);
+        const SplatSet wanted = load_source(layer.source, layer.name);
+        EXPECT_TRUE(
+            std::equal(wanted.id.begin(), wanted.id.end(), found->set->id.begin(), found->set->id.end()));
+        EXPECT_TRUE(std::equal(wanted.color.begin(), wanted.color.end(), found->set->color.begin()));
+        const SplatSet preview = take_rows(wanted, stratified_order(wanted), 5000);
+        EXPECT_TRUE(std::equal(preview.id.begin(), preview.id.end(), found->preview->id.begin(),
+                               found->preview->id.end()));
+        EXPECT_EQ(found->box.lo, bounds(wanted).lo);
+        EXPECT_EQ(status(i).splats, wanted.size());
+        EXPECT_FALSE(status(i).loading || status(i).stale);
+        EXPECT_EQ(status(i).error, "");
+    }
+    EXPECT_GT(loader.revision(), before);
+    EXPECT_TRUE(loader.idle());
+}
+
+TEST_F(SetLoaderTest, WantingTheSameAgainDoesNothing) {
+    const auto first = loaded("gas");
+    const std::uint64_t revision = loader.revision();
+    small.scene.layers[0].look.grade.gain = 0.2f;
+    small.scene.layers[0].render.blend = Blend::add;
+    loader.want(small.scene);
+    EXPECT_TRUE(loader.idle());
+    EXPECT_EQ(loader.revision(), revision);
+    EXPECT_EQ(loader.layer("gas"), first);
+}
+
+TEST_F(SetLoaderTest, TheOldSetStaysUntilTheNewOneIsThere) {
+    const auto first = loaded("gas");
+    small.scene.layers[0].source.count = 200000;
+    EXPECT_TRUE(status(0).stale);
+    loader.want(small.scene);
+    EXPECT_TRUE(loader.layer("gas"));
+    EXPECT_GT(status(0).splats, 0);
+    loader.wait();
+    EXPECT_GT(loader.layer("gas")->set->size(), 3 * first->set->size());
+    EXPECT_FALSE(status(0).stale);
+}
+
+TEST_F(SetLoaderTest, ARenamedLayerKeepsASetThatDoesNotDependOnTheName) {
+    small.scene.layers[0].source.seed = 7;
+    const auto first = loaded("gas");
+    small.scene.layers[0].name = "glow";
+    loader.want(small.scene);
+    EXPECT_TRUE(loader.idle());
+    EXPECT_EQ(loader.layer("glow")->set, first->set);
+    EXPECT_FALSE(loader.layer("gas"));
+    EXPECT_FALSE(status(0).stale);
+}
+
+TEST_F(SetLoaderTest, ARenamedLayerIsMadeAnewWhereItsSeedComesFromTheName) {
+    const auto first = loaded("gas");
+    small.scene.layers[0].name = "glow";
+    const auto second = loaded("glow");
+    ASSERT_TRUE(second);
+    EXPECT_NE(second->set, first->set);
+    EXPECT_NE(second->set->position[0], first->set->position[0]);
+}
+
+TEST_F(SetLoaderTest, ACopiedLayerSharesItsSet) {
+    small.scene.layers[0].source.seed = 7;
+    const auto first = loaded("gas");
+    small.scene.layers.push_back(small.scene.layers[0]);
+    small.scene.layers.back().name = "copy";
+    loader.want(small.scene);
+    EXPECT_TRUE(loader.idle());
+    EXPECT_EQ(loader.layer("copy")->set, first->set);
+}
+
+TEST_F(SetLoaderTest, AnErrorStaysUntilTheSourceChanges) {
+    small.scene.layers[0].source.meshes[0].texture = {small.folder / "later.ppm"};
+    EXPECT_FALSE(loaded("gas"));
+    EXPECT_NE(status(0).error.find("later.ppm"), std::string::npos);
+    EXPECT_EQ(status(0).error.find('\n'), std::string::npos);
+    EXPECT_FALSE(status(0).loading);
+    EXPECT_TRUE(loader.layer("dust"));
+    loader.want(small.scene);
+    EXPECT_TRUE(loader.idle());
+    EXPECT_NE(status(0).error, "");
+    small.scene.layers[0].source.meshes[0].texture = {small.folder / "picture.ppm"};
+    EXPECT_EQ(status(0).error, "");
+    EXPECT_TRUE(loaded("gas"));
+    EXPECT_EQ(status(0).error, "");
+}
+
+TEST_F(SetLoaderTest, RetryReadsWhatIsThereNow) {
+    small.scene.layers[0].source.meshes[0].texture = {small.folder / "later.ppm"};
+    EXPECT_FALSE(loaded("gas"));
+    small.folder.file("later.ppm", SmallScene::picture());
+    loader.retry("gas");
+    loader.wait();
+    EXPECT_TRUE(loader.layer("gas"));
+    EXPECT_EQ(status(0).error, "");
+    loader.retry("gas");  // nothing to do
+    EXPECT_TRUE(loader.idle());
+}
+
+TEST_F(SetLoaderTest, LayersThatAreNeverVisibleAreNotLoaded) {
+    small.scene.layers[0].visible = false;
+    EXPECT_FALSE(loaded("gas"));
+    small.scene.layers[0].visible = true;
+    const auto shown = loaded("gas");
+    EXPECT_TRUE(shown);
+    small.scene.layers[0].visible = false;
+    EXPECT_EQ(loaded("gas"), shown);  // kept, should it be shown again
+    small.scene.layers.erase(small.scene.layers.begin());
+    EXPECT_FALSE(loaded("gas"));
+}
+
+TEST_F(SetLoaderTest, ACancelledLayerWaitsForRetryOrAnotherSource) {
+    small.scene.layers[0].source.count = 3000000;  // so that the second waits behind it
+    loader.want(small.scene);
+    loader.cancel("dust");
+    loader.cancel("gas");
+    EXPECT_FALSE(status(0).loading);
+    EXPECT_FALSE(status(1).loading);
+    loader.wait();
+    EXPECT_FALSE(loader.layer("dust"));
+    EXPECT_FALSE(loader.layer("gas"));
+    loader.want(small.scene);
+    EXPECT_TRUE(loader.idle());
+    loader.retry("dust");
+    loader.wait();
+    EXPECT_TRUE(loader.layer("dust"));
+    small.scene.layers[0].source.count = 1000;
+    EXPECT_TRUE(loaded("gas"));
+}
+
+TEST_F(SetLoaderTest, EndsInTheMiddleOfLoading) {
+    small.scene.layers[0].source.count = 3000000;
+    loader.want(small.scene);
+}
+
+TEST_F(SetLoaderTest, SaysWhatNoRadiusMeans) {
+    const auto found = loaded("gas");
+    const glm::dvec3 s = found->set->spacing;
+    EXPECT_DOUBLE_EQ(status(0).radius_min, 0.6 * std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z));
+    EXPECT_EQ(status(0).radius_min, status(0).radius_max);
+    EXPECT_NEAR(status(0).spacing, s.x, 1e-9);
+}
+
+TEST_F(SetLoaderTest, ASplatFileBringsItsRadii) {
+    SplatSet set;
+    for (int i = 0; i < 10; ++i) {
+        set.position.push_back(glm::vec3(float(i)));
+        set.color.push_back(glm::vec3(1.0f));
+        set.alpha.push_back(1.0f);
+        set.distance.push_back(float(i));
+        set.id.push_back(std::uint64_t(i));
+        set.radius.push_back(0.5f + 0.25f * float(i));
+    }
+    write_ply(small.folder / "stars.ply", set);
+    small.scene.layers[0].source = {};
+    small.scene.layers[0].source.kind = SourceKind::splats;
+    small.scene.layers[0].source.file = small.folder / "stars.ply";
+    const auto first = loaded("gas");
+    ASSERT_TRUE(first);
+    EXPECT_DOUBLE_EQ(status(0).radius_min, 0.5);
+    EXPECT_DOUBLE_EQ(status(0).radius_max, 2.75);
+    EXPECT_EQ(status(0).spacing, 0.0);
+    EXPECT_TRUE(first->histograms->values.share.empty());
+    small.scene.layers[0].name = "stars";  // no seed in a file
+    EXPECT_EQ(loaded("stars")->set, first->set);
+}
+
+TEST_F(SetLoaderTest, HistogramsAreSharesOfTheFullestBin) {
+    const auto found = loaded("dust");  // a plane: as many splats at every distance
+    ASSERT_TRUE(found->histograms);
+    const LayerHistograms& h = *found->histograms;
+    EXPECT_DOUBLE_EQ(h.max_distance, 0.3);
+    EXPECT_EQ(*std::max_element(h.distance.begin(), h.distance.end()), 1.0f);
+    EXPECT_GT(*std::min_element(h.distance.begin(), h.distance.end()), 0.4f);
+    ASSERT_EQ(h.values.share.size(), 64u);
+    EXPECT_EQ(h.values.lo, 0.0);
+    EXPECT_EQ(h.values.hi, 1.0);
+    EXPECT_EQ(h.values.share[0], 0.0f);  // the darkest pixel is 61 of 255
+}
+
+/// A FITS picture of 100 x 100 float values 0, 1, 2, ... 9999.
+std::string ramp_fits() {
+    std::string header;
+    const auto card = [&](std::string text) { header += text + std::string(80 - text.size(), ' '); };
+    card("SIMPLE  =                    T");
+    card("BITPIX  =                  -32");
+    card("NAXIS   =                    2");
+    card("NAXIS1  =                  100");
+    card("NAXIS2  =                  100");
+    card("END");
+    header.resize(2880, ' ');
+    for (int i = 0; i < 10000; ++i) {
+        const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(i));
+        for (int shift = 24; shift >= 0; shift -= 8) header += static_cast<char>(bits >> shift & 0xffu);
+    }
+    header.resize((header.size() + 2879) / 2880 * 2880, '\0');
+    return header;
+}
+
+TEST_F(SetLoaderTest, FitsValuesAreDataValuesWithTheAutomaticLimits) {
+    small.scene.layers[0].source.meshes[0].texture = {small.folder.file("ramp.fits", ramp_fits())};
+    small.scene.layers[0].source.texture.black = 4000.0;  // which leaves what "auto" means alone
+    const auto found = loaded("gas");
+    ASSERT_TRUE(found && found->histograms) << status(0).error;
+    const LayerHistograms::Values& values = found->histograms->values;
+    EXPECT_NEAR(values.black, 0.0025 * 9999.0, 1e-9);
+    EXPECT_NEAR(values.white, 0.9975 * 9999.0, 1e-9);
+    EXPECT_EQ(values.lo, 0.0);
+    EXPECT_EQ(values.hi, 9999.0);
+    ASSERT_EQ(values.share.size(), 64u);
+    for (const float share : values.share) EXPECT_NEAR(share, 1.0f, 0.01f);
+}
+
+}  // namespace
+}  // namespace astrosplat
