@@ -4,8 +4,10 @@
 #pragma once
 
 #include <array>
+#include <cfloat>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <glm/vec3.hpp>
 
 namespace astrosplat {
@@ -18,34 +20,62 @@ struct TriangleBound {
     float radius;              // of the disc, scene units
 };
 
-/// Bounds as arrays, one entry a triangle.
-struct CandidateList {
-    static constexpr std::size_t most = 2048;
-    static constexpr std::size_t room = most + 64;  // whole vectors are read and written at the end
-    template <class T>
-    using Array = std::array<T, room>;
+/// Bounds of N triangles as arrays. A place without a triangle has an empty box, which is infinitely far.
+template <std::size_t N>
+struct BoundArrays {
+    using Numbers = std::array<float, N>;
+    std::array<std::uint32_t, N> triangle;
+    Numbers lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
+    Numbers center_x, center_y, center_z, normal_x, normal_y, normal_z, radius;
 
+    void set(std::size_t i, std::uint32_t number, const TriangleBound& b) {
+        triangle[i] = number;
+        lo_x[i] = b.lo.x, lo_y[i] = b.lo.y, lo_z[i] = b.lo.z;
+        hi_x[i] = b.hi.x, hi_y[i] = b.hi.y, hi_z[i] = b.hi.z;
+        center_x[i] = b.center.x, center_y[i] = b.center.y, center_z[i] = b.center.z;
+        normal_x[i] = b.normal.x, normal_y[i] = b.normal.y, normal_z[i] = b.normal.z;
+        radius[i] = b.radius;
+    }
+    void clear(std::size_t i) {
+        set(i, 0xffffffffu,
+            {glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), glm::vec3(0.0f), glm::vec3(0.0f), 0.0f});
+    }
+};
+
+/// Eight triangles that lie together; what is handed around.
+struct TriangleCluster : BoundArrays<8> {
+    static constexpr std::size_t size = 8;
+};
+
+struct CandidateList : BoundArrays<2048 + 64> {
+    static constexpr std::size_t most = 2048;  // the rest is room for whole vectors at the end
     std::size_t count = 0;
-    Array<std::uint32_t> triangle;
-    Array<float> lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
-    Array<float> center_x, center_y, center_z, normal_x, normal_y, normal_z, radius;
 
-    void add(std::uint32_t number, const TriangleBound& b) {
-        triangle[count] = number;
-        lo_x[count] = b.lo.x, lo_y[count] = b.lo.y, lo_z[count] = b.lo.z;
-        hi_x[count] = b.hi.x, hi_y[count] = b.hi.y, hi_z[count] = b.hi.z;
-        center_x[count] = b.center.x, center_y[count] = b.center.y, center_z[count] = b.center.z;
-        normal_x[count] = b.normal.x, normal_y[count] = b.normal.y, normal_z[count] = b.normal.z;
-        radius[count] = b.radius;
-        ++count;
+    /// False when there is no room.
+    bool add(const TriangleCluster& cluster) {
+        if (count + TriangleCluster::size > most) return false;
+        copy(cluster.triangle, triangle);
+        copy(cluster.lo_x, lo_x), copy(cluster.lo_y, lo_y), copy(cluster.lo_z, lo_z);
+        copy(cluster.hi_x, hi_x), copy(cluster.hi_y, hi_y), copy(cluster.hi_z, hi_z);
+        copy(cluster.center_x, center_x), copy(cluster.center_y, center_y), copy(cluster.center_z, center_z);
+        copy(cluster.normal_x, normal_x), copy(cluster.normal_y, normal_y), copy(cluster.normal_z, normal_z);
+        copy(cluster.radius, radius);
+        count += TriangleCluster::size;
+        return true;
+    }
+
+  private:
+    template <class From, class To>
+    void copy(const From& from, To& to) const {
+        std::memcpy(to.data() + count, from.data(), sizeof from);
     }
 };
 
 /// Places in a CandidateList, ascending, and a lower bound of those triangles' distances.
 struct NearCandidates {
     std::size_t count = 0;
-    CandidateList::Array<std::uint32_t> place;
-    CandidateList::Array<float> squared;  // square scene units
+    std::array<std::uint32_t, CandidateList::most + 64> place;
+    std::array<float, CandidateList::most + 64> squared;  // square scene units
 };
 
 }  // namespace astrosplat

@@ -1,19 +1,19 @@
-// Closest points. In: meshes and query points. Out: ClosestPoint. Embree's bounding volumes are built over
-// float copies of the vertices, moved to the middle of their box; every query radius is widened by more than
-// those roundings can amount to, and each triangle Embree proposes is measured in double from the unrounded
-// vertices.
+// Closest points. In: meshes and query points. Out: ClosestPoint. Triangles that lie together form clusters,
+// and Embree's bounding volumes are built over the clusters' boxes, in float and moved to the middle of all
+// meshes; every query radius is widened by more than those roundings can amount to, and each triangle
+// proposed is measured in double from the unrounded vertices.
 #include "splats/closest_point.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <memory>
 #include <new>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -25,7 +25,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::size_t most_triangles = ClosestPoint::none / 3;  // Embree counts corners in 32 bits
+constexpr std::size_t most_triangles = ClosestPoint::none / 3;  // numbers and clusters fit into 32 bits
 
 double squared(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -75,6 +75,40 @@ TriangleBound triangle_bound(const TriangleShape& s, const glm::dvec3& origin) {
             static_cast<float>(radius * (1.0 + 1e-6))};
 }
 
+// Bits 0..9 of v to every third bit.
+std::uint32_t spread_bits(std::uint32_t v) {
+    v = (v | v << 16) & 0x030000ffu;
+    v = (v | v << 8) & 0x0300f00fu;
+    v = (v | v << 4) & 0x030c30c3u;
+    return (v | v << 2) & 0x09249249u;
+}
+
+// Place along a Morton curve through a cube of side 2 * reach around the origin.
+std::uint32_t curve_place(const glm::dvec3& p, double reach) {
+    const double scale = reach > 0.0 ? 1023.0 / (2.0 * reach) : 0.0;
+    const glm::uvec3 cell(glm::clamp((p + reach) * scale, 0.0, 1023.0));
+    return spread_bits(cell.x) | spread_bits(cell.y) << 1 | spread_bits(cell.z) << 2;
+}
+
+float lowest(const std::array<float, TriangleCluster::size>& values) {
+    return *std::min_element(values.begin(), values.end());
+}
+float highest(const std::array<float, TriangleCluster::size>& values) {
+    return *std::max_element(values.begin(), values.end());
+}
+
+// Squared distances of p from the boxes of a cluster's triangles.
+std::array<float, TriangleCluster::size> box_distances(const TriangleCluster& c, const glm::vec3& p) {
+    std::array<float, TriangleCluster::size> squared;
+    for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
+        const float x = std::max(std::max(c.lo_x[i] - p.x, p.x - c.hi_x[i]), 0.0f);
+        const float y = std::max(std::max(c.lo_y[i] - p.y, p.y - c.hi_y[i]), 0.0f);
+        const float z = std::max(std::max(c.lo_z[i] - p.z, p.z - c.hi_z[i]), 0.0f);
+        squared[i] = x * x + y * y + z * z;
+    }
+    return squared;
+}
+
 }  // namespace
 
 TriangleShape triangle_shape(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -112,7 +146,7 @@ ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const
 
 struct ClosestPointIndex::State {
     Buffer<TriangleShape> shapes;
-    Buffer<TriangleBound> bounds;
+    Buffer<TriangleCluster> clusters;
     glm::dvec3 center{0.0};  // Embree's origin, scene units
     double reach = 0.0;      // largest coordinate of a vertex relative to center
     RTCDevice device = nullptr;
@@ -127,7 +161,7 @@ struct ClosestPointIndex::State {
     }
 
     void copy_triangles(std::span<const Mesh* const> meshes);
-    RTCGeometry float_triangles() const;
+    void make_clusters();
     void build();
     template <class Visit>
     void query(const glm::dvec3& p, double distance, Visit visit) const;
@@ -171,36 +205,50 @@ void ClosestPointIndex::State::copy_triangles(std::span<const Mesh* const> meshe
     reach = std::max({half.x, half.y, half.z});
 }
 
-RTCGeometry ClosestPointIndex::State::float_triangles() const {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const std::size_t corners = 3 * shapes.size();
-    auto* vertex = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, corners));
-    auto* index = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, shapes.size()));
-    if (!shapes.empty() && (!vertex || !index)) throw std::bad_alloc();
-    for (const TriangleShape& s : shapes) {
-        const glm::dvec3 a = s.a - center;
-        for (const glm::dvec3& p : {a, a + s.ab, a + s.ac}) {
-            for (int axis = 0; axis < 3; ++axis) *vertex++ = static_cast<float>(p[axis]);
+// Eight at a time along a Morton curve through the middles of the triangles.
+void ClosestPointIndex::State::make_clusters() {
+    const auto count = static_cast<std::int64_t>(shapes.size());
+    Buffer<std::uint64_t> order(shapes.size());  // place on the curve, then number
+    parallel_chunks(count, 4096, [&](std::int64_t begin, std::int64_t end, int) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+            const glm::dvec3 middle = shapes[i].a - center + (shapes[i].ab + shapes[i].ac) / 3.0;
+            order[i] = std::uint64_t{curve_place(middle, reach)} << 32 | i;
         }
-    }
-    std::iota(index, index + corners, 0u);
-    return geometry;
+    });
+    std::sort(order.begin(), order.end());
+    constexpr std::size_t size = TriangleCluster::size;
+    clusters.resize((shapes.size() + size - 1) / size);
+    parallel_chunks(static_cast<std::int64_t>(clusters.size()), 512,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        for (auto i = static_cast<std::size_t>(begin) * size;
+                             i < static_cast<std::size_t>(end) * size; ++i) {
+                            TriangleCluster& cluster = clusters[i / size];
+                            if (i >= order.size()) {
+                                cluster.clear(i % size);
+                                continue;
+                            }
+                            const auto number = static_cast<std::uint32_t>(order[i]);
+                            cluster.set(i % size, number, triangle_bound(shapes[number], center));
+                        }
+                    });
 }
 
 void ClosestPointIndex::State::build() {
-    bounds.resize(shapes.size());
-    parallel_chunks(static_cast<std::int64_t>(shapes.size()), 4096,
-                    [&](std::int64_t begin, std::int64_t end, int) {
-                        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-                            bounds[i] = triangle_bound(shapes[i], center);
-                    });
+    make_clusters();
     device = rtcNewDevice("threads=1");  // keeps Embree off TBB's pool
     if (!device) throw std::runtime_error("Embree gave no device");
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = float_triangles();
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(clusters.size()));
+    rtcSetGeometryUserData(geometry, clusters.data());
+    const auto on_bounds = [](const RTCBoundsFunctionArguments* args) {
+        const TriangleCluster& c = static_cast<const TriangleCluster*>(args->geometryUserPtr)[args->primID];
+        RTCBounds& box = *args->bounds_o;
+        box.lower_x = lowest(c.lo_x), box.lower_y = lowest(c.lo_y), box.lower_z = lowest(c.lo_z);
+        box.upper_x = highest(c.hi_x), box.upper_y = highest(c.hi_y), box.upper_z = highest(c.hi_z);
+    };
+    rtcSetGeometryBoundsFunction(geometry, on_bounds, nullptr);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -208,15 +256,17 @@ void ClosestPointIndex::State::build() {
     if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::bad_alloc();
 }
 
-// Runs Embree around p. `visit(triangle)` is called for at least every triangle within `distance`; it returns
-// the distance that still matters, which may only shrink, or a negative number to stop.
+// Runs Embree around p. `visit(cluster)` is called for at least every cluster with a triangle within
+// `distance`; it returns the distance that still matters, which may only shrink, or a negative number to
+// stop.
 template <class Visit>
 void ClosestPointIndex::State::query(const glm::dvec3& p, double distance, Visit visit) const {
     const glm::dvec3 local = p - center;
     struct Call {
+        const State& state;
         Visit visit;
         double distance, slack;
-    } call{std::move(visit), distance, slack(local)};
+    } call{*this, std::move(visit), distance, slack(local)};
     RTCPointQuery query{};
     query.x = static_cast<float>(local.x);
     query.y = static_cast<float>(local.y);
@@ -224,15 +274,15 @@ void ClosestPointIndex::State::query(const glm::dvec3& p, double distance, Visit
     query.radius = widened(distance, call.slack);
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
-    const auto on_triangle = [](RTCPointQueryFunctionArguments* args) {
+    const auto on_cluster = [](RTCPointQueryFunctionArguments* args) {
         Call& c = *static_cast<Call*>(args->userPtr);
-        const double left = c.visit(args->primID);
+        const double left = c.visit(c.state.clusters[args->primID]);
         if (left >= c.distance) return false;
         c.distance = left;
         args->query->radius = left < 0.0 ? 0.0f : widened(left, c.slack);
         return true;
     };
-    rtcPointQuery(scene, &query, &context, on_triangle, &call);
+    rtcPointQuery(scene, &query, &context, on_cluster, &call);
 }
 
 ClosestPointIndex::ClosestPointIndex(std::span<const Mesh* const> meshes)
@@ -256,9 +306,22 @@ ClosestPoint ClosestPointIndex::closest(const glm::dvec3& p, double max_distance
         const ClosestPoint first = closest_of(hint, p);
         if (nearer(first, best)) best = first;
     }
-    state_->query(p, std::sqrt(best.distance_squared), [&](std::uint32_t triangle) {
-        const ClosestPoint other = closest_of(triangle, p);
-        if (nearer(other, best)) best = other;
+    const glm::dvec3 local = p - state_->center;
+    const double slack = state_->slack(local);
+    const auto limit = [&] {
+        const float widened = State::widened(std::sqrt(best.distance_squared), slack);
+        return widened * widened;
+    };
+    state_->query(p, std::sqrt(best.distance_squared), [&](const TriangleCluster& cluster) {
+        const auto squared = box_distances(cluster, glm::vec3(local));
+        float most = limit();
+        for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
+            if (!(squared[i] <= most)) continue;
+            const ClosestPoint other = closest_of(cluster.triangle[i], p);
+            if (!nearer(other, best)) continue;
+            best = other;
+            most = limit();
+        }
         return std::sqrt(best.distance_squared);
     });
     return best;
@@ -276,11 +339,9 @@ ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double 
 bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, CandidateList& candidates) const {
     bool fits = true;
     candidates.count = 0;
-    state_->query(center, radius, [&](std::uint32_t triangle) {
-        fits = candidates.count < CandidateList::most;
-        if (!fits) return -1.0;
-        candidates.add(triangle, state_->bounds[triangle]);
-        return radius;
+    state_->query(center, radius, [&](const TriangleCluster& cluster) {
+        fits = candidates.add(cluster);
+        return fits ? radius : -1.0;
     });
     return fits;
 }
