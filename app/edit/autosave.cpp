@@ -125,7 +125,7 @@ bool Autosave::write(const Document& document) {
     const fs::path target = folder_ / autosave_name(document);
     if (target != file_) remove();
     try {
-        fs::create_directories(folder_);
+        make_folder(folder_);
         if (!lock_) {
             lock_ = std::make_unique<FileLock>(lock_of(target));
             if (lock_->try_lock() != FileLock::State::held) lock_.reset();

@@ -18,16 +18,22 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
+/// Frame files are relative to the scene in its file, to the working directory on the command line.
+std::string full_pattern(const Scene& scene) {
+    return (scene.file.parent_path() / scene.output.path).lexically_normal().string();
+}
+
 /// Tracks by name and frame files by their full path: what counts when two scenes render the same.
 Scene comparable(Scene scene) {
     std::sort(scene.animation.begin(), scene.animation.end(),
               [](const Track& a, const Track& b) { return a.key < b.key; });
-    scene.output.path = (scene.file.parent_path() / scene.output.path).lexically_normal().string();
+    scene.output.path = full_pattern(scene);
     return scene;
 }
 
 std::vector<Assignment> assignments_between(Scene saved, Scene shown) {
     std::vector<Assignment> assignments;
+    if (saved.output.path != shown.output.path) shown.output.path = full_pattern(shown);
     const Description before = describe(saved), after = describe(shown);
     for (const Parameter& parameter : after.parameters) {
         const std::string& key = parameter.spec.key;

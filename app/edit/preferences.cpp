@@ -83,7 +83,7 @@ Preferences load_preferences(const fs::path& file) {
 void save_preferences(const Preferences& preferences, const fs::path& file) {
     if (file.empty()) return;
     try {
-        fs::create_directories(file.parent_path());
+        make_folder(file.parent_path());
         const std::string text =
             to_json(preferences).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
         write_file_atomically(file, text);

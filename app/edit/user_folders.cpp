@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 
+#include "core/error.h"
+
 namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
@@ -18,6 +20,12 @@ fs::path folder_in(const char* variable, const char* below_home) {
 }  // namespace
 
 fs::path state_folder() { return folder_in("XDG_STATE_HOME", ".local/state"); }
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw OutputError(folder.string() + ": cannot create this folder: " + error.message());
+}
+
 fs::path config_folder() { return folder_in("XDG_CONFIG_HOME", ".config"); }
 
 }  // namespace astrosplat

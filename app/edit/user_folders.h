@@ -10,4 +10,7 @@ std::filesystem::path state_folder();
 /// $XDG_CONFIG_HOME/astrosplat, else ~/.config/astrosplat; empty without a home.
 std::filesystem::path config_folder();
 
+/// Creates it where it is missing. Throws OutputError.
+void make_folder(const std::filesystem::path& folder);
+
 }  // namespace astrosplat

@@ -87,9 +87,8 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
     free.position = camera.eye;
     const glm::dvec3 middle = framed_box(box).center();
     const double least = 1e-3 * std::fmax(1e-6, glm::length(framed_box(box).extent()));
-    double distance = std::fmax(least, glm::dot(middle - camera.eye, forward));
-    if (params.position && !params.rotation) distance = glm::length(params.target - camera.eye);
-    free.pivot = camera.eye + forward * distance;
+    const double distance = std::fmax(least, glm::dot(middle - camera.eye, forward));
+    free.pivot = params.position && !params.rotation ? params.target : camera.eye + forward * distance;
     free.up = params.up;
     // A rolled or freely turned camera: its own up is up, or the picture would jump.
     if (glm::dot(view_axes(free).up, camera.world_from_camera[1]) < 1.0 - 1e-12)
@@ -98,6 +97,10 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
 }
 
 CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, double aspect) {
+    // What differs only by rounding has not been touched.
+    const auto keep_or = [](double before, double now) {
+        return std::fabs(now - before) > 1e-9 * std::fabs(now) ? now : before;
+    };
     CameraParams params = base;
     params.position = camera.position;
     params.target = camera.pivot;
@@ -105,18 +108,13 @@ CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, do
     params.roll = 0.0;
     params.rotation.reset();
     params.projection = camera.orthographic ? Projection::orthographic : Projection::perspective;
-    if (camera.orthographic) {
-        params.height = camera.height;
-        return params;
-    }
     const double tan_y = real::tan(real::radians(camera.fov_deg) * 0.5);
-    if (base.focal_length > 0.0) {
-        const double focal = 0.5 * base.film_width / (tan_y * aspect);
-        // The same lens up to rounding is the same lens.
-        if (std::fabs(focal - base.focal_length) > 1e-9 * focal) params.focal_length = focal;
-    } else if (std::fabs(camera.fov_deg - base.fov) > 1e-9 * base.fov) {
-        params.fov = camera.fov_deg;
-    }
+    if (camera.orthographic)
+        params.height = keep_or(base.height, camera.height);
+    else if (base.focal_length > 0.0)
+        params.focal_length = keep_or(base.focal_length, 0.5 * base.film_width / (tan_y * aspect));
+    else
+        params.fov = keep_or(base.fov, camera.fov_deg);
     return params;
 }
 

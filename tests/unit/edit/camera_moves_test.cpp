@@ -1,0 +1,158 @@
+// Camera keys and moves: circles are round, ends rest, keys outside the move stay.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/real.h"
+#include "edit/check_edit.h"
+#include "edit/keys.h"
+#include "scene/animate.h"
+#include "scenes.h"
+
+namespace astrosplat {
+namespace {
+
+const Bounds box{{-4.0, -1.0, -3.0}, {6.0, 1.0, 5.0}};  // middle (1, 0, 1)
+const glm::dvec3 middle(1.0, 0.0, 1.0);
+
+struct CameraMoves : testing::Test {
+    Scene scene = parse_scene(test::edit_scene, "/scene.toml");  // 24 fps, camera at (0, 4, 10)
+    glm::dvec3 position(double frame) const { return *scene_at(scene, frame).camera.position; }
+    glm::dvec3 target(double frame) const { return scene_at(scene, frame).camera.target; }
+};
+
+TEST_F(CameraMoves, OrbitIsACircleAtTheCamerasHeight) {
+    add_camera_move(scene, CameraMove::orbit, box, 10.0);
+    const glm::dvec3 start(0.0, 4.0, 10.0);
+    const double radius = std::sqrt(1.0 + 81.0);
+    double turned = 0.0;
+    for (int step = 0; step <= 480; ++step) {
+        const glm::dvec3 p = position(10.0 + step * 0.5);
+        EXPECT_NEAR(p.y, 4.0, 1e-9);
+        EXPECT_NEAR(std::hypot(p.x - 1.0, p.z - 1.0), radius, 1e-3 * radius) << step;
+        EXPECT_EQ(target(10.0 + step * 0.5), middle);
+        const glm::dvec3 a = p - middle, b = position(10.5 + step * 0.5) - middle;
+        turned += real::atan2(a.z * b.x - a.x * b.z, a.x * b.x + a.z * b.z);
+    }
+    EXPECT_NEAR(turned, 2.0 * real::pi, 1e-6);
+    EXPECT_LT(glm::length(position(10.0) - start), 1e-9);
+    EXPECT_LT(glm::length(position(250.0) - start), 1e-9);
+}
+
+TEST_F(CameraMoves, MovesBeginAndEndAtRest) {
+    for (const CameraMove move : {CameraMove::orbit, CameraMove::fly_in, CameraMove::face_on_to_edge_on}) {
+        add_camera_move(scene, move, box, 1.0);
+        const double middle_speed = glm::length(position(121.5) - position(120.5));
+        EXPECT_LT(glm::length(position(1.5) - position(1.0)), 0.02 * middle_speed);
+        EXPECT_LT(glm::length(position(241.0) - position(240.5)), 0.02 * middle_speed);
+        double last = 0.0;  // no jerk: speed never changes by more than a twentieth of its largest
+        for (int i = 0; i < 240; ++i) {
+            const double speed = glm::length(position(2.0 + i) - position(1.0 + i));
+            if (move != CameraMove::fly_in) {
+                EXPECT_LT(std::fabs(speed - last), 0.05 * middle_speed) << i;
+            }
+            last = speed;
+        }
+    }
+}
+
+TEST_F(CameraMoves, FlyInGoesStraightToTheMiddle) {
+    add_camera_move(scene, CameraMove::fly_in, box, 1.0);
+    const glm::dvec3 start(0.0, 4.0, 10.0), way = glm::normalize(start - middle);
+    double last = 1e9;
+    for (int frame = 1; frame <= 241; ++frame) {
+        const glm::dvec3 arm = position(frame) - middle;
+        EXPECT_LT(glm::length(glm::cross(arm, way)), 1e-6);
+        EXPECT_LE(glm::length(arm), last + 1e-9);
+        last = glm::length(arm);
+    }
+    EXPECT_NEAR(last, 0.15 * glm::length(start - middle), 1e-9);
+}
+
+TEST_F(CameraMoves, FaceOnToEdgeOnIsAQuarterCircle) {
+    add_camera_move(scene, CameraMove::face_on_to_edge_on, box, 1.0);
+    const double distance = glm::length(position(1.0) - middle);
+    const glm::dvec3 side = glm::normalize(glm::dvec3(-1.0, 0.0, 9.0));  // where the camera was
+    EXPECT_NEAR(glm::dot(glm::normalize(position(1.0) - middle), {0, 1, 0}), 1.0, 1e-5);
+    EXPECT_NEAR(glm::dot(glm::normalize(position(241.0) - middle), side), 1.0, 1e-9);
+    for (int frame = 1; frame <= 241; ++frame)
+        EXPECT_NEAR(glm::length(position(frame) - middle), distance, 1e-3 * distance);
+    const Framing framing = frame_box(box, 40.0, 640.0 / 360.0);
+    EXPECT_NEAR(distance, glm::length(framing.position - framing.target), 1e-9);
+}
+
+TEST_F(CameraMoves, LastTenSecondsAtAnyRateOnWholeFrames) {
+    for (const double fps : {24.0, 25.0, 29.97, 60.0, 1.0}) {
+        Scene s = scene;
+        s.output.fps = fps;
+        add_camera_move(s, CameraMove::orbit, box, 1.0);
+        const Track& track = *find_track(s, "camera.position");
+        EXPECT_EQ(track.keys.front().frame, 1.0);
+        EXPECT_EQ(track.keys.back().frame, 1.0 + std::floor(10.0 * fps + 0.5));
+        for (const auto& key : track.keys) EXPECT_EQ(key.frame, std::floor(key.frame));
+        EXPECT_NO_THROW(check_edited_scene(s, "scene"));
+    }
+}
+
+TEST_F(CameraMoves, KeysOutsideTheMoveStay) {
+    for (const double frame : {1.0, 50.0, 400.0})
+        set_key(scene, "camera.position", frame, Value::List{frame, 4.0, 10.0});
+    scene.camera.rotation = glm::dvec4(0.0, 0.0, 0.0, 1.0);
+    add_camera_move(scene, CameraMove::orbit, box, 48.0);
+    EXPECT_TRUE(has_key_at(scene, "camera.position", 1.0));
+    EXPECT_TRUE(has_key_at(scene, "camera.position", 400.0));
+    EXPECT_FALSE(has_key_at(scene, "camera.position", 50.0));
+    EXPECT_FALSE(scene.camera.rotation);  // it would replace the target
+}
+
+TEST_F(CameraMoves, ACameraThatFramesTheBoxBeginsThere) {
+    scene.camera.position.reset();
+    add_camera_move(scene, CameraMove::orbit, box, 1.0);
+    const glm::dvec3 framed = frame_box(box, 40.0, 640.0 / 360.0).position;
+    EXPECT_LT(glm::length(position(1.0) - framed), 1e-9);
+}
+
+TEST_F(CameraMoves, AnEmptyBoxIsTheOrigin) {
+    scene.camera.position = glm::dvec3(0.0, 5.0, 0.0);  // straight above: no arm to turn
+    add_camera_move(scene, CameraMove::orbit, {}, 1.0);
+    add_camera_move(scene, CameraMove::fly_in, {}, 1.0);
+    add_camera_move(scene, CameraMove::face_on_to_edge_on, {}, 1.0);
+    EXPECT_NO_THROW(check_edited_scene(scene, "scene"));
+}
+
+TEST_F(CameraMoves, KeyCameraKeysWhatIsAnimated) {
+    set_key(scene, "camera.fov", 1.0, 40.0);
+    CameraParams camera;
+    camera.position = glm::dvec3(1.0, 2.0, 3.0);
+    camera.target = glm::dvec3(4.0, 5.0, 6.0);
+    camera.fov = 30.0;
+    camera.roll = 10.0;
+    key_camera(scene, camera, 12.0);
+    EXPECT_EQ(position(12.0), *camera.position);
+    EXPECT_EQ(target(12.0), camera.target);
+    EXPECT_EQ(scene_at(scene, 12.0).camera.fov, 30.0);
+    EXPECT_FALSE(is_keyed(scene, "camera.roll"));
+    EXPECT_FALSE(is_keyed(scene, "camera.rotation"));
+}
+
+/// Every way a camera can look, through the quaternion and back.
+TEST_F(CameraMoves, KeyCameraTurnsACameraWithARotation) {
+    for (const glm::dvec3& from : {glm::dvec3(3, 1, 2), glm::dvec3(-3, 0.1, 0), glm::dvec3(0, 0, -5),
+                                   glm::dvec3(0.1, -4, 0.2), glm::dvec3(-1, 2, -8)}) {
+        Scene s = scene;
+        s.camera.rotation = glm::dvec4(0.0, 0.0, 0.0, 1.0);
+        CameraParams camera;
+        camera.position = from;
+        camera.roll = 25.0;
+        key_camera(s, camera, 12.0);
+        const CameraParams keyed = scene_at(s, 12.0).camera;
+        ASSERT_TRUE(keyed.rotation);
+        const glm::dmat3 wanted = make_camera(camera, 16, 9, {}).world_from_camera;
+        const glm::dmat3 got = make_camera(keyed, 16, 9, {}).world_from_camera;
+        for (int i = 0; i < 3; ++i) EXPECT_LT(glm::length(wanted[i] - got[i]), 1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat

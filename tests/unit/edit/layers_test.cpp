@@ -1,0 +1,127 @@
+// The list of layers: names, order, copies, and tracks that follow them.
+#include "edit/layers.h"
+
+#include <gtest/gtest.h>
+
+#include "edit/keys.h"
+#include "scenes.h"
+
+namespace astrosplat {
+namespace {
+
+struct Layers : testing::Test {
+    Scene scene = parse_scene(test::edit_scene, "/scene.toml");
+
+    std::vector<std::string> names() const {
+        std::vector<std::string> result;
+        for (const LayerParams& layer : scene.layers) result.push_back(layer.name);
+        return result;
+    }
+    using Names = std::vector<std::string>;
+};
+
+TEST_F(Layers, FreeNames) {
+    EXPECT_EQ(free_layer_name(scene, "gas"), "gas");
+    EXPECT_EQ(free_layer_name(scene, "dust"), "dust_2");
+    EXPECT_EQ(free_layer_name(scene, "M 51 (rot)"), "M_51_rot");
+    EXPECT_EQ(free_layer_name(scene, "51"), "layer");
+    EXPECT_EQ(free_layer_name(scene, "ä"), "layer");
+    scene.layers[0].name = "dust_2";
+    EXPECT_EQ(free_layer_name(scene, "dust_2"), "dust_2_2");
+}
+
+TEST_F(Layers, Duplicate) {
+    EXPECT_EQ(duplicate_layer(scene, 1), 2u);
+    EXPECT_EQ(names(), (Names{"dust", "stars", "stars_2"}));
+    LayerParams copy = scene.layers[2];
+    copy.name = "stars";
+    EXPECT_EQ(copy, scene.layers[1]);
+    const Track* track = find_track(scene, "layer.stars_2.render.core");
+    ASSERT_TRUE(track);
+    EXPECT_EQ(track->keys, find_track(scene, "layer.stars.render.core")->keys);
+}
+
+TEST_F(Layers, Remove) {
+    remove_layer(scene, 1);
+    EXPECT_EQ(names(), Names{"dust"});
+    EXPECT_FALSE(is_keyed(scene, "layer.stars.render.core"));
+    EXPECT_TRUE(is_keyed(scene, "layer.dust.look.noise.1.jitter"));
+}
+
+TEST_F(Layers, Move) {
+    duplicate_layer(scene, 0);
+    move_layer(scene, 0, 2);
+    EXPECT_EQ(names(), (Names{"dust_2", "stars", "dust"}));
+    move_layer(scene, 2, 0);
+    EXPECT_EQ(names(), (Names{"dust", "dust_2", "stars"}));
+    move_layer(scene, 0, 99);
+    EXPECT_EQ(names(), (Names{"dust_2", "stars", "dust"}));
+}
+
+TEST_F(Layers, Rename) {
+    rename_layer(scene, 1, "suns");
+    EXPECT_EQ(names(), (Names{"dust", "suns"}));
+    EXPECT_TRUE(is_keyed(scene, "layer.suns.render.core"));
+    EXPECT_FALSE(is_keyed(scene, "layer.stars.render.core"));
+    const Scene before = scene;
+    EXPECT_EQ(message_of<InputError>([&] { rename_layer(scene, 1, "dust"); }),
+              "suns: layer.name: expected each name once, found 'dust' twice");
+    EXPECT_EQ(message_of<InputError>([&] { rename_layer(scene, 1, "2"); }),
+              "suns: layer.name: expected letters, digits and _ beginning with a letter, found '2'");
+    rename_layer(scene, 1, "suns");
+    EXPECT_EQ(scene, before);
+}
+
+TEST_F(Layers, ANameThatBeginsLikeAnotherKeepsItsTracks) {
+    scene.layers[0].name = "star";
+    rename_layer(scene, 0, "gas");
+    EXPECT_TRUE(is_keyed(scene, "layer.stars.render.core"));
+}
+
+TEST(LayersInAFile, EveryChangeIsSavedAndLoaded) {
+    const test::SceneFolder f;
+    f.folder.file("m 33 ü.png", "not looked at here");
+    Document document = Document::open(f.file);
+    const auto saves = [&] {
+        document.save();
+        ASSERT_EQ(load_scene(f.file), document.scene()) << f.text();
+    };
+    document.edit("Duplicate", [](Scene& s) { duplicate_layer(s, 0); });
+    saves();
+    document.edit("Move", [](Scene& s) { move_layer(s, 0, 2); });
+    saves();
+    document.edit("Add", [&](Scene& s) { EXPECT_EQ(add_layer(s, f.folder / "m 33 ü.png"), 3u); });
+    EXPECT_EQ(document.scene().layers[3].name, "m_33");
+    EXPECT_EQ(document.scene().layers[3].source.meshes[0].texture[0], f.folder / "m 33 ü.png");
+    saves();
+    document.edit("Remove", [](Scene& s) { remove_layer(s, 1); });
+    saves();
+    EXPECT_NE(f.text().find("# by hand, keep this"), std::string::npos);
+    for (int i = 0; i < 4; ++i) document.undo();
+    document.save();
+    EXPECT_EQ(load_scene(f.file), parse_scene(test::edit_scene, f.file));
+}
+
+TEST(Presets, GiveLookAndRender) {
+    const TempFolder folder;
+    const std::filesystem::path preset =
+        folder.file("vorlage ä.toml", "[look]\nalpha = { power = 3.0 }\n[render]\nblend = \"add\"\n");
+    Scene scene = parse_scene(test::edit_scene, folder / "scene.toml");
+    LayerParams& layer = scene.layers[0];
+    const SourceParams source = layer.source;
+    apply_preset(layer, preset);
+    EXPECT_EQ(layer.look.alpha.power, 3.0f);
+    EXPECT_EQ(layer.render.blend, Blend::add);
+    EXPECT_TRUE(layer.look.noise.empty());  // the whole look
+    EXPECT_EQ(layer.name, "dust");
+    EXPECT_EQ(layer.source, source);
+    EXPECT_TRUE(layer.preset.empty());
+    const LayerParams before = layer;
+    folder.file("schlecht.toml", "[look]\ndensty = 1\n");
+    EXPECT_EQ(message_of<InputError>([&] { apply_preset(layer, folder / "schlecht.toml"); }),
+              (folder / "schlecht.toml").string() + ":2: unknown key 'densty'; did you mean 'look.density'?");
+    EXPECT_EQ(layer, before);
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,136 @@
+// First scenes: what a dropped file becomes, and what the engine then makes of it.
+#include "edit/new_from_file.h"
+
+#include <gtest/gtest.h>
+
+#include "edit/layers.h"
+#include "scenes.h"
+#include "splats/splat_file.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const square = "v 0 0 0\nv 4 0 0\nv 4 0 2\nv 0 0 2\n";
+
+struct NewFromFile : testing::Test {
+    TempFolder folder;
+    fs::path place = folder / "untitled.toml";
+    Scene scene_for(const fs::path& file) const { return parse_scene(scene_text_for(file, place), place); }
+};
+
+TEST_F(NewFromFile, Kinds) {
+    for (const char* name : {"a.png", "a b.JPG", "ä.fits", "a.fits.gz", "a.TIF", "a.exr", "a.FTS"})
+        EXPECT_EQ(kind_of_file(name), FileKind::picture) << name;
+    EXPECT_EQ(kind_of_file("a.OBJ"), FileKind::mesh);
+    for (const char* name : {"a.pda", "a.ply", "a.splats"}) EXPECT_EQ(kind_of_file(name), FileKind::splats);
+    for (const char* name : {"a.txt", "a", ".png", "a.gz", "a.mp4"})
+        EXPECT_EQ(kind_of_file(name), FileKind::unknown) << name;
+    EXPECT_EQ(kind_of_file(folder.file("s ä.toml", test::edit_scene)), FileKind::scene);
+    EXPECT_EQ(kind_of_file(folder.file("l.toml", "astrosplat = 1\nlayer = [ { name = \"a\" } ]\n")),
+              FileKind::scene);
+    EXPECT_EQ(kind_of_file(folder.file("p.toml", "[look]\ndensity = 1\n")), FileKind::unknown);
+}
+
+TEST_F(NewFromFile, APictureBecomesAPlane) {
+    const fs::path picture = folder.file("m 51 ä.png", "x");
+    const Scene scene = scene_for(picture);
+    ASSERT_EQ(scene.layers.size(), 1u);
+    EXPECT_EQ(scene.layers[0].name, "m_51");
+    EXPECT_EQ(scene.layers[0].source.meshes[0].mesh, "plane");
+    EXPECT_EQ(scene.layers[0].source.meshes[0].texture[0], picture);
+}
+
+TEST_F(NewFromFile, AMeshTakesItsOwnPictures) {
+    folder.file("m.mtl", "newmtl a\nmap_Kd a ä.png\n");
+    const fs::path mesh = folder.file(
+        "mein netz.obj", std::string("mtllib m.mtl\n") + square +
+                             "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+    const Scene scene = scene_for(mesh);
+    EXPECT_EQ(scene.layers[0].name, "mein_netz");
+    EXPECT_EQ(scene.layers[0].source.meshes[0].mesh, mesh);
+    EXPECT_TRUE(scene.layers[0].source.meshes[0].texture.empty());
+    EXPECT_EQ(scene.layers[0].source.uv, UvMode::mesh);
+}
+
+TEST_F(NewFromFile, AMeshWithoutPicturesTakesTheOneBesideIt) {
+    const fs::path mesh = folder.file("netz.obj", std::string(square) + "f 1 2 3 4\n");
+    EXPECT_EQ(
+        message_of<InputError>([&] { scene_text_for(mesh, place); }),
+        mesh.string() +
+            ": expected a picture for every face: map_Kd in its material, or a picture 'netz.png' beside "
+            "the mesh, found neither");
+    const fs::path picture = folder.file("netz.png", "x");
+    const Scene scene = scene_for(mesh);
+    EXPECT_EQ(scene.layers[0].source.meshes[0].texture, std::vector<fs::path>{picture});
+    EXPECT_EQ(scene.layers[0].source.uv, UvMode::planar_xz);  // thin in y, and without coordinates
+}
+
+TEST_F(NewFromFile, TheProjectionIsAlongTheThinSide) {
+    const fs::path picture = folder.file("a.png", "x");
+    folder.file("a.obj", "v 0 0 0\nv 4 0 0\nv 4 2 0.5\nf 1 2 3\n");
+    EXPECT_EQ(scene_for(folder / "a.obj").layers[0].source.uv, UvMode::planar_xy);
+    folder.file("a.obj", "v 0 0 0\nv 0.5 2 0\nv 0 2 3\nf 1 2 3\n");
+    EXPECT_EQ(scene_for(folder / "a.obj").layers[0].source.uv, UvMode::planar_yz);
+}
+
+TEST_F(NewFromFile, SplatsWithRadiiPassUnchanged) {
+    const fs::path file =
+        folder.file("r.ply",
+                    "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float "
+                    "y\nproperty float z\nproperty float radius\nend_header\n0 0 0 0.5\n");
+    const Scene scene = scene_for(file);
+    EXPECT_EQ(scene.layers[0].source.kind, SourceKind::splats);
+    EXPECT_EQ(scene.layers[0].source.file, file);
+    EXPECT_EQ(scene.layers[0].look, Look{});
+}
+
+/// 1000 points over a cube of side 10: half their mean spacing is 0.5.
+TEST_F(NewFromFile, SplatsWithoutRadiiGetSome) {
+    std::string rows =
+        "ply\nformat ascii 1.0\nelement vertex 1000\nproperty float x\nproperty float y\n"
+        "property float z\nend_header\n";
+    for (int i = 0; i < 1000; ++i)
+        rows += std::to_string(i % 10 * 10 / 9.0) + " " + std::to_string(i / 10 % 10 * 10 / 9.0) + " " +
+                std::to_string(i / 100 * 10 / 9.0) + "\n";
+    const Scene scene = scene_for(folder.file("punkte ä.ply", rows));
+    EXPECT_EQ(scene.layers[0].name, "punkte");
+    EXPECT_EQ(scene.layers[0].look.radius.min, 0.5f);
+    EXPECT_EQ(scene.layers[0].look.radius.max, 0.5f);
+    EXPECT_NO_THROW(check_consistent(read_splats(scene.layers[0].source.file)));
+}
+
+TEST_F(NewFromFile, OtherFilesAreRefused) {
+    const fs::path text = folder.file("a.txt", "x");
+    EXPECT_EQ(message_of<InputError>([&] { scene_text_for(text, place); }),
+              text.string() +
+                  ": expected a picture (FITS, PNG, TIFF, JPEG, EXR), OBJ mesh or splat file, found "
+                  "another kind of file");
+    EXPECT_EQ(message_of<InputError>([&] { scene_text_for(folder / "gone.png", place); }),
+              (folder / "gone.png").string() +
+                  ": expected a picture, mesh or splat file, found nothing of that name");
+    EXPECT_EQ(message_of<InputError>([&] { scene_text_for(folder.path(), place); }),
+              folder.path().string() + ": expected a picture, mesh or splat file, found a folder");
+}
+
+TEST_F(NewFromFile, AFileFromElsewhereIsNamedInFull) {
+    const TempFolder other;
+    const fs::path picture = other.file("b.png", "x"),
+                   mesh = other.file("b.obj", std::string(square) + "f 1 2 3\n");
+    EXPECT_EQ(scene_for(picture).layers[0].source.meshes[0].texture[0], picture);
+    EXPECT_EQ(scene_for(mesh).layers[0].source.meshes[0].mesh, mesh);
+}
+
+TEST_F(NewFromFile, AddLayerKeepsNamesApart) {
+    Scene scene = parse_scene(test::edit_scene, place);
+    EXPECT_EQ(add_layer(scene, folder.file("dust.png", "x")), 2u);
+    EXPECT_EQ(scene.layers[2].name, "dust_2");
+    EXPECT_EQ(scene.layers[2].source.meshes[0].texture[0], folder / "dust.png");
+    const Scene before = scene;
+    EXPECT_THROW(add_layer(scene, folder.file("a.txt", "x")), InputError);
+    EXPECT_EQ(scene, before);
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,145 @@
+// What the window remembers: round trip, damage, folders that cannot be written.
+#include "edit/preferences.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include "core/log.h"
+#include "edit/autosave.h"
+#include "edit/user_folders.h"
+#include "scenes.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Warnings while `work` runs.
+template <class Work>
+std::vector<std::string> warnings_of(const Work& work) {
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel level, const std::string& line) {
+        if (level == LogLevel::warning) warnings.push_back(line);
+    });
+    work();
+    set_log_sink(nullptr);
+    flush_warning_counts();
+    return warnings;
+}
+
+TEST(Preferences, RoundTrip) {
+    const TempFolder folder;
+    const test::CommaLocale comma;
+    Preferences p;
+    p.window_width = 1234;
+    p.window_height = 777;
+    p.maximized = true;
+    p.panel_width = 401.5f;
+    p.timeline_height = 200.25f;
+    p.timeline_open = false;
+    add_recent(p, folder.file("a \"b\" ä.toml", "x"));
+    const fs::path file = folder / "neu/tiefer/viewer.json";
+    EXPECT_TRUE(warnings_of([&] { save_preferences(p, file); }).empty());
+    EXPECT_EQ(load_preferences(file), p);
+}
+
+TEST(Preferences, AMissingFileIsNoNews) {
+    const TempFolder folder;
+    EXPECT_TRUE(warnings_of([&] {
+                    EXPECT_EQ(load_preferences(folder / "viewer.json"), Preferences{});
+                    EXPECT_EQ(load_preferences({}), Preferences{});
+                    save_preferences({}, {});
+                }).empty());
+}
+
+TEST(Preferences, DamageGivesDefaultsAndOneWarning) {
+    const TempFolder folder;
+    for (const char* text : {"", "{", "[1, 2]", "\xff\xfe", "{\"window_width\": 12"}) {
+        const fs::path file = folder.file("viewer.json", text);
+        EXPECT_EQ(warnings_of([&] { EXPECT_EQ(load_preferences(file), Preferences{}); }).size(), 1u) << text;
+    }
+    fs::create_directory(folder / "ordner.json");
+    EXPECT_EQ(warnings_of([&] { load_preferences(folder / "ordner.json"); }).size(), 1u);
+}
+
+TEST(Preferences, SingleValuesThatAreWrongHaveTheirDefault) {
+    const TempFolder folder;
+    const fs::path file =
+        folder.file("viewer.json",
+                    "{\"window_width\": \"wide\", \"window_height\": -5, \"panel_width\": 1e9,"
+                    " \"timeline_open\": 3, \"maximized\": true, \"recent\": [1, \"/gone\"]}");
+    Preferences wanted;
+    wanted.maximized = true;
+    EXPECT_EQ(load_preferences(file), wanted);
+}
+
+TEST(Preferences, AFolderThatCannotBeWrittenCostsOneWarning) {
+    const TempFolder folder;
+    const fs::path file = folder.file("file", "x") / "viewer.json";
+    EXPECT_EQ(warnings_of([&] { save_preferences({}, file); }).size(), 1u);
+}
+
+TEST(Preferences, TwelveRecentFilesNewestFirstEachOnce) {
+    const TempFolder folder;
+    Preferences p;
+    for (int i = 0; i < 15; ++i) add_recent(p, folder.file("scene " + std::to_string(i) + ".toml", "x"));
+    EXPECT_EQ(p.recent.size(), 12u);
+    EXPECT_EQ(p.recent[0], folder / "scene 14.toml");
+    add_recent(p, folder / "x" / ".." / "scene 5.toml");
+    EXPECT_EQ(p.recent.size(), 12u);
+    EXPECT_EQ(p.recent[0], folder / "scene 5.toml");
+    EXPECT_EQ(std::count(p.recent.begin(), p.recent.end(), folder / "scene 5.toml"), 1);
+    save_preferences(p, folder / "viewer.json");
+    fs::remove(folder / "scene 14.toml");
+    const Preferences loaded = load_preferences(folder / "viewer.json");
+    EXPECT_EQ(loaded.recent.size(), 11u);  // existing ones only
+    EXPECT_EQ(loaded.recent[1], folder / "scene 13.toml");
+}
+
+TEST(Preferences, PanelsGoIntoAViewAndBack) {
+    Preferences p, back;
+    p.panel_width = 444.0f;
+    p.timeline_height = 99.0f;
+    p.timeline_open = false;
+    ViewState view;
+    apply_preferences(view, p);
+    EXPECT_EQ(view.panel_width, 444.0f);
+    remember_panels(back, view);
+    EXPECT_EQ(back, p);
+}
+
+/// Sets a variable of the environment for a while.
+class Variable {
+  public:
+    Variable(const char* name, const char* value) : name_(name) {
+        if (const char* old = getenv(name)) before_ = old, was_set_ = true;
+        value ? setenv(name, value, 1) : unsetenv(name);
+    }
+    ~Variable() { was_set_ ? setenv(name_, before_.c_str(), 1) : unsetenv(name_); }
+
+  private:
+    const char* name_;
+    std::string before_;
+    bool was_set_ = false;
+};
+
+TEST(UserFolders, FollowTheBaseDirectorySpecification) {
+    const Variable home("HOME", "/heim");
+    {
+        const Variable state("XDG_STATE_HOME", "/zu stand"), config("XDG_CONFIG_HOME", "/ein");
+        EXPECT_EQ(autosave_folder(), "/zu stand/astrosplat/autosave");
+        EXPECT_EQ(preferences_file(), "/ein/astrosplat/viewer.json");
+    }
+    {
+        const Variable state("XDG_STATE_HOME", "relative"), config("XDG_CONFIG_HOME", "");
+        EXPECT_EQ(state_folder(), "/heim/.local/state/astrosplat");
+        EXPECT_EQ(config_folder(), "/heim/.config/astrosplat");
+    }
+    const Variable state("XDG_STATE_HOME", nullptr), config("XDG_CONFIG_HOME", nullptr);
+    const Variable no_home("HOME", nullptr);
+    EXPECT_EQ(autosave_folder(), "");
+    EXPECT_EQ(preferences_file(), "");
+}
+
+}  // namespace
+}  // namespace astrosplat
