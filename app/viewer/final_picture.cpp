@@ -1,10 +1,8 @@
 // One thread with one pipeline. Each request is a Run of its own, so that what a cancelled one still writes
-// reaches nobody; tiles are copied into the run's canvas without a lock, since each is written once.
+// reaches nobody; tiles are copied into the run's canvas without a lock, since each is written once. The
+// thread has the window's priority: the window sleeps between events, which serves it first, while a lower
+// one would hold up the pool's threads at the end of every loop on a busy machine.
 #include "viewer/final_picture.h"
-
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -53,13 +51,6 @@ void copy_tile(const Image& from, const Region& tile, Image& to) {
     const auto bytes = static_cast<std::size_t>(tile.width * from.channels) * sizeof(float);
     for (std::int64_t y = tile.y; y < tile.y + tile.height; ++y)
         std::memcpy(to.at(tile.x, y), from.at(tile.x, y), bytes);
-}
-
-/// The window's own thread goes first where there are more threads than cores.
-void lower_priority_of_this_thread() {
-#ifdef __linux__
-    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
-#endif
 }
 
 void render_run(Pipeline& pipeline, Run& run) {
@@ -130,7 +121,6 @@ struct FinalPicture::Impl {
 };
 
 void FinalPicture::Impl::work() {
-    lower_priority_of_this_thread();
     Pipeline pipeline;
     for (;;) {
         std::shared_ptr<Run> run;
