@@ -1,10 +1,9 @@
-// A counting sort over 64^3 cells; sets are in ascending order of id already, so being stable is mostly
-// enough.
+// A stable counting sort over 64^3 cells, each thread on its own part of the rows; sets are in ascending
+// order of id already, so being stable is mostly enough.
 #include "splats/spatial_order.h"
 
 #include <algorithm>
 #include <tuple>
-#include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -46,19 +45,48 @@ Buffer<std::uint32_t> cells_of(const SplatSet& set) {
     return keys;
 }
 
-/// First row of every cell in the sorted order, and the end behind the last.
-std::vector<std::int64_t> cell_starts(const Buffer<std::uint32_t>& keys) {
-    std::vector<std::int64_t> starts(cells + 1, 0);
-    for (const std::uint32_t key : keys) ++starts[key + 1];
-    for (std::size_t cell = 0; cell < cells; ++cell) starts[cell + 1] += starts[cell];
+/// Rows are counted and placed in parts, one after the other within a part, so that the order is stable.
+struct Parts {
+    std::int64_t rows, count;
+    std::int64_t size() const { return (rows + count - 1) / count; }
+    std::int64_t begin(std::int64_t part) const { return std::min(rows, part * size()); }
+};
+
+/// Where each part's first row of each cell goes: entry part * cells + cell.
+Buffer<std::int64_t> part_starts(const Buffer<std::uint32_t>& keys, const Parts& parts) {
+    Buffer<std::int64_t> starts(static_cast<std::size_t>(parts.count) * cells, 0);
+    parallel_for(parts.count, [&](std::int64_t part, int) {
+        std::int64_t* counts = starts.data() + static_cast<std::size_t>(part) * cells;
+        for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i)
+            ++counts[keys[static_cast<std::size_t>(i)]];
+    });
+    std::int64_t sum = 0;
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+        for (std::size_t part = 0; part < static_cast<std::size_t>(parts.count); ++part) {
+            const std::int64_t count = starts[part * cells + cell];
+            starts[part * cells + cell] = sum;
+            sum += count;
+        }
+    }
     return starts;
 }
 
-void sort_cells_by_id(Buffer<std::int64_t>& order, const std::vector<std::int64_t>& starts,
-                      const SplatSet& set) {
+Buffer<std::int64_t> sort_by_cell(const Buffer<std::uint32_t>& keys, const Parts& parts,
+                                  Buffer<std::int64_t> next) {
+    Buffer<std::int64_t> order(keys.size());
+    parallel_for(parts.count, [&](std::int64_t part, int) {
+        std::int64_t* places = next.data() + static_cast<std::size_t>(part) * cells;
+        for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i)
+            order[static_cast<std::size_t>(places[keys[static_cast<std::size_t>(i)]]++)] = i;
+    });
+    return order;
+}
+
+void sort_cells_by_id(Buffer<std::int64_t>& order, const Buffer<std::int64_t>& starts, const SplatSet& set) {
     parallel_chunks(static_cast<std::int64_t>(cells), 64, [&](std::int64_t begin, std::int64_t end, int) {
         for (auto cell = static_cast<std::size_t>(begin); cell < static_cast<std::size_t>(end); ++cell)
-            std::sort(order.begin() + starts[cell], order.begin() + starts[cell + 1],
+            std::sort(order.begin() + starts[cell],
+                      cell + 1 < cells ? order.begin() + starts[cell + 1] : order.end(),
                       [&](std::int64_t a, std::int64_t b) {
                           const auto id = [&](std::int64_t row) {
                               return set.id[static_cast<std::size_t>(row)];
@@ -75,11 +103,9 @@ Buffer<std::int64_t> spatial_order(const SplatSet& set) {
     if (set.size() == 0) return {};
     claim_memory(set.size() * bytes_per_row, "the order of a .splats file");
     const Buffer<std::uint32_t> keys = cells_of(set);
-    const std::vector<std::int64_t> starts = cell_starts(keys);
-    Buffer<std::int64_t> order(keys.size());
-    std::vector<std::int64_t> next = starts;
-    for (std::size_t i = 0; i < keys.size(); ++i)
-        order[static_cast<std::size_t>(next[keys[i]]++)] = static_cast<std::int64_t>(i);
+    const Parts parts{set.size(), std::min(8, thread_count())};
+    const Buffer<std::int64_t> starts = part_starts(keys, parts);
+    Buffer<std::int64_t> order = sort_by_cell(keys, parts, starts);
     if (!std::is_sorted(set.id.begin(), set.id.end())) sort_cells_by_id(order, starts, set);
     return order;
 }
