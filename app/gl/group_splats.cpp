@@ -54,7 +54,8 @@ void RawSplatStore::drop_unused() {
 
 std::int64_t shown_count(const PreviewLayer& layer) {
     const auto size = layer.set ? layer.set->size() : 0;
-    const auto wanted = static_cast<std::int64_t>(std::ceil(double(layer.share) * double(size)));
+    const auto wanted =
+        static_cast<std::int64_t>(std::ceil(double(layer.share) * double(whole_count(layer))));
     return std::clamp(wanted, std::min<std::int64_t>(size, 1), size);
 }
 
@@ -90,7 +91,7 @@ bool GroupSplats::shade(Part& part, const PreviewLayer& layer, RawSplatStore& ra
     part.inputs = layer.inputs;
     part.map_probe = probe;
     part.additive = additive;
-    part.share = float(double(part.count) / double(std::max<std::int64_t>(layer.set->size(), 1)));
+    part.share = float(double(part.count) / double(std::max<std::int64_t>(whole_count(layer), 1)));
     part.largest_radius = radius_bound(*layer.set, part.uniforms, part.share, additive);
     part.shaded = true;
     splats.hold(part.count);

@@ -27,6 +27,12 @@ struct PreviewLayer {
     std::int64_t whole = 0;  // splats of the whole set, of which `set` is a prefix; 0: `set` is all of it
 };
 
+/// Splats that a layer's share is counted of.
+inline std::int64_t whole_count(const PreviewLayer& layer) {
+    const std::int64_t there = layer.set ? layer.set->size() : 0;
+    return layer.whole > there ? layer.whole : there;
+}
+
 class GlPreview {
   public:
     /// Needs a current context of OpenGL 4.1 core or later. Throws std::runtime_error with the driver's words

@@ -37,9 +37,8 @@ struct KeptLayer {
 };
 
 std::int64_t rows_to_show(const PreviewLayer& layer) {
-    const double whole = static_cast<double>(layer.whole > 0 ? layer.whole : layer.set->size());
-    const auto wanted = static_cast<std::int64_t>(std::llround(static_cast<double>(layer.share) * whole));
-    return std::min(std::max<std::int64_t>(wanted, 1), layer.set->size());
+    const double wanted = static_cast<double>(layer.share) * static_cast<double>(whole_count(layer));
+    return std::min(std::max<std::int64_t>(std::llround(wanted), 1), layer.set->size());
 }
 
 void cut(const PreviewLayer& layer, KeptLayer& kept) {
@@ -55,10 +54,10 @@ void shade(const PreviewLayer& layer, KeptLayer& kept) {
     if (kept.key == key) return;
     kept.key.reset();  // an exception below must not leave old splats under a new key
     apply_look(kept.rows, layer.look, layer.inputs, kept.shaded);
-    const std::int64_t whole = std::max(layer.whole, layer.set->size());
-    if (whole > 0)
-        decimate(kept.shaded, static_cast<float>(static_cast<double>(kept.rows.size()) / double(whole)),
-                 key.additive);
+    if (kept.rows.size() > 0) {
+        const double share = static_cast<double>(kept.rows.size()) / static_cast<double>(whole_count(layer));
+        decimate(kept.shaded, static_cast<float>(share), key.additive);
+    }
     kept.key = std::move(key);
 }
 

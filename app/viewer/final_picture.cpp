@@ -132,7 +132,8 @@ void FinalPicture::Impl::work() {
         }
         try {
             const Region region = whole_region(run->request);
-            run->canvas = make_image(region.width, region.height, 4);
+            run->canvas = {region.width, region.height, 4, {}};
+            run->canvas.pixels.resize(static_cast<std::size_t>(region.width * region.height * 4));
             render_run(pipeline, *run);
         } catch (const Cancelled&) {
             run->end(State::idle);
