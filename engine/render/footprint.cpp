@@ -1,7 +1,6 @@
 #include "render/footprint.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -16,7 +15,6 @@ namespace {
 constexpr int segments = FootprintNode::segments;
 constexpr int samples = 3 * segments + 1;  // each cubic passes through four equidistant samples
 constexpr int steps_per_octave = 32;       // nodes per octave: the five top bits of the float's mantissa
-constexpr int first_exponent = -6;         // smallest tabulated radius: 2^-6 px
 constexpr int octaves = 16;                // up to 2^10 px
 const double lattice_frequencies[3] = {1.0, std::sqrt(2.0), 2.0};  // of the pixel raster, cycles per px
 constexpr double ripple_limit_px = 32.0;  // beyond, the spectrum at one cycle per pixel is below 1e-4
@@ -216,10 +214,9 @@ FootprintNode make_node(const FootprintTable& table, const Falloff& falloff, dou
     return node;
 }
 
-/// cos(2 pi i / 256): splat centres are snapped to 1/256 px.
 std::array<float, 256> make_cosines() {
     std::array<float, 256> table;
-    for (int i = 0; i < 256; ++i) table[i] = static_cast<float>(real::cos(2.0 * real::pi * i / 256.0));
+    for (int i = 0; i < 256; ++i) table[i] = -static_cast<float>(real::cos(2.0 * real::pi * i / 256.0));
     return table;
 }
 
@@ -263,25 +260,7 @@ FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_p
     return table;
 }
 
-FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px) {
-    const auto bits = std::bit_cast<std::uint32_t>(radius_px);
-    constexpr std::uint32_t step_bits = 23 - 5;  // steps_per_octave = 2^5
-    const std::int64_t first = std::int64_t{127 + first_exponent} << 5;
-    const std::int64_t index = (bits >> step_bits) - first;
-    if (index < 0) return {&table.nodes.front(), &table.nodes.front(), 0.0f};
-    if (index + 1 >= static_cast<std::int64_t>(table.nodes.size()))
-        return {&table.nodes.back(), &table.nodes.back(), 0.0f};
-    const float t = static_cast<float>(bits & ((1u << step_bits) - 1u)) * (1.0f / (1u << step_bits));
-    return {&table.nodes[static_cast<std::size_t>(index)], &table.nodes[static_cast<std::size_t>(index + 1)],
-            t};
-}
-
-float pixel_cosine(float coordinate_px) {
-    static const std::array<float, 256> cosines = make_cosines();
-    constexpr float far_px = 1e6f;  // so far out nothing of a splat this small shows
-    const float inside = std::min(std::max(coordinate_px, -far_px), far_px);
-    return -cosines[static_cast<std::size_t>(static_cast<int>(inside * 256.0f) & 255)];
-}
+const std::array<float, 256> pixel_cosines = make_cosines();
 
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px,
                   Footprint& footprint) {

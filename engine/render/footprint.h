@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <vector>
 
 #include "core/progress.h"
@@ -41,7 +43,8 @@ struct alignas(64) FootprintNode {
 };
 
 struct FootprintTable {
-    static constexpr float smallest_radius_px = 1.0f / 64.0f;
+    static constexpr int first_exponent = -6;
+    static constexpr float smallest_radius_px = 1.0f / 64.0f;  // 2^first_exponent
     std::vector<FootprintNode> nodes;
     bool linear_in_distance = false;  // u linear in d, not in d^2
     bool flat_core = false;           // constant and trapezoid: exactly 1 inside, so only the edge is scaled
@@ -80,10 +83,27 @@ struct FootprintNodes {
     const FootprintNode* b;
     float t;
 };
-FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px);
+inline FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px) {
+    constexpr std::uint32_t step_bits =
+        23 - 5;  // nodes per octave: the five top bits of the float's mantissa
+    constexpr std::int64_t first = std::int64_t{127 + FootprintTable::first_exponent} << 5;
+    const auto bits = std::bit_cast<std::uint32_t>(radius_px);
+    const std::int64_t index = (bits >> step_bits) - first;
+    if (index < 0) return {table.nodes.data(), table.nodes.data(), 0.0f};
+    const FootprintNode* node = table.nodes.data() + index;
+    if (node >= &table.nodes.back()) return {&table.nodes.back(), &table.nodes.back(), 0.0f};
+    const float t = static_cast<float>(bits & ((1u << step_bits) - 1u)) * (1.0f / (1u << step_bits));
+    return {node, node + 1, t};
+}
 
+/// -cos(2 pi i / 256): splat centres are snapped to 1/256 px.
+extern const std::array<float, 256> pixel_cosines;
 /// cos of the phase of a coordinate, snapped to 1/256 px, relative to the pixel centres.
-float pixel_cosine(float coordinate_px);
+inline float pixel_cosine(float coordinate_px) {
+    constexpr float far_px = 1e6f;  // so far out nothing of a splat this small shows
+    const float inside = std::min(std::max(coordinate_px, -far_px), far_px);
+    return pixel_cosines[static_cast<std::size_t>(static_cast<int>(inside * 256.0f) & 255)];
+}
 
 /// The footprint of one splat; x_px, y_px are its centre, snapped to 1/256 px by the caller.
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px, Footprint& footprint);

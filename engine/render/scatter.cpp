@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -9,8 +10,9 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t slab_records = std::int64_t{1} << 20;
-constexpr std::int64_t chunk_splats = 16384;
+constexpr std::int64_t slab_bytes = std::int64_t{40} << 20;
+constexpr std::int64_t chunk_splats = 8192;   // with their records they fit a core's cache
+constexpr std::int64_t most_bins = 9;         // of one splat, see bins_of
 constexpr std::size_t flush_records = 65536;  // level of detail may turn a chunk into many more
 
 ScreenRect rect_of(const TileGrid& grid) {
@@ -30,15 +32,17 @@ bool counts_here(const TileGrid& grid, float y_px) {
 
 }  // namespace
 
-ScreenSplat* SplatStore::take(std::int64_t count) {
+std::byte* SplatStore::take_bytes(std::int64_t bytes) {
+    constexpr std::int64_t line = 64;
+    const std::int64_t needed = (bytes + line - 1) / line * line;
     const std::lock_guard lock(mutex_);
-    while (slab_ < slabs_.size() && filled_ + count > static_cast<std::int64_t>(slabs_[slab_].size())) {
+    while (slab_ < slabs_.size() && filled_ + needed > static_cast<std::int64_t>(slabs_[slab_].size())) {
         ++slab_;
         filled_ = 0;
     }
-    if (slab_ == slabs_.size()) slabs_.emplace_back(static_cast<std::size_t>(std::max(count, slab_records)));
-    ScreenSplat* place = slabs_[slab_].data() + filled_;
-    filled_ += count;
+    if (slab_ == slabs_.size()) slabs_.emplace_back(static_cast<std::size_t>(std::max(needed, slab_bytes)));
+    std::byte* place = slabs_[slab_].data() + filled_;
+    filled_ += needed;
     return place;
 }
 
@@ -54,8 +58,7 @@ void SplatStore::shrink(std::int64_t limit_bytes) {
 
 std::int64_t SplatStore::bytes() const {
     std::int64_t sum = 0;
-    for (const Buffer<ScreenSplat>& slab : slabs_)
-        sum += static_cast<std::int64_t>(slab.size() * sizeof(ScreenSplat));
+    for (const Buffer<std::byte>& slab : slabs_) sum += static_cast<std::int64_t>(slab.size());
     return sum;
 }
 
@@ -70,6 +73,8 @@ TileBins::TileBins(const TileGrid& grid, int groups) : grid_(grid), groups_(grou
     }
 }
 
+/// The bins that a splat's square of support touches. A level is chosen whose bins are at least as wide as
+/// the support, so they are at most three by three.
 TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px, int group) const {
     float bins_per_px = 1.0f / static_cast<float>(grid_.tile_px), bin_px = static_cast<float>(grid_.tile_px);
     std::size_t number = 0;
@@ -79,15 +84,46 @@ TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px, 
         ++number;
     }
     const Level& level = levels_[number];
-    const auto bin = [&](float px,
-                         std::int64_t count) {  // clamped first, so that rounding towards 0 is floor
+    const auto bin = [&](float px, std::int64_t count) {  // clamped first: rounding towards 0 is then floor
         const float b = std::min(std::max(px * bins_per_px, 0.0f), static_cast<float>(count - 1));
-        return static_cast<std::int32_t>(b);
+        return static_cast<std::uint32_t>(static_cast<std::int32_t>(b));
     };
     const float x = splat.x_px - static_cast<float>(grid_.x0), y = splat.y_px - static_cast<float>(grid_.y0);
-    return {group * bins_per_group_ + level.first_bin, static_cast<std::int32_t>(level.columns),
-            bin(x - support_px, level.columns),        bin(y - support_px, level.rows),
-            bin(x + support_px, level.columns),        bin(y + support_px, level.rows)};
+    const std::uint32_t x0 = bin(x - support_px, level.columns), y0 = bin(y - support_px, level.rows);
+    const auto columns = static_cast<std::uint32_t>(level.columns);
+    return {static_cast<std::uint32_t>(group * bins_per_group_ + level.first_bin) + y0 * columns + x0,
+            columns, bin(x + support_px, level.columns) - x0 + 1, bin(y + support_px, level.rows) - y0 + 1};
+}
+
+/// Fills scratch.entries with the bins of scratch.splats; returns how many. Sets the segment's bins and sums.
+std::int64_t TileBins::list_entries(Scratch& scratch, const LayerProjection& layer, int group,
+                                    Segment& segment) const {
+    scratch.entries.resize(scratch.splats.size() * most_bins);
+    Entry* end = scratch.entries.data();
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), last = 0;
+    for (std::size_t i = 0; i < scratch.splats.size(); ++i) {
+        const ScreenSplat& splat = scratch.splats[i];
+        const auto number = static_cast<std::uint32_t>(i);
+        const BinRect r = bins_of(splat, support_of(layer, splat), group);
+        first = std::min(first, r.first_bin);
+        last = std::max(last, r.first_bin + (r.high - 1) * r.columns + r.wide - 1);
+        if (r.wide <= 2 && r.high <= 2) {  // nearly always: without branches that cannot be foretold
+            const std::uint32_t two_wide = r.wide - 1, two_high = r.high - 1;
+            *end++ = {r.first_bin, number};
+            *end = {r.first_bin + 1, number}, end += two_wide;
+            *end = {r.first_bin + r.columns, number}, end += two_high;
+            *end = {r.first_bin + r.columns + 1, number}, end += two_wide & two_high;
+        } else {
+            for (std::uint32_t y = 0; y < r.high; ++y)
+                for (std::uint32_t x = 0; x < r.wide; ++x) *end++ = {r.first_bin + y * r.columns + x, number};
+        }
+        if (!counts_here(grid_, splat.y_px)) continue;
+        ++segment.instances;
+        segment.footprint_px += real::pi * splat.radius_px * splat.radius_px;
+    }
+    segment.first_bin = first;
+    segment.bins = std::int64_t{last} - first + 1;
+    return end - scratch.entries.data();
 }
 
 /// Counting sort of a chunk's splats by bin, straight into the store. Empties scratch.splats.
@@ -95,35 +131,23 @@ void TileBins::add_segment(Scratch& scratch, const LayerProjection& layer, int g
                            std::vector<Segment>& out) const {
     if (scratch.splats.empty()) return;
     Segment segment;
-    std::int64_t last_bin = 0;
-    segment.first_bin = static_cast<std::int64_t>(groups_) * bins_per_group_;
-    scratch.rects.clear();
-    for (const ScreenSplat& splat : scratch.splats) {
-        const BinRect r = bins_of(splat, support_of(layer, splat), group);
-        scratch.rects.push_back(r);
-        segment.first_bin = std::min(segment.first_bin, r.first_bin + std::int64_t{r.y0} * r.columns + r.x0);
-        last_bin = std::max(last_bin, r.first_bin + std::int64_t{r.y1} * r.columns + r.x1);
-        if (!counts_here(grid_, splat.y_px)) continue;
-        ++segment.instances;
-        segment.footprint_px += real::pi * splat.radius_px * splat.radius_px;
+    const std::int64_t count = list_entries(scratch, layer, group, segment);
+    const std::span<const Entry> entries(scratch.entries.data(), static_cast<std::size_t>(count));
+    const auto first = static_cast<std::uint32_t>(segment.first_bin);
+    std::vector<std::uint32_t>& cursor = scratch.cursor;
+    cursor.assign(static_cast<std::size_t>(segment.bins), 0);
+    for (const Entry& e : entries) ++cursor[e.bin - first];
+    auto* offsets = store.take<std::uint32_t>(segment.bins + 1);
+    offsets[0] = 0;
+    for (std::size_t i = 0; i < cursor.size(); ++i) {
+        offsets[i + 1] = offsets[i] + cursor[i];
+        cursor[i] = offsets[i];
     }
-    const auto each_bin = [&](const BinRect& r, const auto& visit) {
-        const std::int64_t corner = r.first_bin - segment.first_bin;
-        for (std::int32_t y = r.y0; y <= r.y1; ++y)
-            for (std::int32_t x = r.x0; x <= r.x1; ++x)
-                visit(static_cast<std::size_t>(corner + std::int64_t{y} * r.columns + x));
-    };
-    std::vector<std::uint32_t>& offsets = segment.offsets;
-    offsets.assign(static_cast<std::size_t>(last_bin - segment.first_bin + 2), 0);
-    for (const BinRect& r : scratch.rects) each_bin(r, [&](std::size_t bin) { ++offsets[bin + 1]; });
-    for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
-    ScreenSplat* records = store.take(offsets.back());
-    scratch.cursor.assign(offsets.begin(), offsets.end() - 1);
-    for (std::size_t i = 0; i < scratch.splats.size(); ++i)
-        each_bin(scratch.rects[i],
-                 [&](std::size_t bin) { records[scratch.cursor[bin]++] = scratch.splats[i]; });
+    auto* records = store.take<ScreenSplat>(count);
+    for (const Entry& e : entries) records[cursor[e.bin - first]++] = scratch.splats[e.splat];
+    segment.offsets = offsets;
     segment.records = records;
-    out.push_back(std::move(segment));
+    out.push_back(segment);
     scratch.splats.clear();
 }
 
@@ -169,9 +193,9 @@ void TileBins::collect(std::int64_t tile, int group, const Progress& progress,
             progress.check();
             for (const Segment& segment : chunk) {
                 const std::int64_t i = bin - segment.first_bin;
-                if (i < 0 || i + 1 >= static_cast<std::int64_t>(segment.offsets.size())) continue;
-                out.insert(out.end(), segment.records + segment.offsets[static_cast<std::size_t>(i)],
-                           segment.records + segment.offsets[static_cast<std::size_t>(i + 1)]);
+                if (i < 0 || i >= segment.bins) continue;
+                out.insert(out.end(), segment.records + segment.offsets[i],
+                           segment.records + segment.offsets[i + 1]);
             }
         }
     }
@@ -180,7 +204,7 @@ void TileBins::collect(std::int64_t tile, int group, const Progress& progress,
 std::int64_t TileBins::records() const {
     std::int64_t sum = 0;
     for (const std::vector<Segment>& chunk : segments_)
-        for (const Segment& segment : chunk) sum += segment.offsets.back();
+        for (const Segment& segment : chunk) sum += segment.offsets[segment.bins];
     return sum;
 }
 

@@ -7,6 +7,7 @@
 // records from the bins above it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <span>
@@ -19,22 +20,27 @@
 
 namespace astrosplat {
 
-/// Memory for records, kept between frames.
+/// Memory for records and their index, kept between frames.
 class SplatStore {
   public:
-    /// Space for `count` records in one piece. Thread-safe.
-    ScreenSplat* take(std::int64_t count);
-    /// Forgets all records but keeps the memory.
+    /// Space for `count` things in one piece, at the start of a cache line. Thread-safe.
+    template <class T>
+    T* take(std::int64_t count) {
+        return reinterpret_cast<T*>(take_bytes(count * static_cast<std::int64_t>(sizeof(T))));
+    }
+    /// Forgets everything but keeps the memory.
     void clear();
-    /// Gives the memory back when more than `bytes` are held.
+    /// Gives memory back until at most `bytes` are held.
     void shrink(std::int64_t bytes);
     std::int64_t bytes() const;
 
   private:
+    std::byte* take_bytes(std::int64_t bytes);
+
     std::mutex mutex_;
-    std::vector<Buffer<ScreenSplat>> slabs_;
+    std::vector<Buffer<std::byte>> slabs_;
     std::size_t slab_ = 0;     // being filled
-    std::int64_t filled_ = 0;  // records of it in use
+    std::int64_t filled_ = 0;  // bytes of it in use
 };
 
 /// The tiles of the part of the picture being rendered, px of the whole picture.
@@ -70,21 +76,27 @@ class TileBins {
     };
     struct Segment {  // one chunk's records, sorted by bin
         const ScreenSplat* records = nullptr;
-        std::int64_t first_bin = 0;
-        std::vector<std::uint32_t> offsets;  // of first_bin, first_bin + 1, ...; one more at the end
+        std::int64_t first_bin = 0, bins = 0;
+        const std::uint32_t* offsets = nullptr;  // of first_bin, first_bin + 1, ...; one more at the end
         std::int64_t instances = 0;
         double footprint_px = 0.0;
     };
     struct BinRect {
-        std::int64_t first_bin;                // of the level
-        std::int32_t columns, x0, y0, x1, y1;  // inclusive columns and rows
+        std::uint32_t first_bin;  // at x0, y0
+        std::uint32_t columns;    // of the level
+        std::uint32_t wide, high;
+    };
+    struct Entry {  // a splat in a bin
+        std::uint32_t bin, splat;
     };
     struct Scratch {  // of one worker
         std::vector<ScreenSplat> splats;
-        std::vector<BinRect> rects;
+        Buffer<Entry> entries;
         std::vector<std::uint32_t> cursor;
     };
     BinRect bins_of(const ScreenSplat& splat, float support_px, int group) const;
+    std::int64_t list_entries(Scratch& scratch, const LayerProjection& layer, int group,
+                              Segment& segment) const;
     void add_segment(Scratch& scratch, const LayerProjection& layer, int group, SplatStore& store,
                      std::vector<Segment>& out) const;
 
