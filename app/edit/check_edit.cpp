@@ -23,6 +23,30 @@ void check_names(const Scene& scene, const std::string& name) {
     }
 }
 
+/// Bytes that UTF-8 cannot have, such as file names of another encoding: a scene file cannot hold them.
+bool is_utf8(const std::string& text) {
+    std::size_t follow = 0;  // bytes of the character that are still to come
+    for (const char c : text) {
+        const unsigned byte = static_cast<unsigned char>(c);
+        const bool continues = (byte & 0xc0u) == 0x80u;
+        if (continues != (follow > 0)) return false;
+        if (continues) {
+            --follow;
+            continue;
+        }
+        if (byte >= 0xf8u || byte == 0xc0u || byte == 0xc1u) return false;
+        follow = byte >= 0xf0u ? 3 : byte >= 0xe0u ? 2 : byte >= 0xc0u ? 1 : 0;
+    }
+    return follow == 0;
+}
+
+void check_text(const Value& value, const std::string& key) {
+    if (const std::string* text = value.text(); text && !is_utf8(*text))
+        throw InputError(key + ": expected text in UTF-8, found another encoding");
+    if (const Value::List* list = value.list())
+        for (const Value& element : *list) check_text(element, key);
+}
+
 void set_checked(const Parameter& parameter, const Value& value) {
     try {
         parameter.set(value);
@@ -59,7 +83,11 @@ void check_edited_scene(Scene& scene, const std::string& name) {
     const Description description = describe(scene);
     std::erase_if(scene.animation,
                   [&](const Track& track) { return !find_parameter(description, track.key); });
-    for (const Parameter& parameter : description.parameters) set_checked(parameter, parameter.get());
+    for (const Parameter& parameter : description.parameters) {
+        const Value value = parameter.get();
+        check_text(value, parameter.spec.key);
+        set_checked(parameter, value);
+    }
     for (const Track& track : scene.animation) check_track(track, *find_parameter(description, track.key));
     check_scene(scene, name, {});
 }

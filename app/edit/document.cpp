@@ -18,6 +18,7 @@
 #include "scene/entries.h"
 #include "scene/path_text.h"
 #include "scene/save.h"
+#include "scene/suggest.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
@@ -56,17 +57,36 @@ std::size_t layer_index(const Scene& scene, const std::string& key) {
     return index;
 }
 
+[[noreturn]] void fail_unknown(const Scene& scene, const std::string& key) {
+    if (key.rfind("layer.", 0) != 0) throw InputError(unknown_key(key, key, "layer."));
+    const std::string name = key.substr(6, key.find('.', 6) - 6);
+    std::vector<std::string> names;
+    for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
+    if (std::find(names.begin(), names.end(), name) != names.end())
+        throw InputError(unknown_key(key, key, "layer." + name + "."));
+    throw InputError(fmt::format("{}: unknown layer '{}'{}", key, name, did_you_mean(name, names)));
+}
+
 /// The parameter of a key in `scene`, whose lists grow for it.
 Parameter parameter_for(Scene& scene, const std::string& key) {
+    Description description = describe(scene);
+    if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
     try {
-        extend_lists(describe(scene), key);
+        extend_lists(description, key);
     } catch (const ValueError& error) {
         throw InputError(fmt::format("{}: {}", key, error.what()));
     }
-    const Description description = describe(scene);
+    description = describe(scene);
     if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
-    const std::size_t dot = key.rfind("layer.", 0) == 0 ? key.find('.', 6) : std::string::npos;
-    throw InputError(unknown_key(key, key, dot == std::string::npos ? "layer." : key.substr(0, dot + 1)));
+    fail_unknown(scene, key);
+}
+
+void set_value(const Parameter& parameter, const Value& value, const fs::path& folder) {
+    try {
+        parameter.set(resolve_paths(value, parameter.spec, folder, false));
+    } catch (const ValueError& error) {
+        throw InputError(fmt::format("{}: {}", parameter.spec.key, error.what()));
+    }
 }
 
 /// A preset that cannot be read would be met only at saving.
@@ -77,11 +97,6 @@ void check_new_presets(const Scene& before, const Scene& after) {
         LayerParams scratch;
         if (!known && !layer.preset.empty()) apply_preset(scratch, layer.preset);
     }
-}
-
-ParameterSpec spec_of(const Scene& scene, const std::string& key) {
-    Scene scratch = scene;
-    return parameter_for(scratch, key).spec;
 }
 
 }  // namespace
@@ -219,41 +234,37 @@ bool Document::edited() const {
 void Document::edit(const std::string& name, const std::function<void(Scene&)>& change, Gesture gesture) {
     Scene edited = scene();
     change(edited);
+    take(std::move(edited), name, gesture);
+}
+
+void Document::take(Scene edited, const std::string& edit_name, Gesture gesture) {
     edited.file = scene().file;
     if (edited == scene()) return;
-    check_edited_scene(edited, this->name());
+    check_edited_scene(edited, name());
     check_new_presets(scene(), edited);
-    if (edited == scene()) return;
-    state_->record({std::make_shared<const Scene>(std::move(edited)), name, gesture});
+    if (edited == scene()) return;  // its tracks were of nothing
+    state_->record({std::make_shared<const Scene>(std::move(edited)), edit_name, gesture});
 }
 
 void Document::set(const std::string& key, const Value& value, double frame, Gesture gesture) {
-    const ParameterSpec spec = spec_of(scene(), key);
-    const auto change = [&](Scene& edited) {
-        if (spec.generic_key == "layer.name" && value.text()) {
-            rename_layer(edited, layer_index(edited, spec.key), *value.text());
-            return;
-        }
-        if (is_keyed(edited, spec.key)) {
-            set_key(edited, spec.key, frame, value);
-            return;
-        }
-        const Parameter parameter = parameter_for(edited, spec.key);
-        try {
-            parameter.set(resolve_paths(value, spec, edited.file.parent_path(), false));
-        } catch (const ValueError& error) {
-            throw InputError(fmt::format("{}: {}", spec.key, error.what()));
-        }
-    };
-    edit(edit_name(spec), change, gesture);
+    Scene edited = scene();
+    const Parameter parameter = parameter_for(edited, key);
+    const ParameterSpec& spec = parameter.spec;
+    if (spec.generic_key == "layer.name" && value.text())
+        rename_layer(edited, layer_index(edited, spec.key), *value.text());
+    else if (is_keyed(edited, spec.key))
+        set_key(edited, spec.key, frame, value);
+    else
+        set_value(parameter, value, edited.file.parent_path());
+    take(std::move(edited), edit_name(spec), gesture);
 }
 
 void Document::reset(const std::string& key) {
-    const ParameterSpec spec = spec_of(scene(), key);
-    edit("Reset " + edit_name(spec), [&](Scene& edited) {
-        remove_track(edited, spec.key);
-        parameter_for(edited, spec.key).set(default_value(spec));
-    });
+    Scene edited = scene();
+    const Parameter parameter = parameter_for(edited, key);
+    remove_track(edited, parameter.spec.key);
+    parameter.set(default_value(parameter.spec));
+    take(std::move(edited), "Reset " + edit_name(parameter.spec), 0);
 }
 
 Value Document::default_value(const ParameterSpec& spec) {

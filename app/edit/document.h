@@ -94,6 +94,8 @@ class Document {
   private:
     struct State;
     explicit Document(std::unique_ptr<State> state);
+    /// Checks `edited` and makes it the scene.
+    void take(Scene edited, const std::string& edit_name, Gesture gesture);
     std::unique_ptr<State> state_;
 };
 

@@ -15,9 +15,8 @@ namespace {
 using TrackKey = Key<std::vector<double>>;
 
 Track* track_of(Scene& scene, const std::string& key) {
-    const auto found = std::find_if(scene.animation.begin(), scene.animation.end(),
-                                    [&](const Track& track) { return track.key == key; });
-    return found == scene.animation.end() ? nullptr : &*found;
+    const Track* found = find_track(scene, key);
+    return found ? &scene.animation[static_cast<std::size_t>(found - scene.animation.data())] : nullptr;
 }
 
 std::vector<TrackKey>::iterator key_at(Track& track, double frame) {
@@ -65,7 +64,9 @@ void erase_track(Scene& scene, const std::string& key) {
 }  // namespace
 
 const Track* find_track(const Scene& scene, const std::string& key) {
-    return track_of(const_cast<Scene&>(scene), key);
+    const auto found = std::find_if(scene.animation.begin(), scene.animation.end(),
+                                    [&](const Track& track) { return track.key == key; });
+    return found == scene.animation.end() ? nullptr : &*found;
 }
 
 bool is_keyed(const Scene& scene, const std::string& key) { return find_track(scene, key) != nullptr; }

@@ -1,3 +1,4 @@
+// A relative folder in a variable does not count, says the specification.
 #include "edit/user_folders.h"
 
 #include <cstdlib>
@@ -10,8 +11,7 @@ namespace {
 
 fs::path folder_in(const char* variable, const char* below_home) {
     const char* base = std::getenv(variable);
-    if (base && fs::path(base).is_absolute())
-        return fs::path(base) / "astrosplat";  // relative ones do not count
+    if (base && fs::path(base).is_absolute()) return fs::path(base) / "astrosplat";
     const char* home = std::getenv("HOME");
     if (!home || !*home) return {};
     return fs::path(home) / below_home / "astrosplat";

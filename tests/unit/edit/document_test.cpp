@@ -121,6 +121,14 @@ TEST(Document, RefusedEditsChangeNothing) {
               "szene ä.toml: layer.dust.look.radius.min: expected min not above max, found 0.5 and 0");
     EXPECT_EQ(message([&] { document.set("layer.dust.preset", "fehlt.toml", 1.0); }),
               (f.folder / "fehlt.toml").string() + ": cannot be read: No such file or directory");
+    EXPECT_EQ(message([&] { document.set("layer.dust.look.thickness.map", "latin-1 \xe4.png", 1.0); }),
+              "layer.dust.look.thickness.map: expected text in UTF-8, found another encoding");
+    EXPECT_EQ(message([&] { document.set("layer.dust.look.noise.3.cull", 0.5, 1.0); }),
+              "layer.dust.look.noise.3.cull: expected an index of at most 2 in layer.look.noise, found 3");
+    EXPECT_EQ(message([&] { document.reset("layer.star.look.density"); }),
+              "layer.star.look.density: unknown layer 'star'; did you mean 'stars'?");
+    EXPECT_EQ(message([&] { document.reset("camera.fow"); }),
+              "unknown key 'camera.fow'; did you mean 'camera.fov'?");
     EXPECT_EQ(message([&] { document.edit("Empty", [](Scene& s) { s.layers.clear(); }); }),
               "szene ä.toml: expected at least one [[layer]], found none");
     EXPECT_EQ(message([&] { document.edit("Fov", [](Scene& s) { s.camera.fov = -1.0; }); }),
