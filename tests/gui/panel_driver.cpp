@@ -2,6 +2,7 @@
 #include "gui/panel_driver.h"
 
 #include <gtest/gtest.h>
+#include <imgui_internal.h>
 
 #include "gui/gui.h"
 #include "gui/theme.h"
@@ -103,6 +104,25 @@ void PanelDriver::tap(ImGuiKey_ key) {
     frames();
     ImGui::GetIO().KeysDown[key] = false;
     frames(2);
+}
+
+void PanelDriver::choose(const std::string& item) {
+    const ImGuiContext& g = *context_;
+    if (g.OpenPopupStack.empty()) {
+        ADD_FAILURE() << "no popup with " << item;
+        return;
+    }
+    const ImGuiWindow* popup = g.OpenPopupStack.back().Window;
+    // A menu item is a selectable without text inside the id of its label; a selectable is its label.
+    const ImGuiID label = ImHashStr(item.c_str(), 0, popup->ID), inside = ImHashStr("", 0, label);
+    for (float y = popup->Pos.y; y < popup->Pos.y + popup->Size.y; y += 4.0f) {
+        move({popup->Pos.x + popup->Size.x * 0.5f, y});
+        if (g.HoveredId != label && g.HoveredId != inside) continue;
+        press();
+        release();
+        return;
+    }
+    ADD_FAILURE() << "no item " << item;
 }
 
 bool PanelDriver::has_row(const std::string& key) const {

@@ -12,7 +12,7 @@ namespace astrosplat {
 
 class PanelDriver {
   public:
-    explicit PanelDriver(const std::string& toml, float width_px = 360.0f, float height_px = 900.0f);
+    explicit PanelDriver(const std::string& toml, float width_px = 360.0f, float height_px = 3000.0f);
     ~PanelDriver();
     PanelDriver(const PanelDriver&) = delete;
     PanelDriver& operator=(const PanelDriver&) = delete;
@@ -28,6 +28,8 @@ class PanelDriver {
     void drag(glm::vec2 from, glm::vec2 by, int steps = 8);
     void type(const std::string& text);
     void tap(ImGuiKey_ key);
+    /// Clicks an item of the popup that is open. Fails the test when there is no such item.
+    void choose(const std::string& item);
 
     /// Where the row of a key was drawn last. Fails the test when it was not.
     DrawnRow row(const std::string& key) const;

@@ -71,14 +71,17 @@ BoxEvent drag_value(Context& context, const BoxContent& content) {
         begin_gesture(context);
         touch.drag = ImGui::GetItemID();
         touch.value = content.value;
+        touch.mouse_x = ImGui::GetIO().MousePos.x;
     }
     if (!ImGui::IsItemActive() || touch.drag != ImGui::GetItemID()) return {};
     touch.seen = true;
     const ImGuiIO& io = ImGui::GetIO();
-    if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, px(3)) || io.MouseDelta.x == 0.0f) return {};
+    const float moved = io.MousePos.x - touch.mouse_x;
+    if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, px(3)) || moved == 0.0f) return {};
+    touch.mouse_x = io.MousePos.x;
     const double factor = io.KeyAlt ? 0.1 : io.KeyShift ? 10.0 : 1.0;
     const double step = content.step * factor;
-    touch.value = std::clamp(touch.value + step * double(io.MouseDelta.x), content.min, content.max);
+    touch.value = std::clamp(touch.value + step * double(moved), content.min, content.max);
     const double fine = content.whole ? 1.0 : step;
     const double value = std::clamp(rounded_to_step(touch.value, fine), content.min, content.max);
     return {BoxEvent::Kind::dragged, value, ""};

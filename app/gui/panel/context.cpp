@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "edit/layers.h"
+#include "gui/panel/companions.h"
 #include "scene/animate.h"
 #include "scene/toml_read.h"
 
@@ -63,14 +63,47 @@ void attempt(Context& context, const std::string& key, const std::function<void(
 
 }  // namespace
 
+namespace {
+
+// Things that are one wish of a person but need more than one parameter, or a file first. True when done.
+bool set_specially(Context& context, const Parameter& parameter, const Value& value) {
+    const std::string& key = parameter.spec.key;
+    if (parameter.spec.generic_key == "layer.look.thickness.map" && value.text() && !value.text()->empty() &&
+        context.layer().look.thickness.keys.empty()) {
+        const std::size_t layer = context.view.layer;
+        edit(context, key, "Thickness map of " + context.layer().name, [&](Scene& scene) {
+            Thickness& thickness = scene.layers[layer].look.thickness;
+            thickness.map = *value.text();
+            thickness.keys = first_thickness_keys(scene.layers[layer].look);
+        });
+        return true;
+    }
+    const bool to_file = parameter.spec.generic_key == "layer.source.kind" && value == Value("splats");
+    if (!to_file || !context.layer().source.file.empty()) return false;
+    context.memory.request = FileRequest{FileRequest::Kind::parameter, context.prefix + "source.file"};
+    return true;
+}
+
+}  // namespace
+
 void set_value(Context& context, const std::string& key, const Value& value, Gesture gesture) {
     const Parameter* parameter = find(context, key);
-    if (parameter && parameter->spec.generic_key == "layer.name" && value.text()) {
-        const std::size_t layer = context.view.layer;  // its keys and its solo follow the name
-        return edit(context, key, "Rename layer",
-                    [&](Scene& scene) { rename_layer(scene, layer, *value.text()); });
-    }
-    attempt(context, key, [&] { context.document.set(key, value, context.view.frame, gesture); });
+    if (parameter && set_specially(context, *parameter, value)) return;
+    std::vector<Companion> others = companions(context.scene(), key, value);
+    if (key == context.prefix + "source.file" && context.layer().source.kind != SourceKind::splats)
+        others.push_back({key, value});                                     // and then the kind
+    if (!others.empty() && gesture == 0) gesture = begin_gesture(context);  // all of it is one undo step
+    attempt(context, key, [&] {
+        for (const Companion& other : others)
+            context.document.set(other.key, other.value, context.view.frame, gesture);
+        const bool kind = !others.empty() && others.back().key == key;
+        context.document.set(kind ? context.prefix + "source.kind" : key, kind ? Value("splats") : value,
+                             context.view.frame, gesture);
+    });
+}
+
+void reset_value(Context& context, const std::string& key) {
+    attempt(context, key, [&] { context.document.reset(key); });
 }
 
 void edit(Context& context, const std::string& key, const std::string& name,

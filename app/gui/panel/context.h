@@ -28,6 +28,7 @@ struct Described {
 struct Touch {
     ImGuiID drag = 0, entry = 0;  // the widget; 0: none
     double value = 0.0;           // dragged so far, not rounded
+    float mouse_x = 0.0f;         // up to which it was dragged
     std::string text;             // typed so far
     int entry_frames = 0;         // since the text field appeared
     bool seen = false;            // its widget was drawn in this frame
@@ -52,13 +53,15 @@ struct Memory {
     Described described;
     std::map<std::string, Value> defaults;  // by generic key
     Touch touch;
-    Gesture gesture = 0;               // of the drag that runs; a new one for every press
-    std::string error_key;             // parameter whose last edit was refused
-    std::string error;                 // why
-    std::map<std::string, bool> open;  // sections, by title
-    bool all_open = false;             // in the next frame every section unfolds
-    bool after_open = false;           // the section above is unfolded: leave some room
-    std::string selected_curve;        // key of the curve whose point is selected
+    Gesture gesture = 0;                     // of the drag that runs; a new one for every press
+    std::string error_key;                   // parameter whose last edit was refused
+    std::string error;                       // why
+    bool error_shown = false;                // beside its row, in this frame
+    std::map<std::string, bool> open;        // sections, by title
+    bool all_open = false;                   // in the next frame every section unfolds
+    bool after_open = false;                 // the section above is unfolded: leave some room
+    std::map<std::string, glm::vec4> plots;  // by the key they edit: x, y, width, height
+    std::string selected_curve;              // key of the curve whose point is selected
     int selected_point = -1;
     std::string renaming;  // layer whose name is typed
     int dragged_layer = -1;
@@ -98,8 +101,12 @@ const Value& default_of(Context& context, const ParameterSpec& spec);
 /// A fresh id for edits of the press that begins now.
 Gesture begin_gesture(Context& context);
 
-/// Document::set at the current frame; a refusal becomes the row's message. `gesture` 0: a step of its own.
+/// Document::set at the current frame, with what else must change for it to stand (companions.h), as one undo
+/// step; a refusal becomes the row's message. `gesture` 0: a step of its own.
 void set_value(Context& context, const std::string& key, const Value& value, Gesture gesture = 0);
+
+/// Back to the default; a refusal becomes the row's message.
+void reset_value(Context& context, const std::string& key);
 
 /// Document::edit; a refusal becomes the message of the row `key`.
 void edit(Context& context, const std::string& key, const std::string& name,

@@ -124,6 +124,7 @@ void edit_curve(Context& context, const std::string& key, const Area& area, std:
     float top = 1.0f;
     for (const glm::vec2& p : points) top = std::max(top, p.y);
     const Chart chart{area, top};
+    context.memory.plots[key] = {area.corner.x, area.corner.y, area.size.x, area.size.y};
     ImGui::PushID(key.c_str());
     ImGui::SetCursorScreenPos(area.corner);
     ImGui::InvisibleButton("curve", area.size);

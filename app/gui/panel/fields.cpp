@@ -126,7 +126,7 @@ void boolean_field(Context& context, const Row& row) {
     const Area& area = row.layout.value;
     const Area box{{area.corner.x, area.middle().y - size * 0.5f}, {size, size}};
     ImGui::SetCursorScreenPos(area.corner);
-    const bool clicked = ImGui::InvisibleButton("check", {px(28), area.size.y});
+    const bool clicked = ImGui::InvisibleButton("check", area.size);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 back = *on ? color::accent : ImGui::IsItemHovered() ? color::hover : color::field;
     list->AddRectFilled(box.corner, box.end(), back, px(3));

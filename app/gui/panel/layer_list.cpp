@@ -3,6 +3,7 @@
 #include "gui/panel/layer_list.h"
 
 #include <fmt/format.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -106,6 +107,10 @@ void finish_renaming(Context& context, std::size_t i, bool take, const std::stri
 
 void name_entry(Context& context, std::size_t i, const Area& area) {
     Touch& touch = context.memory.touch;
+    if (touch.entry_frames < 0) {
+        ++touch.entry_frames;
+        return;
+    }
     ImGui::SetCursorScreenPos({area.corner.x - px(4), area.corner.y + px(2)});
     ImGui::SetNextItemWidth(area.size.x);
     if (touch.entry_frames == 0) ImGui::SetKeyboardFocusHere();
@@ -117,9 +122,11 @@ void name_entry(Context& context, std::size_t i, const Area& area) {
 }
 
 void begin_renaming(Context& context, std::size_t i) {
+    ImGui::ClearActiveID();
     context.memory.renaming = context.scene().layers[i].name;
     context.memory.touch.text = context.memory.renaming;
-    context.memory.touch.entry_frames = 0;
+    // Not in this frame: the click that asked for it, or its menu, still takes the focus.
+    context.memory.touch.entry_frames = -2;
 }
 
 void remove(Context& context, std::size_t i) {
@@ -138,7 +145,7 @@ void layer_menu(Context& context, std::size_t i) {
     if (!ImGui::BeginPopup("layer")) return;
     if (ImGui::MenuItem("Rename")) begin_renaming(context, i);
     if (ImGui::MenuItem("Duplicate")) duplicate(context, i);
-    if (ImGui::MenuItem("Delete")) remove(context, i);
+    if (ImGui::MenuItem("Delete", nullptr, false, context.scene().layers.size() > 1)) remove(context, i);
     ImGui::Separator();
     if (ImGui::MenuItem("Frame", "F")) context.commands.push_back({Command::Kind::frame_layer, {}, "", i});
     if (ImGui::MenuItem("Generate anew")) context.commands.push_back({Command::Kind::regenerate, {}, "", i});
@@ -173,6 +180,7 @@ void reorder(Context& context, const std::vector<Area>& rows) {
 
 // Selecting, dragging, renaming and the menu: all of the row that is not a switch.
 void row_body(Context& context, std::size_t i, const Area& row) {
+    if (context.memory.renaming == context.scene().layers[i].name) return;
     ImGui::SetCursorScreenPos({row.corner.x + px(38), row.corner.y});
     ImGui::InvisibleButton("row", {row.size.x - px(38 + 72), px(line_height)});
     const bool hovered = ImGui::IsItemHovered();

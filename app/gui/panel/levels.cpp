@@ -54,6 +54,7 @@ void edit_levels(Context& context) {
     double white = value_or(context, source + "white", values.white);
     const Area area = begin_plot();
     const ImVec2 below = ImGui::GetCursorScreenPos();
+    context.memory.plots[source + "black"] = {area.corner.x, area.corner.y, area.size.x, area.size.y};
     draw_bars(area, values.share);
     const ImU32 shade = color::with_opacity(color::window, 0.6f);
     ImDrawList* list = ImGui::GetWindowDrawList();

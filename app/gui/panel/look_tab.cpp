@@ -27,7 +27,7 @@ void draw_distances(const Context& context, const Area& area, double reach) {
 
 // A map's colour, bright enough for a line on the plot's ground.
 ImU32 key_ink(const glm::vec3& color) {
-    const auto byte = [](float c) { return static_cast<int>(70.0f + 185.0f * std::clamp(c, 0.0f, 1.0f)); };
+    const auto byte = [](float c) { return static_cast<int>(105.0f + 125.0f * std::clamp(c, 0.0f, 1.0f)); };
     return IM_COL32(byte(color.x), byte(color.y), byte(color.z), 255);
 }
 
@@ -202,10 +202,9 @@ void thickness_section(Context& context) {
                                                                   : fmt::format("{} keys", count);
     if (!section(context, "Thickness map", state)) return;
     layer_row(context, "look.thickness.map", "Picture");
-    if (thickness.map.empty() && count > 1) note("Without a picture the first key counts.", color::key);
     for (std::size_t i = 0; i < count; ++i) thickness_key(context, i);
     const std::size_t layer = context.view.layer;
-    if (count < 8 && add_line("Add key"))
+    if ((count == 0 || !thickness.map.empty()) && count < 8 && add_line("Add key"))
         edit(context, context.prefix, "Add thickness key", [&](Scene& scene) {
             Look& look = scene.layers[layer].look;
             ThicknessKey key;

@@ -64,9 +64,12 @@ void tab_content(Context& context) {
         note("No layer yet.");
         return;
     }
-    context.memory.after_open = false;
+    Memory& memory = context.memory;
+    memory.after_open = false;
     // Sections of layers share their ids, so that a drag does not survive a change of layer.
     ImGui::PushID(tab->of_layer ? context.prefix.c_str() : tab->label);
+    if (!memory.error.empty() && !memory.error_shown) note(memory.error, color::error);
+    memory.error_shown = false;
     tab->draw(context);
     ImGui::PopID();
 }
@@ -106,6 +109,7 @@ void Panel::draw(Document& document, ViewState& view, const Status& status, Comm
     Memory& memory = state_->memory;
     describe_current(memory, document, view.frame);
     state_->rows.clear();
+    memory.plots.clear();
     memory.touch.seen = false;
     const std::size_t layers = memory.described.scene->layers.size();
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;
@@ -138,17 +142,26 @@ void Panel::answer(const FileRequest& request, const std::filesystem::path& file
     if (request.kind == Kind::apply_look)
         commands.push_back({Command::Kind::apply_look, file, "", view.layer});
     if (request.kind != Kind::parameter) return;
-    try {
-        document.set(request.key, file.string(), view.frame);
-    } catch (const InputError& error) {
-        state_->memory.error_key = request.key;
-        state_->memory.error = error.what();
-    }
+    Memory& memory = state_->memory;
+    describe_current(memory, document, view.frame);
+    ViewState unchanged = view;
+    const Status unknown;
+    Context context{document, unchanged, unknown, commands, memory, state_->rows, ""};
+    if (view.layer < context.scene().layers.size())
+        context.prefix = "layer." + context.scene().layers[view.layer].name + ".";
+    set_value(context, request.key, file.string());
 }
 
 void Panel::open_all() { state_->memory.all_open = true; }
 
 const std::vector<DrawnRow>& Panel::rows() const { return state_->rows; }
+
+glm::vec4 Panel::plot_area(const std::string& key) const {
+    const auto found = state_->memory.plots.find(key);
+    return found == state_->memory.plots.end() ? glm::vec4(0.0f) : found->second;
+}
+
+const std::string& Panel::message() const { return state_->memory.error; }
 
 bool Panel::busy() const { return panel::busy(state_->memory); }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,6 +50,10 @@ class Panel {
     void open_all();
     /// Of the last draw(), top to bottom.
     const std::vector<DrawnRow>& rows() const;
+    /// Where the last draw() showed the plot that edits a key: x, y, width, height; zeros: it did not.
+    glm::vec4 plot_area(const std::string& key) const;
+    /// Why the last edit was refused; empty when it was not.
+    const std::string& message() const;
     /// A value is being dragged or typed: the next frame must be drawn soon.
     bool busy() const;
 

@@ -44,6 +44,7 @@ void draw_bars(const Area& area, std::span<const float> shares, double stretch) 
 }
 
 void draw_curve(const Area& area, std::span<const float> values, float top, ImU32 color, float stretch) {
+    if (values.size() < 2) return;
     std::vector<ImVec2> line;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const float x = stretch * static_cast<float>(i) / static_cast<float>(values.size() - 1);
@@ -68,11 +69,13 @@ void captions(const std::string& left, const std::string& right) {
 }
 
 std::vector<float> density_samples(const DensityCurve& pdf) {
+    if (pdf.points.size() > std::size_t(shared::LOOK_MAX_POINTS)) return {};  // the look says why
     const LookProfile profile = density_profile(pdf, "points");
     return sampled([&](float x) { return shared::look_profile(profile, x); });
 }
 
 std::vector<float> vertical_samples(const VerticalAlpha& vertical) {
+    if (vertical.points.size() > std::size_t(shared::LOOK_MAX_POINTS)) return {};
     const LookProfile profile = vertical_profile(vertical);
     return sampled([&](float x) { return shared::look_profile(profile, x); });
 }

@@ -99,7 +99,7 @@ void row_menu(Context& context, const Row& row) {
     if (mouse_over(row.layout.whole) && ImGui::IsMouseReleased(ImGuiMouseButton_Right))
         ImGui::OpenPopup("menu");
     if (!ImGui::BeginPopup("menu")) return;
-    if (ImGui::MenuItem("Reset")) context.document.reset(row.key());
+    if (ImGui::MenuItem("Reset")) reset_value(context, row.key());
     ImGui::Separator();
     animation_menu(context, row);
     const std::string set = set_option(row.key(), row.value);
@@ -111,8 +111,9 @@ void row_menu(Context& context, const Row& row) {
 }
 
 void message_row(Context& context, const Row& row) {
-    const Memory& memory = context.memory;
+    Memory& memory = context.memory;
     if (memory.error.empty() || memory.error_key != row.key()) return;
+    memory.error_shown = true;
     ImGui::PushFont(small_font());
     ImGui::PushStyleColor(ImGuiCol_Text, color::error);
     ImGui::PushTextWrapPos(0.0f);

@@ -1,0 +1,26 @@
+// Rules between parameters (engine/scene/check.h) as a person meets them: what else has to change so that an
+// edit can stand. Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/value.h"
+
+namespace astrosplat::panel {
+
+struct Companion {
+    std::string key;
+    Value value;
+};
+
+/// To be set before `key` is set to `value`, in this order; empty where nothing else is concerned. `scene`
+/// as it stands at the frame.
+std::vector<Companion> companions(const Scene& scene, const std::string& key, const Value& value);
+
+/// Keys for a thickness map that has none: red, green and blue, from thick to thin, all with the look's own
+/// shape.
+std::vector<ThicknessKey> first_thickness_keys(const Look& look);
+
+}  // namespace astrosplat::panel

@@ -1,0 +1,92 @@
+// Every parameter of the description can be reached in some tab, and its words lead to the right one.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "gui/panel_driver.h"
+#include "scene/describe.h"
+
+namespace astrosplat {
+namespace {
+
+std::set<std::string> keys_drawn(const std::string& toml, const std::set<PanelTab>& tabs) {
+    PanelDriver d(toml, 360.0f, 900.0f);
+    Scene scene = d.document.scene();
+    const Description description = describe(scene);
+    std::set<std::string> keys;
+    for (const PanelTab tab : tabs) {
+        d.show(tab);
+        for (const DrawnRow& row : d.panel.rows()) {
+            const Parameter* parameter = find_parameter(description, row.key);
+            if (parameter) keys.insert(parameter->spec.generic_key);
+        }
+    }
+    return keys;
+}
+
+const std::set<PanelTab> all_tabs{PanelTab::source, PanelTab::look, PanelTab::render, PanelTab::camera,
+                                  PanelTab::output};
+
+std::string layer(const std::string& source, const std::string& look, const std::string& render,
+                  const std::string& top = "") {
+    return "astrosplat = 1\n" + top + "[[layer]]\nname = \"a\"\n[layer.source]\n" + source +
+           "\n[layer.look]\n" + look + "\n[layer.render]\n" + render + "\n";
+}
+
+// Scenes that between them make every parameter matter.
+std::vector<std::string> telling_scenes() {
+    const std::string mesh = "meshes = [ { mesh = \"relief\", texture = \"a.fits\" } ]";
+    return {
+        layer(mesh,
+              "pdf = { shape = \"exponential\" }\nvertical = { shape = \"exponential\" }\n"
+              "noise = { cull = 0.5 }",
+              "falloff = \"trapezoid\"\nblend = \"hybrid\""),
+        layer(mesh,
+              "pdf = { shape = \"gaussian\" }\nvertical = { shape = \"curve\", points = [[0, 1], [1, 0]] }\n"
+              "thickness = { map = \"m.png\", keys = [ { color = [1, 0, 0], shape = \"curve\", points = [[0, "
+              "1], [1, 0]] },"
+              "{ shape = \"exponential\" }, { shape = \"gaussian\" } ] }",
+              "", "[camera]\nprojection = \"orthographic\"\nposition = [0, 0, 9]\n"),
+        layer("kind = \"splats\"\nfile = \"a.ply\"",
+              "pdf = { shape = \"gaussian\" }\nradius = { min = 0.1, max = 0.2 }", "",
+              "[camera]\nprojection = \"fisheye\"\n"),
+        layer("kind = \"stars\"\ncatalogue = \"c.csv\"",
+              "pdf = { shape = \"curve\", points = [[0, 1], [1, 0]] }", "",
+              "[camera]\nfocal_length = 50.0\n")};
+}
+
+TEST(PanelCoverage, EveryParameterIsInSomeTab) {
+    std::set<std::string> drawn;
+    for (const std::string& scene : telling_scenes()) drawn.merge(keys_drawn(scene, all_tabs));
+    for (const ParameterRow& row : parameter_rows())
+        EXPECT_TRUE(drawn.count(row.spec.generic_key)) << row.spec.generic_key << " is in no tab";
+}
+
+TEST(PanelCoverage, NoParameterIsDrawnTwiceInOneTab) {
+    for (const std::string& scene : telling_scenes()) {
+        PanelDriver d(scene);
+        for (const PanelTab tab : all_tabs) {
+            d.show(tab);
+            std::set<std::string> keys;
+            for (const DrawnRow& row : d.panel.rows()) EXPECT_TRUE(keys.insert(row.key).second) << row.key;
+        }
+    }
+}
+
+TEST(PanelCoverage, RowsKeepInsideThePanelFrom300To520Px) {
+    for (const float width : {300.0f, 360.0f, 520.0f}) {
+        PanelDriver d(telling_scenes()[0], width);
+        for (const PanelTab tab : all_tabs) {
+            d.show(tab);
+            for (const DrawnRow& row : d.panel.rows()) {
+                EXPECT_GT(row.label.x, 0.0f);
+                EXPECT_LT(row.value.x, width - 20.0f);
+                EXPECT_GT(row.value.x, row.label.x);
+                EXPECT_LT(row.diamond.x, width - 10.0f);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,116 @@
+// Curves, levels and lists of the Look and Source tabs, driven by the mouse.
+#include <gtest/gtest.h>
+
+#include "gui/panel_driver.h"
+
+namespace astrosplat {
+namespace {
+
+const char* const scene_text = R"(astrosplat = 1
+[[layer]]
+name = "dust"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "a.fits" } ]
+[layer.look.pdf]
+shape = "curve"
+points = [[0.0, 1.0], [1.0, 0.0]]
+)";
+const std::string points = "layer.dust.look.pdf.points";
+
+using Points = std::vector<glm::vec2>;
+const Points& curve(const PanelDriver& d) { return d.document.scene().layers[0].look.pdf.points; }
+
+// The plot of 84 px stands above the row of its shape: captions of 17 px and the gaps of rows between.
+glm::vec2 on_plot(const PanelDriver& d, float x, float y) {
+    const DrawnRow shape = d.row("layer.dust.look.pdf.shape");
+    const glm::vec4 plot = d.panel.plot_area(points);  // x, y, width, height
+    EXPECT_LT(plot.y, shape.value.y);
+    return {plot.x + x * plot.z, plot.y + plot.w - 2.0f - y * (plot.w - 5.0f)};
+}
+
+TEST(PanelCurves, AClickAddsAPointOneUndoStep) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    d.click(on_plot(d, 0.5f, 0.25f));
+    ASSERT_EQ(curve(d).size(), 3u);
+    EXPECT_NEAR(curve(d)[1].x, 0.5f, 0.01f);
+    EXPECT_NEAR(curve(d)[1].y, 0.25f, 0.02f);
+    d.document.undo();
+    EXPECT_EQ(curve(d).size(), 2u);
+    EXPECT_FALSE(d.document.can_undo());
+}
+
+TEST(PanelCurves, ADragMovesAPointButNotPastItsNeighbours) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    d.click(on_plot(d, 0.5f, 0.25f));
+    const glm::vec2 from = on_plot(d, 0.5f, 0.25f);
+    d.drag(from, on_plot(d, 0.75f, 0.5f) - from);
+    ASSERT_EQ(curve(d).size(), 3u);
+    EXPECT_NEAR(curve(d)[1].x, 0.75f, 0.01f);
+    EXPECT_NEAR(curve(d)[1].y, 0.5f, 0.02f);
+    const glm::vec2 again = on_plot(d, 0.75f, 0.5f);
+    d.drag(again, {400.0f, 0.0f});
+    EXPECT_LT(curve(d)[1].x, curve(d)[2].x);
+    d.document.undo();
+    EXPECT_NEAR(curve(d)[1].x, 0.75f, 0.01f);
+}
+
+TEST(PanelCurves, ARightClickDeletesDownToTwoPoints) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    d.click(on_plot(d, 0.5f, 0.25f));
+    d.click(on_plot(d, 0.5f, 0.25f), 1);
+    EXPECT_EQ(curve(d).size(), 2u);
+    d.click(on_plot(d, 0.0f, 1.0f), 1);
+    EXPECT_EQ(curve(d), (Points{{0.0f, 1.0f}, {1.0f, 0.0f}}));
+}
+
+TEST(PanelCurves, ArrowsNudgeTheSelectedPoint) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    d.click(on_plot(d, 0.5f, 0.25f));
+    const glm::vec2 before = curve(d)[1];
+    d.tap(ImGuiKey_RightArrow);
+    d.tap(ImGuiKey_UpArrow);
+    EXPECT_NEAR(curve(d)[1].x, before.x + 0.01f, 1e-5f);
+    EXPECT_NEAR(curve(d)[1].y, before.y + 0.01f, 1e-5f);
+}
+
+TEST(PanelCurves, AtMostSixteenPoints) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    for (int i = 0; i < 20; ++i)
+        d.click(on_plot(d, 0.04f + 0.045f * static_cast<float>(i), i % 2 ? 0.3f : 0.7f));
+    EXPECT_EQ(curve(d).size(), 16u);
+    EXPECT_EQ(d.panel.message(), "");
+}
+
+TEST(PanelCurves, BlackAndWhiteAreDraggedOverTheHistogram) {
+    PanelDriver d(scene_text);
+    auto histograms = std::make_shared<LayerHistograms>();
+    histograms->values.share.assign(64, 0.5f);
+    histograms->values.lo = 0.0;
+    histograms->values.hi = 1000.0;
+    histograms->values.black = 100.0;
+    histograms->values.white = 900.0;
+    d.status.layers.resize(1);
+    d.status.layers[0].histograms = histograms;
+    d.show(PanelTab::source);
+    const std::string black = "layer.dust.source.black", white = "layer.dust.source.white";
+    EXPECT_EQ(d.value(black), Value("auto"));
+    const glm::vec4 plot = d.panel.plot_area(black);
+    const float middle = plot.y + plot.w * 0.5f;
+    d.drag({plot.x + 0.1f * plot.z, middle}, {0.1f * plot.z, 0.0f});
+    ASSERT_TRUE(d.value(black).is_number());
+    EXPECT_NEAR(d.value(black).number(), 200.0, 5.0);
+    d.drag({plot.x + 0.9f * plot.z, middle}, {-0.9f * plot.z, 0.0f});
+    EXPECT_GT(d.value(white).number(), d.value(black).number());  // never past each other
+    d.document.undo();
+    d.document.undo();
+    EXPECT_EQ(d.value(black), Value("auto"));
+    EXPECT_FALSE(d.document.can_undo());
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,164 @@
+// The layers list, driven by mouse and keys: visibility, solo, names, order, additions; and what it asks of
+// the viewer.
+#include <gtest/gtest.h>
+
+#include "gui/panel_driver.h"
+
+namespace astrosplat {
+namespace {
+
+const char* const scene_text = R"(astrosplat = 1
+[[layer]]
+name = "disk"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "a.png" } ]
+[layer.render]
+opacity = 0.5
+[[layer]]
+name = "dust"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "b.png" } ]
+[[layer]]
+name = "stars"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "c.png" } ]
+)";
+
+// Rows of 28 px begin below a head of 32 px.
+glm::vec2 at(int row, float x) { return {x, 32.0f + 28.0f * (static_cast<float>(row) + 0.5f)}; }
+constexpr float eye = 24.0f, name = 90.0f, solo = 360.0f - 66.0f, holdout = 360.0f - 46.0f,
+                isolate = 360.0f - 16.0f;
+
+std::vector<std::string> names(const PanelDriver& d) {
+    std::vector<std::string> result;
+    for (const LayerParams& layer : d.document.scene().layers) result.push_back(layer.name);
+    return result;
+}
+using Names = std::vector<std::string>;
+
+TEST(PanelLayers, AClickSelectsAndTheEyeHides) {
+    PanelDriver d(scene_text);
+    d.click(at(1, name));
+    EXPECT_EQ(d.view.layer, 1u);
+    d.click(at(2, eye));
+    EXPECT_FALSE(d.document.scene().layers[2].visible);
+    EXPECT_TRUE(d.document.scene().layers[1].visible);
+    d.document.undo();
+    EXPECT_TRUE(d.document.scene().layers[2].visible);
+}
+
+TEST(PanelLayers, SoloIsOfTheWindowHoldoutAndIsolateOfTheScene) {
+    PanelDriver d(scene_text);
+    d.click(at(1, solo));
+    EXPECT_EQ(d.view.solo, std::set<std::string>{"dust"});
+    EXPECT_FALSE(d.document.edited());
+    d.click(at(1, holdout));
+    EXPECT_TRUE(d.document.scene().layers[1].render.holdout);
+    d.click(at(1, isolate));
+    EXPECT_TRUE(d.document.scene().layers[1].render.isolate);
+    d.click(at(1, solo));
+    EXPECT_TRUE(d.view.solo.empty());
+}
+
+TEST(PanelLayers, ADoubleClickRenames) {
+    PanelDriver d(scene_text);
+    d.click(at(1, solo));
+    d.double_click(at(1, name));
+    d.frames(2);
+    d.type("clouds");
+    d.tap(ImGuiKey_Enter);
+    EXPECT_EQ(names(d), (Names{"disk", "clouds", "stars"}));
+    EXPECT_EQ(d.view.solo, std::set<std::string>{"clouds"});
+    EXPECT_FALSE(d.panel.busy());
+    d.document.undo();
+    EXPECT_EQ(names(d), (Names{"disk", "dust", "stars"}));
+}
+
+TEST(PanelLayers, ANameThatIsTakenIsRefused) {
+    PanelDriver d(scene_text);
+    d.double_click(at(1, name));
+    d.frames(2);
+    d.type("disk");
+    d.tap(ImGuiKey_Enter);
+    EXPECT_EQ(names(d), (Names{"disk", "dust", "stars"}));
+    EXPECT_NE(d.panel.message().find("disk"), std::string::npos) << d.panel.message();
+}
+
+TEST(PanelLayers, DraggingChangesTheOrder) {
+    PanelDriver d(scene_text);
+    d.drag(at(0, name), {0.0f, 56.0f});
+    EXPECT_EQ(names(d), (Names{"dust", "stars", "disk"}));
+    EXPECT_EQ(d.view.layer, 2u);
+    d.drag(at(2, name), {0.0f, -28.0f});
+    EXPECT_EQ(names(d), (Names{"dust", "disk", "stars"}));
+    d.document.undo();
+    d.document.undo();
+    EXPECT_EQ(names(d), (Names{"disk", "dust", "stars"}));
+    EXPECT_FALSE(d.document.can_undo());
+}
+
+void choose(PanelDriver& d, int row, const std::string& item) {
+    d.click(at(row, name), 1);
+    d.frames(2);
+    d.choose(item);
+}
+
+TEST(PanelLayers, TheMenuDuplicatesAndDeletes) {
+    PanelDriver d(scene_text);
+    choose(d, 0, "Duplicate");
+    ASSERT_EQ(d.document.scene().layers.size(), 4u);
+    EXPECT_FLOAT_EQ(d.document.scene().layers[d.view.layer].render.opacity, 0.5f);
+    choose(d, 2, "Delete");
+    EXPECT_EQ(d.document.scene().layers.size(), 3u);
+    for (int i = 0; i < 3; ++i) choose(d, 0, "Delete");
+    EXPECT_EQ(d.document.scene().layers.size(), 1u);  // a scene has at least one
+}
+
+TEST(PanelLayers, LooksAreCopiedAndGivenToAll) {
+    PanelDriver d(scene_text);
+    choose(d, 0, "Copy look");
+    choose(d, 2, "Paste look");
+    EXPECT_FLOAT_EQ(d.document.scene().layers[2].render.opacity, 0.5f);
+    EXPECT_FLOAT_EQ(d.document.scene().layers[1].render.opacity, 1.0f);
+    choose(d, 0, "Look to all layers");
+    EXPECT_FLOAT_EQ(d.document.scene().layers[1].render.opacity, 0.5f);
+    EXPECT_EQ(d.document.undo_name(), "Look of disk to all layers");
+}
+
+TEST(PanelLayers, PlusAsksForAFileAndTheAnswerImportsIt) {
+    PanelDriver d(scene_text);
+    d.click({360.0f - 19.0f, 16.0f});
+    const std::optional<FileRequest> request = d.panel.take_request();
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->kind, FileRequest::Kind::import);
+    EXPECT_FALSE(d.panel.take_request());
+    d.panel.answer(*request, "/nowhere/new.obj", d.document, d.view, d.commands);
+    ASSERT_EQ(d.commands.size(), 1u);
+    EXPECT_EQ(d.commands[0].kind, Command::Kind::import_file);
+}
+
+TEST(PanelLayers, AFileParametersAnswerIsAnEdit) {
+    PanelDriver d(scene_text);
+    const std::string key = "environment.image";
+    d.panel.answer({FileRequest::Kind::parameter, key}, "/nowhere/sky.png", d.document, d.view, d.commands);
+    EXPECT_EQ(to_toml(d.value(key)), "\"/nowhere/sky.png\"");
+    EXPECT_TRUE(d.commands.empty());
+}
+
+TEST(PanelLayers, LoadingCanBeCancelledAndStaleSetsMadeAnew) {
+    PanelDriver d(scene_text);
+    d.status.layers.resize(3);
+    d.status.layers[0].loading = true;
+    d.status.layers[1].stale = true;
+    d.frames(2);
+    d.click({320.0f, 32.0f + 28.0f + 12.0f});
+    d.click({310.0f, 32.0f + 56.0f + 28.0f + 12.0f});
+    ASSERT_EQ(d.commands.size(), 2u);
+    EXPECT_EQ(d.commands[0].kind, Command::Kind::cancel_load);
+    EXPECT_EQ(d.commands[0].index, 0u);
+    EXPECT_EQ(d.commands[1].kind, Command::Kind::regenerate);
+    EXPECT_EQ(d.commands[1].index, 1u);
+}
+
+}  // namespace
+}  // namespace astrosplat

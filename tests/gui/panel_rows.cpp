@@ -1,0 +1,207 @@
+// Rows of the side panel, driven by mouse and keys: what is dragged, typed, keyed and reset arrives in the
+// document, as one undo step each.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "edit/keys.h"
+#include "gui/panel_driver.h"
+
+namespace astrosplat {
+namespace {
+
+const char* const scene_text = R"(astrosplat = 1
+[[layer]]
+name = "dust"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "dust.png" } ]
+)";
+
+const std::string power = "layer.dust.look.alpha.power", opacity = "layer.dust.render.opacity",
+                  gain = "layer.dust.look.grade.gain", density = "layer.dust.look.density";
+
+TEST(PanelRows, DraggingAValueIsOneUndoStep) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::render);
+    const double before = d.value(opacity).number();
+    d.drag(d.row(opacity).value, {-50.0f, 0.0f});
+    EXPECT_DOUBLE_EQ(before, 1.0);
+    EXPECT_DOUBLE_EQ(d.value(opacity).number(), 0.8);  // 250 px are the whole range
+    d.document.undo();
+    EXPECT_DOUBLE_EQ(d.value(opacity).number(), 1.0);
+    EXPECT_FALSE(d.document.can_undo());
+}
+
+TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::render);
+    d.drag(d.row(opacity).value, {-25.0f, 0.0f});
+    d.drag(d.row(opacity).value, {-25.0f, 0.0f});
+    EXPECT_DOUBLE_EQ(d.value(opacity).number(), 0.8);
+    d.document.undo();
+    EXPECT_DOUBLE_EQ(d.value(opacity).number(), 0.9);
+    EXPECT_TRUE(d.document.can_undo());
+}
+
+TEST(PanelRows, DraggingStopsAtTheRange) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::render);
+    d.drag(d.row(opacity).value, {340.0f, 0.0f});
+    EXPECT_DOUBLE_EQ(d.value(opacity).number(), 1.0);
+    d.drag(d.row(opacity).value, {-200.0f, 0.0f});
+    d.drag(d.row(opacity).value, {-200.0f, 0.0f});
+    EXPECT_DOUBLE_EQ(d.value(opacity).number(), 0.0);
+}
+
+TEST(PanelRows, AltDragsFinerAndShiftCoarser) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::render);
+    ImGui::GetIO().KeyAlt = true;
+    d.drag(d.row(opacity).value, {-50.0f, 0.0f});
+    ImGui::GetIO().KeyAlt = false;
+    EXPECT_DOUBLE_EQ(d.value(opacity).number(), 0.98);
+    ImGui::GetIO().KeyShift = true;
+    d.drag(d.row(opacity).value, {-10.0f, 0.0f});
+    ImGui::GetIO().KeyShift = false;
+    EXPECT_NEAR(d.value(opacity).number(), 0.58, 1e-9);
+}
+
+TEST(PanelRows, ADoubleClickTypesAValue) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    d.double_click(d.row(density).value);
+    d.type("0.25");
+    EXPECT_DOUBLE_EQ(d.value(density).number(), 1.0);  // not before Enter
+    d.tap(ImGuiKey_Enter);
+    EXPECT_DOUBLE_EQ(d.value(density).number(), 0.25);
+    d.document.undo();
+    EXPECT_FALSE(d.document.can_undo());
+}
+
+TEST(PanelRows, EscapeDropsWhatWasTyped) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    d.double_click(d.row(density).value);
+    d.type("0.25");
+    d.tap(ImGuiKey_Escape);
+    EXPECT_DOUBLE_EQ(d.value(density).number(), 1.0);
+    EXPECT_FALSE(d.document.can_undo());
+    EXPECT_FALSE(d.panel.busy());
+}
+
+TEST(PanelRows, TabTypesTheNextValue) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    d.double_click(d.row("layer.dust.look.radius.min").value);
+    d.type("0.1");
+    d.tap(ImGuiKey_Tab);
+    d.type("0.2");
+    d.tap(ImGuiKey_Enter);
+    EXPECT_EQ(d.panel.message(), "");
+    EXPECT_DOUBLE_EQ(d.value("layer.dust.look.radius.min").number(), 0.1);
+    EXPECT_DOUBLE_EQ(d.value("layer.dust.look.radius.max").number(), 0.2);
+}
+
+TEST(PanelRows, ARefusedValueIsSaidAndChangesNothing) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::render);
+    d.double_click(d.row(opacity).value);
+    d.type("2");
+    d.tap(ImGuiKey_Enter);
+    EXPECT_DOUBLE_EQ(d.value(opacity).number(), 1.0);
+    EXPECT_FALSE(d.document.can_undo());
+    EXPECT_NE(d.panel.message().find("from 0 to 1"), std::string::npos) << d.panel.message();
+    d.drag(d.row(opacity).value, {-50.0f, 0.0f});
+    EXPECT_EQ(d.panel.message(), "");
+}
+
+TEST(PanelRows, TheDiamondKeysAndUnkeys) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::render);
+    d.view.frame = 12.0;
+    d.frames();
+    d.click(d.row(opacity).diamond);
+    EXPECT_TRUE(has_key_at(d.document.scene(), opacity, 12.0));
+    d.view.frame = 24.0;
+    d.drag(d.row(opacity).value, {-50.0f, 0.0f});
+    EXPECT_TRUE(has_key_at(d.document.scene(), opacity, 24.0));
+    EXPECT_EQ(find_track(d.document.scene(), opacity)->keys.size(), 2u);
+    d.click(d.row(opacity).diamond);
+    EXPECT_FALSE(has_key_at(d.document.scene(), opacity, 24.0));
+    EXPECT_TRUE(is_keyed(d.document.scene(), opacity));
+}
+
+TEST(PanelRows, AKeyedValueIsShownAsItIsAtTheFrame) {
+    PanelDriver d(std::string(scene_text) +
+                  "[animation]\n\"layer.dust.render.opacity\" = { keys = [[1, 0.0], [101, 1.0]] }\n");
+    d.show(PanelTab::render);
+    d.view.frame = 51.0;
+    d.frames();
+    d.drag(d.row(opacity).value, {25.0f, 0.0f});
+    ASSERT_TRUE(has_key_at(d.document.scene(), opacity, 51.0));
+    EXPECT_DOUBLE_EQ(find_track(d.document.scene(), opacity)->keys[1].value[0], 0.6);
+}
+
+void choose(PanelDriver& d, const std::string& key, const std::string& item) {
+    d.click(d.row(key).label, 1);
+    d.frames(2);
+    d.choose(item);
+}
+
+TEST(PanelRows, RightClickResets) {
+    PanelDriver d(std::string(scene_text) + "[layer.look]\ngrade = { gain = 3.0 }\n");
+    d.show(PanelTab::look);
+    ASSERT_DOUBLE_EQ(d.value(gain).number(), 3.0);
+    choose(d, gain, "Reset");
+    EXPECT_DOUBLE_EQ(d.value(gain).number(), 1.0);
+    d.document.undo();
+    EXPECT_DOUBLE_EQ(d.value(gain).number(), 3.0);
+}
+
+TEST(PanelRows, TheMenuCopiesKeyAndSetOption) {
+    PanelDriver d(std::string(scene_text) + "[layer.look]\nalpha = { power = 6.0 }\n");
+    d.show(PanelTab::look);
+    choose(d, power, "Copy key path");
+    EXPECT_EQ(d.clipboard, power);
+    choose(d, power, "Copy --set");
+    EXPECT_EQ(d.clipboard, "--set " + power + "=6.0");
+}
+
+TEST(PanelRows, TheMenuPastesASetOption) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::look);
+    d.clipboard = "--set layer.other.look.alpha.power=2.5";
+    choose(d, power, "Paste");
+    EXPECT_DOUBLE_EQ(d.value(power).number(), 2.5);
+    d.clipboard = "much";
+    choose(d, power, "Paste");
+    EXPECT_DOUBLE_EQ(d.value(power).number(), 2.5);
+    EXPECT_NE(d.panel.message(), "");
+}
+
+TEST(PanelRows, ACheckBoxAndAVectorsComponent) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::render);
+    const std::string holdout = "layer.dust.render.holdout";
+    d.click(d.row(holdout).value);
+    EXPECT_EQ(d.value(holdout), Value(true));
+    d.show(PanelTab::source);
+    const std::string place = "layer.dust.transform.translate";
+    d.double_click(d.row(place).value);  // the middle one of three
+    d.type("-4");
+    d.tap(ImGuiKey_Enter);
+    EXPECT_EQ(d.value(place), Value(Value::List{0.0, -4.0, 0.0}));
+}
+
+TEST(PanelRows, AutoIsTypedOverAndTypedBack) {
+    PanelDriver d(scene_text);
+    d.show(PanelTab::source);
+    const std::string voxels = "layer.dust.source.voxels";
+    d.click(d.row(voxels).value);
+    d.type("10, 20, 30");
+    d.tap(ImGuiKey_Enter);
+    EXPECT_EQ(d.value(voxels), Value(Value::List{std::int64_t{10}, std::int64_t{20}, std::int64_t{30}}));
+}
+
+}  // namespace
+}  // namespace astrosplat
