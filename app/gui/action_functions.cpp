@@ -24,10 +24,23 @@ void go_to(GuiFrame& f, double frame) {
     f.view.frame = std::clamp(frame, range.first, range.last);
 }
 
+double aspect_of(const OutputParams& output) {
+    return static_cast<double>(output.width) / static_cast<double>(output.height);
+}
+
 // The camera that the view looks through, as a scene's camera. Views along an axis have none of their own.
 CameraParams camera_of_view(const GuiFrame& f) {
-    CameraParams camera = scene_at(f.document.scene(), f.view.frame).camera;
-    if (!in_free_view(f)) return camera;
+    const Scene scene = scene_at(f.document.scene(), f.view.frame);
+    CameraParams camera = scene.camera;
+    if (!in_free_view(f)) {
+        if (camera.position) return camera;
+        // One that frames the layers: its place becomes explicit.
+        const Framing framing = frame_box(f.status.box, camera.fov, aspect_of(scene.output));
+        camera.position = framing.position;
+        camera.target = framing.target;
+        camera.height = framing.height;
+        return camera;
+    }
     const FreeCamera& free = f.view.free;
     camera.position = free.position;
     camera.target = free.pivot;
@@ -74,8 +87,7 @@ std::string range_label(const GuiFrame& f) { return "Range " + f.document.scene(
 std::string movie_label(const GuiFrame& f) { return has_ffmpeg(f) ? "Movie..." : "Movie... (needs ffmpeg)"; }
 
 void three_quarter(GuiFrame& f) {
-    const OutputParams& output = f.document.scene().output;
-    const double aspect = static_cast<double>(output.width) / static_cast<double>(output.height);
+    const double aspect = aspect_of(f.document.scene().output);
     const Framing framing = frame_box(f.status.box, f.view.free.fov_deg, aspect);
     const glm::dvec3 direction = glm::normalize(glm::dvec3(1.0, 0.8, 1.0));
     f.view.free.pivot = framing.target;
@@ -142,10 +154,7 @@ bool in_free_view(const GuiFrame& f) { return f.view.view == ViewKind::free; }
 void key_camera_here(GuiFrame& f) {
     const CameraParams camera = camera_of_view(f);
     edit(f, "Key camera", [&](Scene& scene) {
-        // What is not animated must hold the same view.
-        const std::optional<glm::dvec3> before = scene.camera.position;
-        scene.camera = camera;
-        if (!scene.camera.position) scene.camera.position = before;
+        scene.camera = camera;  // what is not animated holds the same view
         key_camera(scene, camera, f.view.frame);
     });
 }

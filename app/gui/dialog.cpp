@@ -18,6 +18,9 @@ float button_width(const char* label) {
     return std::max(px(least_button), ImGui::CalcTextSize(label).x + px(24));
 }
 
+// The key that opened a dialog does not answer it.
+bool pressed(int key) { return !ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(key, false); }
+
 }  // namespace
 
 bool begin_dialog(const char* id, const std::string& title, bool open, float width, float height) {
@@ -51,8 +54,7 @@ bool begin_dialog(const char* id, const std::string& title, bool open, float wid
 void end_dialog() { ImGui::EndPopup(); }
 
 bool dialog_escape() {
-    return ImGui::IsKeyPressed(key_code::escape, false) &&
-           ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
+    return pressed(key_code::escape) && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
 }
 
 int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const char*> labels, bool enter) {
@@ -65,9 +67,7 @@ int dialog_buttons(GuiFrame& frame, const char* id, std::initializer_list<const 
         if (index > 0) ImGui::SameLine(0, px(8));
         if (dialog_button(label, is_default, least_button)) chosen = index;
         note_item(frame, std::string(id) + "/" + label);
-        if (is_default && enter &&
-            (ImGui::IsKeyPressed(key_code::enter, false) || ImGui::IsKeyPressed(key_code::pad_enter, false)))
-            chosen = index;
+        if (is_default && enter && (pressed(key_code::enter) || pressed(key_code::pad_enter))) chosen = index;
         ++index;
     }
     return chosen;

@@ -98,7 +98,7 @@ void FileDialog::draw_places(const GuiFrame& frame) {
 }
 
 void FileDialog::draw_path(GuiFrame& frame) {
-    if (icon_button("up", Icon::chevron_right, {px(28), px(28)}, px(11), color::dim, nullptr))
+    if (icon_button("up", Icon::chevron_up, {px(28), px(28)}, px(11), color::dim, "Folder above"))
         go_to(folder_.parent_path());
     ImGui::SameLine(0, px(4));
     row_text(fitting(folder_.string() + (folder_ == folder_.root_path() ? "" : "/"), px(width - 60)), px(28),

@@ -71,6 +71,7 @@ void to_end(const Pen& pen) {
 }
 void chevron_right(const Pen& pen) { pen.path({{-0.3f, -0.65f}, {0.4f, 0}, {-0.3f, 0.65f}}, false); }
 void chevron_down(const Pen& pen) { pen.path({{-0.65f, -0.3f}, {0, 0.4f}, {0.65f, -0.3f}}, false); }
+void chevron_up(const Pen& pen) { pen.path({{-0.65f, 0.3f}, {0, -0.4f}, {0.65f, 0.3f}}, false); }
 void plus(const Pen& pen) {
     pen.line(-0.8f, 0, 0.8f, 0);
     pen.line(0, -0.8f, 0, 0.8f);
@@ -119,10 +120,10 @@ void dots(const Pen& pen) {
 }
 
 using Draw = void (*)(const Pen&);
-constexpr std::array<Draw, 21> drawings{eye,      eye_closed, diamond,       diamond_empty, play,    pause,
-                                        to_start, to_end,     chevron_right, chevron_down,  plus,    cross,
-                                        ring,     ring_cut,   curve,         lock,          warning, folder,
-                                        file,     reset,      dots};
+constexpr std::array<Draw, 22> drawings{
+    eye,           eye_closed,   diamond,    diamond_empty, play,  pause, to_start, to_end,
+    chevron_right, chevron_down, chevron_up, plus,          cross, ring,  ring_cut, curve,
+    lock,          warning,      folder,     file,          reset, dots};
 static_assert(drawings.size() == static_cast<std::size_t>(Icon::dots) + 1);
 
 }  // namespace

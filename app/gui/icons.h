@@ -16,6 +16,7 @@ enum class Icon {
     to_end,
     chevron_right,
     chevron_down,
+    chevron_up,
     plus,
     cross,
     ring,      // holdout off

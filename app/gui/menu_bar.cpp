@@ -9,6 +9,7 @@
 
 #include "gui/actions.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
@@ -63,6 +64,7 @@ void draw_menu(GuiFrame& frame, const char* menu) {
             if (path.rfind(std::string(menu) + "/", 0) == 0 && path != submenu)
                 draw_submenu(frame, submenu = path);
         }
+        close_on_escape();
         ImGui::EndMenu();
     }
     ImGui::PopStyleVar(2);

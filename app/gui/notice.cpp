@@ -41,7 +41,7 @@ void draw_hint(GuiFrame& frame, const Rect& area) {
 void draw_notice(GuiFrame& frame, const Rect& area) {
     if (area.height <= 0) return;
     ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::field));
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, color4(color::window));
     ImGui::BeginChild("notice", {area.width, area.height}, false, ImGuiWindowFlags_NoScrollbar);
     ImGui::SetCursorScreenPos({area.x + px(12), area.y});
     if (frame.view.changed_on_disk)

@@ -16,7 +16,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr float row_height = 22;
+constexpr float row_height = 20;
 
 struct Row {
     std::string does, keys;
@@ -87,19 +87,20 @@ void draw_group(const Group& group) {
 
 void draw_key_sheet(GuiFrame& frame) {
     bool& open = frame.view.help_open;
-    if (!begin_dialog("keys", "Keys and mouse", open, 1040, 620)) return;
+    if (!begin_dialog("keys", "Keys and mouse", open, 1040, 644)) return;
     const float bottom = px(40);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(28), 0));
-    ImGui::BeginChild("groups", {0, ImGui::GetContentRegionAvail().y - bottom});
+    ImGui::BeginChild("groups", {0, ImGui::GetContentRegionAvail().y - bottom}, false,
+                      ImGuiWindowFlags_NoScrollbar);
     const float column = (ImGui::GetContentRegionAvail().x - 2 * px(28)) / 3;
     const std::array<std::vector<Group>, 3> columns{
-        {{mouse_group(), value_group(), timeline_group()},
-         {group_of("View", {"View"}), group_of("Layer", {"Layer"})},
+        {{mouse_group(), value_group()},
+         {group_of("View", {"View"}), group_of("Layer", {"Layer"}), timeline_group()},
          {group_of("Time", {""}), group_of("Scene", {"File", "Edit", "Render", "Help"})}}};
     for (std::size_t i = 0; i < columns.size(); ++i) {
         if (i > 0) ImGui::SameLine();
         ImGui::BeginGroup();
-        ImGui::BeginChild(static_cast<ImGuiID>(i + 1), {column, 0});
+        ImGui::BeginChild(static_cast<ImGuiID>(i + 1), {column, 0}, false, ImGuiWindowFlags_NoScrollbar);
         for (const Group& group : columns[i]) draw_group(group);
         ImGui::EndChild();
         ImGui::EndGroup();

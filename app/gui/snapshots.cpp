@@ -44,6 +44,7 @@ void card_menu(GuiFrame& frame, std::size_t index) {
     ImGui::Separator();
     if (ImGui::MenuItem("Delete")) request(frame, Command::Kind::delete_snapshot, index);
     note_item(frame, "snapshot/Delete");
+    close_on_escape();
     ImGui::PopStyleVar();
     ImGui::EndPopup();
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "gui/icons.h"
 #include "gui/theme.h"
@@ -14,7 +15,10 @@
 namespace astrosplat {
 namespace {
 
-constexpr float margin = 12, gap = 24, probe_width = 348, bar_width = 120;
+constexpr float margin = 12, gap = 24, bar_width = 120;
+
+// Where the probe's numbers begin, after its left edge; the last is its width.
+constexpr float probe_columns[] = {0, 46, 100, 150, 200, 250, 300, 352};
 
 // ".214", "1.25", "12.5": as many digits as are read at a glance, always as wide as its neighbours of one
 // size.
@@ -57,14 +61,29 @@ float draw_job(GuiFrame& frame, float right, const Rect& area) {
     return right_text(job.name, x0 - px(8), area, color::text) - px(gap);
 }
 
+// Label and number at fixed places, so that nothing wanders while the mouse moves.
+float draw_probe(const Status& status, float right, const Rect& area) {
+    if (!status.probe) return right;
+    const std::vector<ProbeCell> cells = probe_cells(*status.probe);
+    const float x = std::floor(right - px(std::end(probe_columns)[-1]));
+    const float y = area.y + std::floor((area.height - ImGui::GetFontSize()) * 0.5f);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const float at = x + px(probe_columns[i]);
+        list->AddText({at, y}, color::dim, cells[i].label);
+        list->AddText({at + px(13), y}, color::text, cells[i].number.c_str());
+    }
+    return x - px(gap);
+}
+
 }  // namespace
 
-std::string probe_text(const PixelProbe& probe) {
-    std::string text =
-        fmt::format("x {:<4} y {:<4}  R {}  G {}  B {}  A {}", probe.x, probe.y, light_text(probe.rgba[0]),
-                    light_text(probe.rgba[1]), light_text(probe.rgba[2]), light_text(probe.rgba[3]));
-    if (probe.depth) text += fmt::format("  Z {:.4g}", *probe.depth);
-    return text;
+std::vector<ProbeCell> probe_cells(const PixelProbe& probe) {
+    std::vector<ProbeCell> cells{{"x", fmt::format("{}", probe.x)}, {"y", fmt::format("{}", probe.y)}};
+    constexpr const char* channels[] = {"R", "G", "B", "A"};
+    for (std::size_t i = 0; i < 4; ++i) cells.push_back({channels[i], light_text(probe.rgba[i])});
+    if (probe.depth) cells.push_back({"Z", fmt::format("{:.4g}", *probe.depth)});
+    return cells;
 }
 
 void StatusBar::take_message(const Status& status) {
@@ -79,14 +98,7 @@ void StatusBar::draw(GuiFrame& frame, const Rect& area) {
     ImGui::PushFont(small_font());
     float right = right_text(machine_text(frame.status), area.x + area.width - px(margin), area, color::dim);
     right = draw_job(frame, right - px(gap), area);
-    // Begins at a fixed place, so that it does not wander while numbers change.
-    if (frame.status.probe) {
-        const float x = right - px(probe_width);
-        ImGui::GetWindowDrawList()->AddText(
-            {std::floor(x), area.y + std::floor((area.height - ImGui::GetFontSize()) * 0.5f)}, color::text,
-            probe_text(*frame.status.probe).c_str());
-        right = x - px(gap);
-    }
+    right = draw_probe(frame.status, right, area);
     const bool error = !unread_.empty();
     const std::string whole = error                        ? unread_
                               : frame.status.message.error ? ""  // was read

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "gui/gui_frame.h"
 
@@ -18,7 +19,11 @@ class StatusBar {
     std::string unread_;  // error that waits to be clicked
 };
 
-/// "x 812  y 344   R .214  G .187  B .093  A .61   Z 23.4"
-std::string probe_text(const PixelProbe& probe);
+/// What the probe shows: x, y, linear R G B A ("R", ".214") and the depth Z where there is one.
+struct ProbeCell {
+    const char* label;
+    std::string number;
+};
+std::vector<ProbeCell> probe_cells(const PixelProbe& probe);
 
 }  // namespace astrosplat

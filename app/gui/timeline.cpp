@@ -160,7 +160,13 @@ void Timeline::draw_ruler(GuiFrame& frame, const Rect& area) {
     ImGui::PopFont();
 }
 
-void Timeline::draw_playhead(const GuiFrame& frame, const Rect& ruler, float bottom) {
+void Timeline::draw_playhead_line(const GuiFrame& frame, const Rect& area) {
+    const float x = std::floor(scale_.x_of(frame.view.frame)) + 0.5f;
+    if (x >= scale_.x0 - px(margin) && x <= scale_.x1 + px(margin))
+        ImGui::GetWindowDrawList()->AddLine({x, area.y}, {x, area.y + area.height}, color::accent);
+}
+
+void Timeline::draw_playhead(const GuiFrame& frame, const Rect& ruler) {
     const float x = std::floor(scale_.x_of(frame.view.frame)) + 0.5f;
     if (x < scale_.x0 - px(margin) || x > scale_.x1 + px(margin)) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -168,7 +174,6 @@ void Timeline::draw_playhead(const GuiFrame& frame, const Rect& ruler, float bot
     const std::string text = fmt::format("{:g}", std::round(frame.view.frame * 100.0) / 100.0);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float half = std::floor(size.x * 0.5f + px(6));
-    list->AddLine({x, ruler.y + ruler.height}, {x, bottom}, color::accent);
     list->AddRectFilled({x - half, ruler.y + px(1)}, {x + half, ruler.y + ruler.height - px(2)},
                         color::accent, px(3));
     list->AddText({std::floor(x - size.x * 0.5f), ruler.y + px(2)}, IM_COL32(0x10, 0x14, 0x1A, 255),
@@ -200,7 +205,7 @@ void Timeline::draw(GuiFrame& frame, const Rect& area) {
         draw_ruler(frame, ruler);
         const Rect rows{area.x, ruler.y + ruler.height, area.width, bottom - ruler.y - ruler.height};
         draw_rows(frame, rows);
-        draw_playhead(frame, ruler, bottom);
+        draw_playhead(frame, ruler);
     }
     ImGui::EndChild();
 }

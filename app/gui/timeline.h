@@ -49,7 +49,8 @@ class Timeline {
     void refresh(const Document& document);
     void draw_header(GuiFrame& frame, const Rect& area);
     void draw_ruler(GuiFrame& frame, const Rect& area);
-    void draw_playhead(const GuiFrame& frame, const Rect& ruler, float bottom);
+    void draw_playhead(const GuiFrame& frame, const Rect& ruler);
+    void draw_playhead_line(const GuiFrame& frame, const Rect& area);
     void zoom_with_wheel(const Rect& area);
     void end_drag();
     float names_width(const ViewState& view) const;

@@ -185,6 +185,7 @@ void Timeline::draw_key_menu(GuiFrame& frame) {
     if (ImGui::MenuItem("Delete all keys of the row"))
         on_selected("Remove animation",
                     [](Scene& scene, const KeyPlace& place) { remove_track(scene, place.key); });
+    close_on_escape();
     ImGui::PopStyleVar();
     ImGui::EndPopup();
 }
@@ -290,6 +291,7 @@ void Timeline::draw_rows(GuiFrame& frame, const Rect& area) {
         }
         y += px(row_height);
     }
+    if (!tracks.empty()) draw_playhead_line(frame, area);
     const bool here = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     if (here && !ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(key_code::del, false))
         remove_selected(frame);

@@ -79,9 +79,13 @@ template <class Enum>
 void combo(const char* id, Enum& value, const std::vector<const char*>& names, float width) {
     ImGui::SetNextItemWidth(width);
     const auto index = static_cast<std::size_t>(value);
-    if (!ImGui::BeginCombo(id, names[index], ImGuiComboFlags_NoArrowButton)) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, index == 0 ? color::dim : color::text);
+    const bool open = ImGui::BeginCombo(id, names[index], ImGuiComboFlags_NoArrowButton);
+    ImGui::PopStyleColor();
+    if (!open) return;
     for (std::size_t i = 0; i < names.size(); ++i)
         if (ImGui::Selectable(names[i], i == index)) value = static_cast<Enum>(i);
+    close_on_escape();
     ImGui::EndCombo();
 }
 
@@ -129,6 +133,7 @@ void rest_of_tools(GuiFrame& frame, std::size_t from) {
     if (clicked) ImGui::OpenPopup("rest");
     if (!ImGui::BeginPopup("rest")) return;
     for (std::size_t i = from; i < right_tools.size(); ++i) right_tools[i].draw(frame);
+    close_on_escape();
     ImGui::EndPopup();
 }
 

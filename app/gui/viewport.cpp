@@ -127,7 +127,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     draw_overlay_lines(frame, area);
     draw_gate(frame, area, picture);
     draw_wipe(frame, area, picture);
-    draw_view_line(frame, area);
+    draw_view_line(frame, area, picture);
     draw_badge(frame, area);
     ImGui::PopClipRect();
 }

@@ -115,7 +115,7 @@ void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& picture) {
     ImGui::PopFont();
 }
 
-void draw_view_line(const GuiFrame& frame, const Rect& area) {
+void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& picture) {
     const OutputParams& output = frame.document.scene().output;
     std::string text = view_name(frame.view.view);
     text += fmt::format("   frame {:g}", frame.view.frame);
@@ -125,7 +125,11 @@ void draw_view_line(const GuiFrame& frame, const Rect& area) {
     if (frame.view.size == SizeMode::one_to_one)
         text += fmt::format("   {}x{} at {:.0f} %", output.width, output.height, frame.view.zoom * 100.0);
     ImGui::PushFont(small_font());
-    shadowed(ImGui::GetWindowDrawList(), {area.x + px(inset), area.y + px(inset)}, color::dim, text);
+    // Inside the gate, clear of its line.
+    const bool gated = frame.view.view == ViewKind::camera && frame.view.gate;
+    const Rect gate = gated ? gate_of(frame.document.scene(), picture) : area;
+    const float left = std::max(area.x, gate.x), top = std::max(area.y, gate.y);
+    shadowed(ImGui::GetWindowDrawList(), {left + px(inset), top + px(inset)}, color::dim, text);
     ImGui::PopFont();
 }
 

@@ -9,7 +9,7 @@ namespace astrosplat {
 void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& picture);
 void draw_overlay_lines(const GuiFrame& frame, const Rect& area);
 void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& picture);
-void draw_view_line(const GuiFrame& frame, const Rect& area);
+void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& picture);
 
 /// Also the buttons in it (Copy, Cancel).
 void draw_badge(GuiFrame& frame, const Rect& area);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "gui/key_codes.h"
 #include "gui/theme.h"
 
 namespace astrosplat {
@@ -83,6 +84,10 @@ bool drag_field(const char* id, float& value, float speed, float lo, float hi, c
     ImGui::PopStyleColor();
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     return changed;
+}
+
+void close_on_escape() {
+    if (ImGui::IsKeyPressed(key_code::escape, false)) ImGui::CloseCurrentPopup();
 }
 
 void row_text(const std::string& text, float row_height, ImU32 text_color) {

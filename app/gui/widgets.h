@@ -25,6 +25,10 @@ float segmented_width(std::initializer_list<Segment> segments);
 bool drag_field(const char* id, float& value, float speed, float lo, float hi, const char* format,
                 float width, ImU32 text_color);
 
+/// In an open menu: Escape closes it (ImGui does so only with keyboard navigation, which the arrow keys
+/// forbid).
+void close_on_escape();
+
 /// Text in the vertical middle of a row of this height, at the cursor.
 void row_text(const std::string& text, float row_height, ImU32 text_color);
 

@@ -1,0 +1,138 @@
+// The file dialog: what it lists and completes, and its questions.
+#include <gtest/gtest.h>
+
+#include "gui/file_list.h"
+#include "gui/key_codes.h"
+#include "gui/test_window.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> names(const std::vector<FileEntry>& entries) {
+    std::vector<std::string> list;
+    for (const FileEntry& entry : entries) list.push_back(entry.name);
+    return list;
+}
+
+TEST(FileList, FoldersFirstThenTheWantedFiles) {
+    const TempFolder folder;
+    fs::create_directory(folder / "zoom");
+    folder.file("b.toml", "12345");
+    folder.file("A.TOML", "");
+    folder.file("c.png", "");
+    folder.file(".hidden.toml", "");
+    const std::vector<FileEntry> entries = list_folder(folder.path(), {".toml"});
+    EXPECT_EQ(names(entries), (std::vector<std::string>{"zoom", "A.TOML", "b.toml"}));
+    EXPECT_EQ(entries[2].bytes, 5U);
+    EXPECT_EQ(list_folder(folder.path(), {}).size(), 4U);
+    EXPECT_TRUE(list_folder(folder / "nothing", {}).empty());
+}
+
+TEST(FileList, CompletesAsFarAsThereIsNoChoice) {
+    const TempFolder folder;
+    fs::create_directory(folder / "scenes");
+    folder.file("galaxy_one.toml", "");
+    folder.file("galaxy_two.toml", "");
+    folder.file("für.toml", "");
+    folder.file("fül.toml", "");
+    EXPECT_EQ(complete_path("ga", folder.path()), "galaxy_");
+    EXPECT_EQ(complete_path("galaxy_o", folder.path()), "galaxy_one.toml");
+    EXPECT_EQ(complete_path("sc", folder.path()), "scenes/");
+    EXPECT_EQ(complete_path("x", folder.path()), "x");
+    EXPECT_EQ(complete_path("f", folder.path()), "fü");
+    const std::string absolute = folder.path().string() + "/sc";
+    EXPECT_EQ(complete_path(absolute, "/"), absolute + "enes/");
+}
+
+TEST(FileList, TypedPathsKnowHome) {
+    EXPECT_EQ(typed_path("~", "/x"), home_folder());
+    EXPECT_EQ(typed_path("~/a", "/x"), home_folder() / "a");
+    EXPECT_EQ(typed_path("a", "/x"), "/x/a");
+    EXPECT_EQ(typed_path("/a", "/x"), "/a");
+}
+
+class FileDialogTest : public testing::Test {
+  protected:
+    FileDialogTest() : window(example_document()) {
+        fs::create_directory(folder / "scenes");
+        folder.file("scenes/old.toml", "x");
+    }
+    void type_path(const std::string& path) {
+        window.key('A', true);
+        window.type(path);
+    }
+    TempFolder folder;
+    TestWindow window;
+};
+
+TEST_F(FileDialogTest, TabCompletesAndEnterGoesIntoAFolder) {
+    window.choose("File/Open...");
+    window.frame(2);
+    type_path(folder.path().string() + "/sc");
+    window.key(key_code::tab);
+    window.key(key_code::enter);
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/old.toml"));
+    window.click("file/old.toml");
+    window.click("file/Open");
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(commands.size(), 1U);
+    EXPECT_EQ(commands[0].kind, Command::Kind::open);
+    EXPECT_EQ(commands[0].path, folder / "scenes/old.toml");
+}
+
+TEST_F(FileDialogTest, AMissingFileIsSaid) {
+    window.choose("File/Open...");
+    window.frame(2);
+    type_path((folder / "nothing.toml").string());
+    window.click("file/Open");
+    EXPECT_TRUE(window.has("file/path"));
+    EXPECT_TRUE(window.take_commands().empty());
+}
+
+TEST_F(FileDialogTest, ReplacingIsAsked) {
+    window.choose("File/Save as...");
+    window.frame(2);
+    type_path((folder / "scenes/old.toml").string());
+    window.click("file/Save");
+    EXPECT_TRUE(window.take_commands().empty());
+    window.keep_picture("replace");
+    window.click("file/Replace");
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(commands.size(), 1U);
+    EXPECT_EQ(commands[0].path, folder / "scenes/old.toml");
+}
+
+TEST_F(FileDialogTest, TheExtensionIsAdded) {
+    window.choose("File/Save as...");
+    window.frame(2);
+    type_path((folder / "new").string());
+    window.key(key_code::enter);
+    window.frame(2);
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(commands.size(), 1U);
+    EXPECT_EQ(commands[0].path, folder / "new.toml");
+}
+
+TEST_F(FileDialogTest, AnotherChooserTakesItsPlace) {
+    std::string asked;
+    window.gui.set_file_chooser([&](const FileQuery& query) {
+        asked = query.title;
+        return true;
+    });
+    window.choose("File/Open...");
+    window.frame(2);
+    EXPECT_EQ(asked, "Open a scene");
+    EXPECT_FALSE(window.has("file/path"));
+    window.gui.file_chosen(folder / "scenes/old.toml");
+    window.frame();
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(commands.size(), 1U);
+    EXPECT_EQ(commands[0].path, folder / "scenes/old.toml");
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,38 @@
+// ImGui's triangles into a picture, without a graphics library: for looking at the window in tests.
+#pragma once
+
+#include <imgui.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace astrosplat {
+
+struct Rgba8 {
+    std::uint8_t r = 0, g = 0, b = 0, a = 255;
+    bool operator==(const Rgba8&) const = default;
+};
+
+struct Picture8 {
+    int width = 0, height = 0;
+    std::vector<Rgba8> pixels;  // top row first
+
+    Picture8() = default;
+    Picture8(int w, int h)
+        : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
+    Rgba8& at(int x, int y) {
+        return pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
+    }
+    const Rgba8& at(int x, int y) const { return const_cast<Picture8*>(this)->at(x, y); }
+};
+
+/// Draws over `target`. ImTextureIDs are `const Picture8*`.
+void software_draw(const ImDrawData& data, Picture8& target);
+
+/// Binary PPM, colours only.
+void write_ppm(const std::filesystem::path& file, const Picture8& picture);
+
+}  // namespace astrosplat

@@ -1,0 +1,233 @@
+// Frames of 1/60 s; every press and every move is seen by at least one of them, as ImGui 1.86 wants it.
+#include "gui/test_window.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "gui/key_codes.h"
+
+namespace astrosplat {
+namespace {
+
+Picture8 font_picture() {
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    Picture8 picture(width, height);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = {pixels[4 * i], pixels[4 * i + 1], pixels[4 * i + 2], pixels[4 * i + 3]};
+    return picture;
+}
+
+// Something like a galaxy, so that pictures of the window can be judged.
+Picture8 galaxy_picture(int width, int height) {
+    Picture8 picture(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double dx = (x - width * 0.5) / height, dy = (y - height * 0.5) / (height * 0.55);
+            const double r = std::sqrt(dx * dx + dy * dy), angle = std::atan2(dy, dx);
+            const double arm = 0.5 + 0.5 * std::cos(2 * angle - 9 * std::log(r + 0.05));
+            const double light = std::exp(-4.5 * r) * (0.35 + arm) + 0.9 * std::exp(-30 * r);
+            const auto level = [&](double gain) {
+                return static_cast<std::uint8_t>(255.0 * std::min(1.0, std::pow(light * gain, 0.8)));
+            };
+            picture.at(x, y) = {level(1.0), level(0.85), level(0.8 + 0.3 * r), 255};
+        }
+    return picture;
+}
+
+}  // namespace
+
+TestWindow::TestWindow(Document document_, int width, int height, float content_scale)
+    : document(std::move(document_)), context_(ImGui::CreateContext()), width_(width), height_(height) {
+    apply_theme(content_scale);
+    set_key_map();
+    font_ = font_picture();
+    image_ = galaxy_picture(1222, 668);
+    ImGuiIO& io = ImGui::GetIO();
+    io.Fonts->SetTexID(&font_);
+    io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+    io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+    status = example_status();
+    status.picture_texture = &image_;
+    status.picture.width = image_.width;
+    status.picture.height = image_.height;
+    move({-100.0f, -100.0f});
+    frame(2);
+}
+
+TestWindow::~TestWindow() { ImGui::DestroyContext(context_); }
+
+void TestWindow::frame(int count) {
+    for (int i = 0; i < count; ++i) {
+        ImGui::GetIO().DeltaTime = 1.0f / 60.0f;
+        ImGui::NewFrame();
+        Commands commands;
+        gui.draw(document, view, status, commands);
+        ImGui::Render();
+        commands_.insert(commands_.end(), commands.begin(), commands.end());
+        ImGui::GetIO().MouseWheel = 0.0f;
+    }
+}
+
+void TestWindow::move(glm::vec2 to) { ImGui::GetIO().MousePos = {to.x, to.y}; }
+void TestWindow::press(int button) {
+    ImGui::GetIO().MouseDown[button] = true;
+    frame();
+}
+void TestWindow::release(int button) {
+    ImGui::GetIO().MouseDown[button] = false;
+    frame();
+}
+void TestWindow::click(glm::vec2 at_px, int button) {
+    move(at_px);
+    frame(2);  // hovered first, as a mouse does
+    press(button);
+    release(button);
+    frame();
+}
+void TestWindow::double_click(glm::vec2 at_px) {
+    click(at_px);
+    press();
+    release();
+    frame();
+}
+void TestWindow::drag(glm::vec2 from, glm::vec2 by, int button) {
+    move(from);
+    frame(2);
+    press(button);
+    for (int step = 1; step <= 4; ++step) {
+        move(from + by * (static_cast<float>(step) / 4.0f));
+        frame();
+    }
+    release(button);
+    frame();
+}
+void TestWindow::wheel(float notches) {
+    ImGui::GetIO().MouseWheel = notches;
+    frame();
+}
+
+void TestWindow::hold(bool ctrl, bool shift, bool alt) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeyCtrl = ctrl;
+    io.KeyShift = shift;
+    io.KeyAlt = alt;
+}
+void TestWindow::key(int code, bool ctrl, bool shift) {
+    hold(ctrl, shift, false);
+    ImGui::GetIO().KeysDown[code] = true;
+    frame();
+    ImGui::GetIO().KeysDown[code] = false;
+    hold(false, false, false);
+    frame();
+}
+void TestWindow::type(const std::string& text) {
+    ImGui::GetIO().AddInputCharactersUTF8(text.c_str());
+    frame(2);
+}
+
+bool TestWindow::has(const std::string& name) const {
+    for (const DrawnItem& item : gui.drawn_items())
+        if (item.name == name) return true;
+    return false;
+}
+glm::vec2 TestWindow::at(const std::string& name) {
+    for (const DrawnItem& item : gui.drawn_items())
+        if (item.name == name) return item.middle;
+    std::string names;
+    for (const DrawnItem& item : gui.drawn_items()) names += " '" + item.name + "'";
+    ADD_FAILURE() << "no control '" << name << "' among" << names;
+    return {-100.0f, -100.0f};
+}
+
+void TestWindow::choose(const std::string& path) {
+    for (std::size_t slash = path.find('/'); slash != std::string::npos; slash = path.find('/', slash + 1)) {
+        click(at(path.substr(0, slash)));
+        frame(2);
+    }
+    click(at(path));
+}
+
+Commands TestWindow::take_commands() {
+    Commands taken;
+    taken.swap(commands_);
+    return taken;
+}
+
+Picture8 TestWindow::picture() {
+    Picture8 target(width_, height_);
+    software_draw(*ImGui::GetDrawData(), target);
+    return target;
+}
+
+void TestWindow::keep_picture(const std::string& name) {
+    const char* folder = std::getenv("ASTROSPLAT_GUI_PICTURES");
+    if (folder && *folder) write_ppm(std::filesystem::path(folder) / (name + ".ppm"), picture());
+}
+
+Document example_document() {
+    return Document::untitled(R"(astrosplat = 1
+[output]
+resolution = [1920, 1080]
+frames = "1-240"
+[camera]
+position = [0.0, 6.0, 12.0]
+target = [0.0, 0.0, 0.0]
+
+[[layer]]
+name = "dust"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "dust.png" } ]
+count = 2900000
+
+[[layer]]
+name = "stars"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "stars.png" } ]
+count = 8100000
+
+[[layer]]
+name = "nebulae"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "nebulae.png" } ]
+count = 1400000
+
+[animation]
+"camera.position" = { keys = [[1, [0.0, 6.0, 12.0]], [90, [8.0, 3.0, 8.0]], [240, [0.0, 0.5, 12.0]]], interpolation = "smooth" }
+"layer.dust.look.alpha.power" = { keys = [[1, 1.0], [90, 2.5], [180, 1.2]], interpolation = "smooth" }
+"layer.stars.render.opacity" = { keys = [[24, 0.2], [120, 1.0]] }
+)",
+                              "/scenes/whirlpool.toml");
+}
+
+Status example_status() {
+    Status status;
+    status.picture.state = PictureState::refining;
+    status.picture.progress = 0.41f;
+    status.picture.shown = 240000;
+    status.picture.total = 12400000;
+    for (const std::int64_t splats : {2900000, 8100000, 1400000}) {
+        LayerStatus layer;
+        layer.splats = splats;
+        layer.kept = splats / 100 * 61;
+        layer.radius_min = 0.01;
+        layer.radius_max = 0.05;
+        status.layers.push_back(layer);
+    }
+    status.box.add({-5.0, -0.5, -5.0});
+    status.box.add({5.0, 0.5, 5.0});
+    status.probe = PixelProbe{812, 344, {0.214f, 0.187f, 0.093f, 0.61f}, 23.4f};
+    status.message = {"Read 3 layers", false};
+    status.log = {{"Read 3 layers", false}};
+    status.memory_bytes = 3200000000;
+    status.threads = 2;
+    status.engine = "OpenGL 4.5, llvmpipe";
+    status.has_ffmpeg = true;
+    status.recent = {"/scenes/m51.toml", "/scenes/nebula.toml"};
+    return status;
+}
+
+}  // namespace astrosplat
