@@ -39,7 +39,7 @@ struct NodeTexels {
     glm::vec4 mass, edge;
 };
 NodeTexels node_texels(const FootprintTable& table, int node) {
-    const FootprintNode& n = table.nodes[static_cast<std::size_t>(node)];
+    const FootprintMoments& n = table.nodes[static_cast<std::size_t>(node)].moments;
     const double radius_px = node_radius_px(node), margin = 4.0 * double(table.pixel_filter_px);
     const double lo = std::max(0.0, radius_px * double(table.core) - margin);
     const double hi = radius_px * double(table.reach) + margin;
