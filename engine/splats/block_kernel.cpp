@@ -191,9 +191,11 @@ class GroupQuery {
         const float* nearest = std::min_element(found_.squared.data(), found_.squared.data() + found_.count);
         const std::uint32_t first = number(static_cast<std::size_t>(nearest - found_.squared.data()));
         if (first != hint && measure(first)) update_limits();
+        std::uint32_t before = first;  // clusters may repeat their last triangle
         for (std::size_t i = 0; i < found_.count; ++i) {
             const std::uint32_t triangle = number(i);
-            if (triangle == hint || triangle == first) continue;
+            if (triangle == hint || triangle == first || triangle == before) continue;
+            before = triangle;
             if (found_.squared[i] > g_.widest * g_.widest || !matters(found_.place[i])) continue;
             if (measure(triangle)) update_limits();
         }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <cfloat>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,7 +19,7 @@ struct TriangleBound {
     float radius;              // of the disc, scene units
 };
 
-/// Bounds of N triangles as arrays. A place without a triangle has an empty box, which is infinitely far.
+/// Bounds of N triangles as arrays.
 template <std::size_t N>
 struct BoundArrays {
     using Numbers = std::array<float, N>;
@@ -36,13 +35,9 @@ struct BoundArrays {
         normal_x[i] = b.normal.x, normal_y[i] = b.normal.y, normal_z[i] = b.normal.z;
         radius[i] = b.radius;
     }
-    void clear(std::size_t i) {
-        set(i, 0xffffffffu,
-            {glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), glm::vec3(0.0f), glm::vec3(0.0f), 0.0f});
-    }
 };
 
-/// Eight triangles that lie together; what is handed around.
+/// Eight triangles that lie together; what is handed around. One that has fewer repeats its last.
 struct TriangleCluster : BoundArrays<8> {
     static constexpr std::size_t size = 8;
 };

@@ -218,19 +218,14 @@ void ClosestPointIndex::State::make_clusters() {
     std::sort(order.begin(), order.end());
     constexpr std::size_t size = TriangleCluster::size;
     clusters.resize((shapes.size() + size - 1) / size);
-    parallel_chunks(static_cast<std::int64_t>(clusters.size()), 512,
-                    [&](std::int64_t begin, std::int64_t end, int) {
-                        for (auto i = static_cast<std::size_t>(begin) * size;
-                             i < static_cast<std::size_t>(end) * size; ++i) {
-                            TriangleCluster& cluster = clusters[i / size];
-                            if (i >= order.size()) {
-                                cluster.clear(i % size);
-                                continue;
-                            }
-                            const auto number = static_cast<std::uint32_t>(order[i]);
-                            cluster.set(i % size, number, triangle_bound(shapes[number], center));
-                        }
-                    });
+    parallel_chunks(
+        static_cast<std::int64_t>(clusters.size()), 512, [&](std::int64_t begin, std::int64_t end, int) {
+            for (auto i = static_cast<std::size_t>(begin) * size; i < static_cast<std::size_t>(end) * size;
+                 ++i) {
+                const auto number = static_cast<std::uint32_t>(order[std::min(i, order.size() - 1)]);
+                clusters[i / size].set(i % size, number, triangle_bound(shapes[number], center));
+            }
+        });
 }
 
 void ClosestPointIndex::State::build() {

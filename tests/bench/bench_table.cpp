@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -20,7 +21,7 @@ class Results {
   public:
     explicit Results(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Median over the runs of `program`'s benchmark `name` on `cores` cores; -1 when there is none.
+    /// Median over the runs of `program`'s benchmark `name` on `cores` cores; NaN when there is none.
     double median(const std::string& program, int cores, const std::string& name,
                   const std::string& field) const {
         std::ifstream in(folder_ / fmt::format("{}.{}.json", program, cores));
@@ -31,7 +32,7 @@ class Results {
                 if (run["run_type"] == "iteration" && matches(run["name"], name) && run.contains(field))
                     values.push_back(run[field].get<double>());
         }
-        if (values.empty()) return -1.0;
+        if (values.empty()) return std::nan("");
         std::sort(values.begin(), values.end());
         return values[values.size() / 2];
     }

@@ -1,20 +1,22 @@
 #!/usr/bin/env bash
 # Runs all benchmarks on two cores, some again on one, and prints the table of issue 3 in Markdown.
 # Usage: table.sh FOLDER, where the programs were built; `ninja bench` does that. ASTROSPLAT_BENCH_CPUS=0,1 chooses the
-# two cores, TMPDIR the disk. Needs about 8 GiB of memory, 4 GiB of disk and 4 minutes.
+# two cores, ASTROSPLAT_BENCH_RUNS=3 how many runs the medians are of, TMPDIR the disk. Needs about 8 GiB of memory, 4 GiB
+# of disk and 4 minutes.
 set -euo pipefail
 
 programs=${1:?usage: table.sh FOLDER_OF_THE_PROGRAMS}
 cpus=${ASTROSPLAT_BENCH_CPUS:-0,1}
+runs=${ASTROSPLAT_BENCH_RUNS:-3}
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
 
-# measure CORES CPUS PROGRAM [OPTION...]: three runs each, as JSON
+# measure CORES CPUS PROGRAM [OPTION...]: writes PROGRAM.CORES.json
 measure() {
     local cores=$1 on=$2 program=$3
     shift 3
     echo "$program on $cores ..." >&2
-    taskset -c "$on" "$programs/${program}_bench" --benchmark_repetitions=3 --benchmark_format=json "$@" \
+    taskset -c "$on" "$programs/${program}_bench" --benchmark_repetitions="$runs" --benchmark_format=json "$@" \
         > "$results/$program.$cores.json" 2> "$results/errors" || { cat "$results/errors" >&2; exit 1; }
 }
 

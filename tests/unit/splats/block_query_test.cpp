@@ -1,0 +1,107 @@
+// Block queries against every triangle, for meshes that bounds could get wrong: needles, points, huge beside
+// tiny triangles, few triangles, far from the origin; on every instruction set.
+#include "splats/block_query.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "core/shared_maths.h"
+#include "core/vector_target.h"
+#include "splats/lattice.h"
+
+namespace astrosplat {
+namespace {
+
+float random(std::uint32_t n, std::uint32_t purpose) {
+    return 2.0f * shared::as_uniform(shared::as_hash(7, n, 0, purpose)) - 1.0f;
+}
+
+glm::vec3 random_point(std::uint32_t n, std::uint32_t purpose) {
+    return {random(n, purpose), random(n, purpose + 1), random(n, purpose + 2)};
+}
+
+/// Triangles of sizes 2^-8 to 1 around the origin; every fourth a needle, a line, a point or a copy.
+Mesh soup(std::uint32_t count) {
+    Mesh mesh;
+    for (std::uint32_t n = 0; n < count; ++n) {
+        const glm::vec3 a = random_point(n, 100);
+        const float size = 1.0f / static_cast<float>(1u << n % 9);
+        glm::vec3 b = a + size * random_point(n, 110), c = a + size * random_point(n, 120);
+        if (n % 16 == 3) c = a + (b - a) * 0.3f + glm::vec3(0, 1e-6f, 0);
+        if (n % 16 == 7) c = a + (b - a) * 0.5f;
+        if (n % 16 == 11) b = c = a;
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), {a, b, c});
+        mesh.triangles.push_back({{first, first + 1, first + 2}, {}});
+        if (n % 16 == 15) mesh.triangles.push_back(mesh.triangles[n / 2]);
+    }
+    return mesh;
+}
+
+void expect_brute_force(const Mesh& mesh, const Lattice& lattice, double max_distance) {
+    const Mesh* const shape = &mesh;
+    const ClosestPointIndex index({&shape, 1});
+    const CullSettings settings{max_distance, 1.0, 3};
+    const auto scratch = std::make_unique<BlockScratch>();
+    std::int64_t kept = 0, wrong = 0;
+    for (const LatticeBlock& block : blocks_near(index, lattice, settings, {})) {
+        for (const Positions kind : {Positions::corners, Positions::centres}) {
+            BlockAnswers answers;
+            query_block(index, lattice, settings, block, kind, *scratch, answers);
+            for (std::size_t s = 0; s < block_positions; ++s) {
+                if (answers.triangle[s] == ClosestPoint::none) continue;
+                const ClosestPoint c =
+                    index.closest_brute_force({answers.x[s], answers.y[s], answers.z[s]}, max_distance);
+                ++kept;
+                wrong += c.triangle != answers.triangle[s] ||
+                         c.distance_squared != answers.distance_squared[s] ||
+                         c.barycentric != glm::dvec2(answers.v[s], answers.w[s]);
+            }
+        }
+    }
+    std::int64_t near_enough = 0;
+    for (std::uint64_t id = 0; id < static_cast<std::uint64_t>(lattice.positions()); ++id) {
+        const glm::dvec3 p = jittered_position(lattice, id, 1.0, 3);
+        near_enough += index.closest_brute_force(p, max_distance).triangle != ClosestPoint::none;
+    }
+    EXPECT_GT(kept, 0);
+    EXPECT_EQ(kept, near_enough);
+    EXPECT_EQ(wrong, 0);
+}
+
+Lattice lattice_around(const glm::dvec3& middle, double reach) {
+    Lattice lattice;
+    lattice.n = {13, 10, 11};  // whole and broken blocks
+    lattice.box.lo = middle - reach;
+    lattice.box.hi = middle + reach;
+    return lattice;
+}
+
+class BlockQuery : public testing::Test {
+  protected:
+    ~BlockQuery() override { set_vector_target("best"); }
+};
+
+TEST_F(BlockQuery, EqualsBruteForceForAnyTriangles) {
+    for (const std::string& target : vector_targets()) {
+        SCOPED_TRACE(target);
+        set_vector_target(target);
+        for (const std::uint32_t count : {1u, 2u, 9u, 700u}) {
+            SCOPED_TRACE(count);
+            for (const double max_distance : {0.02, 0.3, 5.0})
+                expect_brute_force(soup(count), lattice_around(glm::dvec3(0), 1.3), max_distance);
+        }
+    }
+}
+
+TEST_F(BlockQuery, FarFromTheOriginAndForAnyDistance) {
+    Mesh mesh = soup(200);
+    for (glm::vec3& p : mesh.positions) p += glm::vec3(3000, -800, 100);
+    expect_brute_force(mesh, lattice_around({3000, -800, 100}, 1.3), 0.2);
+    for (const double reach : {1e6, 1e25})  // in float, squares of the latter are infinite
+        expect_brute_force(soup(200), lattice_around(glm::dvec3(0), reach), 2.0 * reach);
+}
+
+}  // namespace
+}  // namespace astrosplat
