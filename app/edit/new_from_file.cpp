@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <sstream>
 
@@ -81,16 +83,17 @@ bool has_own_pictures(const Mesh& mesh) {
     });
 }
 
-/// "disk.png" beside "disk.obj"; empty when there is none.
+/// "disk.png" beside "disk.obj", else the only picture of the folder; empty when there is none.
 fs::path picture_beside(const fs::path& mesh) {
-    for (const auto& [ending, kind] : kinds) {
-        if (kind != FileKind::picture) continue;
-        fs::path picture = mesh;
-        picture.replace_extension(ending);
-        std::error_code ignored;
-        if (fs::is_regular_file(picture, ignored)) return picture;
-    }
-    return {};
+    std::vector<fs::path> pictures;
+    std::error_code error;
+    const fs::path folder = fs::absolute(mesh).parent_path();
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (kind_of_file(entry->path()) == FileKind::picture) pictures.push_back(entry->path());
+    std::sort(pictures.begin(), pictures.end());
+    for (const fs::path& picture : pictures)
+        if (picture.stem() == mesh.stem()) return picture;
+    return pictures.size() == 1 ? pictures[0] : fs::path();
 }
 
 /// Where the mesh has no texture coordinates, its picture is seen along the thinnest side of its box.
@@ -111,8 +114,8 @@ std::string mesh_scene_text(const fs::path& file, const fs::path& place) {
         picture = picture_beside(file);
         if (picture.empty())
             bad_input(file.string(), "",
-                      fmt::format("a picture for every face: map_Kd in its material, or a picture '{}.png' "
-                                  "beside the mesh",
+                      fmt::format("a picture for every face: map_Kd in its material, or a picture beside the "
+                                  "mesh, such as '{}.png'",
                                   file.stem().string()),
                       "neither");
     }
@@ -135,11 +138,17 @@ bool names_radii(const fs::path& file) {
     return false;
 }
 
-/// Half the mean distance of neighbours, were they spread evenly through the box.
+/// Half the mean distance of neighbours, were they spread evenly through the box: in space, or where that
+/// is thinner than the distance, over its area or along its length.
 double typical_radius(const SplatSet& set) {
-    const glm::dvec3 side = glm::max(bounds(set).extent(), glm::dvec3(1e-6));
-    return 0.5 *
-           std::cbrt(side.x * side.y * side.z / static_cast<double>(std::max<std::int64_t>(1, set.size())));
+    const glm::dvec3 extent = glm::max(bounds(set).extent(), glm::dvec3(0.0));
+    std::array<double, 3> side{extent.x, extent.y, extent.z};
+    std::sort(side.begin(), side.end(), std::greater<>());
+    const double n = static_cast<double>(std::max<std::int64_t>(1, set.size()));
+    double spacing = std::cbrt(side[0] * side[1] * side[2] / n);
+    if (spacing >= side[2]) spacing = std::sqrt(side[0] * side[1] / n);
+    if (spacing >= side[1]) spacing = side[0] / n;
+    return spacing > 0.0 ? 0.5 * spacing : 1.0;
 }
 
 std::string splat_scene_text(const fs::path& file, const fs::path& place) {

@@ -62,7 +62,7 @@ struct ViewState {
     float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
     bool timeline_open = true, graph_open = false;
     std::string graph_key;    // parameter shown in the timeline's graph
-    std::string hovered_key;  // parameter under the mouse, set by the panel every frame; K keys it
+    std::string hovered_key;  // of the panel's row under the mouse, set every frame; K keys it
     bool snapshots_open = false;
     bool help_open = false, log_open = false;
     bool changed_on_disk = false;  // the line that offers Reload or Keep is shown

@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "edit/layers.h"
 #include "scenes.h"
+#include "splats/generate.h"
 #include "splats/splat_file.h"
+#include "support/test_data.h"
 
 namespace astrosplat {
 namespace {
@@ -59,12 +63,32 @@ TEST_F(NewFromFile, AMeshWithoutPicturesTakesTheOneBesideIt) {
     EXPECT_EQ(
         message_of<InputError>([&] { scene_text_for(mesh, place); }),
         mesh.string() +
-            ": expected a picture for every face: map_Kd in its material, or a picture 'netz.png' beside "
-            "the mesh, found neither");
+            ": expected a picture for every face: map_Kd in its material, or a picture beside the mesh, "
+            "such as 'netz.png', found neither");
     const fs::path picture = folder.file("netz.png", "x");
     const Scene scene = scene_for(mesh);
     EXPECT_EQ(scene.layers[0].source.meshes[0].texture, std::vector<fs::path>{picture});
     EXPECT_EQ(scene.layers[0].source.uv, UvMode::planar_xz);  // thin in y, and without coordinates
+}
+
+TEST_F(NewFromFile, TheOnlyPictureOfAFolderWillDo) {
+    const fs::path mesh = folder.file("netz.obj", std::string(square) + "f 1 2 3 4\n");
+    const fs::path only = folder.file("bild ä.jpg", "x");
+    EXPECT_EQ(scene_for(mesh).layers[0].source.meshes[0].texture, std::vector<fs::path>{only});
+    folder.file("zweites.jpg", "x");
+    EXPECT_THROW(scene_text_for(mesh, place), InputError);  // which one?
+}
+
+TEST_F(NewFromFile, RealFiles) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(spot, "meshes/spot/spot_triangulated.obj");
+    ASTROSPLAT_TEST_DATA_OR_SKIP(particles, "particles/circle.00001.pda");
+    const std::vector<TexturedMesh> meshes = load_meshes(scene_for(spot).layers[0].source);
+    ASSERT_EQ(meshes.size(), 1u);
+    EXPECT_GT(meshes[0].mesh.triangles.size(), 1000u);
+    EXPECT_GT(meshes[0].textures[0].image.width, 0);
+    const LayerParams layer = scene_for(particles).layers[0];
+    EXPECT_EQ(read_splats(layer.source.file).size(), 30);
+    EXPECT_NEAR(layer.look.radius.min, 0.5 * std::sqrt(4.0 / 30.0), 0.01);  // a flat circle of radius 1
 }
 
 TEST_F(NewFromFile, TheProjectionIsAlongTheThinSide) {
