@@ -116,9 +116,10 @@ void name_entry(Context& context, std::size_t i, const Area& area) {
     if (touch.entry_frames == 0) ImGui::SetKeyboardFocusHere();
     ImGui::InputText("##name", &touch.text, ImGuiInputTextFlags_AutoSelectAll);
     ++touch.entry_frames;
-    const bool lost = touch.entry_frames > 4 && !ImGui::IsItemActive();
+    const bool done = ImGui::IsItemDeactivated();
+    const bool lost = !done && touch.entry_frames > 4 && !ImGui::IsItemActive();
     const bool dropped = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-    if (ImGui::IsItemDeactivated() || lost) finish_renaming(context, i, !dropped && !lost, touch.text);
+    if (done || lost) finish_renaming(context, i, !dropped && !lost, touch.text);
 }
 
 void begin_renaming(Context& context, std::size_t i) {
