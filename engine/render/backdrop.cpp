@@ -78,19 +78,20 @@ class Places {
     std::vector<glm::vec2> places_;
 };
 
-/// Bilinear; the level has a border of one texel.
-void look_up(const Image& level, glm::vec2 place, float gain, float* out) {
+/// Bilinear, times the gain; the level has a border of one texel. Four floats a texel, so that compilers use
+/// vectors: the fourth is the next texel's, which there is away from the poles.
+void look_up(const Image& level, glm::vec2 place, float gain, float* __restrict out) {
     const float width = static_cast<float>(level.width - 2);
     if (place.x < 0.0f) place.x += width;
     if (place.x >= width) place.x -= width;
     const float x = place.x + 0.5f, y = place.y + 0.5f;  // from the border's first centre on
-    const auto ix = static_cast<std::int64_t>(x), iy = static_cast<std::int64_t>(y);
+    const auto ix = static_cast<std::int32_t>(x), iy = static_cast<std::int32_t>(y);
     const float u = x - static_cast<float>(ix), v = y - static_cast<float>(iy);
     const float a = (1.0f - u) * (1.0f - v) * gain, b = u * (1.0f - v) * gain;
     const float c = (1.0f - u) * v * gain, d = u * v * gain;
-    const float* top = level.at(ix, iy);
-    const float* bottom = level.at(ix, iy + 1);
-    for (int k = 0; k < 3; ++k) out[k] = a * top[k] + b * top[k + 3] + c * bottom[k] + d * bottom[k + 3];
+    const float* __restrict top = level.at(ix, iy);
+    const float* __restrict bottom = level.at(ix, iy + 1);
+    for (int k = 0; k < 4; ++k) out[k] = a * top[k] + b * top[k + 3] + c * bottom[k] + d * bottom[k + 3];
 }
 
 void draw_block(const Image& level, float gain, const glm::vec2 (&corner)[4], const Region& part,
@@ -103,7 +104,7 @@ void draw_block(const Image& level, float gain, const glm::vec2 (&corner)[4], co
         const glm::vec2 move = (right - left) * step;
         float* out = picture.at(part.x, part.y + y);
         for (std::int64_t x = 0; x < part.width; ++x)
-            look_up(level, left + move * static_cast<float>(x), gain, out + 3 * x);
+            look_up(level, left + move * static_cast<float>(x), gain, out + 4 * x);
     }
 }
 
@@ -111,8 +112,8 @@ void draw_block(const Image& level, float gain, const glm::vec2 (&corner)[4], co
 
 void draw_backdrop(const Environment& environment, const Camera& camera, std::int64_t width,
                    std::int64_t height, Image& picture) {
-    if (picture.width != width || picture.height != height || picture.channels != 3)
-        picture = make_image(width, height, 3);
+    if (picture.width != width || picture.height != height || picture.channels != 4)
+        picture = make_image(width, height, 4);
     if (environment.faces.size() != 1) {  // a cube needs no arc functions
         parallel_chunks(height, block_px, [&](std::int64_t begin, std::int64_t end, int) {
             draw_exactly(environment, camera, {0, begin, width, end - begin}, picture);

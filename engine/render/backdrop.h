@@ -11,9 +11,9 @@
 
 namespace astrosplat {
 
-/// RGB, width x height px, as sample_environment has it but for two things: places on an equirectangular
-/// picture are exact at every eighth pixel only and interpolated in between, and the nearest mip level is
-/// taken, not a mix of two. Uses the picture's memory again where the size stays.
+/// Four floats a pixel, of which the last means nothing, as sample_environment has them but for two things:
+/// places on an equirectangular picture are exact at every eighth pixel only and interpolated in between, and
+/// the nearest mip level is taken, not a mix of two. Uses the picture's memory again where the size stays.
 void draw_backdrop(const Environment& environment, const Camera& camera, std::int64_t width,
                    std::int64_t height, Image& picture);
 

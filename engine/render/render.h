@@ -40,7 +40,7 @@ struct RenderSettings {
     bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
     int tile_px = 32;                     // 16..128; changes no bit
     std::int64_t memory_limit_bytes = 0;  // for screen splats; 0: none. Rendered in bands, same bits
-    /// For previews: RGB of the whole picture (backdrop.h) that stands for the environment; null: none.
+    /// For previews: the whole picture's backdrop (backdrop.h), which stands for the environment; null: none.
     const Image* backdrop = nullptr;
 };
 

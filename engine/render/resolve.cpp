@@ -99,7 +99,7 @@ void TileResolver::begin_with_backdrop(const TilePlanes& tile) {
         const float* color = settings_.backdrop->at(tile.x0, tile.y0 + y);
         for (int x = 0; x < tile.width; ++x) {
             PixelState& pixel = pixels_[static_cast<std::size_t>(y * tile.width + x)];
-            std::copy_n(color + 3 * x, 3, pixel.color);
+            std::copy_n(color + 4 * x, 3, pixel.color);
             pixel.alpha = 1.0f;
         }
     }
