@@ -112,6 +112,7 @@ struct OffscreenContext::State {
     EGLContext context = EGL_NO_CONTEXT;
     EGLSurface surface = EGL_NO_SURFACE;
 
+    GlInfo info;
     State() = default;
     State(const State&) = delete;
     State& operator=(const State&) = delete;
@@ -151,20 +152,22 @@ struct OffscreenContext::State {
 OffscreenContext::OffscreenContext() : state_(std::make_unique<State>()) {
     for (int attempt = 0; attempt < attempts; ++attempt) {
         if (state_->open(attempt)) {
-            load_gl(reinterpret_cast<GlLoader>(&eglGetProcAddress));
+            state_->info = load_gl(reinterpret_cast<GlLoader>(&eglGetProcAddress));
             return;
         }
         state_->close();
     }
-    throw std::runtime_error(std::string(no_context) + " without a display: EGL offers none");
+    throw NoContext(std::string(no_context) + " without a display: EGL offers none");
 }
 
 OffscreenContext::~OffscreenContext() = default;
 
+const GlInfo& OffscreenContext::info() const { return state_->info; }
+
 GlInfo load_gl(GlLoader loader) {
     const int version = gladLoadGL(reinterpret_cast<GLADloadfunc>(loader));
     if (version == 0)
-        throw std::runtime_error(std::string(no_context) + ": the driver's functions do not load");
+        throw NoContext(std::string(no_context) + ": the driver's functions do not load");
     GlInfo info;
     info.major = GLAD_VERSION_MAJOR(version);
     info.minor = GLAD_VERSION_MINOR(version);
@@ -172,7 +175,7 @@ GlInfo load_gl(GlLoader loader) {
     info.renderer = renderer ? renderer : "";
     info.software = is_software(info.renderer);
     if (info.major < oldest_major || (info.major == oldest_major && info.minor < oldest_minor))
-        throw std::runtime_error(
+        throw NoContext(
             fmt::format("{}: {} has {}.{}", no_context, info.renderer, info.major, info.minor));
 #ifndef NDEBUG
     if (glDebugMessageCallback) {
