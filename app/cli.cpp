@@ -14,6 +14,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "viewer/viewer.h"
 
 namespace astrosplat {
 namespace {
@@ -29,8 +30,9 @@ struct CommonOptions {
 struct Invocation {
     CommonOptions common;
     bool batch = false;
-    std::string input;  // what the viewer would open
+    std::string input;  // what the viewer opens
     BatchOptions batch_options;
+    ScreenshotOptions screenshot;  // when its output is given
     NewOptions create;
     GenerateOptions generate;
     ConvertOptions convert;
@@ -114,6 +116,17 @@ void add_batch(CLI::App& app, Invocation& call) {
     add_progress(app, batch.progress);
 }
 
+void add_screenshot(CLI::App& app, Invocation& call) {
+    ScreenshotOptions& shot = call.screenshot;
+    add_path(app, "--screenshot", shot.output, "OUT.png|OUT.exr",
+             "Saves what the window would show, without one", false);
+    add_text(app, "--size", shot.size, "WxH", "With --screenshot: its size in pixels (default: 960x540)");
+    add_text(app, "--frame", shot.frame, "N", "With --screenshot: the frame (default: the first)");
+    app.add_flag("--ui", shot.ui, "With --screenshot: the whole window with its panels");
+    app.add_flag("--settled", shot.settled, "With --screenshot: the final picture, not the preview");
+    app.add_flag("--opengl", shot.opengl, "With --screenshot: a preview drawn by OpenGL on any machine");
+}
+
 /// A subcommand whose run is remembered, not done while parsing.
 CLI::App& add_command(CLI::App& app, Invocation& call, const char* name, const char* help,
                       std::function<int()> action) {
@@ -190,6 +203,17 @@ SetCache cache_of(const CommonOptions& common) {
     return {common.cache.empty() ? default_cache_folder() : std::filesystem::path(common.cache)};
 }
 
+/// The window, or a picture of it.
+int run_window(Invocation& call) {
+    ViewerOptions viewer{call.input, {}, call.batch_options.cache};
+    for (const std::string& text : call.batch_options.assignments)
+        viewer.assignments.push_back(parse_assignment(text));
+    ScreenshotOptions& shot = call.screenshot;
+    if (shot.output.empty()) return run_viewer(viewer);
+    shot.scene = viewer;
+    return run_screenshot(shot);
+}
+
 int run(Invocation& call) {
     apply_common(call.common);
     call.batch_options.cache = call.generate.cache = cache_of(call.common);
@@ -197,11 +221,8 @@ int run(Invocation& call) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
         return call.action();
     }
-    if (!call.batch) {
-        log_error(
-            "the viewer is not part of this version; render with: astrosplat --batch SCENE (see --help)");
-        return exit_own_fault;
-    }
+    if (!call.batch) return run_window(call);
+    if (!call.screenshot.output.empty()) bad_input("--batch", "", "no --screenshot beside it", "both");
     if (call.input.empty()) bad_input("--batch", "", "a scene file", "none (see --help)");
     call.batch_options.scene = call.input;
     if (call.common.quiet && call.batch_options.progress == ProgressMode::automatic) {
@@ -227,6 +248,7 @@ int run_command_line(int argc, char** argv) {
     app.require_subcommand(0, 1);
     add_common(app, call.common);
     add_batch(app, call);
+    add_screenshot(app, call);
     add_new(app, call);
     add_generate(app, call);
     add_convert(app, call);
