@@ -3,6 +3,8 @@
 
 #include <imgui.h>
 
+#include <cmath>
+
 #include "gui/actions.h"
 #include "gui/command_flow.h"
 #include "gui/menu_bar.h"
@@ -46,6 +48,17 @@ bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags) {
     return true;
 }
 
+// The parameter that K keys: of the panel's row that the mouse is on.
+std::string key_under_mouse(const Panel& panel, const Rect& area) {
+    constexpr float half_row = 13;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const ImVec2 end{area.x + area.width, area.y + area.height};
+    if (!ImGui::IsMouseHoveringRect({area.x, area.y}, end, false)) return "";
+    for (const DrawnRow& row : panel.rows())
+        if (row.diamond.x >= 0 && std::fabs(mouse.y - row.value.y) <= px(half_row)) return row.key;
+    return "";
+}
+
 bool keys_are_free() {
     return !ImGui::GetIO().WantTextInput && !ImGui::IsAnyItemActive() &&
            !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
@@ -80,6 +93,7 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
         panel.draw(frame.document, frame.view, frame.status, frame.requested);
         ImGui::EndChild();
     }
+    frame.view.hovered_key = key_under_mouse(panel, layout.panel);
     if (begin_part("status", layout.status, still)) {
         status_bar.draw(frame, layout.status);
         ImGui::EndChild();

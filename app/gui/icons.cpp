@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
@@ -143,14 +144,13 @@ void draw_bracket(ImDrawList* list, float x, float y0, float y1, ImU32 color) {
     list->PathStroke(color, ImDrawFlags_None, px(1.0f));
 }
 
-bool icon_button(const char* id, Icon icon, ImVec2 size, float icon_px, ImU32 color, const char* tooltip) {
+bool icon_button(const char* id, Icon icon, ImVec2 size, float icon_px, ImU32 color, const char* says) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const bool clicked = ImGui::InvisibleButton(id, size);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    if (ImGui::IsItemHovered()) {
+    if (ImGui::IsItemHovered())
         list->AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3.0f));
-        if (tooltip) ImGui::SetTooltip("%s", tooltip);
-    }
+    tooltip(says);
     draw_icon(list, icon, {corner.x + size.x * 0.5f, corner.y + size.y * 0.5f}, icon_px, color);
     return clicked;
 }

@@ -37,7 +37,7 @@ void draw_icon(ImDrawList* list, Icon icon, ImVec2 center, float size, ImU32 col
 void draw_bracket(ImDrawList* list, float x, float y0, float y1, ImU32 color);
 
 /// A button without a frame that shows an icon of `icon_px`, `size` px in all; a faint field when hovered.
-/// `tooltip` may be nullptr. True when clicked.
-bool icon_button(const char* id, Icon icon, ImVec2 size, float icon_px, ImU32 color, const char* tooltip);
+/// `says`, its tooltip, may be nullptr. True when clicked.
+bool icon_button(const char* id, Icon icon, ImVec2 size, float icon_px, ImU32 color, const char* says);
 
 }  // namespace astrosplat

@@ -87,7 +87,7 @@ void draw_group(const Group& group) {
 
 void draw_key_sheet(GuiFrame& frame) {
     bool& open = frame.view.help_open;
-    if (!begin_dialog("keys", "Keys and mouse", open, 1040, 644)) return;
+    if (!begin_dialog("keys", "Keys and mouse", open, 1040, 592)) return;
     const float bottom = px(40);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(28), 0));
     ImGui::BeginChild("groups", {0, ImGui::GetContentRegionAvail().y - bottom}, false,

@@ -230,4 +230,15 @@ Status example_status() {
     return status;
 }
 
+void make_edited(TestWindow& window) {
+    window.document.edit("Opacity of dust", [](Scene& scene) { scene.layers[0].render.opacity = 0.5; });
+    window.frame();
+}
+
+std::vector<Command::Kind> kinds(const Commands& commands) {
+    std::vector<Command::Kind> list;
+    for (const Command& command : commands) list.push_back(command.kind);
+    return list;
+}
+
 }  // namespace astrosplat

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gui/gui.h"
 #include "gui/software_draw.h"
@@ -60,5 +61,10 @@ class TestWindow {
 /// A document of three layers with keys, untitled; and the status of a window that shows it.
 Document example_document();
 Status example_status();
+
+/// One unsaved edit, "Opacity of dust".
+void make_edited(TestWindow& window);
+
+std::vector<Command::Kind> kinds(const Commands& commands);
 
 }  // namespace astrosplat

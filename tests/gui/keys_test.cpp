@@ -1,0 +1,129 @@
+// Keys pressed over the window: what they change and ask for.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "edit/keys.h"
+#include "gui/actions.h"
+#include "gui/key_codes.h"
+#include "gui/panel/panel.h"
+#include "gui/test_window.h"
+
+namespace astrosplat {
+namespace {
+
+using Kind = Command::Kind;
+
+TEST(Keys, UndoAndRedoNameTheirStep) {
+    TestWindow window(example_document());
+    make_edited(window);
+    window.click("Edit");
+    window.keep_picture("undo_menu");
+    window.key(key_code::escape);
+    window.key('Z', true);
+    EXPECT_EQ(window.document.scene().layers[0].render.opacity, 1.0);
+    window.key('Z', true, true);
+    EXPECT_EQ(window.document.scene().layers[0].render.opacity, 0.5);
+}
+
+TEST(Keys, FramesAndKeys) {
+    TestWindow window(example_document());
+    window.key(key_code::right);
+    EXPECT_EQ(window.view.frame, 2.0);
+    window.key(key_code::left);
+    window.key(key_code::left);
+    EXPECT_EQ(window.view.frame, 1.0) << "not before the first";
+    window.key(key_code::up);
+    EXPECT_EQ(window.view.frame, 24.0);
+    window.key(key_code::down);
+    EXPECT_EQ(window.view.frame, 1.0);
+    window.key(key_code::right, true);
+    EXPECT_EQ(window.view.frame, 240.0);
+    window.key(key_code::space);
+    EXPECT_TRUE(window.view.playing);
+    window.key(key_code::space);
+    EXPECT_FALSE(window.view.playing);
+}
+
+TEST(Keys, KeysTheCameraOrTheRowUnderTheMouse) {
+    TestWindow window(example_document());
+    window.view.frame = 50;
+    window.key('K');
+    EXPECT_TRUE(has_key_at(window.document.scene(), "camera.position", 50));
+    window.key('K', false, true);
+    EXPECT_FALSE(has_key_at(window.document.scene(), "camera.position", 50));
+    const std::string gain = "layer.dust.look.alpha.gain";
+    for (const DrawnRow& row : window.gui.panel().rows())
+        if (row.key == gain) window.move(row.label);
+    window.frame();
+    window.key('K');
+    EXPECT_TRUE(has_key_at(window.document.scene(), gain, 50));
+    EXPECT_FALSE(has_key_at(window.document.scene(), "camera.position", 50));
+}
+
+TEST(Keys, ViewsAndSwitches) {
+    TestWindow window(example_document());
+    window.key(key_code::n7);
+    EXPECT_EQ(window.view.view, ViewKind::top);
+    window.key(key_code::n9);
+    EXPECT_EQ(window.view.view, ViewKind::free);
+    window.key(key_code::n0);
+    EXPECT_EQ(window.view.view, ViewKind::camera);
+    window.key('G');
+    EXPECT_FALSE(window.view.gate);
+    window.key('Z');
+    EXPECT_EQ(window.view.size, SizeMode::one_to_one);
+    window.key(key_code::tab);
+    EXPECT_EQ(window.view.compare, CompareMode::b);
+    window.key('S');
+    EXPECT_EQ(window.view.solo.count("dust"), 1U);
+    window.key('H');
+    EXPECT_FALSE(window.document.scene().layers[0].visible);
+    window.key(key_code::f11);
+    EXPECT_FALSE(window.view.panels);
+    EXPECT_FALSE(window.has("ruler"));
+}
+
+TEST(Keys, TheSheetOpensAndCloses) {
+    TestWindow window(example_document());
+    window.key(key_code::f1);
+    EXPECT_TRUE(window.has("keys/Close"));
+    window.key(key_code::f1);
+    EXPECT_FALSE(window.view.help_open);
+    window.key(key_code::f1);
+    window.key(key_code::escape);
+    EXPECT_FALSE(window.view.help_open);
+    window.key(key_code::f1);
+    window.click("keys/Close");
+    EXPECT_FALSE(window.view.help_open);
+}
+
+TEST(Keys, AreLettersWhereTextIsTyped) {
+    TestWindow window(example_document());
+    window.double_click(window.at("frame"));
+    window.key('G');
+    window.key(key_code::space);
+    EXPECT_TRUE(window.view.gate);
+    EXPECT_FALSE(window.view.playing);
+}
+
+TEST(Keys, EscapeCancelsTheJob) {
+    TestWindow window(example_document());
+    window.status.job = {"Rendering 3 of 240", 0.01f};
+    window.key(key_code::escape);
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::cancel_render});
+}
+
+// Two actions with one key would make one of them unreachable.
+TEST(Keys, NoneMeansTwoThings) {
+    std::map<std::string, std::string> seen;
+    for (const Action& action : actions()) {
+        const std::string text = shortcut_text(action.shortcut);
+        if (text.empty()) continue;
+        EXPECT_TRUE(seen.emplace(text, action.label).second)
+            << text << ": " << seen[text] << ", " << action.label;
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,70 @@
+// Where things lie, splitters, and the row of tools.
+#include <gtest/gtest.h>
+
+#include "gui/test_window.h"
+
+namespace astrosplat {
+namespace {
+
+using Kind = Command::Kind;
+
+TEST(Layout, CoversTheWindowWithoutGaps) {
+    ViewState view;
+    for (const bool panels : {true, false})
+        for (const bool snapshots : {true, false}) {
+            view.panels = panels;
+            view.snapshots_open = snapshots;
+            const Layout l = make_layout(view, 1600, 900, 1);
+            float area = 0;
+            for (const Rect& r :
+                 {l.menu, l.tools, l.notice, l.viewport, l.snapshots, l.panel, l.timeline, l.status})
+                area += r.width * r.height;
+            EXPECT_EQ(area, 1600.0f * 900.0f);
+        }
+}
+
+TEST(Layout, SplittersAreDraggedAndReset) {
+    TestWindow window(example_document());
+    window.drag(window.at("panel splitter"), {-100, 0});
+    EXPECT_NEAR(window.view.panel_width, 460, 1);
+    window.drag(window.at("panel splitter"), {-1000, 0});
+    EXPECT_EQ(window.view.panel_width, 520);
+    window.double_click(window.at("panel splitter"));
+    EXPECT_EQ(window.view.panel_width, 360);
+    window.drag(window.at("timeline splitter"), {0, -80});
+    EXPECT_NEAR(window.view.timeline_height, 228, 1);
+    window.click("fold timeline");
+    EXPECT_EQ(make_layout(window.view, 1600, 900, 1).timeline.height, 36);
+}
+
+TEST(Layout, APictureOfTheViewportsSizeIsShownPixelByPixel) {
+    const Rect viewport{0, 60, 1241, 667};
+    const Rect fit = place_picture(ViewState{}, viewport, 1241, 667);
+    EXPECT_EQ(fit.x, 0);
+    EXPECT_EQ(fit.y, 60);
+    EXPECT_EQ(fit.width, 1241);
+    ViewState view;
+    view.size = SizeMode::one_to_one;
+    view.pan_px = {10, -5};
+    view.zoom = 2;
+    const Rect zoomed = place_picture(view, {0, 0, 1000, 500}, 100, 50);
+    EXPECT_EQ(zoomed.x, 410);
+    EXPECT_EQ(zoomed.y, 195);
+    EXPECT_EQ(zoomed.width, 200);
+}
+
+TEST(Tools, ChooseViewSizeAndComparison) {
+    TestWindow window(example_document());
+    window.click("view/Side");
+    EXPECT_EQ(window.view.view, ViewKind::side);
+    window.click("size/1:1");
+    EXPECT_EQ(window.view.size, SizeMode::one_to_one);
+    window.click("compare/A|B");
+    EXPECT_EQ(window.view.compare, CompareMode::wipe);
+    window.click("compare/Diff");
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/path")) << "there is no reference yet";
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,90 @@
+// Menus: every item can be reached and becomes its command, or a question for a file.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "edit/keys.h"
+#include "gui/actions.h"
+#include "gui/key_codes.h"
+#include "gui/test_window.h"
+
+namespace astrosplat {
+namespace {
+
+using Kind = Command::Kind;
+
+TEST(Menus, EveryItemCanBeReached) {
+    TestWindow window(example_document());
+    for (const Action& action : actions()) {
+        const std::string path = std::string(action.menu) + "/" + action.label;
+        if (path.front() == '/') continue;  // keys only
+        const std::string menu = path.substr(0, path.find('/'));
+        window.click(menu);
+        if (std::count(path.begin(), path.end(), '/') == 2) {
+            window.move(window.at(action.menu));
+            window.frame(30);
+        }
+        EXPECT_TRUE(window.has(path)) << path;
+        window.key(key_code::escape);
+        window.key(key_code::escape);
+        window.frame(2);
+    }
+}
+
+TEST(Menus, ItemsBecomeCommands) {
+    const std::vector<std::pair<std::string, Kind>> expected{
+        {"File/Open the demo", Kind::open_demo},
+        {"Edit/Store as B", Kind::store_b},
+        {"Edit/Take snapshot", Kind::take_snapshot},
+        {"View/Frame layer", Kind::frame_layer},
+        {"View/Frame all", Kind::frame_all},
+        {"Render/Range", Kind::render_range},
+        {"Render/Copy batch command", Kind::copy_batch_command},
+        {"File/Quit", Kind::quit}};
+    TestWindow window(example_document());
+    for (const auto& [path, kind] : expected) {
+        window.choose(path);
+        window.frame();
+        EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{kind}) << path;
+    }
+}
+
+TEST(Menus, ItemsWithoutAFileAskForIt) {
+    for (const std::string path :
+         {"File/New from picture...", "File/Open...", "File/Save", "File/Save as...",
+          "File/Import as a layer...", "File/Export look...", "File/Apply look...", "File/Screenshot...",
+          "View/Load reference...", "Render/This frame...", "Render/Movie..."}) {
+        TestWindow window(example_document());
+        window.choose(path);
+        window.frame(2);
+        EXPECT_TRUE(window.has("file/path")) << path;
+        window.click("file/Cancel");
+        EXPECT_TRUE(window.take_commands().empty()) << path;
+        EXPECT_FALSE(window.has("file/path")) << path;
+    }
+}
+
+TEST(Menus, RecentFilesOpen) {
+    TestWindow window(example_document());
+    window.click("File");
+    window.move(window.at("File/Open recent"));
+    window.frame(30);
+    window.click("File/Open recent/nebula.toml");
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::open});
+    EXPECT_EQ(commands[0].path, "/scenes/nebula.toml");
+}
+
+TEST(Menus, CameraMoves) {
+    TestWindow window(example_document());
+    window.click("Camera");
+    window.move(window.at("Camera/Add move"));
+    window.frame(30);
+    window.click("Camera/Add move/Fly in");
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::add_move});
+    EXPECT_EQ(commands[0].index, static_cast<std::size_t>(CameraMove::fly_in));
+}
+
+}  // namespace
+}  // namespace astrosplat

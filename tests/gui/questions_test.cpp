@@ -1,0 +1,119 @@
+// Unsaved changes, recovery, files changed on disk, the hint, snapshots.
+#include <gtest/gtest.h>
+
+#include "gui/key_codes.h"
+#include "gui/test_window.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+using Kind = Command::Kind;
+
+TEST(Quit, AsksOnlyAboutUnsavedChanges) {
+    TestWindow window(example_document());
+    window.key('Q', true);
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
+    make_edited(window);
+    window.gui.ask_to_quit(window.document);
+    window.frame(2);
+    EXPECT_TRUE(window.take_commands().empty());
+    window.click("unsaved/Cancel");
+    EXPECT_TRUE(window.take_commands().empty());
+    EXPECT_FALSE(window.has("unsaved/Cancel"));
+    window.key('Q', true);
+    window.frame();
+    window.click("unsaved/Don't save");
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
+}
+
+TEST(Quit, SavesFirstAndLeavesOnlyWhenThatWorked) {
+    const TempFolder folder;
+    const auto file = folder.file("a.toml", example_document().text_for(folder / "a.toml"));
+    TestWindow window(Document::open(file));
+    window.document.edit("Fps", [](Scene& scene) { scene.output.fps = 30; });
+    window.key('Q', true);
+    window.frame();
+    window.click("unsaved/Save");
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::save}) << "the save failed: it stays";
+    window.frame(5);
+    EXPECT_TRUE(window.take_commands().empty());
+    window.key('Q', true);
+    window.frame();
+    window.move(window.at("unsaved/Save"));
+    window.frame(2);
+    window.press();
+    window.release();
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::save});
+    window.document.save();
+    window.frame();
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
+}
+
+TEST(Quit, AnUntitledSceneIsAskedForItsFile) {
+    const TempFolder folder;
+    TestWindow window(example_document());
+    make_edited(window);
+    window.key('Q', true);
+    window.frame();
+    window.key(key_code::enter);  // Save
+    window.frame(2);
+    ASSERT_TRUE(window.has("file/path"));
+    window.key('A', true);
+    window.type((folder.path() / "new.toml").string());
+    window.click("file/Save");
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::save_as});
+    EXPECT_EQ(commands[0].path, folder.path() / "new.toml");
+}
+
+TEST(Recovery, OffersTheAutosaveOnce) {
+    TestWindow window(example_document());
+    window.status.recoveries = {"/state/whirlpool.toml"};
+    window.frame(2);
+    window.click("recovery/Recover");
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::recover});
+    EXPECT_EQ(commands[0].path, "/state/whirlpool.toml");
+    window.frame(3);
+    EXPECT_FALSE(window.has("recovery/Recover"));
+}
+
+TEST(ChangedOnDisk, ReloadsOrKeeps) {
+    TestWindow window(example_document());
+    window.status.changed_on_disk = true;
+    window.frame(2);
+    window.click("notice/Reload");
+    window.click("notice/Keep");
+    EXPECT_EQ(kinds(window.take_commands()), (std::vector<Kind>{Kind::reload, Kind::keep}));
+    window.status.changed_on_disk = false;
+    window.frame(2);
+    EXPECT_FALSE(window.has("notice/Keep"));
+}
+
+TEST(FirstStart, TheHintIsDismissed) {
+    TestWindow window(example_document());
+    window.view.hint_open = true;
+    window.frame(2);
+    window.click("close hint");
+    EXPECT_FALSE(window.view.hint_open);
+}
+
+TEST(Snapshots, BecomeBAndAreTaken) {
+    TestWindow window(example_document());
+    window.view.snapshots_open = true;
+    window.status.snapshots = {{"One", nullptr, 1.78f, 100, 0.5}, {"Two", nullptr, 1.78f, 100, 0}};
+    window.frame(2);
+    window.click("snapshot 1");
+    window.click("take snapshot");
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), (std::vector<Kind>{Kind::compare_snapshot, Kind::take_snapshot}));
+    EXPECT_EQ(commands[0].index, 1U);
+    window.click(window.at("snapshot 0"), 1);
+    window.frame();
+    window.click("snapshot/Restore");
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::restore_snapshot});
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,102 @@
+// The timeline by mouse: playhead, keys, their menu and the graph.
+#include <gtest/gtest.h>
+
+#include "edit/keys.h"
+#include "gui/key_codes.h"
+#include "gui/test_window.h"
+
+namespace astrosplat {
+namespace {
+
+TEST(Timeline, ThePlayheadIsDragged) {
+    TestWindow window(example_document());
+    const glm::vec2 first = window.at("key camera.position 1"), later = window.at("key camera.position 90");
+    const float y = window.at("ruler").y;
+    window.view.playing = true;
+    window.drag({first.x, y}, {later.x - first.x, 0});
+    EXPECT_EQ(window.view.frame, 90.0);
+    EXPECT_FALSE(window.view.playing);
+    window.drag({first.x, y}, {-2000, 0});
+    EXPECT_EQ(window.view.frame, 1.0);
+}
+
+TEST(Timeline, AFrameIsTyped) {
+    TestWindow window(example_document());
+    window.double_click(window.at("frame"));
+    window.key('A', true);
+    window.type("137");
+    window.key(key_code::enter);
+    EXPECT_EQ(window.view.frame, 137.0);
+}
+
+TEST(Timeline, AKeyMovesWithTheMouse) {
+    TestWindow window(example_document());
+    const std::string power = "layer.dust.look.alpha.power";
+    const glm::vec2 from = window.at("key " + power + " 90"), to = window.at("key camera.position 240");
+    const float per_frame = (to.x - from.x) / 150.0f;
+    window.drag(from, {20 * per_frame, 0});
+    EXPECT_TRUE(has_key_at(window.document.scene(), power, 110));
+    EXPECT_FALSE(has_key_at(window.document.scene(), power, 90));
+    EXPECT_EQ(find_track(window.document.scene(), power)->keys.size(), 3U);
+    window.key('Z', true);
+    EXPECT_TRUE(has_key_at(window.document.scene(), power, 90)) << "one drag is one step";
+    EXPECT_FALSE(window.document.can_undo());
+}
+
+TEST(Timeline, CtrlDragCopiesAndDeleteRemoves) {
+    TestWindow window(example_document());
+    const std::string opacity = "layer.stars.render.opacity";
+    const glm::vec2 from = window.at("key " + opacity + " 120"), to = window.at("key camera.position 240");
+    window.hold(true, false, false);
+    window.drag(from, {to.x - from.x, 0});
+    window.hold(false, false, false);
+    EXPECT_TRUE(has_key_at(window.document.scene(), opacity, 120));
+    EXPECT_TRUE(has_key_at(window.document.scene(), opacity, 240));
+    window.key(key_code::del);
+    EXPECT_FALSE(has_key_at(window.document.scene(), opacity, 240)) << "the copy was selected";
+    EXPECT_TRUE(has_key_at(window.document.scene(), opacity, 120));
+}
+
+TEST(Timeline, ABoxSelectsAndMovesTogether) {
+    TestWindow window(example_document());
+    const glm::vec2 camera = window.at("key camera.position 90");
+    const glm::vec2 opacity = window.at("key layer.stars.render.opacity 120");
+    window.drag({camera.x - 20, camera.y - 8},
+                glm::vec2(opacity.x + 20, opacity.y + 8) - glm::vec2(camera.x - 20, camera.y - 8));
+    window.key(key_code::del);
+    const Scene& scene = window.document.scene();
+    EXPECT_FALSE(has_key_at(scene, "camera.position", 90));
+    EXPECT_FALSE(has_key_at(scene, "layer.dust.look.alpha.power", 90));
+    EXPECT_FALSE(has_key_at(scene, "layer.stars.render.opacity", 120));
+    EXPECT_TRUE(has_key_at(scene, "camera.position", 240));
+}
+
+TEST(Timeline, TheMenuOfAKeyChangesItsInterpolation) {
+    TestWindow window(example_document());
+    window.click(window.at("key layer.stars.render.opacity 24"), 1);
+    window.frame();
+    window.click("key menu/Step");
+    const Track* track = find_track(window.document.scene(), "layer.stars.render.opacity");
+    ASSERT_NE(track, nullptr);
+    EXPECT_EQ(track->keys[0].interpolation, Interpolation::step);
+    EXPECT_EQ(track->keys[1].interpolation, Interpolation::linear);
+}
+
+TEST(Timeline, TheGraphDragsAValue) {
+    TestWindow window(example_document());
+    window.click("graph");
+    window.frame(2);
+    const std::string power = "layer.dust.look.alpha.power";
+    window.click("track " + power);
+    window.frame(2);
+    const glm::vec2 middle = window.at("graph " + power + " 90 0"),
+                    low = window.at("graph " + power + " 1 0");
+    // Half way down from 2.5 to 1.0.
+    window.drag(middle, {0, (low.y - middle.y) * 0.5f});
+    EXPECT_NEAR(find_track(window.document.scene(), power)->keys[1].value[0], 1.75, 0.02);
+    window.key('Z', true);
+    EXPECT_EQ(find_track(window.document.scene(), power)->keys[1].value[0], 2.5);
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,138 @@
+// The viewport: drags, flying, wipe, 1:1, and the badge.
+#include <gtest/gtest.h>
+
+#include "gui/gui_frame.h"
+#include "gui/test_window.h"
+#include "gui/viewport.h"
+#include "gui/viewport_overlay.h"
+
+namespace astrosplat {
+namespace {
+
+using Kind = Command::Kind;
+
+TEST(Picture, MouseButtonsMeanDrags) {
+    using Drag = ViewportInput::Drag;
+    EXPECT_EQ(drag_of(0, false, false), Drag::orbit);
+    EXPECT_EQ(drag_of(0, true, false), Drag::pan);
+    EXPECT_EQ(drag_of(2, false, false), Drag::pan);
+    EXPECT_EQ(drag_of(1, false, false), Drag::look);
+    EXPECT_EQ(drag_of(0, false, true), Drag::orbit);
+    EXPECT_EQ(drag_of(2, false, true), Drag::pan);
+    EXPECT_EQ(drag_of(1, false, true), Drag::dolly);
+}
+
+TEST(Picture, ADragBeginsMovesAndEnds) {
+    TestWindow window(example_document());
+    const glm::vec2 middle = window.at("picture");
+    window.move(middle);
+    window.frame(2);
+    EXPECT_TRUE(window.gui.viewport_input().hovered);
+    window.press(0);
+    EXPECT_TRUE(window.gui.viewport_input().drag_begins);
+    EXPECT_EQ(window.gui.viewport_input().drag, ViewportInput::Drag::orbit);
+    window.move(middle + glm::vec2(30, -10));
+    window.frame();
+    EXPECT_EQ(window.gui.viewport_input().delta_px, glm::dvec2(30, -10));
+    EXPECT_FALSE(window.gui.viewport_input().drag_begins);
+    window.release(0);
+    EXPECT_TRUE(window.gui.viewport_input().drag_ends);
+    window.frame();
+    EXPECT_FALSE(window.gui.viewport_input().drag_ends);
+}
+
+TEST(Picture, KeysFlyOnlyWhileLookingAround) {
+    TestWindow window(example_document());
+    window.move(window.at("picture"));
+    window.frame(2);
+    ImGui::GetIO().KeysDown['W'] = true;
+    window.frame();
+    EXPECT_EQ(window.gui.viewport_input().fly, glm::dvec3(0));
+    window.press(1);
+    window.hold(false, true, false);
+    window.frame();
+    EXPECT_EQ(window.gui.viewport_input().fly, glm::dvec3(0, 0, 1));
+    EXPECT_EQ(window.gui.viewport_input().speed, 10.0);
+    ImGui::GetIO().KeysDown['W'] = false;
+    ImGui::GetIO().KeysDown['S'] = true;
+    window.frame();
+    EXPECT_EQ(window.gui.viewport_input().fly, glm::dvec3(0, 0, -1));
+    EXPECT_TRUE(window.view.solo.empty()) << "S flies, it does not solo";
+    ImGui::GetIO().KeysDown['S'] = false;
+    window.release(1);
+}
+
+TEST(Picture, TheWipeIsDragged) {
+    TestWindow window(example_document());
+    window.view.compare = CompareMode::wipe;
+    window.frame();
+    const glm::vec2 middle = window.at("picture");
+    window.drag(middle, {200, 0});
+    EXPECT_GT(window.view.wipe, 0.6f);
+    EXPECT_LT(window.view.wipe, 0.7f);
+}
+
+TEST(Picture, OneToOneZoomsAboutTheMouseAndMoves) {
+    TestWindow window(example_document());
+    window.view.size = SizeMode::one_to_one;
+    const glm::vec2 middle = window.at("picture");
+    window.move(middle + glm::vec2(100, 0));
+    window.frame(2);
+    for (int i = 0; i < 4; ++i) window.wheel(1);
+    EXPECT_NEAR(window.view.zoom, 2.0, 1e-9);
+    EXPECT_NEAR(window.view.pan_px.x, -100, 1) << "what lies under the mouse stays";
+    EXPECT_EQ(window.gui.viewport_input().wheel, 0.0f) << "the camera does not move";
+    window.view.pan_px = {0, 0};
+    window.drag(middle, {40, 20}, 2);
+    EXPECT_EQ(window.view.pan_px, glm::dvec2(40, 20));
+}
+
+TEST(Picture, TheBadgeSaysHowFinalItIs) {
+    const Document document = example_document();
+    Status status = example_status();
+    EXPECT_EQ(badge_text(document.scene(), status).text, "Refining 41 %");
+    status.picture.state = PictureState::preview;
+    EXPECT_EQ(badge_text(document.scene(), status).text, "Preview 240 k of 12.4 M");
+    EXPECT_TRUE(badge_text(document.scene(), status).warns);
+    status.picture.shown = 2000000;
+    EXPECT_FALSE(badge_text(document.scene(), status).warns);
+    status.picture.state = PictureState::final;
+    status.picture.seconds = 1.8;
+    EXPECT_EQ(badge_text(document.scene(), status).text, "Final 1.8 s");
+    status.layers[1].loading = true;
+    status.layers[1].progress = 0.37f;
+    status.layers[1].found = 3100000;
+    EXPECT_EQ(badge_text(document.scene(), status).text, "Generating stars 37 %");
+    EXPECT_EQ(badge_text(document.scene(), status).beside, "3.1 M splats");
+}
+
+TEST(Picture, TheBadgesButtons) {
+    TestWindow window(example_document());
+    window.status.picture.state = PictureState::failed;
+    window.status.picture.error = "no such picture";
+    window.frame(2);
+    window.click("badge/Copy");
+    Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::copy_text});
+    EXPECT_EQ(commands[0].text, "no such picture");
+    window.status.layers[1].loading = true;
+    window.frame(2);
+    window.click("badge/Cancel");
+    commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::cancel_load});
+    EXPECT_EQ(commands[0].index, 1U);
+}
+
+TEST(Picture, CountsHaveThreeDigitsAtMost) {
+    EXPECT_EQ(short_count(999), "999");
+    EXPECT_EQ(short_count(1000), "1.0 k");
+    EXPECT_EQ(short_count(9949), "9.9 k");
+    EXPECT_EQ(short_count(240000), "240 k");
+    EXPECT_EQ(short_count(999499), "999 k");
+    EXPECT_EQ(short_count(999600), "1.0 M");
+    EXPECT_EQ(short_count(12400000), "12.4 M");
+    EXPECT_EQ(short_count(2500000000), "2.5 G");
+}
+
+}  // namespace
+}  // namespace astrosplat
