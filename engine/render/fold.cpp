@@ -11,6 +11,7 @@
 #define HWY_TARGET_INCLUDE "render/fold.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h has to come before highway.h.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "render/fold_blend-inl.h"
@@ -86,15 +87,15 @@ void fold_batch(const FoldJob& job, const FootprintTable* table, SplatBatch& bat
 }
 
 /// Adds a splat to the batch if its support may touch the cell.
-HWY_INLINE void gather(const ScreenSplat& splat, std::uint32_t index, const FoldLayer& layer,
-                       const Cell& cell, SplatBatch& batch) {
+HWY_INLINE void gather(const ScreenSplat& splat, const FoldLayer& layer, const Cell& cell,
+                       SplatBatch& batch) {
     constexpr float half = 0.5f * static_cast<float>(TilePlanes::cell_px);
     // Radii below the smallest tabulated one have its support; rounding must not lose a pixel.
     const float reach = layer.footprints->drawn_support_px(splat.radius_px) * 1.0001f;
     const float dx = std::fabs(splat.x_px - (cell.x0_px + half)),
                 dy = std::fabs(splat.y_px - (cell.y0_px + half));
     const int n = batch.count;
-    batch.index[n] = index;
+    batch.splat[n] = &splat;
     batch.x_px[n] = splat.x_px;
     batch.y_px[n] = splat.y_px;
     batch.reach_squared[n] = reach * reach;
@@ -131,7 +132,7 @@ const FootprintTable* common_table(std::span<const FoldLayer> layers) {
 
 template <class Pixels, bool kFlat>
 void fold_cells(const FoldJob& job, TilePlanes& planes) {
-    constexpr std::size_t check_every = 1024;
+    constexpr std::size_t check_every = 1024, fetch_ahead = 16;
     static thread_local const std::unique_ptr<SplatBatch> batch_memory = std::make_unique<SplatBatch>();
     SplatBatch& batch = *batch_memory;
     const FootprintTable* table = common_table(job.layers);
@@ -142,10 +143,11 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
                   static_cast<float>(planes.y0 + row * TilePlanes::cell_px),
                   used_blocks(planes, column, row)};
         batch.count = 0;
-        for (std::size_t i = 0; i < job.order.size() && cell.open != 0; ++i) {
+        for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; ++i) {
             if (i % check_every == 0) job.progress.check();
-            const ScreenSplat& splat = job.splats[job.order[i]];
-            gather(splat, job.order[i], job.layers[splat.layer], cell, batch);
+            if (i + fetch_ahead < job.splats.size()) hwy::Prefetch(job.splats[i + fetch_ahead]);
+            const ScreenSplat& splat = *job.splats[i];
+            gather(splat, job.layers[splat.layer], cell, batch);
             if (batch.count == SplatBatch::size) fold_batch<Pixels, kFlat>(job, table, batch, cell, planes);
         }
         fold_batch<Pixels, kFlat>(job, table, batch, cell, planes);

@@ -74,8 +74,7 @@ struct TilePlanes {
 
 /// What is to be folded.
 struct FoldJob {
-    std::span<const ScreenSplat> splats;
-    std::span<const std::uint32_t> order;  // indices of `splats`, near to far
+    std::span<const ScreenSplat* const> splats;  // near to far
     std::span<const FoldLayer> layers;
     const FoldSettings& settings;
     const Progress& progress;

@@ -12,7 +12,7 @@ struct SplatBatch {
     static constexpr int size = 64;
     static constexpr int blocks = TilePlanes::cell_blocks * TilePlanes::cell_blocks;
     int count = 0;
-    std::uint32_t index[size];  // of the splat among the tile's
+    const ScreenSplat* splat[size];
     std::uint16_t layer[size];
     std::uint8_t linear_in_distance[size];  // as in FootprintTable
     std::uint8_t bright_screen[size];       // alpha is the mean of the clamped channels, see prepare_blend

@@ -187,7 +187,7 @@ template <class Pixels>
 void prepare_splats(const FoldJob& job, const FootprintTable* table, std::uint64_t which, SplatBatch& batch) {
     for (std::uint64_t rest = which; rest != 0; rest &= rest - 1) {
         const int i = std::countr_zero(rest);
-        const ScreenSplat& splat = job.splats[batch.index[i]];
+        const ScreenSplat& splat = *batch.splat[i];
         const FoldLayer& layer = job.layers[splat.layer];
         batch.radius_px[i] = splat.radius_px;
         batch.alpha[i] = splat.opacity;

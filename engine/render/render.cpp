@@ -187,7 +187,7 @@ void prepare(Job& job, RenderCache::State& cache) {
 
 /// Scratch of one worker.
 struct TileWorker {
-    std::vector<ScreenSplat> splats;
+    std::vector<std::span<const ScreenSplat>> runs;  // of the tile's records
     SplatSorter sorter;
     TilePlanes planes;
     TileResolver resolver;
@@ -209,9 +209,9 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
         worker.planes.reset(region, fold_settings, job.layers.size());
         if (g == 0) worker.resolver.begin(worker.planes, job.camera, job.environment);
         if (g == job.groups.size()) break;  // nothing but the environment
-        bins.collect(tile, static_cast<int>(g), job.progress, worker.splats);
-        const std::span<const std::uint32_t> order = worker.sorter.sort(worker.splats, job.progress);
-        fold({worker.splats, order, job.fold_layers, fold_settings, job.progress}, worker.planes);
+        bins.collect(tile, static_cast<int>(g), job.progress, worker.runs);
+        const std::span<const ScreenSplat* const> order = worker.sorter.sort(worker.runs, job.progress);
+        fold({order, job.fold_layers, fold_settings, job.progress}, worker.planes);
         worker.resolver.lay(job.groups[g], worker.planes);
     }
     worker.resolver.write(worker.planes, job.region.x, job.region.y, frame);

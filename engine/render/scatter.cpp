@@ -182,7 +182,7 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
 }
 
 void TileBins::collect(std::int64_t tile, int group, const Progress& progress,
-                       std::vector<ScreenSplat>& out) const {
+                       std::vector<std::span<const ScreenSplat>>& out) const {
     out.clear();
     const std::int64_t column = tile % grid_.columns(), row = tile / grid_.columns();
     for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -194,8 +194,8 @@ void TileBins::collect(std::int64_t tile, int group, const Progress& progress,
             for (const Segment& segment : chunk) {
                 const std::int64_t i = bin - segment.first_bin;
                 if (i < 0 || i >= segment.bins) continue;
-                out.insert(out.end(), segment.records + segment.offsets[i],
-                           segment.records + segment.offsets[i + 1]);
+                const std::uint32_t begin = segment.offsets[i], end = segment.offsets[i + 1];
+                if (end > begin) out.emplace_back(segment.records + begin, end - begin);
             }
         }
     }

@@ -62,8 +62,10 @@ class TileBins {
     void scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
                  SplatStore& store, const Progress& progress);
 
-    /// Records of a tile and group whose square of support touches the tile, in no meaningful order.
-    void collect(std::int64_t tile, int group, const Progress& progress, std::vector<ScreenSplat>& out) const;
+    /// Where the records of a tile and group lie whose square of support touches the tile, in no meaningful
+    /// order.
+    void collect(std::int64_t tile, int group, const Progress& progress,
+                 std::vector<std::span<const ScreenSplat>>& out) const;
 
     const TileGrid& grid() const { return grid_; }
     std::int64_t records() const;    // written, a splat once per bin it touches

@@ -1,4 +1,5 @@
-// Sorts a tile's splats into the total order of DESIGN 7. In: screen splats. Out: their indices, near to far.
+// Sorts a tile's splats into the total order of DESIGN 7. In: where they lie. Out: where each lies, near to
+// far; the splats themselves are not moved.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +15,12 @@ namespace astrosplat {
 class SplatSorter {
   public:
     /// Radix sort on depth, ties by in_front_of. The result lives until the next call.
-    std::span<const std::uint32_t> sort(std::span<const ScreenSplat> splats, const Progress& progress);
+    std::span<const ScreenSplat* const> sort(std::span<const std::span<const ScreenSplat>> runs,
+                                             const Progress& progress);
 
   private:
     std::vector<std::uint64_t> keys_, other_;  // depth above, index below
-    std::vector<std::uint32_t> order_;
+    std::vector<const ScreenSplat*> splats_, order_;
 };
 
 }  // namespace astrosplat
