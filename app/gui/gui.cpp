@@ -110,7 +110,8 @@ Gui::~Gui() = default;
 void Gui::draw(Document& document, ViewState& view, const Status& status, Commands& commands) {
     State& state = *state_;
     state.drawn.clear();
-    Commands requested;
+    Commands requested;  // begins with what came from elsewhere: dropped files
+    requested.swap(commands);
     GuiFrame frame{document, view, status, requested, state.drawn};
     view.changed_on_disk = status.changed_on_disk;
     const ImVec2 size = ImGui::GetIO().DisplaySize;

@@ -19,6 +19,8 @@ namespace {
 constexpr float regular_px = 15.0f;
 constexpr float small_px = 13.0f;
 
+float scale = 1.0f;  // of the window's monitor; there is one window
+
 // Folders that hold fonts/, most specific first, as the XDG base directory specification has them.
 std::vector<fs::path> data_folders() {
     std::vector<fs::path> folders;
@@ -133,6 +135,7 @@ void set_sizes(ImGuiStyle& style) {
 }  // namespace
 
 void apply_theme(float content_scale) {
+    scale = content_scale;
     ImGuiStyle& style = ImGui::GetStyle();
     style = ImGuiStyle();
     set_colors(style);
@@ -146,6 +149,6 @@ ImFont* regular_font() { return ImGui::GetIO().Fonts->Fonts[0]; }
 ImFont* medium_font() { return ImGui::GetIO().Fonts->Fonts[1]; }
 ImFont* small_font() { return ImGui::GetIO().Fonts->Fonts[2]; }
 
-float px(float length) { return length * regular_font()->FontSize / regular_px; }
+float px(float length) { return length * scale; }
 
 }  // namespace astrosplat

@@ -23,6 +23,13 @@ TEST(Layout, CoversTheWindowWithoutGaps) {
         }
 }
 
+TEST(Layout, TheWindowKeepsToItAtOddScales) {
+    TestWindow window(example_document(), 1600, 1000, 1.25f);
+    const Rect viewport = make_layout(window.view, 1600, 1000, 1.25f).viewport;
+    EXPECT_EQ(window.at("picture"),
+              glm::vec2(viewport.x + viewport.width / 2, viewport.y + viewport.height / 2));
+}
+
 TEST(Layout, SplittersAreDraggedAndReset) {
     TestWindow window(example_document());
     window.drag(window.at("panel splitter"), {-100, 0});

@@ -67,6 +67,19 @@ TEST(Quit, AnUntitledSceneIsAskedForItsFile) {
     EXPECT_EQ(commands[0].path, folder.path() / "new.toml");
 }
 
+TEST(Quit, ADroppedSceneAsksToo) {
+    TestWindow window(example_document());
+    window.dropped = {{Kind::open, "/scenes/m51.toml", {}, 0}};
+    window.frame();
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::open});
+    make_edited(window);
+    window.dropped = {{Kind::open, "/scenes/m51.toml", {}, 0}};
+    window.frame(2);
+    EXPECT_TRUE(window.take_commands().empty());
+    window.click("unsaved/Don't save");
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::open});
+}
+
 TEST(Recovery, OffersTheAutosaveOnce) {
     TestWindow window(example_document());
     window.status.recoveries = {"/state/whirlpool.toml"};

@@ -65,6 +65,7 @@ void TestWindow::frame(int count) {
         ImGui::GetIO().DeltaTime = 1.0f / 60.0f;
         ImGui::NewFrame();
         Commands commands;
+        commands.swap(dropped);
         gui.draw(document, view, status, commands);
         ImGui::Render();
         commands_.insert(commands_.end(), commands.begin(), commands.end());

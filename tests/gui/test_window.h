@@ -50,6 +50,7 @@ class TestWindow {
     ViewState view;
     Status status;
     Gui gui;
+    Commands dropped;  // given to the next frame
 
   private:
     ImGuiContext* context_;
