@@ -200,7 +200,14 @@ TEST(PanelRows, AutoIsTypedOverAndTypedBack) {
     d.click(d.row(voxels).value);
     d.type("10, 20, 30");
     d.tap(ImGuiKey_Enter);
-    EXPECT_EQ(d.value(voxels), Value(Value::List{std::int64_t{10}, std::int64_t{20}, std::int64_t{30}}));
+    const Value typed = Value::List{std::int64_t{10}, std::int64_t{20}, std::int64_t{30}};
+    EXPECT_EQ(d.value(voxels), typed);
+    d.document.undo();
+    d.frames();
+    d.click(d.row(voxels).value);
+    d.type("10 20 30");
+    d.tap(ImGuiKey_Enter);
+    EXPECT_EQ(d.value(voxels), typed);
 }
 
 }  // namespace

@@ -127,14 +127,18 @@ Value value_from_text(const std::string& text, const ParameterSpec& spec) {
         std::replace(raw.begin(), raw.end(), ',', '.');
     const bool list = spec.type == ParameterType::vector || spec.type == ParameterType::position ||
                       spec.type == ParameterType::rotation || spec.type == ParameterType::color;
-    if (list && raw.find(',') != std::string::npos && raw.find('[') == std::string::npos)
-        raw = "[" + raw + "]";
+    if (list && raw.find('[') == std::string::npos && raw.find_first_of("0123456789") != std::string::npos) {
+        if (raw.find(',') == std::string::npos) std::replace(raw.begin(), raw.end(), ' ', ',');
+        if (raw.find(',') != std::string::npos) raw = "[" + raw + "]";
+    }
     if (number && !raw.empty() && raw.front() == '.') raw = "0" + raw;
     try {
         const toml::table table = toml::parse("value = " + raw);
         if (table.size() == 1 && raw.find('\n') == std::string::npos) return value_of(*table.get("value"));
     } catch (const toml::parse_error&) {
         // a bare word
+    } catch (const ValueError&) {
+        // a date or a table, which no parameter takes: as text it is refused in words
     }
     return raw;
 }

@@ -60,12 +60,13 @@ void text_field(Context& context, const Row& row, const Area& area) {
     BoxContent content;
     content.shown = in_words(spec, row.value);
     const std::string* text = row.value.text();
-    content.dimmed = row.value == spec.nothing && spec.type != Type::text;
+    content.dimmed = content.shown == "Auto";
     if (content.shown.empty()) {
         content.dimmed = true;
         content.shown = "None";
     }
-    content.typed = text ? *text : to_toml(row.value);
+    const bool empty = row.value.list() && row.value.list()->empty();
+    content.typed = text ? *text : empty ? "" : to_toml(row.value);
     content.unit = content.dimmed || text ? "" : spec.unit;
     const BoxEvent event = value_box(context, "text", area, content);
     if (event.kind == BoxEvent::Kind::typed && event.text != content.typed)

@@ -37,7 +37,8 @@ void draw_bars(const Area& area, std::span<const float> shares, double stretch) 
     for (std::size_t i = 0; i < shares.size(); ++i) {
         const float left = area.corner.x + width * static_cast<float>(i);
         if (left >= area.end().x) break;
-        const float right = std::min(left + std::max(width - 1.0f, 1.0f), area.end().x);
+        const float gap = width >= px(4) ? 1.0f : 0.0f;
+        const float right = std::min(left + width - gap, area.end().x);
         const float top = area.end().y - (area.size.y - px(4)) * std::clamp(shares[i], 0.0f, 1.0f);
         if (shares[i] > 0.0f) list->AddRectFilled({left, top}, {right, area.end().y}, color::hover);
     }

@@ -41,7 +41,8 @@ std::string figures(double number) {
     const bool exponent = whole.find('e') != std::string::npos;
     const int wanted = std::clamp(2 - magnitude, 0, 6);
     const int own = exponent ? 6 : static_cast<int>(std::min<std::size_t>(places(whole), 6));
-    const std::string text = fmt::format("{:.{}f}", number, std::max(wanted, own));
+    const int most = std::min(wanted + 2, 6);  // five figures: more of an interpolated value only flicker
+    const std::string text = fmt::format("{:.{}f}", number, std::clamp(own, wanted, most));
     return places(text) == 0 ? grouped(text) : text;
 }
 
@@ -80,12 +81,14 @@ std::string in_words(const ParameterSpec& spec, const Value& value) {
         if (!file) return "Auto";
     }
     if (const Value::List* list = value.list()) {
+        if (spec.type == ParameterType::curve) return fmt::format("{} points", list->size());
         std::string text;
         for (const Value& element : *list) text += (text.empty() ? "" : ", ") + in_words(spec, element);
         return text;
     }
     if (const std::string* text = value.text()) {
-        if (spec.type == ParameterType::choice) return choice_label(*text);
+        const bool named = std::find(spec.choices.begin(), spec.choices.end(), *text) != spec.choices.end();
+        if (named || *text == "auto") return choice_label(*text);
         const bool file = spec.type == ParameterType::file || spec.type == ParameterType::files;
         return file ? file_name(*text) : *text;
     }

@@ -8,7 +8,7 @@
 
 namespace astrosplat::panel {
 
-/// Three figures at least, all that the number has up to six places: "0.350", "45.0", "12.345", "2 000 000".
+/// Three figures at least, five where the number has them: "0.350", "45.0", "12.345", "2 000 000".
 std::string figures(double number);
 
 /// Of an integer: groups of three from 10,000 on.

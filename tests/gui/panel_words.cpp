@@ -1,0 +1,56 @@
+// Numbers and values in words, as the side panel shows them; and how far a pixel of dragging goes.
+#include "gui/panel/words.h"
+
+#include <gtest/gtest.h>
+
+namespace astrosplat::panel {
+namespace {
+
+TEST(PanelWords, FiguresAreThreeAtLeastAndFiveAtMost) {
+    EXPECT_EQ(figures(0.35), "0.350");
+    EXPECT_EQ(figures(1.0), "1.00");
+    EXPECT_EQ(figures(45.0), "45.0");
+    EXPECT_EQ(figures(12.345), "12.345");
+    EXPECT_EQ(figures(2.487106), "2.4871");
+    EXPECT_EQ(figures(0.008), "0.00800");
+    EXPECT_EQ(figures(-812.0), "-812");
+    EXPECT_EQ(figures(0.0), "0.00");
+    EXPECT_EQ(figures(1e-9), short_number(1e-9));
+}
+
+TEST(PanelWords, LargeIntegersAreGrouped) {
+    EXPECT_EQ(figures(std::int64_t{4096}), "4096");
+    EXPECT_EQ(figures(std::int64_t{2000000}), "2 000 000");
+    EXPECT_EQ(figures(std::int64_t{-65536}), "-65 536");
+}
+
+TEST(PanelWords, CountsAreShort) {
+    EXPECT_EQ(short_count(340), "340");
+    EXPECT_EQ(short_count(1234), "1.2 k");
+    EXPECT_EQ(short_count(812345), "812 k");
+    EXPECT_EQ(short_count(2900000), "2.9 M");
+    EXPECT_EQ(short_count(3200000000), "3.20 G");
+    EXPECT_EQ(percent(0.614), "61 %");
+    EXPECT_EQ(percent(0.004), "0.4 %");
+}
+
+TEST(PanelWords, SetOptionsAreOneWordOfAShell) {
+    EXPECT_EQ(set_option("layer.a.look.density", 0.5), "--set layer.a.look.density=0.5");
+    EXPECT_EQ(set_option("camera.up", Value::List{0.0, 1.0, 0.0}), "--set 'camera.up=[0.0, 1.0, 0.0]'");
+    EXPECT_EQ(set_option("provenance.title", "it's"), "--set 'provenance.title=\"it'\\''s\"'");
+}
+
+TEST(PanelWords, DraggingRoundsToCleanNumbers) {
+    ParameterSpec spec;
+    spec.range(0, 1);
+    const double step = drag_step(spec, 0.5);
+    EXPECT_DOUBLE_EQ(step, 0.004);
+    EXPECT_EQ(short_number(rounded_to_step(0.5 + 17 * step, step)), "0.568");
+    ParameterSpec magnitude;
+    magnitude.above(0).slider(0.01, 100).logarithmic();
+    EXPECT_DOUBLE_EQ(drag_step(magnitude, 50.0), 0.5);  // of itself
+    EXPECT_EQ(rounded_to_step(1234.5, 20.0), 1230.0);
+}
+
+}  // namespace
+}  // namespace astrosplat::panel
