@@ -166,8 +166,7 @@ const GlInfo& OffscreenContext::info() const { return state_->info; }
 
 GlInfo load_gl(GlLoader loader) {
     const int version = gladLoadGL(reinterpret_cast<GLADloadfunc>(loader));
-    if (version == 0)
-        throw NoContext(std::string(no_context) + ": the driver's functions do not load");
+    if (version == 0) throw NoContext(std::string(no_context) + ": the driver's functions do not load");
     GlInfo info;
     info.major = GLAD_VERSION_MAJOR(version);
     info.minor = GLAD_VERSION_MINOR(version);
@@ -175,8 +174,7 @@ GlInfo load_gl(GlLoader loader) {
     info.renderer = renderer ? renderer : "";
     info.software = is_software(info.renderer);
     if (info.major < oldest_major || (info.major == oldest_major && info.minor < oldest_minor))
-        throw NoContext(
-            fmt::format("{}: {} has {}.{}", no_context, info.renderer, info.major, info.minor));
+        throw NoContext(fmt::format("{}: {} has {}.{}", no_context, info.renderer, info.major, info.minor));
 #ifndef NDEBUG
     if (glDebugMessageCallback) {
         glEnable(GL_DEBUG_OUTPUT);

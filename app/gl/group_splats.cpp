@@ -22,11 +22,12 @@ float probe_of(const Image* image) {
     return sum;
 }
 
-/// No splat of the layer is larger, whatever its own random numbers and alpha are.
-float radius_bound(const SplatSet& set, const LookUniforms& u, float share, bool additive) {
+/// None of the first `count` splats is larger, whatever its random numbers and alpha are.
+float radius_bound(const SplatSet& set, std::int64_t count, const LookUniforms& u, float share,
+                   bool additive) {
     float radius = std::max(u.radius_min, u.radius_max);
     if (u.own_radius)
-        for (float own : set.radius) radius = std::max(radius, own);
+        for (std::int64_t i = 0; i < count; ++i) radius = std::max(radius, set.radius[std::size_t(i)]);
     radius *= std::max(1.0f, u.horizontal_scale) * std::max(1.0f, u.vertical_scale);
     // radius'^2 = radius^2 alpha / (q alpha'), and alpha' >= alpha where alpha' is not alpha / q.
     return additive ? radius : radius * std::sqrt(1.0f / share);
@@ -75,7 +76,7 @@ bool GroupSplats::lay_out(const std::vector<const PreviewLayer*>& layers) {
     }
     buffers_.resize(first);
     order_valid_ = false;
-    oldest_valid_version_ = requested_version_ + 1;  // orders on their way are for other splats
+    first_version_ = 0;
     return true;
 }
 
@@ -92,7 +93,7 @@ bool GroupSplats::shade(Part& part, const PreviewLayer& layer, RawSplatStore& ra
     part.map_probe = probe;
     part.additive = additive;
     part.share = float(double(part.count) / double(std::max<std::int64_t>(whole_count(layer), 1)));
-    part.largest_radius = radius_bound(*layer.set, part.uniforms, part.share, additive);
+    part.largest_radius = radius_bound(*layer.set, part.count, part.uniforms, part.share, additive);
     part.shaded = true;
     splats.hold(part.count);
     pass.run(splats, {part.uniforms, layer.inputs.thickness_map, part.count, part.share, additive}, buffers_,
@@ -124,9 +125,10 @@ bool GroupSplats::request_order(const std::vector<LayerProjection>& projections,
     view.orthographic = !projections.empty() && projections[0].orthographic;
     view.far_from = far_from;
     view.places_version = places_version_;
-    if (view == requested_ && requested_version_ >= oldest_valid_version_) return false;
+    if (view == requested_ && first_version_ != 0) return false;
     requested_ = view;
-    ++requested_version_;
+    requested_version_ = thread.next_version();
+    if (first_version_ == 0) first_version_ = requested_version_;
     OrderJob job{places_, {}, view.orthographic, far_from, requested_version_};
     for (std::size_t l = 0; l < parts_.size(); ++l)
         job.layers.push_back(
@@ -137,7 +139,7 @@ bool GroupSplats::request_order(const std::vector<LayerProjection>& projections,
 
 void GroupSplats::take_order(OrderThread& thread, std::size_t slot) {
     const std::optional<Order> order = thread.take(slot);
-    if (!order || order->version < oldest_valid_version_) return;
+    if (!order || first_version_ == 0 || order->version < first_version_) return;
     buffers_.set_order(order->splats);
     ordered_count_ = static_cast<std::int64_t>(order->splats.size());
     far_count_ = order->far_count;

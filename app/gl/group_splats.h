@@ -93,9 +93,11 @@ class GroupSplats {
     std::vector<Part> parts_;
     ShadedBuffers buffers_;
     std::shared_ptr<const Buffer<glm::vec4>> places_;
-    std::uint64_t places_version_ = 0, layout_version_ = 0;
+    std::uint64_t places_version_ = 0;
     View requested_;
-    std::uint64_t requested_version_ = 0, order_version_ = 0, oldest_valid_version_ = 1;
+    std::uint64_t requested_version_ = 0, order_version_ = 0;
+    std::uint64_t first_version_ =
+        0;  // asked for since the layout last changed; older orders are for other splats
     bool order_valid_ = false;
     std::int64_t ordered_count_ = 0, far_count_ = 0;
 };

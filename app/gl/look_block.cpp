@@ -2,7 +2,9 @@
 // arrays) begin and end on 16 bytes. The members follow the order of look_uniforms.glsl.
 #include "gl/look_block.h"
 
+#include <algorithm>
 #include <cstring>
+#include <initializer_list>
 
 namespace astrosplat {
 namespace {
@@ -38,26 +40,26 @@ class Std140 {
     std::vector<std::byte> bytes_;
 };
 
-void put(Std140& out, const LookCurve& curve) {
+void put(Std140& out, const LookCurve& curve, const LookLimits& limits) {
     out.align();
     out.put(curve.count);
-    for (const vec4& knot : curve.knots) out.put(knot);
+    for (int k = 0; k < limits.points; ++k) out.put(curve.knots[k]);
     out.align();
 }
 
-void put(Std140& out, const LookProfile& profile) {
+void put(Std140& out, const LookProfile& profile, const LookLimits& limits) {
     out.align();
     out.put(profile.shape);
     out.put(profile.rate);
-    put(out, profile.curve);
+    put(out, profile.curve, limits);
 }
 
-void put(Std140& out, const LookKey& key) {
+void put(Std140& out, const LookKey& key, const LookLimits& limits) {
     out.align();
     out.put(key.color);
     out.put(key.scale);
     out.put(key.column);
-    put(out, key.pdf);
+    put(out, key.pdf, limits);
 }
 
 void put(Std140& out, const LookNoise& noise) {
@@ -70,21 +72,38 @@ void put(Std140& out, const LookNoise& noise) {
     out.align();
 }
 
+/// The smallest of a few steps that is large enough.
+int step_up(int value, std::initializer_list<int> steps) {
+    for (int step : steps)
+        if (value <= step) return step;
+    return value;
+}
+
 }  // namespace
 
-std::vector<std::byte> look_block(const LookUniforms& look) {
+LookLimits limits_for(const LookUniforms& look) {
+    bool curve = look.vertical.shape == PROFILE_CURVE;
+    for (int k = 0; k < look.key_count; ++k) curve = curve || look.keys[k].pdf.shape == PROFILE_CURVE;
+    int octaves = 0;
+    for (int k = 0; k < look.noise_count; ++k) octaves = std::max(octaves, look.noises[k].octaves);
+    return {step_up(look.key_count, {1, 3, LOOK_MAX_KEYS}),
+            step_up(look.noise_count, {1, 2, LOOK_MAX_NOISES}), curve ? LOOK_MAX_POINTS : 1,
+            step_up(octaves, {0, 4, 6, 16})};
+}
+
+std::vector<std::byte> look_block(const LookUniforms& look, const LookLimits& limits) {
     Std140 out;
     out.put(look.seed);
     out.put(look.axis);
     out.put(look.reach);
     out.put(look.density);
     out.put(look.key_count);
-    for (const LookKey& key : look.keys) put(out, key);
+    for (int k = 0; k < limits.keys; ++k) put(out, look.keys[k], limits);
     out.put(look.noise_count);
-    for (const LookNoise& noise : look.noises) put(out, noise);
+    for (int k = 0; k < limits.noises; ++k) put(out, look.noises[k]);
     out.put(look.unpremultiply);
     for (float value : {look.alpha_threshold, look.alpha_power, look.alpha_gain}) out.put(value);
-    put(out, look.vertical);
+    put(out, look.vertical, limits);
     out.put(look.vertical_reach);
     out.put(look.match);
     out.put(look.own_radius);

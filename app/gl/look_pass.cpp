@@ -2,25 +2,31 @@
 
 #include <glm/vec4.hpp>
 
-#include "gl/look_block.h"
-
 namespace astrosplat {
-namespace {
 
-ProgramSource source() {
+ProgramSource LookPass::source_for(const LookLimits& limits) {
     return {
         {},
         {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "decimate.glsl", "look_pass.glsl"},
         {},
-        {"shaded_place", "shaded_color"}};
+        {"shaded_place", "shaded_color"},
+        {{"LOOK_MAX_KEYS", limits.keys},
+         {"LOOK_MAX_NOISES", limits.noises},
+         {"LOOK_MAX_POINTS", limits.points},
+         {"AS_NOISE_MAX_OCTAVES", limits.octaves}}};
 }
 
-}  // namespace
+LookPass::LookPass() { upload_map(make_image(1, 1, 3)); }
 
-LookPass::LookPass() : program_(source()) {
-    program_.set_block("LookBlock", 0);
-    program_.set_sampler("thickness_map", 0);
-    upload_map(make_image(1, 1, 3));
+// Loops in a shader cost what they could do at most: software rasterisers run every step of them.
+const GlProgram& LookPass::program(const LookLimits& limits) {
+    std::unique_ptr<GlProgram>& entry = programs_[limits];
+    if (!entry) {
+        entry = std::make_unique<GlProgram>(source_for(limits));
+        entry->set_block("LookBlock", 0);
+        entry->set_sampler("thickness_map", 0);
+    }
+    return *entry;
 }
 
 void LookPass::upload_map(const Image& map) {
@@ -40,20 +46,22 @@ void LookPass::upload_map(const Image& map) {
 
 void LookPass::run(const RawSplats& raw, const LookPassInput& input, ShadedBuffers& out, std::int64_t first) {
     if (input.count <= 0) return;
-    program_.use();
-    const std::vector<std::byte> block = look_block(input.look);
+    unused_.resize(1, 1, GL_RGBA8);
+    unused_.bind();
+    const LookLimits limits = limits_for(input.look);
+    const GlProgram& program = this->program(limits);
+    program.use();
+    const std::vector<std::byte> block = look_block(input.look, limits);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_.get());
     glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size()), block.data(), GL_STREAM_DRAW);
-    glUniform1f(program_.uniform("share"), input.share);
-    glUniform1i(program_.uniform("additive"), input.additive ? 1 : 0);
+    glUniform1f(program.uniform("share"), input.share);
+    glUniform1i(program.uniform("additive"), input.additive ? 1 : 0);
     if (input.map && input.look.key_count > 1) upload_map(*input.map);
     bind_texture(0, GL_TEXTURE_2D, map_.name());
     const auto offset = static_cast<GLintptr>(sizeof(glm::vec4)) * first;
     const auto size = static_cast<GLsizeiptr>(sizeof(glm::vec4)) * input.count;
     glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, out.places(), offset, size);
     glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 1, out.colors(), offset, size);
-    unused_.resize(1, 1, GL_RGBA8);
-    unused_.bind();
     glEnable(GL_RASTERIZER_DISCARD);
     glBindVertexArray(raw.vertex_array());
     glBeginTransformFeedback(GL_POINTS);

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 
 #include "core/image.h"
+#include "gl/look_block.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/splat_buffers.h"
@@ -26,10 +29,14 @@ class LookPass {
     /// Writes to out[first], out[first + 1], ...; `raw` holds input.count splats.
     void run(const RawSplats& raw, const LookPassInput& input, ShadedBuffers& out, std::int64_t first);
 
+    /// The program for looks within these limits.
+    static ProgramSource source_for(const LookLimits& limits);
+
   private:
+    const GlProgram& program(const LookLimits& limits);
     void upload_map(const Image& map);
 
-    GlProgram program_;
+    std::map<LookLimits, std::unique_ptr<GlProgram>> programs_;  // compiled when first needed
     GlBuffer block_;
     GlTexture map_;
     GlTarget unused_;  // without a window OpenGL draws nothing where no picture is bound

@@ -122,26 +122,18 @@ bool OrderThread::wait(std::chrono::microseconds at_most) {
     return idle_.wait_for(lock, at_most, [this] { return !working_ && jobs_.empty(); });
 }
 
-void OrderThread::clear() {
-    const std::lock_guard lock(mutex_);
-    jobs_.clear();
-    orders_.clear();
-    ++generation_;
-}
-
 void OrderThread::run() {
     std::unique_lock lock(mutex_);
     for (;;) {
         wake_.wait(lock, [this] { return stop_ || !jobs_.empty(); });
         if (stop_) return;
         auto job = jobs_.extract(jobs_.begin());
-        const std::uint64_t generation = generation_;
         working_ = true;
         lock.unlock();
         Order order = sort_far_to_near(job.mapped());
         lock.lock();
         working_ = false;
-        if (generation == generation_) orders_[job.key()] = std::move(order);
+        orders_[job.key()] = std::move(order);
         if (jobs_.empty()) idle_.notify_all();
     }
 }

@@ -60,8 +60,8 @@ class OrderThread {
     bool busy() const;
     /// Waits until nothing is left to do, at most so long. True when nothing is.
     bool wait(std::chrono::microseconds at_most);
-    /// Forgets jobs and orders; what is being sorted is dropped when done.
-    void clear();
+    /// A number for a job, larger than any before.
+    std::uint64_t next_version() { return ++last_version_; }
 
   private:
     void run();
@@ -70,7 +70,7 @@ class OrderThread {
     std::condition_variable wake_, idle_;
     std::map<std::size_t, OrderJob> jobs_;
     std::map<std::size_t, Order> orders_;
-    std::uint64_t generation_ = 0;
+    std::uint64_t last_version_ = 0;  // of the caller's thread alone
     bool working_ = false, stop_ = false;
     std::thread thread_;
 };

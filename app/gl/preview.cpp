@@ -98,6 +98,7 @@ struct GlPreview::State {
     bool sorting = false;
 
     const Bounds& box_of(const std::shared_ptr<const SplatSet>& set) {
+        std::erase_if(boxes, [](const auto& box) { return box.second.first.expired(); });
         auto& entry = boxes[set.get()];
         if (entry.first.lock() != set) entry = {set, bounds(*set)};
         return entry.second;

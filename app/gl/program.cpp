@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <stdexcept>
 
@@ -10,13 +11,31 @@
 namespace astrosplat {
 namespace {
 
-/// "#line" numbers the strings as `files` does, from 1 on; 0 is the head.
-std::string stage_text(const ProgramSource& source, const std::vector<std::string>& files) {
+/// A stage's text and where its files begin. (Drivers do not agree on what "#line" with a number means.)
+struct StageText {
     std::string text = "#version 410 core\n";
-    for (const std::string& define : source.defines) text += "#define " + define + "\n";
-    for (std::size_t i = 0; i < files.size(); ++i)
-        text += fmt::format("#line 1 {}\n", i + 1) + shader_text(files[i]) + "\n";
-    return text;
+    std::vector<FileStart> files;
+};
+
+/// The text with another value for a constant it defines; unchanged where it does not.
+void set_constant(std::string& text, const std::string& name, int value) {
+    const std::string head = "const int " + name + " = ";
+    const std::size_t at = text.find(head);
+    if (at == std::string::npos) return;
+    const std::size_t end = text.find(';', at);
+    text.replace(at + head.size(), end - at - head.size(), std::to_string(value));
+}
+
+StageText stage_text(const ProgramSource& source, const std::vector<std::string>& files) {
+    StageText stage;
+    for (const std::string& define : source.defines) stage.text += "#define " + define + "\n";
+    for (const std::string& file : files) {
+        const auto lines = std::count(stage.text.begin(), stage.text.end(), '\n');
+        stage.files.push_back({file, static_cast<int>(lines) + 1});
+        stage.text += shader_text(file) + "\n";
+    }
+    for (const auto& [name, value] : source.constants) set_constant(stage.text, name, value);
+    return stage;
 }
 
 template <class GetSize, class GetLog>
@@ -34,14 +53,14 @@ struct Stage {
     GLuint shader;
     Stage(GLenum kind, const ProgramSource& source, const std::vector<std::string>& files)
         : shader(glCreateShader(kind)) {
-        const std::string text = stage_text(source, files);
-        const char* pointer = text.c_str();
+        const StageText stage = stage_text(source, files);
+        const char* pointer = stage.text.c_str();
         glShaderSource(shader, 1, &pointer, nullptr);
         glCompileShader(shader);
         GLint compiled = GL_FALSE;
         glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
         if (compiled) return;
-        const std::string log = readable_log(log_of(shader, glGetShaderiv, glGetShaderInfoLog), files);
+        const std::string log = readable_log(log_of(shader, glGetShaderiv, glGetShaderInfoLog), stage.files);
         glDeleteShader(shader);
         throw std::runtime_error("OpenGL does not take the shader " + log);
     }
@@ -56,21 +75,25 @@ std::size_t digits_at(const std::string& line, std::size_t i) {
     return end;
 }
 
-std::string readable_line(const std::string& line, const std::vector<std::string>& files) {
-    const std::size_t number_end = digits_at(line, 0);
-    if (number_end == 0 || number_end > 3 || number_end >= line.size()) return line;
-    if (line[number_end] != ':' && line[number_end] != '(') return line;
-    const std::size_t place_end = digits_at(line, number_end + 1);
-    const auto file = static_cast<std::size_t>(std::stoi(line.substr(0, number_end)));
-    if (place_end == number_end + 1 || file < 1 || file > files.size()) return line;
-    const bool closes = line[number_end] == '(' && place_end < line.size() && line[place_end] == ')';
-    return files[file - 1] + ":" + line.substr(number_end + 1, place_end - number_end - 1) +
-           line.substr(place_end + (closes ? 1 : 0));
+std::string readable_line(const std::string& line, const std::vector<FileStart>& files) {
+    const std::size_t string_end = digits_at(line, 0);
+    if (string_end == 0 || string_end >= line.size()) return line;
+    const bool in_brackets = line[string_end] == '(';
+    if (line[string_end] != ':' && !in_brackets) return line;
+    const std::size_t begin = string_end + 1, end = digits_at(line, begin);
+    if (end == begin || end - begin > 6) return line;
+    const int number = std::stoi(line.substr(begin, end - begin));
+    const FileStart* file = nullptr;
+    for (const FileStart& candidate : files)
+        if (candidate.line <= number) file = &candidate;
+    if (!file) return line;
+    const bool closes = in_brackets && end < line.size() && line[end] == ')';
+    return fmt::format("{}:{}{}", file->name, number - file->line + 1, line.substr(end + (closes ? 1 : 0)));
 }
 
 }  // namespace
 
-std::string readable_log(const std::string& log, const std::vector<std::string>& files) {
+std::string readable_log(const std::string& log, const std::vector<FileStart>& files) {
     std::string result;
     for (std::size_t begin = 0; begin < log.size();) {
         std::size_t end = log.find('\n', begin);

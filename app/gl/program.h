@@ -5,6 +5,7 @@
 #include <glad/gl.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace astrosplat {
@@ -16,6 +17,8 @@ struct ProgramSource {
     std::vector<std::string> vertex;    // names for shader_text()
     std::vector<std::string> fragment;  // empty: no fragment stage
     std::vector<std::string> feedback;  // vertex outputs to capture, each into its own buffer
+    /// Values instead of those in the texts, for lines "const int NAME = 8;".
+    std::vector<std::pair<std::string, int>> constants = {};
 };
 
 class GlProgram {
@@ -39,7 +42,13 @@ class GlProgram {
     GLuint program_ = 0;
 };
 
-/// The driver's compile log with "2:17" or "2(17)" at the start of a line written as "look.glsl:17".
-std::string readable_log(const std::string& log, const std::vector<std::string>& files);
+/// Where a file begins in a shader's text, lines counted from 1.
+struct FileStart {
+    std::string name;
+    int line = 1;
+};
+/// The driver's compile log as one line, with "0:117" or "0(117)" at the start of its lines written as
+/// "look.glsl:17".
+std::string readable_log(const std::string& log, const std::vector<FileStart>& files);
 
 }  // namespace astrosplat

@@ -6,7 +6,9 @@
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "output/encode.h"
+#include "output/write.h"
 #include "render/render.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat::testing {
 namespace {
@@ -61,6 +63,27 @@ Camera orthographic_camera(int width, int height) {
     camera.projection = Projection::orthographic;
     camera.height = 2.4;
     return make_camera(camera, width, height, {});
+}
+
+Environment small_sky(int faces) {
+    const TempFolder folder;
+    EnvironmentParams params;
+    for (int face = 0; face < faces; ++face) {
+        RenderedFrame frame;
+        frame.beauty = make_image(faces == 1 ? 64 : 32, 32, 4, 1.0f);
+        Buffer<float>& pixels = frame.beauty.pixels;
+        for (std::uint32_t i = 0; i < pixels.size(); ++i)
+            if (i % 4 != 3) pixels[i] = random(11, i / 12, std::uint32_t(face * 3) + i % 4);
+        const std::filesystem::path file = folder / ("sky" + std::to_string(face) + ".exr");
+        write_frame(file, frame, {}, {}, frame.beauty.width, frame.beauty.height, {}, {});
+        if (faces == 1)
+            params.image = file;
+        else
+            params.cube.push_back(file);
+    }
+    params.gain = 0.4f;
+    params.rotation = {10.0, 70.0, -20.0};
+    return load_environment(params);
 }
 
 Image offline(const std::vector<PreviewLayer>& layers, const Camera& camera, const Environment* environment,

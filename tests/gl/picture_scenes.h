@@ -22,6 +22,9 @@ PreviewLayer cloud_layer(std::int64_t count, std::uint32_t seed, float radius, c
 Camera perspective_camera(int width, int height);
 Camera orthographic_camera(int width, int height);
 
+/// A sky of a few texels with mip levels, equirectangular or a cube, turned and brightened a little.
+Environment small_sky(int faces);
+
 /// The same layers through the offline renderer.
 Image offline(const std::vector<PreviewLayer>& layers, const Camera& camera, const Environment* environment,
               int width, int height);

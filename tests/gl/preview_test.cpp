@@ -5,6 +5,7 @@
 
 #include "gl/gl_fixture.h"
 #include "gl/picture_scenes.h"
+#include "unit/render/scenes.h"
 
 namespace astrosplat {
 namespace {
@@ -32,10 +33,6 @@ class PreviewPicture : public GlTest {
         EXPECT_GE(likeness.psnr_db, 45.0);
         EXPECT_LE(likeness.difference_999, 1.0 / 255.0);
         EXPECT_NEAR(likeness.brightness, 1.0, 2e-3);
-        RecordProperty("psnr_db", std::to_string(likeness.psnr_db));
-        if (::testing::Test::HasFailure() || std::getenv("ASTROSPLAT_PRINT_LIKENESS"))
-            std::printf("psnr %.1f dB, 99.9%% %.2f/255, brightness %.5f\n", likeness.psnr_db,
-                        likeness.difference_999 * 255.0, likeness.brightness);
     }
 };
 
@@ -47,21 +44,34 @@ LayerRender render_with(Falloff::Shape shape, Blend blend = Blend::over) {
 }
 
 TEST_F(PreviewPicture, EveryFalloff) {
-    for (const auto shape : {Falloff::Shape::constant, Falloff::Shape::linear, Falloff::Shape::trapezoid,
-                             Falloff::Shape::gaussian, Falloff::Shape::exponential}) {
+    for (const auto shape : testing::all_shapes) {
         SCOPED_TRACE(static_cast<int>(shape));
-        for (float radius : {0.004f, 0.03f, 0.15f})
+        for (float radius : {0.002f, 0.03f, 0.15f})
             expect_like_offline({testing::cloud_layer(3000, 5, radius, render_with(shape))},
                                 testing::perspective_camera(width, height));
     }
 }
 
-TEST_F(PreviewPicture, EveryBlend) {
+TEST_F(PreviewPicture, SharpFalloffsAndCores) {
+    LayerRender sharp = render_with(Falloff::Shape::exponential),
+                spike = render_with(Falloff::Shape::gaussian);
+    sharp.falloff.sharpness = 20.0f;
+    spike.falloff.sharpness = 30.0f;
+    LayerRender core = render_with(Falloff::Shape::trapezoid);
+    core.falloff.core = 0.9f;
+    expect_like_offline(
+        {testing::cloud_layer(1500, 9, 0.1f, sharp), testing::cloud_layer(1500, 5, 0.1f, spike),
+         testing::cloud_layer(1500, 4, 0.1f, core)},
+        testing::perspective_camera(width, height));
+}
+
+TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
     for (const auto blend : {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid}) {
         for (bool isolate : {false, true}) {
             SCOPED_TRACE(static_cast<int>(blend));
             LayerRender render = render_with(Falloff::Shape::gaussian, blend);
             render.isolate = isolate;
+            render.opacity = 0.8f;
             const std::vector<PreviewLayer> layers = {
                 testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
                 testing::cloud_layer(1500, 5, 0.06f, render),
@@ -69,6 +79,122 @@ TEST_F(PreviewPicture, EveryBlend) {
             expect_like_offline(layers, testing::perspective_camera(width, height));
         }
     }
+}
+
+TEST_F(PreviewPicture, LightAboveOneUnderScreen) {
+    PreviewLayer bright =
+        testing::cloud_layer(1500, 5, 0.06f, render_with(Falloff::Shape::gaussian, Blend::screen));
+    bright.look.grade.gain = 5.0f;
+    expect_like_offline({testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright},
+                        testing::perspective_camera(width, height));
+    bright.layer.render.isolate = true;
+    expect_like_offline({testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright},
+                        testing::perspective_camera(width, height));
+}
+
+TEST_F(PreviewPicture, HoldoutsMergedAndIsolatedWithAndWithoutEnvironment) {
+    const Environment sky = testing::small_sky(1);
+    for (bool isolate : {false, true}) {
+        LayerRender holds = render_with(Falloff::Shape::gaussian);
+        holds.holdout = true;
+        holds.isolate = isolate;
+        const std::vector<PreviewLayer> layers = {
+            testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
+            testing::cloud_layer(1500, 5, 0.08f, holds)};
+        expect_like_offline(layers, testing::perspective_camera(width, height));
+        expect_like_offline(layers, testing::perspective_camera(width, height), &sky);
+    }
+}
+
+TEST_F(PreviewPicture, EnvironmentsOfOneAndOfSixFaces) {
+    for (int faces : {1, 6}) {
+        const Environment sky = testing::small_sky(faces);
+        expect_like_offline({}, testing::perspective_camera(width, height), &sky);
+        expect_like_offline({testing::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian))},
+                            testing::orthographic_camera(width, height), &sky);
+        expect_like_offline(
+            {testing::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian, Blend::add))},
+            testing::perspective_camera(width, height), &sky);
+    }
+}
+
+TEST_F(PreviewPicture, Orthographic) {
+    expect_like_offline(
+        {testing::cloud_layer(2000, 9, 0.06f, render_with(Falloff::Shape::gaussian)),
+         testing::cloud_layer(1000, 5, 0.06f, render_with(Falloff::Shape::linear, Blend::hybrid))},
+        testing::orthographic_camera(width, height));
+}
+
+TEST_F(PreviewPicture, LayersPlacedFarFromTheOrigin) {
+    PreviewLayer layer = testing::cloud_layer(2000, 9, 0.06f, render_with(Falloff::Shape::gaussian));
+    layer.layer.scale = 0.5;
+    layer.layer.world_from_layer = rotation_from_degrees({20.0, 50.0, -10.0});
+    layer.layer.translate = {1e5, -2e5, 3e5};
+    Camera camera = testing::perspective_camera(width, height);
+    camera.eye = camera.eye + layer.layer.translate;
+    expect_like_offline({layer}, camera);
+}
+
+TEST_F(PreviewPicture, FromInsideWithDotsWiderThanPoints) {
+    Camera camera = testing::perspective_camera(width, height);
+    camera.eye = {0.1, 0.02, 0.3};
+    camera.near_fade = 0.05;
+    for (const auto blend : {Blend::over, Blend::add, Blend::lighten})
+        expect_like_offline(
+            {testing::cloud_layer(2000, 9, 0.3f, render_with(Falloff::Shape::gaussian, blend))}, camera);
+}
+
+TEST_F(PreviewPicture, NothingAndEmptyLayers) {
+    expect_like_offline({}, testing::perspective_camera(width, height));
+    PreviewLayer empty = testing::cloud_layer(0, 9, 0.1f, render_with(Falloff::Shape::gaussian));
+    expect_like_offline({empty}, testing::perspective_camera(width, height));
+}
+
+TEST_F(PreviewPicture, AShareIsAsBrightAsTheWhole) {
+    for (const auto blend : {Blend::over, Blend::add, Blend::screen}) {
+        SCOPED_TRACE(static_cast<int>(blend));
+        PreviewLayer layer =
+            testing::cloud_layer(60000, 9, 0.012f, render_with(Falloff::Shape::gaussian, blend));
+        layer.look.alpha.gain = 0.1f;  // many faint splats, as sets of millions have
+        const Camera camera = testing::perspective_camera(width, height);
+        const Image whole = draw({layer}, camera);
+        layer.share = 0.1f;
+        EXPECT_NEAR(testing::compare_shown(draw({layer}, camera), whole).brightness, 1.0, 0.02);
+    }
+}
+
+TEST_F(PreviewPicture, ChangesOfLookShareLayersAndCameraAllArrive) {
+    GlPreview preview;
+    std::vector<PreviewLayer> layers = {
+        testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
+        testing::cloud_layer(1500, 5, 0.06f, render_with(Falloff::Shape::gaussian))};
+    Camera camera = testing::perspective_camera(width, height);
+    const auto expect_fresh = [&](const char* what) {
+        preview.draw(layers, camera, nullptr, width, height, 0.5f);
+        preview.wait_for_order();
+        preview.draw(layers, camera, nullptr, width, height, 0.5f);
+        EXPECT_GE(testing::compare_shown(preview.read(), draw(layers, camera)).psnr_db, 199.0) << what;
+    };
+    expect_fresh("first");
+    layers[1].look.density = 0.4f;
+    expect_fresh("density");
+    layers[0].look.noise = {Noise{}};
+    layers[0].look.noise[0].jitter = 0.3f;
+    expect_fresh("jitter");
+    camera.eye = {1.5, -0.7, 1.0};
+    expect_fresh("camera");
+    layers[1].share = 0.5f;
+    expect_fresh("share");
+    layers[0].layer.render.falloff.shape = Falloff::Shape::constant;
+    expect_fresh("falloff");
+    layers[1].layer.render.isolate = true;
+    layers[1].layer.render.blend = Blend::screen;
+    expect_fresh("isolated");
+    std::swap(layers[0], layers[1]);
+    expect_fresh("order of layers");
+    layers.pop_back();
+    expect_fresh("one layer less");
+    EXPECT_EQ(preview.shown(), 750);
 }
 
 }  // namespace

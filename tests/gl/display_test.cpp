@@ -1,0 +1,210 @@
+// What the screen shows against what the writer would put into a file.
+#include "gl/display.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "gl/gl_fixture.h"
+#include "output/encode.h"
+
+namespace astrosplat {
+namespace {
+
+using testing::GlTest;
+using View = DisplaySettings::View;
+using Mode = DisplaySettings::Mode;
+
+/// Light from -0.1 to 4 in all combinations, some of it not a number.
+Image ramp(std::int64_t width, std::int64_t height, float scale = 1.0f) {
+    Image image = make_image(width, height, 4);
+    for (std::int64_t y = 0; y < height; ++y)
+        for (std::int64_t x = 0; x < width; ++x) {
+            const float t = float(x) / float(width - 1), u = float(y) / float(height - 1);
+            float* p = image.at(x, y);
+            p[0] = (t * t * t * 4.1f - 0.1f) * scale;
+            p[1] = u * u * scale;
+            p[2] = x == 3 ? std::nanf("") : t * u * 0.02f * scale;
+            p[3] = t;
+        }
+    return image;
+}
+
+OutputParams::View writer_view(View view) {
+    return view == View::linear ? OutputParams::View::linear
+           : view == View::soft ? OutputParams::View::soft
+                                : OutputParams::View::srgb;
+}
+
+class DisplayPicture : public GlTest {
+  protected:
+    static constexpr int width = 96, height = 64;
+    struct Shown {
+        std::vector<unsigned char> bytes;
+        int columns;
+        const unsigned char* at(int x, int y) const { return &bytes[std::size_t((y * columns + x) * 4)]; }
+    };
+    Shown show(const DisplaySettings& settings, int columns = width, int rows = height) {
+        Display display;
+        display.draw(settings, columns, rows);
+        return {display.read(), columns};
+    }
+    static DisplaySettings whole(const PictureTexture& a) {
+        DisplaySettings settings;
+        settings.a = a.handle();
+        settings.width = width;
+        settings.height = height;
+        return settings;
+    }
+};
+
+TEST_F(DisplayPicture, EveryViewAsTheWriter) {
+    const Image image = ramp(width, height);
+    PictureTexture texture;
+    texture.upload(image);
+    for (const View view : {View::linear, View::srgb, View::soft})
+        for (const float stops : {0.0f, 1.5f, -2.0f}) {
+            DisplaySettings settings = whole(texture);
+            settings.view = view;
+            settings.exposure = stops;
+            const Shown shown = show(settings);
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x)
+                    for (int k = 0; k < 3; ++k) {
+                        const float light = image.at(x, y)[k] * std::exp2(stops);
+                        const float expected = 255.0f * apply_view(writer_view(view), light);
+                        ASSERT_NEAR(float(shown.at(x, y)[k]), expected, 0.51f) << x << " " << y << " " << k;
+                    }
+        }
+}
+
+TEST_F(DisplayPicture, DithersAsTheWriter) {
+    const Image image = ramp(width, height);
+    PictureTexture texture;
+    texture.upload(image);
+    DisplaySettings settings = whole(texture);
+    settings.dither = true;
+    const Shown shown = show(settings);
+    FrameFormat format;
+    format.alpha = OutputParams::Alpha::none;
+    format.view = OutputParams::View::srgb;
+    int different = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int k = 0; k < 3; ++k) {
+                const float value = apply_view(format.view, image.at(x, y)[k]) * 255.0f + dither(x, y, k);
+                const float expected = std::fmin(std::fmax(std::floor(value + 0.5f), 0.0f), 255.0f);
+                ASSERT_NEAR(float(shown.at(x, y)[k]), expected, 1.0f);
+                different += float(shown.at(x, y)[k]) != expected;
+            }
+    EXPECT_LT(different, width * height * 3 / 1000);  // only where rounding of the curve decides
+}
+
+TEST_F(DisplayPicture, LiesWhereItIsPutWithBackgroundAround) {
+    Image image = make_image(4, 2, 4, 1.0f);
+    image.at(0, 0)[1] = 0.0f;  // upper left: magenta
+    PictureTexture texture;
+    texture.upload(image);
+    DisplaySettings settings;
+    settings.a = texture.handle();
+    settings.view = View::linear;
+    settings.x = 10, settings.y = 20;
+    settings.width = 40, settings.height = 20;
+    settings.background[0] = 0.2f;
+    const Shown shown = show(settings);
+    const auto expect = [&](int x, int y, int r, int g, int b) {
+        EXPECT_EQ(int(shown.at(x, y)[0]), r) << x << " " << y;
+        EXPECT_EQ(int(shown.at(x, y)[1]), g) << x << " " << y;
+        EXPECT_EQ(int(shown.at(x, y)[2]), b) << x << " " << y;
+    };
+    expect(9, 25, 51, 0, 0);
+    expect(10, 19, 51, 0, 0);
+    expect(10, 20, 255, 0, 255);
+    expect(19, 29, 255, 0, 255);  // ten times as large, with hard edges
+    expect(20, 29, 255, 255, 255);
+    expect(10, 30, 255, 255, 255);
+    expect(49, 39, 255, 255, 255);
+    expect(50, 39, 51, 0, 0);
+    expect(49, 40, 51, 0, 0);
+}
+
+TEST_F(DisplayPicture, LargerThanTheTargetItIsCut) {
+    const Image image = ramp(2 * width, 2 * height);
+    PictureTexture texture;
+    texture.upload(image);
+    DisplaySettings settings;
+    settings.a = texture.handle();
+    settings.x = -30, settings.y = -17;
+    settings.width = 2 * width, settings.height = 2 * height;
+    const Shown shown = show(settings);
+    for (const auto& [x, y] : {std::pair{0, 0}, std::pair{95, 63}, std::pair{40, 7}})
+        EXPECT_NEAR(float(shown.at(x, y)[0]),
+                    255.0f * apply_view(OutputParams::View::srgb, image.at(x + 30, y + 17)[0]), 0.51f);
+}
+
+TEST_F(DisplayPicture, ShrunkItIsTheMean) {
+    Image image = make_image(8 * width, 8 * height, 4, 0.0f);
+    for (std::int64_t y = 0; y < image.height; ++y)
+        for (std::int64_t x = 0; x < image.width; ++x) image.at(x, y)[0] = (x + y) % 2 == 0 ? 1.0f : 0.0f;
+    PictureTexture texture;
+    texture.upload(image);
+    DisplaySettings settings = whole(texture);
+    settings.view = View::linear;
+    const Shown shown = show(settings);
+    for (int x = 0; x < width; ++x) EXPECT_NEAR(int(shown.at(x, 11)[0]), 128, 1);
+}
+
+TEST_F(DisplayPicture, WipeShowsAToTheLeftAndBToTheRightOfALine) {
+    PictureTexture a, b;
+    a.upload(make_image(width, height, 4, 0.25f));
+    b.upload(make_image(width, height, 4, 0.75f));
+    DisplaySettings settings = whole(a);
+    settings.b = b.handle();
+    settings.view = View::linear;
+    settings.mode = Mode::wipe;
+    settings.wipe = 0.25f;
+    const Shown shown = show(settings);
+    EXPECT_EQ(int(shown.at(23, 5)[0]), 64);
+    EXPECT_EQ(int(shown.at(24, 5)[0]), 217);  // the line
+    EXPECT_EQ(int(shown.at(25, 5)[0]), 191);
+    settings.mode = Mode::b;
+    EXPECT_EQ(int(show(settings).at(0, 0)[0]), 191);
+    settings.mode = Mode::a;
+    EXPECT_EQ(int(show(settings).at(95, 0)[0]), 64);
+    settings.mode = Mode::wipe;
+    settings.wipe = 0.0f;  // all B, no line
+    EXPECT_EQ(int(show(settings).at(0, 0)[0]), 191);
+}
+
+TEST_F(DisplayPicture, DifferenceIsOfDisplayValuesTimesGain) {
+    PictureTexture a, b;
+    a.upload(make_image(width, height, 4, 0.5f));
+    b.upload(make_image(width, height, 4, 0.7f));
+    DisplaySettings settings = whole(a);
+    settings.b = b.handle();
+    settings.mode = Mode::difference;
+    settings.difference_gain = 2.0f;
+    const float srgb_half = apply_view(OutputParams::View::srgb, 0.5f);
+    const float srgb_other = apply_view(OutputParams::View::srgb, 0.7f);
+    EXPECT_NEAR(float(show(settings).at(7, 7)[1]), 510.0f * (srgb_other - srgb_half), 0.6f);
+    settings.b_is_display = true;
+    settings.difference_gain = 10.0f;
+    EXPECT_NEAR(float(show(settings).at(7, 7)[1]), 2550.0f * std::fabs(0.7f - srgb_half), 0.6f);
+}
+
+TEST_F(DisplayPicture, ATileAloneIsReplaced) {
+    Image image = make_image(width, height, 4, 0.0f);
+    PictureTexture texture;
+    texture.upload(image);
+    image = make_image(width, height, 4, 1.0f);
+    texture.upload(image, {16, 8, 32, 24});
+    const Shown shown = show(whole(texture));
+    EXPECT_EQ(int(shown.at(15, 8)[0]), 0);
+    EXPECT_EQ(int(shown.at(16, 8)[0]), 255);
+    EXPECT_EQ(int(shown.at(47, 31)[0]), 255);
+    EXPECT_EQ(int(shown.at(48, 31)[0]), 0);
+    EXPECT_EQ(int(shown.at(16, 32)[0]), 0);
+}
+
+}  // namespace
+}  // namespace astrosplat
