@@ -5,6 +5,7 @@
 #include "core/color.h"
 #include "gui/icons.h"
 #include "gui/panel/row.h"
+#include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 #include "scene/field.h"
@@ -152,24 +153,26 @@ void choice_field(Context& context, const Row& row) {
         draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down, {area.end().x - px(12), area.middle().y},
                   px(8), color::dim);
     if (open) {
+        ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(8), px(6)));
         for (const std::string& choice : spec.choices) {
             const bool selected = row.value == choice_value(choice);
             if (ImGui::Selectable(choice_label(choice).c_str(), selected) && !selected)
                 set_value(context, row.key(), choice_value(choice));
         }
+        ImGui::PopStyleVar();
         ImGui::EndCombo();
     }
     ImGui::PopStyleVar();
 }
 
 void shape_popup(Context& context, const Row& row) {
-    if (!ImGui::BeginPopup("shapes")) return;
+    if (!begin_popup("shapes")) return;
     for (const std::string& choice : row.parameter.spec.choices)
         if (ImGui::MenuItem(choice_label(choice).c_str())) set_value(context, row.key(), choice);
     ImGui::Separator();
     if (ImGui::MenuItem("File..."))
         context.memory.request = FileRequest{FileRequest::Kind::parameter, row.key()};
-    ImGui::EndPopup();
+    end_popup();
 }
 
 void file_field(Context& context, const Row& row) {
@@ -195,7 +198,7 @@ ImVec4 displayed(const Value::List& linear) {
 }
 
 void color_picker(Context& context, const Row& row) {
-    if (!ImGui::BeginPopup("picker")) return;
+    if (!begin_popup("picker")) return;
     const ImVec4 shown = displayed(*row.value.list());
     float rgb[3] = {shown.x, shown.y, shown.z};
     const ImGuiColorEditFlags flags = ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoInputs |
@@ -208,7 +211,7 @@ void color_picker(Context& context, const Row& row) {
         for (const float c : rgb) linear.emplace_back(rounded_to_step(real::srgb_to_linear(double(c)), 1e-4));
         set_value(context, row.key(), linear, context.memory.gesture);
     }
-    ImGui::EndPopup();
+    end_popup();
 }
 
 void color_field(Context& context, const Row& row) {

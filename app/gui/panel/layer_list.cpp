@@ -143,7 +143,7 @@ void duplicate(Context& context, std::size_t i) {
 }
 
 void layer_menu(Context& context, std::size_t i) {
-    if (!ImGui::BeginPopup("layer")) return;
+    if (!begin_popup("layer")) return;
     if (ImGui::MenuItem("Rename")) begin_renaming(context, i);
     if (ImGui::MenuItem("Duplicate")) duplicate(context, i);
     if (ImGui::MenuItem("Delete", nullptr, false, context.scene().layers.size() > 1)) remove(context, i);
@@ -152,7 +152,7 @@ void layer_menu(Context& context, std::size_t i) {
     if (ImGui::MenuItem("Generate anew")) context.commands.push_back({Command::Kind::regenerate, {}, "", i});
     ImGui::Separator();
     look_menu(context);
-    ImGui::EndPopup();
+    end_popup();
 }
 
 // Layer into whose place the mouse would drop: rows may be 28 or 56 px high.

@@ -5,6 +5,7 @@
 
 #include "edit/keys.h"
 #include "gui/icons.h"
+#include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 
@@ -98,7 +99,7 @@ void paste(Context& context, const Row& row) {
 void row_menu(Context& context, const Row& row) {
     if (mouse_over(row.layout.whole) && ImGui::IsMouseReleased(ImGuiMouseButton_Right))
         ImGui::OpenPopup("menu");
-    if (!ImGui::BeginPopup("menu")) return;
+    if (!begin_popup("menu")) return;
     if (ImGui::MenuItem("Reset")) reset_value(context, row.key());
     ImGui::Separator();
     animation_menu(context, row);
@@ -107,7 +108,7 @@ void row_menu(Context& context, const Row& row) {
     if (ImGui::MenuItem("Copy key path")) ImGui::SetClipboardText(row.key().c_str());
     if (ImGui::MenuItem("Copy --set")) ImGui::SetClipboardText(set.c_str());
     if (ImGui::MenuItem("Paste")) paste(context, row);
-    ImGui::EndPopup();
+    end_popup();
 }
 
 void message_row(Context& context, const Row& row) {

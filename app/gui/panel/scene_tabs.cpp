@@ -50,11 +50,11 @@ void camera_buttons(Context& context) {
         edit(context, "camera.position", "Key camera",
              [&](Scene& scene) { key_camera(scene, *camera, frame); });
     if (clicked == 1) ImGui::OpenPopup("moves");
-    if (ImGui::BeginPopup("moves")) {
+    if (begin_popup("moves")) {
         const char* const moves[] = {"Orbit", "Fly in", "Face-on to edge-on"};  // as CameraMove
         for (std::size_t i = 0; i < 3; ++i)
             if (ImGui::MenuItem(moves[i])) context.commands.push_back({Command::Kind::add_move, {}, "", i});
-        ImGui::EndPopup();
+        end_popup();
     }
     ImGui::Dummy({0.0f, px(4)});
 }

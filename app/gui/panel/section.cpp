@@ -64,6 +64,18 @@ bool element_head(const char* title) {
     return removed;
 }
 
+bool begin_popup(const char* id) {
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(8), px(7)));
+    const bool open = ImGui::BeginPopup(id);
+    if (!open) ImGui::PopStyleVar();
+    return open;
+}
+
+void end_popup() {
+    ImGui::EndPopup();
+    ImGui::PopStyleVar();
+}
+
 void note(const std::string& text, ImU32 color) {
     ImGui::PushFont(small_font());
     ImGui::PushStyleColor(ImGuiCol_Text, color);
