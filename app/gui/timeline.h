@@ -64,9 +64,11 @@ class Timeline {
     void drag_keys(GuiFrame& frame);
     void select_in_box(const Scene& scene, float rows_y);
     const KeyPlace* key_under_mouse(const Scene& scene, float rows_y);
+    bool is_selected(const KeyPlace& place) const;
+
+    // timeline_menu.cpp
     void remove_selected(GuiFrame& frame);
     void draw_key_menu(GuiFrame& frame);
-    bool is_selected(const KeyPlace& place) const;
 
     // timeline_graph.cpp
     void draw_graph(GuiFrame& frame, const Rect& area);

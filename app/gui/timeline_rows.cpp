@@ -132,64 +132,6 @@ void Timeline::select_in_box(const Scene& scene, float rows_y) {
     list->AddRect(low, high, color::with_opacity(color::accent, 0.6f));
 }
 
-void Timeline::remove_selected(GuiFrame& frame) {
-    const std::vector<KeyPlace> places = std::move(selected_);
-    selected_.clear();
-    if (places.empty()) return;
-    try_edit([&] {
-        frame.document.edit(places.size() == 1 ? "Remove key" : "Remove keys", [&](Scene& scene) {
-            for (const KeyPlace& place : places)
-                if (has_key_at(scene, place.key, place.frame)) remove_key(scene, place.key, place.frame);
-        });
-    });
-}
-
-void Timeline::draw_key_menu(GuiFrame& frame) {
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), px(8)));
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
-    const bool open = ImGui::BeginPopup("key menu");
-    ImGui::PopStyleVar(2);
-    if (!open) return;
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
-    const auto on_selected = [&](const char* name,
-                                 const std::function<void(Scene&, const KeyPlace&)>& change) {
-        const std::vector<KeyPlace> places = selected_;
-        try_edit([&] {
-            frame.document.edit(name, [&](Scene& scene) {
-                for (const KeyPlace& place : places)
-                    if (has_key_at(scene, place.key, place.frame)) change(scene, place);
-            });
-        });
-    };
-    for (const Interpolation kind : {Interpolation::linear, Interpolation::smooth, Interpolation::step}) {
-        const char* label = kind == Interpolation::linear   ? "Linear"
-                            : kind == Interpolation::smooth ? "Smooth"
-                                                            : "Step";
-        if (ImGui::MenuItem(label))
-            on_selected("Interpolation", [&](Scene& scene, const KeyPlace& place) {
-                set_interpolation(scene, place.key, place.frame, kind);
-            });
-        note_item(frame, std::string("key menu/") + label);
-    }
-    ImGui::Separator();
-    const Track* track =
-        selected_.empty() ? nullptr : find_track(frame.document.scene(), selected_.front().key);
-    const bool eased = track && track->ends == Ends::ease;
-    if (ImGui::MenuItem("Rest at the ends", nullptr, eased))
-        on_selected("Ends", [&](Scene& scene, const KeyPlace& place) {
-            set_ends(scene, place.key, eased ? Ends::through : Ends::ease);
-        });
-    ImGui::Separator();
-    if (ImGui::MenuItem("Delete", "Del")) remove_selected(frame);
-    note_item(frame, "key menu/Delete");
-    if (ImGui::MenuItem("Delete all keys of the row"))
-        on_selected("Remove animation",
-                    [](Scene& scene, const KeyPlace& place) { remove_track(scene, place.key); });
-    close_on_escape();
-    ImGui::PopStyleVar();
-    ImGui::EndPopup();
-}
-
 void Timeline::draw_name(GuiFrame& frame, const Track& track, float x, float y, float width) {
     ImGui::PushID(track.key.c_str());
     ImGui::SetCursorScreenPos({x, y});
