@@ -29,7 +29,8 @@ class Results {
         if (in) {
             const json document = json::parse(in);
             for (const json& run : document["benchmarks"])
-                if (run["run_type"] == "iteration" && matches(run["name"], name) && run.contains(field))
+                if (run["run_type"] == "iteration" && !run.contains("error_occurred") &&
+                    matches(run["name"], name) && run.contains(field))
                     values.push_back(run[field].get<double>());
         }
         if (values.empty()) return std::nan("");
