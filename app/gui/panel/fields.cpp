@@ -147,8 +147,8 @@ void choice_field(Context& context, const Row& row) {
     ImGui::SetNextItemWidth(area.size.x);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(px(8), (area.size.y - ImGui::GetFontSize()) * 0.5f));
-    const bool open =
-        ImGui::BeginCombo("##choice", in_words(spec, row.value).c_str(), ImGuiComboFlags_NoArrowButton);
+    const bool open = ImGui::BeginCombo("##choice", in_words(spec, row.value).c_str(),
+                                        ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLargest);
     if (!open)
         draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down, {area.end().x - px(12), area.middle().y},
                   px(8), color::dim);
