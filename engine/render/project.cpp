@@ -4,9 +4,20 @@
 #include <bit>
 #include <cmath>
 
+#include "render/project_vector.h"
 #include "render/shared_render.h"
 
 namespace astrosplat {
+
+std::uint16_t hybrid_of(const LayerProjection& layer, const glm::vec3& p) {
+    if (layer.render.blend != Blend::hybrid) return 0;
+    const float along = std::fabs(shared::dot(layer.axis_in_camera, p));
+    const float cosine =
+        layer.orthographic ? std::fabs(layer.axis_in_camera.z) : along / std::sqrt(shared::dot(p, p));
+    const float h = shared::hybrid_amount(cosine, layer.render.hybrid_from_deg, layer.render.hybrid_to_deg);
+    return static_cast<std::uint16_t>(h * 65535.0f + 0.5f);
+}
+
 namespace {
 
 /// A splat relative to the camera, still in scene units.
@@ -25,15 +36,6 @@ glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
 float near_fade(const LayerProjection& layer, float z, float radius) {
     const float t = std::min(1.0f, (z - layer.near) / std::max(layer.near_fade, radius));
     return t * t * (3.0f - 2.0f * t);
-}
-
-std::uint16_t hybrid_of(const LayerProjection& layer, const glm::vec3& p) {
-    if (layer.render.blend != Blend::hybrid) return 0;
-    const float along = std::fabs(shared::dot(layer.axis_in_camera, p));
-    const float cosine =
-        layer.orthographic ? std::fabs(layer.axis_in_camera.z) : along / std::sqrt(shared::dot(p, p));
-    const float h = shared::hybrid_amount(cosine, layer.render.hybrid_from_deg, layer.render.hybrid_to_deg);
-    return static_cast<std::uint16_t>(h * 65535.0f + 0.5f);
 }
 
 float snap(float px) { return std::floor(px * 256.0f + 0.5f) * (1.0f / 256.0f); }
@@ -179,6 +181,7 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
              std::vector<ScreenSplat>& out) {
     const ShadedSplats& splats = *layer.splats;
+    if (!layer.lod) begin = project_whole_blocks(layer, begin, end, rect, out);
     for (std::int64_t i = begin; i < end; ++i) {
         const CameraSplat splat{to_camera(layer, splats.position[i]), splats.radius[i] * layer.radius_scale,
                                 splats.alpha[i], splats.color[i]};
