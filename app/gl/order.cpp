@@ -21,8 +21,8 @@ std::uint32_t depth_bits(const OrderLayer& layer, const glm::vec4& place, bool o
     return depth > 0.0f ? std::bit_cast<std::uint32_t>(depth) : 0u;
 }
 
-std::vector<Key> make_keys(const OrderJob& job) {
-    std::vector<Key> keys;
+void make_keys(const OrderJob& job, Buffer<Key>& keys) {
+    keys.clear();
     keys.reserve(job.places->size());
     for (const OrderLayer& layer : job.layers) {
         for (std::int64_t i = layer.first; i < layer.first + layer.count; ++i) {
@@ -31,11 +31,10 @@ std::vector<Key> make_keys(const OrderJob& job) {
             keys.push_back(Key{~depth_bits(layer, place, job.orthographic)} << 32 | Key(i));
         }
     }
-    return keys;
 }
 
-void radix_sort(std::vector<Key>& keys) {
-    std::vector<Key> other(keys.size());
+void radix_sort(Buffer<Key>& keys, Buffer<Key>& other) {
+    other.resize(keys.size());
     for (int shift = 32; shift < 64; shift += digit_bits) {
         std::vector<std::size_t> start(digits + 1, 0);
         for (Key key : keys) ++start[(key >> shift & (digits - 1u)) + 1];
@@ -58,7 +57,7 @@ struct TieBreak {
     bool operator()(Key a, Key b) const { return of(a) > of(b); }
 };
 
-void break_ties(const OrderJob& job, std::vector<Key>& keys) {
+void break_ties(const OrderJob& job, Buffer<Key>& keys) {
     for (std::size_t i = 0; i < keys.size();) {
         std::size_t end = i + 1;
         while (end < keys.size() && keys[end] >> 32 == keys[i] >> 32) ++end;
@@ -70,9 +69,10 @@ void break_ties(const OrderJob& job, std::vector<Key>& keys) {
 
 }  // namespace
 
-Order sort_far_to_near(const OrderJob& job) {
-    std::vector<Key> keys = make_keys(job);
-    radix_sort(keys);
+Order sort_far_to_near(const OrderJob& job, OrderScratch& scratch) {
+    Buffer<Key>& keys = scratch.keys;
+    make_keys(job, keys);
+    radix_sort(keys, scratch.other);
     break_ties(job, keys);
     Order order;
     order.version = job.version;
@@ -123,6 +123,7 @@ bool OrderThread::wait(std::chrono::microseconds at_most) {
 }
 
 void OrderThread::run() {
+    OrderScratch scratch;
     std::unique_lock lock(mutex_);
     for (;;) {
         wake_.wait(lock, [this] { return stop_ || !jobs_.empty(); });
@@ -130,7 +131,7 @@ void OrderThread::run() {
         auto job = jobs_.extract(jobs_.begin());
         working_ = true;
         lock.unlock();
-        Order order = sort_far_to_near(job.mapped());
+        Order order = sort_far_to_near(job.mapped(), scratch);
         lock.lock();
         working_ = false;
         orders_[job.key()] = std::move(order);

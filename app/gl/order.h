@@ -43,8 +43,13 @@ struct Order {
     std::uint64_t version = 0;
 };
 
-/// Distance squared from the eye, or depth, with the bits the offline renderer sorts by.
-Order sort_far_to_near(const OrderJob& job);
+/// Memory that sorting uses again; page faults cost as much as sorting.
+struct OrderScratch {
+    Buffer<std::uint64_t> keys, other;
+};
+
+/// By distance squared from the eye, or depth, with the bits the offline renderer sorts by.
+Order sort_far_to_near(const OrderJob& job, OrderScratch& scratch);
 
 /// A thread that sorts. Of the jobs for one slot only the newest is done.
 class OrderThread {

@@ -22,8 +22,13 @@ OrderJob job_at(const std::vector<float>& zs) {
     return job;
 }
 
+Order sorted(const OrderJob& job) {
+    OrderScratch scratch;
+    return sort_far_to_near(job, scratch);
+}
+
 std::vector<std::uint32_t> order_of(const OrderJob& job) {
-    const Order order = sort_far_to_near(job);
+    const Order order = sorted(job);
     return {order.splats.begin(), order.splats.end()};
 }
 
@@ -62,11 +67,11 @@ TEST(PreviewOrder, DroppedSplatsAreLeftOut) {
 TEST(PreviewOrder, CountsWhatLiesBeyondADistance) {
     OrderJob job = job_at({-2, -5, -3, -1});
     job.far_from = 2.5;
-    EXPECT_EQ(sort_far_to_near(job).far_count, 2);
+    EXPECT_EQ(sorted(job).far_count, 2);
     job.far_from = 0.0;
-    EXPECT_EQ(sort_far_to_near(job).far_count, 4);
+    EXPECT_EQ(sorted(job).far_count, 4);
     job.far_from = 1e30;
-    EXPECT_EQ(sort_far_to_near(job).far_count, 0);
+    EXPECT_EQ(sorted(job).far_count, 0);
 }
 
 TEST(PreviewOrder, ManySplatsAreInOrder) {
