@@ -180,13 +180,15 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache&
 
 Pipeline::~Pipeline() = default;
 
-void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets) {
+void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets,
+                         const Environment* loaded) {
     assert(sets.size() == scene.layers.size());
     State& state = *state_;
     check_supported(scene.camera);
     if (!same_pictures(scene.environment, state.scene.environment)) {
         std::optional<Environment> environment;
-        if (has_environment(scene.environment)) environment = load_environment(scene.environment);
+        if (has_environment(scene.environment))
+            environment = loaded ? *loaded : load_environment(scene.environment);
         state.environment = std::move(environment);
     }
     std::vector<LayerState> layers;

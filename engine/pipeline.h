@@ -38,9 +38,11 @@ class Pipeline {
 
     /// Takes another scene with sets that are there already, one a layer; a layer whose set is null is left
     /// out. What did not change is kept: environment pictures of the same files, and the thickness map and
-    /// shaded splats of a set that was in use, so that the next frame pays only for what changed. Throws
+    /// shaded splats of a set that was in use, so that the next frame pays only for what changed. `loaded`:
+    /// the environment of the scene where the caller has it, which is copied instead of loaded. Throws
     /// InputError and then keeps the scene it had.
-    void set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets);
+    void set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets,
+                   const Environment* loaded = nullptr);
 
     /// Renders one frame of the scene. `tile_done` as in render().
     RenderedFrame frame(double frame, const RenderSettings& settings, const Progress& progress = {},

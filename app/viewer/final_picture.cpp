@@ -56,7 +56,7 @@ void copy_tile(const Image& from, const Region& tile, Image& to) {
 void render_run(Pipeline& pipeline, Run& run) {
     const auto start = std::chrono::steady_clock::now();
     const FinalRequest& request = run.request;
-    pipeline.set_scene(request.scene, request.sets);
+    pipeline.set_scene(request.scene, request.sets, request.environment.get());
     RenderSettings settings = pipeline.settings(request.frame);
     settings.width = request.width;
     settings.height = request.height;

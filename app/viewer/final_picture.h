@@ -18,6 +18,7 @@ namespace astrosplat {
 struct FinalRequest {
     Scene scene;                                        // evaluated by the pipeline at `frame`
     std::vector<std::shared_ptr<const SplatSet>> sets;  // one a layer; null: the layer is not drawn
+    std::shared_ptr<const Environment> environment;     // of the scene, where it is loaded already
     double frame = 1.0;
     std::int64_t width = 0, height = 0;  // px
     Region region;                       // empty: all

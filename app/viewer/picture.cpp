@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 #include <map>
 #include <optional>
 
@@ -20,21 +21,26 @@ class PictureFiles {
         if (!image) image = std::make_unique<Image>(load_raw_image(file));
         return *image;
     }
-    /// With gain and rotation of `params`; null where there is none to be seen.
-    const Environment* environment(const EnvironmentParams& params) {
+    /// With gain and rotation of `params`; null where there is none to be seen, and while it is being loaded.
+    std::shared_ptr<const Environment> environment(const EnvironmentParams& params) {
         if (!has_environment(params) || !params.visible) return nullptr;
-        if (!environment_ || files_ != std::pair(params.image, params.cube)) {
-            environment_.emplace(load_environment(params));
+        if (files_ != std::pair(params.image, params.cube)) {
             files_ = {params.image, params.cube};
+            environment_.reset();
+            loading_ = std::async(std::launch::async, [params] { return load_environment(params); });
         }
-        set_environment_params(*environment_, params);
-        return &*environment_;
+        if (loading_.valid() && loading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+            environment_ = std::make_shared<Environment>(loading_.get());
+        if (environment_) set_environment_params(*environment_, params);
+        return environment_;
     }
+    bool loading() const { return loading_.valid(); }
 
   private:
     std::map<std::filesystem::path, std::unique_ptr<Image>> maps_;
-    std::optional<Environment> environment_;
     std::pair<std::filesystem::path, std::vector<std::filesystem::path>> files_;
+    std::future<Environment> loading_;
+    std::shared_ptr<Environment> environment_;
 };
 
 std::shared_ptr<PictureFiles> make_picture_files() { return std::make_shared<PictureFiles>(); }
@@ -62,7 +68,8 @@ Camera camera_of(const PictureRequest& request) {
 
 namespace {
 
-constexpr double rest_s = 0.3;  // without a change, before the final picture begins
+constexpr std::int64_t small_layer = 15'000;  // splats that a preview shows of any layer
+constexpr double rest_s = 0.3;                // without a change, before the final picture begins
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -78,6 +85,7 @@ Region whole(const PictureRequest& request) {
 struct ViewPicture::Impl {
     std::shared_ptr<PictureFiles> files;
     std::optional<PictureRequest> request;
+    std::shared_ptr<const Environment> environment;  // of the last preview
     PreviewChoice choice;
     CpuPreview cpu;
     std::unique_ptr<GlPreview> gl;  // made when first wanted
@@ -93,6 +101,7 @@ struct ViewPicture::Impl {
     std::vector<std::int64_t> shown;
 
     std::vector<PreviewLayer> preview_layers();
+    bool environment_arrived();
     void draw_preview();
     void take_final();
     void begin_final();
@@ -121,12 +130,20 @@ std::vector<PreviewLayer> ViewPicture::Impl::preview_layers() {
         places.push_back(i);
         layers.push_back(std::move(layer));
     }
-    const float share = choice.share > 0.0f ? choice.share : share_for_budget(sizes, budget.splats);
+    const std::int64_t most = choice.splats > 0 ? choice.splats : budget.splats;
+    const float share = choice.share > 0.0f ? choice.share : share_for_budget(sizes, most);
     for (std::size_t n = 0; n < layers.size(); ++n) {
-        layers[n].share = share;
-        shown[places[n]] = static_cast<std::int64_t>(share * static_cast<float>(sizes[n]));
+        // A share of a small layer, such as a star cluster, would lose what it is made of.
+        const auto small = static_cast<float>(small_layer) / static_cast<float>(sizes[n]);
+        layers[n].share = std::min(1.0f, std::max(share, choice.share > 0.0f ? 0.0f : small));
+        shown[places[n]] = static_cast<std::int64_t>(layers[n].share * static_cast<float>(sizes[n]));
     }
     return layers;
+}
+
+/// The environment of the picture shown has been loaded since.
+bool ViewPicture::Impl::environment_arrived() {
+    return request && files->environment(request->scene.environment) != environment;
 }
 
 void ViewPicture::Impl::draw_preview() {
@@ -136,16 +153,16 @@ void ViewPicture::Impl::draw_preview() {
     camera.center_x_px -= static_cast<double>(part.x);
     camera.center_y_px -= static_cast<double>(part.y);
     const std::vector<PreviewLayer> layers = preview_layers();
-    const Environment* environment = files->environment(request->scene.environment);
+    environment = files->environment(request->scene.environment);
     const auto filter = static_cast<float>(request->scene.output.pixel_filter);
     const int width = static_cast<int>(part.width), height = static_cast<int>(part.height);
     if (choice.opengl) {
         if (!gl) gl = std::make_unique<GlPreview>();
-        texture = gl->draw(layers, camera, environment, width, height, filter);
+        texture = gl->draw(layers, camera, environment.get(), width, height, filter);
         drawn = nullptr;
         status.shown = gl->shown();
     } else {
-        drawn = &cpu.draw(layers, camera, environment, width, height, filter);
+        drawn = &cpu.draw(layers, camera, environment.get(), width, height, filter);
         canvas_texture.upload(*drawn);
         texture = canvas_texture.handle();
         status.shown = cpu.shown();
@@ -164,6 +181,7 @@ void ViewPicture::Impl::begin_final() {
         const std::shared_ptr<const LoadedLayer>& loaded = request->layers[i];
         wanted.sets.push_back(loaded && request->scene.layers[i].visible ? loaded->set : nullptr);
     }
+    wanted.environment = environment;
     wanted.width = request->width;
     wanted.height = request->height;
     wanted.region = request->region;
@@ -198,11 +216,13 @@ ViewPicture::~ViewPicture() = default;
 void ViewPicture::show(const PictureRequest& request, const PreviewChoice& choice, bool settle, double now,
                        bool hurry) {
     Impl& self = *impl_;
-    const bool redraw = self.choice.opengl != choice.opengl || self.choice.share != choice.share;
-    if (!self.request || redraw || !(*self.request == request) || (self.gl && self.gl->sorting())) {
+    const bool changed = !self.request || !(*self.request == request) ||
+                         self.choice.opengl != choice.opengl || self.choice.share != choice.share ||
+                         self.environment_arrived();
+    if (changed || (self.gl && self.gl->sorting())) {
         self.final.cancel();
         self.final_started = false;
-        if (!self.request || redraw || !(*self.request == request)) self.changed_at = now;
+        if (changed) self.changed_at = now;
         self.request = request;
         self.choice = choice;
         try {
@@ -216,6 +236,7 @@ void ViewPicture::show(const PictureRequest& request, const PreviewChoice& choic
     }
     if (self.status.state == PictureState::failed) return;
     if (!self.final_started) {
+        if (self.files->loading()) return;
         if (settle && (hurry || now - self.changed_at >= rest_s)) self.begin_final();
     } else if (self.status.state == PictureState::refining) {
         self.take_final();
@@ -242,7 +263,9 @@ const Image* ViewPicture::pixels() const {
 
 double ViewPicture::due(double now) const { return std::max(0.0, impl_->changed_at + rest_s - now); }
 
-bool ViewPicture::exact() const { return impl_->request && !(impl_->gl && impl_->gl->sorting()); }
+bool ViewPicture::exact() const {
+    return impl_->request && !impl_->files->loading() && !(impl_->gl && impl_->gl->sorting());
+}
 
 std::shared_ptr<const RenderedFrame> ViewPicture::final_frame() const {
     return impl_->status.state == PictureState::final ? impl_->final.frame() : nullptr;

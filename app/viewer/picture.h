@@ -37,6 +37,7 @@ Camera camera_of(const PictureRequest& request);
 struct PreviewChoice {
     bool opengl = false;
     float share = 0.0f;       // of every layer; 0: sized by the frame rate
+    std::int64_t splats = 0;  // with share 0: this many in all, whatever the frame rate; 0: by it
     double target_ms = 25.0;  // of one preview
 };
 

@@ -3,6 +3,7 @@
 // job harms nothing.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -21,10 +22,10 @@ class RenderJob {
     RenderJob();
     ~RenderJob();  // cancels and waits
 
-    /// Frames of the scene `scene_text` as `arguments` after --batch SCENE say, then `afterwards`. `folder`
-    /// is the job's own: scene.toml is written there, and it is removed at the end. Throws OutputError, and
-    /// InputError while a job runs.
-    void start(const std::filesystem::path& folder, const std::string& scene_text,
+    /// `frames` frames of the scene `scene_text` as `arguments` after --batch SCENE say, then `afterwards`.
+    /// `folder` is the job's own: scene.toml is written there, and it is removed at the end. Throws
+    /// OutputError, and InputError while a job runs.
+    void start(const std::filesystem::path& folder, const std::string& scene_text, std::int64_t frames,
                const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards = {});
     void cancel();
 

@@ -9,6 +9,7 @@
 #include "core/log.h"
 #include "edit/preferences.h"
 #include "interrupt.h"
+#include "viewer/native_chooser.h"
 #include "viewer/session.h"
 #include "viewer/viewer.h"
 #include "viewer/window.h"
@@ -32,6 +33,7 @@ class Loop {
         : window_(preferences.window_width, preferences.window_height, "astrosplat"),
           session_(options, window_.gl()) {
         apply_theme(window_.content_scale());
+        gui_.set_file_chooser([this](const FileQuery& request) { return chooser_.open(request); });
     }
 
     void run() {
@@ -46,7 +48,8 @@ class Loop {
 
   private:
     void wait() {
-        const double due = session_.next_due(seconds_now());
+        double due = session_.next_due(seconds_now());
+        if (chooser_.is_open()) due = std::min(due, 0.1);
         if (frames_left_ > 0 || gui_.busy() || due <= 0.0) {
             window_.wait(0.0);
             frames_left_ = std::max(0, frames_left_ - 1);
@@ -63,6 +66,7 @@ class Loop {
         if (window_.close_requested()) gui_.ask_to_quit(session_.document());
         const std::vector<std::filesystem::path> dropped = window_.take_dropped();
         if (!dropped.empty()) session_.drop(dropped);
+        if (const auto answer = chooser_.take_answer()) gui_.file_chosen(*answer);
         const double now = seconds_now();
         session_.advance(now);
         if (session_.title() != title_) window_.set_title(title_ = session_.title());
@@ -88,6 +92,7 @@ class Loop {
     Window window_;
     Session session_;
     Gui gui_;
+    NativeChooser chooser_;
     std::string title_;
     int frames_left_ = frames_after_event;
 };

@@ -137,7 +137,6 @@ void write_exr(const ScreenshotOptions& options, const Size& size, Session& sess
 
 /// The viewport alone.
 void take_picture(const ScreenshotOptions& options, const Size& size, bool exr, Session& session) {
-    session.set_viewport_is_picture(true);
     wait_for_picture(session, options.settled,
                      [&](double now) { session.draw(size.width, size.height, now, true); });
     if (exr) return write_exr(options, size, session);
@@ -180,6 +179,7 @@ void take(const ScreenshotOptions& options, const GlInfo& gl) {
     if (options.frame) session.view().frame = parse_frame(*options.frame);
     session.view().settle = options.settled;
     session.view().hint_open = false;
+    session.prepare_screenshot(options.ui);
     if (options.opengl) session.view().engine = PreviewEngine::opengl;
     options.ui ? take_window(options, size, session) : take_picture(options, size, exr, session);
 }

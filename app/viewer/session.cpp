@@ -249,7 +249,7 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
     }
     const PreviewChoice choice{self.view.engine == PreviewEngine::opengl ||
                                    (self.view.engine == PreviewEngine::automatic && !self.gl.software),
-                               self.view.preview_share};
+                               self.view.preview_share, self.fixed_splats};
     const bool may_settle = self.view.settle && !self.view.playing && self.loader.idle();
     self.a.show(self.request, choice, may_settle, now, hurry);
 
@@ -363,6 +363,7 @@ double Session::next_due(double now) const {
     const Impl& self = *impl_;
     if (!self.loader.idle() || self.job.state() == RenderJob::State::running) return 0.1;
     if (self.view.playing) return 0.0;
+    if (!self.a.exact()) return 0.02;
     const PictureState state = self.a.status().state;
     if (state == PictureState::refining) return 0.03;
     if (self.comparing && self.b.waiting()) return 0.03;
@@ -380,7 +381,12 @@ bool Session::quitting() const { return impl_->quitting; }
 std::string Session::title() const {
     return impl_->document.name() + (impl_->document.edited() ? " - edited" : "") + " - astrosplat";
 }
-void Session::set_viewport_is_picture(bool on) { impl_->viewport_is_picture = on; }
+void Session::prepare_screenshot(bool with_panels) {
+    constexpr std::int64_t preview_splats = 500'000;
+    impl_->viewport_is_picture = !with_panels;
+    impl_->fixed_splats = preview_splats;
+    impl_->status.recoveries.clear();
+}
 
 std::optional<std::filesystem::path> Session::take_screenshot_request() {
     return std::exchange(impl_->screenshot, std::nullopt);

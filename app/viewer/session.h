@@ -54,8 +54,9 @@ class Session {
     void say(const std::string& text, bool error = false);
     bool quitting() const;
     std::string title() const;
-    /// The whole viewport is the picture, whatever the output's aspect: for screenshots without panels.
-    void set_viewport_is_picture(bool on);
+    /// For screenshots: the preview draws a fixed number of splats instead of one that holds a frame rate;
+    /// and where the panels are left out, the whole viewport is the picture, whatever the output's aspect.
+    void prepare_screenshot(bool with_panels);
 
     /// A screenshot that was asked for; the caller reads the window and hands the pixels back.
     std::optional<std::filesystem::path> take_screenshot_request();

@@ -76,16 +76,19 @@ void Session::Impl::render_files(const Command& command) {
     if (!cache.folder.empty()) arguments.insert(arguments.end(), {"--cache", cache.folder.string()});
     const fs::path folder = make_job_folder();
     std::vector<ProcessStep> afterwards;
+    std::int64_t frames =
+        static_cast<std::int64_t>(parse_frames(document.scene().output.frames, "output.frames").size());
     if (command.kind == Kind::render_movie) {
         arguments.insert(arguments.end(), {"-o", (folder / "frame.######.png").string()});
         afterwards.push_back(movie_step(folder, document.scene().output.fps, command.path));
     } else if (command.kind == Kind::render_frame) {
+        frames = 1;
         arguments.insert(arguments.end(),
                          {"-f", frame_text(view.frame), "-o", fs::absolute(command.path).string()});
     } else {
         arguments.insert(arguments.end(), {"-o", absolute_pattern(document)});
     }
-    job.start(folder, document.text_for(folder / "scene.toml"), arguments, std::move(afterwards));
+    job.start(folder, document.text_for(folder / "scene.toml"), frames, arguments, std::move(afterwards));
     job_target = command.kind == Kind::render_range ? fs::path(absolute_pattern(document)) : command.path;
 }
 

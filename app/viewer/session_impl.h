@@ -56,6 +56,7 @@ struct Session::Impl {
     double fly_speed = 1.0;  // scene sizes a second
     bool quitting = false, fresh_demo = false;
     bool viewport_is_picture = false;
+    std::int64_t fixed_splats = 0;  // of the preview; 0: by the frame rate
     std::optional<std::filesystem::path> screenshot;
     std::optional<std::string> clipboard;
     Commands dropped;  // from files, for the next frame of widgets

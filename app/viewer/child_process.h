@@ -1,0 +1,34 @@
+// Another program at work beside the window: started without a shell, its output read as it comes, never
+// waited for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace astrosplat {
+
+class ChildProcess {
+  public:
+    /// Starts arguments[0] (found on the PATH) with stdout, and with `errors_too` stderr, read by output().
+    /// Throws OutputError where it cannot be started.
+    ChildProcess(const std::vector<std::string>& arguments, bool errors_too);
+    ~ChildProcess();  // ends it (SIGTERM) and waits
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    /// What it has written since the last call.
+    std::string output();
+    /// Its exit code once it has ended: 128 + signal where a signal ended it. Empty while it runs.
+    std::optional<int> exit_code();
+    void terminate();
+
+  private:
+    pid_t id_ = -1;
+    int pipe_ = -1;
+    std::optional<int> exit_code_;
+};
+
+}  // namespace astrosplat
