@@ -33,12 +33,6 @@ class RawSplatStore {
 /// Splats of a layer that its share shows: at least one where the set has any.
 std::int64_t shown_count(const PreviewLayer& layer);
 
-/// As group_of draws them: splats, ordered or not, and how many of the first may be points.
-struct DrawRange {
-    std::int64_t count = 0, point_count = 0;
-    bool ordered = false;
-};
-
 class GroupSplats {
   public:
     /// Brings the shaded splats of these layers up to date. Throws InputError as prepare_look does.

@@ -62,8 +62,7 @@ using GlBuffer = GlObject<BufferKind>;
 using GlVertexArray = GlObject<VertexArrayKind>;
 using GlFramebuffer = GlObject<FramebufferKind>;
 
-/// Nothing read yet is between two texels, unless `filter` says so; edges are clamped. Leaves the texture
-/// bound.
+/// Of the bound texture: filter, no mip levels, edges clamped.
 void set_sampling(GLenum target, GLenum filter);
 
 /// A texture that can be drawn into.
