@@ -116,4 +116,13 @@ const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Cam
 
 std::int64_t CpuPreview::shown() const { return state_->shown; }
 
+std::vector<double> CpuPreview::kept() const {
+    std::vector<double> shares;
+    for (const KeptLayer& layer : state_->layers) {
+        const auto rows = static_cast<double>(std::max<std::int64_t>(1, layer.rows.size()));
+        shares.push_back(static_cast<double>(layer.shaded.size()) / rows);
+    }
+    return shares;
+}
+
 }  // namespace astrosplat

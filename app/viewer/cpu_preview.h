@@ -21,6 +21,8 @@ class CpuPreview {
                       const Environment* environment, int width, int height, float pixel_filter);
     /// Splats of the last draw, before the look dropped any.
     std::int64_t shown() const;
+    /// Of each layer of the last draw: the share of the shown splats that the look kept, 0..1.
+    std::vector<double> kept() const;
 
   private:
     struct State;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <future>
 #include <map>
 #include <optional>
@@ -98,9 +99,11 @@ struct ViewPicture::Impl {
     Image canvas;                  // preview and tiles of the final picture, once that has begun
     unsigned texture = 0;
     PictureStatus status;
-    std::vector<std::int64_t> shown;
+    std::vector<std::int64_t> shown, kept;
+    std::vector<std::size_t> places;  // in the scene, of the layers that the last preview drew
 
     std::vector<PreviewLayer> preview_layers();
+    void note_kept(const std::vector<double>& shares);
     bool environment_arrived();
     void draw_preview();
     void take_final();
@@ -110,7 +113,7 @@ struct ViewPicture::Impl {
 std::vector<PreviewLayer> ViewPicture::Impl::preview_layers() {
     std::vector<PreviewLayer> layers;
     std::vector<std::int64_t> sizes;  // of the layers seen
-    std::vector<std::size_t> places;  // and where they are in the scene
+    places.clear();
     shown.assign(request->layers.size(), 0);
     status.total = 0;
     for (std::size_t i = 0; i < request->layers.size(); ++i) {
@@ -141,6 +144,14 @@ std::vector<PreviewLayer> ViewPicture::Impl::preview_layers() {
     return layers;
 }
 
+void ViewPicture::Impl::note_kept(const std::vector<double>& shares) {
+    kept.assign(request->layers.size(), -1);
+    for (std::size_t n = 0; n < std::min(shares.size(), places.size()); ++n) {
+        const auto whole = static_cast<double>(request->layers[places[n]]->set->size());
+        kept[places[n]] = std::llround(shares[n] * whole);
+    }
+}
+
 /// The environment of the picture shown has been loaded since.
 bool ViewPicture::Impl::environment_arrived() {
     return request && files->environment(request->scene.environment) != environment;
@@ -166,6 +177,7 @@ void ViewPicture::Impl::draw_preview() {
         canvas_texture.upload(*drawn);
         texture = canvas_texture.handle();
         status.shown = cpu.shown();
+        note_kept(cpu.kept());
     }
     budget.measured(milliseconds_since(start), choice.target_ms, status.shown);
     status.state = PictureState::preview;
@@ -255,6 +267,7 @@ bool ViewPicture::waiting() const {
     return impl_->status.state == PictureState::preview || impl_->status.state == PictureState::refining;
 }
 const std::vector<std::int64_t>& ViewPicture::shown() const { return impl_->shown; }
+const std::vector<std::int64_t>& ViewPicture::kept() const { return impl_->kept; }
 
 const Image* ViewPicture::pixels() const {
     if (impl_->final_started && impl_->canvas.width > 0) return &impl_->canvas;

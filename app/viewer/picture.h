@@ -62,6 +62,8 @@ class ViewPicture {
     bool waiting() const;
     /// Preview splats of each layer in the last preview.
     const std::vector<std::int64_t>& shown() const;
+    /// Splats of each layer that its look keeps, estimated from the last preview; below 0: not known.
+    const std::vector<std::int64_t>& kept() const;
     /// The preview is that of the present request, in order.
     bool exact() const;
     /// Seconds until the final picture may begin.

@@ -289,6 +289,7 @@ void Session::Impl::fill_layers(const Scene& now) {
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         status.layers[i] = loader.status(document.scene().layers[i]);
         if (i < shown.size()) status.layers[i].shown = shown[i];
+        status.layers[i].kept = i < a.kept().size() ? a.kept()[i] : -1;
         const auto loaded = loader.layer(now.layers[i].name);
         if (loaded && now.layers[i].visible)
             status.box.add(world_bounds(loaded->box, render_layer(now.layers[i])));

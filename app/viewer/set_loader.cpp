@@ -197,6 +197,22 @@ void SetLoader::Impl::work() {
     }
 }
 
+namespace {
+
+/// Of the first splats of a set in stratified order, which are a fair sample.
+glm::vec3 mean_color(const SplatSet& set) {
+    constexpr std::int64_t sample = 4096;
+    glm::vec3 sum(0.0f);
+    float weight = 0.0f;
+    for (std::int64_t i = 0; i < std::min(sample, set.size()); ++i) {
+        sum += set.alpha[i] * set.color[i];
+        weight += set.alpha[i];
+    }
+    return weight > 0.0f ? sum / weight : glm::vec3(1.0f);
+}
+
+}  // namespace
+
 /// The set, and what the preview needs to begin.
 void SetLoader::Impl::load(Job& current) {
     Progress progress;
@@ -209,6 +225,7 @@ void SetLoader::Impl::load(Job& current) {
     const Buffer<std::int64_t> order = stratified_order(*set, progress);
     loaded->preview =
         std::make_shared<const SplatSet>(take_rows(*set, order, std::min(preview_limit, set->size())));
+    loaded->color = mean_color(*loaded->preview);
     loaded->box = bounds(*set);
     loaded->radius = unset_radius(*set);
     loaded->set = std::move(set);
@@ -322,6 +339,7 @@ LayerStatus SetLoader::status(const LayerParams& layer) const {
     status.radius_min = entry.loaded->radius.x;
     status.radius_max = entry.loaded->radius.y;
     status.spacing = std::cbrt(s.x * s.y * s.z);
+    status.color = entry.loaded->color;
     status.histograms = entry.loaded->histograms;
     return status;
 }

@@ -21,6 +21,7 @@ struct LoadedLayer {
     std::shared_ptr<const SplatSet> preview;            // in stratified order, at most `preview_limit` splats
     std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
     Bounds box;                                         // layer space
+    glm::vec3 color{1.0f};                              // mean of the splats, weighted by alpha, linear
     glm::dvec2 radius{0.0};  // smallest and largest, scene units: what look.radius 0, 0 means; 0: unknown
     SourceParams source;
     std::string name;  // which the seed may depend on

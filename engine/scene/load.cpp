@@ -263,6 +263,15 @@ Scene parse_scene(const std::string& toml, const fs::path& file, std::span<const
 
 Scene parse_unchecked(const std::string& toml, const fs::path& file) { return parse(toml, file, {}, false); }
 
+Value typed_value(const std::string& text) {
+    const toml::table table = parse_raw(text);
+    try {
+        return value_of(*table.get("value"));
+    } catch (const ValueError&) {
+        return text;
+    }
+}
+
 Scene load_scene(const fs::path& file, std::span<const Assignment> assignments) {
     return parse_scene(read_text_file(file), file, assignments);
 }

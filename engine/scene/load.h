@@ -7,6 +7,7 @@
 #include <string>
 
 #include "scene/scene.h"
+#include "scene/value.h"
 
 namespace astrosplat {
 
@@ -15,6 +16,10 @@ struct Assignment {
     std::string key, value;
 };
 Assignment parse_assignment(const std::string& text);
+
+/// What somebody typed as a value: TOML where it is TOML, otherwise the text itself, also for dates and
+/// tables, which no parameter takes.
+Value typed_value(const std::string& text);
 
 /// Loads a scene and applies the assignments. Paths inside the file are resolved against its folder, those of
 /// assignments against the working directory; ${NAME} is an environment variable. Throws InputError.

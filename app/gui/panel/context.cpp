@@ -1,13 +1,11 @@
 // Reading through the description, writing through the document.
 #include "gui/panel/context.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 
 #include "gui/panel/companions.h"
 #include "scene/animate.h"
-#include "scene/toml_read.h"
+#include "scene/load.h"
 
 namespace astrosplat::panel {
 
@@ -132,15 +130,7 @@ Value value_from_text(const std::string& text, const ParameterSpec& spec) {
         if (raw.find(',') != std::string::npos) raw = "[" + raw + "]";
     }
     if (number && !raw.empty() && raw.front() == '.') raw = "0" + raw;
-    try {
-        const toml::table table = toml::parse("value = " + raw);
-        if (table.size() == 1 && raw.find('\n') == std::string::npos) return value_of(*table.get("value"));
-    } catch (const toml::parse_error&) {
-        // a bare word
-    } catch (const ValueError&) {
-        // a date or a table, which no parameter takes: as text it is refused in words
-    }
-    return raw;
+    return typed_value(raw);
 }
 
 }  // namespace astrosplat::panel
