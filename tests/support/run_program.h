@@ -71,6 +71,13 @@ class RunningProgram {
 
     void signal(int number) const { kill(process_, number); }
     std::string err_so_far() const { return text_of(logs_ / "err"); }
+    pid_t id() const { return process_; }
+    /// It has not ended; wait() can still tell how it did.
+    bool running() const {
+        siginfo_t ended = {};
+        return waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+               ended.si_pid == 0;
+    }
     RunResult wait() const {
         int status = 0;
         waitpid(process_, &status, 0);

@@ -1,0 +1,70 @@
+// One xdotool a gesture: its words are events and the waits between them.
+#include "window/person.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/run_program.h"
+
+namespace astrosplat::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+void add(Words& words, const Words& more) { words.insert(words.end(), more.begin(), more.end()); }
+
+Words to(glm::vec2 at) {
+    return {"mousemove", std::to_string(std::lround(at.x)), std::to_string(std::lround(at.y))};
+}
+
+}  // namespace
+
+void Person::act(std::vector<std::string> words) const {
+    words.insert(words.begin(), {"/usr/bin/env", "xdotool"});
+    RunOptions options;
+    options.environment = {"DISPLAY=" + display_};
+    const RunResult result = run_program(words, options);
+    ASSERT_EQ(result.code, 0) << result.err;
+}
+
+void Person::move(glm::vec2 at) const {
+    Words words = to(at);
+    add(words, {"sleep", "0.15"});
+    act(words);
+}
+
+void Person::click(glm::vec2 at) const {
+    Words words = to(at);
+    add(words, {"sleep", "0.2", "mousedown", "1", "sleep", "0.15", "mouseup", "1", "sleep", "0.15"});
+    act(words);
+}
+
+void Person::double_click(glm::vec2 at) const {
+    Words words = to(at);
+    add(words, {"sleep", "0.4"});  // since the last click
+    for (int i = 0; i < 2; ++i)
+        add(words, {"mousedown", "1", "sleep", "0.05", "mouseup", "1", "sleep", "0.05"});
+    add(words, {"sleep", "0.3"});
+    act(words);
+}
+
+void Person::drag(glm::vec2 from, glm::vec2 by) const {
+    constexpr int steps = 10;
+    Words words = to(from);
+    add(words, {"sleep", "0.4", "mousedown", "1", "sleep", "0.15"});
+    for (int i = 1; i <= steps; ++i) {
+        add(words, to(from + by * (static_cast<float>(i) / steps)));
+        add(words, {"sleep", "0.04"});
+    }
+    add(words, {"sleep", "0.2", "mouseup", "1", "sleep", "0.15"});
+    act(words);
+}
+
+void Person::key(const std::string& key) const {
+    act({"keydown", key, "sleep", "0.2", "keyup", key, "sleep", "0.15"});
+}
+
+void Person::type(const std::string& text) const { act({"type", "--delay", "60", text}); }
+
+}  // namespace astrosplat::test

@@ -1,0 +1,29 @@
+// The hands of the person at the window: real mouse and key events (xdotool), slow enough to be seen by one
+// frame each.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <string>
+#include <vector>
+
+namespace astrosplat::test {
+
+class Person {
+  public:
+    explicit Person(std::string display) : display_(std::move(display)) {}
+
+    void move(glm::vec2 to) const;
+    void click(glm::vec2 at) const;
+    void double_click(glm::vec2 at) const;
+    /// With the left button, in steps; rests before letting go.
+    void drag(glm::vec2 from, glm::vec2 by) const;
+    /// "ctrl+s", "0", "Return", as xdotool names them.
+    void key(const std::string& key) const;
+    void type(const std::string& text) const;
+
+  private:
+    void act(std::vector<std::string> words) const;
+    std::string display_;
+};
+
+}  // namespace astrosplat::test

@@ -1,0 +1,181 @@
+#include "window/window_test.h"
+
+#include <cmath>
+
+#include "edit/preferences.h"
+#include "gui/theme.h"
+#include "output/write_picture.h"
+
+namespace astrosplat::test {
+namespace {
+
+constexpr const char* scene_text = R"(# by hand, keep this
+astrosplat = 1
+
+[output]
+resolution = [320, 180]  # px
+frames = "1-24"
+path = "frames/shot.####.png"
+
+[camera]
+position = [0.0, 6.0, 8.0]
+target = [0.0, 0.0, 0.0]
+
+[[layer]]
+name = "disc"  # the only one
+[layer.source]
+meshes = [ { mesh = "plane", texture = "rings.png" } ]
+count = 60000
+
+[animation]
+"camera.position" = { keys = [[1, [0.0, 6.0, 8.0]], [24, [4.0, 5.0, 7.0]]] }
+)";
+
+bool on_path(const std::string& program) {
+    return run_program({"/bin/sh", "-c", "command -v " + program}).code == 0;
+}
+
+Area area_of(const Rect& rect) {
+    return {static_cast<int>(rect.x), static_cast<int>(rect.y), static_cast<int>(rect.width),
+            static_cast<int>(rect.height)};
+}
+
+constexpr int badge_height = 50;  // px at the viewport's lower end
+
+}  // namespace
+
+void write_rings(const fs::path& file) {
+    constexpr int size = 64;
+    std::vector<unsigned char> rgba;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            const double r = std::hypot(x - 30.5, y - 34.5) / 32.0;
+            const double light = std::max(0.0, 1.0 - r) * (0.6 + 0.4 * std::cos(20.0 * r));
+            const auto byte = [&](double level) { return static_cast<unsigned char>(255.0 * light * level); };
+            rgba.insert(rgba.end(), {byte(1.0), byte(0.7), byte(0.3 + 0.005 * x), 255});
+        }
+    write_picture(file, size, size, rgba);
+}
+
+WindowTest::WindowTest() : scene_file(folder / "scene.toml") {
+    write_text(scene_file, scene_text);
+    write_rings(folder / "rings.png");
+    fs::create_directories(folder / "home");
+    fs::create_directories(folder / "tmp");
+    Preferences preferences;
+    preferences.window_width = width;
+    preferences.window_height = height;
+    save_preferences(preferences, folder / "home/config/astrosplat/viewer.json");
+}
+
+WindowTest::~WindowTest() {
+    if (program_) end(SIGKILL);
+}
+
+void WindowTest::SetUp() {
+    for (const char* needed : {"Xvfb", "xdotool"})
+        if (!on_path(needed)) GTEST_SKIP() << needed << " is not installed (third_party/packages.txt)";
+    screen.emplace(width, height);
+    person.emplace(screen->display());
+}
+
+RunOptions WindowTest::options() const {
+    const auto place = [&](const char* name) { return (folder / name).string(); };
+    RunOptions options;
+    options.folder = folder;
+    options.environment = {"HOME=" + place("home"),
+                           "XDG_CONFIG_HOME=" + place("home/config"),
+                           "XDG_STATE_HOME=" + place("home/state"),
+                           "XDG_CACHE_HOME=" + place("home/cache"),
+                           "TMPDIR=" + place("tmp"),
+                           "PATH=" + place("no programs")};
+    if (screen) options.environment.push_back("DISPLAY=" + screen->display());
+    return options;
+}
+
+void WindowTest::start(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), ASTROSPLAT_PROGRAM);
+    program_ = std::make_unique<RunningProgram>(arguments, options());
+    // With the title of the scene it has drawn a frame.
+    const auto shown = [&] { return title().find(" - astrosplat") != std::string::npos || !running(); };
+    ASSERT_TRUE(comes_true(shown) && running()) << program_->err_so_far();
+    screen->focus();
+}
+
+bool WindowTest::running() const { return program_ && program_->running(); }
+
+RunResult WindowTest::end(int signal) {
+    if (signal) program_->signal(signal);
+    EXPECT_TRUE(comes_true([&] { return !running(); }));
+    if (running()) program_->signal(SIGKILL);
+    const RunResult result = program_->wait();
+    program_.reset();
+    return result;
+}
+
+void WindowTest::expect_title(const std::string& begin) {
+    EXPECT_TRUE(comes_true([&] { return title() == begin + " - astrosplat"; })) << title();
+}
+
+Pixels WindowTest::picture() const {
+    Area area = area_of(make_layout(ViewState(), width, height, 1.0f).viewport);
+    area.height -= badge_height;
+    return screen->pixels(area);
+}
+
+bool WindowTest::settled() const {
+    Area area = area_of(make_layout(ViewState(), width, height, 1.0f).viewport);
+    area.y += area.height - badge_height;
+    area.height = badge_height;
+    return count_of(screen->pixels(area), color::good) > 10;  // the dot
+}
+
+Pixels WindowTest::settled_picture(const Pixels& before) {
+    Pixels now;
+    const auto arrived = [&] {
+        if (!settled()) return false;
+        now = picture();
+        return settled() && now != before && now == picture();
+    };
+    EXPECT_TRUE(comes_true(arrived)) << program_->err_so_far();
+    return now;
+}
+
+void WindowTest::expect_settled(const Pixels& expected) {
+    EXPECT_TRUE(comes_true([&] { return settled() && picture() == expected; }));
+}
+
+TestWindow& WindowTest::same_widgets() {
+    if (!widgets_) {
+        widgets_.emplace(Document::open(scene_file), width, height);
+        widgets_->status.layers.resize(1);
+        widgets_->status.job = {};
+        widgets_->frame(3);
+    }
+    return *widgets_;
+}
+
+DrawnRow WindowTest::row(const std::string& key) {
+    for (const DrawnRow& drawn : same_widgets().gui.panel().rows())
+        if (drawn.key == key) return drawn;
+    ADD_FAILURE() << "no row of " << key;
+    return {};
+}
+
+glm::vec2 WindowTest::value_box(const std::string& key) { return row(key).value; }
+glm::vec2 WindowTest::diamond(const std::string& key) { return row(key).diamond; }
+
+void WindowTest::choose(const std::string& path) {
+    TestWindow& widgets = same_widgets();
+    for (std::size_t slash = path.find('/'); slash != std::string::npos; slash = path.find('/', slash + 1)) {
+        const glm::vec2 menu = widgets.at(path.substr(0, slash));
+        widgets.click(menu);
+        widgets.frame(2);
+        person->click(menu);
+    }
+    const glm::vec2 item = widgets.at(path);
+    widgets.click(item);
+    person->click(item);
+}
+
+}  // namespace astrosplat::test

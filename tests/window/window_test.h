@@ -1,0 +1,84 @@
+// The window as its users meet it: the program on a screen of its own, a quick scene in a folder of its own,
+// and the places of its controls, asked of the same widgets drawn beside it.
+#pragma once
+
+#include <optional>
+
+#include "gui/panel/panel.h"
+#include "gui/test_window.h"
+#include "scene/load.h"
+#include "support/run_program.h"
+#include "window/person.h"
+#include "window/screen.h"
+
+namespace astrosplat::test {
+
+namespace fs = std::filesystem;
+
+/// Asks again and again, for as long as the slowest machine may need. False: it never came.
+template <class Condition>
+bool comes_true(const Condition& condition) {
+    constexpr int tries = 3000, wait_us = 20'000;
+    for (int i = 0; i < tries; ++i) {
+        if (condition()) return true;
+        usleep(wait_us);
+    }
+    return false;
+}
+
+class WindowTest : public FolderTest {
+  protected:
+    static constexpr int width = 1280, height = 900;  // px of screen and window
+
+    WindowTest();
+    ~WindowTest() override;
+    /// Skips the test where Xvfb or xdotool are missing.
+    void SetUp() override;
+
+    /// Starts the program in the test's folder and waits for its window.
+    void start(std::vector<std::string> arguments);
+    void start() { start({scene_file.string(), "--no-cache"}); }
+    /// Sends the signal, where given, and waits for the end.
+    RunResult end(int signal = 0);
+    bool running() const;
+    /// Environment of the program: no home but the test's, no desktop's file dialog.
+    RunOptions options() const;
+
+    std::string title() const { return screen->title(); }
+    /// Waits for this title: the scene's name, and whether it is edited.
+    void expect_title(const std::string& begin);
+    /// The viewport without its badge.
+    Pixels picture() const;
+    /// The badge says that the picture is final.
+    bool settled() const;
+    /// The next final picture other than `before`; fails the test where none comes.
+    Pixels settled_picture(const Pixels& before = {});
+    /// Waits for this very picture to be final.
+    void expect_settled(const Pixels& expected);
+
+    Scene saved() const { return load_scene(scene_file); }
+
+    /// The widgets as the program should show them now; a test brings document, view and status to where the
+    /// person has brought them.
+    TestWindow& same_widgets();
+    glm::vec2 value_box(const std::string& key);
+    glm::vec2 diamond(const std::string& key);
+    /// Clicks menu after menu of "Render/Cancel".
+    void choose(const std::string& path);
+
+    fs::path scene_file;
+    std::optional<Screen> screen;
+    std::optional<Person> person;
+
+  private:
+    DrawnRow row(const std::string& key);
+    std::optional<TestWindow> widgets_;
+    std::unique_ptr<RunningProgram> program_;
+};
+
+inline const std::string power = "layer.disc.look.alpha.power";
+
+/// Writes a picture of soft rings, 64x64 px, of which no two quarters are alike.
+void write_rings(const fs::path& file);
+
+}  // namespace astrosplat::test
