@@ -52,7 +52,7 @@ struct PictureStatus {
     float progress = 0.0f;              // refining
     double seconds = 0.0;               // final: how long it took
     std::string error;
-    int width = 0, height = 0;  // px of the picture
+    int width = 0, height = 0;  // px of the whole picture, also where a part of it is shown
 };
 
 struct PixelProbe {
@@ -99,7 +99,7 @@ struct Status {
     bool has_ffmpeg = false;
     std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
 
-    void* picture_texture = nullptr;                    // what the viewport shows, bottom row first
+    void* picture_texture = nullptr;                    // the viewport with the picture in its place, bottom row first
     std::vector<std::vector<glm::vec2>> overlay_lines;  // camera path, frustum; px of the viewport
 };
 

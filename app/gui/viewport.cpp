@@ -22,13 +22,13 @@ bool near_wipe(const GuiFrame& frame, const Rect& picture) {
     return std::fabs(ImGui::GetIO().MousePos.x - edge) <= px(wipe_grip);
 }
 
-void draw_picture(const GuiFrame& frame, const Rect& area, const Rect& picture) {
+void draw_picture(const GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height}, IM_COL32_BLACK);
     if (!frame.status.picture_texture) return;
-    // The texture's first row is the picture's lowest.
-    list->AddImage(frame.status.picture_texture, {picture.x, picture.y},
-                   {picture.x + picture.width, picture.y + picture.height}, {0, 1}, {1, 0});
+    // The texture's first row is the lowest.
+    list->AddImage(frame.status.picture_texture, {area.x, area.y}, {area.x + area.width, area.y + area.height},
+                   {0, 1}, {1, 0});
 }
 
 glm::dvec3 fly_keys() {
@@ -123,7 +123,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     read_mouse(frame, area, place());
     const Rect picture = place();
     ImGui::PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
-    draw_picture(frame, area, picture);
+    draw_picture(frame, area);
     draw_overlay_lines(frame, area);
     draw_gate(frame, area, picture);
     draw_wipe(frame, area, picture);

@@ -181,8 +181,8 @@ void ViewPicture::Impl::draw_preview() {
     }
     budget.measured(milliseconds_since(start), choice.target_ms, status.shown);
     status.state = PictureState::preview;
-    status.width = width;
-    status.height = height;
+    status.width = request->width;
+    status.height = request->height;
     status.error.clear();
 }
 

@@ -236,7 +236,8 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
     self.request = self.make_request(scene);
     const Rect port{0, 0, static_cast<float>(self.viewport_width), static_cast<float>(self.viewport_height)};
     Rect place = place_picture(self.view, port, self.request.width, self.request.height);
-    self.draw_overlay(scene, place);
+    const Rect whole = place;
+    self.draw_overlay(scene, whole);
     if (self.view.size == SizeMode::one_to_one) {
         const float scale = place.width / static_cast<float>(self.request.width);
         self.request.region = visible_part(place, self.request.width, self.request.height,
@@ -262,6 +263,7 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
     shown.width = place.width;
     shown.height = place.height;
     self.show_comparison(shown, choice, may_settle, now);
+    shown.wipe = (whole.x + whole.width * self.view.wipe - place.x) / place.width;
     self.status.picture_texture =
         to_handle(self.display.draw(shown, self.viewport_width, self.viewport_height));
 }

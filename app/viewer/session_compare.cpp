@@ -90,7 +90,6 @@ void Session::Impl::show_comparison(DisplaySettings& shown, const PreviewChoice&
     shown.mode = view.compare == CompareMode::b            ? Mode::b
                  : view.compare == CompareMode::difference ? Mode::difference
                                                            : Mode::wipe;
-    shown.wipe = view.wipe;
     shown.difference_gain = view.difference_gain;
 }
 
