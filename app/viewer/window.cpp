@@ -44,6 +44,11 @@ Window::Window(int width, int height, const std::string& title) {
         auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
         for (int i = 0; i < count; ++i) self->dropped_.emplace_back(paths[i]);
     });
+    // Dear ImGui's backend calls this one before its own.
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
+        if (action == GLFW_PRESS && key >= 0)
+            static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_.push_back({key, modifiers});
+    });
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     ImGui_ImplGlfw_InitForOpenGL(window_, true);
@@ -73,6 +78,7 @@ bool Window::begin_frame() {
     if (width <= 0 || height <= 0) return false;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    hold_short_presses();
     ImGui::NewFrame();
     return true;
 }
@@ -87,6 +93,29 @@ void Window::end_frame() {
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(window_);
+    release_short_presses();
+}
+
+void Window::hold_short_presses() {
+    ImGuiIO& io = ImGui::GetIO();
+    for (const KeyPress& press : pressed_) {
+        if (press.key < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[press.key] = true;
+        io.KeyCtrl |= (press.modifiers & GLFW_MOD_CONTROL) != 0;
+        io.KeyShift |= (press.modifiers & GLFW_MOD_SHIFT) != 0;
+        io.KeyAlt |= (press.modifiers & GLFW_MOD_ALT) != 0;
+    }
+}
+
+void Window::release_short_presses() {
+    if (pressed_.empty()) return;
+    ImGuiIO& io = ImGui::GetIO();
+    const auto down = [this](int key) { return glfwGetKey(window_, key) == GLFW_PRESS; };
+    for (const KeyPress& press : pressed_)
+        if (press.key < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[press.key] = down(press.key);
+    io.KeyCtrl = down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL);
+    io.KeyShift = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
+    io.KeyAlt = down(GLFW_KEY_LEFT_ALT) || down(GLFW_KEY_RIGHT_ALT);
+    pressed_.clear();
 }
 
 bool Window::close_requested() {

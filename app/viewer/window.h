@@ -42,7 +42,16 @@ class Window {
     std::vector<unsigned char> read(int& width, int& height) const;
 
   private:
+    struct KeyPress {
+        int key, modifiers;
+    };
+    /// Dear ImGui looks at the state of a key once a frame: a key pressed and released between two frames
+    /// would be lost. It is held down for the one frame instead.
+    void hold_short_presses();
+    void release_short_presses();
+
     GLFWwindow* window_ = nullptr;
+    std::vector<KeyPress> pressed_;  // since the last frame
     GlInfo gl_;
     std::vector<std::filesystem::path> dropped_;
 };
