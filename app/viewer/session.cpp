@@ -89,6 +89,7 @@ Session::Impl::Impl(const ViewerOptions& options, const GlInfo& gl_info)
     view.hint_open = fresh_demo;
     apply_preferences(view, preferences);
     view.frame = first_frame(document.scene());
+    if (!options.input.empty()) look_first(options.input);
     find_recoveries();
     status.has_ffmpeg = find_program("ffmpeg").has_value();
     status.recent = preferences.recent;
@@ -109,7 +110,15 @@ void Session::Impl::take_document(Document next) {
     status.recent = preferences.recent;
 }
 
-void Session::Impl::open(const std::filesystem::path& file) { take_document(document_for(file)); }
+void Session::Impl::open(const std::filesystem::path& file) {
+    take_document(document_for(file));
+    look_first(file);
+}
+
+/// A picture is first seen from the front, as it was before it had depth.
+void Session::Impl::look_first(const std::filesystem::path& file) {
+    if (kind_of_file(file) == FileKind::picture) view.view = ViewKind::top;
+}
 
 /// Runs the frames of the scene round and round at its speed, dropping frames where drawing is slower.
 void Session::Impl::play(double now) {

@@ -40,7 +40,7 @@ struct Session::Impl {
     Display display;
     RenderJob job;
     std::filesystem::path job_target;
-    Autosave autosave;
+    Autosave autosave{autosave_folder(), autosave_interval()};
 
     std::vector<StoredPicture> snapshots;
     int b_snapshot = -1, snapshots_taken = 0;
@@ -69,6 +69,7 @@ struct Session::Impl {
 
     void take_document(Document next);
     void open(const std::filesystem::path& file);
+    void look_first(const std::filesystem::path& file);
     void say(const std::string& text, bool error = false);
     void play(double now);
     void load_sets(double now);
@@ -87,7 +88,7 @@ struct Session::Impl {
     Bounds layer_box(std::size_t index) const;
 
     void navigate(const ViewportInput& input, double elapsed_s);
-    void leave_scene_camera();
+    void leave_scene_camera(bool turning);
     FreeCamera picture_camera() const;
     FreeCamera viewport_camera() const;
     FreeCamera moved(FreeCamera camera, const ViewportInput& input, const glm::dvec2& viewport_px,

@@ -23,6 +23,15 @@ bool moves(const ViewportInput& input) {
     return dragged || (input.wheel != 0.0f && input.hovered) || input.double_click;
 }
 
+/// A perspective camera of the same direction that shows the pivot's plane at the same scale.
+FreeCamera in_perspective(FreeCamera camera) {
+    const glm::dvec3 back = glm::normalize(camera.position - camera.pivot);
+    camera.position =
+        camera.pivot + back * (0.5 * camera.height / real::tan(0.5 * real::radians(camera.fov_deg)));
+    camera.orthographic = false;
+    return camera;
+}
+
 /// Sets what differs between two cameras: keys where a parameter is keyed.
 void edit_camera(Document& document, const CameraParams& before, const CameraParams& after, double frame,
                  Gesture gesture) {
@@ -60,13 +69,15 @@ FreeCamera Session::Impl::viewport_camera() const {
     if (view.size == SizeMode::one_to_one) return camera;
     const double taller = static_cast<double>(viewport_height) / request.height;
     camera.height *= taller;
-    camera.fov_deg = 2.0 * real::degrees(real::atan(taller * std::tan(0.5 * real::radians(camera.fov_deg))));
+    camera.fov_deg = 2.0 * real::degrees(real::atan(taller * real::tan(0.5 * real::radians(camera.fov_deg))));
     return camera;
 }
 
-void Session::Impl::leave_scene_camera() {
+void Session::Impl::leave_scene_camera(bool turning) {
     const bool from_camera = view.view == ViewKind::camera;
     view.free = viewport_camera();
+    // Front, top and side are flat; turned, a thing looks solid only in perspective.
+    if (!from_camera && turning) view.free = in_perspective(view.free);
     view.view = ViewKind::free;
     if (from_camera) say("Free view, a copy of the camera; 0 returns to it");
 }
@@ -111,7 +122,9 @@ void Session::Impl::navigate(const ViewportInput& input, double elapsed_s) {
                     gesture);
         return;
     }
-    if (view.view != ViewKind::free) leave_scene_camera();
+    using Drag = ViewportInput::Drag;
+    const bool turning = input.drag == Drag::orbit || input.drag == Drag::look;
+    if (view.view != ViewKind::free) leave_scene_camera(turning);
     view.free = moved(view.free, input, viewport_px, elapsed_s);
 }
 
@@ -124,7 +137,7 @@ Bounds Session::Impl::layer_box(std::size_t index) const {
 
 void Session::Impl::frame_box_in_view(const Bounds& box) {
     if (box.empty()) return;
-    if (view.view != ViewKind::free) leave_scene_camera();
+    if (view.view != ViewKind::free) leave_scene_camera(false);
     const double aspect = static_cast<double>(viewport_width) / viewport_height;
     view.free = framed(view.free, box, aspect);
 }
