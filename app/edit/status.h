@@ -74,6 +74,13 @@ struct JobStatus {
     float progress = 0.0f;
 };
 
+/// An autosave that somebody may want.
+struct RecoveryOffer {
+    std::filesystem::path autosave;
+    std::string scene;  // "whirlpool.toml", "Untitled"
+    std::string time;   // "2026-05-01 12:30:00 UTC"
+};
+
 struct Message {
     std::string text;
     bool error = false;
@@ -95,11 +102,11 @@ struct Status {
     float frames_per_second = 0.0f;
     std::vector<std::filesystem::path> recent;
     bool changed_on_disk = false;
-    std::vector<std::filesystem::path> recoveries;  // autosaves of scenes that were not closed
+    std::vector<RecoveryOffer> recoveries;  // of scenes that were not closed
     bool has_ffmpeg = false;
     std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
 
-    void* picture_texture = nullptr;                    // the viewport with the picture in its place, bottom row first
+    void* picture_texture = nullptr;  // the viewport with the picture in its place, bottom row first
     std::vector<std::vector<glm::vec2>> overlay_lines;  // camera path, frustum; px of the viewport
 };
 

@@ -119,22 +119,22 @@ void CommandFlow::draw_question(GuiFrame& frame, Commands& out) {
 }
 
 void CommandFlow::draw_recovery(GuiFrame& frame, Commands& out) {
-    const auto& files = frame.status.recoveries;
-    const bool open = !recovery_answered_ && !files.empty();
+    const std::vector<RecoveryOffer>& offers = frame.status.recoveries;
+    const bool open = !recovery_answered_ && !offers.empty();
     if (!begin_dialog("recovery", "The last session ended without saving", open, 520, 0)) return;
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextColored(color4(color::dim),
                        "An autosave of what was being edited is here. Its file on disk is untouched.");
     ImGui::PopTextWrapPos();
     ImGui::Dummy({0, px(6)});
-    for (const auto& file : files) {
-        ImGui::PushID(file.c_str());
-        row_text(fitting(file.filename().string(), px(280)), px(28), color::text);
+    for (const RecoveryOffer& offer : offers) {
+        ImGui::PushID(offer.autosave.c_str());
+        row_text(fitting(offer.scene + ", " + offer.time, px(300)), px(28), color::text);
         ImGui::SameLine();
-        const int button = dialog_buttons(frame, "recovery", {"Discard", "Recover"}, files.size() == 1);
-        if (button == 0) out.push_back({Kind::discard_recovery, file, {}, 0});
-        if (button == 1) take(frame, {Kind::recover, file, {}, 0}, out);
-        if (button == 1 || (button == 0 && files.size() == 1)) recovery_answered_ = true;
+        const int button = dialog_buttons(frame, "recovery", {"Discard", "Recover"}, offers.size() == 1);
+        if (button == 0) out.push_back({Kind::discard_recovery, offer.autosave, {}, 0});
+        if (button == 1) take(frame, {Kind::recover, offer.autosave, {}, 0}, out);
+        if (button == 1 || (button == 0 && offers.size() == 1)) recovery_answered_ = true;
         ImGui::PopID();
     }
     if (dialog_escape()) recovery_answered_ = true;

@@ -108,7 +108,10 @@ void Session::Impl::copy_batch_command() {
 
 void Session::Impl::find_recoveries() {
     status.recoveries.clear();
-    for (const Recovery& recovery : recoveries()) status.recoveries.push_back(recovery.autosave);
+    for (const Recovery& recovery : recoveries())
+        status.recoveries.push_back({recovery.autosave,
+                                     recovery.titled ? recovery.original.filename().string() : "Untitled",
+                                     recovery.time + " UTC"});
 }
 
 void Session::Impl::poll_job() {

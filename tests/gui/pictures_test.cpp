@@ -79,7 +79,8 @@ TEST_P(Pictures, Questions) {
     window.choose("File/Quit");
     keep("unsaved");
     window.key(key_code::escape);
-    window.status.recoveries = {"/state/whirlpool-20260412.toml"};
+    window.status.recoveries = {
+        {"/state/whirlpool-812-3f.toml", "whirlpool.toml", "2026-04-12 18:03:10 UTC"}};
     keep("recovery");
 }
 TEST_P(Pictures, OpenAFile) {

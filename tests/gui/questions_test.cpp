@@ -82,7 +82,7 @@ TEST(Quit, ADroppedSceneAsksToo) {
 
 TEST(Recovery, OffersTheAutosaveOnce) {
     TestWindow window(example_document());
-    window.status.recoveries = {"/state/whirlpool.toml"};
+    window.status.recoveries = {{"/state/whirlpool.toml", "whirlpool.toml", "2026-04-12 18:03:10 UTC"}};
     window.frame(2);
     window.click("recovery/Recover");
     const Commands commands = window.take_commands();
