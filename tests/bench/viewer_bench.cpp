@@ -1,0 +1,426 @@
+// What somebody at the window waits for: frames while orbiting, a slider, the timeline, the final picture,
+// the start. In: a scene (default: the demo) whose sets are in the cache, or with --opengl a number of
+// synthetic splats and a size. Out: Markdown; wall time beside processor time, because only the latter means
+// anything on a busy machine.
+#include <fmt/format.h>
+#include <glad/gl.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <numbers>
+#include <thread>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/shared_maths.h"
+#include "gl/preview.h"
+#include "scene/scene.h"
+#include "support/temp_folder.h"
+#include "viewer/session.h"
+#include "viewer/widget_target.h"
+
+namespace astrosplat::bench {
+namespace {
+
+double seconds_now() {
+    using namespace std::chrono;
+    return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+/// User and system time of all threads.
+double processor_seconds() {
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+/// Times of the same thing done several times.
+struct Times {
+    std::vector<double> wall_ms, processor_ms;
+
+    void measure(const std::function<void()>& work) {
+        const double wall = seconds_now(), processor = processor_seconds();
+        work();
+        processor_ms.push_back(1e3 * (processor_seconds() - processor));
+        wall_ms.push_back(1e3 * (seconds_now() - wall));
+    }
+    static double median(std::vector<double> values) {
+        std::sort(values.begin(), values.end());
+        return values.empty() ? 0.0 : values[values.size() / 2];
+    }
+    double median_ms() const { return median(wall_ms); }
+    double worst_ms() const { return *std::max_element(wall_ms.begin(), wall_ms.end()); }
+    double best_ms() const { return *std::min_element(wall_ms.begin(), wall_ms.end()); }
+};
+
+void print_head() { fmt::print("| what | target | measured | notes |\n|---|---|---|---|\n"); }
+
+void print_row(const std::string& what, const std::string& target, const std::string& measured,
+               const std::string& notes) {
+    fmt::print("| {} | {} | {} | {} |\n", what, target, measured, notes);
+    std::fflush(stdout);
+}
+
+void print_rate(const std::string& what, const std::string& target, const Times& times,
+                const std::string& notes) {
+    print_row(what, target,
+              fmt::format("{:.1f} frames/s, worst {:.1f}", 1e3 / times.median_ms(), 1e3 / times.worst_ms()),
+              fmt::format("processor {:.1f} ms a frame{}", Times::median(times.processor_ms), notes));
+}
+
+void print_wait(const std::string& what, const std::string& target, const Times& times) {
+    print_row(
+        what, target, fmt::format("{:.0f} ms, worst {:.0f}", times.median_ms(), times.worst_ms()),
+        fmt::format("best {:.0f}, processor {:.0f} ms", times.best_ms(), Times::median(times.processor_ms)));
+}
+
+/// The window's loop without the window: a viewport alone, or with the panels around it.
+class Viewer {
+  public:
+    Viewer(const ViewerOptions& options, const GlInfo& gl, int width, int height, bool panels)
+        : session_(options, gl), width_(width), height_(height) {
+        session_.view().hint_open = false;
+        if (panels) widgets_ = std::make_unique<WidgetTarget>(width, height);
+        if (panels) gui_ = std::make_unique<Gui>();
+    }
+
+    Session& session() { return session_; }
+
+    /// One turn of the loop, until the pixels are there.
+    void frame(bool hurry = false) {
+        const double now = seconds_now();
+        session_.advance(now);
+        if (widgets_) {
+            widgets_->begin();
+            Commands commands;
+            gui_->draw(session_.document(), session_.view(), session_.status(), commands);
+            const Layout layout =
+                make_layout(session_.view(), static_cast<float>(width_), static_cast<float>(height_), 1.0f);
+            session_.draw(static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height),
+                          now, hurry);
+            widgets_->end();
+        } else {
+            session_.draw(width_, height_, now, hurry);
+        }
+        glFinish();
+    }
+    /// Frames as the window draws them, which sleeps while nothing is due.
+    void run_until(const std::function<bool()>& done) {
+        for (;;) {
+            frame();
+            if (done()) return;
+            std::this_thread::sleep_for(std::chrono::duration<double>(session_.next_due(seconds_now())));
+        }
+    }
+    void settle() {
+        session_.view().settle = true;
+        run_until([&] { return session_.settled(); });
+    }
+    void orbit_a_little() {
+        ViewportInput input;
+        input.hovered = true;
+        input.drag = ViewportInput::Drag::orbit;
+        input.drag_begins = !orbiting_;
+        input.delta_px = {5.0, 0.5};
+        orbiting_ = true;
+        session_.navigate(input, seconds_now());
+    }
+    Times orbit(int frames) {
+        Times times;
+        for (int i = 0; i < frames; ++i)
+            times.measure([&] {
+                orbit_a_little();
+                frame();
+            });
+        return times;
+    }
+
+  private:
+    Session session_;
+    int width_, height_;
+    std::unique_ptr<WidgetTarget> widgets_;
+    std::unique_ptr<Gui> gui_;
+    bool orbiting_ = false;
+};
+
+constexpr int samples = 21, orbit_frames = 120, warm_frames = 60;
+
+std::string shown_of(const PictureStatus& picture) {
+    return fmt::format(", {} of {} thousand splats", picture.shown / 1000, picture.total / 1000);
+}
+
+void measure_start(Viewer& viewer, double started, double processor_started) {
+    viewer.session().view().settle = false;
+    viewer.run_until([&] { return viewer.session().status().picture.shown > 0; });
+    viewer.frame();
+    print_row("start to first picture", "<= 1.5 s", fmt::format("{:.2f} s", seconds_now() - started),
+              fmt::format("processor {:.2f} s", processor_seconds() - processor_started));
+    viewer.run_until([&] { return viewer.session().loaded() && viewer.session().preview_exact(); });
+    print_row("start to all layers and environment", "", fmt::format("{:.2f} s", seconds_now() - started),
+              fmt::format("processor {:.2f} s", processor_seconds() - processor_started));
+}
+
+/// From the last touch, the 0.3 s of rest included.
+void measure_settling(Viewer& viewer, const std::string& what) {
+    Session& session = viewer.session();
+    const double touched = seconds_now(), processor = processor_seconds();
+    double first = 0.0;
+    std::vector<unsigned char> before;
+    session.view().settle = true;
+    viewer.run_until([&] {
+        if (first == 0.0 && session.status().picture.state != PictureState::loading) {
+            std::vector<unsigned char> pixels = session.shown_pixels();
+            const bool refining =
+                session.status().picture.state == PictureState::refining || session.settled();
+            if (refining && pixels != before) first = seconds_now();
+            before = std::move(pixels);
+        }
+        return session.settled();
+    });
+    print_row("settled: " + what, "first tiles <= 0.5 s, all <= 2 s",
+              fmt::format("{:.2f} s, {:.2f} s", first - touched, seconds_now() - touched),
+              fmt::format("from the last touch, 0.3 s of rest included; processor {:.2f} s",
+                          processor_seconds() - processor));
+}
+
+/// Moves a look parameter of the layers [first, last) to and fro, one step a frame.
+Times drag_slider(Viewer& viewer, std::size_t first, std::size_t last) {
+    Times times;
+    for (int i = 0; i < samples; ++i)
+        times.measure([&] {
+            viewer.session().document().edit(
+                "Drag",
+                [&](Scene& scene) {
+                    for (std::size_t k = first; k < last; ++k)
+                        scene.layers[k].look.alpha.power = 0.5f + 0.01f * static_cast<float>(i + 1);
+                },
+                1);
+            viewer.frame();
+        });
+    return times;
+}
+
+void measure_sliders(Viewer& viewer) {
+    const Scene scene = viewer.session().document().scene();
+    for (std::size_t i = 0; i < scene.layers.size(); ++i)
+        print_wait("slider of layer " + scene.layers[i].name, "<= 80 ms", drag_slider(viewer, i, i + 1));
+    print_wait("slider of all layers at once", "<= 80 ms", drag_slider(viewer, 0, scene.layers.size()));
+}
+
+void measure_scrubbing(Viewer& viewer) {
+    Times times;
+    viewer.session().view().view = ViewKind::camera;
+    for (int i = 0; i < samples; ++i)
+        times.measure([&] {
+            viewer.session().view().frame = 1.0 + 7.0 * i;
+            viewer.frame();
+        });
+    print_wait("scrub to another frame", "<= 80 ms", times);
+}
+
+/// A touch while the final picture is being computed.
+void measure_cancelling(Viewer& viewer) {
+    Times times;
+    Session& session = viewer.session();
+    for (int i = 0; i < samples; ++i) {
+        session.view().settle = true;
+        viewer.orbit_a_little();
+        viewer.frame();
+        while (session.status().picture.state != PictureState::refining) {
+            viewer.frame(true);
+            session.advance(seconds_now());
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20 + 13 * i));
+        times.measure([&] {
+            viewer.orbit_a_little();
+            viewer.frame();
+        });
+    }
+    session.view().settle = false;
+    print_wait("touched while refining: new preview", "<= 80 ms", times);
+}
+
+void measure_idling(Viewer& viewer) {
+    constexpr double seconds = 5.0;
+    const double start = seconds_now(), processor = processor_seconds();
+    viewer.run_until([&] { return seconds_now() - start > seconds; });
+    print_row("idle, once settled", "< 3 % of a core",
+              fmt::format("{:.1f} %", 100.0 * (processor_seconds() - processor) / (seconds_now() - start)),
+              "");
+}
+
+/// Which rows are wanted; all where none are named.
+struct Parts {
+    std::vector<std::string> names;
+    bool operator()(const char* name) const {
+        return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+    }
+};
+
+void measure_viewport(Viewer& viewer, const Parts& wanted) {
+    ViewState& view = viewer.session().view();
+    if (wanted("settle")) measure_settling(viewer, "after the start");
+    view.settle = false;
+    viewer.orbit(warm_frames);
+    if (wanted("orbit"))
+        print_rate("orbit, 960x540", ">= 24 frames/s, never below 12", viewer.orbit(orbit_frames),
+                   shown_of(viewer.session().status().picture));
+    if (wanted("slider")) measure_sliders(viewer);
+    if (wanted("scrub")) measure_scrubbing(viewer);
+    if (!wanted("settle")) return;
+    viewer.orbit(1);
+    measure_settling(viewer, "after looks and a camera");
+    view.settle = false;
+    viewer.orbit(1);
+    measure_settling(viewer, "after another camera");
+    measure_cancelling(viewer);
+}
+
+void measure_window(Viewer& viewer, const Parts& wanted) {
+    viewer.session().view().settle = false;
+    viewer.run_until([&] { return viewer.session().loaded() && viewer.session().preview_exact(); });
+    viewer.orbit(warm_frames);
+    if (wanted("window"))
+        print_rate("orbit, window of 1600x900 with panels", "", viewer.orbit(orbit_frames),
+                   shown_of(viewer.session().status().picture));
+    viewer.settle();
+    Times redraw;
+    for (int i = 0; i < samples; ++i) redraw.measure([&] { viewer.frame(); });
+    if (wanted("window")) print_wait("the same drawn again, nothing changed", "", redraw);
+    if (wanted("idle")) measure_idling(viewer);
+}
+
+void measure_session(const ViewerOptions& options, const GlInfo& gl, const Parts& wanted, double started,
+                     double processor_started) {
+    if (wanted("start") || wanted("orbit") || wanted("slider") || wanted("scrub") || wanted("settle")) {
+        Viewer viewer(options, gl, 960, 540, false);
+        measure_start(viewer, started, processor_started);
+        measure_viewport(viewer, wanted);
+    }
+    if (wanted("window") || wanted("idle")) {
+        Viewer viewer(options, gl, 1600, 900, true);
+        measure_window(viewer, wanted);
+    }
+}
+
+float random(std::uint32_t n, std::uint32_t purpose) {
+    return shared::as_uniform(shared::as_hash(1u, n, 0u, purpose));
+}
+
+/// A disk of splats, two or three pixels across where the whole disk is in the picture.
+std::shared_ptr<const SplatSet> disk(std::int64_t count, float radius) {
+    auto set = std::make_shared<SplatSet>();
+    const auto n = static_cast<std::size_t>(count);
+    set->position.resize(n);
+    set->color.resize(n);
+    set->alpha.resize(n);
+    set->distance.resize(n);
+    set->id.resize(n);
+    set->radius.resize(n);
+    parallel_chunks(count, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+            const auto k = static_cast<std::uint32_t>(i);
+            set->position[i] = {10.0f * random(k, 1) - 5.0f, random(k, 2) - 0.5f,
+                                10.0f * random(k, 3) - 5.0f};
+            set->color[i] = {random(k, 4), random(k, 5), random(k, 6)};
+            set->alpha[i] = 0.02f + 0.1f * random(k, 7);
+            set->distance[i] = 0.0f;
+            set->id[i] = i;
+            set->radius[i] = radius;
+        }
+    });
+    return set;
+}
+
+Camera camera_at(double turn, int width, int height) {
+    CameraParams params;
+    const double angle = 2.0 * std::numbers::pi * turn;
+    params.position = glm::dvec3(10.0 * std::sin(angle), 5.0, 10.0 * std::cos(angle));
+    params.target = glm::dvec3(0.0);
+    return make_camera(params, width, height, {});
+}
+
+void measure_blend(GlPreview& preview, const std::shared_ptr<const SplatSet>& set, Blend blend, int width,
+                   int height, const std::string& what, const std::string& target) {
+    PreviewLayer layer;
+    layer.layer.name = "disk";
+    layer.layer.render.blend = blend;
+    layer.set = set;
+    Times times;
+    for (int i = 0; i < warm_frames + orbit_frames; ++i) {
+        if (i == warm_frames) times = {};
+        times.measure([&] {
+            preview.draw({layer}, camera_at(0.002 * i, width, height), nullptr, width, height, 0.5f);
+            glFinish();
+        });
+    }
+    print_rate(what, target, times, "");
+}
+
+void measure_opengl(std::int64_t count, int width, int height) {
+    GlPreview preview;
+    const float px = 12.0f / static_cast<float>(height);  // scene units a pixel covers, about
+    const std::shared_ptr<const SplatSet> set = disk(count, 1.2f * px);
+    const std::string what = fmt::format("OpenGL, {} thousand splats, {}x{}, ", count / 1000, width, height);
+    measure_blend(preview, set, Blend::add, width, height, what + "add", ">= 60 frames/s on a GPU");
+    measure_blend(preview, set, Blend::screen, width, height, what + "screen", ">= 60 frames/s on a GPU");
+    measure_blend(preview, set, Blend::over, width, height, what + "over, sorted beside the frame",
+                  ">= 30 frames/s on a GPU");
+}
+
+int run(int argc, char** argv) {
+    const double started = seconds_now(), processor_started = processor_seconds();
+    ViewerOptions options;
+    Parts wanted;
+    bool opengl = false;
+    std::int64_t splats = 44'000'000;
+    std::string size = "3840x2160", cache = default_cache_folder().string();
+    CLI::App app("Measures the viewer: the table of issue 4.");
+    app.add_option("scene", options.input, "default: the demo");
+    app.add_option("--cache", cache, "folder of generated sets");
+    app.add_option("--only", wanted.names, "some of: start orbit slider scrub settle window idle");
+    app.add_flag("--opengl", opengl, "only OpenGL's preview, of synthetic splats");
+    app.add_option("--splats", splats, "with --opengl");
+    app.add_option("--size", size, "with --opengl: px");
+    CLI11_PARSE(app, argc, argv);
+    options.cache.folder = cache;
+    int width = 0, height = 0;
+    if (std::sscanf(size.c_str(), "%dx%d", &width, &height) != 2 || splats < 1) {
+        fmt::print(stderr, "--size: expected a size such as 3840x2160, found '{}'\n", size);
+        return 2;
+    }
+    const TempFolder home;  // no preferences or autosaves of whoever measures
+    setenv("XDG_CONFIG_HOME", home.path().c_str(), 1);
+    setenv("XDG_STATE_HOME", home.path().c_str(), 1);
+    const OffscreenContext context;
+    fmt::print("{}, {} threads\n\n", context.info().renderer, thread_count());
+    print_head();
+    if (opengl) {
+        measure_opengl(splats, width, height);
+        return 0;
+    }
+    measure_session(options, context.info(), wanted, started, processor_started);
+    return 0;
+}
+
+}  // namespace
+}  // namespace astrosplat::bench
+
+int main(int argc, char** argv) {
+    try {
+        return astrosplat::bench::run(argc, argv);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "viewer_bench: {}\n", error.what());
+        return 1;
+    }
+}
