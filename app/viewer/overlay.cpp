@@ -19,6 +19,17 @@ glm::vec2 to_px(const Camera& camera, const glm::dvec3& p) {
 
 }  // namespace
 
+Scene camera_part(const Scene& scene) {
+    Scene part;
+    part.camera = scene.camera;
+    part.output.width = scene.output.width;
+    part.output.height = scene.output.height;
+    part.output.frames = scene.output.frames;
+    for (const Track& track : scene.animation)
+        if (track.key.rfind("camera.", 0) == 0) part.animation.push_back(track);
+    return part;
+}
+
 std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
     constexpr double most = 256.0;
     const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");

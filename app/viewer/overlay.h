@@ -12,6 +12,9 @@
 
 namespace astrosplat {
 
+/// Of a scene all that its camera's path depends on, to notice when that changes; the rest at its defaults.
+Scene camera_part(const Scene& scene);
+
 /// Places of the scene's camera over the frames of [output], at most 256 of them; one where it does not move.
 std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box);
 

@@ -2,6 +2,7 @@
 // component; booleans, choices and whole numbers step.
 #include "scene/animate.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/describe.h"
@@ -51,7 +52,11 @@ std::vector<double> track_at(const Track& track, const ParameterSpec& spec, doub
 
 Scene scene_at(const Scene& scene, double frame) {
     Scene still = scene;
-    const Description description = describe(still);
+    const Description description = describe(still, [&](const std::string& beginning) {
+        return std::any_of(scene.animation.begin(), scene.animation.end(), [&](const Track& track) {
+            return track.key.compare(0, beginning.size(), beginning) == 0;
+        });
+    });
     for (const Track& track : scene.animation) {
         const Parameter* parameter = find_parameter(description, track.key);
         if (!parameter || track.keys.empty()) continue;  // of a layer that was taken out

@@ -146,14 +146,20 @@ bool is_index(const std::string& part) {
 }  // namespace
 
 Description describe(Scene& scene) {
+    return describe(scene, [](const std::string&) { return true; });
+}
+
+Description describe(Scene& scene, const std::function<bool(const std::string& beginning)>& wanted) {
     Description description;
     const Describer d(description, "", "", false);
-    describe_output(d.section("output", false), scene.output);
-    describe_camera(d.section("camera", true), scene.camera);
-    describe_environment(d.section("environment", true), scene.environment);
-    describe_provenance(d.section("provenance", false), scene.provenance);
-    for (LayerParams& layer : scene.layers)
-        describe_layer(Describer(description, "layer." + layer.name + ".", "layer.", false), layer);
+    if (wanted("output.")) describe_output(d.section("output", false), scene.output);
+    if (wanted("camera.")) describe_camera(d.section("camera", true), scene.camera);
+    if (wanted("environment.")) describe_environment(d.section("environment", true), scene.environment);
+    if (wanted("provenance.")) describe_provenance(d.section("provenance", false), scene.provenance);
+    for (LayerParams& layer : scene.layers) {
+        const std::string beginning = "layer." + layer.name + ".";
+        if (wanted(beginning)) describe_layer(Describer(description, beginning, "layer.", false), layer);
+    }
     return description;
 }
 

@@ -3,6 +3,7 @@
 // list. To add a parameter: a field, one line in describe.cpp or describe_layer.cpp, and its use.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ namespace astrosplat {
 /// All parameters of the scene, "output.resolution" ... "layer.NAME.look.alpha.power", in the order of the
 /// manual. The handles point into `scene`.
 Description describe(Scene& scene);
+
+/// Only the sections whose beginning of keys ("camera.", "layer.NAME.") is wanted: all of a scene is some
+/// hundred parameters with all their words, too much for every frame.
+Description describe(Scene& scene, const std::function<bool(const std::string& beginning)>& wanted);
 
 /// Those of a preset file: "look.density" ... "render.isolate".
 Description describe_preset(Look& look, LayerRender& render);
