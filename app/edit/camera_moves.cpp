@@ -1,6 +1,8 @@
 // Camera keys made of a camera, and whole moves as rows of keys. A move is sampled so densely that the smooth
 // curve through its keys is round to 0.1 % of its radius; the easing is in the samples, so keys outside the
 // move keep their own timing.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,6 +12,7 @@
 #include "edit/keys.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
+#include "scene/load.h"
 
 namespace astrosplat {
 namespace {
@@ -76,6 +79,17 @@ void set_smooth_key(Scene& scene, const char* key, double frame, const glm::dvec
     set_interpolation(scene, key, frame, Interpolation::smooth);
 }
 
+/// The frames to render reach to the end of the move, whose last key is where a loop would begin again.
+void extend_frames(Scene& scene, std::int64_t first, std::int64_t last) {
+    const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
+    if (frames.back() >= last) return;
+    const bool gapless = frames.back() - frames.front() + 1 == static_cast<std::int64_t>(frames.size());
+    if (gapless && first <= frames.back() + 1)
+        scene.output.frames = fmt::format("{}-{}", std::min(first, frames.front()), last);
+    else
+        scene.output.frames += fmt::format(",{}-{}", first, last);
+}
+
 void add_path(Scene& scene, const Path& path, const glm::dvec3& target, double frame) {
     const double frames = std::fmax(1.0, std::floor(move_seconds * scene.output.fps + 0.5));
     const double step = std::fmax(1.0, std::floor(frames / samples_per_move + 0.5));
@@ -91,6 +105,7 @@ void add_path(Scene& scene, const Path& path, const glm::dvec3& target, double f
     set_smooth_key(scene, target_key, frame + frames, target);
     for (Track& track : scene.animation)
         if (track.key == position_key) track.constant_speed = false;  // the samples carry the speed
+    extend_frames(scene, std::llround(frame), std::llround(frame + frames) - 1);
 }
 
 /// Where the camera is at a frame; a camera without a position frames the box.

@@ -37,7 +37,7 @@ void key_camera(Scene& scene, const CameraParams& camera, double frame);
 
 enum class CameraMove { orbit, fly_in, face_on_to_edge_on };
 /// Ten seconds of an eased move around `box` (the visible layers' bounds in world space), beginning at
-/// `frame`; replaces the camera's tracks over that time.
+/// `frame`; replaces the camera's tracks over that time, and lets [output] frames reach to its end.
 void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame);
 
 }  // namespace astrosplat

@@ -64,8 +64,9 @@ struct Session::Impl {
     // The picture at hand: of the last draw().
     PictureRequest request;
     int viewport_width = 0, viewport_height = 0;
-    std::uint64_t path_revision = 0;  // of the document, that `path` was made of
-    std::vector<glm::dvec3> path;     // of the scene's camera
+    std::vector<glm::dvec3> path;  // of the scene's camera
+    Scene path_of;                 // camera_part() that it was made of, with this box
+    Bounds path_box;
 
     void take_document(Document next);
     void open(const std::filesystem::path& file);
@@ -91,6 +92,7 @@ struct Session::Impl {
     void leave_scene_camera(bool turning);
     FreeCamera picture_camera() const;
     FreeCamera viewport_camera() const;
+    void keep_free_camera();
     FreeCamera moved(FreeCamera camera, const ViewportInput& input, const glm::dvec2& viewport_px,
                      double elapsed_s);
     void frame_box_in_view(const Bounds& box);

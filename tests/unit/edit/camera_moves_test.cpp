@@ -95,6 +95,19 @@ TEST_F(CameraMoves, LastTenSecondsAtAnyRateOnWholeFrames) {
     }
 }
 
+TEST_F(CameraMoves, FramesReachToTheEndOfTheMove) {
+    scene.output.fps = 24.0;
+    const auto frames_after = [&](const std::string& before, double at) {
+        scene.output.frames = before;
+        add_camera_move(scene, CameraMove::orbit, box, at);
+        return scene.output.frames;
+    };
+    EXPECT_EQ(frames_after("1", 1.0), "1-240");
+    EXPECT_EQ(frames_after("1-100", 101.0), "1-340");
+    EXPECT_EQ(frames_after("1-300", 10.0), "1-300");
+    EXPECT_EQ(frames_after("1-9x2", 20.0), "1-9x2,20-259");
+}
+
 TEST_F(CameraMoves, KeysOutsideTheMoveStay) {
     for (const double frame : {1.0, 50.0, 400.0})
         set_key(scene, "camera.position", frame, Value::List{frame, 4.0, 10.0});
