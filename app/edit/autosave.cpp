@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <fstream>
@@ -100,7 +101,13 @@ fs::path autosave_folder() {
     return state.empty() ? fs::path() : state / "autosave";
 }
 
-Autosave::Autosave(fs::path folder) : folder_(std::move(folder)) {}
+std::chrono::seconds autosave_interval() {
+    const char* variable = std::getenv("ASTROSPLAT_AUTOSAVE_SECONDS");
+    const std::optional<std::int64_t> seconds = variable ? parse_int64(variable) : std::nullopt;
+    return seconds && *seconds >= 1 && *seconds <= 3600 ? std::chrono::seconds(*seconds) : Autosave::interval;
+}
+
+Autosave::Autosave(fs::path folder, Clock::duration every) : folder_(std::move(folder)), every_(every) {}
 
 Autosave::~Autosave() {
     if (std::uncaught_exceptions() == 0) remove();
@@ -115,7 +122,7 @@ void Autosave::update(const Document& document, Clock::time_point now) {
     if (document.revision() == written_) return;
     if (!waiting_) changed_ = now;
     waiting_ = true;
-    if (now - changed_ < interval) return;
+    if (now - changed_ < every_) return;
     waiting_ = false;
     write(document);
 }

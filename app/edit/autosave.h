@@ -23,14 +23,14 @@ class Autosave {
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::seconds interval{60};
 
-    explicit Autosave(std::filesystem::path folder = autosave_folder());
+    explicit Autosave(std::filesystem::path folder = autosave_folder(), Clock::duration every = interval);
     /// Removes the file: the window was closed in peace. While an exception ends the program it stays.
     ~Autosave();
     Autosave(const Autosave&) = delete;
     Autosave& operator=(const Autosave&) = delete;
 
-    /// To be called often; cheap. Writes a minute after the first edit that is not in the file, and removes
-    /// the file when there is nothing left to save.
+    /// To be called often; cheap. Writes `every` (a minute) after the first edit that is not in the
+    /// file, and removes the file when there is nothing left to save.
     void update(const Document& document, Clock::time_point now = Clock::now());
     /// Writes at once. False where it cannot.
     bool write(const Document& document);
@@ -40,11 +40,15 @@ class Autosave {
 
   private:
     std::filesystem::path folder_, file_;
+    Clock::duration every_;
     std::unique_ptr<FileLock> lock_;  // says to others that this process lives
     std::uint64_t written_ = 0;       // revision in the file
     Clock::time_point changed_{};     // first update() that saw a newer one
     bool waiting_ = false;
 };
+
+/// Autosave::interval; $ASTROSPLAT_AUTOSAVE_SECONDS, 1 to 3600, where it says otherwise (for tests).
+std::chrono::seconds autosave_interval();
 
 /// An autosave whose process is gone.
 struct Recovery {
