@@ -105,6 +105,7 @@ struct ViewPicture::Impl {
     std::vector<PreviewLayer> preview_layers();
     void note_kept(const std::vector<double>& shares);
     bool environment_arrived();
+    bool previews_arrived(const PictureRequest& now) const;
     void draw_preview();
     void take_final();
     void begin_final();
@@ -139,7 +140,8 @@ std::vector<PreviewLayer> ViewPicture::Impl::preview_layers() {
         // A share of a small layer, such as a star cluster, would lose what it is made of.
         const auto small = static_cast<float>(small_layer) / static_cast<float>(sizes[n]);
         layers[n].share = std::min(1.0f, std::max(share, choice.share > 0.0f ? 0.0f : small));
-        shown[places[n]] = static_cast<std::int64_t>(layers[n].share * static_cast<float>(sizes[n]));
+        shown[places[n]] = std::min(
+            layers[n].set->size(), static_cast<std::int64_t>(layers[n].share * static_cast<float>(sizes[n])));
     }
     return layers;
 }
@@ -155,6 +157,15 @@ void ViewPicture::Impl::note_kept(const std::vector<double>& shares) {
 /// The environment of the picture shown has been loaded since.
 bool ViewPicture::Impl::environment_arrived() {
     return request && files->environment(request->scene.environment) != environment;
+}
+
+/// There is more to be shown of the same sets. Once the final picture has begun nobody needs it.
+bool ViewPicture::Impl::previews_arrived(const PictureRequest& now) const {
+    const auto same_preview = [](const auto& a, const auto& b) {
+        return (a ? a->preview : nullptr) == (b ? b->preview : nullptr);
+    };
+    return !std::equal(request->layers.begin(), request->layers.end(), now.layers.begin(), now.layers.end(),
+                       same_preview);
 }
 
 void ViewPicture::Impl::draw_preview() {
@@ -231,7 +242,8 @@ void ViewPicture::show(const PictureRequest& request, const PreviewChoice& choic
     const bool changed = !self.request || !(*self.request == request) ||
                          self.choice.opengl != choice.opengl || self.choice.share != choice.share ||
                          self.environment_arrived();
-    if (changed || (self.gl && self.gl->sorting())) {
+    const bool fuller = !changed && !self.final_started && self.previews_arrived(request);
+    if (changed || fuller || (self.gl && self.gl->sorting())) {
         self.final.cancel();
         self.final_started = false;
         if (changed) self.changed_at = now;

@@ -216,9 +216,11 @@ void Session::Impl::draw_overlay(const Scene& now, const Rect& place) {
     status.overlay_lines.clear();
     if (view.view == ViewKind::camera || !view.camera_path) return;
     try {
-        if (path_revision != document.revision()) {
-            path = camera_path(document.scene(), status.box);
-            path_revision = document.revision();
+        const bool same_box = path_box.lo == status.box.lo && path_box.hi == status.box.hi;
+        if (Scene part = camera_part(document.scene()); !same_box || part != path_of) {
+            path = camera_path(part, status.box);
+            path_of = std::move(part);
+            path_box = status.box;
         }
         const Camera seen_through = camera_of(request);
         const double width = static_cast<double>(now.output.width),
@@ -237,12 +239,21 @@ void Session::Impl::draw_overlay(const Scene& now, const Rect& place) {
     }
 }
 
+/// Front, top and side make their camera anew from the layers' bounds: the free one follows, so that a key of
+/// the camera, or a turn, begins where the person is.
+void Session::Impl::keep_free_camera() {
+    if (view.view != ViewKind::front && view.view != ViewKind::top && view.view != ViewKind::side) return;
+    view.free = viewport_camera();
+}
+
 void Session::draw(int viewport_width, int viewport_height, double now, bool hurry) {
     Impl& self = *impl_;
     self.viewport_width = std::max(1, viewport_width);
     self.viewport_height = std::max(1, viewport_height);
     const Scene scene = self.evaluated(self.document.scene());
+    self.drawn_sets = self.loader.revision();
     self.request = self.make_request(scene);
+    self.keep_free_camera();
     const Rect port{0, 0, static_cast<float>(self.viewport_width), static_cast<float>(self.viewport_height)};
     Rect place = place_picture(self.view, port, self.request.width, self.request.height);
     const Rect whole = place;
@@ -260,8 +271,9 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
     const PreviewChoice choice{self.view.engine == PreviewEngine::opengl ||
                                    (self.view.engine == PreviewEngine::automatic && !self.gl.software),
                                self.view.preview_share, self.fixed_splats};
-    const bool may_settle = self.view.settle && !self.view.playing && self.loader.idle();
+    const bool may_settle = self.view.settle && !self.view.playing && self.loader.sets_there();
     self.a.show(self.request, choice, may_settle, now, hurry);
+    self.loader.hold(self.a.status().state == PictureState::refining);
 
     DisplaySettings shown;
     shown.view = display_view(self.view.display, scene.output.view);
@@ -386,7 +398,9 @@ double Session::next_due(double now) const {
 bool Session::loaded() const {
     return impl_->loader.idle() && impl_->wanted_revision == impl_->document.revision();
 }
-bool Session::preview_exact() const { return impl_->a.exact(); }
+bool Session::preview_exact() const {
+    return impl_->a.exact() && impl_->drawn_sets == impl_->loader.revision();
+}
 bool Session::settled() const { return impl_->a.status().state == PictureState::final; }
 void Session::say(const std::string& text, bool error) { impl_->say(text, error); }
 bool Session::quitting() const { return impl_->quitting; }

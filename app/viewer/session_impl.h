@@ -64,6 +64,7 @@ struct Session::Impl {
     // The picture at hand: of the last draw().
     PictureRequest request;
     int viewport_width = 0, viewport_height = 0;
+    std::uint64_t drawn_sets = 0;  // revision of the loader
     std::vector<glm::dvec3> path;  // of the scene's camera
     Scene path_of;                 // camera_part() that it was made of, with this box
     Bounds path_box;

@@ -41,8 +41,13 @@ struct Entry {
     std::shared_ptr<const LoadedLayer> loaded;
 };
 
+/// What is done for a layer, the first for all layers before the second for any.
+enum class Task { load, arrange, describe };
+constexpr Task tasks[] = {Task::load, Task::arrange, Task::describe};
+
 /// What the thread is doing.
 struct Job {
+    Task task = Task::load;
     std::string name;
     SourceParams source, identity;
     std::atomic<bool> cancelled{false};
@@ -76,11 +81,10 @@ struct SetLoader::Impl {
     std::condition_variable wake, rest;
     std::map<std::string, Entry> entries;  // by layer name
     std::map<std::string, SourceParams> sources;
-    std::list<std::string> queue;        // names whose set is to be loaded; the next one first
-    std::list<std::string> undescribed;  // names whose histograms are missing; only once the queue is empty
+    std::map<Task, std::list<std::string>> queues;  // names of layers; the next one first
     std::shared_ptr<Job> job;
     std::uint64_t revision = 0;
-    bool ending = false;
+    bool held = false, ending = false;
     std::thread thread;  // last: it uses all the others
 
     Impl(const SetCache& where, std::int64_t limit)
@@ -101,13 +105,21 @@ struct SetLoader::Impl {
     bool want_layer(const LayerParams& layer);
     void forget_layers_not_in(const Scene& scene);
     bool is_wanted(const Job& finished) const;
-    bool resting() const { return !job && queue.empty() && undescribed.empty(); }
-    std::shared_ptr<Job> next_job();
+    void queue_rest(const std::string& name, const LoadedLayer& loaded);
+    std::optional<Task> next_task() const;
+    bool loading() const;
+    bool resting() const;
+    std::shared_ptr<Job> next_job(Task task);
+
+    // Without it.
+    std::shared_ptr<const LoadedLayer> layer(const std::string& name) const;
 
     // The thread's.
     void work();
     void load(Job& current);
+    void arrange(const Job& current);
     void describe(const Job& current);
+    void replace(const Job& finished, std::shared_ptr<const LoadedLayer> loaded);
     void fail(const Job& current, const std::string& why);
 };
 
@@ -118,8 +130,7 @@ std::shared_ptr<const LoadedLayer> SetLoader::Impl::find_loaded(const SourcePara
 }
 
 void SetLoader::Impl::stop(const std::string& name) {
-    queue.remove(name);
-    undescribed.remove(name);
+    for (auto& queue : queues) queue.second.remove(name);
     if (job && job->name == name) job->cancelled = true;
 }
 
@@ -133,7 +144,7 @@ bool SetLoader::Impl::want_layer(const LayerParams& layer) {
     entry.identity = identity;
     entry.error.clear();
     if (std::shared_ptr<const LoadedLayer> known = find_loaded(identity)) {
-        if (!known->histograms) undescribed.push_back(layer.name);
+        queue_rest(layer.name, *known);
         entry.loaded = std::move(known);
         entry.stage = Stage::ready;
         ++revision;
@@ -164,9 +175,36 @@ bool SetLoader::Impl::is_wanted(const Job& finished) const {
     return !finished.cancelled && found != entries.end() && found->second.identity == finished.identity;
 }
 
-std::shared_ptr<Job> SetLoader::Impl::next_job() {
-    std::list<std::string>& names = queue.empty() ? undescribed : queue;
+/// What a layer that has its set still lacks.
+void SetLoader::Impl::queue_rest(const std::string& name, const LoadedLayer& loaded) {
+    if (!loaded.arranged) queues[Task::arrange].push_back(name);
+    if (!loaded.histograms) queues[Task::describe].push_back(name);
+}
+
+/// What the thread should do now.
+std::optional<Task> SetLoader::Impl::next_task() const {
+    for (const Task task : tasks) {
+        const auto queue = queues.find(task);
+        if (held && task != Task::load) break;
+        if (queue != queues.end() && !queue->second.empty()) return task;
+    }
+    return std::nullopt;
+}
+
+bool SetLoader::Impl::loading() const {
+    const auto queue = queues.find(Task::load);
+    return (job && job->task == Task::load) || (queue != queues.end() && !queue->second.empty());
+}
+
+bool SetLoader::Impl::resting() const {
+    return !job &&
+           std::all_of(queues.begin(), queues.end(), [](const auto& queue) { return queue.second.empty(); });
+}
+
+std::shared_ptr<Job> SetLoader::Impl::next_job(Task task) {
+    std::list<std::string>& names = queues[task];
     auto next = std::make_shared<Job>();
+    next->task = task;
     next->name = names.front();
     names.pop_front();
     next->source = sources[next->name];
@@ -177,19 +215,19 @@ std::shared_ptr<Job> SetLoader::Impl::next_job() {
 void SetLoader::Impl::work() {
     for (;;) {
         std::shared_ptr<Job> current;
-        bool to_load = false;
         {
             std::unique_lock lock(mutex);
             job.reset();
             if (resting()) rest.notify_all();
-            wake.wait(lock, [&] { return ending || !queue.empty() || !undescribed.empty(); });
+            wake.wait(lock, [&] { return ending || next_task(); });
             if (ending) return;
-            to_load = !queue.empty();
-            current = job = next_job();
-            if (to_load) entries[current->name].stage = Stage::loading;
+            current = job = next_job(*next_task());
+            if (current->task == Task::load) entries[current->name].stage = Stage::loading;
         }
         try {
-            to_load ? load(*current) : describe(*current);
+            if (current->task == Task::load) load(*current);
+            if (current->task == Task::arrange) arrange(*current);
+            if (current->task == Task::describe) describe(*current);
         } catch (const Cancelled&) {  // whoever cancelled has said in the entry what comes next
         } catch (const std::exception& error) {
             fail(*current, reason(error));
@@ -215,16 +253,15 @@ glm::vec3 mean_color(const SplatSet& set) {
 
 /// The set, and what the preview needs to begin.
 void SetLoader::Impl::load(Job& current) {
+    constexpr std::int64_t first_look = 1 << 18;  // splats of a preview before it is arranged
     Progress progress;
     progress.cancelled = &current.cancelled;
-    progress.report = [&](double fraction) { current.progress = static_cast<float>(0.9 * fraction); };
+    progress.report = [&](double fraction) { current.progress = static_cast<float>(fraction); };
     auto loaded = std::make_shared<LoadedLayer>();
     auto set =
         std::make_shared<const SplatSet>(load_source(cache, current.source, current.name, progress).set);
-    progress.report = [&](double fraction) { current.progress = static_cast<float>(0.9 + 0.1 * fraction); };
-    const Buffer<std::int64_t> order = stratified_order(*set, progress);
     loaded->preview =
-        std::make_shared<const SplatSet>(take_rows(*set, order, std::min(preview_limit, set->size())));
+        std::make_shared<const SplatSet>(sample_rows(*set, std::min(preview_limit, first_look)));
     loaded->color = mean_color(*loaded->preview);
     loaded->box = bounds(*set);
     loaded->radius = unset_radius(*set);
@@ -236,24 +273,45 @@ void SetLoader::Impl::load(Job& current) {
     const std::lock_guard lock(mutex);
     if (!is_wanted(current)) return;
     Entry& entry = entries[current.name];
+    queue_rest(current.name, *loaded);
     old = std::exchange(entry.loaded, std::move(loaded));
     entry.stage = Stage::ready;
-    undescribed.push_back(current.name);
     ++revision;
+}
+
+/// The preview in stratified order, of as many splats as it may ever show.
+void SetLoader::Impl::arrange(const Job& current) {
+    const std::shared_ptr<const LoadedLayer> plain = layer(current.name);
+    const SplatSet& set = *plain->set;
+    Progress progress;
+    progress.cancelled = &current.cancelled;
+    const Buffer<std::int64_t> order = stratified_order(set, progress);
+    auto arranged = std::make_shared<LoadedLayer>(*plain);
+    arranged->preview =
+        std::make_shared<const SplatSet>(take_rows(set, order, std::min(preview_limit, set.size())));
+    arranged->arranged = true;
+    replace(current, std::move(arranged));
 }
 
 /// The histograms, for which pictures are read once more: after everything that somebody waits for.
 void SetLoader::Impl::describe(const Job& current) {
-    std::shared_ptr<const LoadedLayer> plain;
-    {
-        const std::lock_guard lock(mutex);
-        plain = entries[current.name].loaded;
-    }
+    const std::shared_ptr<const LoadedLayer> plain = layer(current.name);
     auto described = std::make_shared<LoadedLayer>(*plain);
     described->histograms = std::make_shared<const LayerHistograms>(histograms(*plain->set, plain->source));
+    replace(current, std::move(described));
+}
+
+std::shared_ptr<const LoadedLayer> SetLoader::Impl::layer(const std::string& name) const {
     const std::lock_guard lock(mutex);
-    if (!is_wanted(current)) return;
-    entries[current.name].loaded = std::move(described);
+    const auto found = entries.find(name);
+    return found == entries.end() ? nullptr : found->second.loaded;
+}
+
+/// The same set with more known of it.
+void SetLoader::Impl::replace(const Job& finished, std::shared_ptr<const LoadedLayer> loaded) {
+    const std::lock_guard lock(mutex);
+    if (!is_wanted(finished)) return;
+    entries[finished.name].loaded.swap(loaded);
     ++revision;
 }
 
@@ -277,7 +335,8 @@ void SetLoader::want(const Scene& scene) {
         for (const LayerParams& layer : scene.layers)
             if (ever_visible(scene, layer) && impl_->want_layer(layer)) changed.push_back(layer.name);
         impl_->forget_layers_not_in(scene);  // after that, for a layer may have been renamed
-        impl_->queue.splice(impl_->queue.begin(), changed);
+        std::list<std::string>& queue = impl_->queues[Task::load];
+        queue.splice(queue.begin(), changed);
     }
     impl_->wake.notify_one();
 }
@@ -291,7 +350,7 @@ void SetLoader::retry(const std::string& layer_name) {
         if (entry.stage != Stage::failed && entry.stage != Stage::cancelled) return;
         entry.stage = Stage::waiting;
         entry.error.clear();
-        impl_->queue.push_front(layer_name);
+        impl_->queues[Task::load].push_front(layer_name);
     }
     impl_->wake.notify_one();
 }
@@ -312,9 +371,7 @@ std::uint64_t SetLoader::revision() const {
 }
 
 std::shared_ptr<const LoadedLayer> SetLoader::layer(const std::string& layer_name) const {
-    const std::lock_guard lock(impl_->mutex);
-    const auto found = impl_->entries.find(layer_name);
-    return found == impl_->entries.end() ? nullptr : found->second.loaded;
+    return impl_->layer(layer_name);
 }
 
 LayerStatus SetLoader::status(const LayerParams& layer) const {
@@ -342,6 +399,20 @@ LayerStatus SetLoader::status(const LayerParams& layer) const {
     status.color = entry.loaded->color;
     status.histograms = entry.loaded->histograms;
     return status;
+}
+
+bool SetLoader::sets_there() const {
+    const std::lock_guard lock(impl_->mutex);
+    return !impl_->loading();
+}
+
+void SetLoader::hold(bool held) {
+    {
+        const std::lock_guard lock(impl_->mutex);
+        if (impl_->held == held) return;
+        impl_->held = held;
+    }
+    impl_->wake.notify_one();
 }
 
 bool SetLoader::idle() const {

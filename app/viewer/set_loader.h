@@ -17,8 +17,9 @@ namespace astrosplat {
 
 /// What the viewer keeps of one layer.
 struct LoadedLayer {
-    std::shared_ptr<const SplatSet> set;                // in order of id: for the final picture
-    std::shared_ptr<const SplatSet> preview;            // in stratified order, at most `preview_limit` splats
+    std::shared_ptr<const SplatSet> set;      // in order of id: for the final picture
+    std::shared_ptr<const SplatSet> preview;  // in stratified order, at most `preview_limit` splats
+    bool arranged = false;  // until then `preview` is a small sample, and grows a little later
     std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
     Bounds box;                                         // layer space
     glm::vec3 color{1.0f};                              // mean of the splats, weighted by alpha, linear
@@ -48,9 +49,13 @@ class SetLoader {
     std::shared_ptr<const LoadedLayer> layer(const std::string& layer_name) const;
     /// loading, progress, found, stale, error, splats and histograms filled in.
     LayerStatus status(const LayerParams& layer) const;
-    /// Every wanted layer is there with its histograms, or has failed or been cancelled.
+    /// Every wanted layer has its set, or has failed or been cancelled.
+    bool sets_there() const;
+    /// The same with all that comes later: previews in order, histograms.
     bool idle() const;
     void wait();
+    /// Does not begin what comes later, while something more urgent needs the processor.
+    void hold(bool held);
 
   private:
     struct Impl;

@@ -11,6 +11,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/shared_maths.h"
 
 namespace astrosplat {
 namespace {
@@ -242,6 +243,22 @@ Buffer<std::int64_t> stratified_order(const SplatSet& set, const Progress& progr
 SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& order, std::int64_t count) {
     assert(count >= 0 && count <= static_cast<std::int64_t>(order.size()));
     return copy_arrays(set, count, [&](std::size_t i) { return static_cast<std::size_t>(order[i]); });
+}
+
+SplatSet sample_rows(const SplatSet& set, std::int64_t count) {
+    const auto wanted = static_cast<std::uint64_t>(std::min(count, set.size()));
+    if (wanted == 0) return first_rows(set, 0);
+    const auto bits = static_cast<unsigned>(std::bit_width(wanted)) - 1;
+    const auto size = static_cast<std::uint64_t>(set.size());
+    // One row by chance of each stretch: every n-th row of a lattice would be a pattern.
+    return copy_arrays(set, std::int64_t{1} << bits, [&](std::size_t i) {
+        const std::uint64_t stretch = reversed(i, bits);
+        const std::uint64_t begin = stretch * size >> bits, end = (stretch + 1) * size >> bits;
+        const auto low = static_cast<std::uint32_t>(stretch);
+        const float chance = shared::as_uniform(shared::as_hash(1u, low, 0u, 0u));
+        const auto step = static_cast<std::uint64_t>(chance * static_cast<float>(end - begin));
+        return static_cast<std::size_t>(std::min(begin + step, end - 1));
+    });
 }
 
 SplatSet first_rows(const SplatSet& set, std::int64_t count) {

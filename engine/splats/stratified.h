@@ -17,6 +17,10 @@ Buffer<std::int64_t> stratified_order(const SplatSet& set, const Progress& progr
 /// A set of the rows order[0 .. count), in that order (not by id), with all arrays the original has.
 SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& order, std::int64_t count);
 
+/// At most `count` rows, in an order of which any prefix is spread evenly over the set's own: in no time, and
+/// for a first look as good as the stratified order, since that of a lattice runs through space too.
+SplatSet sample_rows(const SplatSet& set, std::int64_t count);
+
 /// The first rows of a set, with all arrays it has.
 SplatSet first_rows(const SplatSet& set, std::int64_t count);
 
