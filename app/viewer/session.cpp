@@ -25,7 +25,7 @@ namespace astrosplat {
 namespace {
 
 /// Splats of a layer that a preview will ever draw.
-std::int64_t preview_limit(const GlInfo& gl) { return gl.software ? 4'000'000 : 60'000'000; }
+std::int64_t preview_limit(const GlInfo& gl) { return gl.software ? 1'000'000 : 60'000'000; }
 
 double first_frame(const Scene& scene) {
     return static_cast<double>(parse_frames(scene.output.frames, "output.frames").front());

@@ -75,7 +75,8 @@ void print_rate(const std::string& what, const std::string& target, const Times&
                 const std::string& notes) {
     print_row(what, target,
               fmt::format("{:.1f} frames/s, worst {:.1f}", 1e3 / times.median_ms(), 1e3 / times.worst_ms()),
-              fmt::format("processor {:.1f} ms a frame{}", Times::median(times.processor_ms), notes));
+              fmt::format("processor {:.1f} ms a frame, worst {:.1f}{}", Times::median(times.processor_ms),
+                          *std::max_element(times.processor_ms.begin(), times.processor_ms.end()), notes));
 }
 
 void print_wait(const std::string& what, const std::string& target, const Times& times) {
