@@ -1,4 +1,4 @@
-// The benchmarks' results as the table of issue 3. In: a folder of Google Benchmark's JSON files,
+// The benchmarks' results as the table of speed. In: a folder of Google Benchmark's JSON files,
 // PROGRAM.CORES.json. Out: Markdown. Every figure is the median of its runs.
 #include <fmt/format.h>
 
