@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <future>
 #include <map>
 #include <optional>
@@ -23,25 +24,40 @@ class PictureFiles {
         return *image;
     }
     /// With gain and rotation of `params`; null where there is none to be seen, and while it is being loaded.
+    /// Throws InputError where it cannot be.
     std::shared_ptr<const Environment> environment(const EnvironmentParams& params) {
-        if (!has_environment(params) || !params.visible) return nullptr;
+        seen_ = has_environment(params) && params.visible;
+        if (!seen_) return nullptr;
         if (files_ != std::pair(params.image, params.cube)) {
             files_ = {params.image, params.cube};
             environment_.reset();
+            failure_ = nullptr;
             loading_ = std::async(std::launch::async, [params] { return load_environment(params); });
         }
         if (loading_.valid() && loading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-            environment_ = std::make_shared<Environment>(loading_.get());
+            take();
+        if (failure_) std::rethrow_exception(failure_);
         if (environment_) set_environment_params(*environment_, params);
         return environment_;
     }
-    bool loading() const { return loading_.valid(); }
+    /// The environment asked for last is on its way.
+    bool loading() const { return seen_ && loading_.valid(); }
 
   private:
+    void take() {
+        try {
+            environment_ = std::make_shared<Environment>(loading_.get());
+        } catch (const InputError&) {
+            failure_ = std::current_exception();
+        }
+    }
+
     std::map<std::filesystem::path, std::unique_ptr<Image>> maps_;
     std::pair<std::filesystem::path, std::vector<std::filesystem::path>> files_;
     std::future<Environment> loading_;
     std::shared_ptr<Environment> environment_;
+    std::exception_ptr failure_;  // why files_ cannot be loaded
+    bool seen_ = false;           // the environment asked for last
 };
 
 std::shared_ptr<PictureFiles> make_picture_files() { return std::make_shared<PictureFiles>(); }
@@ -98,6 +114,7 @@ struct ViewPicture::Impl {
     const Image* drawn = nullptr;  // the processor's preview; null while the GPU's is shown
     Image canvas;                  // preview and tiles of the final picture, once that has begun
     unsigned texture = 0;
+    std::uint64_t version = 0;  // of its pixels
     PictureStatus status;
     std::vector<std::int64_t> shown, kept;
     std::vector<std::size_t> places;  // in the scene, of the layers that the last preview drew
@@ -154,9 +171,13 @@ void ViewPicture::Impl::note_kept(const std::vector<double>& shares) {
     }
 }
 
-/// The environment of the picture shown has been loaded since.
+/// The environment of the picture shown has been loaded since, or could not be: then the preview says why.
 bool ViewPicture::Impl::environment_arrived() {
-    return request && files->environment(request->scene.environment) != environment;
+    try {
+        return request && files->environment(request->scene.environment) != environment;
+    } catch (const InputError&) {
+        return status.state != PictureState::failed;
+    }
 }
 
 /// There is more to be shown of the same sets. Once the final picture has begun nobody needs it.
@@ -170,6 +191,7 @@ bool ViewPicture::Impl::previews_arrived(const PictureRequest& now) const {
 
 void ViewPicture::Impl::draw_preview() {
     const auto start = std::chrono::steady_clock::now();
+    ++version;
     Camera camera = camera_of(*request);
     const Region part = whole(*request);
     camera.center_x_px -= static_cast<double>(part.x);
@@ -219,7 +241,10 @@ void ViewPicture::Impl::begin_final() {
 }
 
 void ViewPicture::Impl::take_final() {
-    for (const Region& tile : final.take_tiles(canvas)) canvas_texture.upload(canvas, tile);
+    for (const Region& tile : final.take_tiles(canvas)) {
+        canvas_texture.upload(canvas, tile);
+        ++version;
+    }
     texture = canvas_texture.handle();
     status.progress = final.progress();
     if (final.state() == FinalPicture::State::done) {
@@ -274,6 +299,7 @@ void ViewPicture::stop() {
 }
 
 unsigned ViewPicture::texture() const { return impl_->texture; }
+std::uint64_t ViewPicture::version() const { return impl_->version; }
 const PictureStatus& ViewPicture::status() const { return impl_->status; }
 bool ViewPicture::waiting() const {
     return impl_->status.state == PictureState::preview || impl_->status.state == PictureState::refining;
