@@ -86,6 +86,12 @@ void fold_batch(const FoldJob& job, const FootprintTable* table, SplatBatch& bat
     batch.count = 0;
 }
 
+/// A record may lie in two cache lines.
+HWY_INLINE void prefetch(const ScreenSplat& splat) {
+    hwy::Prefetch(&splat);
+    hwy::Prefetch(&splat.hybrid);
+}
+
 /// Adds a splat to the batch if its support may touch the cell.
 HWY_INLINE void gather(const ScreenSplat& splat, const FoldLayer& layer, const Cell& cell,
                        SplatBatch& batch) {
@@ -145,7 +151,7 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
         batch.count = 0;
         for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; ++i) {
             if (i % check_every == 0) job.progress.check();
-            if (i + fetch_ahead < job.splats.size()) hwy::Prefetch(job.splats[i + fetch_ahead]);
+            if (i + fetch_ahead < job.splats.size()) prefetch(*job.splats[i + fetch_ahead]);
             const ScreenSplat& splat = *job.splats[i];
             gather(splat, job.layers[splat.layer], cell, batch);
             if (batch.count == SplatBatch::size) fold_batch<Pixels, kFlat>(job, table, batch, cell, planes);

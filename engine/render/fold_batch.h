@@ -15,7 +15,8 @@ struct SplatBatch {
     const ScreenSplat* splat[size];
     std::uint16_t layer[size];
     std::uint8_t linear_in_distance[size];  // as in FootprintTable
-    std::uint8_t bright_screen[size];       // alpha is the mean of the clamped channels, see prepare_blend
+    std::uint8_t
+        bright[size];  // a screen splat with a channel above 1: alpha is the mean of the clamped ones
     alignas(64) std::uint64_t touches[blocks];  // bit i: splat i may have weight in the block
 
     // Of the whole picture; places beyond `count` have a reach below 0.

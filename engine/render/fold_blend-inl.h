@@ -207,23 +207,24 @@ struct GeneralPixels {
     }
     HWY_INLINE void fold(const FoldStep& step, V s, V weight, V stop) {
         const M is_open = open(stop);
-        V sum = hn::Zero(D());
+        V hidden[4];
+        for (int k = 0; k < 4; ++k) hidden[k] = hn::Mul(s, all(step.batch.occlusion[k][step.i]));
+        if (step.batch.bright[step.i]) {  // else s and the occlusions are at most 1
+            for (int k = 0; k < 3; ++k) hidden[k] = clamp_one(hidden[k]);
+            hidden[3] = hn::Div(hn::Add(hn::Add(hidden[0], hidden[1]), hidden[2]), all(3.0f));
+        }
         for (int k = 0; k < 3; ++k) {
             const V reached = hn::IfThenElseZero(is_open, hn::Mul(t[k], s));
             const V light = hn::Mul(reached, all(step.batch.color[k][step.i]));
             color[k] = hn::Add(color[k], light);
             if (kAovs) accumulate(step.layer_light[k], light);
-            const V hidden = clamp_one(hn::Mul(s, all(step.batch.occlusion[k][step.i])));
-            sum = hn::Add(sum, hidden);
-            t[k] = hn::Mul(t[k], hn::Sub(all(1.0f), hidden));
+            t[k] = hn::Mul(t[k], hn::Sub(all(1.0f), hidden[k]));
         }
-        V hidden = clamp_one(hn::Mul(s, all(step.batch.occlusion[3][step.i])));
-        if (step.batch.bright_screen[step.i]) hidden = hn::Div(sum, all(3.0f));
-        const V share = hn::IfThenElseZero(is_open, hn::Mul(t[3], hidden));
+        const V share = hn::IfThenElseZero(is_open, hn::Mul(t[3], hidden[3]));
         const V shown = kHolds ? hn::Mul(share, all(step.batch.shows[step.i])) : share;
         if (kHolds) held = hn::Add(held, hn::Sub(share, shown));
         alpha = hn::Add(alpha, shown);
-        t[3] = hn::Mul(t[3], hn::Sub(all(1.0f), hidden));
+        t[3] = hn::Mul(t[3], hn::Sub(all(1.0f), hidden[3]));
         if (kAovs) accumulate(step.layer_light[3], shown);
         more.fold(step, s, weight, shown, is_open);
     }

@@ -172,7 +172,7 @@ HWY_INLINE void prepare_occlusion(const ScreenSplat& splat, const FoldLayer& lay
         bright = bright || (blend == shared::BLEND_SCREEN && splat.color[k] > 1.0f);
     }
     batch.occlusion[3][i] = sum / 3.0f;
-    batch.bright_screen[i] = bright;
+    batch.bright[i] = bright;
 }
 
 inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {

@@ -144,6 +144,9 @@ void TileBins::add_segment(Scratch& scratch, const LayerProjection& layer, int g
         cursor[i] = offsets[i];
     }
     auto* records = store.take<ScreenSplat>(count);
+    // The store's lines are asked for one after the other: the writes come in no order, and would wait for
+    // each.
+    for (std::int64_t i = 0; i < count; ++i) __builtin_prefetch(records + i, 1);
     for (const Entry& e : entries) records[cursor[e.bin - first]++] = scratch.splats[e.splat];
     segment.offsets = offsets;
     segment.records = records;

@@ -1,6 +1,7 @@
 #include "render/splat_sorter.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace astrosplat {
 namespace {
@@ -9,9 +10,16 @@ constexpr int digit_bits = 11;
 constexpr std::uint32_t digits = 1u << digit_bits;
 constexpr std::size_t check_every = 65536;  // splats between looks at whether to stop
 
+using Keys = Buffer<std::uint64_t>;  // depth less the least one, above the place in the order of arrival
+
+/// The records of runs lie all over memory: asks for those of one that is soon to be read.
+void prefetch(std::span<const ScreenSplat> run) {
+    const auto* bytes = reinterpret_cast<const char*>(run.data());
+    for (std::size_t i = 0; i < run.size_bytes(); i += 64) __builtin_prefetch(bytes + i);
+}
+
 /// One stable pass by the digit of the key that begins at bit `shift`.
-void sort_by_digit(const std::vector<std::uint64_t>& from, std::vector<std::uint64_t>& to, int shift,
-                   const Progress& progress) {
+void sort_by_digit(const Keys& from, Keys& to, int shift, const Progress& progress) {
     std::uint32_t start[digits + 1] = {};
     const auto digit = [shift](std::uint64_t key) { return key >> shift & (digits - 1u); };
     for (const std::uint64_t key : from) ++start[digit(key) + 1];
@@ -22,53 +30,62 @@ void sort_by_digit(const std::vector<std::uint64_t>& from, std::vector<std::uint
     }
 }
 
-/// Runs of equal depth, which the radix sort left in the order in which they came, into total order.
-void sort_ties(std::vector<const ScreenSplat*>& order, const Progress& progress) {
-    const auto before = [](const ScreenSplat* a, const ScreenSplat* b) { return in_front_of(*a, *b); };
-    for (std::size_t begin = 0; begin + 1 < order.size();) {
-        if (begin % 1024 == 0) progress.check();
-        std::size_t end = begin + 1;
-        while (end < order.size() && order[end]->depth == order[begin]->depth) ++end;
-        const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
-        const auto last = order.begin() + static_cast<std::ptrdiff_t>(end);
-        if (end - begin > 1 && !std::is_sorted(first, last, before)) std::sort(first, last, before);
-        begin = end;
-    }
-}
-
 }  // namespace
 
-std::span<const ScreenSplat* const> SplatSorter::sort(std::span<const std::span<const ScreenSplat>> runs,
-                                                      const Progress& progress) {
+/// Sets keys_ and splats_; returns how many bits of the keys' depths are in use.
+int SplatSorter::read(std::span<const std::span<const ScreenSplat>> runs, const Progress& progress) {
+    constexpr std::size_t runs_ahead = 6;
     std::size_t n = 0;
     for (const std::span<const ScreenSplat>& run : runs) n += run.size();
     keys_.resize(n);
     other_.resize(n);
     splats_.resize(n);
     order_.resize(n);
-    std::uint32_t all_or = 0, all_and = 0xffffffffu;
+    std::uint32_t least = 0xffffffffu, most = 0;
     std::size_t i = 0;
-    for (const std::span<const ScreenSplat>& run : runs) {
-        progress.check();
-        for (const ScreenSplat& splat : run) {
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        if (r % 64 == 0) progress.check();
+        if (r + runs_ahead < runs.size()) prefetch(runs[r + runs_ahead]);
+        for (const ScreenSplat& splat : runs[r]) {
             splats_[i] = &splat;
             keys_[i] = std::uint64_t{splat.depth} << 32 | i;
-            all_or |= splat.depth;
-            all_and &= splat.depth;
+            least = std::min(least, splat.depth);
+            most = std::max(most, splat.depth);
             ++i;
         }
     }
-    for (int shift = 0; shift < 32; shift += digit_bits) {
-        if (((all_or ^ all_and) >> shift & (digits - 1u)) == 0) continue;  // the same for all
+    for (std::uint64_t& key : keys_) key -= std::uint64_t{least} << 32;
+    return n == 0 ? 0 : std::bit_width(most - least);
+}
+
+/// Sets order_ from the sorted keys. Those whose depths differ in their lowest `open_bits` bits at most, by
+/// which the keys are not sorted, are put into total order.
+void SplatSorter::put_in_order(int open_bits, const Progress& progress) {
+    const auto before = [](const ScreenSplat* a, const ScreenSplat* b) { return in_front_of(*a, *b); };
+    const auto close = [&](std::size_t a, std::size_t b) {
+        return (keys_[a] ^ keys_[b]) >> (32 + open_bits) == 0;
+    };
+    for (std::size_t i = 0; i < keys_.size(); ++i) order_[i] = splats_[keys_[i] & 0xffffffffu];
+    for (std::size_t begin = 0, end = 1; end <= keys_.size(); ++end) {
+        if (end % check_every == 0) progress.check();
+        if (end < keys_.size() && close(begin, end)) continue;
+        const auto first = order_.begin() + static_cast<std::ptrdiff_t>(begin);
+        const auto last = order_.begin() + static_cast<std::ptrdiff_t>(end);
+        if (end - begin > 1 && !std::is_sorted(first, last, before)) std::sort(first, last, before);
+        begin = end;
+    }
+}
+
+std::span<const ScreenSplat* const> SplatSorter::sort(std::span<const std::span<const ScreenSplat>> runs,
+                                                      const Progress& progress) {
+    const int bits = read(runs, progress);
+    // Two digits tell nearly all depths of a tile apart.
+    const int open_bits = std::max(0, bits - 2 * digit_bits);
+    for (int shift = open_bits; shift < bits; shift += digit_bits) {
         sort_by_digit(keys_, other_, 32 + shift, progress);
         keys_.swap(other_);
     }
-    bool ties = false;
-    for (i = 0; i < n; ++i) {
-        order_[i] = splats_[keys_[i] & 0xffffffffu];
-        ties = ties || (i > 0 && keys_[i] >> 32 == keys_[i - 1] >> 32);
-    }
-    if (ties) sort_ties(order_, progress);
+    put_in_order(open_bits, progress);
     return order_;
 }
 

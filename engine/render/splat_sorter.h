@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "core/buffer.h"
 #include "core/progress.h"
 #include "render/screen_splat.h"
 
@@ -19,8 +19,11 @@ class SplatSorter {
                                              const Progress& progress);
 
   private:
-    std::vector<std::uint64_t> keys_, other_;  // depth above, index below
-    std::vector<const ScreenSplat*> splats_, order_;
+    int read(std::span<const std::span<const ScreenSplat>> runs, const Progress& progress);
+    void put_in_order(int open_bits, const Progress& progress);
+
+    Buffer<std::uint64_t> keys_, other_;  // depth less the least one above, place of arrival below
+    Buffer<const ScreenSplat*> splats_, order_;
 };
 
 }  // namespace astrosplat
