@@ -85,6 +85,13 @@ struct Display::State {
     std::map<Variant, std::unique_ptr<GlProgram>> programs;  // compiled when first needed
     GlVertexArray nothing;
     GlTarget target;
+    DisplaySettings drawn;  // what the target holds, when version is above 0
+    std::uint64_t version = 0;
+
+    bool holds(const DisplaySettings& settings, int width, int height) const {
+        return settings.content != 0 && version != 0 && settings == drawn && width == target.width() &&
+               height == target.height();
+    }
 
     const GlProgram& program(const Variant& variant) {
         std::unique_ptr<GlProgram>& entry = programs[variant];
@@ -155,6 +162,9 @@ Display::~Display() = default;
 unsigned Display::draw(const DisplaySettings& settings, int target_width, int target_height) {
     using Mode = DisplaySettings::Mode;
     State& state = *state_;
+    if (state.holds(settings, target_width, target_height)) return state.target.texture();
+    state.drawn = settings;
+    ++state.version;
     state.target.resize(target_width, target_height, GL_RGBA8);
     state.target.bind();
     glDisable(GL_BLEND);
@@ -179,6 +189,8 @@ unsigned Display::draw(const DisplaySettings& settings, int target_width, int ta
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return state.target.texture();
 }
+
+std::uint64_t Display::version() const { return state_->version; }
 
 std::vector<unsigned char> Display::read() const {
     const GlTarget& target = state_->target;

@@ -2,6 +2,7 @@
 // letterbox.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct DisplaySettings {
     float x = 0, y = 0, width = 0, height = 0;
     float background[3] = {0, 0, 0};  // around the picture, display values
     bool dither = false;              // as 8-bit files are: no bands in dark gradients
+    std::uint64_t content = 0;        // another number whenever the pixels of a or b are; 0: not known
+    bool operator==(const DisplaySettings&) const = default;
 };
 
 /// An 8-bit target for the widgets to show.
@@ -48,9 +51,11 @@ class Display {
   public:
     Display();
     ~Display();
-    /// Draws at target_width x target_height px; returns the texture (RGBA8, bottom row first as ImGui's
-    /// ImVec2(0, 1) .. ImVec2(1, 0) expects).
+    /// Draws at target_width x target_height px, unless just that was drawn last; returns the texture (RGBA8,
+    /// bottom row first as ImGui's ImVec2(0, 1) .. ImVec2(1, 0) expects).
     unsigned draw(const DisplaySettings& settings, int target_width, int target_height);
+    /// Grows whenever something was drawn.
+    std::uint64_t version() const;
     /// The last draw(), read back as 8-bit RGBA, top row first.
     std::vector<unsigned char> read() const;
 

@@ -24,8 +24,10 @@ bool near_wipe(const GuiFrame& frame, const Rect& picture) {
 
 void draw_picture(const GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height}, IM_COL32_BLACK);
-    if (!frame.status.picture_texture) return;
+    if (!frame.status.picture_texture) {
+        list->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height}, IM_COL32_BLACK);
+        return;
+    }
     // The texture's first row is the lowest.
     list->AddImage(frame.status.picture_texture, {area.x, area.y}, {area.x + area.width, area.y + area.height},
                    {0, 1}, {1, 0});

@@ -57,6 +57,8 @@ class ViewPicture {
     void stop();
 
     unsigned texture() const;
+    /// Grows whenever the texture's pixels change.
+    std::uint64_t version() const;
     const PictureStatus& status() const;
     /// show() should be called again soon although nobody did anything.
     bool waiting() const;

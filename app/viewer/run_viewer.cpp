@@ -27,6 +27,8 @@ double seconds_now() {
 /// Frames drawn after the last event, so that hovers, tooltips and layouts come to rest.
 constexpr int frames_after_event = 4;
 
+constexpr double screen_frame_s = 1.0 / 60.0;
+
 class Loop {
   public:
     Loop(const ViewerOptions& options, const Preferences& preferences)
@@ -51,7 +53,7 @@ class Loop {
         double due = session_.next_due(seconds_now());
         if (chooser_.is_open()) due = std::min(due, 0.1);
         if (frames_left_ > 0 || gui_.busy() || due <= 0.0) {
-            window_.wait(0.0);
+            window_.wait(still_ ? screen_frame_s : 0.0);  // where nothing is shown, no screen sets the pace
             frames_left_ = std::max(0, frames_left_ - 1);
         } else {
             const double before = seconds_now();
@@ -80,7 +82,7 @@ class Loop {
             make_layout(session_.view(), io.DisplaySize.x, io.DisplaySize.y, window_.content_scale());
         session_.draw(static_cast<int>(layout.viewport.width * io.DisplayFramebufferScale.x),
                       static_cast<int>(layout.viewport.height * io.DisplayFramebufferScale.y), now);
-        window_.end_frame();
+        still_ = !window_.end_frame(session_.picture_version());
         if (const auto text = session_.take_clipboard()) ImGui::SetClipboardText(text->c_str());
         if (const auto file = session_.take_screenshot_request()) {
             int width = 0, height = 0;
@@ -95,6 +97,7 @@ class Loop {
     NativeChooser chooser_;
     std::string title_;
     int frames_left_ = frames_after_event;
+    bool still_ = false;  // the last frame looked like the one before
 };
 
 }  // namespace

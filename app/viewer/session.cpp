@@ -284,6 +284,7 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
     shown.width = place.width;
     shown.height = place.height;
     self.show_comparison(shown, choice, may_settle, now);
+    shown.content = 1 + self.a.version() + self.b.version() + self.references_loaded;
     shown.wipe = (whole.x + whole.width * self.view.wipe - place.x) / place.width;
     self.status.picture_texture =
         to_handle(self.display.draw(shown, self.viewport_width, self.viewport_height));
@@ -401,6 +402,7 @@ bool Session::loaded() const {
 bool Session::preview_exact() const {
     return impl_->a.exact() && impl_->drawn_sets == impl_->loader.revision();
 }
+std::uint64_t Session::picture_version() const { return impl_->display.version(); }
 bool Session::settled() const { return impl_->a.status().state == PictureState::final; }
 void Session::say(const std::string& text, bool error) { impl_->say(text, error); }
 bool Session::quitting() const { return impl_->quitting; }

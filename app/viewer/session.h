@@ -2,6 +2,7 @@
 // once per frame. The window and the screenshot both drive it. Needs a current OpenGL context.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -44,6 +45,8 @@ class Session {
 
     /// Seconds until something is due by itself; 0: draw again at once.
     double next_due(double now) const;
+    /// Grows whenever the pixels of Status::picture_texture change.
+    std::uint64_t picture_version() const;
     /// Every set is there, or has failed.
     bool loaded() const;
     /// The preview is that of the present camera, look and sets.

@@ -61,6 +61,7 @@ void Session::Impl::load_reference() {
             for (int c = 0; c < 3; ++c)
                 rgba.at(x, y)[c] = raw.at(x, y)[std::min(c, raw.channels >= 3 ? 2 : 0)];
     reference.upload(rgba);
+    ++references_loaded;
 }
 
 /// Puts B beside A: the look of a snapshot with the same camera, or the reference picture.

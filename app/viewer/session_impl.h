@@ -47,6 +47,7 @@ struct Session::Impl {
     bool comparing = false;  // the last draw() showed more than A
     PictureTexture reference;
     std::filesystem::path reference_file;  // what `reference` holds
+    std::uint64_t references_loaded = 0;
 
     std::uint64_t wanted_revision = 0;  // of the document, given to the loader
     std::vector<SourceParams> wanted_sources;

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "splats/checksum.h"
+
 namespace astrosplat {
 namespace {
 
@@ -17,6 +19,31 @@ std::string glfw_reason(const char* fallback) {
     const char* text = nullptr;
     glfwGetError(&text);
     return text ? text : fallback;
+}
+
+/// Takes in the bytes of one more thing.
+void mix(std::uint64_t& hash, const void* bytes, std::size_t size) {
+    constexpr std::uint64_t odd = 0x9e3779b97f4a7c15u;  // as large as can be, so that order matters
+    hash = hash * odd + xxh64({static_cast<const char*>(bytes), size});
+}
+
+/// Of all that the widgets draw: shapes, and with which texture and within which rectangle.
+std::uint64_t hash_of(const ImDrawData& data) {
+    std::uint64_t hash = 0;
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+        const ImDrawList& list = *data.CmdLists[i];
+        mix(hash, list.VtxBuffer.Data, static_cast<std::size_t>(list.VtxBuffer.size_in_bytes()));
+        mix(hash, list.IdxBuffer.Data, static_cast<std::size_t>(list.IdxBuffer.size_in_bytes()));
+        for (const ImDrawCmd& command : list.CmdBuffer) {
+            const float clip[] = {command.ClipRect.x, command.ClipRect.y, command.ClipRect.z,
+                                  command.ClipRect.w};
+            const void* texture = command.GetTexID();
+            mix(hash, clip, sizeof clip);
+            mix(hash, &texture, sizeof texture);
+            mix(hash, &command.ElemCount, sizeof command.ElemCount);
+        }
+    }
+    return hash;
 }
 
 constexpr int smallest_width = 1100, smallest_height = 680;
@@ -40,6 +67,9 @@ Window::Window(int width, int height, const std::string& title) {
     gl_ = load_gl(reinterpret_cast<GlLoader>(glfwGetProcAddress));
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) {
+        static_cast<Window*>(glfwGetWindowUserPointer(window))->damaged_ = true;
+    });
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
         for (int i = 0; i < count; ++i) self->dropped_.emplace_back(paths[i]);
@@ -83,10 +113,14 @@ bool Window::begin_frame() {
     return true;
 }
 
-void Window::end_frame() {
+bool Window::end_frame(std::uint64_t pictures) {
     ImGui::Render();
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
+    const FrameMark frame{hash_of(*ImGui::GetDrawData()), pictures, width, height};
+    if (frame == shown_ && !damaged_) return false;
+    shown_ = frame;
+    damaged_ = false;
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, width, height);
     glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
@@ -94,6 +128,7 @@ void Window::end_frame() {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glfwSwapBuffers(window_);
     release_short_presses();
+    return true;
 }
 
 void Window::hold_short_presses() {

@@ -1,6 +1,7 @@
 // The window: GLFW, an OpenGL context and Dear ImGui's backends, owned for as long as the viewer runs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -28,8 +29,11 @@ class Window {
     static void wake();
     /// Begins a frame of widgets; false while the window is minimised.
     bool begin_frame();
-    /// Draws the widgets and shows the frame.
-    void end_frame();
+    /// Draws the widgets and shows the frame, unless it would look like the one before: filling the window
+    /// takes a software rasteriser 30 ms. `pictures`: differs whenever the pixels of a texture do that the
+    /// widgets show.
+    /// Returns whether it was shown.
+    bool end_frame(std::uint64_t pictures);
 
     bool close_requested();  // and forgets it
     std::vector<std::filesystem::path> take_dropped();
@@ -50,7 +54,16 @@ class Window {
     void hold_short_presses();
     void release_short_presses();
 
+    /// What a frame looks like.
+    struct FrameMark {
+        std::uint64_t widgets = 0, pictures = 0;
+        int width = 0, height = 0;
+        bool operator==(const FrameMark&) const = default;
+    };
+
     GLFWwindow* window_ = nullptr;
+    FrameMark shown_;
+    bool damaged_ = true;            // the system wants the frame drawn again
     std::vector<KeyPress> pressed_;  // since the last frame
     GlInfo gl_;
     std::vector<std::filesystem::path> dropped_;
