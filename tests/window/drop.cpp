@@ -53,7 +53,7 @@ class DragSource {
         if (!status || !(status->data.l[1] & 1)) return false;
         send("XdndDrop", 0, CurrentTime, 0, 0);
         const auto finished = wait_for("XdndFinished");
-        return finished && (finished->data.l[1] & 1);
+        return finished && finished->data.l[1] != 0;  // GLFW says how much it was given
     }
 
   private:

@@ -57,7 +57,7 @@ void write_rings(const fs::path& file) {
     write_picture(file, size, size, rgba);
 }
 
-WindowTest::WindowTest() : scene_file(folder / "scene.toml") {
+ViewerTest::ViewerTest() : scene_file(folder / "scene.toml") {
     write_text(scene_file, scene_text);
     write_rings(folder / "rings.png");
     fs::create_directories(folder / "home");
@@ -69,7 +69,7 @@ WindowTest::WindowTest() : scene_file(folder / "scene.toml") {
 }
 
 WindowTest::~WindowTest() {
-    if (program_) end(SIGKILL);
+    if (program) end(SIGKILL);
 }
 
 void WindowTest::SetUp() {
@@ -79,7 +79,7 @@ void WindowTest::SetUp() {
     person.emplace(screen->display());
 }
 
-RunOptions WindowTest::options() const {
+RunOptions ViewerTest::options() const {
     const auto place = [&](const char* name) { return (folder / name).string(); };
     RunOptions options;
     options.folder = folder;
@@ -89,32 +89,48 @@ RunOptions WindowTest::options() const {
                            "XDG_CACHE_HOME=" + place("home/cache"),
                            "TMPDIR=" + place("tmp"),
                            "PATH=" + place("no programs")};
-    if (screen) options.environment.push_back("DISPLAY=" + screen->display());
+    options.without = {"DISPLAY", "WAYLAND_DISPLAY", "ASTROSPLAT_CACHE"};
+    return options;
+}
+
+RunResult ViewerTest::run(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), ASTROSPLAT_PROGRAM);
+    return run_program(arguments, ViewerTest::options());
+}
+
+RunOptions WindowTest::options() const {
+    RunOptions options = ViewerTest::options();
+    options.environment.push_back("DISPLAY=" + screen->display());
+    options.environment.insert(options.environment.end(), environment.begin(), environment.end());
     return options;
 }
 
 void WindowTest::start(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), ASTROSPLAT_PROGRAM);
-    program_ = std::make_unique<RunningProgram>(arguments, options());
+    program = std::make_unique<RunningProgram>(arguments, options());
     // With the title of the scene it has drawn a frame.
     const auto shown = [&] { return title().find(" - astrosplat") != std::string::npos || !running(); };
-    ASSERT_TRUE(comes_true(shown) && running()) << program_->err_so_far();
+    ASSERT_TRUE(comes_true(shown) && running()) << program->err_so_far();
     screen->focus();
 }
 
-bool WindowTest::running() const { return program_ && program_->running(); }
+bool WindowTest::running() const { return program && program->running(); }
 
 RunResult WindowTest::end(int signal) {
-    if (signal) program_->signal(signal);
+    if (signal) program->signal(signal);
     EXPECT_TRUE(comes_true([&] { return !running(); }));
-    if (running()) program_->signal(SIGKILL);
-    const RunResult result = program_->wait();
-    program_.reset();
+    if (running()) program->signal(SIGKILL);
+    const RunResult result = program->wait();
+    program.reset();
     return result;
 }
 
 void WindowTest::expect_title(const std::string& begin) {
     EXPECT_TRUE(comes_true([&] { return title() == begin + " - astrosplat"; })) << title();
+}
+
+Pixels WindowTest::pixels_of(Rect Layout::*part) const {
+    return screen->pixels(area_of(make_layout(ViewState(), width, height, 1.0f).*part));
 }
 
 Pixels WindowTest::picture() const {
@@ -137,7 +153,7 @@ Pixels WindowTest::settled_picture(const Pixels& before) {
         now = picture();
         return settled() && now != before && now == picture();
     };
-    EXPECT_TRUE(comes_true(arrived)) << program_->err_so_far();
+    EXPECT_TRUE(comes_true(arrived)) << program->err_so_far();
     return now;
 }
 
@@ -164,6 +180,32 @@ DrawnRow WindowTest::row(const std::string& key) {
 
 glm::vec2 WindowTest::value_box(const std::string& key) { return row(key).value; }
 glm::vec2 WindowTest::diamond(const std::string& key) { return row(key).diamond; }
+
+// Blending rounds differently on the GPU.
+bool WindowTest::shows(const Picture8& widgets, glm::vec2 middle) const {
+    constexpr int radius = 8, tolerance = 3;
+    const Area area{static_cast<int>(middle.x) - radius, static_cast<int>(middle.y) - radius, 2 * radius,
+                    2 * radius};
+    const Pixels shown = screen->pixels(area);
+    std::size_t alike = 0;
+    for (std::size_t i = 0; i < shown.rgb.size(); ++i) {
+        const auto x = static_cast<int>(i) % area.width, y = static_cast<int>(i) / area.width;
+        const Rgba8& wanted = widgets.at(area.x + x, area.y + y);
+        const int found[] = {static_cast<int>(shown.rgb[i] >> 16 & 255),
+                             static_cast<int>(shown.rgb[i] >> 8 & 255), static_cast<int>(shown.rgb[i] & 255)};
+        alike += std::abs(wanted.r - found[0]) <= tolerance && std::abs(wanted.g - found[1]) <= tolerance &&
+                 std::abs(wanted.b - found[2]) <= tolerance;
+    }
+    return alike > shown.rgb.size() * 9 / 10;
+}
+
+void WindowTest::click_when_shown(const std::string& name) {
+    const glm::vec2 at = same_widgets().at(name);
+    const Picture8 widgets = same_widgets().picture();
+    person->move({width - 2.0f, height - 2.0f});  // under the mouse it looks different
+    EXPECT_TRUE(comes_true([&] { return shows(widgets, at); })) << name << " is not shown";
+    person->click(at);
+}
 
 void WindowTest::choose(const std::string& path) {
     TestWindow& widgets = same_widgets();

@@ -2,6 +2,7 @@
 // and the places of its controls, asked of the same widgets drawn beside it.
 #pragma once
 
+#include <chrono>
 #include <optional>
 
 #include "gui/panel/panel.h"
@@ -18,19 +19,31 @@ namespace fs = std::filesystem;
 /// Asks again and again, for as long as the slowest machine may need. False: it never came.
 template <class Condition>
 bool comes_true(const Condition& condition) {
-    constexpr int tries = 3000, wait_us = 20'000;
-    for (int i = 0; i < tries; ++i) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point end = Clock::now() + std::chrono::seconds(60);
+    do {
         if (condition()) return true;
-        usleep(wait_us);
-    }
-    return false;
+        usleep(20'000);
+    } while (Clock::now() < end);
+    return condition();
 }
 
-class WindowTest : public FolderTest {
+/// A quick scene of one layer with keys of the camera at frames 1 and 24, and a home for the program.
+class ViewerTest : public FolderTest {
   protected:
     static constexpr int width = 1280, height = 900;  // px of screen and window
 
-    WindowTest();
+    ViewerTest();
+    /// Environment of the program: no home but the test's, no desktop's file dialog.
+    virtual RunOptions options() const;
+    RunResult run(std::vector<std::string> arguments) const;
+    Scene saved() const { return load_scene(scene_file); }
+
+    fs::path scene_file;
+};
+
+class WindowTest : public ViewerTest {
+  protected:
     ~WindowTest() override;
     /// Skips the test where Xvfb or xdotool are missing.
     void SetUp() override;
@@ -41,8 +54,8 @@ class WindowTest : public FolderTest {
     /// Sends the signal, where given, and waits for the end.
     RunResult end(int signal = 0);
     bool running() const;
-    /// Environment of the program: no home but the test's, no desktop's file dialog.
-    RunOptions options() const;
+    /// With the screen, and what start() is to add.
+    RunOptions options() const override;
 
     std::string title() const { return screen->title(); }
     /// Waits for this title: the scene's name, and whether it is edited.
@@ -56,29 +69,32 @@ class WindowTest : public FolderTest {
     /// Waits for this very picture to be final.
     void expect_settled(const Pixels& expected);
 
-    Scene saved() const { return load_scene(scene_file); }
+    Pixels pixels_of(Rect Layout::*part) const;
 
     /// The widgets as the program should show them now; a test brings document, view and status to where the
     /// person has brought them.
     TestWindow& same_widgets();
     glm::vec2 value_box(const std::string& key);
     glm::vec2 diamond(const std::string& key);
+    /// Waits until the window shows the widgets' control of this name, and clicks it.
+    void click_when_shown(const std::string& name);
     /// Clicks menu after menu of "Render/Cancel".
     void choose(const std::string& path);
 
-    fs::path scene_file;
     std::optional<Screen> screen;
     std::optional<Person> person;
+    std::vector<std::string> environment;  // more of it: NAME=VALUE
+    std::unique_ptr<RunningProgram> program;
 
   private:
     DrawnRow row(const std::string& key);
+    bool shows(const Picture8& widgets, glm::vec2 middle) const;
     std::optional<TestWindow> widgets_;
-    std::unique_ptr<RunningProgram> program_;
 };
 
 inline const std::string power = "layer.disc.look.alpha.power";
 
-/// Writes a picture of soft rings, 64x64 px, of which no two quarters are alike.
+/// A picture of soft rings, 64x64 px, of which no two quarters are alike.
 void write_rings(const fs::path& file);
 
 }  // namespace astrosplat::test

@@ -1,0 +1,60 @@
+// One line and an exit code where the window or the screenshot cannot be had.
+#include "window/window_test.h"
+
+namespace astrosplat::test {
+namespace {
+
+void expect_line(const RunResult& result, int code, const std::vector<std::string>& parts) {
+    EXPECT_EQ(result.code, code) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    for (const std::string& part : parts)
+        EXPECT_NE(result.err.find(part), std::string::npos) << part << " in " << result.err;
+    EXPECT_EQ(result.out, "");
+}
+
+class NoWindow : public ViewerTest {};
+
+TEST_F(NoWindow, WithoutADisplayBatchIsNamed) {
+    expect_line(run({scene_file.string()}), 1, {"no window", "--batch"});
+}
+
+TEST_F(NoWindow, ScreenshotOptionsAreChecked) {
+    const std::string scene = scene_file.string();
+    const auto shot = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {scene, "--no-cache", "--screenshot"});
+        return run(words);
+    };
+    expect_line(shot({"a.jpg"}), 2, {"--screenshot", ".png", "a.jpg"});
+    expect_line(shot({"a.exr"}), 2, {"--screenshot", "--settled", "a.exr"});
+    expect_line(shot({"a.exr", "--settled", "--ui"}), 2, {"--screenshot", "--ui"});
+    expect_line(shot({"a.png", "--size", "960"}), 2, {"--size", "960x540", "'960'"});
+    expect_line(shot({"a.png", "--size", "8x8"}), 2, {"--size", "16x16", "'8x8'"});
+    expect_line(shot({"a.png", "--frame", "one"}), 2, {"--frame", "'one'"});
+    expect_line(shot({"a.png", "--batch"}), 2, {"--screenshot"});
+    expect_line(run({"--screenshot", "a.png", "missing.toml"}), 2, {"missing.toml"});
+    expect_line(shot({"nowhere/a.png", "--size", "64x36", "-q"}), 4, {"nowhere"});
+    EXPECT_FALSE(fs::exists(folder / "a.png"));
+}
+
+class WindowRefused : public WindowTest {};
+
+TEST_F(WindowRefused, AnOldOpenGlIsSaidToBeTooOld) {
+    environment = {"MESA_GL_VERSION_OVERRIDE=3.3", "MESA_GLSL_VERSION_OVERRIDE=330"};
+    expect_line(run_program({ASTROSPLAT_PROGRAM, scene_file.string()}, options()), 1,
+                {"no window", "--batch"});
+}
+
+TEST_F(WindowRefused, AWrongFileIsSaidInOneLine) {
+    const auto open = [&](const std::string& file) {
+        return run_program({ASTROSPLAT_PROGRAM, file}, options());
+    };
+    expect_line(open("missing.toml"), 2, {"missing.toml"});
+    write_text(folder / "wrong.toml",
+               "astrosplat = 1\n[output]\nresolutoin = [1, 1]\n[[layer]]\nname = \"a\"\n");
+    expect_line(open("wrong.toml"), 2, {"wrong.toml", "resolutoin"});
+    write_text(folder / "notes.txt", "no scene");
+    expect_line(open("notes.txt"), 2, {"notes.txt"});
+}
+
+}  // namespace
+}  // namespace astrosplat::test

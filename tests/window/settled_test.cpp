@@ -1,0 +1,74 @@
+// The settled picture is the very frame that --batch computes.
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "output/write.h"
+#include "source/texture.h"
+#include "window/window_test.h"
+
+namespace astrosplat::test {
+namespace {
+
+class Settled : public ViewerTest {
+  protected:
+    Settled() {
+        write_text(scene_file, R"(astrosplat = 1
+[output]
+frames = "1-24"
+depth = "float"
+[camera]
+position = [0.0, 6.0, 8.0]
+target = [0.0, 0.0, 0.0]
+[[layer]]
+name = "disc"
+[layer.source]
+meshes = [ { mesh = "relief", texture = "rings.png" } ]
+count = 30000
+[layer.render]
+blend = "screen"
+[[layer]]
+name = "glow"
+[layer.source]
+meshes = [ { mesh = "sphere", texture = "rings.png" } ]
+count = 10000
+[layer.render]
+blend = "add"
+opacity = 0.5
+[animation]
+"camera.position" = { keys = [[1, [0.0, 6.0, 8.0]], [24, [4.0, 5.0, 7.0]]] }
+"layer.disc.look.alpha.power" = { keys = [[1, 1.0], [24, 2.0]] }
+)");
+    }
+    std::string shot(const std::string& frame) const {
+        const std::string file = "shot" + frame + ".exr";
+        const RunResult result = run({"--screenshot", file, "--settled", "--size", "200x120", "--frame",
+                                      frame, scene_file.string(), "--no-cache"});
+        EXPECT_EQ(result.code, 0) << result.err;
+        return file;
+    }
+};
+
+TEST_F(Settled, EqualsBatchBitForBit) {
+    const RunResult result = run({"--batch", scene_file.string(), "-f", "1,13", "--resolution", "200x120",
+                                  "-o", "batch##.exr", "--stats", "stats.json", "--no-cache"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const nlohmann::json stats = nlohmann::json::parse(text_of(folder / "stats.json"));
+    const std::vector<std::string> frames = {"1", "13"};
+    std::vector<std::string> hashes;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const Image settled = load_linear_image(folder / shot(frames[i]));
+        const Image batch = load_linear_image(folder / (i == 0 ? "batch01.exr" : "batch13.exr"));
+        ASSERT_EQ(settled.width, 200);
+        ASSERT_EQ(settled.height, 120);
+        ASSERT_EQ(settled.pixels.size(), batch.pixels.size());
+        EXPECT_EQ(
+            std::memcmp(settled.pixels.data(), batch.pixels.data(), settled.pixels.size() * sizeof(float)), 0)
+            << "frame " << frames[i];
+        hashes.push_back(pixel_hash(settled));
+        EXPECT_EQ(hashes.back(), stats.at("frames").at(i).at("sha256").get<std::string>());
+    }
+    EXPECT_NE(hashes[0], hashes[1]) << "the frames must differ for this test to say anything";
+}
+
+}  // namespace
+}  // namespace astrosplat::test

@@ -1,0 +1,77 @@
+// Files from the window: what it shows, one frame, and a range that is cancelled.
+#include <set>
+
+#include "output/image_info.h"
+#include "source/texture.h"
+#include "window/window_test.h"
+
+namespace astrosplat::test {
+namespace {
+
+class WindowWaysOut : public WindowTest {
+  protected:
+    std::set<std::string> names_in(const fs::path& place) const {
+        std::set<std::string> names;
+        std::error_code ignored;
+        for (const auto& entry : fs::directory_iterator(place, ignored))
+            names.insert(entry.path().filename().string());
+        return names;
+    }
+};
+
+TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
+    start();
+    settled_picture();
+    person->key("F12");
+    person->key("ctrl+a");
+    person->type("window.png");
+    person->key("Return");
+    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "window.png"); }));
+    const ImageInfo info = read_image_info(folder / "window.png");
+    EXPECT_EQ(info.width, width);
+    EXPECT_EQ(info.height, height);
+}
+
+TEST_F(WindowWaysOut, AFrameIsRendered) {
+    start();
+    const Pixels before = settled_picture();
+    choose("Render/This frame...");
+    same_widgets().frame(2);
+    person->key("ctrl+a");
+    person->type("frame.png");
+    person->click(same_widgets().at("file/Save"));
+    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "frame.png"); }));
+    const ImageInfo info = read_image_info(folder / "frame.png");
+    EXPECT_EQ(info.width, 320);
+    EXPECT_EQ(info.height, 180);
+    const RunResult batch = run({"--batch", scene_file.string(), "-f", "1", "-o", "batch.png", "--no-cache"});
+    ASSERT_EQ(batch.code, 0) << batch.err;
+    EXPECT_EQ(text_of(folder / "frame.png"), text_of(folder / "batch.png"));
+    expect_settled(before);
+}
+
+TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
+    std::string text = text_of(scene_file);
+    text.replace(text.find("1-24"), 4, "1-9000");
+    write_text(scene_file, text);
+    start();
+    settled_picture();
+    person->key("ctrl+shift+r");
+    ASSERT_TRUE(comes_true([&] { return names_in(folder / "frames").size() > 2; }));
+    person->drag(same_widgets().at("picture"), {60.0f, 0.0f});  // usable meanwhile
+    same_widgets().status.job = {"Rendering", 0.1f};
+    same_widgets().frame();
+    choose("Render/Cancel");
+    EXPECT_TRUE(comes_true([&] { return names_in(folder / "tmp").empty(); })) << "the job's folder stays";
+    const std::set<std::string> files = names_in(folder / "frames");
+    EXPECT_LT(files.size(), 9000u);
+    for (const std::string& file : files) {
+        EXPECT_EQ(file.size(), std::string("shot.0001.png").size()) << file;
+        const Image image = load_linear_image(folder / "frames" / file);
+        EXPECT_EQ(image.width, 320) << file;
+    }
+    EXPECT_TRUE(running());
+}
+
+}  // namespace
+}  // namespace astrosplat::test
