@@ -107,6 +107,7 @@ struct ViewPicture::Impl {
     CpuPreview cpu;
     std::unique_ptr<GlPreview> gl;  // made when first wanted
     PreviewBudget budget;
+    FramePace pace;
     FinalPicture final;
     bool final_started = false;
     double changed_at = 0.0;
@@ -123,7 +124,7 @@ struct ViewPicture::Impl {
     void note_kept(const std::vector<double>& shares);
     bool environment_arrived();
     bool previews_arrived(const PictureRequest& now) const;
-    void draw_preview();
+    void draw_preview(double now);
     void take_final();
     void begin_final();
 };
@@ -189,8 +190,9 @@ bool ViewPicture::Impl::previews_arrived(const PictureRequest& now) const {
                        same_preview);
 }
 
-void ViewPicture::Impl::draw_preview() {
+void ViewPicture::Impl::draw_preview(double now) {
     const auto start = std::chrono::steady_clock::now();
+    const double target_ms = pace.target_ms(now, choice.target_ms);
     ++version;
     Camera camera = camera_of(*request);
     const Region part = whole(*request);
@@ -212,7 +214,8 @@ void ViewPicture::Impl::draw_preview() {
         status.shown = cpu.shown();
         note_kept(cpu.kept());
     }
-    budget.measured(milliseconds_since(start), choice.target_ms, status.shown);
+    pace.drew(milliseconds_since(start));
+    budget.measured(milliseconds_since(start), target_ms, status.shown);
     status.state = PictureState::preview;
     status.width = request->width;
     status.height = request->height;
@@ -275,7 +278,7 @@ void ViewPicture::show(const PictureRequest& request, const PreviewChoice& choic
         self.request = request;
         self.choice = choice;
         try {
-            self.draw_preview();
+            self.draw_preview(now);
         } catch (const InputError& error) {
             self.status.state = PictureState::failed;
             self.status.error = error.what();

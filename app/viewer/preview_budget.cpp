@@ -30,4 +30,17 @@ void PreviewBudget::measured(double milliseconds, double target_ms, std::int64_t
     splats = std::clamp(static_cast<std::int64_t>(moved), least, most);
 }
 
+double FramePace::target_ms(double now_s, double most_ms) {
+    constexpr double frame_ms = 1000.0 / 24.0, least_ms = 10.0, pause_ms = 200.0;
+    const double rest_ms = 1000.0 * (now_s - drawn_at_s_) - preview_ms_;
+    const bool follows = drawn_at_s_ >= 0.0 && rest_ms >= 0.0 && rest_ms < pause_ms;
+    drawn_at_s_ = now_s;
+    if (!follows) rests_ = 0;
+    if (follows) rests_ms_[rests_++ % window] = rest_ms;
+    // The quickest, because a slow hand waits between frames too.
+    const int count = std::min(rests_, window);
+    const double quickest = count > 0 ? *std::min_element(rests_ms_, rests_ms_ + count) : 0.0;
+    return std::clamp(frame_ms - quickest, std::min(least_ms, most_ms), most_ms);
+}
+
 }  // namespace astrosplat

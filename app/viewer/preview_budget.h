@@ -27,4 +27,21 @@ struct PreviewBudget {
     int frames_ = 0;                  // of them
 };
 
+/// What a frame has left for its preview beside the rest of the window, which a software rasteriser draws as
+/// slowly as the picture.
+class FramePace {
+  public:
+    /// For the preview about to be drawn at `now_s`: what 24 frames a second leave of a frame, in ms, at
+    /// least 10 and at most `most_ms`.
+    double target_ms(double now_s, double most_ms);
+    /// The preview took so long.
+    void drew(double milliseconds) { preview_ms_ = milliseconds; }
+
+  private:
+    static constexpr int window = 8;  // frames
+    double drawn_at_s_ = -1.0, preview_ms_ = 0.0;
+    double rests_ms_[window] = {};  // of the last frames that followed each other, the oldest overwritten
+    int rests_ = 0;
+};
+
 }  // namespace astrosplat

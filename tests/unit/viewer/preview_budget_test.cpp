@@ -93,5 +93,20 @@ TEST(ShareForBudget, NeverMoreThanAllNorNothing) {
     EXPECT_EQ(share_for_budget({}, 400000), 1.0f);
 }
 
+TEST(FramePace, LeavesTimeForTheRestOfTheWindow) {
+    FramePace pace;
+    EXPECT_DOUBLE_EQ(pace.target_ms(5.0, 25.0), 25.0);  // nothing known
+    pace.drew(20.0);
+    EXPECT_NEAR(pace.target_ms(5.050, 25.0), 1000.0 / 24.0 - 30.0, 1e-9);  // 30 ms beside the preview
+    pace.drew(12.0);
+    EXPECT_NEAR(pace.target_ms(5.122, 25.0), 1000.0 / 24.0 - 30.0, 1e-9);  // a slower frame says nothing
+    pace.drew(12.0);
+    EXPECT_DOUBLE_EQ(pace.target_ms(5.139, 25.0), 25.0);  // 5 ms beside it
+    pace.drew(25.0);
+    EXPECT_DOUBLE_EQ(pace.target_ms(6.0, 25.0), 25.0);  // after a pause, nothing known
+    pace.drew(20.0);
+    EXPECT_DOUBLE_EQ(pace.target_ms(6.1, 25.0), 10.0);  // never less
+}
+
 }  // namespace
 }  // namespace astrosplat
