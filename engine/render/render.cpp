@@ -99,12 +99,16 @@ std::int64_t rows_per_band(std::int64_t records, std::int64_t limit_bytes, std::
     return std::max<std::int64_t>(1, rows / std::min(rows, bands));
 }
 
-double covered_pixels(const Image& beauty) {
-    double covered = 0.0;
-    for (std::size_t i = 0; i < beauty.pixels.size(); i += 4) {
-        const float* p = &beauty.pixels[i];
-        if (p[0] > 0.0f || p[1] > 0.0f || p[2] > 0.0f || p[3] > 0.0f) covered += 1.0;
-    }
+std::int64_t covered_pixels(const Image& beauty) {
+    constexpr std::int64_t chunk = 1 << 16;
+    std::atomic<std::int64_t> covered = 0;
+    parallel_chunks(beauty.width * beauty.height, chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        std::int64_t here = 0;
+        const float* p = beauty.pixels.data() + 4 * begin;
+        for (std::int64_t i = begin; i < end; ++i, p += 4)
+            here += std::max(std::max(p[0], p[1]), std::max(p[2], p[3])) > 0.0f;
+        covered += here;
+    });
     return covered;
 }
 
@@ -200,21 +204,35 @@ Region tile_region(const TileGrid& grid, std::int64_t tile) {
             std::min<std::int64_t>(grid.tile_px, grid.y0 + grid.height - y)};
 }
 
+/// Whether a tile's only group goes straight into the picture.
+bool stands_alone(const Job& job) {
+    const bool nothing_behind = !job.environment || job.settings.backdrop;
+    return job.groups.size() == 1 && !job.groups[0].isolated && !job.fold.aovs && nothing_behind;
+}
+
 void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
                  RenderedFrame& frame) {
     const Region region = tile_region(bins.grid(), tile);
+    const bool alone = stands_alone(job), behind = job.environment || job.settings.backdrop;
+    bool begun = false;  // until then the tile is as black as the new picture
     for (std::size_t g = 0; g < std::max<std::size_t>(1, job.groups.size()); ++g) {
+        worker.runs.clear();
+        if (g < job.groups.size()) bins.collect(tile, static_cast<int>(g), job.progress, worker.runs);
+        if (worker.runs.empty() && !behind) continue;
         FoldSettings fold_settings = job.fold;
         if (g < job.groups.size()) fold_settings.kind = job.groups[g].kind;
         worker.planes.reset(region, fold_settings, job.layers.size());
-        if (g == 0) worker.resolver.begin(worker.planes, job.camera, job.environment);
+        if (!begun && !alone) worker.resolver.begin(worker.planes, job.camera, job.environment);
+        begun = true;
         if (g == job.groups.size()) break;  // nothing but the environment
-        bins.collect(tile, static_cast<int>(g), job.progress, worker.runs);
         const std::span<const ScreenSplat* const> order = worker.sorter.sort(worker.runs, job.progress);
         fold({order, job.fold_layers, fold_settings, job.progress}, worker.planes);
-        worker.resolver.lay(job.groups[g], worker.planes);
+        if (!alone) worker.resolver.lay(job.groups[g], worker.planes);
     }
-    worker.resolver.write(worker.planes, job.region.x, job.region.y, frame);
+    if (begun && alone)
+        worker.resolver.write_alone(job.groups[0], worker.planes, job.region.x, job.region.y, frame);
+    else if (begun)
+        worker.resolver.write(worker.planes, job.region.x, job.region.y, frame);
     if (job.tile_done) job.tile_done(region, frame);
 }
 
@@ -311,7 +329,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
         done += static_cast<double>(band.height) / static_cast<double>(grid.height);
     }
     if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);
-    const double covered = covered_pixels(frame.beauty);
+    const double covered = static_cast<double>(covered_pixels(frame.beauty));
     frame.statistics.mean_overlap = covered > 0.0 ? frame.statistics.mean_overlap / covered : 0.0;
     frame.statistics.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -163,4 +163,24 @@ void TileResolver::write(const TilePlanes& tile, std::int64_t x0, std::int64_t y
     }
 }
 
+void TileResolver::write_alone(const BlendGroup& group, const TilePlanes& tile, std::int64_t x0,
+                               std::int64_t y0, RenderedFrame& frame) const {
+    const float *color[3], *through[3];
+    for (int k = 0; k < 3; ++k) {
+        color[k] = tile.color[k].data();
+        through[k] = tile.transmittance[group.kind == FoldKind::over ? 0 : k].data();
+    }
+    const float *alpha = tile.alpha.data(), *held = tile.held.data();
+    for (int y = 0; y < tile.height; ++y) {
+        float* out = frame.beauty.at(tile.x0 - x0, tile.y0 - y0 + y);
+        const float* behind = settings_.backdrop ? settings_.backdrop->at(tile.x0, tile.y0 + y) : nullptr;
+        for (int x = 0; x < tile.width; ++x, out += 4) {
+            const std::size_t i = tile.at(x, y);
+            for (int k = 0; k < 3; ++k)
+                out[k] = behind ? color[k][i] + through[k][i] * behind[4 * x + k] : color[k][i];
+            out[3] = std::clamp(behind ? 1.0f - held[i] : alpha[i], 0.0f, 1.0f);
+        }
+    }
+}
+
 }  // namespace astrosplat

@@ -44,6 +44,10 @@ class TileResolver {
     /// Writes the pixels to their place in the frame's images, whose corner is (x0, y0) px of the whole
     /// picture.
     void write(const TilePlanes& tile, std::int64_t x0, std::int64_t y0, RenderedFrame& frame) const;
+    /// begin, lay and write in one for the only group of a picture without AOVs, if it is not isolated,
+    /// before nothing or a backdrop.
+    void write_alone(const BlendGroup& group, const TilePlanes& tile, std::int64_t x0, std::int64_t y0,
+                     RenderedFrame& frame) const;
 
   private:
     void begin_with_backdrop(const TilePlanes& tile);
