@@ -151,5 +151,22 @@ TEST(Stratified, StopsWhenAsked) {
     EXPECT_THROW(stratified_order(cloud(1000), progress), Cancelled);
 }
 
+TEST(SampleRows, AnyPrefixHasOneRowOfEachStretch) {
+    SplatSet set;
+    for (std::uint64_t i = 0; i < 1024; ++i) {
+        set.position.push_back({0.0f, 0.0f, 0.0f});
+        set.id.push_back(i);
+    }
+    const SplatSet sample = sample_rows(set, 100);  // 64, the power of two below
+    ASSERT_EQ(sample.size(), 64);
+    for (const std::uint64_t prefix : {4u, 16u, 64u}) {
+        std::vector<std::uint64_t> of_stretch(prefix, 0);
+        for (std::uint64_t i = 0; i < prefix; ++i) ++of_stretch[sample.id[i] * prefix / 1024];
+        for (const std::uint64_t rows : of_stretch) EXPECT_EQ(rows, 1u);
+    }
+    EXPECT_EQ(sample_rows(set, 0).size(), 0);
+    EXPECT_EQ(sample_rows({}, 100).size(), 0);
+}
+
 }  // namespace
 }  // namespace astrosplat
