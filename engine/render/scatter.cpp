@@ -184,14 +184,8 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
     });
 }
 
-/// Asks for a bin's place in the index of a chunk's first segment, mostly its only one.
-void TileBins::prefetch_offsets(const std::vector<Segment>& chunk, std::int64_t bin) {
-    if (!chunk.empty()) __builtin_prefetch(chunk[0].offsets + (bin - chunk[0].first_bin));
-}
-
 void TileBins::collect(std::int64_t tile, int group, const Progress& progress,
                        std::vector<std::span<const ScreenSplat>>& out) const {
-    constexpr std::size_t chunks_ahead = 8;
     out.clear();
     const std::int64_t column = tile % grid_.columns(), row = tile / grid_.columns();
     for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -200,7 +194,6 @@ void TileBins::collect(std::int64_t tile, int group, const Progress& progress,
             group * bins_per_group_ + level.first_bin + (row >> l) * level.columns + (column >> l);
         for (std::size_t c = 0; c < segments_.size(); ++c) {
             if (c % 64 == 0) progress.check();
-            if (c + chunks_ahead < segments_.size()) prefetch_offsets(segments_[c + chunks_ahead], bin);
             for (const Segment& segment : segments_[c]) {
                 const std::int64_t i = bin - segment.first_bin;
                 if (i < 0 || i >= segment.bins) continue;

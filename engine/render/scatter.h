@@ -99,7 +99,6 @@ class TileBins {
     BinRect bins_of(const ScreenSplat& splat, float support_px, int group) const;
     std::int64_t list_entries(Scratch& scratch, const LayerProjection& layer, int group,
                               Segment& segment) const;
-    static void prefetch_offsets(const std::vector<Segment>& chunk, std::int64_t bin);
     void add_segment(Scratch& scratch, const LayerProjection& layer, int group, SplatStore& store,
                      std::vector<Segment>& out) const;
 
