@@ -27,6 +27,15 @@ void mix(std::uint64_t& hash, const void* bytes, std::size_t size) {
     hash = hash * odd + xxh64({static_cast<const char*>(bytes), size});
 }
 
+/// Into the buffer that is not shown yet.
+void draw_widgets(int width, int height) {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
 /// Of all that the widgets draw: shapes, and with which texture and within which rectangle.
 std::uint64_t hash_of(const ImDrawData& data) {
     std::uint64_t hash = 0;
@@ -115,19 +124,15 @@ bool Window::begin_frame() {
 
 bool Window::end_frame(std::uint64_t pictures) {
     ImGui::Render();
+    release_short_presses();
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
     const FrameMark frame{hash_of(*ImGui::GetDrawData()), pictures, width, height};
     if (frame == shown_ && !damaged_) return false;
     shown_ = frame;
     damaged_ = false;
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, width, height);
-    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    draw_widgets(width, height);
     glfwSwapBuffers(window_);
-    release_short_presses();
     return true;
 }
 
@@ -174,9 +179,9 @@ float Window::content_scale() const {
 std::vector<unsigned char> Window::read(int& width, int& height) const {
     glfwGetFramebufferSize(window_, &width, &height);
     std::vector<unsigned char> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    draw_widgets(width, height);  // anew: not every driver lets what is shown be read
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadBuffer(GL_FRONT);
+    glReadBuffer(GL_BACK);
     glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
     const std::size_t row = static_cast<std::size_t>(width) * 4;
     for (std::size_t y = 0; y < static_cast<std::size_t>(height) / 2; ++y)
