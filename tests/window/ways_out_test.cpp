@@ -1,4 +1,5 @@
 // Files from the window: what it shows, one frame, and a range that is cancelled.
+#include <cmath>
 #include <set>
 
 #include "output/image_info.h"
@@ -19,17 +20,37 @@ class WindowWaysOut : public WindowTest {
     }
 };
 
+/// A picture file of the window, as the screen has it.
+Pixels load_pixels(const fs::path& file) {
+    const Image image = load_raw_image(file);
+    Pixels pixels{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+    for (std::int64_t i = 0; i < image.width * image.height; ++i) {
+        std::uint32_t rgb = 0;
+        for (int c = 0; c < 3; ++c)
+            rgb = rgb << 8 | static_cast<std::uint32_t>(std::lround(
+                                 255.0f * image.pixels[static_cast<std::size_t>(i * image.channels + c)]));
+        pixels.rgb.push_back(rgb);
+    }
+    return pixels;
+}
+
 TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
     start();
     settled_picture();
+    person->move({width - 2.0f, height - 2.0f});
+    Pixels shown = screen->pixels({0, 0, width, height});
     person->key("F12");
     person->key("ctrl+a");
     person->type("window.png");
     person->key("Return");
     ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "window.png"); }));
-    const ImageInfo info = read_image_info(folder / "window.png");
-    EXPECT_EQ(info.width, width);
-    EXPECT_EQ(info.height, height);
+    Pixels saved = load_pixels(folder / "window.png");
+    ASSERT_EQ(saved.width, width);
+    ASSERT_EQ(saved.height, height);
+    const Rect status = make_layout(ViewState(), width, height, 1.0f).status;  // memory, messages
+    for (Pixels* pixels : {&shown, &saved})
+        pixels->rgb.resize(static_cast<std::size_t>(status.y) * static_cast<std::size_t>(width));
+    EXPECT_EQ(saved, shown);
 }
 
 TEST_F(WindowWaysOut, AFrameIsRendered) {
