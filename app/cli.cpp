@@ -14,6 +14,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "places.h"
 #include "viewer/viewer.h"
 
 namespace astrosplat {
@@ -203,13 +204,27 @@ SetCache cache_of(const CommonOptions& common) {
     return {common.cache.empty() ? default_cache_folder() : std::filesystem::path(common.cache)};
 }
 
+void refuse_without_screenshot(const ScreenshotOptions& shot) {
+    const char* option = shot.size      ? "--size"
+                         : shot.frame   ? "--frame"
+                         : shot.ui      ? "--ui"
+                         : shot.settled ? "--settled"
+                         : shot.opengl  ? "--opengl"
+                                        : nullptr;
+    if (option) bad_input(option, "", "--screenshot OUT.png beside it", "none");
+}
+
 /// The window, or a picture of it.
 int run_window(Invocation& call) {
     ViewerOptions viewer{call.input, {}, call.batch_options.cache};
     for (const std::string& text : call.batch_options.assignments)
         viewer.assignments.push_back(parse_assignment(text));
     ScreenshotOptions& shot = call.screenshot;
-    if (shot.output.empty()) return run_viewer(viewer);
+    if (shot.output.empty()) {
+        refuse_without_screenshot(shot);
+        return run_viewer(viewer);
+    }
+    prove_writable(folder_of(shot.output));
     shot.scene = viewer;
     return run_screenshot(shot);
 }

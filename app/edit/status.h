@@ -84,6 +84,7 @@ struct RecoveryOffer {
 struct Message {
     std::string text;
     bool error = false;
+    std::uint64_t number = 0;  // differs from message to message, also where the text is the same
 };
 
 struct Status {

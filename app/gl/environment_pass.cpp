@@ -13,11 +13,11 @@ constexpr int fine_unit = 0, coarse_unit = 1;
 
 /// Mip level, with its fraction, for pixels `spread` radians apart; as sample_environment.
 double level_of(const Environment& environment, double spread) {
-    const Image& first = environment.faces[0][0];
+    const Image& first = (*environment.faces)[0][0];
     const double w = double(first.width - 2), h = double(first.height - 2);
     const double texels =
-        spread * (environment.faces.size() == 1 ? std::fmax(w / (2.0 * real::pi), h / real::pi) : 0.5 * w);
-    const auto last = static_cast<double>(environment.faces[0].size() - 1);
+        spread * (environment.faces->size() == 1 ? std::fmax(w / (2.0 * real::pi), h / real::pi) : 0.5 * w);
+    const auto last = static_cast<double>((*environment.faces)[0].size() - 1);
     return texels > 1.0 ? std::fmin(real::log(texels) / real::log(2.0), last) : 0.0;
 }
 
@@ -32,7 +32,7 @@ float probe_of(const Image& image) {
 }  // namespace
 
 void EnvironmentPass::Level::hold(const Environment& environment, std::size_t level) {
-    const Image& first = environment.faces[0][level];
+    const Image& first = (*environment.faces)[0][level];
     const float found = probe_of(first);
     if (texture.name() != 0 && pixels == first.pixels.data() && width == first.width && probe == found)
         return;
@@ -41,12 +41,12 @@ void EnvironmentPass::Level::hold(const Environment& environment, std::size_t le
     probe = found;
     glBindTexture(GL_TEXTURE_2D_ARRAY, texture.get());
     glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGB32F, static_cast<GLsizei>(first.width),
-                 static_cast<GLsizei>(first.height), static_cast<GLsizei>(environment.faces.size()), 0,
+                 static_cast<GLsizei>(first.height), static_cast<GLsizei>(environment.faces->size()), 0,
                  GL_RGB, GL_FLOAT, nullptr);
-    for (std::size_t face = 0; face < environment.faces.size(); ++face)
+    for (std::size_t face = 0; face < environment.faces->size(); ++face)
         glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, static_cast<GLint>(face),
                         static_cast<GLsizei>(first.width), static_cast<GLsizei>(first.height), 1, GL_RGB,
-                        GL_FLOAT, environment.faces[face][level].pixels.data());
+                        GL_FLOAT, (*environment.faces)[face][level].pixels.data());
     set_sampling(GL_TEXTURE_2D_ARRAY, GL_LINEAR);
 }
 
@@ -60,7 +60,7 @@ void EnvironmentPass::draw(const Environment& environment, const Camera& camera)
     const bool orthographic = camera.projection == Projection::orthographic;
     const double level = level_of(environment, orthographic ? 0.0 : 1.0 / camera.focal_px);
     const auto fine = static_cast<std::size_t>(level);
-    const std::size_t coarse = std::min(fine + 1, environment.faces[0].size() - 1);
+    const std::size_t coarse = std::min(fine + 1, (*environment.faces)[0].size() - 1);
     fine_.hold(environment, fine);
     coarse_.hold(environment, coarse);
     bind_texture(fine_unit, GL_TEXTURE_2D_ARRAY, fine_.texture.name());

@@ -181,7 +181,7 @@ void GlPreview::State::begin_picture(const Camera& camera, const Environment* sk
     picture.bind();
     glClearColor(0.0f, 0.0f, 0.0f, sky ? 1.0f : 0.0f);
     glClear(GL_COLOR_BUFFER_BIT);
-    if (sky && !sky->faces.empty()) environment.draw(*sky, camera);
+    if (sky && !sky->faces->empty()) environment.draw(*sky, camera);
 }
 
 void GlPreview::State::draw_group(const FrameGroup& group, GroupSplats& splats) {

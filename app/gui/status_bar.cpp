@@ -88,8 +88,9 @@ std::vector<ProbeCell> probe_cells(const PixelProbe& probe) {
 
 void StatusBar::take_message(const Status& status) {
     const std::string& text = status.message.text;
-    if (text == last_) return;
+    if (text == last_ && status.message.number == number_) return;
     last_ = text;
+    number_ = status.message.number;
     if (status.message.error) unread_ = text;
 }
 

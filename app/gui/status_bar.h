@@ -2,6 +2,7 @@
 // are clicked.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@ class StatusBar {
 
   private:
     void take_message(const Status& status);
-    std::string last_;    // message seen before this frame
-    std::string unread_;  // error that waits to be clicked
+    std::string last_;          // message seen before this frame
+    std::uint64_t number_ = 0;  // of the last message
+    std::string unread_;        // error that waits to be clicked
 };
 
 /// What the probe shows: x, y, linear R G B A ("R", ".214") and the depth Z where there is one.

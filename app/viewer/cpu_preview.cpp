@@ -106,7 +106,7 @@ const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Cam
     settings.width = width;
     settings.height = height;
     settings.pixel_filter = pixel_filter;
-    if (environment && !environment->faces.empty()) {
+    if (environment && !environment->faces->empty()) {
         draw_backdrop(*environment, camera, width, height, state.backdrop);
         settings.backdrop = &state.backdrop;
     }

@@ -26,38 +26,35 @@ class PictureFiles {
     /// With gain and rotation of `params`; null where there is none to be seen, and while it is being loaded.
     /// Throws InputError where it cannot be.
     std::shared_ptr<const Environment> environment(const EnvironmentParams& params) {
-        seen_ = has_environment(params) && params.visible;
-        if (!seen_) return nullptr;
-        if (files_ != std::pair(params.image, params.cube)) {
-            files_ = {params.image, params.cube};
-            environment_.reset();
-            failure_ = nullptr;
-            loading_ = std::async(std::launch::async, [params] { return load_environment(params); });
+        wanted_ = {};
+        if (!has_environment(params) || !params.visible) return nullptr;
+        const Files files{params.image, params.cube};
+        if (!environments_.count(files)) {
+            if (environments_.size() >= most_environments)
+                std::erase_if(environments_, [](const auto& entry) { return is_ready(entry.second); });
+            environments_[files] =
+                std::async(std::launch::async, [params] { return load_environment(params); });
         }
-        if (loading_.valid() && loading_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-            take();
-        if (failure_) std::rethrow_exception(failure_);
-        if (environment_) set_environment_params(*environment_, params);
-        return environment_;
+        wanted_ = environments_[files];
+        if (!is_ready(wanted_)) return nullptr;
+        Environment environment = wanted_.get();
+        set_environment_params(environment, params);
+        return std::make_shared<const Environment>(std::move(environment));
     }
     /// The environment asked for last is on its way.
-    bool loading() const { return seen_ && loading_.valid(); }
+    bool loading() const { return wanted_.valid() && !is_ready(wanted_); }
 
   private:
-    void take() {
-        try {
-            environment_ = std::make_shared<Environment>(loading_.get());
-        } catch (const InputError&) {
-            failure_ = std::current_exception();
-        }
+    using Files = std::pair<std::filesystem::path, std::vector<std::filesystem::path>>;
+    using Loading = std::shared_future<Environment>;
+    static bool is_ready(const Loading& loading) {
+        return loading.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     }
 
+    static constexpr std::size_t most_environments = 3;
     std::map<std::filesystem::path, std::unique_ptr<Image>> maps_;
-    std::pair<std::filesystem::path, std::vector<std::filesystem::path>> files_;
-    std::future<Environment> loading_;
-    std::shared_ptr<Environment> environment_;
-    std::exception_ptr failure_;  // why files_ cannot be loaded
-    bool seen_ = false;           // the environment asked for last
+    std::map<Files, Loading> environments_;  // what is compared may have another one; also those that failed
+    Loading wanted_;                         // asked for last
 };
 
 std::shared_ptr<PictureFiles> make_picture_files() { return std::make_shared<PictureFiles>(); }
@@ -175,7 +172,9 @@ void ViewPicture::Impl::note_kept(const std::vector<double>& shares) {
 /// The environment of the picture shown has been loaded since, or could not be: then the preview says why.
 bool ViewPicture::Impl::environment_arrived() {
     try {
-        return request && files->environment(request->scene.environment) != environment;
+        if (!request) return false;
+        const std::shared_ptr<const Environment> now = files->environment(request->scene.environment);
+        return (now ? now->faces : nullptr) != (environment ? environment->faces : nullptr);
     } catch (const InputError&) {
         return status.state != PictureState::failed;
     }

@@ -135,7 +135,7 @@ void Session::Impl::poll_job() {
 }
 
 void Session::Impl::say(const std::string& text, bool error) {
-    status.message = {text, error};
+    status.message = {text, error, status.message.number + 1};
     status.log.push_back(status.message);
     constexpr std::size_t most = 500;
     if (status.log.size() > most) status.log.erase(status.log.begin());

@@ -32,7 +32,7 @@ void draw_exactly(const Environment& environment, const Camera& camera, const Re
 
 /// The mip level nearest to the pixels' spacing along the equator.
 const Image& nearest_level(const Environment& environment, double spread) {
-    const std::vector<Image>& levels = environment.faces[0];
+    const std::vector<Image>& levels = (*environment.faces)[0];
     const double texels = spread * static_cast<double>(levels[0].width - 2) / (2.0 * real::pi);
     const double level = texels > 1.0 ? real::log(texels) / real::log(2.0) + 0.5 : 0.0;
     return levels[std::min(static_cast<std::size_t>(level), levels.size() - 1)];
@@ -114,7 +114,7 @@ void draw_backdrop(const Environment& environment, const Camera& camera, std::in
                    std::int64_t height, Image& picture) {
     if (picture.width != width || picture.height != height || picture.channels != 4)
         picture = make_image(width, height, 4);
-    if (environment.faces.size() != 1) {  // a cube needs no arc functions
+    if (environment.faces->size() != 1) {  // a cube needs no arc functions
         parallel_chunks(height, block_px, [&](std::int64_t begin, std::int64_t end, int) {
             draw_exactly(environment, camera, {0, begin, width, end - begin}, picture);
         });

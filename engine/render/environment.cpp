@@ -209,9 +209,10 @@ glm::vec3 sample_level(const std::vector<std::vector<Image>>& faces, std::size_t
 
 // Texels of level 0 per `spread` radians: along the equator of a latlong, at the centre of a cube's face.
 double texels_per_spread(const Environment& environment, double spread) {
-    const Image& first = environment.faces[0][0];
+    const Image& first = (*environment.faces)[0][0];
     auto w = static_cast<double>(inner(first.width)), h = static_cast<double>(inner(first.height));
-    return spread * (environment.faces.size() == 1 ? std::fmax(w / (2.0 * real::pi), h / real::pi) : 0.5 * w);
+    return spread *
+           (environment.faces->size() == 1 ? std::fmax(w / (2.0 * real::pi), h / real::pi) : 0.5 * w);
 }
 
 }  // namespace
@@ -225,15 +226,16 @@ Environment load_environment(const EnvironmentParams& params) {
     std::vector<std::filesystem::path> files = params.cube;
     if (files.empty() && !params.image.empty()) files.push_back(params.image);
     Environment environment;
+    EnvironmentFaces faces;
     for (const std::filesystem::path& file : files) {
         Image picture = load_linear_image(file);
-        environment.faces.emplace_back();
-        environment.faces.back().push_back(with_border(picture));
-        environment.largest_texel =
-            std::max(environment.largest_texel, largest_value(environment.faces.back()[0]));
+        faces.emplace_back();
+        faces.back().push_back(with_border(picture));
+        environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
     }
-    if (files.size() == 6) check_cube(files, environment.faces);
-    if (!files.empty()) build_levels(environment.faces);
+    if (files.size() == 6) check_cube(files, faces);
+    if (!files.empty()) build_levels(faces);
+    environment.faces = std::make_shared<const EnvironmentFaces>(std::move(faces));
     set_environment_params(environment, params);
     return environment;
 }
@@ -250,15 +252,16 @@ glm::dvec2 latlong_place(const glm::dvec3& direction) {
 }
 
 glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& direction, double spread) {
-    if (environment.faces.empty()) return glm::vec3(0.0f);
+    const EnvironmentFaces& faces = *environment.faces;
+    if (faces.empty()) return glm::vec3(0.0f);
     glm::dvec3 d = environment.environment_from_world * direction;
-    double levels = static_cast<double>(environment.faces[0].size() - 1);
+    double levels = static_cast<double>(faces[0].size() - 1);
     double texels = texels_per_spread(environment, spread);
     double level = texels > 1.0 ? std::fmin(real::log(texels) * (1.0 / real::log(2.0)), levels) : 0.0;
     auto fine = static_cast<std::size_t>(level);
     auto blend = static_cast<float>(level - static_cast<double>(fine));
-    glm::vec3 color = sample_level(environment.faces, fine, d);
-    if (blend > 0.0f) color = color * (1.0f - blend) + sample_level(environment.faces, fine + 1, d) * blend;
+    glm::vec3 color = sample_level(faces, fine, d);
+    if (blend > 0.0f) color = color * (1.0f - blend) + sample_level(faces, fine + 1, d) * blend;
     return color * environment.gain;
 }
 

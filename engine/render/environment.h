@@ -7,6 +7,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <vector>
 
 #include "core/image.h"
@@ -22,8 +23,12 @@ struct EnvironmentParams {
     bool operator==(const EnvironmentParams&) const = default;
 };
 
+/// [face][mip level]: 1 face (equirectangular) or 6; RGB, linear.
+using EnvironmentFaces = std::vector<std::vector<Image>>;
+
+/// Copies share the pictures.
 struct Environment {
-    std::vector<std::vector<Image>> faces;  // [face][mip level]: 1 face (equirectangular) or 6; RGB, linear
+    std::shared_ptr<const EnvironmentFaces> faces;  // never null once loaded; empty: nothing to be seen
     glm::dmat3 environment_from_world{1.0};
     float gain = 1.0f;
     float largest_texel = 0.0f;  // largest channel value of the pictures

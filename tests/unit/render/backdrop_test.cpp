@@ -26,7 +26,7 @@ Environment directions(std::int64_t width) {
             for (int k = 0; k < 3; ++k) level.at(x + 1, y + 1)[k] = float(0.5 + 0.5 * d[k]);
         }
     Environment environment;
-    environment.faces = {{level}};
+    environment.faces = std::make_shared<const EnvironmentFaces>(EnvironmentFaces{{level}});
     environment.gain = 1.5f;
     environment.largest_texel = 1.0f;
     environment.largest = 1.5f;

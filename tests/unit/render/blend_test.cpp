@@ -234,7 +234,8 @@ RenderSettings with_aovs() {
 
 Environment grey_environment(float value) {
     Environment environment;
-    environment.faces = {{make_image(4, 2, 3, value)}};
+    environment.faces =
+        std::make_shared<const EnvironmentFaces>(EnvironmentFaces{{make_image(4, 2, 3, value)}});
     environment.largest = value;
     return environment;
 }
