@@ -29,8 +29,8 @@ void draw_picture(const GuiFrame& frame, const Rect& area) {
         return;
     }
     // The texture's first row is the lowest.
-    list->AddImage(frame.status.picture_texture, {area.x, area.y}, {area.x + area.width, area.y + area.height},
-                   {0, 1}, {1, 0});
+    list->AddImage(frame.status.picture_texture, {area.x, area.y},
+                   {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
 }
 
 glm::dvec3 fly_keys() {
