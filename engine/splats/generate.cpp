@@ -16,6 +16,7 @@
 #include "splats/block_query.h"
 #include "splats/closest_point.h"
 #include "splats/kept_store.h"
+#include "splats/kept_watcher.h"
 #include "splats/surface.h"
 
 namespace astrosplat {
@@ -117,7 +118,7 @@ class Generator {
 // All corners, then all centres, as their ids ask for; each time batch by batch, so that little is stored
 // twice.
 std::int64_t run_blocks(const Generator& generator, const std::vector<LatticeBlock>& blocks,
-                        const Progress& progress, SplatSet& set) {
+                        const Progress& progress, KeptWatcher* watcher, SplatSet& set) {
     std::vector<Worker> workers(static_cast<std::size_t>(thread_count()));
     std::vector<KeptStore> stores(workers.size());
     std::atomic<std::size_t> done{0};
@@ -129,7 +130,9 @@ std::int64_t run_blocks(const Generator& generator, const std::vector<LatticeBlo
                 const BlockRange& range = rows[static_cast<std::size_t>(row)];
                 const std::size_t count = range.end - range.begin;
                 const auto w = static_cast<std::size_t>(worker);
+                const std::size_t runs = stores[w].runs().size();
                 generator.run({&blocks[range.begin], count}, kind, workers[w], stores[w]);
+                if (watcher) watcher->keeps(std::span(stores[w].runs()).subspan(runs));
                 progress.at(0.5 * static_cast<double>(done += count) / static_cast<double>(blocks.size()));
             });
             append_sorted(stores, set);
@@ -171,7 +174,7 @@ std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const L
 }
 
 SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
-                  double jitter, std::uint32_t seed, const Progress& progress) {
+                  double jitter, std::uint32_t seed, const Progress& progress, KeptWatcher* watcher) {
     claim_memory(generate_memory_bytes(meshes, lattice, max_distance), "generating splats");
     std::vector<const Mesh*> shapes;
     for (const TexturedMesh& m : meshes) shapes.push_back(&m.mesh);
@@ -181,9 +184,10 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     const std::vector<LatticeBlock> blocks = blocks_near(index, lattice, settings, progress);
 
     SplatSet set;
-    reserve(set, blocks.size() * 2 * block_positions);
-    set.zero_alpha = run_blocks(Generator(index, surface, lattice, settings), blocks, progress, set);
     describe_set(meshes, lattice, max_distance, set);
+    if (watcher) watcher->begins(set, lattice.box);
+    reserve(set, blocks.size() * 2 * block_positions);
+    set.zero_alpha = run_blocks(Generator(index, surface, lattice, settings), blocks, progress, watcher, set);
     check_consistent(set);
     return set;
 }

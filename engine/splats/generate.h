@@ -14,18 +14,22 @@
 
 namespace astrosplat {
 
+class KeptWatcher;
+
 /// Bytes that generate() will take at its peak, about.
 std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
                                    double max_distance);
 
 /// Runs the cull over the whole lattice, block by block; cost follows what is kept. Deterministic for any
-/// thread count. Announces memory before taking it. `progress` may cancel.
+/// thread count. Announces memory before taking it. `progress` may cancel; `watcher`, where there is one,
+/// sees the splats as they are kept.
 SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
-                  double jitter, std::uint32_t seed, const Progress& progress = {});
+                  double jitter, std::uint32_t seed, const Progress& progress = {},
+                  KeptWatcher* watcher = nullptr);
 
 /// The whole of a source: kind mesh as above, kind splats by reading the file (sorted by id). Prints at info
 /// level what was chosen. Throws InputError; kind stars is answered with one clear line until it exists.
-SplatSet load_source(const SourceParams& source, const std::string& layer_name,
-                     const Progress& progress = {});
+SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress = {},
+                     KeptWatcher* watcher = nullptr);
 
 }  // namespace astrosplat

@@ -66,8 +66,8 @@ std::string describe_lattice(const Lattice& lattice, double max_distance, std::i
                        max_distance, human_bytes(static_cast<double>(bytes)));
 }
 
-SplatSet generate_source(const SourceParams& source, const std::string& layer_name,
-                         const Progress& progress) {
+SplatSet generate_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
+                         KeptWatcher* watcher) {
     const std::vector<TexturedMesh> meshes = load_meshes(source);
     for (const TexturedMesh& m : meshes) {
         for (const Texture& texture : m.textures) {
@@ -80,7 +80,7 @@ SplatSet generate_source(const SourceParams& source, const std::string& layer_na
     const std::int64_t bytes = generate_memory_bytes(meshes, lattice, max_distance);
     log_info(fmt::format("layer '{}': {}", layer_name, describe_lattice(lattice, max_distance, bytes)));
     const std::uint32_t seed = resolved_seed(source.seed, layer_name);
-    SplatSet set = generate(meshes, lattice, max_distance, source.jitter, seed, progress);
+    SplatSet set = generate(meshes, lattice, max_distance, source.jitter, seed, progress, watcher);
     log_detail(fmt::format("layer '{}': kept {} of {} positions, {} more have alpha 0", layer_name,
                            set.size(), set.test_positions, set.zero_alpha));
     return set;
@@ -109,11 +109,11 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source) {
     return meshes;
 }
 
-SplatSet load_source(const SourceParams& source, const std::string& layer_name,
-                     const Progress& progress) try {
+SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
+                     KeptWatcher* watcher) try {
     switch (source.kind) {
         case SourceKind::mesh:
-            return generate_source(source, layer_name, progress);
+            return generate_source(source, layer_name, progress, watcher);
         case SourceKind::splats:
             return read_source(source, progress);
         case SourceKind::stars:

@@ -192,21 +192,21 @@ fs::path default_cache_folder() {
 }
 
 LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
-                      const Progress& progress) {
+                      const Progress& progress, KeptWatcher* watcher) {
     const std::string key = serves(cache, source) ? set_key(source, layer_name) : "";
-    if (key.empty()) return {load_source(source, layer_name, progress), false};
+    if (key.empty()) return {load_source(source, layer_name, progress, watcher), false};
     if (auto set = find(cache, key, layer_name, progress)) return {std::move(*set), true};
     std::error_code error;
     fs::create_directories(cache.folder, error);
     if (error) {
         warn_unwritable(cache, "cannot be made: " + error.message());
-        return {load_source(source, layer_name, progress), false};
+        return {load_source(source, layer_name, progress, watcher), false};
     }
     FileLock lock(lock_file(cache.folder, key));
     const bool locked = wait_for(lock, layer_name, progress) == FileLock::State::held;
     if (auto set = find(cache, key, layer_name, progress)) return {std::move(*set), true};
     if (locked) remove_leftovers(cache.folder, key);
-    LoadedSet loaded{load_source(source, layer_name, progress), false};
+    LoadedSet loaded{load_source(source, layer_name, progress, watcher), false};
     if (set_key(source, layer_name) == key) keep(cache, key, loaded.set, progress);  // else a file changed
     return loaded;
 }

@@ -18,6 +18,8 @@
 
 namespace astrosplat {
 
+class KeptWatcher;
+
 struct SetCache {
     std::filesystem::path folder;  // made when a set is kept; empty: no cache
     /// Bytes of all entries; the least recently used go first. 0: 20 GiB or a tenth of the disk, whichever is
@@ -37,7 +39,7 @@ struct LoadedSet {
 /// other kinds pass by. Of several processes that need the same set one generates it and the others wait.
 /// Throws as load_source does.
 LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
-                      const Progress& progress = {});
+                      const Progress& progress = {}, KeptWatcher* watcher = nullptr);
 
 /// Splats of a source's set, if it is kept: what an estimate asks before anything is loaded.
 std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,
