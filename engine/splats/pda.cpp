@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "splats/float_text.h"
 #include "splats/mapped_file.h"
 #include "splats/number_scan.h"
 #include "splats/ordered_writer.h"
@@ -173,7 +174,7 @@ std::vector<Column> columns_of(const std::vector<Attribute>& attributes) {
     return columns;
 }
 
-char* put(char* out, float value) { return std::to_chars(out, out + 16, value).ptr; }
+char* put(char* out, float value) { return put_float(out, value); }
 char* put(char* out, std::uint64_t value) { return std::to_chars(out, out + 20, value).ptr; }
 char* put(char* out, const glm::vec3& v) {
     out = put(out, v.x);
@@ -188,8 +189,8 @@ char* put_next(char* out, const T& value) {
     return put(out, value);
 }
 
-/// The longest row: nine floats ("-1.17549435e-38" is 15), a mesh, an id, blanks and the newline.
-constexpr std::size_t longest_row = 9 * 16 + 11 + 21 + 1;
+/// The longest row: nine floats, a mesh, an id, blanks and the newline.
+constexpr std::size_t longest_row = 9 * (float_text_room + 1) + 11 + 21 + 1;
 
 char* put_row(char* out, const SplatSet& set, std::size_t i) {
     out = put(out, set.position[i]);
