@@ -86,7 +86,9 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     counts.name = params.name;
     if (!ever_visible(scene, params)) return;
     const auto start = std::chrono::steady_clock::now();
-    LoadedSet loaded = load_source(cache, params.source, params.name, progress);
+    OptionalColumns wanted{false, false, false};  // what no look reads
+    wanted.uv = !params.look.thickness.map.empty();
+    LoadedSet loaded = load_source(cache, params.source, params.name, progress, nullptr, wanted);
     layer.set = std::make_shared<const SplatSet>(std::move(loaded.set));
     layer.box = bounds(*layer.set);
     count_set(*layer.set, counts);

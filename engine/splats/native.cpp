@@ -59,18 +59,19 @@ struct BlockEntry {
 };
 static_assert(sizeof(BlockEntry) == 32);
 
-/// Calls visit for every array in the file's order, also for empty ones.
+/// Calls visit(array, flag) for every array in the file's order, also for empty ones; the flag says whether a
+/// file has it, 0: always.
 template <class Set, class Visit>
 void visit_arrays(Set& set, Visit&& visit) {
-    visit(set.position);
-    visit(set.color);
-    visit(set.alpha);
-    visit(set.distance);
-    visit(set.id);
-    visit(set.uv);
-    visit(set.normal);
-    visit(set.mesh);
-    visit(set.radius);
+    visit(set.position, 0u);
+    visit(set.color, 0u);
+    visit(set.alpha, 0u);
+    visit(set.distance, 0u);
+    visit(set.id, 0u);
+    visit(set.uv, std::uint32_t{has_uv});
+    visit(set.normal, std::uint32_t{has_normal});
+    visit(set.mesh, std::uint32_t{has_mesh});
+    visit(set.radius, std::uint32_t{has_radius});
 }
 
 std::size_t bytes_per_splat(std::uint32_t flags) {
@@ -133,7 +134,7 @@ std::string header_bytes(const SplatSet& set, RowOrder order) {
 /// Rows [begin, end) of every array; `order` says which splat a row is, empty: the splats as they are.
 char* pack(const SplatSet& set, const Buffer<std::int64_t>& order, std::int64_t begin, std::int64_t end,
            char* out) {
-    visit_arrays(set, [&](const auto& array) {
+    visit_arrays(set, [&](const auto& array, std::uint32_t) {
         if (array.empty()) return;
         if (order.empty()) {
             const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
@@ -223,20 +224,30 @@ Layout read_layout(const Checker& checker, std::string_view bytes) {
     return layout;
 }
 
-SplatSet empty_set(const Layout& layout, const std::string& file) {
+/// The flags of the arrays that are there and wanted.
+std::uint32_t flags_to_read(const Header& header, const OptionalColumns& wanted) {
+    std::uint32_t flags = header.flags;
+    if (!wanted.uv) flags &= ~std::uint32_t{has_uv};
+    if (!wanted.normal) flags &= ~std::uint32_t{has_normal};
+    if (!wanted.mesh) flags &= ~std::uint32_t{has_mesh};
+    return flags;
+}
+
+SplatSet empty_set(const Layout& layout, const OptionalColumns& wanted, const std::string& file) {
     const Header& header = layout.header;
     const auto rows = static_cast<std::size_t>(header.splats);
-    if (rows > 0) claim_memory(static_cast<std::int64_t>(layout.blocks.size()), "splats of " + file);
+    const std::uint32_t flags = flags_to_read(header, wanted);
+    if (rows > 0) claim_memory(static_cast<std::int64_t>(rows * bytes_per_splat(flags)), "splats of " + file);
     SplatSet set;
     set.position.resize(rows);
     set.color.resize(rows);
     set.alpha.resize(rows);
     set.distance.resize(rows);
     set.id.resize(rows);
-    if (header.flags & has_uv) set.uv.resize(rows);
-    if (header.flags & has_normal) set.normal.resize(rows);
-    if (header.flags & has_mesh) set.mesh.resize(rows);
-    if (header.flags & has_radius) set.radius.resize(rows);
+    if (flags & has_uv) set.uv.resize(rows);
+    if (flags & has_normal) set.normal.resize(rows);
+    if (flags & has_mesh) set.mesh.resize(rows);
+    if (flags & has_radius) set.radius.resize(rows);
     set.spacing = header.spacing;
     set.max_distance = header.max_distance;
     set.generated = header.flags & generated;
@@ -254,12 +265,14 @@ bool is_finite(std::uint32_t) { return true; }
 bool is_finite(std::uint64_t) { return true; }
 
 /// Copies a block's arrays to the set's rows from `first` on; false when a number is not finite.
-bool unpack(SplatSet& set, std::size_t first, std::size_t rows, const char* p) {
+bool unpack(SplatSet& set, std::uint32_t flags, std::size_t first, std::size_t rows, const char* p) {
     bool finite = true;
-    visit_arrays(set, [&](auto& array) {
-        if (array.empty()) return;
-        std::memcpy(&array[first], p, rows * sizeof array[0]);
+    visit_arrays(set, [&](auto& array, std::uint32_t flag) {
+        if ((flags & flag) != flag) return;
+        const char* const from = p;
         p += rows * sizeof array[0];
+        if (array.empty()) return;  // not wanted
+        std::memcpy(&array[first], from, rows * sizeof array[0]);
         for (std::size_t i = first; i < first + rows; ++i) finite &= is_finite(array[i]);
     });
     return finite;
@@ -277,16 +290,22 @@ void read_block(const Checker& checker, const Layout& layout, std::size_t block,
         checker.fail(place, "the checksum written with it", "another (damaged file)");
     if (stored.lo != found.lo || stored.hi != found.hi)
         checker.fail(place, "positions within its bounds", "others");
-    if (!unpack(set, first, rows, bytes.data())) checker.fail(place, "finite numbers", "infinity or NaN");
+    if (!unpack(set, layout.header.flags, first, rows, bytes.data()))
+        checker.fail(place, "finite numbers", "infinity or NaN");
 }
 
 }  // namespace
 
 SplatSet read_native(const std::filesystem::path& file, const Progress& progress) {
+    return read_native(file, OptionalColumns{}, progress);
+}
+
+SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& wanted,
+                     const Progress& progress) {
     const MappedFile mapped(file);
     const Checker checker{file.string()};
     const Layout layout = read_layout(checker, mapped.bytes());
-    SplatSet set = empty_set(layout, checker.file);
+    SplatSet set = empty_set(layout, wanted, checker.file);
     std::vector<std::string> errors(layout.table.size());
     std::atomic<std::size_t> done{0};
     parallel_for(static_cast<std::int64_t>(errors.size()), [&](std::int64_t block, int) {

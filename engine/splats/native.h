@@ -36,6 +36,10 @@ enum class RowOrder { space, id };
 /// memory is taken or touched, every block against its checksum. Throws InputError.
 SplatSet read_native(const std::filesystem::path& file, const Progress& progress = {});
 
+/// The same, but columns that are not wanted stay empty.
+SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& wanted,
+                     const Progress& progress);
+
 /// How many splats a file holds, from its header. Throws InputError.
 std::int64_t native_splat_count(const std::filesystem::path& file);
 

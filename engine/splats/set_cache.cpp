@@ -50,12 +50,13 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 /// Nothing where there is no entry, or none that can be used. Where the memory left would not hold it the
 /// generator is to say so.
-std::optional<SplatSet> read_entry(const fs::path& file, const Progress& progress) {
+std::optional<SplatSet> read_entry(const fs::path& file, const Progress& progress,
+                                   const OptionalColumns& wanted) {
     std::error_code error;
     const std::uintmax_t bytes = fs::file_size(file, error);
     if (error || bytes > static_cast<std::uintmax_t>(available_memory_bytes())) return std::nullopt;
     try {
-        SplatSet set = read_native(file, progress);
+        SplatSet set = read_native(file, wanted, progress);
         fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // refused: it seems older
         return set;
     } catch (const InputError& damage) {
@@ -168,12 +169,33 @@ FileLock::State wait_for(FileLock& lock, const std::string& layer_name, const Pr
 }
 
 std::optional<SplatSet> find(const SetCache& cache, const std::string& key, const std::string& layer_name,
-                             const Progress& progress) {
-    std::optional<SplatSet> set = read_entry(entry_file(cache, key), progress);
+                             const Progress& progress, const OptionalColumns& wanted) {
+    std::optional<SplatSet> set = read_entry(entry_file(cache, key), progress, wanted);
     if (set)
         log_info(fmt::format("layer '{}': {} splats from the cache", layer_name,
                              human_count(static_cast<double>(set->size()))));
     return set;
+}
+
+/// With columns that are not wanted where the set had to be generated.
+LoadedSet find_or_load(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                       const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
+    const std::string key = serves(cache, source) ? set_key(source, layer_name) : "";
+    if (key.empty()) return {load_source(source, layer_name, progress, watcher), false};
+    if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
+    std::error_code error;
+    fs::create_directories(cache.folder, error);
+    if (error) {
+        warn_unwritable(cache, "cannot be made: " + error.message());
+        return {load_source(source, layer_name, progress, watcher), false};
+    }
+    FileLock lock(lock_file(cache.folder, key));
+    const bool locked = wait_for(lock, layer_name, progress) == FileLock::State::held;
+    if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
+    if (locked) remove_leftovers(cache.folder, key);
+    LoadedSet loaded{load_source(source, layer_name, progress, watcher), false};
+    if (set_key(source, layer_name) == key) keep(cache, key, loaded.set, progress);  // else a file changed
+    return loaded;
 }
 
 std::string environment(const char* name) {
@@ -192,22 +214,9 @@ fs::path default_cache_folder() {
 }
 
 LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
-                      const Progress& progress, KeptWatcher* watcher) {
-    const std::string key = serves(cache, source) ? set_key(source, layer_name) : "";
-    if (key.empty()) return {load_source(source, layer_name, progress, watcher), false};
-    if (auto set = find(cache, key, layer_name, progress)) return {std::move(*set), true};
-    std::error_code error;
-    fs::create_directories(cache.folder, error);
-    if (error) {
-        warn_unwritable(cache, "cannot be made: " + error.message());
-        return {load_source(source, layer_name, progress, watcher), false};
-    }
-    FileLock lock(lock_file(cache.folder, key));
-    const bool locked = wait_for(lock, layer_name, progress) == FileLock::State::held;
-    if (auto set = find(cache, key, layer_name, progress)) return {std::move(*set), true};
-    if (locked) remove_leftovers(cache.folder, key);
-    LoadedSet loaded{load_source(source, layer_name, progress, watcher), false};
-    if (set_key(source, layer_name) == key) keep(cache, key, loaded.set, progress);  // else a file changed
+                      const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
+    LoadedSet loaded = find_or_load(cache, source, layer_name, progress, watcher, wanted);
+    drop_columns(loaded.set, wanted);
     return loaded;
 }
 

@@ -42,6 +42,12 @@ void for_each_array(SplatSet& set, Visit visit) {
 
 }  // namespace
 
+void drop_columns(SplatSet& set, const OptionalColumns& wanted) {
+    if (!wanted.uv) set.uv = {};
+    if (!wanted.normal) set.normal = {};
+    if (!wanted.mesh) set.mesh = {};
+}
+
 Bounds bounds(const SplatSet& set) {
     const std::int64_t chunks = (set.size() + chunk - 1) / chunk;
     std::vector<Bounds> parts(static_cast<std::size_t>(chunks));

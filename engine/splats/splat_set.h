@@ -36,6 +36,14 @@ struct SplatSet {
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
 
+/// Which of the columns that a set can do without are wanted: pages that nobody reads cost as much as others.
+struct OptionalColumns {
+    bool uv = true, normal = true, mesh = true;
+};
+
+/// Gives back the memory of columns that are not wanted.
+void drop_columns(SplatSet& set, const OptionalColumns& wanted);
+
 /// Bounds of all positions.
 Bounds bounds(const SplatSet& set);
 

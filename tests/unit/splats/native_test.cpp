@@ -77,6 +77,20 @@ TEST_F(Native, OptionalArraysStayUnknown) {
     }
 }
 
+TEST_F(Native, ColumnsThatAreNotWantedStayEmpty) {
+    const SplatSet set = full_set(70000);  // a block and a part
+    write_native(path("a.splats"), set, RowOrder::id, {});
+    for (int without = 0; without < 8; ++without) {
+        const OptionalColumns wanted{(without & 1) == 0, (without & 2) == 0, (without & 4) == 0};
+        SplatSet expected = set;
+        drop_columns(expected, wanted);
+        EXPECT_EQ(expected.uv.empty(), !wanted.uv);
+        EXPECT_EQ(expected.normal.empty(), !wanted.normal);
+        EXPECT_EQ(expected.mesh.empty(), !wanted.mesh);
+        expect_same_set(read_native(path("a.splats"), wanted, {}), expected);
+    }
+}
+
 TEST_F(Native, EmptySetSurvives) {
     write_native(path("a.splats"), full_set(0));
     expect_same_set(read_native(path("a.splats")), full_set(0));

@@ -118,6 +118,19 @@ TEST_F(SetCacheTest, TheSecondTimeTheSameBitsComeFromTheFile) {
     EXPECT_TRUE(warnings_.empty());
 }
 
+TEST_F(SetCacheTest, TheFileHasAllColumnsWhateverIsWanted) {
+    const OptionalColumns wanted{true, false, false};
+    const LoadedSet first = load_source(cache_, source_, "dust", {}, nullptr, wanted);
+    const LoadedSet second = load_source(cache_, source_, "dust", {}, nullptr, wanted);
+    EXPECT_FALSE(first.cached);
+    EXPECT_TRUE(second.cached);
+    SplatSet expected = load_source(source_, "dust");
+    expect_same_set(load().set, expected);
+    drop_columns(expected, wanted);
+    expect_same_set(first.set, expected);
+    expect_same_set(second.set, expected);
+}
+
 TEST_F(SetCacheTest, WithoutAFolderNothingIsKept) {
     EXPECT_FALSE(load_source(SetCache{}, source_, "dust").cached);
     EXPECT_FALSE(load_source(SetCache{}, source_, "dust").cached);
