@@ -23,7 +23,7 @@ std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const 
             const glm::i64vec3 at =
                 parent.at * std::int64_t{2} + glm::i64vec3(child & 1, child >> 1 & 1, child >> 2);
             if (at.x <= last.x && at.y <= last.y && at.z <= last.z)
-                children.push_back({at, 0.0, parent.nearest});
+                children.push_back({at, 0.0, parent.nearest, 0, nullptr});
         }
     }
     return children;
@@ -45,6 +45,82 @@ void drop_far(std::vector<LatticeBlock>& blocks, std::int64_t cells, const Close
     std::erase_if(blocks, [](const LatticeBlock& block) { return block.nearest == ClosestPoint::none; });
 }
 
+// Blocks of one chunk of the tiles, and their clusters.
+struct ChunkBlocks {
+    std::vector<LatticeBlock> blocks;
+    std::vector<std::size_t> first_cluster;  // of each block
+    std::vector<std::uint32_t> clusters;
+};
+
+// What a tile of 2^3 blocks knows is enough for each of its blocks.
+class TileCull {
+  public:
+    TileCull(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings)
+        : index_(index), lattice_(lattice), settings_(settings) {}
+
+    void run(const LatticeBlock& tile, ChunkBlocks& found) {
+        const std::int64_t cells = 2 * block_cells;
+        const BlockBall ball = block_ball(lattice_, settings_.jitter, tile.at * cells, cells);
+        known_ = index_.collect(ball.center, candidate_radius(settings_, ball, tile.distance), list_);
+        for (LatticeBlock& block : split({tile}, lattice_, block_cells)) add_if_near(block, found);
+    }
+
+  private:
+    void add_if_near(LatticeBlock& block, ChunkBlocks& found) {
+        const BlockBall ball = block_ball(lattice_, settings_.jitter, block.at * block_cells, block_cells);
+        const double reach = settings_.max_distance + ball.radius;
+        const ClosestPoint closest = known_ ? index_.closest_of(list_, ball.center, reach, block.nearest)
+                                            : index_.closest(ball.center, reach, block.nearest);
+        if (closest.triangle == ClosestPoint::none) return;
+        block.nearest = closest.triangle;
+        block.distance = std::sqrt(closest.distance_squared);
+        found.first_cluster.push_back(found.clusters.size());
+        if (known_) add_clusters(ball, block, found.clusters);
+        found.blocks.push_back(block);
+    }
+
+    void add_clusters(const BlockBall& ball, LatticeBlock& block, std::vector<std::uint32_t>& clusters) {
+        const auto slack = index_.slack(ball.center, 2.0 * ball.radius);
+        const auto radius =
+            static_cast<float>(candidate_radius(settings_, ball, block.distance) * 1.00001 + slack);
+        const std::size_t first = clusters.size();
+        for (std::size_t i = 0; i < list_.cluster.size(); ++i)
+            if (!(list_.squared[i] > radius * radius)) clusters.push_back(list_.cluster[i]);
+        const std::size_t count = clusters.size() - first;
+        if (count > LatticeBlock::most_clusters)
+            clusters.resize(first);
+        else
+            block.cluster_count = static_cast<std::uint32_t>(count);
+    }
+
+    const ClosestPointIndex& index_;
+    const Lattice& lattice_;
+    const CullSettings& settings_;
+    ClusterList list_;   // of the tile
+    bool known_ = true;  // whether all of its clusters fit in there
+};
+
+NearBlocks blocks_of(const std::vector<LatticeBlock>& tiles, const ClosestPointIndex& index,
+                     const Lattice& lattice, const CullSettings& settings) {
+    constexpr std::size_t chunk = 32;
+    std::vector<ChunkBlocks> chunks((tiles.size() + chunk - 1) / chunk);
+    parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t number, int) {
+        const auto c = static_cast<std::size_t>(number);
+        TileCull cull(index, lattice, settings);
+        for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, tiles.size()); ++i)
+            cull.run(tiles[i], chunks[c]);
+    });
+    NearBlocks near;
+    for (ChunkBlocks& found : chunks) {
+        near.clusters.push_back(std::move(found.clusters));
+        for (std::size_t i = 0; i < found.blocks.size(); ++i) {
+            near.blocks.push_back(found.blocks[i]);
+            near.blocks.back().clusters = near.clusters.back().data() + found.first_cluster[i];
+        }
+    }
+    return near;
+}
+
 }  // namespace
 
 BlockBall block_ball(const Lattice& lattice, double jitter, const glm::i64vec3& first, std::int64_t cells) {
@@ -56,26 +132,35 @@ BlockBall block_ball(const Lattice& lattice, double jitter, const glm::i64vec3& 
     const glm::dvec3 size = glm::max(glm::abs(lattice.box.lo), glm::abs(lattice.box.hi));
     const double rounding =
         1e-14 * (size.x + size.y + size.z);  // of positions and of the middle, many times over
-    return {lattice.box.lo + spacing * ((low + high) * 0.5),
-            glm::length(spacing * ((high - low) * 0.5)) * (1.0 + 1e-9) + rounding};
+    const glm::dvec3 half = spacing * ((high - low) * 0.5);
+    return {lattice.box.lo + spacing * ((low + high) * 0.5), glm::length(half) * (1.0 + 1e-9) + rounding,
+            half * (1.0 + 1e-9) + rounding};
 }
 
-std::vector<LatticeBlock> blocks_near(const ClosestPointIndex& index, const Lattice& lattice,
-                                      const CullSettings& settings, const Progress& progress) {
-    std::int64_t cells = block_cells;
+// A triangle that is closest to a position p of the ball is no farther from its middle than |p - middle| +
+// distance(p), and distance(p) is at most both max_distance and distance(middle) + |p - middle|.
+double candidate_radius(const CullSettings& settings, const BlockBall& ball, double distance) {
+    return (ball.radius + std::min(settings.max_distance, distance + ball.radius)) * (1.0 + 1e-9);
+}
+
+NearBlocks blocks_near(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
+                       const Progress& progress) {
+    constexpr std::int64_t tile_cells = 2 * block_cells;
+    std::int64_t cells = tile_cells;
     while (cells <= std::max({lattice.n.x, lattice.n.y, lattice.n.z})) cells *= 2;
-    std::vector<LatticeBlock> blocks{{glm::i64vec3(0), 0.0, ClosestPoint::none}};
+    std::vector<LatticeBlock> tiles{{glm::i64vec3(0), 0.0, ClosestPoint::none, 0, nullptr}};
     while (true) {
         progress.check();
-        drop_far(blocks, cells, index, lattice, settings);
-        if (cells == block_cells) break;
+        drop_far(tiles, cells, index, lattice, settings);
+        if (cells == tile_cells) break;
         cells /= 2;
-        blocks = split(blocks, lattice, cells);
+        tiles = split(tiles, lattice, cells);
     }
-    std::sort(blocks.begin(), blocks.end(), [](const LatticeBlock& a, const LatticeBlock& b) {
+    NearBlocks near = blocks_of(tiles, index, lattice, settings);
+    std::sort(near.blocks.begin(), near.blocks.end(), [](const LatticeBlock& a, const LatticeBlock& b) {
         return std::tie(a.at.z, a.at.y, a.at.x) < std::tie(b.at.z, b.at.y, b.at.x);
     });
-    return blocks;
+    return near;
 }
 
 }  // namespace astrosplat

@@ -24,20 +24,35 @@ struct CullSettings {
 /// A block of block_cells^3 cells: the corners and centres whose index divided by block_cells is `at`.
 struct LatticeBlock {
     glm::i64vec3 at;
-    double distance;        // of the ball's middle from the meshes, scene units
-    std::uint32_t nearest;  // triangle there
+    double distance;                // of the ball's middle from the meshes, scene units
+    std::uint32_t nearest;          // triangle there
+    std::uint32_t cluster_count;    // 0: too many to be kept
+    const std::uint32_t* clusters;  // at least those with a triangle that is closest to one of the positions
+    static constexpr std::size_t most_clusters = 128;
 };
 
-/// A ball around all positions, after jitter, of the `cells`^3 cells from cell `first` on.
+/// Blocks and what they point to.
+struct NearBlocks {
+    std::vector<LatticeBlock> blocks;
+    std::vector<std::vector<std::uint32_t>> clusters;
+};
+
+/// A ball, and a box with the same middle, around all positions, after jitter, of the `cells`^3 cells from
+/// cell `first` on.
 struct BlockBall {
     glm::dvec3 center;
     double radius;
+    glm::dvec3 half;  // of the box's sides
 };
 BlockBall block_ball(const Lattice& lattice, double jitter, const glm::i64vec3& first, std::int64_t cells);
 
+/// How near a triangle must come to the ball's middle to be closest to one of its positions, when the meshes
+/// are `distance` away from there.
+double candidate_radius(const CullSettings& settings, const BlockBall& ball, double distance);
+
 /// The blocks that may hold positions within max_distance, ordered by (z, y, x). Costs time and memory in
 /// proportion to their number.
-std::vector<LatticeBlock> blocks_near(const ClosestPointIndex& index, const Lattice& lattice,
-                                      const CullSettings& settings, const Progress& progress);
+NearBlocks blocks_near(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
+                       const Progress& progress);
 
 }  // namespace astrosplat

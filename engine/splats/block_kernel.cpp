@@ -1,6 +1,7 @@
-// Each group is measured against the triangle its neighbours found, then against those candidates whose
-// bounds come nearer than what its positions already have: first for the group as a whole, many candidates a
-// vector; then, one candidate at a time, for its eight positions.
+// A block looks at all candidates from its middle and keeps those that can matter to it, and each group of
+// eight does the same with those. The candidates over which a group lies come first: each position is
+// measured against the one whose bound is lowest there. What that leaves of the others is little; it is
+// measured where its bounds ask for it.
 #include "splats/block_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -11,8 +12,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/glsl.h"
+#include "splats/closest_lanes-inl.h"
+#include "splats/survey-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat {
@@ -26,12 +30,6 @@ using namespace astrosplat::glsl;
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include "maths.glsl"
 #pragma GCC diagnostic pop
-
-constexpr std::size_t group = 8;               // positions
-using Doubles = hn::CappedTag<double, group>;  // a group's coordinates, in one vector or several
-using Floats = hn::CappedTag<float, group>;
-constexpr double no_triangle =
-    ClosestPoint::none;  // triangles are compared as doubles, which hold them exactly
 
 // --- positions ---
 
@@ -73,132 +71,56 @@ void place(const BlockPlaces& places, BlockAnswers& answers) {
     add(PURPOSE_JITTER_Z, range.z, answers.z.data());
 }
 
-// --- one group ---
+// --- groups ---
 
-struct Group {
-    const double *x, *y, *z;  // scene units
-    alignas(64) double squared[group], triangle[group], v[group], w[group];
-    alignas(64) float local_x[group], local_y[group], local_z[group];  // in the candidates' coordinates
-    alignas(64) float limit[group];  // square of how near a bound must come to matter
-    glm::vec3 middle;
-    alignas(64) float from_middle[group];
-    float widest;  // largest of limit's roots + from_middle
-};
+/// A block's positions in the candidates' coordinates.
+struct BlockPositions {
+    alignas(64) float x[block_positions], y[block_positions], z[block_positions], limit[block_positions];
 
-struct Vector3 {
-    hn::Vec<Doubles> x, y, z;
-};
-
-HWY_INLINE hn::Vec<Doubles> dot(const Vector3& a, const Vector3& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-
-HWY_INLINE Vector3 set(const glm::dvec3& p) {
-    const Doubles d;
-    return {hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
-}
-
-// Ericson's regions as masks: closest_on_triangle without branches, to the same bits, for one vector of
-// positions. True when the triangle is nearest for one of them.
-HWY_INLINE bool offer(const TriangleShape& s, double number, Group& g, std::size_t i) {
-    const Doubles d;
-    const auto zero = hn::Zero(d), one = hn::Set(d, 1.0);
-    const Vector3 ab = set(s.ab), ac = set(s.ac), a = set(s.a);
-    const Vector3 ap{hn::Sub(hn::LoadU(d, g.x + i), a.x), hn::Sub(hn::LoadU(d, g.y + i), a.y),
-                     hn::Sub(hn::LoadU(d, g.z + i), a.z)};
-    const auto ab_ab = hn::Set(d, s.ab_ab), ab_ac = hn::Set(d, s.ab_ac), ac_ac = hn::Set(d, s.ac_ac);
-    const auto d1 = dot(ab, ap), d2 = dot(ac, ap);
-    const auto d3 = hn::Sub(d1, ab_ab), d4 = hn::Sub(d2, ab_ac), d5 = hn::Sub(d1, ab_ac),
-               d6 = hn::Sub(d2, ac_ac);
-    const auto vc = hn::Sub(hn::Mul(d1, d4), hn::Mul(d3, d2));
-    const auto vb = hn::Sub(hn::Mul(d5, d2), hn::Mul(d1, d6));
-    const auto va = hn::Sub(hn::Mul(d3, d6), hn::Mul(d5, d4));
-    const auto to_c = hn::Sub(d4, d3), to_b = hn::Sub(d5, d6);
-    const auto all = [](auto m, auto n, auto o) HWY_ATTR { return hn::And(hn::And(m, n), o); };
-    const auto at_a = hn::And(hn::Le(d1, zero), hn::Le(d2, zero));
-    const auto at_b = hn::And(hn::Ge(d3, zero), hn::Le(d4, d3));
-    const auto at_c = hn::And(hn::Ge(d6, zero), hn::Le(d5, d6));
-    const auto on_ab = all(hn::Le(vc, zero), hn::Ge(d1, zero), hn::Le(d3, zero));
-    const auto on_ac = all(hn::Le(vb, zero), hn::Ge(d2, zero), hn::Le(d6, zero));
-    const auto on_bc = all(hn::Le(va, zero), hn::Ge(to_c, zero), hn::Ge(to_b, zero));
-    // From the last region Ericson asks for to the first, which wins. One division serves them all.
-    auto top = hn::IfThenElse(on_bc, to_c, one);
-    top = hn::IfThenElse(on_ab, d1, hn::IfThenElse(on_ac, d2, top));
-    auto below = hn::IfThenElse(on_bc, hn::Add(to_c, to_b), hn::Add(hn::Add(va, vb), vc));
-    below = hn::IfThenElse(on_ab, ab_ab, hn::IfThenElse(on_ac, ac_ac, below));
-    const auto q = hn::Div(top, below);
-    auto v = hn::IfThenElse(on_bc, hn::Sub(one, q), hn::Mul(vb, q));
-    v = hn::IfThenElse(on_ab, q, hn::IfThenElse(on_ac, zero, v));
-    v = hn::IfThenElse(at_b, one, hn::IfThenElse(at_c, zero, v));
-    v = hn::IfThenElse(at_a, zero, v);
-    auto w = hn::IfThenElse(hn::Or(on_bc, on_ac), q, hn::Mul(vc, q));
-    w = hn::IfThenElse(on_ab, zero, w);
-    w = hn::IfThenElse(at_b, zero, hn::IfThenElse(at_c, one, w));
-    w = hn::IfThenElse(at_a, zero, w);
-    const auto left = [&](auto p, auto b, auto c)
-                          HWY_ATTR { return hn::Sub(hn::Sub(p, hn::Mul(b, v)), hn::Mul(c, w)); };
-    const Vector3 r{left(ap.x, ab.x, ac.x), left(ap.y, ab.y, ac.y), left(ap.z, ab.z, ac.z)};
-    const auto squared = dot(r, r);
-    const auto best = hn::Load(d, g.squared + i), triangle = hn::Load(d, g.triangle + i);
-    const auto this_one = hn::Set(d, number);
-    const auto tie_won = hn::And(hn::Eq(squared, best), hn::Lt(this_one, triangle));
-    const auto nearer = hn::Or(hn::Lt(squared, best), tie_won);
-    if (hn::AllFalse(d, nearer)) return false;
-    hn::Store(hn::IfThenElse(nearer, squared, best), d, g.squared + i);
-    hn::Store(hn::IfThenElse(nearer, this_one, triangle), d, g.triangle + i);
-    hn::Store(hn::IfThenElse(nearer, v, hn::Load(d, g.v + i)), d, g.v + i);
-    hn::Store(hn::IfThenElse(nearer, w, hn::Load(d, g.w + i)), d, g.w + i);
-    return true;
-}
-
-// Triangles without a usable inside, by the scalar code.
-bool offer_thin(const TriangleShape& shape, double number, Group& g) {
-    bool any = false;
-    for (std::size_t i = 0; i < group; ++i) {
-        const ClosestPoint c = closest_on_triangle({g.x[i], g.y[i], g.z[i]}, shape);
-        const bool tie_won = c.distance_squared == g.squared[i] && number < g.triangle[i];
-        if (!(c.distance_squared < g.squared[i] || tie_won)) continue;
-        any = true;
-        g.squared[i] = c.distance_squared;
-        g.triangle[i] = number;
-        g.v[i] = c.barycentric.x;
-        g.w[i] = c.barycentric.y;
+    LocalPositions part(std::size_t first, std::size_t count) const {
+        return {x + first, y + first, z + first, limit + first, count};
     }
-    return any;
-}
+};
 
 class GroupQuery {
   public:
-    GroupQuery(const BlockMeasure& measure, NearCandidates& found) : m_(measure), found_(found) {}
+    GroupQuery(const BlockMeasure& measure, BlockScratch& scratch, BlockPositions& positions)
+        : m_(measure),
+          c_(scratch.chosen),
+          rows_(scratch.rows),
+          local_(positions),
+          survey_(scratch.chosen, scratch.notes, measure.slack) {}
 
-    void start(BlockAnswers& answers, std::size_t first) {
-        g_.x = &answers.x[first], g_.y = &answers.y[first], g_.z = &answers.z[first];
-        to_local(g_.x, m_.origin.x, g_.local_x);
-        to_local(g_.y, m_.origin.y, g_.local_y);
-        to_local(g_.z, m_.origin.z, g_.local_z);
-        std::fill_n(g_.squared, group, m_.max_distance * m_.max_distance);
-        std::fill_n(g_.triangle, group, no_triangle);
-        std::fill_n(g_.v, group, 0.0);
-        std::fill_n(g_.w, group, 0.0);
-        find_middle();
+    void run(BlockAnswers& answers, std::size_t first) {
+        start(answers, first);
+        const LocalPositions positions = local_.part(first, group);
+        const std::size_t nearest = survey_.look(positions, widest_);
+        if (nearest != Survey::nothing) {
+            first_ = c_.triangle[nearest];
+            measure(first_);
+            update_limits();
+            survey_.note_gaps(nearest, widest_);
+            bound(positions, Survey::Gaps::none);
+            measure_lowest();
+            survey_.update_room(widest_);
+            bound(positions, Survey::Gaps::some);
+            measure_rest();
+        }
+        finish(answers, first);
     }
 
-    void run(std::uint32_t hint) {
-        if (hint != ClosestPoint::none) measure(hint);
+  private:
+    void start(const BlockAnswers& answers, std::size_t first) {
+        g_.x = &answers.x[first], g_.y = &answers.y[first], g_.z = &answers.z[first];
+        std::fill_n(g_.squared, group, m_.max_distance * m_.max_distance);
+        std::fill_n(g_.triangle, group, static_cast<double>(ClosestPoint::none));
+        std::fill_n(g_.v, group, 0.0);
+        std::fill_n(g_.w, group, 0.0);
+        std::fill_n(lowest_, group, std::numeric_limits<float>::infinity());
+        std::fill_n(lowest_row_, group, 0u);
+        rows_.count = 0;
+        limit_ = local_.limit + first;
         update_limits();
-        scan();
-        if (found_.count == 0) return;
-        const float* nearest = std::min_element(found_.squared.data(), found_.squared.data() + found_.count);
-        const std::uint32_t first = number(static_cast<std::size_t>(nearest - found_.squared.data()));
-        if (first != hint && measure(first)) update_limits();
-        std::uint32_t before = first;  // clusters may repeat their last triangle
-        for (std::size_t i = 0; i < found_.count; ++i) {
-            const std::uint32_t triangle = number(i);
-            if (triangle == hint || triangle == first || triangle == before) continue;
-            before = triangle;
-            if (found_.squared[i] > g_.widest * g_.widest || !matters(found_.place[i])) continue;
-            if (measure(triangle)) update_limits();
-        }
     }
 
     void finish(BlockAnswers& answers, std::size_t first) const {
@@ -210,136 +132,214 @@ class GroupQuery {
         }
     }
 
-  private:
-    static void to_local(const double* at, double origin, float* local) {
-        for (std::size_t i = 0; i < group; ++i) local[i] = static_cast<float>(at[i] - origin);
-    }
-
-    void find_middle() {
-        g_.middle = {middle_of(g_.local_x), middle_of(g_.local_y), middle_of(g_.local_z)};
-        const Floats d;
-        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
-            const auto x = hn::Sub(hn::Load(d, g_.local_x + i), hn::Set(d, g_.middle.x));
-            const auto y = hn::Sub(hn::Load(d, g_.local_y + i), hn::Set(d, g_.middle.y));
-            const auto z = hn::Sub(hn::Load(d, g_.local_z + i), hn::Set(d, g_.middle.z));
-            const auto squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-            hn::Store(hn::Mul(hn::Sqrt(squared), hn::Set(d, 1.00001f)), d, g_.from_middle + i);
-        }
-    }
-    static float middle_of(const float* values) {
-        const Floats d;
-        auto lowest = hn::Load(d, values), highest = lowest;
-        for (std::size_t i = hn::Lanes(d); i < group; i += hn::Lanes(d)) {
-            lowest = hn::Min(lowest, hn::Load(d, values + i));
-            highest = hn::Max(highest, hn::Load(d, values + i));
-        }
-        return 0.5f * (hn::GetLane(hn::MinOfLanes(d, lowest)) + hn::GetLane(hn::MaxOfLanes(d, highest)));
-    }
-
     // True when the triangle is nearest for a position of the group.
     bool measure(std::uint32_t triangle) {
         const TriangleShape& s = m_.shapes[triangle];
         if (has_no_inside(s)) return offer_thin(s, triangle, g_);
         bool any = false;
-        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles())) any |= offer(s, triangle, g_, i);
+        const ShapeLanes lanes = same_shape(s, triangle);
+        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles())) any |= offer(lanes, g_, i);
         return any;
     }
 
     // As ClosestPointIndex's queries widen their radius.
     void update_limits() {
-        alignas(64) float distance[group];
-        for (std::size_t i = 0; i < group; ++i) distance[i] = static_cast<float>(std::sqrt(g_.squared[i]));
-        const Floats d;
-        auto widest = hn::Zero(d);
+        const Doubles d;
+        const hn::Rebind<float, Doubles> df;
+        auto widest = hn::Zero(df);
         for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
-            const auto limit =
-                hn::Add(hn::Mul(hn::Load(d, distance + i), hn::Set(d, 1.00001f)), hn::Set(d, m_.slack));
-            hn::Store(hn::Mul(limit, limit), d, g_.limit + i);
-            widest = hn::Max(widest, hn::Add(limit, hn::Load(d, g_.from_middle + i)));
+            const auto distance = hn::DemoteTo(df, hn::Sqrt(hn::Load(d, g_.squared + i)));
+            const auto limit = hn::Add(hn::Mul(distance, hn::Set(df, 1.00001f)), hn::Set(df, m_.slack));
+            hn::StoreU(hn::Mul(limit, limit), df, limit_ + i);
+            widest = hn::Max(widest, limit);
         }
-        g_.widest = hn::GetLane(hn::MaxOfLanes(d, widest)) * 1.00001f + m_.slack;
+        widest_ = hn::GetLane(hn::MaxOfLanes(df, widest));
     }
 
-    // Square of at most the distance of a point from a disc, for lanes of candidates or of positions; right
-    // wherever the disc is within `widest`. The small numbers outweigh the rounding of the normal, of the
-    // subtraction of nearly equal squares, and of the approximate root.
-    template <class D, class V = hn::Vec<D>>
-    HWY_INLINE V from_disc(D d, V x, V y, V z, V normal_x, V normal_y, V normal_z, V radius) const {
-        const V squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-        const V height =
-            hn::Abs(hn::Add(hn::Add(hn::Mul(x, normal_x), hn::Mul(y, normal_y)), hn::Mul(z, normal_z)));
-        const V across_squared = hn::Max(
-            hn::Sub(hn::Mul(squared, hn::Set(d, 1.0f - 4e-6f)), hn::Mul(height, height)), hn::Set(d, 1e-30f));
-        const V across = hn::Mul(hn::Mul(across_squared, hn::ApproximateReciprocalSqrt(across_squared)),
-                                 hn::Set(d, 0.9995f));
-        const V outside = hn::Max(hn::Sub(across, radius), hn::Zero(d));
-        const V margin = hn::Mul(hn::Add(radius, hn::Set(d, g_.widest)), hn::Set(d, 2e-6f));
-        const V above = hn::Max(hn::Sub(height, margin), hn::Zero(d));
-        return hn::Add(hn::Mul(outside, outside), hn::Mul(above, above));
+    // New rows, for the candidates that matter.
+    void bound(const LocalPositions& positions, Survey::Gaps gaps) {
+        const Many d;
+        const ManyNumbers du;
+        const std::size_t first_row = rows_.count;
+        auto places = hn::Iota(du, 0);
+        for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
+            const auto taken = hn::RebindMask(du, survey_.matter(i, gaps));
+            hn::StoreU(hn::Compress(places, taken), du, &rows_.place[rows_.count]);
+            places = hn::Add(places, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(d))));
+            rows_.count += hn::CountTrue(du, taken);
+        }
+        for (std::size_t i = 0; i < group; i += hn::Lanes(Floats())) bound_lanes(positions, first_row, i);
     }
 
-    // Whether a candidate may be nearer to one of the group's positions than what that has.
-    bool matters(std::size_t place) const {
+    // Rows from first_row on, for one vector of positions, and the lowest of them.
+    void bound_lanes(const LocalPositions& positions, std::size_t first_row, std::size_t i) {
         const Floats d;
-        const CandidateList& c = m_.candidates;
-        const auto normal_x = hn::Set(d, c.normal_x[place]), normal_y = hn::Set(d, c.normal_y[place]),
-                   normal_z = hn::Set(d, c.normal_z[place]), radius = hn::Set(d, c.radius[place]);
+        const hn::RebindToUnsigned<Floats> du;
+        const auto px = hn::Load(d, positions.x + i), py = hn::Load(d, positions.y + i),
+                   pz = hn::Load(d, positions.z + i);
+        auto lowest = hn::Load(d, lowest_ + i);
+        auto lowest_row = hn::Load(du, lowest_row_ + i);
+        for (std::size_t row = first_row; row < rows_.count; ++row) {
+            const std::size_t place = rows_.place[row];
+            const auto bound = bound_of(place, hn::Sub(px, hn::Set(d, c_.center_x[place])),
+                                        hn::Sub(py, hn::Set(d, c_.center_y[place])),
+                                        hn::Sub(pz, hn::Set(d, c_.center_z[place])));
+            hn::Store(bound, d, &rows_.bound[row * group + i]);
+            const auto lower = hn::RebindMask(du, hn::Lt(bound, lowest));
+            lowest = hn::Min(bound, lowest);
+            lowest_row = hn::IfThenElse(lower, hn::Set(du, static_cast<std::uint32_t>(row)), lowest_row);
+        }
+        hn::Store(lowest, d, lowest_ + i);
+        hn::Store(lowest_row, du, lowest_row_ + i);
+    }
+
+    // Square of at most the distance from a triangle, for positions relative to its disc's middle: the height
+    // above its plane, and how far outside one of its edges a position lies.
+    HWY_INLINE hn::Vec<Floats> bound_of(std::size_t place, hn::Vec<Floats> x, hn::Vec<Floats> y,
+                                        hn::Vec<Floats> z) const {
+        const Floats d;
+        const float normal_x = c_.normal_x[place], normal_y = c_.normal_y[place],
+                    normal_z = c_.normal_z[place];
+        const auto along = [&](float nx, float ny, float nz) HWY_ATTR {
+            return dot3(x, y, z, hn::Set(d, nx), hn::Set(d, ny), hn::Set(d, nz));
+        };
+        const auto off = hn::Set(d, survey_.rounding(c_.radius[place]));
+        auto height = hn::Abs(along(normal_x, normal_y, normal_z)), outside = hn::Zero(d);
+        if (normal_x == 0.0f && normal_y == 0.0f && normal_z == 0.0f) {
+            outside = hn::Sub(hn::Sqrt(dot3(x, y, z, x, y, z)), hn::Set(d, c_.radius[place]));
+        } else {
+            const TriangleEdges& e = m_.edges[c_.triangle[place]];
+            const auto beyond = [&](std::size_t k) HWY_ATTR {
+                return hn::Sub(along(e.normal_x[k], e.normal_y[k], e.normal_z[k]), hn::Set(d, e.offset[k]));
+            };
+            outside = hn::Max(hn::Max(beyond(0), beyond(1)), beyond(2));
+        }
+        height = hn::Max(hn::Sub(height, off), hn::Zero(d));
+        outside = hn::Max(hn::Sub(outside, off), hn::Zero(d));
+        return hn::Add(hn::Mul(height, height), hn::Mul(outside, outside));
+    }
+
+    std::uint32_t number(std::size_t row) const { return c_.triangle[rows_.place[row]]; }
+
+    // Each position against the row whose bound is lowest there.
+    void measure_lowest() {
+        if (rows_.count == 0) return;
+        alignas(64) std::int64_t numbers[group];
+        bool same = true, usable = true;
+        for (std::size_t i = 0; i < group; ++i) {
+            numbers[i] = number(lowest_row_[i]);
+            same = same && numbers[i] == numbers[0];
+            usable = usable && !has_no_inside(m_.shapes[numbers[i]]);
+        }
+        if (same && numbers[0] == first_) return;
+        if (!same && !usable) return;  // to measure_rest
+        if (same) {
+            measure(static_cast<std::uint32_t>(numbers[0]));
+        } else {
+            for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles()))
+                offer(gather_shapes(m_.shapes, numbers + i), g_, i);
+        }
+        for (std::size_t i = 0; i < group; ++i)
+            rows_.bound[lowest_row_[i] * group + i] = std::numeric_limits<float>::infinity();
+        update_limits();
+    }
+
+    void measure_rest() {
+        for (std::size_t row = 0; row < rows_.count; ++row) {
+            if (matters(row) && number(row) != first_ && measure(number(row))) update_limits();
+        }
+    }
+
+    bool matters(std::size_t row) const {
+        const Floats d;
         for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
-            const auto x = hn::Sub(hn::Load(d, g_.local_x + i), hn::Set(d, c.center_x[place]));
-            const auto y = hn::Sub(hn::Load(d, g_.local_y + i), hn::Set(d, c.center_y[place]));
-            const auto z = hn::Sub(hn::Load(d, g_.local_z + i), hn::Set(d, c.center_z[place]));
-            const auto squared = from_disc(d, x, y, z, normal_x, normal_y, normal_z, radius);
-            if (!hn::AllFalse(d, hn::Le(squared, hn::Load(d, g_.limit + i)))) return true;
+            const auto bound = hn::Load(d, &rows_.bound[row * group + i]);
+            if (!hn::AllFalse(d, hn::Le(bound, hn::Load(d, limit_ + i)))) return true;
         }
         return false;
     }
 
-    // Candidates whose bounds come within `widest` of the group's middle.
-    void scan() {
-        const hn::ScalableTag<float> d;
-        const hn::RebindToUnsigned<decltype(d)> du;
-        const CandidateList& c = m_.candidates;
-        const auto limit = hn::Set(d, g_.widest * g_.widest);
-        const auto px = hn::Set(d, g_.middle.x), py = hn::Set(d, g_.middle.y), pz = hn::Set(d, g_.middle.z);
-        const auto outside = [&](const float* lo, const float* hi, auto p) HWY_ATTR {
-            return hn::Max(hn::Max(hn::Sub(hn::LoadU(d, lo), p), hn::Sub(p, hn::LoadU(d, hi))), hn::Zero(d));
-        };
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < c.count; i += hn::Lanes(d)) {
-            const auto x = outside(&c.lo_x[i], &c.hi_x[i], px), y = outside(&c.lo_y[i], &c.hi_y[i], py),
-                       z = outside(&c.lo_z[i], &c.hi_z[i], pz);
-            const auto from_box = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-            auto near_group = hn::And(hn::Le(from_box, limit), hn::FirstN(d, c.count - i));
-            if (hn::AllFalse(d, near_group)) continue;
-            const auto disc = from_disc(
-                d, hn::Sub(px, hn::LoadU(d, &c.center_x[i])), hn::Sub(py, hn::LoadU(d, &c.center_y[i])),
-                hn::Sub(pz, hn::LoadU(d, &c.center_z[i])), hn::LoadU(d, &c.normal_x[i]),
-                hn::LoadU(d, &c.normal_y[i]), hn::LoadU(d, &c.normal_z[i]), hn::LoadU(d, &c.radius[i]));
-            near_group = hn::And(near_group, hn::Le(disc, limit));
-            const auto places = hn::Iota(du, static_cast<std::uint32_t>(i));
-            hn::CompressStore(hn::Max(from_box, disc), near_group, d, &found_.squared[count]);
-            count += hn::CompressStore(places, hn::RebindMask(du, near_group), du, &found_.place[count]);
-        }
-        found_.count = count;
-    }
-
-    std::uint32_t number(std::size_t found) const { return m_.candidates.triangle[found_.place[found]]; }
-
     const BlockMeasure& m_;
-    NearCandidates& found_;
+    const CandidateList& c_;
+    BoundRows& rows_;
+    BlockPositions& local_;
+    Survey survey_;
     Group g_;
+    float* limit_ = nullptr;
+    float widest_ = 0.0f;      // largest root of a limit
+    std::uint32_t first_ = 0;  // the triangle that was measured first
+    alignas(64) float lowest_[group];
+    alignas(64) std::uint32_t lowest_row_[group];
 };
 
-void measure_all(const BlockMeasure& measure, NearCandidates& scratch, BlockAnswers& answers) {
-    GroupQuery query(measure, scratch);
-    std::uint32_t hint = measure.nearest;
-    for (std::size_t first = 0; first < block_positions; first += group) {
-        query.start(answers, first);
-        query.run(hint);
-        query.finish(answers, first);
-        for (std::size_t i = 0; i < group; ++i)
-            if (answers.triangle[first + i] != ClosestPoint::none) hint = answers.triangle[first + i];
+// --- the block ---
+
+void to_local(const double* at, double origin, float* local) {
+    for (std::size_t i = 0; i < block_positions; ++i) local[i] = static_cast<float>(at[i] - origin);
+}
+
+// Limits from one point of a triangle: no position is farther from the meshes than from that. Their largest
+// root.
+float limit_by_point(const glm::vec3& point, float max_distance, float slack, BlockPositions& local) {
+    const Floats d;
+    auto widest = hn::Zero(d);
+    for (std::size_t i = 0; i < block_positions; i += hn::Lanes(d)) {
+        const auto x = hn::Sub(hn::Load(d, local.x + i), hn::Set(d, point.x)),
+                   y = hn::Sub(hn::Load(d, local.y + i), hn::Set(d, point.y)),
+                   z = hn::Sub(hn::Load(d, local.z + i), hn::Set(d, point.z));
+        const auto distance = hn::Min(hn::Sqrt(dot3(x, y, z, x, y, z)), hn::Set(d, max_distance));
+        const auto limit = hn::Add(hn::Mul(distance, hn::Set(d, 1.00001f)), hn::Set(d, slack));
+        hn::Store(hn::Mul(limit, limit), d, local.limit + i);
+        widest = hn::Max(widest, limit);
     }
+    return hn::GetLane(hn::MaxOfLanes(d, widest));
+}
+
+void choose(const CandidateList& from, const Survey& survey, CandidateList& to) {
+    const Many d;
+    const ManyNumbers du;
+    to.count = 0;
+    for (std::size_t i = 0; i < from.count; i += hn::Lanes(d)) {
+        const auto taken = survey.matter(i);
+        const auto copy = [&](const auto& source, auto& target) HWY_ATTR {
+            hn::StoreU(hn::Compress(hn::LoadU(d, &source[i]), taken), d, &target[to.count]);
+        };
+        const auto numbers = hn::Compress(hn::LoadU(du, &from.triangle[i]), hn::RebindMask(du, taken));
+        hn::StoreU(numbers, du, &to.triangle[to.count]);
+        copy(from.center_x, to.center_x), copy(from.center_y, to.center_y), copy(from.center_z, to.center_z);
+        copy(from.normal_x, to.normal_x), copy(from.normal_y, to.normal_y), copy(from.normal_z, to.normal_z);
+        copy(from.radius, to.radius);
+        to.count += hn::CountTrue(d, taken);
+    }
+}
+
+// To scratch.chosen. False when no candidate matters.
+bool choose_candidates(const BlockMeasure& m, BlockScratch& scratch, BlockPositions& local) {
+    Survey survey(scratch.candidates, scratch.notes, m.slack);
+    const auto max_distance = static_cast<float>(m.max_distance) * 1.00001f;
+    const LocalPositions positions = local.part(0, block_positions);
+    const std::size_t nearest = survey.look(positions, max_distance + m.slack);
+    if (nearest == Survey::nothing) return false;
+    const TriangleShape& shape = m.shapes[scratch.candidates.triangle[nearest]];
+    const ClosestPoint closest = closest_on_triangle(m.origin + glm::dvec3(survey.middle()), shape);
+    const glm::dvec3 point = shape.a + shape.ab * closest.barycentric.x + shape.ac * closest.barycentric.y;
+    const float widest = limit_by_point(glm::vec3(point - m.origin), max_distance, m.slack, local);
+    survey.note_gaps(nearest, widest);
+    choose(scratch.candidates, survey, scratch.chosen);
+    return true;
+}
+
+void measure_all(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers) {
+    BlockPositions local;
+    to_local(answers.x.data(), measure.origin.x, local.x);
+    to_local(answers.y.data(), measure.origin.y, local.y);
+    to_local(answers.z.data(), measure.origin.z, local.z);
+    if (!choose_candidates(measure, scratch, local)) {
+        answers.triangle.fill(ClosestPoint::none);
+        return;
+    }
+    GroupQuery query(measure, scratch, local);
+    for (std::size_t first = 0; first < block_positions; first += group) query.run(answers, first);
 }
 
 }  // namespace
@@ -357,7 +357,7 @@ void place_block(const BlockPlaces& places, BlockAnswers& answers) {
     HWY_DYNAMIC_DISPATCH(place)(places, answers);
 }
 
-void measure_block(const BlockMeasure& measure, NearCandidates& scratch, BlockAnswers& answers) {
+void measure_block(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers) {
     HWY_DYNAMIC_DISPATCH(measure_all)(measure, scratch, answers);
 }
 

@@ -44,15 +44,22 @@ void place_block(const BlockPlaces& places, BlockAnswers& answers);
 
 struct BlockMeasure {
     const TriangleShape* shapes;  // of all triangles
-    const CandidateList& candidates;
-    glm::dvec3 origin;      // of the candidates' coordinates
-    float slack;            // see ClosestPointIndex::slack, for all positions of the block
-    double max_distance;    // scene units
-    std::uint32_t nearest;  // a triangle that is probably near, or ClosestPoint::none
+    const TriangleEdges* edges;   // likewise
+    glm::dvec3 origin;            // of the candidates' coordinates
+    float slack;                  // see ClosestPointIndex::slack, for all positions of the block
+    double max_distance;          // scene units
 };
 
-/// Fills in the closest points. A position for which the candidates include every triangle that could be
+/// A thread's working memory: the triangles that may be closest to a position of a block, those that are left
+/// of them, and notes about both.
+struct BlockScratch {
+    CandidateList candidates, chosen;
+    SurveyNotes notes;
+    BoundRows rows;
+};
+
+/// Fills in the closest points. A position for which scratch.candidates include every triangle that could be
 /// closest gets the answer of ClosestPointIndex::closest_brute_force.
-void measure_block(const BlockMeasure& measure, NearCandidates& scratch, BlockAnswers& answers);
+void measure_block(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers);
 
 }  // namespace astrosplat

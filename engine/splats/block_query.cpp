@@ -30,6 +30,15 @@ void drop_outside(std::size_t nx, std::size_t ny, std::size_t nz, BlockAnswers& 
                 if (i >= nx || j >= ny || k >= nz) answers.triangle[block_slot(i, j, k)] = ClosestPoint::none;
 }
 
+// All triangles that may be closest to a position of the block; false when they are too many.
+bool collect(const ClosestPointIndex& index, const CullSettings& settings, const LatticeBlock& block,
+             const BlockBall& ball, CandidateList& candidates) {
+    if (block.cluster_count == 0)
+        return index.collect(ball.center, candidate_radius(settings, ball, block.distance), candidates);
+    index.collect({block.clusters, block.cluster_count}, candidates);
+    return true;
+}
+
 void ask_embree(const ClosestPointIndex& index, double max_distance, std::uint32_t hint,
                 BlockAnswers& answers) {
     for (std::size_t s = 0; s < block_positions; ++s) {
@@ -60,15 +69,11 @@ void query_block(const ClosestPointIndex& index, const Lattice& lattice, const C
     places.seed = settings.seed;
     place_block(places, answers);
 
-    // A triangle that is closest to a position p of the ball is no farther from its middle than |p - middle|
-    // + distance(p), and distance(p) is at most both max_distance and distance(middle) + |p - middle|.
     const BlockBall ball = block_ball(lattice, settings.jitter, first, block_cells);
-    const double radius = ball.radius + std::min(settings.max_distance, block.distance + ball.radius);
-    if (index.collect(ball.center, radius * (1.0 + 1e-9), scratch.candidates)) {
+    if (collect(index, settings, block, ball, scratch.candidates)) {
         const auto slack = static_cast<float>(index.slack(ball.center, 2.0 * ball.radius));
-        measure_block(
-            {index.shapes(), scratch.candidates, index.origin(), slack, settings.max_distance, block.nearest},
-            scratch.near_group, answers);
+        measure_block({index.shapes(), index.edges(), index.origin(), slack, settings.max_distance}, scratch,
+                      answers);
     } else {
         ask_embree(index, settings.max_distance, block.nearest, answers);
     }

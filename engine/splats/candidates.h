@@ -1,6 +1,6 @@
-// Triangles that may be closest to one of a few positions, each between two bounds: a box along the axes and
-// a disc in its own plane. Bounds only propose; closest_on_triangle decides, so nothing here reaches a
-// result.
+// Triangles that may be closest to one of a few positions, with what bounds their distances from below: boxes
+// along the axes around eight of them, a disc in each one's plane, and the planes through its edges. Bounds
+// only propose; closest_on_triangle decides, so nothing here reaches a result.
 #pragma once
 
 #include <array>
@@ -8,15 +8,22 @@
 #include <cstdint>
 #include <cstring>
 #include <glm/vec3.hpp>
+#include <vector>
 
 namespace astrosplat {
 
-/// What encloses a triangle, in float, relative to the middle of all meshes. Triangles without area have a
-/// ball: normal 0.
+/// What encloses a triangle, in float, relative to the middle of all meshes: a disc in its plane. Triangles
+/// without area have a ball: normal 0.
 struct TriangleBound {
-    glm::vec3 lo, hi;          // box
-    glm::vec3 center, normal;  // disc
-    float radius;              // of the disc, scene units
+    glm::vec3 center, normal;
+    float radius;  // scene units
+};
+
+/// The planes through a triangle's edges, upright on its own plane: unit normals that point away from the
+/// triangle, and their distances from the disc's middle. All 0 where the bound is a ball.
+struct TriangleEdges {
+    std::array<float, 3> normal_x, normal_y, normal_z;
+    std::array<float, 3> offset;  // scene units
 };
 
 /// Bounds of N triangles as arrays.
@@ -24,13 +31,10 @@ template <std::size_t N>
 struct BoundArrays {
     using Numbers = std::array<float, N>;
     std::array<std::uint32_t, N> triangle;
-    Numbers lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
     Numbers center_x, center_y, center_z, normal_x, normal_y, normal_z, radius;
 
     void set(std::size_t i, std::uint32_t number, const TriangleBound& b) {
         triangle[i] = number;
-        lo_x[i] = b.lo.x, lo_y[i] = b.lo.y, lo_z[i] = b.lo.z;
-        hi_x[i] = b.hi.x, hi_y[i] = b.hi.y, hi_z[i] = b.hi.z;
         center_x[i] = b.center.x, center_y[i] = b.center.y, center_z[i] = b.center.z;
         normal_x[i] = b.normal.x, normal_y[i] = b.normal.y, normal_z[i] = b.normal.z;
         radius[i] = b.radius;
@@ -42,6 +46,40 @@ struct TriangleCluster : BoundArrays<8> {
     static constexpr std::size_t size = 8;
 };
 
+/// The box of a cluster, in the same coordinates.
+struct ClusterBox {
+    glm::vec3 lo, hi;
+};
+
+/// Clusters near some place, by number, and their boxes.
+struct ClusterList {
+    using Numbers = std::vector<float>;
+    static constexpr std::size_t most = 4096;
+    std::vector<std::uint32_t> cluster;
+    Numbers lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
+    Numbers squared;  // distance from the point that was asked for last, square scene units
+
+    void clear() {
+        for_each([](auto& values) { values.clear(); });
+    }
+    /// False when there is no room.
+    bool add(std::uint32_t number, const ClusterBox& box) {
+        if (cluster.size() == most) return false;
+        cluster.push_back(number);
+        lo_x.push_back(box.lo.x), lo_y.push_back(box.lo.y), lo_z.push_back(box.lo.z);
+        hi_x.push_back(box.hi.x), hi_y.push_back(box.hi.y), hi_z.push_back(box.hi.z);
+        squared.push_back(0.0f);
+        return true;
+    }
+
+  private:
+    template <class Visit>
+    void for_each(Visit visit) {
+        visit(cluster);
+        for (Numbers* values : {&lo_x, &lo_y, &lo_z, &hi_x, &hi_y, &hi_z, &squared}) visit(*values);
+    }
+};
+
 struct CandidateList : BoundArrays<2048 + 64> {
     static constexpr std::size_t most = 2048;  // the rest is room for whole vectors at the end
     std::size_t count = 0;
@@ -50,8 +88,6 @@ struct CandidateList : BoundArrays<2048 + 64> {
     bool add(const TriangleCluster& cluster) {
         if (count + TriangleCluster::size > most) return false;
         copy(cluster.triangle, triangle);
-        copy(cluster.lo_x, lo_x), copy(cluster.lo_y, lo_y), copy(cluster.lo_z, lo_z);
-        copy(cluster.hi_x, hi_x), copy(cluster.hi_y, hi_y), copy(cluster.hi_z, hi_z);
         copy(cluster.center_x, center_x), copy(cluster.center_y, center_y), copy(cluster.center_z, center_z);
         copy(cluster.normal_x, normal_x), copy(cluster.normal_y, normal_y), copy(cluster.normal_z, normal_z);
         copy(cluster.radius, radius);
@@ -66,11 +102,20 @@ struct CandidateList : BoundArrays<2048 + 64> {
     }
 };
 
-/// Places in a CandidateList, ascending, and a lower bound of those triangles' distances.
-struct NearCandidates {
+/// What positions know of each candidate of a list, seen from their middle.
+struct SurveyNotes {
+    using Numbers = CandidateList::Numbers;
+    alignas(64) Numbers height, across;   // of the middle: along the normal and in the plane, scene units
+    alignas(64) Numbers gap;              // how far the disc stays outside the positions' shadow on its plane
+    alignas(64) Numbers allowance, rise;  // square scene units, see Survey::note_gaps
+};
+
+/// Candidates, by place in a list, with lower bounds of their squared distances from each of a few positions.
+struct BoundRows {
+    static constexpr std::size_t positions = 8;
     std::size_t count = 0;
-    std::array<std::uint32_t, CandidateList::most + 64> place;
-    std::array<float, CandidateList::most + 64> squared;  // square scene units
+    alignas(64) std::array<std::uint32_t, CandidateList::most + 64> place;
+    alignas(64) std::array<float, (CandidateList::most + 64) * positions> bound;
 };
 
 }  // namespace astrosplat

@@ -9,9 +9,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -63,16 +65,56 @@ glm::dvec3 circle_middle(const TriangleShape& s) {
     return (s.ab * (s.ac_ac * at_b) + s.ac * (s.ab_ab * at_c)) / (2.0 * area_squared);
 }
 
+// Sine squared of the angle at the first corner below which bounds do not rely on a triangle's plane and
+// edges.
+constexpr double thin = 1e-8;
+
+double sine_squared(const TriangleShape& s) {
+    const double corners = s.ab_ab * s.ac_ac;
+    return corners > 0.0 ? (corners - s.ab_ac * s.ab_ac) / corners : 0.0;
+}
+
+// How far closest_on_triangle may place a point outside the triangle, as a part of its size.
+double overshoot(const TriangleShape& s) {
+    const double sine = sine_squared(s);
+    return 1e-6 + (sine > 1e-14 ? 1e-15 / sine : 0.0);
+}
+
 TriangleBound triangle_bound(const TriangleShape& s, const glm::dvec3& origin) {
-    const glm::dvec3 a = s.a - origin, b = a + s.ab, c = a + s.ac, middle = circle_middle(s);
-    const glm::dvec3 normal = glm::cross(s.ab, s.ac);
+    const glm::dvec3 middle = circle_middle(s), normal = glm::cross(s.ab, s.ac);
     const double length = std::sqrt(squared(normal));
-    const bool flat = length > 0.0 && !has_no_inside(s);
+    const bool flat = length > 0.0 && sine_squared(s) > thin;
     const double radius =
         std::sqrt(std::max({squared(middle), squared(middle - s.ab), squared(middle - s.ac)}));
-    return {glm::vec3(glm::min(glm::min(a, b), c)), glm::vec3(glm::max(glm::max(a, b), c)),
-            glm::vec3(a + middle), flat ? glm::vec3(normal / length) : glm::vec3(0.0f),
-            static_cast<float>(radius * (1.0 + 1e-6))};
+    return {glm::vec3(s.a - origin + middle), flat ? glm::vec3(normal / length) : glm::vec3(0.0f),
+            static_cast<float>(radius * (1.0 + overshoot(s)))};
+}
+
+void extend(ClusterBox& box, const TriangleShape& s, const glm::dvec3& origin) {
+    const glm::dvec3 a = s.a - origin, b = a + s.ab, c = a + s.ac;
+    const glm::dvec3 lo = glm::min(glm::min(a, b), c), hi = glm::max(glm::max(a, b), c);
+    const glm::dvec3 more = (hi - lo) * overshoot(s);
+    box.lo = glm::min(box.lo, glm::vec3(lo - more));
+    box.hi = glm::max(box.hi, glm::vec3(hi + more));
+}
+
+TriangleEdges triangle_edges(const TriangleShape& s) {
+    const glm::dvec3 normal = glm::cross(s.ab, s.ac), middle = circle_middle(s);
+    const double length = std::sqrt(squared(normal));
+    TriangleEdges edges{};
+    if (!(length > 0.0 && sine_squared(s) > thin)) return edges;
+    const glm::dvec3 from[3] = {glm::dvec3(0.0), s.ab, s.ac}, along_edge[3] = {s.ab, s.ac - s.ab, -s.ac};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 outward = glm::cross(along_edge[i], normal);
+        const double outward_length = std::sqrt(squared(outward));
+        if (!(outward_length > 0.0)) continue;  // a plane that bounds nothing
+        const glm::dvec3 unit = outward / outward_length;
+        edges.normal_x[i] = static_cast<float>(unit.x);
+        edges.normal_y[i] = static_cast<float>(unit.y);
+        edges.normal_z[i] = static_cast<float>(unit.z);
+        edges.offset[i] = static_cast<float>(dot(unit, from[i] - middle));
+    }
+    return edges;
 }
 
 // Bits 0..9 of v to every third bit.
@@ -90,23 +132,30 @@ std::uint32_t curve_place(const glm::dvec3& p, double reach) {
     return spread_bits(cell.x) | spread_bits(cell.y) << 1 | spread_bits(cell.z) << 2;
 }
 
-float lowest(const std::array<float, TriangleCluster::size>& values) {
-    return *std::min_element(values.begin(), values.end());
-}
-float highest(const std::array<float, TriangleCluster::size>& values) {
-    return *std::max_element(values.begin(), values.end());
+// Squares of at most the distances of p from a cluster's triangles; `rounding` is more than theirs amounts
+// to.
+std::array<float, TriangleCluster::size> disc_distances(const TriangleCluster& c, const glm::vec3& p,
+                                                        float rounding) {
+    std::array<float, TriangleCluster::size> distances;
+    for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
+        const float x = p.x - c.center_x[i], y = p.y - c.center_y[i], z = p.z - c.center_z[i];
+        const float height = x * c.normal_x[i] + y * c.normal_y[i] + z * c.normal_z[i];
+        const float flat = (x * x + y * y + z * z) * (1.0f - 4e-6f) - height * height;
+        const float off = rounding + 2e-6f * c.radius[i];
+        const float outside = std::max(std::sqrt(std::max(flat, 0.0f)) - c.radius[i] - off, 0.0f);
+        const float above = std::max(std::fabs(height) - off, 0.0f);
+        distances[i] = outside * outside + above * above;
+    }
+    return distances;
 }
 
-// Squared distances of p from the boxes of a cluster's triangles.
-std::array<float, TriangleCluster::size> box_distances(const TriangleCluster& c, const glm::vec3& p) {
-    std::array<float, TriangleCluster::size> squared;
-    for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
-        const float x = std::max(std::max(c.lo_x[i] - p.x, p.x - c.hi_x[i]), 0.0f);
-        const float y = std::max(std::max(c.lo_y[i] - p.y, p.y - c.hi_y[i]), 0.0f);
-        const float z = std::max(std::max(c.lo_z[i] - p.z, p.z - c.hi_z[i]), 0.0f);
-        squared[i] = x * x + y * y + z * z;
+void box_distances(ClusterList& list, const glm::vec3& p) {
+    for (std::size_t i = 0; i < list.cluster.size(); ++i) {
+        const float x = std::max(std::max(list.lo_x[i] - p.x, p.x - list.hi_x[i]), 0.0f);
+        const float y = std::max(std::max(list.lo_y[i] - p.y, p.y - list.hi_y[i]), 0.0f);
+        const float z = std::max(std::max(list.lo_z[i] - p.z, p.z - list.hi_z[i]), 0.0f);
+        list.squared[i] = x * x + y * y + z * z;
     }
-    return squared;
 }
 
 }  // namespace
@@ -146,9 +195,11 @@ ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const
 
 struct ClosestPointIndex::State {
     Buffer<TriangleShape> shapes;
+    Buffer<TriangleEdges> edges;
     Buffer<TriangleCluster> clusters;
-    glm::dvec3 center{0.0};  // Embree's origin, scene units
-    double reach = 0.0;      // largest coordinate of a vertex relative to center
+    Buffer<ClusterBox> boxes;  // of the clusters
+    glm::dvec3 center{0.0};    // Embree's origin, scene units
+    double reach = 0.0;        // largest coordinate of a vertex relative to center
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
 
@@ -162,6 +213,7 @@ struct ClosestPointIndex::State {
 
     void copy_triangles(std::span<const Mesh* const> meshes);
     void make_clusters();
+    void make_cluster(std::size_t cluster, const Buffer<std::uint64_t>& order);
     void build();
     template <class Visit>
     void query(const glm::dvec3& p, double distance, Visit visit) const;
@@ -218,14 +270,25 @@ void ClosestPointIndex::State::make_clusters() {
     std::sort(order.begin(), order.end());
     constexpr std::size_t size = TriangleCluster::size;
     clusters.resize((shapes.size() + size - 1) / size);
-    parallel_chunks(
-        static_cast<std::int64_t>(clusters.size()), 512, [&](std::int64_t begin, std::int64_t end, int) {
-            for (auto i = static_cast<std::size_t>(begin) * size; i < static_cast<std::size_t>(end) * size;
-                 ++i) {
-                const auto number = static_cast<std::uint32_t>(order[std::min(i, order.size() - 1)]);
-                clusters[i / size].set(i % size, number, triangle_bound(shapes[number], center));
-            }
-        });
+    boxes.resize(clusters.size());
+    edges.resize(shapes.size());
+    parallel_chunks(static_cast<std::int64_t>(clusters.size()), 512,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                            make_cluster(i, order);
+                    });
+}
+
+void ClosestPointIndex::State::make_cluster(std::size_t cluster, const Buffer<std::uint64_t>& order) {
+    constexpr float far = std::numeric_limits<float>::infinity();
+    boxes[cluster] = {glm::vec3(far), glm::vec3(-far)};
+    for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
+        const std::size_t place = std::min(cluster * TriangleCluster::size + i, order.size() - 1);
+        const auto number = static_cast<std::uint32_t>(order[place]);
+        clusters[cluster].set(i, number, triangle_bound(shapes[number], center));
+        extend(boxes[cluster], shapes[number], center);
+        edges[number] = triangle_edges(shapes[number]);
+    }
 }
 
 void ClosestPointIndex::State::build() {
@@ -236,12 +299,12 @@ void ClosestPointIndex::State::build() {
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(clusters.size()));
-    rtcSetGeometryUserData(geometry, clusters.data());
+    rtcSetGeometryUserData(geometry, boxes.data());
     const auto on_bounds = [](const RTCBoundsFunctionArguments* args) {
-        const TriangleCluster& c = static_cast<const TriangleCluster*>(args->geometryUserPtr)[args->primID];
+        const ClusterBox& from = static_cast<const ClusterBox*>(args->geometryUserPtr)[args->primID];
         RTCBounds& box = *args->bounds_o;
-        box.lower_x = lowest(c.lo_x), box.lower_y = lowest(c.lo_y), box.lower_z = lowest(c.lo_z);
-        box.upper_x = highest(c.hi_x), box.upper_y = highest(c.hi_y), box.upper_z = highest(c.hi_z);
+        box.lower_x = from.lo.x, box.lower_y = from.lo.y, box.lower_z = from.lo.z;
+        box.upper_x = from.hi.x, box.upper_y = from.hi.y, box.upper_z = from.hi.z;
     };
     rtcSetGeometryBoundsFunction(geometry, on_bounds, nullptr);
     rtcCommitGeometry(geometry);
@@ -251,17 +314,16 @@ void ClosestPointIndex::State::build() {
     if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::bad_alloc();
 }
 
-// Runs Embree around p. `visit(cluster)` is called for at least every cluster with a triangle within
+// Runs Embree around p. `visit(cluster number)` is called for at least every cluster with a triangle within
 // `distance`; it returns the distance that still matters, which may only shrink, or a negative number to
 // stop.
 template <class Visit>
 void ClosestPointIndex::State::query(const glm::dvec3& p, double distance, Visit visit) const {
     const glm::dvec3 local = p - center;
     struct Call {
-        const State& state;
         Visit visit;
         double distance, slack;
-    } call{*this, std::move(visit), distance, slack(local)};
+    } call{std::move(visit), distance, slack(local)};
     RTCPointQuery query{};
     query.x = static_cast<float>(local.x);
     query.y = static_cast<float>(local.y);
@@ -271,7 +333,7 @@ void ClosestPointIndex::State::query(const glm::dvec3& p, double distance, Visit
     rtcInitPointQueryContext(&context);
     const auto on_cluster = [](RTCPointQueryFunctionArguments* args) {
         Call& c = *static_cast<Call*>(args->userPtr);
-        const double left = c.visit(c.state.clusters[args->primID]);
+        const double left = c.visit(args->primID);
         if (left >= c.distance) return false;
         c.distance = left;
         args->query->radius = left < 0.0 ? 0.0f : widened(left, c.slack);
@@ -295,31 +357,59 @@ ClosestPointIndex::ClosestPointIndex(std::span<const Mesh> meshes) : state_(std:
 
 ClosestPointIndex::~ClosestPointIndex() = default;
 
-ClosestPoint ClosestPointIndex::closest(const glm::dvec3& p, double max_distance, std::uint32_t hint) const {
-    ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
-    if (hint != ClosestPoint::none) {
-        const ClosestPoint first = closest_of(hint, p);
-        if (nearer(first, best)) best = first;
+// The search of one point, cluster by cluster.
+struct ClosestPointIndex::Search {
+    const State& state;
+    glm::dvec3 p;
+    glm::vec3 local;
+    double slack;
+    ClosestPoint best;
+    float limit = 0.0f;  // of bounds that may still matter
+
+    Search(const State& all, const glm::dvec3& point, double max_distance)
+        : state(all),
+          p(point),
+          local(point - all.center),
+          slack(all.slack(point - all.center)),
+          best{max_distance * max_distance, ClosestPoint::none, {}} {
+        update_limit();
     }
-    const glm::dvec3 local = p - state_->center;
-    const double slack = state_->slack(local);
-    const auto limit = [&] {
-        const float widened = State::widened(std::sqrt(best.distance_squared), slack);
-        return widened * widened;
-    };
-    state_->query(p, std::sqrt(best.distance_squared), [&](const TriangleCluster& cluster) {
-        const auto squared = box_distances(cluster, glm::vec3(local));
-        float most = limit();
-        for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
-            if (!(squared[i] <= most)) continue;
-            const ClosestPoint other = closest_of(cluster.triangle[i], p);
-            if (!nearer(other, best)) continue;
-            best = other;
-            most = limit();
-        }
-        return std::sqrt(best.distance_squared);
+    void update_limit() { limit = State::widened(std::sqrt(best.distance_squared), slack); }
+    void offer(std::uint32_t triangle) {
+        ClosestPoint other = closest_on_triangle(p, state.shapes[triangle]);
+        other.triangle = triangle;
+        if (!nearer(other, best)) return;
+        best = other;
+        update_limit();
+    }
+    void offer_cluster(const TriangleCluster& cluster) {
+        const auto rounding = static_cast<float>(slack) + 2e-6f * limit;
+        const auto squared = disc_distances(cluster, local, rounding);
+        for (std::size_t i = 0; i < TriangleCluster::size; ++i)
+            if (!(squared[i] > limit * limit)) offer(cluster.triangle[i]);
+    }
+};
+
+ClosestPoint ClosestPointIndex::closest(const glm::dvec3& p, double max_distance, std::uint32_t hint) const {
+    Search search(*state_, p, max_distance);
+    if (hint != ClosestPoint::none) search.offer(hint);
+    state_->query(p, std::sqrt(search.best.distance_squared), [&](std::uint32_t cluster) {
+        search.offer_cluster(state_->clusters[cluster]);
+        return std::sqrt(search.best.distance_squared);
     });
-    return best;
+    return search.best;
+}
+
+ClosestPoint ClosestPointIndex::closest_of(ClusterList& list, const glm::dvec3& p, double max_distance,
+                                           std::uint32_t hint) const {
+    Search search(*state_, p, max_distance);
+    box_distances(list, search.local);
+    if (hint != ClosestPoint::none) search.offer(hint);
+    for (std::size_t i = 0; i < list.cluster.size(); ++i) {
+        if (!(list.squared[i] > search.limit * search.limit))
+            search.offer_cluster(state_->clusters[list.cluster[i]]);
+    }
+    return search.best;
 }
 
 ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double max_distance) const {
@@ -334,11 +424,29 @@ ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double 
 bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, CandidateList& candidates) const {
     bool fits = true;
     candidates.count = 0;
-    state_->query(center, radius, [&](const TriangleCluster& cluster) {
-        fits = candidates.add(cluster);
+    state_->query(center, radius, [&](std::uint32_t cluster) {
+        fits = candidates.add(state_->clusters[cluster]);
         return fits ? radius : -1.0;
     });
     return fits;
+}
+
+bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, ClusterList& list) const {
+    bool fits = true;
+    list.clear();
+    state_->query(center, radius, [&](std::uint32_t cluster) {
+        fits = list.add(cluster, state_->boxes[cluster]);
+        return fits ? radius : -1.0;
+    });
+    return fits;
+}
+
+void ClosestPointIndex::collect(std::span<const std::uint32_t> clusters, CandidateList& candidates) const {
+    candidates.count = 0;
+    for (const std::uint32_t cluster : clusters) {
+        [[maybe_unused]] const bool fits = candidates.add(state_->clusters[cluster]);
+        assert(fits);
+    }
 }
 
 const glm::dvec3& ClosestPointIndex::origin() const { return state_->center; }
@@ -354,6 +462,7 @@ ClosestPoint ClosestPointIndex::closest_of(std::uint32_t triangle, const glm::dv
 }
 
 const TriangleShape* ClosestPointIndex::shapes() const { return state_->shapes.data(); }
+const TriangleEdges* ClosestPointIndex::edges() const { return state_->edges.data(); }
 
 std::int64_t ClosestPointIndex::triangle_count() const {
     return static_cast<std::int64_t>(state_->shapes.size());

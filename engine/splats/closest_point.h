@@ -70,6 +70,13 @@ class ClosestPointIndex {
     /// false when they do not fit. Thread-safe.
     bool collect(const glm::dvec3& center, double radius, CandidateList& candidates) const;
 
+    /// The same as clusters. And the closest point, like closest(), of those alone; it fills in `squared`.
+    bool collect(const glm::dvec3& center, double radius, ClusterList& list) const;
+    ClosestPoint closest_of(ClusterList& list, const glm::dvec3& p, double max_distance,
+                            std::uint32_t hint) const;
+    /// The triangles of some clusters.
+    void collect(std::span<const std::uint32_t> clusters, CandidateList& candidates) const;
+
     /// Where the float coordinates of candidates have their origin, scene units.
     const glm::dvec3& origin() const;
     /// How much rounding to those coordinates may move a point or a triangle, along any direction, with
@@ -79,11 +86,13 @@ class ClosestPointIndex {
     /// The closest point of one triangle, numbered.
     ClosestPoint closest_of(std::uint32_t triangle, const glm::dvec3& p) const;
     const TriangleShape* shapes() const;  // of all triangles
+    const TriangleEdges* edges() const;   // likewise
     const TriangleShape& shape(std::uint32_t triangle) const { return shapes()[triangle]; }
     std::int64_t triangle_count() const;
 
   private:
     struct State;
+    struct Search;
     std::unique_ptr<State> state_;
 };
 

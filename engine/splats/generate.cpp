@@ -181,7 +181,8 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     const ClosestPointIndex index(shapes);
     const std::vector<SurfaceTriangle> surface = surface_triangles(meshes, index, lattice.spacing());
     const CullSettings settings{max_distance, jitter, seed};
-    const std::vector<LatticeBlock> blocks = blocks_near(index, lattice, settings, progress);
+    const NearBlocks near = blocks_near(index, lattice, settings, progress);
+    const std::vector<LatticeBlock>& blocks = near.blocks;
 
     SplatSet set;
     describe_set(meshes, lattice, max_distance, set);

@@ -45,7 +45,8 @@ void expect_brute_force(const Mesh& mesh, const Lattice& lattice, double max_dis
     const CullSettings settings{max_distance, 1.0, 3};
     const auto scratch = std::make_unique<BlockScratch>();
     std::int64_t kept = 0, wrong = 0;
-    for (const LatticeBlock& block : blocks_near(index, lattice, settings, {})) {
+    const NearBlocks near = blocks_near(index, lattice, settings, {});
+    for (const LatticeBlock& block : near.blocks) {
         for (const Positions kind : {Positions::corners, Positions::centres}) {
             BlockAnswers answers;
             query_block(index, lattice, settings, block, kind, *scratch, answers);
