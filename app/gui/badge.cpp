@@ -58,7 +58,7 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
     if (const LayerStatus* layer = loading_layer(status, index)) {
         const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";
         return {fmt::format("Generating {} {:.0f} %", name, layer->progress * 100.0f),
-                short_count(layer->found) + " splats", color::accent};
+                layer->found > 0 ? short_count(layer->found) + " splats" : "", color::accent};
     }
     const std::string total = short_count(picture.total) + " splats";
     switch (picture.state) {

@@ -61,9 +61,10 @@ std::shared_ptr<PictureFiles> make_picture_files() { return std::make_shared<Pic
 
 namespace {
 
-/// Histograms may come later than the set.
+/// Histograms may come later than the set. What grows has none yet, and every sample of it is another.
 bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr<const LoadedLayer>& b) {
-    return (a ? a->set : nullptr) == (b ? b->set : nullptr);
+    const auto set_of = [](const LoadedLayer& layer) { return layer.set ? layer.set : layer.preview; };
+    return (a ? set_of(*a) : nullptr) == (b ? set_of(*b) : nullptr);
 }
 
 }  // namespace
@@ -135,17 +136,17 @@ std::vector<PreviewLayer> ViewPicture::Impl::preview_layers() {
     for (std::size_t i = 0; i < request->layers.size(); ++i) {
         const LayerParams& params = request->scene.layers[i];
         const std::shared_ptr<const LoadedLayer>& loaded = request->layers[i];
-        if (!params.visible || !loaded || loaded->set->size() == 0) continue;
+        if (!params.visible || !loaded || loaded->splats == 0) continue;
         PreviewLayer layer;
         layer.layer = render_layer(params);
         layer.set = loaded->preview;
-        layer.whole = loaded->set->size();
+        layer.whole = loaded->splats;
         layer.look = params.look;
         layer.inputs = look_inputs(params);
         if (!params.look.thickness.map.empty())
             layer.inputs.thickness_map = &files->map(params.look.thickness.map);
-        status.total += loaded->set->size();
-        sizes.push_back(loaded->set->size());
+        status.total += loaded->splats;
+        sizes.push_back(loaded->splats);
         places.push_back(i);
         layers.push_back(std::move(layer));
     }
@@ -164,7 +165,7 @@ std::vector<PreviewLayer> ViewPicture::Impl::preview_layers() {
 void ViewPicture::Impl::note_kept(const std::vector<double>& shares) {
     kept.assign(request->layers.size(), -1);
     for (std::size_t n = 0; n < std::min(shares.size(), places.size()); ++n) {
-        const auto whole = static_cast<double>(request->layers[places[n]]->set->size());
+        const auto whole = static_cast<double>(request->layers[places[n]]->splats);
         kept[places[n]] = std::llround(shares[n] * whole);
     }
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -32,6 +34,12 @@ double first_frame(const Scene& scene) {
 }
 
 }  // namespace
+
+double thread_seconds() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 Document demo_document(std::span<const Assignment> assignments) {
     const std::filesystem::path file = demo_scene_file();
@@ -122,6 +130,17 @@ void Session::Impl::load_sets(double now) {
     source_edited_at = -1.0;
 }
 
+/// What there is of a set that is being generated, as often as takes it no more than a few percent of its
+/// time.
+void Session::Impl::show_growth(double now) {
+    constexpr double shortest_s = 0.25, longest_s = 1.5, share = 0.03;  // the first drawing is a slow one
+    const bool for_screenshot = fixed_splats > 0;
+    if (for_screenshot || now < grows_at) return;
+    const double start = thread_seconds();
+    if (!loader.grow()) return;
+    grows_at = now + std::clamp((thread_seconds() - start + new_set_draw_s) / share, shortest_s, longest_s);
+}
+
 Session::Session(const ViewerOptions& options, const GlInfo& gl)
     : impl_(std::make_unique<Impl>(options, gl)) {}
 Session::~Session() = default;
@@ -134,6 +153,7 @@ void Session::advance(double now) {
     Impl& self = *impl_;
     self.play(now);
     self.load_sets(now);
+    self.show_growth(now);
     self.look_at_disk(now);
     self.poll_job();
     self.autosave.update(self.document);

@@ -52,6 +52,8 @@ struct Session::Impl {
     std::uint64_t wanted_revision = 0;  // of the document, given to the loader
     std::vector<SourceParams> wanted_sources;
     double source_edited_at = -1.0;  // below 0: no source waits to be generated anew
+    double grows_at = 0.0;           // when a set that is generated may be shown again
+    double new_set_draw_s = 0.0;     // of this thread, for a draw() of a new set
     double played_at = -1.0, navigated_at = -1.0, checked_disk_at = 0.0;
     Gesture gesture = 1;     // of the camera
     double fly_speed = 1.0;  // scene sizes a second
@@ -76,6 +78,7 @@ struct Session::Impl {
     void say(const std::string& text, bool error = false);
     void play(double now);
     void load_sets(double now);
+    void show_growth(double now);
     void look_at_disk(double now);
     void fill_status();
     void fill_layers(const Scene& now);
@@ -111,6 +114,9 @@ struct Session::Impl {
 Document demo_document(std::span<const Assignment> assignments = {});
 /// A scene, or what any other file becomes, untitled. Throws InputError.
 Document document_for(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
+
+/// Processor time of this thread: what work costs the others, however busy the machine is.
+double thread_seconds();
 
 /// A texture as the widgets name it.
 inline void* to_handle(unsigned texture) {

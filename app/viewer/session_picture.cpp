@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "core/error.h"
 #include "edit/view_camera.h"
@@ -145,7 +146,8 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
     self.viewport_width = std::max(1, viewport_width);
     self.viewport_height = std::max(1, viewport_height);
     const Scene scene = self.evaluated(self.document.scene());
-    self.drawn_sets = self.loader.revision();
+    const std::uint64_t sets = self.loader.revision();
+    const bool new_sets = std::exchange(self.drawn_sets, sets) != sets;
     self.request = self.make_request(scene);
     self.keep_free_camera();
     const Rect port{0, 0, static_cast<float>(self.viewport_width), static_cast<float>(self.viewport_height)};
@@ -166,7 +168,9 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
                                    (self.view.engine == PreviewEngine::automatic && !self.gl.software),
                                self.view.preview_share, self.fixed_splats};
     const bool may_settle = self.view.settle && !self.view.playing && self.loader.sets_there();
+    const double start = thread_seconds();
     self.a.show(self.request, choice, may_settle, now, hurry);
+    if (new_sets) self.new_set_draw_s = thread_seconds() - start;
     self.loader.hold(self.a.status().state == PictureState::refining);
 
     DisplaySettings shown;

@@ -19,8 +19,6 @@
 #include "core/error.h"
 #include "pipeline.h"
 #include "splats/lattice.h"
-#include "splats/stratified.h"
-#include "viewer/histograms.h"
 
 namespace astrosplat {
 namespace {
@@ -39,6 +37,7 @@ struct Entry {
     Stage stage = Stage::waiting;
     std::string error;
     std::shared_ptr<const LoadedLayer> loaded;
+    std::shared_ptr<const LoadedLayer> growing;  // shown instead, while the next one is generated
 };
 
 /// What is done for a layer, the first for all layers before the second for any.
@@ -52,18 +51,24 @@ struct Job {
     SourceParams source, identity;
     std::atomic<bool> cancelled{false};
     std::atomic<float> progress{0.0f};
+    GrowingSet growing;
+
+    explicit Job(std::int64_t preview_limit) : growing(growing_limit(preview_limit)) {}
+
+  private:
+    /// Splats of a picture that is made again and again while everything else should go on.
+    static std::int64_t growing_limit(std::int64_t preview_limit) {
+        return std::clamp<std::int64_t>(preview_limit / 16, 1, 1 << 18);
+    }
 };
 
 bool satisfies(const LoadedLayer& loaded, const SourceParams& identity) {
     return identity_of(loaded.source, loaded.name) == identity;
 }
 
-/// Splats so far, where it is known how many there will be.
-std::int64_t splats_so_far(const SourceParams& source, float progress) {
-    const bool automatic = source.kind == SourceKind::mesh && !source.voxels && source.voxel_size == 0.0;
-    if (!automatic) return 0;
-    return static_cast<std::int64_t>(static_cast<double>(progress) * static_cast<double>(source.count));
-}
+/// Progress from which a set is wherever it will be: corners, which run through the whole box, come before
+/// centres.
+constexpr float everywhere = 0.5f;
 
 /// One line that a person can read.
 std::string reason(const std::exception& error) {
@@ -101,6 +106,7 @@ struct SetLoader::Impl {
 
     // With the mutex held.
     std::shared_ptr<const LoadedLayer> find_loaded(const SourceParams& identity) const;
+    void stop_growing(Entry& entry);
     void stop(const std::string& name);
     bool want_layer(const LayerParams& layer);
     void forget_layers_not_in(const Scene& scene);
@@ -110,16 +116,17 @@ struct SetLoader::Impl {
     bool loading() const;
     bool resting() const;
     std::shared_ptr<Job> next_job(Task task);
+    std::shared_ptr<Job> growing_job() const;
 
     // Without it.
-    std::shared_ptr<const LoadedLayer> layer(const std::string& name) const;
+    std::shared_ptr<const LoadedLayer> loaded(const std::string& name) const;
 
     // The thread's.
     void work();
     void load(Job& current);
     void arrange(const Job& current);
     void describe(const Job& current);
-    void replace(const Job& finished, std::shared_ptr<const LoadedLayer> loaded);
+    void replace(const Job& finished, LoadedLayer layer);
     void fail(const Job& current, const std::string& why);
 };
 
@@ -129,9 +136,16 @@ std::shared_ptr<const LoadedLayer> SetLoader::Impl::find_loaded(const SourcePara
     return nullptr;
 }
 
+void SetLoader::Impl::stop_growing(Entry& entry) {
+    if (entry.growing) ++revision;
+    entry.growing.reset();
+}
+
 void SetLoader::Impl::stop(const std::string& name) {
     for (auto& queue : queues) queue.second.remove(name);
-    if (job && job->name == name) job->cancelled = true;
+    if (!job || job->name != name) return;
+    job->cancelled = true;
+    stop_growing(entries[name]);
 }
 
 /// Whether the layer's set is to be loaded anew.
@@ -203,7 +217,7 @@ bool SetLoader::Impl::resting() const {
 
 std::shared_ptr<Job> SetLoader::Impl::next_job(Task task) {
     std::list<std::string>& names = queues[task];
-    auto next = std::make_shared<Job>();
+    auto next = std::make_shared<Job>(preview_limit);
     next->task = task;
     next->name = names.front();
     names.pop_front();
@@ -235,80 +249,47 @@ void SetLoader::Impl::work() {
     }
 }
 
-namespace {
-
-/// Of the first splats of a set in stratified order, which are a fair sample.
-glm::vec3 mean_color(const SplatSet& set) {
-    constexpr std::int64_t sample = 4096;
-    glm::vec3 sum(0.0f);
-    float weight = 0.0f;
-    for (std::int64_t i = 0; i < std::min(sample, set.size()); ++i) {
-        sum += set.alpha[i] * set.color[i];
-        weight += set.alpha[i];
-    }
-    return weight > 0.0f ? sum / weight : glm::vec3(1.0f);
-}
-
-}  // namespace
-
 /// The set, and what the preview needs to begin.
 void SetLoader::Impl::load(Job& current) {
-    constexpr std::int64_t first_look = 1 << 18;  // splats of a preview before it is arranged
     Progress progress;
     progress.cancelled = &current.cancelled;
     progress.report = [&](double fraction) { current.progress = static_cast<float>(fraction); };
-    auto loaded = std::make_shared<LoadedLayer>();
-    auto set =
-        std::make_shared<const SplatSet>(load_source(cache, current.source, current.name, progress).set);
-    loaded->preview =
-        std::make_shared<const SplatSet>(sample_rows(*set, std::min(preview_limit, first_look)));
-    loaded->color = mean_color(*loaded->preview);
-    loaded->box = bounds(*set);
-    loaded->radius = unset_radius(*set);
-    loaded->set = std::move(set);
-    loaded->source = current.source;
-    loaded->name = current.name;
+    auto set = std::make_shared<const SplatSet>(
+        load_source(cache, current.source, current.name, progress, &current.growing).set);
+    auto loaded = std::make_shared<const LoadedLayer>(
+        whole_layer(std::move(set), current.source, current.name, preview_limit));
 
     std::shared_ptr<const LoadedLayer> old;  // large: let go after the lock
     const std::lock_guard lock(mutex);
     if (!is_wanted(current)) return;
     Entry& entry = entries[current.name];
     queue_rest(current.name, *loaded);
+    stop_growing(entry);
     old = std::exchange(entry.loaded, std::move(loaded));
     entry.stage = Stage::ready;
     ++revision;
 }
 
-/// The preview in stratified order, of as many splats as it may ever show.
 void SetLoader::Impl::arrange(const Job& current) {
-    const std::shared_ptr<const LoadedLayer> plain = layer(current.name);
-    const SplatSet& set = *plain->set;
     Progress progress;
     progress.cancelled = &current.cancelled;
-    const Buffer<std::int64_t> order = stratified_order(set, progress);
-    auto arranged = std::make_shared<LoadedLayer>(*plain);
-    arranged->preview =
-        std::make_shared<const SplatSet>(take_rows(set, order, std::min(preview_limit, set.size())));
-    arranged->arranged = true;
-    replace(current, std::move(arranged));
+    replace(current, arranged_layer(*loaded(current.name), preview_limit, progress));
 }
 
-/// The histograms, for which pictures are read once more: after everything that somebody waits for.
+/// After everything that somebody waits for.
 void SetLoader::Impl::describe(const Job& current) {
-    const std::shared_ptr<const LoadedLayer> plain = layer(current.name);
-    auto described = std::make_shared<LoadedLayer>(*plain);
-    described->histograms = std::make_shared<const LayerHistograms>(histograms(*plain->set, plain->source));
-    replace(current, std::move(described));
+    replace(current, described_layer(*loaded(current.name)));
 }
 
-std::shared_ptr<const LoadedLayer> SetLoader::Impl::layer(const std::string& name) const {
+std::shared_ptr<const LoadedLayer> SetLoader::Impl::loaded(const std::string& name) const {
     const std::lock_guard lock(mutex);
     const auto found = entries.find(name);
     return found == entries.end() ? nullptr : found->second.loaded;
 }
 
 /// The same set with more known of it.
-void SetLoader::Impl::replace(const Job& finished, std::shared_ptr<const LoadedLayer> loaded) {
+void SetLoader::Impl::replace(const Job& finished, LoadedLayer layer) {
+    auto loaded = std::make_shared<const LoadedLayer>(std::move(layer));
     const std::lock_guard lock(mutex);
     if (!is_wanted(finished)) return;
     entries[finished.name].loaded.swap(loaded);
@@ -319,6 +300,7 @@ void SetLoader::Impl::fail(const Job& current, const std::string& why) {
     const std::lock_guard lock(mutex);
     if (!is_wanted(current)) return;
     Entry& entry = entries[current.name];
+    stop_growing(entry);
     entry.stage = Stage::failed;
     entry.error = why;
     ++revision;
@@ -365,13 +347,43 @@ void SetLoader::cancel(const std::string& layer_name) {
     entry.stage = Stage::cancelled;
 }
 
+/// The job whose set may be shown as far as it is; null: there is none, or nothing new of it.
+std::shared_ptr<Job> SetLoader::Impl::growing_job() const {
+    if (!job || job->task != Task::load || !is_wanted(*job)) return nullptr;
+    const Entry& entry = entries.at(job->name);
+    const std::int64_t kept = job->growing.kept();
+    if (kept == 0 || (entry.growing && entry.growing->splats == kept)) return nullptr;
+    return entry.loaded && job->progress < everywhere ? nullptr : job;
+}
+
+bool SetLoader::grow() {
+    std::shared_ptr<Job> job;
+    {
+        const std::lock_guard lock(impl_->mutex);
+        job = impl_->growing_job();
+    }
+    if (!job) return false;
+    auto grown = std::make_shared<LoadedLayer>(growing_layer(job->growing.sample(), job->source, job->name));
+
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->job != job || !impl_->is_wanted(*job)) return false;
+    Entry& entry = impl_->entries[job->name];
+    if (entry.loaded) grown->box = entry.loaded->box;  // so that the picture does not move
+    entry.growing = std::move(grown);
+    ++impl_->revision;
+    return true;
+}
+
 std::uint64_t SetLoader::revision() const {
     const std::lock_guard lock(impl_->mutex);
     return impl_->revision;
 }
 
 std::shared_ptr<const LoadedLayer> SetLoader::layer(const std::string& layer_name) const {
-    return impl_->layer(layer_name);
+    const std::lock_guard lock(impl_->mutex);
+    const auto found = impl_->entries.find(layer_name);
+    if (found == impl_->entries.end()) return nullptr;
+    return found->second.growing ? found->second.growing : found->second.loaded;
 }
 
 LayerStatus SetLoader::status(const LayerParams& layer) const {
@@ -386,18 +398,18 @@ LayerStatus SetLoader::status(const LayerParams& layer) const {
     if (current) status.error = entry.error;
     if (current && entry.stage == Stage::loading && impl_->job && impl_->job->name == layer.name) {
         status.progress = impl_->job->progress;
-        status.found = splats_so_far(layer.source, status.progress);
+        status.found = impl_->job->growing.kept();
     }
-    if (!entry.loaded) return status;
-    status.stale = !status.loading && !satisfies(*entry.loaded, identity);
-    const SplatSet& set = *entry.loaded->set;
-    const glm::dvec3 s = set.spacing;
-    status.splats = set.size();
-    status.radius_min = entry.loaded->radius.x;
-    status.radius_max = entry.loaded->radius.y;
+    const std::shared_ptr<const LoadedLayer>& seen = entry.growing ? entry.growing : entry.loaded;
+    if (!seen) return status;
+    status.stale = !status.loading && !satisfies(*seen, identity);
+    const glm::dvec3 s = seen->preview->spacing;
+    status.splats = seen->splats;
+    status.radius_min = seen->radius.x;
+    status.radius_max = seen->radius.y;
     status.spacing = std::cbrt(s.x * s.y * s.z);
-    status.color = entry.loaded->color;
-    status.histograms = entry.loaded->histograms;
+    status.color = seen->color;
+    status.histograms = seen->histograms;
     return status;
 }
 

@@ -1,32 +1,17 @@
 // Loads and generates layers' sets in the background, newest wish first. In: a layer's source. Out: the set,
-// its stratified order for the preview, and its histograms.
+// a sample of it while it is generated, its stratified order for the preview, and its histograms.
 #pragma once
 
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "edit/status.h"
 #include "scene/scene.h"
 #include "splats/set_cache.h"
-#include "splats/splat_set.h"
+#include "viewer/loaded_layer.h"
 
 namespace astrosplat {
-
-/// What the viewer keeps of one layer.
-struct LoadedLayer {
-    std::shared_ptr<const SplatSet> set;      // in order of id: for the final picture
-    std::shared_ptr<const SplatSet> preview;  // in stratified order, at most `preview_limit` splats
-    bool arranged = false;  // until then `preview` is a small sample, and grows a little later
-    std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
-    Bounds box;                                         // layer space
-    glm::vec3 color{1.0f};                              // mean of the splats, weighted by alpha, linear
-    glm::dvec2 radius{0.0};  // smallest and largest, scene units: what look.radius 0, 0 means; 0: unknown
-    SourceParams source;
-    std::string name;  // which the seed may depend on
-};
 
 class SetLoader {
   public:
@@ -42,10 +27,14 @@ class SetLoader {
     void retry(const std::string& layer_name);
     /// Stops one layer's loading; its old set, if any, stays.
     void cancel(const std::string& layer_name);
+    /// Lets layer() give a fresh sample of the set that is being generated, until it is there. An old set
+    /// stays until the new one is about everywhere it will be. False: there is nothing new to be seen.
+    bool grow();
 
     /// Grows whenever a layer of the wanted scene got its set or its histograms, or failed.
     std::uint64_t revision() const;
-    /// The latest set of a layer, which may be older than its source; null: none yet.
+    /// The latest set of a layer, which may be older than its source, or a sample of the one being generated;
+    /// null: none yet.
     std::shared_ptr<const LoadedLayer> layer(const std::string& layer_name) const;
     /// loading, progress, found, stale, error, splats and histograms filled in.
     LayerStatus status(const LayerParams& layer) const;

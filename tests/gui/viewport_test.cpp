@@ -104,6 +104,8 @@ TEST(Picture, TheBadgeSaysHowFinalItIs) {
     status.layers[1].found = 3100000;
     EXPECT_EQ(badge_text(document.scene(), status).text, "Generating stars 37 %");
     EXPECT_EQ(badge_text(document.scene(), status).beside, "3.1 M splats");
+    status.layers[1].found = 0;  // read from a file
+    EXPECT_EQ(badge_text(document.scene(), status).beside, "");
 }
 
 TEST(Picture, TheBadgesButtons) {

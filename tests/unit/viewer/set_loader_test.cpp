@@ -162,6 +162,64 @@ TEST_F(SetLoaderTest, ACancelledLayerWaitsForRetryOrAnotherSource) {
     EXPECT_TRUE(loaded("gas"));
 }
 
+TEST_F(SetLoaderTest, ASetIsSeenGrowingAndThenWhole) {
+    SetLoader many(SetCache{}, 1'000'000);
+    LayerParams& gas = small.scene.layers[0];
+    gas.source.count = 4000000;
+    small.scene.layers.resize(1);
+    EXPECT_FALSE(many.grow());
+    many.want(small.scene);
+    while (!many.grow()) ASSERT_FALSE(many.sets_there()) << "it was never seen";
+    const auto growing = many.layer("gas");
+    ASSERT_TRUE(growing);
+    const std::uint64_t revision = many.revision();
+    EXPECT_FALSE(growing->set) << "what is not whole is no final picture";
+    EXPECT_GT(growing->preview->size(), 0);
+    EXPECT_GE(growing->splats, growing->preview->size());
+    EXPECT_LE(growing->preview->size(), 1'000'000 / 16);
+    EXPECT_TRUE(many.status(gas).loading);
+    EXPECT_GE(many.status(gas).found, growing->splats);
+    EXPECT_GT(many.status(gas).radius_min, 0.0);
+    many.wait();
+    const auto whole = many.layer("gas");
+    EXPECT_GT(many.revision(), revision);
+    EXPECT_FALSE(many.grow());
+    ASSERT_TRUE(whole && whole->set);
+    const SplatSet wanted = load_source(gas.source, gas.name);
+    EXPECT_EQ(whole->splats, wanted.size());
+    EXPECT_TRUE(std::equal(wanted.id.begin(), wanted.id.end(), whole->set->id.begin(), whole->set->id.end()));
+    EXPECT_TRUE(std::equal(wanted.position.begin(), wanted.position.end(), whole->set->position.begin()));
+    EXPECT_NEAR(growing->radius.x, whole->radius.x, 1e-12);
+}
+
+TEST_F(SetLoaderTest, WhatGrewIsGoneWhenCancelled) {
+    small.scene.layers.resize(1);
+    LayerParams& gas = small.scene.layers[0];
+    gas.source.count = 4000000;
+    loader.want(small.scene);
+    while (!loader.grow()) ASSERT_FALSE(loader.sets_there());
+    EXPECT_TRUE(loader.layer("gas"));
+    loader.cancel("gas");
+    EXPECT_FALSE(loader.grow());
+    EXPECT_FALSE(loader.layer("gas"));
+    EXPECT_EQ(status(0).splats, 0);
+}
+
+TEST_F(SetLoaderTest, AnOldSetIsReplacedOnceTheNewOneIsEverywhere) {
+    small.scene.layers.resize(1);
+    const auto first = loaded("gas");
+    LayerParams& gas = small.scene.layers[0];
+    gas.source.count = 4000000;
+    loader.want(small.scene);
+    while (!loader.grow()) ASSERT_FALSE(loader.sets_there());
+    EXPECT_GE(status(0).progress, 0.5f);
+    EXPECT_NE(loader.layer("gas"), first);
+    EXPECT_EQ(loader.layer("gas")->box.lo, first->box.lo) << "the picture would move";
+    EXPECT_FALSE(status(0).stale);
+    loader.cancel("gas");
+    EXPECT_EQ(loader.layer("gas")->set, first->set);
+}
+
 TEST_F(SetLoaderTest, EndsInTheMiddleOfLoading) {
     small.scene.layers[0].source.count = 3000000;
     loader.want(small.scene);
