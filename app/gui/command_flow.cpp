@@ -1,4 +1,4 @@
-// Files asked for, unsaved changes asked about, autosaves offered.
+// Files asked for, unsaved changes and those of others asked about, autosaves offered.
 #include "gui/command_flow.h"
 
 #include <imgui.h>
@@ -37,7 +37,7 @@ const char* before_what(Kind kind) {
 }  // namespace
 
 bool CommandFlow::busy() const {
-    return dialog_.is_open() || question_ || after_save_ || !asked_.empty() || answer_.done;
+    return dialog_.is_open() || question_ || conflict_ || after_save_ || !asked_.empty() || answer_.done;
 }
 
 void CommandFlow::file_chosen(const std::optional<std::filesystem::path>& file) { answer_ = {true, file}; }
@@ -53,6 +53,8 @@ void CommandFlow::take(GuiFrame& frame, Command command, Commands& out) {
         needs_file_ = command;
         panel_request_.reset();
         choose_file(*query);
+    } else if (command.kind == Kind::save && frame.document.changed_on_disk()) {
+        conflict_ = true;
     } else if (replaces_scene(command.kind) && frame.document.edited()) {
         question_ = command;
     } else {
@@ -85,7 +87,7 @@ void CommandFlow::take_answer(GuiFrame& frame, Panel& panel, Commands& out) {
 
 // What waited for the save goes on once nothing is unsaved; where saving failed it does not.
 void CommandFlow::finish_save(GuiFrame& frame, Commands& out) {
-    if (!after_save_ || needs_file_) return;
+    if (!after_save_ || needs_file_ || conflict_) return;
     if (!frame.document.edited()) {
         out.push_back(*after_save_);
         after_save_.reset();
@@ -116,6 +118,28 @@ void CommandFlow::draw_question(GuiFrame& frame, Commands& out) {
         frames_since_save_ = 0;
         take(frame, {Kind::save, {}, {}, 0}, out);
     }
+}
+
+// What was kept with the notice's button is decided already: then the file counts as seen.
+void CommandFlow::draw_conflict(GuiFrame& frame, Commands& out) {
+    if (!begin_dialog("conflict", frame.document.name() + " was changed by another program", conflict_, 460,
+                      0))
+        return;
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextColored(color4(color::dim), "Saving replaces what is on disk now by the scene as it is here.");
+    ImGui::PopTextWrapPos();
+    ImGui::Dummy({0, px(10)});
+    const int button = dialog_buttons(frame, "conflict", {"Overwrite", "Cancel", "Save as..."}, true);
+    const bool cancelled = button == 1 || dialog_escape();
+    if (button >= 0 || cancelled) {
+        conflict_ = false;
+        ImGui::CloseCurrentPopup();
+    }
+    end_dialog();
+    frames_since_save_ = 0;
+    if (cancelled) after_save_.reset();
+    if (button == 0) out.push_back({Kind::save, {}, {}, 0});
+    if (button == 2) take(frame, {Kind::save_as, {}, {}, 0}, out);
 }
 
 void CommandFlow::draw_recovery(GuiFrame& frame, Commands& out) {
@@ -157,6 +181,7 @@ void CommandFlow::run(GuiFrame& frame, Panel& panel, Commands& out) {
     for (const Command& command : wishes) take(frame, command, out);
     draw_recovery(frame, out);
     draw_question(frame, out);
+    draw_conflict(frame, out);
     const FileDialog::Answer answer = dialog_.draw(frame);
     if (answer.done) answer_ = answer;
 }

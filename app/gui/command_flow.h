@@ -1,5 +1,6 @@
-// Between a wish and a command: asks for the file that is missing, and what to do with unsaved changes that
-// would be lost. In: what the widgets requested. Out: complete commands for the viewer.
+// Between a wish and a command: asks for the file that is missing, and what to do with unsaved changes, or
+// with somebody else's in the same file, that would be lost. In: what the widgets requested. Out: complete
+// commands for the viewer.
 #pragma once
 
 #include <functional>
@@ -28,6 +29,7 @@ class CommandFlow {
     void choose_file(const FileQuery& query);
     void take_answer(GuiFrame& frame, Panel& panel, Commands& out);
     void draw_question(GuiFrame& frame, Commands& out);
+    void draw_conflict(GuiFrame& frame, Commands& out);
     void draw_recovery(GuiFrame& frame, Commands& out);
     void finish_save(GuiFrame& frame, Commands& out);
 
@@ -40,6 +42,7 @@ class CommandFlow {
     FileDialog::Answer answer_;                 // of either dialog, until taken
 
     std::optional<Command> question_;  // would lose unsaved changes
+    bool conflict_ = false;            // saving would lose what another program wrote there
     std::optional<Command> after_save_;
     int frames_since_save_ = 0;
     bool recovery_answered_ = false;

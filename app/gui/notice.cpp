@@ -10,9 +10,10 @@
 namespace astrosplat {
 namespace {
 
-bool small_button(GuiFrame& frame, const char* label) {
+bool small_button(GuiFrame& frame, const char* label, const char* tooltip) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(10), px(3)));
     const bool clicked = ImGui::Button(label, {0, px(22)});
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tooltip);
     ImGui::PopStyleVar();
     note_item(frame, std::string("notice/") + label);
     return clicked;
@@ -23,7 +24,10 @@ void draw_disk_notice(GuiFrame& frame, const Rect& area) {
     for (const bool reloads : {true, false}) {
         ImGui::SameLine(0, px(reloads ? 16 : 8));
         ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x, area.y + (area.height - px(22)) * 0.5f});
-        if (small_button(frame, reloads ? "Reload" : "Keep"))
+        const char* label = reloads ? "Reload" : "Keep";
+        const char* tooltip = reloads ? "Take what is on disk; undo brings this back"
+                                      : "Keep what is here; saving will replace what is on disk now";
+        if (small_button(frame, label, tooltip))
             request(frame, reloads ? Command::Kind::reload : Command::Kind::keep);
     }
 }

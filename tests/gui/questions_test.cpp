@@ -104,6 +104,94 @@ TEST(ChangedOnDisk, ReloadsOrKeeps) {
     EXPECT_FALSE(window.has("notice/Keep"));
 }
 
+/// A scene with an unsaved edit, whose file another program has written since.
+class SaveConflict : public testing::Test {
+  protected:
+    TempFolder folder;
+    std::filesystem::path file = folder.file("a.toml", example_document().text_for(folder / "a.toml"));
+    TestWindow window{Document::open(file)};
+
+    SaveConflict() {
+        window.document.edit("Fps", [](Scene& scene) { scene.output.fps = 30; });
+        write("# of another\n");
+    }
+    void write(const std::string& comment) {
+        folder.file("a.toml", comment + example_document().text_for(file));
+    }
+    std::vector<Kind> commands_after_frames() {
+        window.frame(2);
+        return kinds(window.take_commands());
+    }
+    void save() {
+        window.key('S', true);
+        window.frame(2);
+    }
+};
+
+TEST_F(SaveConflict, IsAskedAbout) {
+    save();
+    EXPECT_TRUE(commands_after_frames().empty());
+    window.click("conflict/Cancel");
+    EXPECT_TRUE(commands_after_frames().empty());
+    EXPECT_FALSE(window.has("conflict/Cancel"));
+    save();
+    window.click("conflict/Overwrite");
+    EXPECT_EQ(commands_after_frames(), std::vector<Kind>{Kind::save});
+    window.document.save();
+    window.document.edit("Fps", [](Scene& scene) { scene.output.fps = 31; });
+    save();
+    EXPECT_EQ(commands_after_frames(), std::vector<Kind>{Kind::save}) << "nobody else wrote since";
+}
+
+TEST_F(SaveConflict, GoesElsewhereByDefault) {
+    save();
+    window.key(key_code::enter);
+    window.frame(2);
+    ASSERT_TRUE(window.has("file/path"));
+    window.key('A', true);
+    window.type((folder / "b.toml").string());
+    window.click("file/Save");
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::save_as});
+    EXPECT_EQ(commands[0].path, folder / "b.toml");
+}
+
+TEST_F(SaveConflict, IsDecidedByKeepUntilTheNextChange) {
+    window.document.ignore_change_on_disk();
+    save();
+    EXPECT_EQ(commands_after_frames(), std::vector<Kind>{Kind::save});
+    write("# again, of another\n");
+    save();
+    EXPECT_TRUE(commands_after_frames().empty());
+    EXPECT_TRUE(window.has("conflict/Overwrite"));
+}
+
+TEST_F(SaveConflict, HoldsUpLeaving) {
+    window.key('Q', true);
+    window.frame();
+    window.click("unsaved/Save");
+    window.frame(5);
+    EXPECT_TRUE(window.take_commands().empty());
+    window.move(window.at("conflict/Overwrite"));
+    window.frame(2);
+    window.press();
+    window.release();
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::save});
+    window.document.save();
+    EXPECT_EQ(commands_after_frames(), std::vector<Kind>{Kind::quit});
+}
+
+TEST_F(SaveConflict, CancelledStays) {
+    window.key('Q', true);
+    window.frame();
+    window.click("unsaved/Save");
+    window.frame(2);
+    window.click("conflict/Cancel");
+    EXPECT_TRUE(commands_after_frames().empty());
+    window.document.save();
+    EXPECT_TRUE(commands_after_frames().empty()) << "leaving was given up with the question";
+}
+
 TEST(FirstStart, TheHintIsDismissed) {
     TestWindow window(example_document());
     window.view.hint_open = true;
