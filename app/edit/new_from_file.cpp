@@ -37,15 +37,18 @@ std::string lower_ending(const fs::path& file) {
     return ending;
 }
 
-bool has_layers(const fs::path& file) {
+/// Tables of a preset, and none of a scene.
+bool is_look(const fs::path& file) {
     std::ifstream in(file);
-    if (!in) return true;
+    bool found = false;
     for (std::string line; std::getline(in, line);) {
         line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t'; }),
                    line.end());
-        if (line.rfind("[[layer", 0) == 0 || line.rfind("layer=", 0) == 0) return true;
+        const auto begins = [&](const char* with) { return line.rfind(with, 0) == 0; };
+        if (begins("astrosplat=") || begins("[[layer") || begins("layer=")) return false;
+        found = found || begins("[look") || begins("[render");
     }
-    return false;
+    return found;
 }
 
 /// The file as seen from the scene's folder, absolute where it lies elsewhere.
@@ -182,7 +185,7 @@ std::string layer_name_of(const std::string& text) {
 FileKind kind_of_file(const fs::path& file) {
     const auto kind = kinds.find(lower_ending(file));
     if (kind == kinds.end()) return FileKind::unknown;
-    if (kind->second == FileKind::scene && !has_layers(file)) return FileKind::unknown;
+    if (kind->second == FileKind::scene && is_look(file)) return FileKind::look;
     return kind->second;
 }
 
@@ -198,6 +201,9 @@ std::string scene_text_for(const fs::path& file, const fs::path& place) {
             return mesh_scene_text(file, place);
         case FileKind::splats:
             return splat_scene_text(file, place);
+        case FileKind::look:
+            bad_input(file.string(), "", "a scene with at least one [[layer]]",
+                      "a look, which File > Apply look gives to a layer");
         default:
             bad_input(file.string(), "", "a picture (FITS, PNG, TIFF, JPEG, EXR), OBJ mesh or splat file",
                       "another kind of file");

@@ -7,17 +7,17 @@
 
 namespace astrosplat {
 
-enum class FileKind { unknown, scene, picture, mesh, splats };
+enum class FileKind { unknown, scene, look, picture, mesh, splats };
 
-/// By the ending; a .toml counts as a scene when it has layers (a preset has none). Unreadable files are
-/// what their ending says.
+/// By the ending; a .toml is a look when it has a [look] or [render] and no layers, else a scene. Unreadable
+/// files are what their ending says.
 FileKind kind_of_file(const std::filesystem::path& file);
 
 /// The text of a scene file `place` around a picture (on the built-in plane), an OBJ (with its own pictures,
 /// else with the picture of the same name beside it or the only one in its folder; projected along its
 /// thinnest axis where it has no texture coordinates) or a splat file (dots of half the mean spacing where it
 /// has no radii). Reads the mesh, and splat files without radii, as a whole. Throws InputError for other
-/// files, and for a mesh without pictures.
+/// files, looks among them, and for a mesh without pictures.
 std::string scene_text_for(const std::filesystem::path& file, const std::filesystem::path& place);
 
 /// Letters, digits and _ of a file's or person's name, beginning with a letter; "layer" where none is left.

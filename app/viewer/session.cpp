@@ -160,16 +160,17 @@ void Session::advance(double now) {
     self.fill_status();
 }
 
-/// Files dropped on the window: a scene is opened; a mesh and a picture together make one layer; on the
-/// untouched demo anything else makes a scene of its own, elsewhere a layer.
+/// Files dropped on the window: a scene is opened; a look is given to the chosen layer; a mesh and a picture
+/// together make one layer; on the untouched demo anything else makes a scene of its own, elsewhere a layer.
 void Session::drop(const std::vector<std::filesystem::path>& files) {
     Commands commands;
     for (const std::filesystem::path& file : files) {
         const bool fresh = impl_->fresh_demo && !impl_->document.edited() && commands.empty();
         const FileKind kind = kind_of_file(file);
-        const auto what = kind == FileKind::scene ? Command::Kind::open
-                          : fresh                 ? Command::Kind::new_from_file
-                                                  : Command::Kind::import_file;
+        const auto what = kind == FileKind::scene  ? Command::Kind::open
+                          : kind == FileKind::look ? Command::Kind::apply_look
+                          : fresh                  ? Command::Kind::new_from_file
+                                                   : Command::Kind::import_file;
         commands.push_back({what, file, {}, 0});
     }
     impl_->dropped.insert(impl_->dropped.end(), commands.begin(), commands.end());

@@ -30,6 +30,18 @@ TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {
     expect_title("other.toml");
 }
 
+TEST_F(WindowDrop, ALookIsGivenToTheLayer) {
+    start();
+    const Pixels before = settled_picture();
+    write_text(folder / "look.toml", "[look]\nalpha = { power = 3.0 }\n");
+    ASSERT_TRUE(screen->drop({folder / "look.toml"}, middle()));
+    expect_title("scene.toml - edited");
+    settled_picture(before);
+    person->key("ctrl+s");
+    expect_title("scene.toml");
+    EXPECT_EQ(saved().layers[0].look.alpha.power, 3.0f);
+}
+
 TEST_F(WindowDrop, OnTheDemoAPictureBecomesAGalaxy) {
     start({"--no-cache"});
     expect_title("Untitled");

@@ -36,6 +36,22 @@ TEST_F(NoWindow, ScreenshotOptionsAreChecked) {
     EXPECT_FALSE(fs::exists(folder / "a.png"));
 }
 
+TEST_F(NoWindow, ATomlWithoutLayersIsSaidToHaveNone) {
+    const auto shot = [&](const std::string& name, const std::string& text) {
+        write_text(folder / name, text);
+        return run({name, "--no-cache", "--screenshot", "a.png"});
+    };
+    expect_line(shot("empty.toml", ""), 2, {"empty.toml", "astrosplat = 1", "found an empty file"});
+    expect_line(shot("other.toml", "[package]\nname = \"x\"\n"), 2, {"other.toml", "astrosplat = 1"});
+    expect_line(shot("none.toml", "astrosplat = 1\n[output]\nfps = 24.0\n"), 2,
+                {"none.toml", "expected at least one [[layer]], found none"});
+    expect_line(shot("look.toml", "[look]\nradius = { min = 1.0, max = 2.0 }\n"), 2,
+                {"look.toml", "[[layer]]", "found a look", "Apply look"});
+    expect_line(run({"none.toml", "--batch"}), 2,
+                {"none.toml", "expected at least one [[layer]], found none"});
+    EXPECT_FALSE(fs::exists(folder / "a.png"));
+}
+
 class WindowRefused : public WindowTest {};
 
 TEST_F(WindowRefused, AnOldOpenGlIsSaidToBeTooOld) {
