@@ -28,6 +28,7 @@ struct ShadingKey {
 /// One layer between frames; the index is that of Scene::layers.
 struct LayerState {
     std::shared_ptr<const SplatSet> set;  // null: not drawn
+    std::shared_ptr<SplatSet> to_use_up;  // the same where nobody reads its splats after the first shading
     Bounds box;                           // of the set, layer space
     std::filesystem::path thickness_file;
     Image thickness_map;
@@ -47,6 +48,14 @@ void count_set(const SplatSet& set, LayerStatistics& counts) {
 
 bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
     return a.image == b.image && a.cube == b.cube;
+}
+
+/// Whether the layer's splats are shaded alike in all frames, as far as the tracks' keys tell.
+bool shaded_alike(const Scene& scene, const std::string& name) {
+    const std::string beginning = "layer." + name + ".", harmless = beginning + "visible";
+    return std::none_of(scene.animation.begin(), scene.animation.end(), [&](const Track& track) {
+        return track.key.compare(0, beginning.size(), beginning) == 0 && track.key != harmless;
+    });
 }
 
 }  // namespace
@@ -89,7 +98,9 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     OptionalColumns wanted{false, false, false};  // what no look reads
     wanted.uv = !params.look.thickness.map.empty();
     LoadedSet loaded = load_source(cache, params.source, params.name, progress, nullptr, wanted);
-    layer.set = std::make_shared<const SplatSet>(std::move(loaded.set));
+    const auto set = std::make_shared<SplatSet>(std::move(loaded.set));
+    layer.set = set;
+    if (shaded_alike(scene, params.name)) layer.to_use_up = set;
     layer.box = bounds(*layer.set);
     count_set(*layer.set, counts);
     counts.cached = loaded.cached;
@@ -126,7 +137,12 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
     layer.key.reset();  // an exception below must not leave old splats under a new key
     LookStatistics counts;
-    apply_look(*layer.set, key.look, inputs, layer.shaded, progress, &counts);
+    if (layer.to_use_up) {
+        layer.shaded = apply_look_in_place(*layer.to_use_up, key.look, inputs, progress, &counts);
+        layer.to_use_up.reset();
+    } else {
+        apply_look(*layer.set, key.look, inputs, layer.shaded, progress, &counts);
+    }
     layer.key = key;
     statistics[index].drawn = layer.shaded.size();
     statistics[index].look_seconds += counts.seconds;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <utility>
 #include <vector>
 
 #include "core/memory.h"
@@ -63,6 +64,46 @@ void trim(Buffer<T>& buffer) {
     if (buffer.capacity() > 2 * buffer.size()) buffer.shrink_to_fit();
 }
 
+void trim(ShadedSplats& shaded) {
+    trim(shaded.position);
+    trim(shaded.color);
+    trim(shaded.alpha);
+    trim(shaded.radius);
+    trim(shaded.id);
+}
+
+// Hands the set's arrays to the shaded splats, the distances where it has no radii. The set's other arrays
+// stay.
+ShadedSplats take_arrays(SplatSet& set) {
+    ShadedSplats shaded;
+    shaded.position = std::move(set.position);
+    shaded.color = std::move(set.color);
+    shaded.alpha = std::move(set.alpha);
+    shaded.radius = std::move(set.radius.empty() ? set.distance : set.radius);
+    shaded.id = std::move(set.id);
+    return shaded;
+}
+
+// Throws Cancelled where there is somebody who can cancel.
+void shade_all(const LookRun& run, std::int64_t count, const Progress& progress) {
+    std::vector<std::int64_t> kept(std::size_t((count + chunk_size - 1) / chunk_size));
+    std::atomic<std::int64_t> done{0};
+    parallel_chunks(count, chunk_size, [&](std::int64_t begin, std::int64_t end, int) {
+        progress.check();
+        kept[std::size_t(begin / chunk_size)] = shade_run(run, begin, end);
+        progress.at(double(done += end - begin) / double(count));
+    });
+    close_gaps(run.out, kept);
+}
+
+// Fills the statistics, if any, of a look that began at `start`.
+void finish(const ShadedSplats& shaded, std::chrono::steady_clock::time_point start,
+            LookStatistics* statistics) {
+    if (!statistics) return;
+    statistics->kept = shaded.size();
+    statistics->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 }  // namespace
 
 void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs, ShadedSplats& shaded,
@@ -70,29 +111,30 @@ void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
     const auto start = std::chrono::steady_clock::now();
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     make_room(shaded, set.size());
-    const LookRun run{set, uniforms, inputs.thickness_map, shaded};
-    std::vector<std::int64_t> kept(std::size_t((set.size() + chunk_size - 1) / chunk_size));
-    std::atomic<std::int64_t> done{0};
-    parallel_chunks(set.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, int) {
-        progress.check();
-        kept[std::size_t(begin / chunk_size)] = shade_run(run, begin, end);
-        progress.at(double(done += end - begin) / double(set.size()));
-    });
-    close_gaps(shaded, kept);
-    if (!statistics) return;
-    statistics->kept = shaded.size();
-    statistics->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    shade_all({LookColumns(set), uniforms, inputs.thickness_map, shaded}, set.size(), progress);
+    finish(shaded, start, statistics);
+}
+
+ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInputs& inputs,
+                                 const Progress& progress, LookStatistics* statistics) {
+    const auto start = std::chrono::steady_clock::now();
+    const LookUniforms uniforms = prepare_look(set, look, inputs);
+    progress.check();
+    const std::int64_t count = set.size();
+    const LookColumns columns(set);  // where the arrays are does not change when they are handed over
+    ShadedSplats shaded = take_arrays(set);
+    shade_all({columns, uniforms, inputs.thickness_map, shaded}, count, Progress{progress.report, nullptr});
+    drop_splats(set);
+    trim(shaded);
+    finish(shaded, start, statistics);
+    return shaded;
 }
 
 ShadedSplats apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
                         const Progress& progress, LookStatistics* statistics) {
     ShadedSplats shaded;
     apply_look(set, look, inputs, shaded, progress, statistics);
-    trim(shaded.position);
-    trim(shaded.color);
-    trim(shaded.alpha);
-    trim(shaded.radius);
-    trim(shaded.id);
+    trim(shaded);
     return shaded;
 }
 

@@ -221,7 +221,7 @@ ASTROSPLAT_LOOP finish_reach(float reach, const float* HWY_RESTRICT bites, Block
 void thickness(const LookRun& run, std::int64_t begin, Block& b) {
     const LookUniforms& u = run.uniforms;
     if (u.key_count > 1) {
-        read_map(*run.map, run.set.uv.data() + begin, b);
+        read_map(*run.map, run.in.uv + begin, b);
         weigh_keys(u, b);
     } else {
         fill(b.reach, u.keys[0].scale, b.count);
@@ -393,7 +393,7 @@ ASTROSPLAT_LOOP finish_radii(const Block& b, float vertical_scale, float* HWY_RE
 void radii(const LookRun& run, std::int64_t begin, Block& b, float* out) {
     const LookUniforms& u = run.uniforms;
     if (u.own_radius) {
-        for (int i = 0; i < b.count; ++i) b.radius[i] = run.set.radius[std::size_t(begin + b.from[i])];
+        for (int i = 0; i < b.count; ++i) b.radius[i] = run.in.radius[begin + b.from[i]];
     } else if (u.radius_min == u.radius_max) {
         fill(b.radius, u.radius_min, b.count);
     } else {
@@ -464,21 +464,21 @@ void colors(const LookUniforms& u, Block& b, glm::vec3* out) {
 void shade_block(const LookRun& run, std::int64_t begin, std::int64_t at, Block& b) {
     const LookUniforms& u = run.uniforms;
     const bool positions = u.noise_count > 0, moved = any(u, &LookNoise::jitter);
-    read_ids(run.set.id.data() + begin, b);
-    std::memcpy(b.distance, run.set.distance.data() + begin, sizeof(float) * std::size_t(b.count));
-    if (positions) read_positions(run.set.position.data() + begin, b);
+    read_ids(run.in.id + begin, b);
+    std::memcpy(b.distance, run.in.distance + begin, sizeof(float) * std::size_t(b.count));
+    if (positions) read_positions(run.in.position + begin, b);
     thickness(run, begin, b);
     probabilities(u, b);
     decide(b, u.density, u.seed);
     compact(u, positions, b);
     remaining_noise(u, b);
-    read_colors(run.set.color.data() + begin, run.set.alpha.data() + begin, b);
+    read_colors(run.in.color + begin, run.in.alpha + begin, b);
     ShadedSplats& out = run.out;
     if (moved) {
         jitter(u, b, out.position.data() + at);
     } else {
         for (int i = 0; i < b.count; ++i)
-            out.position[std::size_t(at + i)] = run.set.position[std::size_t(begin + b.from[i])];
+            out.position[std::size_t(at + i)] = run.in.position[begin + b.from[i]];
     }
     colors(u, b, out.color.data() + at);  // before alphas: step 4 divides by the alpha it finds
     alphas(u, b, out.alpha.data() + at);
@@ -510,6 +510,15 @@ HWY_AFTER_NAMESPACE();
 namespace astrosplat {
 
 HWY_EXPORT(shade_run_target);
+
+LookColumns::LookColumns(const SplatSet& set)
+    : position(set.position.data()),
+      color(set.color.data()),
+      alpha(set.alpha.data()),
+      distance(set.distance.data()),
+      id(set.id.data()),
+      uv(set.uv.data()),
+      radius(set.radius.data()) {}
 
 std::int64_t shade_run(const LookRun& run, std::int64_t begin, std::int64_t end) {
     return HWY_DYNAMIC_DISPATCH(shade_run_target)(run, begin, end);

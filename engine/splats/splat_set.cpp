@@ -27,6 +27,11 @@ void permute(Buffer<T>& values, const Buffer<std::int64_t>& from) {
     values = std::move(sorted);
 }
 
+template <class T>
+void give_back(Buffer<T>& values) {
+    values = Buffer<T>();  // clear() would keep the memory
+}
+
 template <class Visit>
 void for_each_array(SplatSet& set, Visit visit) {
     visit(set.position);
@@ -42,10 +47,14 @@ void for_each_array(SplatSet& set, Visit visit) {
 
 }  // namespace
 
+void drop_splats(SplatSet& set) {
+    for_each_array(set, [](auto& values) { give_back(values); });
+}
+
 void drop_columns(SplatSet& set, const OptionalColumns& wanted) {
-    if (!wanted.uv) set.uv = {};
-    if (!wanted.normal) set.normal = {};
-    if (!wanted.mesh) set.mesh = {};
+    if (!wanted.uv) give_back(set.uv);
+    if (!wanted.normal) give_back(set.normal);
+    if (!wanted.mesh) give_back(set.mesh);
 }
 
 Bounds bounds(const SplatSet& set) {

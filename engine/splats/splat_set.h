@@ -44,6 +44,9 @@ struct OptionalColumns {
 /// Gives back the memory of columns that are not wanted.
 void drop_columns(SplatSet& set, const OptionalColumns& wanted);
 
+/// Gives back the memory of all splats; what is known of the set as a whole stays.
+void drop_splats(SplatSet& set);
+
 /// Bounds of all positions.
 Bounds bounds(const SplatSet& set);
 

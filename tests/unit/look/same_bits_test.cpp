@@ -2,10 +2,12 @@
 // instruction set, and by look_splat, the function the preview runs.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/vector_target.h"
 #include "look/prepare.h"
@@ -134,6 +136,36 @@ TEST(SameBits, IntoArraysOfAnEarlierCall) {
         apply_look(c.set, c.look, inputs, used);
         expect_same(used, shade(c), c.name);
     }
+}
+
+TEST(SameBits, InTheMemoryOfTheSet) {
+    for (const Case& c : cases()) {
+        for (const bool own_radius : {true, false}) {
+            Case given = c;
+            if (!own_radius) given.set.radius.clear();
+            given.look.radius = {0.05f, 0.2f, 1.6f, 0.7f};
+            LookInputs inputs = given.inputs;
+            inputs.thickness_map = &given.map;
+            const ShadedSplats expected = shade(given);
+            LookStatistics statistics;
+            SplatSet set = given.set;
+            expect_same(apply_look_in_place(set, given.look, inputs, {}, &statistics), expected, c.name);
+            EXPECT_EQ(statistics.kept, expected.size());
+            EXPECT_EQ(set.size(), 0);
+            EXPECT_TRUE(set.distance.empty() && set.uv.empty() && set.radius.empty());
+            EXPECT_EQ(set.max_distance, given.set.max_distance);
+        }
+    }
+}
+
+TEST(SameBits, WhatCannotBeShadedInPlaceIsLeftAsItWas) {
+    SplatSet set = test::file_set(count);
+    const std::atomic<bool> cancelled{true};
+    EXPECT_THROW(apply_look_in_place(set, {}, {}, Progress{{}, &cancelled}), Cancelled);
+    Look mapped;
+    mapped.thickness.map = "map.exr";  // the set has no uv
+    EXPECT_THROW(apply_look_in_place(set, mapped, {}), InputError);
+    expect_same(apply_look_in_place(set, {}, {}), apply_look(test::file_set(count), {}, {}), "afterwards");
 }
 
 TEST(SameBits, IdsAscend) {
