@@ -45,6 +45,38 @@ void drop_far(std::vector<LatticeBlock>& blocks, std::int64_t cells, const Close
     std::erase_if(blocks, [](const LatticeBlock& block) { return block.nearest == ClosestPoint::none; });
 }
 
+// A point y can only be closer to a position p than the meshes' point c if it is on p's side of the plane
+// midway between y and c: with y and p relative to c, if y^2 - 2 p y <= 0. Over p in a box with middle m and
+// half sides h, the least of that is a sum over the axes of y^2 - 2 m y - 2 h |y|, and over y in a box as
+// well each axis has its own least.
+class Bisectors {
+  public:
+    Bisectors(const BlockBall& ball, const glm::dvec3& point, const glm::dvec3& origin, double slack)
+        : point_(point - origin),
+          low_(ball.center - point - ball.half),
+          high_(ball.center - point + ball.half) {
+        const double reach = glm::length(ball.center - point) + glm::length(ball.half);
+        rounding_ = static_cast<float>(32.0 * reach * (slack + 1e-6 * reach));
+    }
+
+    /// Whether no point of that box can be closer to a position.
+    bool keep_away(const ClusterList& list, std::size_t i) const {
+        const float x = least(low_.x, high_.x, list.lo_x[i] - point_.x, list.hi_x[i] - point_.x);
+        const float y = least(low_.y, high_.y, list.lo_y[i] - point_.y, list.hi_y[i] - point_.y);
+        const float z = least(low_.z, high_.z, list.lo_z[i] - point_.z, list.hi_z[i] - point_.z);
+        return x + y + z > rounding_;
+    }
+
+  private:
+    static float least(float low, float high, float from, float to) {
+        const float a = std::clamp(low, from, to), b = std::clamp(high, from, to);
+        return std::min(a * (a - 2.0f * low), b * (b - 2.0f * high));
+    }
+
+    glm::vec3 point_, low_, high_;
+    float rounding_;
+};
+
 // Blocks of one chunk of the tiles, and their clusters.
 struct ChunkBlocks {
     std::vector<LatticeBlock> blocks;
@@ -75,17 +107,22 @@ class TileCull {
         block.nearest = closest.triangle;
         block.distance = std::sqrt(closest.distance_squared);
         found.first_cluster.push_back(found.clusters.size());
-        if (known_) add_clusters(ball, block, found.clusters);
+        if (known_) add_clusters(ball, closest, block, found.clusters);
         found.blocks.push_back(block);
     }
 
-    void add_clusters(const BlockBall& ball, LatticeBlock& block, std::vector<std::uint32_t>& clusters) {
-        const auto slack = index_.slack(ball.center, 2.0 * ball.radius);
-        const auto radius =
-            static_cast<float>(candidate_radius(settings_, ball, block.distance) * 1.00001 + slack);
+    void add_clusters(const BlockBall& ball, const ClosestPoint& closest, LatticeBlock& block,
+                      std::vector<std::uint32_t>& clusters) {
+        const double slack = index_.slack(ball.center, 2.0 * ball.radius);
+        const double radius = candidate_radius(settings_, ball, block.distance) * 1.00001 + slack;
+        const auto limit = static_cast<float>(radius * radius);
+        const bool narrow = is_narrow(index_.shape(closest.triangle));
+        const Bisectors bisectors(ball, index_.point(closest), index_.origin(), slack);
         const std::size_t first = clusters.size();
-        for (std::size_t i = 0; i < list_.cluster.size(); ++i)
-            if (!(list_.squared[i] > radius * radius)) clusters.push_back(list_.cluster[i]);
+        for (std::size_t i = 0; i < list_.cluster.size(); ++i) {
+            const bool far = list_.squared[i] > limit || (!narrow && bisectors.keep_away(list_, i));
+            if (!far) clusters.push_back(list_.cluster[i]);
+        }
         const std::size_t count = clusters.size() - first;
         if (count > LatticeBlock::most_clusters)
             clusters.resize(first);

@@ -321,9 +321,15 @@ bool choose_candidates(const BlockMeasure& m, BlockScratch& scratch, BlockPositi
     const std::size_t nearest = survey.look(positions, max_distance + m.slack);
     if (nearest == Survey::nothing) return false;
     const TriangleShape& shape = m.shapes[scratch.candidates.triangle[nearest]];
-    const ClosestPoint closest = closest_on_triangle(m.origin + glm::dvec3(survey.middle()), shape);
-    const glm::dvec3 point = shape.a + shape.ab * closest.barycentric.x + shape.ac * closest.barycentric.y;
-    const float widest = limit_by_point(glm::vec3(point - m.origin), max_distance, m.slack, local);
+    float widest = max_distance + m.slack;
+    if (is_narrow(shape)) {
+        std::fill_n(local.limit, block_positions, widest * widest);
+    } else {
+        const ClosestPoint closest = closest_on_triangle(m.origin + glm::dvec3(survey.middle()), shape);
+        const glm::dvec3 point =
+            shape.a + shape.ab * closest.barycentric.x + shape.ac * closest.barycentric.y;
+        widest = limit_by_point(glm::vec3(point - m.origin), max_distance, m.slack, local);
+    }
     survey.note_gaps(nearest, widest);
     choose(scratch.candidates, survey, scratch.chosen);
     return true;

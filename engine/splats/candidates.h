@@ -112,7 +112,7 @@ struct SurveyNotes {
 
 /// Candidates, by place in a list, with lower bounds of their squared distances from each of a few positions.
 struct BoundRows {
-    static constexpr std::size_t positions = 8;
+    static constexpr std::size_t positions = 16;
     std::size_t count = 0;
     alignas(64) std::array<std::uint32_t, CandidateList::most + 64> place;
     alignas(64) std::array<float, (CandidateList::most + 64) * positions> bound;

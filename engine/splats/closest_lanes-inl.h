@@ -21,7 +21,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t group = 8;               // positions
+constexpr std::size_t group = 16;              // positions
 using Doubles = hn::CappedTag<double, group>;  // a group's coordinates, in one vector or several
 
 /// The positions, and the best answer so far for each.

@@ -16,6 +16,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -65,10 +66,6 @@ glm::dvec3 circle_middle(const TriangleShape& s) {
     return (s.ab * (s.ac_ac * at_b) + s.ac * (s.ab_ab * at_c)) / (2.0 * area_squared);
 }
 
-// Sine squared of the angle at the first corner below which bounds do not rely on a triangle's plane and
-// edges.
-constexpr double thin = 1e-8;
-
 double sine_squared(const TriangleShape& s) {
     const double corners = s.ab_ab * s.ac_ac;
     return corners > 0.0 ? (corners - s.ab_ac * s.ab_ac) / corners : 0.0;
@@ -83,7 +80,7 @@ double overshoot(const TriangleShape& s) {
 TriangleBound triangle_bound(const TriangleShape& s, const glm::dvec3& origin) {
     const glm::dvec3 middle = circle_middle(s), normal = glm::cross(s.ab, s.ac);
     const double length = std::sqrt(squared(normal));
-    const bool flat = length > 0.0 && sine_squared(s) > thin;
+    const bool flat = length > 0.0 && !is_narrow(s);
     const double radius =
         std::sqrt(std::max({squared(middle), squared(middle - s.ab), squared(middle - s.ac)}));
     return {glm::vec3(s.a - origin + middle), flat ? glm::vec3(normal / length) : glm::vec3(0.0f),
@@ -102,7 +99,7 @@ TriangleEdges triangle_edges(const TriangleShape& s) {
     const glm::dvec3 normal = glm::cross(s.ab, s.ac), middle = circle_middle(s);
     const double length = std::sqrt(squared(normal));
     TriangleEdges edges{};
-    if (!(length > 0.0 && sine_squared(s) > thin)) return edges;
+    if (!(length > 0.0) || is_narrow(s)) return edges;
     const glm::dvec3 from[3] = {glm::dvec3(0.0), s.ab, s.ac}, along_edge[3] = {s.ab, s.ac - s.ab, -s.ac};
     for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec3 outward = glm::cross(along_edge[i], normal);
@@ -130,6 +127,20 @@ std::uint32_t curve_place(const glm::dvec3& p, double reach) {
     const double scale = reach > 0.0 ? 1023.0 / (2.0 * reach) : 0.0;
     const glm::uvec3 cell(glm::clamp((p + reach) * scale, 0.0, 1023.0));
     return spread_bits(cell.x) | spread_bits(cell.y) << 1 | spread_bits(cell.z) << 2;
+}
+
+// Sorts by the upper 32 bits, of which 30 are in use, and leaves equal ones in their order.
+void sort_by_place(Buffer<std::uint64_t>& order) {
+    constexpr unsigned digit_bits = 10;
+    Buffer<std::uint64_t> other(order.size());
+    for (unsigned shift = 32; shift < 62; shift += digit_bits) {
+        const auto digit = [&](std::uint64_t v) { return v >> shift & ((1u << digit_bits) - 1u); };
+        std::array<std::size_t, std::size_t{1} << digit_bits> next{};
+        for (const std::uint64_t v : order) ++next[digit(v)];
+        std::exclusive_scan(next.begin(), next.end(), next.begin(), std::size_t{0});
+        for (const std::uint64_t v : order) other[next[digit(v)]++] = v;
+        order.swap(other);
+    }
 }
 
 // Squares of at most the distances of p from a cluster's triangles; `rounding` is more than theirs amounts
@@ -212,6 +223,7 @@ struct ClosestPointIndex::State {
     }
 
     void copy_triangles(std::span<const Mesh* const> meshes);
+    void place_origin(std::span<const Mesh* const> meshes);
     void make_clusters();
     void make_cluster(std::size_t cluster, const Buffer<std::uint64_t>& order);
     void build();
@@ -238,18 +250,27 @@ void ClosestPointIndex::State::copy_triangles(std::span<const Mesh* const> meshe
                   fmt::format("{}", count));
     }
     shapes.resize(count);
-    Bounds box;
     std::size_t first = 0;
     for (const Mesh* mesh : meshes) {
-        const auto corner = [&](std::size_t t, std::size_t k) {
-            return glm::dvec3(mesh->positions[mesh->triangles[t].position[k]]);
-        };
-        for (std::size_t t = 0; t < mesh->triangles.size(); ++t) {
-            const glm::dvec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
-            for (const glm::dvec3& p : {a, b, c}) box.add(p);
-            shapes[first + t] = triangle_shape(a, b, c);
-        }
+        const auto triangles = static_cast<std::int64_t>(mesh->triangles.size());
+        parallel_chunks(triangles, 4096, [&](std::int64_t begin, std::int64_t end, int) {
+            for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+                const auto corner = [&](std::size_t k) {
+                    return glm::dvec3(mesh->positions[mesh->triangles[t].position[k]]);
+                };
+                shapes[first + t] = triangle_shape(corner(0), corner(1), corner(2));
+            }
+        });
         first += mesh->triangles.size();
+    }
+    place_origin(meshes);
+}
+
+void ClosestPointIndex::State::place_origin(std::span<const Mesh* const> meshes) {
+    Bounds box;
+    for (const Mesh* mesh : meshes) {
+        for (const Mesh::Triangle& t : mesh->triangles)
+            for (const std::uint32_t corner : t.position) box.add(glm::dvec3(mesh->positions[corner]));
     }
     if (box.empty()) return;
     center = box.center();
@@ -267,7 +288,7 @@ void ClosestPointIndex::State::make_clusters() {
             order[i] = std::uint64_t{curve_place(middle, reach)} << 32 | i;
         }
     });
-    std::sort(order.begin(), order.end());
+    sort_by_place(order);
     constexpr std::size_t size = TriangleCluster::size;
     clusters.resize((shapes.size() + size - 1) / size);
     boxes.resize(clusters.size());
@@ -447,6 +468,11 @@ void ClosestPointIndex::collect(std::span<const std::uint32_t> clusters, Candida
         [[maybe_unused]] const bool fits = candidates.add(state_->clusters[cluster]);
         assert(fits);
     }
+}
+
+glm::dvec3 ClosestPointIndex::point(const ClosestPoint& closest) const {
+    const TriangleShape& s = state_->shapes[closest.triangle];
+    return s.a + s.ab * closest.barycentric.x + s.ac * closest.barycentric.y;
 }
 
 const glm::dvec3& ClosestPointIndex::origin() const { return state_->center; }

@@ -36,6 +36,13 @@ inline bool has_no_inside(const TriangleShape& s) {
     return !(corners - s.ab_ac * s.ab_ac > 1e-14 * corners);
 }
 
+/// Whether a triangle is so narrow at its first corner, below 1e-4 rad, that closest_on_triangle's answer may
+/// be off by more than rounding: no bound should be derived from it.
+inline bool is_narrow(const TriangleShape& s) {
+    const double corners = s.ab_ab * s.ac_ac;
+    return !(corners - s.ab_ac * s.ab_ac > 1e-8 * corners);
+}
+
 /// Closest point of one triangle (Ericson, Real-Time Collision Detection 5.1.5, with the dot products of the
 /// other two corners derived from the first corner's), in double; `triangle` comes back as 0.
 ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& shape);
@@ -79,6 +86,8 @@ class ClosestPointIndex {
 
     /// Where the float coordinates of candidates have their origin, scene units.
     const glm::dvec3& origin() const;
+    /// The point itself that closest() found, scene units.
+    glm::dvec3 point(const ClosestPoint& closest) const;
     /// How much rounding to those coordinates may move a point or a triangle, along any direction, with
     /// plenty of room, for points within `radius` of `center`. Scene units.
     double slack(const glm::dvec3& center, double radius) const;

@@ -61,8 +61,8 @@ struct Worker {
 
 class Generator {
   public:
-    Generator(const ClosestPointIndex& index, const std::vector<SurfaceTriangle>& surface,
-              const Lattice& lattice, const CullSettings& settings)
+    Generator(const ClosestPointIndex& index, const Buffer<SurfaceTriangle>& surface, const Lattice& lattice,
+              const CullSettings& settings)
         : index_(index), surface_(surface), lattice_(lattice), settings_(settings) {}
 
     void run(std::span<const LatticeBlock> row, Positions kind, Worker& worker, KeptStore& kept) const {
@@ -110,7 +110,7 @@ class Generator {
     }
 
     const ClosestPointIndex& index_;
-    const std::vector<SurfaceTriangle>& surface_;
+    const Buffer<SurfaceTriangle>& surface_;
     const Lattice& lattice_;
     const CullSettings& settings_;
 };
@@ -179,7 +179,7 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     std::vector<const Mesh*> shapes;
     for (const TexturedMesh& m : meshes) shapes.push_back(&m.mesh);
     const ClosestPointIndex index(shapes);
-    const std::vector<SurfaceTriangle> surface = surface_triangles(meshes, index, lattice.spacing());
+    const Buffer<SurfaceTriangle> surface = surface_triangles(meshes, index, lattice.spacing());
     const CullSettings settings{max_distance, jitter, seed};
     const NearBlocks near = blocks_near(index, lattice, settings, progress);
     const std::vector<LatticeBlock>& blocks = near.blocks;

@@ -43,9 +43,9 @@ SurfaceTriangle surface_triangle(const TexturedMesh& m, const Mesh::Triangle& fa
 
 }  // namespace
 
-std::vector<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
-                                               const ClosestPointIndex& index, const glm::dvec3& spacing) {
-    std::vector<SurfaceTriangle> triangles(static_cast<std::size_t>(index.triangle_count()));
+Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
+                                          const ClosestPointIndex& index, const glm::dvec3& spacing) {
+    Buffer<SurfaceTriangle> triangles(static_cast<std::size_t>(index.triangle_count()));
     std::size_t first = 0;
     for (std::size_t number = 0; number < meshes.size(); ++number) {
         const TexturedMesh& m = meshes[number];

@@ -6,8 +6,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
-#include <vector>
 
+#include "core/buffer.h"
 #include "splats/closest_point.h"
 #include "splats/textured_mesh.h"
 
@@ -23,8 +23,8 @@ struct SurfaceTriangle {
 
 /// One entry for each triangle of the index, in its order. `spacing` is the voxel's sides in scene units. The
 /// result points into `meshes`.
-std::vector<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
-                                               const ClosestPointIndex& index, const glm::dvec3& spacing);
+Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
+                                          const ClosestPointIndex& index, const glm::dvec3& spacing);
 
 inline glm::vec2 uv_at(const SurfaceTriangle& triangle, const glm::dvec2& barycentric) {
     return glm::vec2(triangle.uv + triangle.uv_ab * barycentric.x + triangle.uv_ac * barycentric.y);

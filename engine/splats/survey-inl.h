@@ -28,7 +28,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Many = hn::ScalableTag<float>;  // candidates
 using ManyNumbers = hn::RebindToUnsigned<Many>;
 using Lanes = hn::Vec<Many>;
-using Floats = hn::CappedTag<float, 8>;  // positions
+using Floats = hn::CappedTag<float, 16>;  // positions
 
 template <class V>
 HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
