@@ -29,8 +29,8 @@ struct Cell {
 
 /// Folds the splats `bits` of a batch into one block; false when all of its pixels are closed.
 template <class Pixels, bool kFlat>
-bool fold_block(const SplatBatch& batch, std::uint64_t bits, const Cell& cell, int block, float stop_at,
-                TilePlanes& planes) {
+HWY_INLINE bool fold_block(const SplatBatch& batch, SplatBits bits, const Cell& cell, int block,
+                           float stop_at, TilePlanes& planes) {
     alignas(64) static constexpr float column[16] = {0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f,
                                                      0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f};
     alignas(64) static constexpr float row[16] = {0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f, 1.5f, 1.5f,
@@ -46,16 +46,24 @@ bool fold_block(const SplatBatch& batch, std::uint64_t bits, const Cell& cell, i
         const std::size_t at =
             cell.first_pixel + static_cast<std::size_t>(block * TilePlanes::block_pixels + part);
         Pixels pixels(planes, at);
-        for (std::uint64_t rest = bits; rest != 0; rest &= rest - 1) {
-            const int i = std::countr_zero(rest);
-            const V dx = hn::Sub(x, all(batch.x_px[i])), dy = hn::Sub(y, all(batch.y_px[i]));
-            const V w = weight_at<kFlat>(batch, i, hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)));
-            FoldStep step{batch, i, {}};
-            if constexpr (Pixels::aovs)
-                for (std::size_t k = 0; k < 4; ++k)
-                    step.layer_light[k] = planes.layer_light[4 * std::size_t{batch.layer[i]} + k].data() + at;
-            pixels.fold(step, saturate(hn::Mul(all(batch.opacity[i]), w)),
-                        hn::Mul(w, all(batch.weight_gain[i])), stop);
+        for (SplatBits rest = bits; rest.any();) {
+            int i[ways];
+            V w[ways];
+            for (int n = 0; n < ways; ++n) i[n] = rest.take_first();  // with none left, SplatBatch::none
+            for (int n = 0; n < ways; ++n) {
+                const V dx = hn::Sub(x, all(batch.x_px[i[n]])), dy = hn::Sub(y, all(batch.y_px[i[n]]));
+                w[n] = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+            }
+            weights_at<kFlat>(batch, i, w);
+            for (int n = 0; n < ways; ++n) {
+                FoldStep step{batch, i[n], {}};
+                if constexpr (Pixels::aovs)
+                    for (std::size_t k = 0; k < 4; ++k)
+                        step.layer_light[k] =
+                            planes.layer_light[4 * std::size_t{batch.layer[i[n]]} + k].data() + at;
+                pixels.fold(step, saturate(hn::Mul(all(batch.opacity[i[n]]), w[n])),
+                            hn::Mul(w[n], all(batch.weight_gain[i[n]])), stop);
+            }
         }
         pixels.store_to(planes, at);
         if constexpr (Pixels::closes) open = open || !hn::AllFalse(D(), pixels.open(stop));
@@ -68,22 +76,17 @@ bool fold_block(const SplatBatch& batch, std::uint64_t bits, const Cell& cell, i
 template <class Pixels, bool kFlat>
 void fold_batch(const FoldJob& job, const FootprintTable* table, SplatBatch& batch, Cell& cell,
                 TilePlanes& planes) {
-    for (int i = batch.count; i % lanes != 0; ++i) {
-        batch.x_px[i] = batch.y_px[i] = 0.0f;
-        batch.reach_squared[i] = -1.0f;
-    }
     find_touched_blocks(batch, cell.x0_px, cell.y0_px);
-    std::uint64_t touching = 0;
+    SplatBits touching;
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1)
         touching |= batch.touches[std::countr_zero(rest)];
-    if (touching != 0) prepare_splats<Pixels>(job, table, touching, batch);
+    if (touching.any()) prepare_splats<Pixels>(job, table, touching, batch);
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1) {
         const int block = std::countr_zero(rest);
-        if (batch.touches[block] == 0) continue;
+        if (!batch.touches[block].any()) continue;
         if (!fold_block<Pixels, kFlat>(batch, batch.touches[block], cell, block, job.settings.stop, planes))
             cell.open &= ~(std::uint64_t{1} << block);
     }
-    batch.count = 0;
 }
 
 /// A record may lie in two cache lines.
@@ -92,20 +95,41 @@ HWY_INLINE void prefetch(const ScreenSplat& splat) {
     hwy::Prefetch(&splat.hybrid);
 }
 
-/// Adds a splat to the batch if its support may touch the cell.
-HWY_INLINE void gather(const ScreenSplat& splat, const FoldLayer& layer, const Cell& cell,
-                       SplatBatch& batch) {
+/// Sets the places of all splats.
+void find_places(const FoldJob& job, TilePlaces& places) {
+    constexpr std::size_t fetch_ahead = 16;
+    const std::size_t count = job.splats.size();
+    places.resize(count + lanes);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + fetch_ahead < count) prefetch(*job.splats[i + fetch_ahead]);
+        const ScreenSplat& splat = *job.splats[i];
+        places.x_px[i] = splat.x_px;
+        places.y_px[i] = splat.y_px;
+        // Radii below the smallest tabulated one have its support; rounding must not lose a pixel.
+        places.reach_px[i] = job.layers[splat.layer].footprints->drawn_support_px(splat.radius_px) * 1.0001f;
+    }
+    for (std::size_t i = count; i < count + lanes; ++i) places.set(i, 0.0f, 0.0f, -1e30f);  // nowhere
+}
+
+/// Appends those of the splats [begin, end) whose support may touch the cell.
+void find_in_cell(const TilePlaces& places, std::size_t begin, std::size_t end, const Cell& cell,
+                  CellSplats& found) {
     constexpr float half = 0.5f * static_cast<float>(TilePlanes::cell_px);
-    // Radii below the smallest tabulated one have its support; rounding must not lose a pixel.
-    const float reach = layer.footprints->drawn_support_px(splat.radius_px) * 1.0001f;
-    const float dx = std::fabs(splat.x_px - (cell.x0_px + half)),
-                dy = std::fabs(splat.y_px - (cell.y0_px + half));
-    const int n = batch.count;
-    batch.splat[n] = &splat;
-    batch.x_px[n] = splat.x_px;
-    batch.y_px[n] = splat.y_px;
-    batch.reach_squared[n] = reach * reach;
-    batch.count = n + (std::max(dx, dy) < reach + half);
+    const hn::RebindToUnsigned<D> du;
+    const V middle_x = all(cell.x0_px + half), middle_y = all(cell.y0_px + half);
+    for (std::size_t i = begin; i < end; i += lanes) {
+        const V x = hn::Load(D(), &places.x_px[i]), y = hn::Load(D(), &places.y_px[i]),
+                reach = hn::Load(D(), &places.reach_px[i]);
+        const V distance = hn::Max(hn::Abs(hn::Sub(x, middle_x)), hn::Abs(hn::Sub(y, middle_y)));
+        const M near = hn::Lt(distance, hn::Add(reach, all(half)));
+        const std::size_t n = found.count;
+        hn::StoreU(hn::Compress(x, near), D(), &found.x_px[n]);
+        hn::StoreU(hn::Compress(y, near), D(), &found.y_px[n]);
+        hn::StoreU(hn::Compress(hn::Mul(reach, reach), near), D(), &found.reach_squared[n]);
+        hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(i)), hn::RebindMask(du, near)), du,
+                   &found.index[n]);
+        found.count = n + hn::CountTrue(D(), near);
+    }
 }
 
 /// Blocks of a cell that lie in the used part of the tile.
@@ -136,27 +160,50 @@ const FootprintTable* common_table(std::span<const FoldLayer> layers) {
     return std::all_of(layers.begin(), layers.end(), same) ? layers[0].footprints : nullptr;
 }
 
+/// Folds the splats found, as far as they make whole batches; the others move to the front. `last`: also
+/// those.
+template <class Pixels, bool kFlat>
+void fold_found(const FoldJob& job, const FootprintTable* table, bool last, CellSplats& found,
+                SplatBatch& batch, Cell& cell, TilePlanes& planes) {
+    constexpr std::size_t size = SplatBatch::size;
+    std::size_t begin = 0;
+    for (; begin + size <= found.count || (last && begin < found.count); begin += size) {
+        job.progress.check();
+        batch.count = static_cast<int>(std::min(size, found.count - begin));
+        batch.x_px = &found.x_px[begin];
+        batch.y_px = &found.y_px[begin];
+        batch.reach_squared = &found.reach_squared[begin];
+        batch.index = &found.index[begin];
+        for (std::size_t i = begin + batch.count; i % lanes != 0; ++i) found.set(i, 0.0f, 0.0f, -1.0f);
+        fold_batch<Pixels, kFlat>(job, table, batch, cell, planes);
+        if (cell.open == 0) return;
+    }
+    found.keep_from(std::min(begin, found.count));
+}
+
 template <class Pixels, bool kFlat>
 void fold_cells(const FoldJob& job, TilePlanes& planes) {
-    constexpr std::size_t check_every = 1024, fetch_ahead = 16;
-    static thread_local const std::unique_ptr<SplatBatch> batch_memory = std::make_unique<SplatBatch>();
-    SplatBatch& batch = *batch_memory;
+    constexpr std::size_t step =
+        1024;  // splats looked at before some are folded: what is found stays in cache
+    static_assert(step % lanes == 0);
+    static thread_local const std::unique_ptr<FoldScratch> scratch = std::make_unique<FoldScratch>();
     const FootprintTable* table = common_table(job.layers);
+    find_places(job, scratch->places);
+    CellSplats& found = scratch->found;
+    found.resize(step + SplatBatch::size + lanes);
     for (int n = 0; n < planes.cell_columns * planes.cell_rows; ++n) {
         const int column = n % planes.cell_columns, row = n / planes.cell_columns;
         Cell cell{static_cast<std::size_t>(n * TilePlanes::cell_pixels),
                   static_cast<float>(planes.x0 + column * TilePlanes::cell_px),
                   static_cast<float>(planes.y0 + row * TilePlanes::cell_px),
                   used_blocks(planes, column, row)};
-        batch.count = 0;
-        for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; ++i) {
-            if (i % check_every == 0) job.progress.check();
-            if (i + fetch_ahead < job.splats.size()) prefetch(*job.splats[i + fetch_ahead]);
-            const ScreenSplat& splat = *job.splats[i];
-            gather(splat, job.layers[splat.layer], cell, batch);
-            if (batch.count == SplatBatch::size) fold_batch<Pixels, kFlat>(job, table, batch, cell, planes);
+        found.count = 0;
+        for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; i += step) {
+            const std::size_t end = std::min(i + step, job.splats.size());
+            find_in_cell(scratch->places, i, end, cell, found);
+            fold_found<Pixels, kFlat>(job, table, end == job.splats.size(), found, scratch->batch, cell,
+                                      planes);
         }
-        fold_batch<Pixels, kFlat>(job, table, batch, cell, planes);
         if constexpr (Pixels::closes) close_cell<Pixels>(cell, job.settings.stop, planes);
     }
 }

@@ -1,49 +1,125 @@
 // What the fold knows of the splats it is about to fold: up to 64 at a time, in total order, value by value.
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 
+#include "core/buffer.h"
 #include "render/fold.h"
 #include "render/footprint.h"
 
 namespace astrosplat {
 
+/// A set of the splats of a batch.
+struct SplatBits {
+    static constexpr int size = 128;
+    std::uint64_t low = 0, high = 0;
+    bool any() const { return (low | high) != 0; }
+    SplatBits& operator|=(const SplatBits& other) {
+        low |= other.low;
+        high |= other.high;
+        return *this;
+    }
+    /// Takes out the first; `size` when there is none. Without branches, which could not be foretold.
+    int take_first() {
+        const std::uint64_t in_high = std::uint64_t{0} - std::uint64_t{low == 0};  // all bits or none
+        const std::uint64_t word = low | (high & in_high), rest = word & (word - 1);
+        low = rest & ~in_high;
+        high = (rest & in_high) | (high & ~in_high);
+        return std::countr_zero(word) + static_cast<int>(in_high & 64);
+    }
+};
+
 struct SplatBatch {
-    static constexpr int size = 64;
+    static constexpr int size = SplatBits::size;
+    static constexpr int none = size;  // a place after them for a splat without light
+    static constexpr int places = size + 1;
     static constexpr int blocks = TilePlanes::cell_blocks * TilePlanes::cell_blocks;
     int count = 0;
-    const ScreenSplat* splat[size];
-    std::uint16_t layer[size];
-    std::uint8_t linear_in_distance[size];  // as in FootprintTable
+    // Of the whole picture; places from `count` to the next whole vector have a reach below 0.
+    const float* x_px = nullptr;
+    const float* y_px = nullptr;
+    const float* reach_squared = nullptr;
+    const std::uint32_t* index = nullptr;   // in the job's splats
+    alignas(64) SplatBits touches[blocks];  // splats that may have weight in the block
+    std::uint16_t layer[places];
+    std::uint8_t linear_in_distance[places];  // as in FootprintTable
     std::uint8_t
-        bright[size];  // a screen splat with a channel above 1: alpha is the mean of the clamped ones
-    alignas(64) std::uint64_t touches[blocks];  // bit i: splat i may have weight in the block
-
-    // Of the whole picture; places beyond `count` have a reach below 0.
-    alignas(64) float x_px[size];
-    alignas(64) float y_px[size];
-    alignas(64) float reach_squared[size];
+        bright[places];  // a screen splat with a channel above 1: alpha is the mean of the clamped ones
 
     // The weight, as in Footprint.
-    alignas(64) float cubic[size][4][FootprintNode::segments];  // [splat][power][segment]
-    alignas(64) float lo[size];
-    alignas(64) float scale[size];
-    alignas(64) float edge_gain[size];
-    alignas(64) float weight_gain[size];  // amplitude alone, for coverage
+    alignas(64) float cubic[places][4][FootprintNode::segments];  // [splat][power][segment]
+    alignas(64) float lo[places];
+    alignas(64) float scale[places];
+    alignas(64) float edge_gain[places];
+    alignas(64) float weight_gain[places];  // amplitude alone, for coverage
 
-    alignas(64) float opacity[size];       // times the footprint's amplitude
-    alignas(64) float color[3][size];      // 0 for holdouts
-    alignas(64) float occlusion[4][size];  // o per channel; [3] for alpha
-    alignas(64) float shows[size];         // 0 for holdouts
-    alignas(64) float depth[size];         // scene units along the view axis
+    alignas(64) float opacity[places];       // times the footprint's amplitude
+    alignas(64) float color[3][places];      // 0 for holdouts
+    alignas(64) float occlusion[4][places];  // o per channel; [3] for alpha
+    alignas(64) float shows[places];         // 0 for holdouts
+    alignas(64) float depth[places];         // scene units along the view axis
 
     // What the weights are made of, while they are prepared.
-    alignas(64) float radius_px[size];
-    alignas(64) float alpha[size];     // opacity as the splat has it
-    alignas(64) float cosine_x[size];  // phase of the centre relative to the pixels
-    alignas(64) float cosine_y[size];
-    alignas(64) float tabulated[size];      // 1; 0 for radii beyond the table
-    alignas(64) float moments[3][size][4];  // of FootprintMoments, four by four
+    alignas(64) float radius_px[places];
+    alignas(64) float alpha[places];     // opacity as the splat has it
+    alignas(64) float cosine_x[places];  // phase of the centre relative to the pixels
+    alignas(64) float cosine_y[places];
+    alignas(64) float tabulated[places];      // 1; 0 for radii beyond the table
+    alignas(64) float moments[3][places][4];  // of FootprintMoments, four by four
+};
+
+/// Where a tile's splats are and how far they reach, in order; the arrays end with some that are nowhere.
+struct TilePlaces {
+    Buffer<float> x_px, y_px, reach_px;
+    void resize(std::size_t size) {
+        x_px.resize(size);
+        y_px.resize(size);
+        reach_px.resize(size);
+    }
+    void set(std::size_t i, float x, float y, float reach) {
+        x_px[i] = x;
+        y_px[i] = y;
+        reach_px[i] = reach;
+    }
+};
+
+/// Those of a tile's splats that may touch a cell.
+struct CellSplats {
+    Buffer<float> x_px, y_px, reach_squared;
+    Buffer<std::uint32_t> index;
+    std::size_t count = 0;
+    void resize(std::size_t size) {
+        x_px.resize(size);
+        y_px.resize(size);
+        reach_squared.resize(size);
+        index.resize(size);
+    }
+    void set(std::size_t i, float x, float y, float reach2) {
+        x_px[i] = x;
+        y_px[i] = y;
+        reach_squared[i] = reach2;
+    }
+    /// Forgets those before `begin`.
+    void keep_from(std::size_t begin) {
+        const auto keep = [&](auto& values) {
+            std::copy(values.data() + begin, values.data() + count, values.data());
+        };
+        keep(x_px);
+        keep(y_px);
+        keep(reach_squared);
+        keep(index);
+        count -= begin;
+    }
+};
+
+/// Memory of one thread that folds.
+struct FoldScratch {
+    TilePlaces places;
+    CellSplats found;
+    SplatBatch batch{};
 };
 
 }  // namespace astrosplat

@@ -49,27 +49,41 @@ HWY_INLINE V look_up(const float* c, VI segment) {
     return r;
 }
 
-/// Weight at squared distances from the centre, without the amplitude. Not clamped: the cubics may leave [0,
-/// 1] by a few 1e-5. kFlat: the footprint may have a flat inside.
+/// Splats whose weights are computed side by side: the chain of operations of one is long, and a core looks
+/// ahead too few of them to fill its units otherwise.
+constexpr int ways = lanes == TilePlanes::block_pixels ? 2 : 1;
+
+/// Weights of the splats i[0 .. ways) at squared distances from their centres, without the amplitudes. Not
+/// clamped: the cubics may leave [0, 1] by a few 1e-5. kFlat: the footprint may have a flat inside.
 template <bool kFlat>
-HWY_INLINE V weight_at(const SplatBatch& batch, int i, V distance_squared) {
+HWY_INLINE void weights_at(const SplatBatch& batch, const int (&i)[ways], V (&w)[ways]) {
     const D d;
-    const float(&cubic)[4][segments] = batch.cubic[i];
-    const V place = batch.linear_in_distance[i] ? hn::Sqrt(distance_squared) : distance_squared;
-    V u = kFlat ? hn::Max(hn::Mul(hn::Sub(place, all(batch.lo[i])), all(batch.scale[i])), hn::Zero(d))
-                : hn::Mul(place, all(batch.scale[i]));
+    V u[ways], rounded[ways], f[ways], p[ways];
+    for (int n = 0; n < ways; ++n) {
+        const V place = batch.linear_in_distance[i[n]] ? hn::Sqrt(w[n]) : w[n];
+        u[n] =
+            kFlat ? hn::Max(hn::Mul(hn::Sub(place, all(batch.lo[i[n]])), all(batch.scale[i[n]])), hn::Zero(d))
+                  : hn::Mul(place, all(batch.scale[i[n]]));
+    }
     // Rounding to the nearest whole number in the lowest bits of a float is the segment; on a segment's end
     // either side will do. Far outside, both are nonsense that the mask takes away.
     const V magic = all(12582912.0f);  // 1.5 * 2^23
-    const V rounded = hn::Add(hn::Sub(u, all(0.5f)), magic);
-    const VI segment = hn::BitCast(DI(), rounded);
-    const V f = hn::Sub(u, hn::Sub(rounded, magic));
-    V p = hn::Add(hn::Mul(look_up(cubic[3], segment), f), look_up(cubic[2], segment));
-    p = hn::Add(hn::Mul(p, f), look_up(cubic[1], segment));
-    p = hn::Add(hn::Mul(p, f), look_up(cubic[0], segment));
-    p = hn::IfThenElseZero(hn::Lt(u, all(static_cast<float>(segments))), p);
-    if (kFlat) p = hn::Add(p, hn::Mul(all(batch.edge_gain[i]), hn::Mul(p, hn::Sub(all(1.0f), p))));
-    return p;
+    for (int n = 0; n < ways; ++n) rounded[n] = hn::Sub(u[n], all(0.5f));
+    for (int n = 0; n < ways; ++n) rounded[n] = hn::Add(rounded[n], magic);
+    for (int n = 0; n < ways; ++n) f[n] = hn::Sub(rounded[n], magic);
+    for (int n = 0; n < ways; ++n) f[n] = hn::Sub(u[n], f[n]);
+    for (int n = 0; n < ways; ++n) p[n] = look_up(batch.cubic[i[n]][3], hn::BitCast(DI(), rounded[n]));
+    for (int power = 2; power >= 0; --power) {
+        for (int n = 0; n < ways; ++n) p[n] = hn::Mul(p[n], f[n]);
+        for (int n = 0; n < ways; ++n)
+            p[n] = hn::Add(p[n], look_up(batch.cubic[i[n]][power], hn::BitCast(DI(), rounded[n])));
+    }
+    for (int n = 0; n < ways; ++n) {
+        p[n] = hn::IfThenElseZero(hn::Lt(u[n], all(static_cast<float>(segments))), p[n]);
+        w[n] = kFlat ? hn::Add(p[n],
+                               hn::Mul(all(batch.edge_gain[i[n]]), hn::Mul(p[n], hn::Sub(all(1.0f), p[n]))))
+                     : p[n];
+    }
 }
 
 /// What a blend is told besides weights: the splat, and where its layer keeps its light at these pixels.

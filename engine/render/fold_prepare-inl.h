@@ -27,14 +27,14 @@ HWY_INLINE V distance_to_block(V center, float first_px) {
     return hn::Mul(distance, distance);
 }
 
-/// Bits [first, first + lanes) of a word; the word is 0 there.
-HWY_INLINE void set_bits(M mask, int first, std::uint64_t& word) {
-    if constexpr (lanes % 8 == 0) {  // whole bytes, of a little-endian word
-        hn::StoreMaskBits(D(), mask, reinterpret_cast<std::uint8_t*>(&word) + first / 8);
+/// Bits [first, first + lanes) of `words`, which are 0 there.
+HWY_INLINE void set_bits(M mask, int first, std::uint64_t* words) {
+    if constexpr (lanes % 8 == 0) {  // whole bytes, of little-endian words
+        hn::StoreMaskBits(D(), mask, reinterpret_cast<std::uint8_t*>(words) + first / 8);
     } else {
         std::uint8_t bytes[8] = {};
         hn::StoreMaskBits(D(), mask, bytes);
-        word |= std::uint64_t{bytes[0]} << first;
+        words[first / 64] |= std::uint64_t{bytes[0]} << first % 64;
     }
 }
 static_assert(std::endian::native == std::endian::little);
@@ -42,7 +42,7 @@ static_assert(std::endian::native == std::endian::little);
 /// Which splats of the batch may have weight in which blocks of a cell whose corner is (x0, y0).
 inline void find_touched_blocks(SplatBatch& batch, float x0_px, float y0_px) {
     constexpr int side = TilePlanes::cell_blocks;
-    for (std::uint64_t& word : batch.touches) word = 0;
+    for (SplatBits& bits : batch.touches) bits = {};
     for (int n = 0; n < batch.count; n += lanes) {
         const V x = load(batch.x_px + n), y = load(batch.y_px + n), reach = load(batch.reach_squared + n);
         V dx[side];
@@ -51,7 +51,7 @@ inline void find_touched_blocks(SplatBatch& batch, float x0_px, float y0_px) {
         for (int r = 0; r < side; ++r) {
             const V dy = distance_to_block(y, y0_px + static_cast<float>(r * TilePlanes::block_px));
             for (int c = 0; c < side; ++c)
-                set_bits(hn::Le(hn::Add(dx[c], dy), reach), n, batch.touches[r * side + c]);
+                set_bits(hn::Le(hn::Add(dx[c], dy), reach), n, &batch.touches[r * side + c].low);
         }
     }
 }
@@ -184,10 +184,10 @@ inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {
 
 /// Everything about the splats `which` of the batch. `table`: the one footprint table of all layers, or null.
 template <class Pixels>
-void prepare_splats(const FoldJob& job, const FootprintTable* table, std::uint64_t which, SplatBatch& batch) {
-    for (std::uint64_t rest = which; rest != 0; rest &= rest - 1) {
-        const int i = std::countr_zero(rest);
-        const ScreenSplat& splat = *batch.splat[i];
+void prepare_splats(const FoldJob& job, const FootprintTable* table, SplatBits which, SplatBatch& batch) {
+    while (which.any()) {
+        const int i = which.take_first();
+        const ScreenSplat& splat = *job.splats[batch.index[i]];
         const FoldLayer& layer = job.layers[splat.layer];
         batch.radius_px[i] = splat.radius_px;
         batch.alpha[i] = splat.opacity;

@@ -217,7 +217,7 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
     bool begun = false;  // until then the tile is as black as the new picture
     for (std::size_t g = 0; g < std::max<std::size_t>(1, job.groups.size()); ++g) {
         worker.runs.clear();
-        if (g < job.groups.size()) bins.collect(tile, static_cast<int>(g), job.progress, worker.runs);
+        if (g < job.groups.size()) bins.collect(tile, static_cast<int>(g), worker.runs);
         if (worker.runs.empty() && !behind) continue;
         FoldSettings fold_settings = job.fold;
         if (g < job.groups.size()) fold_settings.kind = job.groups[g].kind;
@@ -253,12 +253,12 @@ std::vector<std::int64_t> tile_order(const Job& job, const TileGrid& grid) {
     return order;
 }
 
-/// One band; `before` of the picture's share is done already.
-void render_band(const Job& job, const TileGrid& grid, double before, SplatStore& store,
+/// One band, which will take about so many `records`; `before` of the picture's share is done already.
+void render_band(const Job& job, const TileGrid& grid, std::int64_t records, double before, SplatStore& store,
                  RenderedFrame& frame) {
     const double share = static_cast<double>(grid.height) / static_cast<double>(job.region.height);
     store.clear();
-    TileBins bins(grid, static_cast<int>(job.groups.size()));
+    TileBins bins(grid, static_cast<int>(job.groups.size()), records);
     bins.scatter(job.projections, job.group_of_layer, store, job.progress);
     job.progress.at(before + 0.4 * share);
     std::vector<TileWorker> workers;
@@ -325,7 +325,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     RenderedFrame frame = make_frame(layers, settings, job.region);
     double done = 0.0;
     for (const TileGrid& band : make_bands(job, grid, band_rows)) {
-        render_band(job, band, done, state.store, frame);
+        render_band(job, band, records / bands, done, state.store, frame);
         done += static_cast<double>(band.height) / static_cast<double>(grid.height);
     }
     if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -11,9 +10,9 @@ namespace astrosplat {
 namespace {
 
 constexpr std::int64_t slab_bytes = std::int64_t{40} << 20;
-constexpr std::int64_t chunk_splats = 8192;   // with their records they fit a core's cache
-constexpr std::int64_t most_bins = 9;         // of one splat, see bins_of
-constexpr std::size_t flush_records = 65536;  // level of detail may turn a chunk into many more
+constexpr std::int64_t chunk_splats = 8192;  // handed out to a worker
+constexpr std::int64_t step_splats = 512;    // projected before they are written: they stay in cache
+constexpr std::int64_t most_bins = 9;        // of one splat, see bins_of
 
 ScreenRect rect_of(const TileGrid& grid) {
     return {static_cast<float>(grid.x0), static_cast<float>(grid.y0),
@@ -62,7 +61,8 @@ std::int64_t SplatStore::bytes() const {
     return sum;
 }
 
-TileBins::TileBins(const TileGrid& grid, int groups) : grid_(grid), groups_(groups) {
+TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_records)
+    : grid_(grid), groups_(groups) {
     std::int64_t columns = grid.columns(), rows = grid.rows();
     for (;;) {
         levels_.push_back({bins_per_group_, columns, rows});
@@ -71,6 +71,8 @@ TileBins::TileBins(const TileGrid& grid, int groups) : grid_(grid), groups_(grou
         columns = (columns + 1) / 2;
         rows = (rows + 1) / 2;
     }
+    // The last block of each bin and worker is half empty on average: an eighth of the memory at most.
+    block_records_ = std::clamp<std::int64_t>(expected_records / (4 * bins() * thread_count()), 8, 128);
 }
 
 /// The bins that a splat's square of support touches. A level is chosen whose bins are at least as wide as
@@ -95,18 +97,15 @@ TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px, 
             columns, bin(x + support_px, level.columns) - x0 + 1, bin(y + support_px, level.rows) - y0 + 1};
 }
 
-/// Fills scratch.entries with the bins of scratch.splats; returns how many. Sets the segment's bins and sums.
-std::int64_t TileBins::list_entries(Scratch& scratch, const LayerProjection& layer, int group,
-                                    Segment& segment) const {
-    scratch.entries.resize(scratch.splats.size() * most_bins);
-    Entry* end = scratch.entries.data();
-    std::uint32_t first = std::numeric_limits<std::uint32_t>::max(), last = 0;
-    for (std::size_t i = 0; i < scratch.splats.size(); ++i) {
-        const ScreenSplat& splat = scratch.splats[i];
+/// The bins of the splats just projected.
+std::span<const TileBins::Entry> TileBins::list_entries(const LayerProjection& layer, int group,
+                                                        Writer& writer, Sums& sums) const {
+    writer.entries.resize(writer.splats.size() * most_bins);
+    Entry* end = writer.entries.data();
+    for (std::size_t i = 0; i < writer.splats.size(); ++i) {
+        const ScreenSplat& splat = writer.splats[i];
         const auto number = static_cast<std::uint32_t>(i);
         const BinRect r = bins_of(splat, support_of(layer, splat), group);
-        first = std::min(first, r.first_bin);
-        last = std::max(last, r.first_bin + (r.high - 1) * r.columns + r.wide - 1);
         if (r.wide <= 2 && r.high <= 2) {  // nearly always: without branches that cannot be foretold
             const std::uint32_t two_wide = r.wide - 1, two_high = r.high - 1;
             *end++ = {r.first_bin, number};
@@ -118,40 +117,47 @@ std::int64_t TileBins::list_entries(Scratch& scratch, const LayerProjection& lay
                 for (std::uint32_t x = 0; x < r.wide; ++x) *end++ = {r.first_bin + y * r.columns + x, number};
         }
         if (!counts_here(grid_, splat.y_px)) continue;
-        ++segment.instances;
-        segment.footprint_px += real::pi * splat.radius_px * splat.radius_px;
+        ++sums.instances;
+        sums.footprint_px += real::pi * splat.radius_px * splat.radius_px;
     }
-    segment.first_bin = first;
-    segment.bins = std::int64_t{last} - first + 1;
-    return end - scratch.entries.data();
+    return {writer.entries.data(), end};
 }
 
-/// Counting sort of a chunk's splats by bin, straight into the store. Empties scratch.splats.
-void TileBins::add_segment(Scratch& scratch, const LayerProjection& layer, int group, SplatStore& store,
-                           std::vector<Segment>& out) const {
-    if (scratch.splats.empty()) return;
-    Segment segment;
-    const std::int64_t count = list_entries(scratch, layer, group, segment);
-    const std::span<const Entry> entries(scratch.entries.data(), static_cast<std::size_t>(count));
-    const auto first = static_cast<std::uint32_t>(segment.first_bin);
-    std::vector<std::uint32_t>& cursor = scratch.cursor;
-    cursor.assign(static_cast<std::size_t>(segment.bins), 0);
-    for (const Entry& e : entries) ++cursor[e.bin - first];
-    auto* offsets = store.take<std::uint32_t>(segment.bins + 1);
-    offsets[0] = 0;
-    for (std::size_t i = 0; i < cursor.size(); ++i) {
-        offsets[i + 1] = offsets[i] + cursor[i];
-        cursor[i] = offsets[i];
+void TileBins::begin_block(std::uint32_t bin, SplatStore& store, Writer& writer) const {
+    constexpr std::int64_t blocks_at_once = 64;  // the store is shared
+    if (writer.unused == writer.unused_end) {
+        writer.unused = store.take<ScreenSplat>(blocks_at_once * block_records_);
+        writer.unused_end = writer.unused + blocks_at_once * block_records_;
     }
-    auto* records = store.take<ScreenSplat>(count);
-    // The store's lines are asked for one after the other: the writes come in no order, and would wait for
-    // each.
-    for (std::int64_t i = 0; i < count; ++i) __builtin_prefetch(records + i, 1);
-    for (const Entry& e : entries) records[cursor[e.bin - first]++] = scratch.splats[e.splat];
-    segment.offsets = offsets;
-    segment.records = records;
-    out.push_back(segment);
-    scratch.splats.clear();
+    writer.cursors[bin] = {writer.unused, writer.unused + block_records_};
+    writer.blocks.push_back({writer.unused, bin});
+    writer.unused += block_records_;
+}
+
+void TileBins::write(std::span<const Entry> entries, SplatStore& store, Writer& writer) const {
+    constexpr int ahead = 4;  // records: writes that miss the cache would wait for each other
+    for (const Entry& e : entries) {
+        Writer::Cursor& cursor = writer.cursors[e.bin];
+        if (cursor.next == cursor.end) begin_block(e.bin, store, writer);
+        __builtin_prefetch(cursor.next + ahead, 1);
+        *cursor.next++ = writer.splats[e.splat];
+    }
+}
+
+/// Sets blocks_ and first_block_.
+void TileBins::sort_blocks(std::span<const Writer> writers) {
+    first_block_.assign(static_cast<std::size_t>(bins()) + 1, 0);
+    for (const Writer& writer : writers)
+        for (const Block& block : writer.blocks) ++first_block_[block.bin + 1];
+    for (std::size_t b = 1; b < first_block_.size(); ++b) first_block_[b] += first_block_[b - 1];
+    blocks_.resize(first_block_.back());
+    std::vector<std::size_t> next = first_block_;
+    for (const Writer& writer : writers)
+        for (const Block& block : writer.blocks) {
+            const Writer::Cursor& last = writer.cursors[block.bin];
+            ScreenSplat* const end = block.records + block_records_;
+            blocks_[next[block.bin]++] = {block.records, last.end == end ? last.next : end};
+        }
 }
 
 void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
@@ -164,64 +170,56 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
     for (std::size_t l = 0; l < layers.size(); ++l)
         for (std::int64_t begin = 0; begin < layers[l].splats->size(); begin += chunk_splats)
             chunks.push_back({l, begin, std::min(begin + chunk_splats, layers[l].splats->size())});
-    segments_.assign(chunks.size(), {});
-    std::vector<Scratch> workers(static_cast<std::size_t>(thread_count()));
+    sums_.assign(chunks.size(), {});
+    std::vector<Writer> writers(static_cast<std::size_t>(thread_count()));
+    for (Writer& writer : writers) writer.cursors.resize(static_cast<std::size_t>(bins()));
     const ScreenRect rect = rect_of(grid_);
     parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int worker) {
         const Chunk& chunk = chunks[static_cast<std::size_t>(c)];
         const LayerProjection& layer = layers[chunk.layer];
         const int group = group_of_layer[chunk.layer];
-        Scratch& scratch = workers[static_cast<std::size_t>(worker)];
-        std::vector<Segment>& segments = segments_[static_cast<std::size_t>(c)];
-        scratch.splats.clear();
-        const std::int64_t step = layer.lod ? 16 : chunk_splats;  // children are flushed before they pile up
+        Writer& writer = writers[static_cast<std::size_t>(worker)];
+        // Level of detail may turn a splat into thousands.
+        const std::int64_t step = layer.lod ? 16 : step_splats;
         for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
             progress.check();
-            project(layer, begin, std::min(begin + step, chunk.end), rect, scratch.splats);
-            if (scratch.splats.size() >= flush_records) add_segment(scratch, layer, group, store, segments);
+            writer.splats.clear();
+            project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats);
+            write(list_entries(layer, group, writer, sums_[static_cast<std::size_t>(c)]), store, writer);
         }
-        add_segment(scratch, layer, group, store, segments);
     });
+    sort_blocks(writers);
 }
 
-void TileBins::collect(std::int64_t tile, int group, const Progress& progress,
-                       std::vector<std::span<const ScreenSplat>>& out) const {
+void TileBins::collect(std::int64_t tile, int group, std::vector<std::span<const ScreenSplat>>& out) const {
     out.clear();
     const std::int64_t column = tile % grid_.columns(), row = tile / grid_.columns();
     for (std::size_t l = 0; l < levels_.size(); ++l) {
         const Level& level = levels_[l];
         const std::int64_t bin =
             group * bins_per_group_ + level.first_bin + (row >> l) * level.columns + (column >> l);
-        for (std::size_t c = 0; c < segments_.size(); ++c) {
-            if (c % 64 == 0) progress.check();
-            for (const Segment& segment : segments_[c]) {
-                const std::int64_t i = bin - segment.first_bin;
-                if (i < 0 || i >= segment.bins) continue;
-                const std::uint32_t begin = segment.offsets[i], end = segment.offsets[i + 1];
-                if (end > begin) out.emplace_back(segment.records + begin, end - begin);
-            }
-        }
+        const auto at = [&](std::int64_t b) {
+            return blocks_.begin() + static_cast<std::ptrdiff_t>(first_block_[static_cast<std::size_t>(b)]);
+        };
+        out.insert(out.end(), at(bin), at(bin + 1));
     }
 }
 
 std::int64_t TileBins::records() const {
     std::int64_t sum = 0;
-    for (const std::vector<Segment>& chunk : segments_)
-        for (const Segment& segment : chunk) sum += segment.offsets[segment.bins];
+    for (const std::span<const ScreenSplat>& block : blocks_) sum += static_cast<std::int64_t>(block.size());
     return sum;
 }
 
 std::int64_t TileBins::instances() const {
     std::int64_t sum = 0;
-    for (const std::vector<Segment>& chunk : segments_)
-        for (const Segment& segment : chunk) sum += segment.instances;
+    for (const Sums& chunk : sums_) sum += chunk.instances;
     return sum;
 }
 
 double TileBins::footprint_px() const {
     double sum = 0.0;
-    for (const std::vector<Segment>& chunk : segments_)
-        for (const Segment& segment : chunk) sum += segment.footprint_px;
+    for (const Sums& chunk : sums_) sum += chunk.footprint_px;
     return sum;
 }
 

@@ -1,10 +1,10 @@
 // Scatter: screen splats into the picture's tiles, in one pass over the shaded splats and one write of each
 // record.
 //
-// Chunks of splats are projected in cache, sorted there by bin and appended to a store of slabs. A bin is a
-// square of tiles of one blend group: small splats go to bins of one tile, larger ones to bins of 2x2, 4x4,
-// ... tiles, so that no splat is written more than nine times however large it is. A tile later collects its
-// records from the bins above it.
+// Splats are projected a few hundred at a time and appended to bins, where each worker fills blocks of its
+// own. A bin is a square of tiles of one blend group: small splats go to bins of one tile, larger ones to
+// bins of 2x2, 4x4, ... tiles, so that no splat is written more than nine times however large it is. A tile
+// later collects the blocks of the bins above it.
 #pragma once
 
 #include <cstddef>
@@ -56,16 +56,16 @@ struct TileGrid {
 /// All records of one frame (or band), by bin.
 class TileBins {
   public:
-    TileBins(const TileGrid& grid, int groups);
+    /// `expected_records` decides how much memory is taken at a time.
+    TileBins(const TileGrid& grid, int groups, std::int64_t expected_records);
 
     /// Projects and scatters every layer; group_of_layer[i] is the blend group of layer i.
     void scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
                  SplatStore& store, const Progress& progress);
 
-    /// Where the records of a tile and group lie whose square of support touches the tile, in no meaningful
-    /// order.
-    void collect(std::int64_t tile, int group, const Progress& progress,
-                 std::vector<std::span<const ScreenSplat>>& out) const;
+    /// Where the records of a tile and group lie whose square of support touches the tile (or a tile beside
+    /// it), in no meaningful order.
+    void collect(std::int64_t tile, int group, std::vector<std::span<const ScreenSplat>>& out) const;
 
     const TileGrid& grid() const { return grid_; }
     std::int64_t records() const;    // written, a splat once per bin it touches
@@ -76,13 +76,6 @@ class TileBins {
     struct Level {
         std::int64_t first_bin = 0, columns = 0, rows = 0;
     };
-    struct Segment {  // one chunk's records, sorted by bin
-        const ScreenSplat* records = nullptr;
-        std::int64_t first_bin = 0, bins = 0;
-        const std::uint32_t* offsets = nullptr;  // of first_bin, first_bin + 1, ...; one more at the end
-        std::int64_t instances = 0;
-        double footprint_px = 0.0;
-    };
     struct BinRect {
         std::uint32_t first_bin;  // at x0, y0
         std::uint32_t columns;    // of the level
@@ -91,22 +84,42 @@ class TileBins {
     struct Entry {  // a splat in a bin
         std::uint32_t bin, splat;
     };
-    struct Scratch {  // of one worker
-        std::vector<ScreenSplat> splats;
-        Buffer<Entry> entries;
-        std::vector<std::uint32_t> cursor;
+    struct Sums {  // over a chunk of splats
+        std::int64_t instances = 0;
+        double footprint_px = 0.0;
     };
+    struct Block {
+        ScreenSplat* records;
+        std::uint32_t bin;
+    };
+    struct Writer {  // of one worker
+        struct Cursor {
+            ScreenSplat* next = nullptr;
+            ScreenSplat* end = nullptr;  // of the block
+        };
+        std::vector<Cursor> cursors;  // by bin
+        std::vector<Block> blocks;    // in the order in which they were begun
+        ScreenSplat* unused = nullptr;
+        ScreenSplat* unused_end = nullptr;
+        std::vector<ScreenSplat> splats;  // just projected
+        Buffer<Entry> entries;
+    };
+    std::int64_t bins() const { return bins_per_group_ * groups_; }
     BinRect bins_of(const ScreenSplat& splat, float support_px, int group) const;
-    std::int64_t list_entries(Scratch& scratch, const LayerProjection& layer, int group,
-                              Segment& segment) const;
-    void add_segment(Scratch& scratch, const LayerProjection& layer, int group, SplatStore& store,
-                     std::vector<Segment>& out) const;
+    std::span<const Entry> list_entries(const LayerProjection& layer, int group, Writer& writer,
+                                        Sums& sums) const;
+    void begin_block(std::uint32_t bin, SplatStore& store, Writer& writer) const;
+    void write(std::span<const Entry> entries, SplatStore& store, Writer& writer) const;
+    void sort_blocks(std::span<const Writer> writers);
 
     TileGrid grid_;
     int groups_ = 1;
     std::int64_t bins_per_group_ = 0;
+    std::int64_t block_records_ = 0;
     std::vector<Level> levels_;
-    std::vector<std::vector<Segment>> segments_;  // by chunk
+    std::vector<Sums> sums_;                            // by chunk
+    std::vector<std::span<const ScreenSplat>> blocks_;  // bin by bin
+    std::vector<std::size_t> first_block_;              // of each bin; one more at the end
 };
 
 /// Screen splats that the layers will take, estimated from every 64th block.
