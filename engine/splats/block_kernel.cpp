@@ -1,5 +1,5 @@
 // A block looks at all candidates from its middle and keeps those that can matter to it, and each group of
-// eight does the same with those. The candidates over which a group lies come first: each position is
+// sixteen does the same with those. The candidates over which a group lies come first: each position is
 // measured against the one whose bound is lowest there. What that leaves of the others is little; it is
 // measured where its bounds ask for it.
 #include "splats/block_kernel.h"
@@ -134,7 +134,7 @@ class GroupQuery {
 
     // True when the triangle is nearest for a position of the group.
     bool measure(std::uint32_t triangle) {
-        const TriangleShape& s = m_.shapes[triangle];
+        const TriangleShape s = triangle_shape(m_.corners[triangle]);
         if (has_no_inside(s)) return offer_thin(s, triangle, g_);
         bool any = false;
         const ShapeLanes lanes = same_shape(s, triangle);
@@ -205,7 +205,7 @@ class GroupQuery {
         };
         const auto off = hn::Set(d, survey_.rounding(c_.radius[place]));
         auto height = hn::Abs(along(normal_x, normal_y, normal_z)), outside = hn::Zero(d);
-        if (normal_x == 0.0f && normal_y == 0.0f && normal_z == 0.0f) {
+        if (!has_plane(place)) {
             outside = hn::Sub(hn::Sqrt(dot3(x, y, z, x, y, z)), hn::Set(d, c_.radius[place]));
         } else {
             const TriangleEdges& e = m_.edges[c_.triangle[place]];
@@ -219,25 +219,30 @@ class GroupQuery {
         return hn::Add(hn::Mul(height, height), hn::Mul(outside, outside));
     }
 
+    // Otherwise the candidate's bound is a ball.
+    bool has_plane(std::size_t place) const {
+        return c_.normal_x[place] != 0.0f || c_.normal_y[place] != 0.0f || c_.normal_z[place] != 0.0f;
+    }
+
     std::uint32_t number(std::size_t row) const { return c_.triangle[rows_.place[row]]; }
 
     // Each position against the row whose bound is lowest there.
     void measure_lowest() {
         if (rows_.count == 0) return;
-        alignas(64) std::int64_t numbers[group];
+        std::uint32_t numbers[group];
         bool same = true, usable = true;
         for (std::size_t i = 0; i < group; ++i) {
             numbers[i] = number(lowest_row_[i]);
             same = same && numbers[i] == numbers[0];
-            usable = usable && !has_no_inside(m_.shapes[numbers[i]]);
+            usable = usable && has_plane(rows_.place[lowest_row_[i]]);
         }
         if (same && numbers[0] == first_) return;
         if (!same && !usable) return;  // to measure_rest
         if (same) {
-            measure(static_cast<std::uint32_t>(numbers[0]));
+            measure(numbers[0]);
         } else {
             for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles()))
-                offer(gather_shapes(m_.shapes, numbers + i), g_, i);
+                offer(shapes_of(m_.corners, numbers + i), g_, i);
         }
         for (std::size_t i = 0; i < group; ++i)
             rows_.bound[lowest_row_[i] * group + i] = std::numeric_limits<float>::infinity();
@@ -320,7 +325,7 @@ bool choose_candidates(const BlockMeasure& m, BlockScratch& scratch, BlockPositi
     const LocalPositions positions = local.part(0, block_positions);
     const std::size_t nearest = survey.look(positions, max_distance + m.slack);
     if (nearest == Survey::nothing) return false;
-    const TriangleShape& shape = m.shapes[scratch.candidates.triangle[nearest]];
+    const TriangleShape shape = triangle_shape(m.corners[scratch.candidates.triangle[nearest]]);
     float widest = max_distance + m.slack;
     if (is_narrow(shape)) {
         std::fill_n(local.limit, block_positions, widest * widest);

@@ -1,6 +1,6 @@
 // The arithmetic of block queries, compiled once for every instruction set with the same bits on each. A
-// block's 64 positions go in groups of eight neighbours (2 x 2 x 2), so that one vector holds one coordinate
-// of a group and a triangle is measured against all eight at once.
+// block's 64 positions go in groups of sixteen neighbours (4 x 2 x 2), so that one vector holds one
+// coordinate of a group and a triangle is measured against all of them at once.
 #pragma once
 
 #include <array>
@@ -43,11 +43,11 @@ struct BlockAnswers {
 void place_block(const BlockPlaces& places, BlockAnswers& answers);
 
 struct BlockMeasure {
-    const TriangleShape* shapes;  // of all triangles
-    const TriangleEdges* edges;   // likewise
-    glm::dvec3 origin;            // of the candidates' coordinates
-    float slack;                  // see ClosestPointIndex::slack, for all positions of the block
-    double max_distance;          // scene units
+    const TriangleCorners* corners;  // of all triangles
+    const TriangleEdges* edges;      // likewise
+    glm::dvec3 origin;               // of the candidates' coordinates
+    float slack;                     // see ClosestPointIndex::slack, for all positions of the block
+    double max_distance;             // scene units
 };
 
 /// A thread's working memory: the triangles that may be closest to a position of a block, those that are left

@@ -1,4 +1,4 @@
-// Eight positions and one triangle, or a triangle for each of them: the exact closest points, as
+// Sixteen positions and one triangle, or a triangle for each of them: the exact closest points, as
 // closest_on_triangle gives them. Included once per instruction set.
 #if defined(ASTROSPLAT_SPLATS_CLOSEST_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef ASTROSPLAT_SPLATS_CLOSEST_LANES_INL_H
@@ -60,19 +60,24 @@ HWY_INLINE ShapeLanes same_shape(const TriangleShape& s, double number) {
             hn::Set(d, number)};
 }
 
-HWY_INLINE ShapeLanes gather_shapes(const TriangleShape* shapes, const std::int64_t* numbers) {
+HWY_INLINE ShapeLanes shapes_of(const TriangleCorners* corners, const std::uint32_t* numbers) {
     constexpr std::size_t lanes = hn::MaxLanes(Doubles());
-    static_assert(sizeof(TriangleShape) == 12 * sizeof(double));
     const Doubles d;
-    const hn::RebindToSigned<Doubles> di;
+    const hn::Rebind<float, Doubles> df;
+    alignas(64) float at[9][lanes];
     alignas(64) double number[lanes];
-    for (std::size_t i = 0; i < hn::Lanes(d); ++i) number[i] = static_cast<double>(numbers[i]);
-    const auto index = hn::LoadU(di, numbers);
-    const auto row = hn::Add(hn::ShiftLeft<3>(index), hn::ShiftLeft<2>(index));  // 12 * index
-    const double* const first = &shapes->a.x;
-    const auto at = [&](std::size_t k) HWY_ATTR { return hn::GatherIndex(d, first + k, row); };
-    return {{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}, at(9), at(10), at(11),
-            hn::Load(d, number)};
+    for (std::size_t i = 0; i < lanes; ++i) {
+        const TriangleCorners& t = corners[numbers[i]];
+        number[i] = numbers[i];
+        at[0][i] = t.a.x, at[1][i] = t.a.y, at[2][i] = t.a.z;
+        at[3][i] = t.b.x, at[4][i] = t.b.y, at[5][i] = t.b.z;
+        at[6][i] = t.c.x, at[7][i] = t.c.y, at[8][i] = t.c.z;
+    }
+    const auto load = [&](std::size_t k) HWY_ATTR { return hn::PromoteTo(d, hn::Load(df, at[k])); };
+    const Vector3 a{load(0), load(1), load(2)};
+    const Vector3 ab{hn::Sub(load(3), a.x), hn::Sub(load(4), a.y), hn::Sub(load(5), a.z)};
+    const Vector3 ac{hn::Sub(load(6), a.x), hn::Sub(load(7), a.y), hn::Sub(load(8), a.z)};
+    return {a, ab, ac, dot(ab, ab), dot(ab, ac), dot(ac, ac), hn::Load(d, number)};
 }
 
 // Ericson's regions as masks: closest_on_triangle without branches, to the same bits, for one vector of

@@ -122,11 +122,24 @@ std::uint32_t spread_bits(std::uint32_t v) {
     return (v | v << 2) & 0x09249249u;
 }
 
-// Place along a Morton curve through a cube of side 2 * reach around the origin.
+// Place along a Hilbert curve through a cube of side 2 * reach around the origin, by J. Skilling's method
+// (Programming the Hilbert curve, 2004), 10 bits an axis.
 std::uint32_t curve_place(const glm::dvec3& p, double reach) {
     const double scale = reach > 0.0 ? 1023.0 / (2.0 * reach) : 0.0;
-    const glm::uvec3 cell(glm::clamp((p + reach) * scale, 0.0, 1023.0));
-    return spread_bits(cell.x) | spread_bits(cell.y) << 1 | spread_bits(cell.z) << 2;
+    glm::uvec3 cell(glm::clamp((p + reach) * scale, 0.0, 1023.0));
+    for (std::uint32_t bit = 512; bit > 1; bit >>= 1) {
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
+            const std::uint32_t swapped = (cell.x ^ cell[axis]) & (bit - 1), flip = cell[axis] & bit;
+            cell.x ^= flip ? bit - 1 : swapped;
+            cell[axis] ^= flip ? 0 : swapped;
+        }
+    }
+    cell.y ^= cell.x;
+    cell.z ^= cell.y;
+    std::uint32_t turned = 0;
+    for (std::uint32_t bit = 512; bit > 1; bit >>= 1) turned ^= cell.z & bit ? bit - 1 : 0;
+    cell ^= turned;
+    return spread_bits(cell.x) << 2 | spread_bits(cell.y) << 1 | spread_bits(cell.z);
 }
 
 // Sorts by the upper 32 bits, of which 30 are in use, and leaves equal ones in their order.
@@ -171,11 +184,6 @@ void box_distances(ClusterList& list, const glm::vec3& p) {
 
 }  // namespace
 
-TriangleShape triangle_shape(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 ab = b - a, ac = c - a;
-    return {a, ab, ac, squared(ab), dot(ab, ac), squared(ac)};
-}
-
 ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& s) {
     const glm::dvec3 ap = p - s.a;
     const double d1 = dot(s.ab, ap), d2 = dot(s.ac, ap);  // from a; from b and c the same dot products follow
@@ -205,7 +213,7 @@ ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const
 }
 
 struct ClosestPointIndex::State {
-    Buffer<TriangleShape> shapes;
+    Buffer<TriangleCorners> corners;
     Buffer<TriangleEdges> edges;
     Buffer<TriangleCluster> clusters;
     Buffer<ClusterBox> boxes;  // of the clusters
@@ -249,16 +257,16 @@ void ClosestPointIndex::State::copy_triangles(std::span<const Mesh* const> meshe
         bad_input("meshes", "", fmt::format("at most {} triangles", most_triangles),
                   fmt::format("{}", count));
     }
-    shapes.resize(count);
+    corners.resize(count);
     std::size_t first = 0;
     for (const Mesh* mesh : meshes) {
         const auto triangles = static_cast<std::int64_t>(mesh->triangles.size());
         parallel_chunks(triangles, 4096, [&](std::int64_t begin, std::int64_t end, int) {
             for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
                 const auto corner = [&](std::size_t k) {
-                    return glm::dvec3(mesh->positions[mesh->triangles[t].position[k]]);
+                    return mesh->positions[mesh->triangles[t].position[k]];
                 };
-                shapes[first + t] = triangle_shape(corner(0), corner(1), corner(2));
+                corners[first + t] = {corner(0), corner(1), corner(2)};
             }
         });
         first += mesh->triangles.size();
@@ -278,21 +286,22 @@ void ClosestPointIndex::State::place_origin(std::span<const Mesh* const> meshes)
     reach = std::max({half.x, half.y, half.z});
 }
 
-// Eight at a time along a Morton curve through the middles of the triangles.
+// Eight at a time along a Hilbert curve through the middles of the triangles.
 void ClosestPointIndex::State::make_clusters() {
-    const auto count = static_cast<std::int64_t>(shapes.size());
-    Buffer<std::uint64_t> order(shapes.size());  // place on the curve, then number
+    const auto count = static_cast<std::int64_t>(corners.size());
+    Buffer<std::uint64_t> order(corners.size());  // place on the curve, then number
     parallel_chunks(count, 4096, [&](std::int64_t begin, std::int64_t end, int) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            const glm::dvec3 middle = shapes[i].a - center + (shapes[i].ab + shapes[i].ac) / 3.0;
+            const TriangleShape s = triangle_shape(corners[i]);
+            const glm::dvec3 middle = s.a - center + (s.ab + s.ac) / 3.0;
             order[i] = std::uint64_t{curve_place(middle, reach)} << 32 | i;
         }
     });
     sort_by_place(order);
     constexpr std::size_t size = TriangleCluster::size;
-    clusters.resize((shapes.size() + size - 1) / size);
+    clusters.resize((corners.size() + size - 1) / size);
     boxes.resize(clusters.size());
-    edges.resize(shapes.size());
+    edges.resize(corners.size());
     parallel_chunks(static_cast<std::int64_t>(clusters.size()), 512,
                     [&](std::int64_t begin, std::int64_t end, int) {
                         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
@@ -306,9 +315,10 @@ void ClosestPointIndex::State::make_cluster(std::size_t cluster, const Buffer<st
     for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
         const std::size_t place = std::min(cluster * TriangleCluster::size + i, order.size() - 1);
         const auto number = static_cast<std::uint32_t>(order[place]);
-        clusters[cluster].set(i, number, triangle_bound(shapes[number], center));
-        extend(boxes[cluster], shapes[number], center);
-        edges[number] = triangle_edges(shapes[number]);
+        const TriangleShape shape = triangle_shape(corners[number]);
+        clusters[cluster].set(i, number, triangle_bound(shape, center));
+        extend(boxes[cluster], shape, center);
+        edges[number] = triangle_edges(shape);
     }
 }
 
@@ -397,7 +407,7 @@ struct ClosestPointIndex::Search {
     }
     void update_limit() { limit = State::widened(std::sqrt(best.distance_squared), slack); }
     void offer(std::uint32_t triangle) {
-        ClosestPoint other = closest_on_triangle(p, state.shapes[triangle]);
+        ClosestPoint other = closest_on_triangle(p, triangle_shape(state.corners[triangle]));
         other.triangle = triangle;
         if (!nearer(other, best)) return;
         best = other;
@@ -435,7 +445,7 @@ ClosestPoint ClosestPointIndex::closest_of(ClusterList& list, const glm::dvec3& 
 
 ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double max_distance) const {
     ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
-    for (std::uint32_t triangle = 0; triangle < state_->shapes.size(); ++triangle) {
+    for (std::uint32_t triangle = 0; triangle < state_->corners.size(); ++triangle) {
         const ClosestPoint other = closest_of(triangle, p);
         if (nearer(other, best)) best = other;
     }
@@ -471,7 +481,7 @@ void ClosestPointIndex::collect(std::span<const std::uint32_t> clusters, Candida
 }
 
 glm::dvec3 ClosestPointIndex::point(const ClosestPoint& closest) const {
-    const TriangleShape& s = state_->shapes[closest.triangle];
+    const TriangleShape s = shape(closest.triangle);
     return s.a + s.ab * closest.barycentric.x + s.ac * closest.barycentric.y;
 }
 
@@ -482,16 +492,16 @@ double ClosestPointIndex::slack(const glm::dvec3& center, double radius) const {
 }
 
 ClosestPoint ClosestPointIndex::closest_of(std::uint32_t triangle, const glm::dvec3& p) const {
-    ClosestPoint closest = closest_on_triangle(p, state_->shapes[triangle]);
+    ClosestPoint closest = closest_on_triangle(p, shape(triangle));
     closest.triangle = triangle;
     return closest;
 }
 
-const TriangleShape* ClosestPointIndex::shapes() const { return state_->shapes.data(); }
+const TriangleCorners* ClosestPointIndex::corners() const { return state_->corners.data(); }
 const TriangleEdges* ClosestPointIndex::edges() const { return state_->edges.data(); }
 
 std::int64_t ClosestPointIndex::triangle_count() const {
-    return static_cast<std::int64_t>(state_->shapes.size());
+    return static_cast<std::int64_t>(state_->corners.size());
 }
 
 }  // namespace astrosplat

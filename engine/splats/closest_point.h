@@ -27,7 +27,21 @@ struct TriangleShape {
     glm::dvec3 a, ab, ac;
     double ab_ab, ab_ac, ac_ac;
 };
-TriangleShape triangle_shape(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c);
+inline TriangleShape triangle_shape(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const auto dot = [](const glm::dvec3& u, const glm::dvec3& v) {
+        return u.x * v.x + u.y * v.y + u.z * v.z;
+    };
+    const glm::dvec3 ab = b - a, ac = c - a;
+    return {a, ab, ac, dot(ab, ab), dot(ab, ac), dot(ac, ac)};
+}
+
+/// A triangle as it is kept: its shape costs less to make than to fetch. Scene units.
+struct TriangleCorners {
+    glm::vec3 a, b, c;
+};
+inline TriangleShape triangle_shape(const TriangleCorners& t) {
+    return triangle_shape(glm::dvec3(t.a), glm::dvec3(t.b), glm::dvec3(t.c));
+}
 
 /// Triangles whose angle at the first corner is below 1e-7 rad or that close to 180 degrees have no usable
 /// inside and count as their three edges.
@@ -94,9 +108,9 @@ class ClosestPointIndex {
 
     /// The closest point of one triangle, numbered.
     ClosestPoint closest_of(std::uint32_t triangle, const glm::dvec3& p) const;
-    const TriangleShape* shapes() const;  // of all triangles
-    const TriangleEdges* edges() const;   // likewise
-    const TriangleShape& shape(std::uint32_t triangle) const { return shapes()[triangle]; }
+    const TriangleCorners* corners() const;  // of all triangles
+    const TriangleEdges* edges() const;      // likewise
+    TriangleShape shape(std::uint32_t triangle) const { return triangle_shape(corners()[triangle]); }
     std::int64_t triangle_count() const;
 
   private:

@@ -168,7 +168,8 @@ std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const L
     double triangles = 0.0;
     for (const TexturedMesh& m : meshes) triangles += static_cast<double>(m.mesh.triangles.size());
     const double per_splat = 1.02 * static_cast<double>(kept_splat_bytes);  // and a batch that exists twice
-    const double per_triangle = sizeof(TriangleShape) + sizeof(SurfaceTriangle) + 200.0;  // and Embree's tree
+    const double per_triangle =
+        sizeof(TriangleCorners) + sizeof(SurfaceTriangle) + 200.0;  // and Embree's tree
     const double bytes = expected_kept(lattice, meshes, max_distance) * per_splat + triangles * per_triangle;
     return static_cast<std::int64_t>(std::min(bytes, 9e18));
 }

@@ -17,8 +17,10 @@ glm::vec2 texels_per_voxel(const SurfaceTriangle& t, const TriangleShape& s, con
     if (!(determinant > 0.0)) return glm::vec2(0.0f);
     const glm::dvec3 g_b = (s.ab * s.ac_ac - s.ac * s.ab_ac) / determinant;
     const glm::dvec3 g_c = (s.ac * s.ab_ab - s.ab * s.ab_ac) / determinant;
-    const glm::dvec3 along_u = (g_b * t.uv_ab.x + g_c * t.uv_ac.x) * spacing;
-    const glm::dvec3 along_v = (g_b * t.uv_ab.y + g_c * t.uv_ac.y) * spacing;
+    const glm::dvec2 uv_ab = glm::dvec2(t.uv_b) - glm::dvec2(t.uv_a);
+    const glm::dvec2 uv_ac = glm::dvec2(t.uv_c) - glm::dvec2(t.uv_a);
+    const glm::dvec3 along_u = (g_b * uv_ab.x + g_c * uv_ac.x) * spacing;
+    const glm::dvec3 along_v = (g_b * uv_ab.y + g_c * uv_ac.y) * spacing;
     return glm::vec2(std::sqrt(glm::dot(along_u, along_u)) * static_cast<double>(t.texture->image.width),
                      std::sqrt(glm::dot(along_v, along_v)) * static_cast<double>(t.texture->image.height));
 }
@@ -32,11 +34,11 @@ glm::vec3 face_normal(const TriangleShape& s) {
 SurfaceTriangle surface_triangle(const TexturedMesh& m, const Mesh::Triangle& face,
                                  const TriangleShape& shape, const glm::dvec3& spacing) {
     const auto uv = [&](std::size_t corner) {
-        return face.uv[corner] == Mesh::no_uv ? glm::dvec2(0.0) : glm::dvec2(m.mesh.uvs[face.uv[corner]]);
+        return face.uv[corner] == Mesh::no_uv ? glm::vec2(0.0f) : m.mesh.uvs[face.uv[corner]];
     };
     const std::size_t texture = m.textures.size() == 1 ? 0 : face.material;
     assert(texture < m.textures.size());
-    SurfaceTriangle t{uv(0), uv(1) - uv(0), uv(2) - uv(0), face_normal(shape), {}, 0, &m.textures[texture]};
+    SurfaceTriangle t{uv(0), uv(1), uv(2), face_normal(shape), {}, 0, &m.textures[texture]};
     t.box_texels = texels_per_voxel(t, shape, spacing);
     return t;
 }
@@ -52,7 +54,7 @@ Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
         const auto count = static_cast<std::int64_t>(m.mesh.triangles.size());
         parallel_chunks(count, 4096, [&](std::int64_t begin, std::int64_t end, int) {
             for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                const TriangleShape& shape = index.shape(static_cast<std::uint32_t>(first + i));
+                const TriangleShape shape = index.shape(static_cast<std::uint32_t>(first + i));
                 triangles[first + i] = surface_triangle(m, m.mesh.triangles[i], shape, spacing);
                 triangles[first + i].mesh = static_cast<std::uint32_t>(number);
             }

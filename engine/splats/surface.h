@@ -14,9 +14,9 @@
 namespace astrosplat {
 
 struct SurfaceTriangle {
-    glm::dvec2 uv, uv_ab, uv_ac;  // at the first corner, and how far it is to the other two
-    glm::vec3 normal;             // unit, by the face's winding; +y for faces without area
-    glm::vec2 box_texels;  // side of Filter::area's box: a voxel's side times the local texels per unit
+    glm::vec2 uv_a, uv_b, uv_c;  // at the corners
+    glm::vec3 normal;            // unit, by the face's winding; +y for faces without area
+    glm::vec2 box_texels;        // side of Filter::area's box: a voxel's side times the local texels per unit
     std::uint32_t mesh;
     const Texture* texture;
 };
@@ -27,7 +27,8 @@ Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
                                           const ClosestPointIndex& index, const glm::dvec3& spacing);
 
 inline glm::vec2 uv_at(const SurfaceTriangle& triangle, const glm::dvec2& barycentric) {
-    return glm::vec2(triangle.uv + triangle.uv_ab * barycentric.x + triangle.uv_ac * barycentric.y);
+    const glm::dvec2 a(triangle.uv_a), ab = glm::dvec2(triangle.uv_b) - a, ac = glm::dvec2(triangle.uv_c) - a;
+    return glm::vec2(a + ab * barycentric.x + ac * barycentric.y);
 }
 
 }  // namespace astrosplat
