@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -82,6 +83,13 @@ struct BlockPositions {
     }
 };
 
+// 0, 1, 2 ..., to pick from.
+constexpr auto all_places = [] {
+    std::array<std::uint32_t, CandidateList::most + 64> places{};
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = static_cast<std::uint32_t>(i);
+    return places;
+}();
+
 class GroupQuery {
   public:
     GroupQuery(const BlockMeasure& measure, BlockScratch& scratch, BlockPositions& positions)
@@ -106,6 +114,13 @@ class GroupQuery {
             bound(positions, Survey::Gaps::some);
             measure_rest();
         }
+        finish(answers, first);
+    }
+
+    /// Measures all candidates of a short list.
+    void run_all(const CandidateList& candidates, BlockAnswers& answers, std::size_t first) {
+        start(answers, first);
+        for (std::size_t i = 0; i < candidates.count; ++i) measure(candidates.triangle[i]);
         finish(answers, first);
     }
 
@@ -161,11 +176,9 @@ class GroupQuery {
         const Many d;
         const ManyNumbers du;
         const std::size_t first_row = rows_.count;
-        auto places = hn::Iota(du, 0);
         for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
             const auto taken = hn::RebindMask(du, survey_.matter(i, gaps));
-            hn::StoreU(hn::Compress(places, taken), du, &rows_.place[rows_.count]);
-            places = hn::Add(places, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(d))));
+            append(du, &all_places[i], taken, &rows_.place[rows_.count]);
             rows_.count += hn::CountTrue(du, taken);
         }
         for (std::size_t i = 0; i < group; i += hn::Lanes(Floats())) bound_lanes(positions, first_row, i);
@@ -306,11 +319,9 @@ void choose(const CandidateList& from, const Survey& survey, CandidateList& to) 
     to.count = 0;
     for (std::size_t i = 0; i < from.count; i += hn::Lanes(d)) {
         const auto taken = survey.matter(i);
-        const auto copy = [&](const auto& source, auto& target) HWY_ATTR {
-            hn::StoreU(hn::Compress(hn::LoadU(d, &source[i]), taken), d, &target[to.count]);
-        };
-        const auto numbers = hn::Compress(hn::LoadU(du, &from.triangle[i]), hn::RebindMask(du, taken));
-        hn::StoreU(numbers, du, &to.triangle[to.count]);
+        const auto copy = [&](const auto& source, auto& target)
+                              HWY_ATTR { append(d, &source[i], taken, &target[to.count]); };
+        append(du, &from.triangle[i], hn::RebindMask(du, taken), &to.triangle[to.count]);
         copy(from.center_x, to.center_x), copy(from.center_y, to.center_y), copy(from.center_z, to.center_z);
         copy(from.normal_x, to.normal_x), copy(from.normal_y, to.normal_y), copy(from.normal_z, to.normal_z);
         copy(from.radius, to.radius);
@@ -341,7 +352,14 @@ bool choose_candidates(const BlockMeasure& m, BlockScratch& scratch, BlockPositi
 }
 
 void measure_all(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers) {
+    constexpr std::size_t few = 3;  // candidates that are measured in less time than bounded
     BlockPositions local;
+    GroupQuery query(measure, scratch, local);
+    if (scratch.candidates.count <= few) {
+        for (std::size_t first = 0; first < block_positions; first += group)
+            query.run_all(scratch.candidates, answers, first);
+        return;
+    }
     to_local(answers.x.data(), measure.origin.x, local.x);
     to_local(answers.y.data(), measure.origin.y, local.y);
     to_local(answers.z.data(), measure.origin.z, local.z);
@@ -349,7 +367,6 @@ void measure_all(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswer
         answers.triangle.fill(ClosestPoint::none);
         return;
     }
-    GroupQuery query(measure, scratch, local);
     for (std::size_t first = 0; first < block_positions; first += group) query.run(answers, first);
 }
 

@@ -91,7 +91,9 @@ struct CandidateList : BoundArrays<2048 + 64> {
         copy(cluster.center_x, center_x), copy(cluster.center_y, center_y), copy(cluster.center_z, center_z);
         copy(cluster.normal_x, normal_x), copy(cluster.normal_y, normal_y), copy(cluster.normal_z, normal_z);
         copy(cluster.radius, radius);
-        count += TriangleCluster::size;
+        std::size_t used = TriangleCluster::size;
+        while (used > 1 && cluster.triangle[used - 1] == cluster.triangle[used - 2]) --used;
+        count += used;
         return true;
     }
 
