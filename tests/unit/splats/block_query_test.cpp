@@ -96,6 +96,24 @@ TEST_F(BlockQuery, EqualsBruteForceForAnyTriangles) {
     }
 }
 
+// On a smooth surface most candidates are dropped by their planes; narrow ones have bounds of their own.
+TEST_F(BlockQuery, FineSurfacesWithNarrowTriangles) {
+    Mesh mesh = builtin_mesh("sphere", 1.0);
+    for (glm::vec3& p : mesh.positions) p *= 0.2f;
+    for (std::uint32_t n = 0; n < 300; ++n) {
+        const glm::vec3 a = random_point(n, 130), b = a + 0.3f * random_point(n, 140);
+        const float height = 0.3f / static_cast<float>(1u << n % 24);
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.insert(mesh.positions.end(), {a, b, b + height * random_point(n, 150)});
+        mesh.triangles.push_back({{first + n % 3, first + (n + 1) % 3, first + (n + 2) % 3}, {}});
+    }
+    for (const std::string& target : vector_targets()) {
+        SCOPED_TRACE(target);
+        set_vector_target(target);
+        expect_brute_force(mesh, lattice_around(glm::dvec3(0), 1.2), 0.2);
+    }
+}
+
 TEST_F(BlockQuery, FarFromTheOriginAndForAnyDistance) {
     Mesh mesh = soup(200);
     for (glm::vec3& p : mesh.positions) p += glm::vec3(3000, -800, 100);
