@@ -7,22 +7,22 @@
 namespace astrosplat {
 namespace fs = std::filesystem;
 
-DiskFile::DiskFile(const fs::path& file, std::string_view content)
-    : file_(file), looked_at_(stamp()), hash_(Sha256().add(content).hex()) {}
-
-DiskFile::Stamp DiskFile::stamp() const {
+FileStamp stamp_of(const fs::path& file) {
     std::error_code error;
-    const fs::file_time_type time = fs::last_write_time(file_, error);
+    const fs::file_time_type time = fs::last_write_time(file, error);
     if (error) return {};
-    const std::uintmax_t size = fs::file_size(file_, error);
+    const std::uintmax_t size = fs::file_size(file, error);
     if (error) return {};
     return {time, size};
 }
 
+DiskFile::DiskFile(const fs::path& file, std::string_view content)
+    : file_(file), looked_at_(stamp_of(file)), hash_(Sha256().add(content).hex()) {}
+
 bool DiskFile::changed() {
     if (file_.empty()) return false;
-    const Stamp now = stamp();
-    if (now == Stamp{}) return false;
+    const FileStamp now = stamp_of(file_);
+    if (now == FileStamp{}) return false;
     if (now == looked_at_) return changed_;
     try {
         changed_ = sha256_of_file(file_) != hash_;
@@ -36,7 +36,7 @@ bool DiskFile::changed() {
 void DiskFile::accept() {
     if (file_.empty()) return;
     try {
-        looked_at_ = stamp();
+        looked_at_ = stamp_of(file_);
         hash_ = sha256_of_file(file_);
         changed_ = false;
     } catch (const InputError&) {

@@ -8,6 +8,14 @@
 
 namespace astrosplat {
 
+/// What tells a file that was touched; all 0 where there is none, or none that may be looked at.
+struct FileStamp {
+    std::filesystem::file_time_type time{};
+    std::uintmax_t size = 0;
+    bool operator==(const FileStamp&) const = default;
+};
+FileStamp stamp_of(const std::filesystem::path& file);
+
 /// A file as it was last seen. Two calls of changed() cost two look-ups in its folder; its bytes are read
 /// only when date or size say that it was touched.
 class DiskFile {
@@ -22,15 +30,8 @@ class DiskFile {
     void accept();
 
   private:
-    struct Stamp {
-        std::filesystem::file_time_type time{};
-        std::uintmax_t size = 0;
-        bool operator==(const Stamp&) const = default;
-    };
-    Stamp stamp() const;
-
     std::filesystem::path file_;  // empty: there is none
-    Stamp looked_at_;             // at the last look
+    FileStamp looked_at_;         // at the last look
     std::string hash_;
     bool changed_ = false;  // what that look found
 };

@@ -121,7 +121,8 @@ struct FinalPicture::Impl {
 };
 
 void FinalPicture::Impl::work() {
-    Pipeline pipeline;
+    auto pipeline = std::make_unique<Pipeline>();
+    std::uint64_t files = 0;
     for (;;) {
         std::shared_ptr<Run> run;
         {
@@ -134,7 +135,8 @@ void FinalPicture::Impl::work() {
             const Region region = whole_region(run->request);
             run->canvas = {region.width, region.height, 4, {}};
             run->canvas.pixels.resize(static_cast<std::size_t>(region.width * region.height * 4));
-            render_run(pipeline, *run);
+            if (std::exchange(files, run->request.files) != files) pipeline = std::make_unique<Pipeline>();
+            render_run(*pipeline, *run);
         } catch (const Cancelled&) {
             run->end(State::idle);
         } catch (const std::bad_alloc&) {

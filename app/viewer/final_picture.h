@@ -19,6 +19,7 @@ struct FinalRequest {
     Scene scene;                                        // evaluated by the pipeline at `frame`
     std::vector<std::shared_ptr<const SplatSet>> sets;  // one a layer; null: the layer is not drawn
     std::shared_ptr<const Environment> environment;     // of the scene, where it is loaded already
+    std::uint64_t files = 0;  // another number: files were changed, and what is kept of them is read again
     double frame = 1.0;
     std::int64_t width = 0, height = 0;  // px
     Region region;                       // empty: all

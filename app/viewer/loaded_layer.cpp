@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/error.h"
+#include "edit/watched_files.h"
 #include "splats/stratified.h"
 #include "viewer/histograms.h"
 
@@ -64,6 +66,11 @@ LoadedLayer arranged_layer(LoadedLayer layer, std::int64_t preview_limit, const 
 }
 
 LoadedLayer described_layer(LoadedLayer layer) {
+    try {
+        layer.files = all_files(layer.source);
+    } catch (const InputError&) {  // gone since: when it is back, it is read again
+        layer.files = named_files(layer.source);
+    }
     layer.histograms = std::make_shared<const LayerHistograms>(histograms(*layer.set, layer.source));
     return layer;
 }

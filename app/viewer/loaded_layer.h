@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "edit/status.h"
@@ -26,7 +28,9 @@ struct LoadedLayer {
     glm::vec3 color{1.0f};                              // mean of the splats, weighted by alpha, linear
     glm::dvec2 radius{0.0};  // smallest and largest, scene units: what look.radius 0, 0 means; 0: unknown
     SourceParams source;
-    std::string name;  // which the seed may depend on
+    std::string name;                          // which the seed may depend on
+    std::vector<std::filesystem::path> files;  // it was made of; come with the histograms
+    bool outdated = false;                     // one of them was changed since
 };
 
 /// A whole set, with a preview of a sample of at most `preview_limit` splats, in no time.
@@ -37,7 +41,7 @@ LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& 
                           const std::string& name);
 /// The same with its preview in stratified order, of as many splats as it may ever show.
 LoadedLayer arranged_layer(LoadedLayer layer, std::int64_t preview_limit, const Progress& progress);
-/// The same with histograms, for which pictures are read once more.
+/// The same with histograms and files, for which meshes and pictures are read once more.
 LoadedLayer described_layer(LoadedLayer layer);
 
 }  // namespace astrosplat

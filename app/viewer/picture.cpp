@@ -27,6 +27,7 @@ class PictureFiles {
     /// Throws InputError where it cannot be.
     std::shared_ptr<const Environment> environment(const EnvironmentParams& params) {
         wanted_ = {};
+        renewing_ = false;
         if (!has_environment(params) || !params.visible) return nullptr;
         const Files files{params.image, params.cube};
         if (!environments_.count(files)) {
@@ -35,6 +36,11 @@ class PictureFiles {
             environments_[files] =
                 std::async(std::launch::async, [params] { return load_environment(params); });
         }
+        if (const auto renewed = renewed_.find(files); renewed != renewed_.end()) {
+            renewing_ = !is_ready(renewed->second);
+            if (!renewing_) environments_[files] = renewed->second;
+            if (!renewing_) renewed_.erase(renewed);
+        }
         wanted_ = environments_[files];
         if (!is_ready(wanted_)) return nullptr;
         Environment environment = wanted_.get();
@@ -42,7 +48,9 @@ class PictureFiles {
         return std::make_shared<const Environment>(std::move(environment));
     }
     /// The environment asked for last is on its way.
-    bool loading() const { return wanted_.valid() && !is_ready(wanted_); }
+    bool loading() const { return renewing_ || (wanted_.valid() && !is_ready(wanted_)); }
+    /// Maps are read again when next asked for, environments at once; the old ones are seen until then.
+    void forget(const std::vector<std::filesystem::path>& files);
 
   private:
     using Files = std::pair<std::filesystem::path, std::vector<std::filesystem::path>>;
@@ -53,9 +61,33 @@ class PictureFiles {
 
     static constexpr std::size_t most_environments = 3;
     std::map<std::filesystem::path, std::unique_ptr<Image>> maps_;
+    std::vector<std::unique_ptr<Image>> old_maps_;  // so that new ones do not get their addresses
     std::map<Files, Loading> environments_;  // what is compared may have another one; also those that failed
     Loading wanted_;                         // asked for last
+    std::map<Files, Loading> renewed_;       // of files that were changed, until asked for
+    bool renewing_ = false;                  // one is on its way for what was asked for last
 };
+
+void PictureFiles::forget(const std::vector<std::filesystem::path>& files) {
+    const auto is_changed = [&](const std::filesystem::path& file) {
+        return std::find(files.begin(), files.end(), file) != files.end();
+    };
+    old_maps_.clear();
+    for (const std::filesystem::path& file : files)
+        if (auto map = maps_.extract(file)) old_maps_.push_back(std::move(map.mapped()));
+    for (const auto& entry : environments_) {
+        EnvironmentParams params;
+        params.image = entry.first.first;
+        params.cube = entry.first.second;
+        if (!is_changed(params.image) && std::none_of(params.cube.begin(), params.cube.end(), is_changed))
+            continue;
+        renewed_[entry.first] = std::async(std::launch::async, [params] { return load_environment(params); });
+    }
+}
+
+void forget(PictureFiles& pictures, const std::vector<std::filesystem::path>& files) {
+    pictures.forget(files);
+}
 
 std::shared_ptr<PictureFiles> make_picture_files() { return std::make_shared<PictureFiles>(); }
 
@@ -70,8 +102,8 @@ bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr
 }  // namespace
 
 bool PictureRequest::operator==(const PictureRequest& other) const {
-    return width == other.width && height == other.height && region.x == other.region.x &&
-           region.y == other.region.y && region.width == other.region.width &&
+    return width == other.width && height == other.height && files == other.files &&
+           region.x == other.region.x && region.y == other.region.y && region.width == other.region.width &&
            region.height == other.region.height &&
            std::equal(layers.begin(), layers.end(), other.layers.begin(), other.layers.end(), same_set) &&
            scene == other.scene;
@@ -230,6 +262,7 @@ void ViewPicture::Impl::begin_final() {
         wanted.sets.push_back(loaded && request->scene.layers[i].visible ? loaded->set : nullptr);
     }
     wanted.environment = environment;
+    wanted.files = request->files;
     wanted.width = request->width;
     wanted.height = request->height;
     wanted.region = request->region;

@@ -26,6 +26,7 @@ struct PictureRequest {
     std::vector<std::shared_ptr<const LoadedLayer>> layers;  // as in the scene; null: not loaded
     Bounds box;                                              // of the visible layers, world space
     int width = 0, height = 0;                               // px of the whole picture
+    std::uint64_t files = 0;                                 // another number: pictures were changed on disk
     Region region;                                           // the part to be seen; empty: all
     bool operator==(const PictureRequest& other) const;
 };
@@ -81,5 +82,7 @@ class ViewPicture {
 };
 
 std::shared_ptr<PictureFiles> make_picture_files();
+/// Reads these again when they are next asked for.
+void forget(PictureFiles& pictures, const std::vector<std::filesystem::path>& files);
 
 }  // namespace astrosplat

@@ -9,6 +9,7 @@
 #include "edit/autosave.h"
 #include "edit/preferences.h"
 #include "edit/snapshots.h"
+#include "edit/watched_files.h"
 #include "gl/display.h"
 #include "viewer/render_job.h"
 #include "viewer/session.h"
@@ -40,6 +41,8 @@ struct Session::Impl {
     Display display;
     RenderJob job;
     std::filesystem::path job_target;
+    WatchedFiles watched;
+    std::uint64_t files_read_again = 0;
     Autosave autosave{autosave_folder(), autosave_interval()};
 
     std::vector<StoredPicture> snapshots;
@@ -80,6 +83,9 @@ struct Session::Impl {
     void load_sets(double now);
     void show_growth(double now);
     void look_at_disk(double now);
+    std::vector<std::filesystem::path> files_of(const LayerParams& layer) const;
+    void watch_files();
+    void read_again(const std::vector<std::filesystem::path>& files);
     void fill_status();
     void fill_layers(const Scene& now);
     void probe(glm::dvec2 mouse_px);

@@ -58,6 +58,7 @@ Scene Session::Impl::evaluated(const Scene& scene) const {
 
 PictureRequest Session::Impl::make_request(Scene now) const {
     PictureRequest made;
+    made.files = files_read_again;
     for (const LayerParams& layer : now.layers) {
         made.layers.push_back(loader.layer(layer.name));
         if (layer.visible && made.layers.back())

@@ -1,4 +1,5 @@
-// Session: what the widgets are told. Layers, picture, machine, the pixel under the mouse.
+// Session: what the widgets are told. Layers, picture, machine, the pixel under the mouse, and what others
+// did on the disk.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,14 +11,6 @@
 #include "viewer/session_impl.h"
 
 namespace astrosplat {
-
-void Session::Impl::look_at_disk(double now) {
-    constexpr double every_s = 1.0;
-    if (now - checked_disk_at < every_s) return;
-    checked_disk_at = now;
-    status.changed_on_disk = document.changed_on_disk();
-    status.memory_bytes = resident_memory_bytes();
-}
 
 void Session::Impl::fill_layers(const Scene& now) {
     const std::vector<std::int64_t>& shown = a.shown();

@@ -63,7 +63,7 @@ struct Job {
 };
 
 bool satisfies(const LoadedLayer& loaded, const SourceParams& identity) {
-    return identity_of(loaded.source, loaded.name) == identity;
+    return !loaded.outdated && identity_of(loaded.source, loaded.name) == identity;
 }
 
 /// Progress from which a set is wherever it will be: corners, which run through the whole box, come before
@@ -321,6 +321,19 @@ void SetLoader::want(const Scene& scene) {
         queue.splice(queue.begin(), changed);
     }
     impl_->wake.notify_one();
+}
+
+void SetLoader::outdate(const std::string& layer_name) {
+    const std::lock_guard lock(impl_->mutex);
+    const auto found = impl_->entries.find(layer_name);
+    if (found == impl_->entries.end()) return;
+    impl_->stop(layer_name);
+    Entry& entry = found->second;
+    entry.identity.reset();
+    if (!entry.loaded) return;
+    auto old = std::make_shared<LoadedLayer>(*entry.loaded);
+    old->outdated = true;
+    entry.loaded = std::move(old);
 }
 
 void SetLoader::retry(const std::string& layer_name) {

@@ -23,6 +23,9 @@ class SetLoader {
     /// changed, cancels what nobody wants any more. Cheap when nothing changed. Layers never visible are not
     /// loaded.
     void want(const Scene& scene);
+    /// Files of a layer have changed: the next want() begins it again. Its old set stays until the new one is
+    /// there.
+    void outdate(const std::string& layer_name);
     /// Begins again a layer that was cancelled or failed.
     void retry(const std::string& layer_name);
     /// Stops one layer's loading; its old set, if any, stays.

@@ -131,6 +131,27 @@ TEST_F(SetLoaderTest, RetryReadsWhatIsThereNow) {
     EXPECT_TRUE(loader.idle());
 }
 
+TEST_F(SetLoaderTest, OutdatedLayersAreReadAgain) {
+    small.scene.layers[0].source.seed = small.scene.layers[1].source.seed = 7;
+    small.scene.layers[1].source = small.scene.layers[0].source;
+    const auto first = loaded("gas");
+    EXPECT_EQ(std::count(first->files.begin(), first->files.end(), small.folder / "picture.ppm"), 1);
+    std::string bright = SmallScene::picture();
+    std::fill(bright.end() - 64 * 64 * 3, bright.end(), '\xff');
+    small.folder.file("picture.ppm", bright);
+    for (const char* name : {"gas", "dust"}) {
+        loader.outdate(name);
+        EXPECT_TRUE(loader.layer(name)) << "the old set stays";
+    }
+    for (const char* name : {"gas", "dust"}) {
+        const auto second = loaded(name);
+        EXPECT_NE(second->set, first->set);
+        EXPECT_EQ(second->set->color[0], glm::vec3(1.0f));
+    }
+    EXPECT_FALSE(status(0).stale);
+    loader.outdate("nobody");
+}
+
 TEST_F(SetLoaderTest, LayersThatAreNeverVisibleAreNotLoaded) {
     small.scene.layers[0].visible = false;
     EXPECT_FALSE(loaded("gas"));
