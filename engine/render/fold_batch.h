@@ -17,6 +17,7 @@ struct SplatBits {
     static constexpr int size = 128;
     std::uint64_t low = 0, high = 0;
     bool any() const { return (low | high) != 0; }
+    int count() const { return std::popcount(low) + std::popcount(high); }
     SplatBits& operator|=(const SplatBits& other) {
         low |= other.low;
         high |= other.high;
@@ -34,10 +35,11 @@ struct SplatBits {
 
 struct SplatBatch {
     static constexpr int size = SplatBits::size;
-    static constexpr int none = size;  // a place after them for a splat without light
-    static constexpr int places = size + 1;
+    static constexpr int none = size;         // a place after them for a splat without light
+    static constexpr int places = size + 16;  // rows of arrays stay aligned
     static constexpr int blocks = TilePlanes::cell_blocks * TilePlanes::cell_blocks;
     int count = 0;
+    bool is_faint = false;  // no splat's opacity comes near 1: s needs no clamping
     // Of the whole picture; places from `count` to the next whole vector have a reach below 0.
     const float* x_px = nullptr;
     const float* y_px = nullptr;
@@ -64,11 +66,14 @@ struct SplatBatch {
 
     // What the weights are made of, while they are prepared.
     alignas(64) float radius_px[places];
-    alignas(64) float alpha[places];     // opacity as the splat has it
-    alignas(64) float cosine_x[places];  // phase of the centre relative to the pixels
-    alignas(64) float cosine_y[places];
-    alignas(64) float tabulated[places];      // 1; 0 for radii beyond the table
+    alignas(64) float alpha[places];          // opacity as the splat has it
     alignas(64) float moments[3][places][4];  // of FootprintMoments, four by four
+};
+
+/// What all layers have in common, if anything.
+struct FoldCommon {
+    const FootprintTable* footprints = nullptr;  // the one table of all layers, or null
+    bool screen = false;                         // all are screens
 };
 
 /// Where a tile's splats are and how far they reach, in order; the arrays end with some that are nowhere.

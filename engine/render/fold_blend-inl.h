@@ -30,7 +30,8 @@ HWY_INLINE void store(V v, float* p) { hn::Store(v, D(), p); }
 HWY_INLINE void accumulate(float* p, V v) { store(hn::Add(load(p), v), p); }
 HWY_INLINE V all(float v) { return hn::Set(D(), v); }
 HWY_INLINE V clamp_one(V v) { return hn::Min(v, all(1.0f)); }
-HWY_INLINE V saturate(V v) { return clamp_one(hn::Max(v, hn::Zero(D()))); }
+HWY_INLINE V clamp_zero(V v) { return hn::Max(v, hn::Zero(D())); }
+HWY_INLINE V saturate(V v) { return clamp_one(clamp_zero(v)); }
 
 /// One of sixteen coefficients per lane, by the lowest four bits of `segment`.
 HWY_INLINE V look_up(const float* c, VI segment) {
@@ -49,17 +50,16 @@ HWY_INLINE V look_up(const float* c, VI segment) {
     return r;
 }
 
-/// Splats whose weights are computed side by side: the chain of operations of one is long, and a core looks
-/// ahead too few of them to fill its units otherwise.
-constexpr int ways = lanes == TilePlanes::block_pixels ? 2 : 1;
-
-/// Weights of the splats i[0 .. ways) at squared distances from their centres, without the amplitudes. Not
+/// Weights of kWays splats i[..] at squared distances `w` from their centres, without the amplitudes. Not
 /// clamped: the cubics may leave [0, 1] by a few 1e-5. kFlat: the footprint may have a flat inside.
-template <bool kFlat>
-HWY_INLINE void weights_at(const SplatBatch& batch, const int (&i)[ways], V (&w)[ways]) {
+///
+/// The splats go side by side because the chain of operations of one is long, and a core does not look ahead
+/// over enough of them to keep its units busy.
+template <bool kFlat, int kWays>
+HWY_INLINE void weights_at(const SplatBatch& batch, const int (&i)[kWays], V (&w)[kWays]) {
     const D d;
-    V u[ways], rounded[ways], f[ways], p[ways];
-    for (int n = 0; n < ways; ++n) {
+    V u[kWays], rounded[kWays], f[kWays], p[kWays];
+    for (int n = 0; n < kWays; ++n) {
         const V place = batch.linear_in_distance[i[n]] ? hn::Sqrt(w[n]) : w[n];
         u[n] =
             kFlat ? hn::Max(hn::Mul(hn::Sub(place, all(batch.lo[i[n]])), all(batch.scale[i[n]])), hn::Zero(d))
@@ -68,17 +68,17 @@ HWY_INLINE void weights_at(const SplatBatch& batch, const int (&i)[ways], V (&w)
     // Rounding to the nearest whole number in the lowest bits of a float is the segment; on a segment's end
     // either side will do. Far outside, both are nonsense that the mask takes away.
     const V magic = all(12582912.0f);  // 1.5 * 2^23
-    for (int n = 0; n < ways; ++n) rounded[n] = hn::Sub(u[n], all(0.5f));
-    for (int n = 0; n < ways; ++n) rounded[n] = hn::Add(rounded[n], magic);
-    for (int n = 0; n < ways; ++n) f[n] = hn::Sub(rounded[n], magic);
-    for (int n = 0; n < ways; ++n) f[n] = hn::Sub(u[n], f[n]);
-    for (int n = 0; n < ways; ++n) p[n] = look_up(batch.cubic[i[n]][3], hn::BitCast(DI(), rounded[n]));
+    for (int n = 0; n < kWays; ++n) rounded[n] = hn::Sub(u[n], all(0.5f));
+    for (int n = 0; n < kWays; ++n) rounded[n] = hn::Add(rounded[n], magic);
+    for (int n = 0; n < kWays; ++n) f[n] = hn::Sub(rounded[n], magic);
+    for (int n = 0; n < kWays; ++n) f[n] = hn::Sub(u[n], f[n]);
+    for (int n = 0; n < kWays; ++n) p[n] = look_up(batch.cubic[i[n]][3], hn::BitCast(DI(), rounded[n]));
     for (int power = 2; power >= 0; --power) {
-        for (int n = 0; n < ways; ++n) p[n] = hn::Mul(p[n], f[n]);
-        for (int n = 0; n < ways; ++n)
+        for (int n = 0; n < kWays; ++n) p[n] = hn::Mul(p[n], f[n]);
+        for (int n = 0; n < kWays; ++n)
             p[n] = hn::Add(p[n], look_up(batch.cubic[i[n]][power], hn::BitCast(DI(), rounded[n])));
     }
-    for (int n = 0; n < ways; ++n) {
+    for (int n = 0; n < kWays; ++n) {
         p[n] = hn::IfThenElseZero(hn::Lt(u[n], all(static_cast<float>(segments))), p[n]);
         w[n] = kFlat ? hn::Add(p[n],
                                hn::Mul(all(batch.edge_gain[i[n]]), hn::Mul(p[n], hn::Sub(all(1.0f), p[n]))))
@@ -112,8 +112,10 @@ struct OverPixels {
         store(t, &p.transmittance[0][i]);
     }
     HWY_INLINE M open(V stop) const { return hn::Ge(t, stop); }
+    template <bool kMayClose>
     HWY_INLINE void fold(const FoldStep& step, V s, V, V stop) {
-        const V share = hn::IfThenElseZero(open(stop), hn::Mul(t, s));
+        V share = hn::Mul(t, s);
+        if (kMayClose) share = hn::IfThenElseZero(open(stop), share);
         for (int k = 0; k < 3; ++k)
             color[k] = hn::Add(color[k], hn::Mul(share, all(step.batch.color[k][step.i])));
         alpha = hn::Add(alpha, share);
@@ -137,6 +139,8 @@ struct AddPixels {
     HWY_INLINE void store_to(TilePlanes& p, std::size_t i) const {
         for (int k = 0; k < 3; ++k) store(color[k], &p.color[k][i]);
     }
+    HWY_INLINE M open(V stop) const { return hn::Eq(stop, stop); }
+    template <bool>
     HWY_INLINE void fold(const FoldStep& step, V s, V, V) {
         for (int k = 0; k < 3; ++k)
             color[k] = hn::Add(color[k], hn::Mul(s, all(step.batch.color[k][step.i])));
@@ -187,6 +191,8 @@ struct LightenPixels {
         store(t, &p.transmittance[3][i]);
         more.store_to(p, i);
     }
+    HWY_INLINE M open(V stop) const { return hn::Eq(stop, stop); }
+    template <bool>
     HWY_INLINE void fold(const FoldStep& step, V s, V weight, V) {
         for (int k = 0; k < 3; ++k)
             color[k] = hn::Max(color[k], hn::Mul(s, all(step.batch.color[k][step.i])));
@@ -219,8 +225,10 @@ struct GeneralPixels {
     HWY_INLINE M open(V stop) const {
         return hn::Ge(hn::Max(hn::Max(t[0], t[1]), hn::Max(t[2], t[3])), stop);
     }
+    template <bool kMayClose>
     HWY_INLINE void fold(const FoldStep& step, V s, V weight, V stop) {
-        const M is_open = open(stop);
+        const M is_open = kMayClose ? open(stop) : hn::Eq(s, s);
+        const auto if_open = [&](V v) { return kMayClose ? hn::IfThenElseZero(is_open, v) : v; };
         V hidden[4];
         for (int k = 0; k < 4; ++k) hidden[k] = hn::Mul(s, all(step.batch.occlusion[k][step.i]));
         if (step.batch.bright[step.i]) {  // else s and the occlusions are at most 1
@@ -228,13 +236,13 @@ struct GeneralPixels {
             hidden[3] = hn::Div(hn::Add(hn::Add(hidden[0], hidden[1]), hidden[2]), all(3.0f));
         }
         for (int k = 0; k < 3; ++k) {
-            const V reached = hn::IfThenElseZero(is_open, hn::Mul(t[k], s));
+            const V reached = if_open(hn::Mul(t[k], s));
             const V light = hn::Mul(reached, all(step.batch.color[k][step.i]));
             color[k] = hn::Add(color[k], light);
             if (kAovs) accumulate(step.layer_light[k], light);
             t[k] = hn::Mul(t[k], hn::Sub(all(1.0f), hidden[k]));
         }
-        const V share = hn::IfThenElseZero(is_open, hn::Mul(t[3], hidden[3]));
+        const V share = if_open(hn::Mul(t[3], hidden[3]));
         const V shown = kHolds ? hn::Mul(share, all(step.batch.shows[step.i])) : share;
         if (kHolds) held = hn::Add(held, hn::Sub(share, shown));
         alpha = hn::Add(alpha, shown);

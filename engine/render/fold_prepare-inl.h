@@ -8,6 +8,7 @@
 #define ASTROSPLAT_FOLD_PREPARE_INL_H
 #endif
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -79,9 +80,13 @@ HWY_INLINE void look_up_footprint(const FootprintTable& table, SplatBatch& batch
     for (int q = 0; q < quads; ++q)
         interpolate(four, &nodes.a->moments.mean + 4 * q, &nodes.b->moments.mean + 4 * q, nodes.t,
                     batch.moments[q][i]);
-    batch.tabulated[i] = nodes.b != &table.nodes.back() || nodes.t > 0.0f ? 1.0f : 0.0f;
-    batch.cosine_x[i] = pixel_cosine(batch.x_px[i]);
-    batch.cosine_y[i] = pixel_cosine(batch.y_px[i]);
+}
+
+/// pixel_cosine of `lanes` coordinates.
+HWY_INLINE V pixel_cosines_of(V coordinate_px) {
+    const V inside = hn::Min(hn::Max(coordinate_px, all(-pixel_cosine_far_px)), all(pixel_cosine_far_px));
+    const VI phase = hn::And(hn::ConvertTo(DI(), hn::Mul(inside, all(256.0f))), hn::Set(DI(), 255));
+    return hn::GatherIndex(D(), pixel_cosines.data(), phase);
 }
 
 /// Four moments of `lanes` splats from splat n on.
@@ -101,6 +106,16 @@ HWY_INLINE V ripple(const Moments& m, V cx, V cy) {
                                   hn::Mul(hn::Mul(all(4.0f), m.v[2]), hn::Mul(cx, cy))),
                           hn::Mul(hn::Mul(two, m.v[3]), c2));
     return hn::IfThenZeroElse(hn::Lt(hn::Abs(m.v[1]), all(1e-6f)), sum);
+}
+
+/// Not those that take the shape of the last node itself: footprint_at does not normalise them either.
+HWY_INLINE M is_tabulated(const FootprintTable& table, V radius_px) {
+    const auto node_radius_px = [&](std::size_t node) {  // the inverse of footprint_nodes
+        return all(std::bit_cast<float>(static_cast<std::uint32_t>(
+            (FootprintTable::first_node + static_cast<std::int64_t>(node)) << FootprintTable::node_bits)));
+    };
+    const std::size_t last = table.nodes.size() - 1;
+    return hn::And(hn::Lt(radius_px, node_radius_px(last)), hn::Ne(radius_px, node_radius_px(last - 1)));
 }
 
 /// The part of the footprint that is computed, for splats n to n + lanes: footprint_at, many at once.
@@ -129,10 +144,10 @@ HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& ba
         mass = hn::Mul(pi, hn::Add(lo, hn::Mul(width, plain.v[0])));
         if (table.flat_core) edge_mass = hn::Mul(hn::Mul(pi, width), Moments(batch, 1, n).v[0]);
     }
-    const V cx = load(batch.cosine_x + n), cy = load(batch.cosine_y + n);
+    const V cx = pixel_cosines_of(load(batch.x_px + n)), cy = pixel_cosines_of(load(batch.y_px + n));
     const V wanted = hn::Mul(hn::Mul(all(table.integral), tabulated_px), tabulated_px);
     const V found = hn::Mul(mass, hn::Add(one, ripple(plain, cx, cy)));
-    const auto tabulated = hn::Gt(load(batch.tabulated + n), zero);
+    const auto tabulated = is_tabulated(table, radius);
     V amplitude = shrink, edge_gain = zero;
     if (table.flat_core) {
         const V edge_found = hn::Mul(edge_mass, hn::Add(one, ripple(Moments(batch, 1, n), cx, cy)));
@@ -149,6 +164,7 @@ HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& ba
 /// Weights of a splat whose layer is not the only one.
 HWY_INLINE void prepare_weight(const FootprintTable& table, SplatBatch& batch, int i) {
     Footprint f;
+    batch.linear_in_distance[i] = table.linear_in_distance;
     footprint_at(table, batch.radius_px[i], batch.x_px[i], batch.y_px[i], f);
     interpolate_cubics(*f.node_a, *f.node_b, f.t, batch, i);
     batch.lo[i] = f.lo;
@@ -175,6 +191,24 @@ HWY_INLINE void prepare_occlusion(const ScreenSplat& splat, const FoldLayer& lay
     batch.bright[i] = bright;
 }
 
+/// The same for `lanes` splats that are all screens.
+HWY_INLINE void prepare_screens(SplatBatch& batch, int n) {
+    V sum = hn::Zero(D());
+    M bright = hn::Lt(sum, sum);
+    for (int k = 0; k < 3; ++k) {
+        const V color = load(batch.color[k] + n);
+        store(color, batch.occlusion[k] + n);
+        sum = hn::Add(sum, color);
+        bright = hn::Or(bright, hn::Gt(color, all(1.0f)));
+    }
+    store(hn::Div(sum, all(3.0f)), batch.occlusion[3] + n);
+    std::fill_n(batch.bright + n, lanes, std::uint8_t{0});
+    if (hn::AllFalse(D(), bright)) return;
+    alignas(64) float is_bright[lanes];
+    store(hn::IfThenElseZero(bright, all(1.0f)), is_bright);
+    for (int i = 0; i < lanes; ++i) batch.bright[n + i] = is_bright[i] > 0.0f;
+}
+
 inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {
     const float x = (splat.x_px - settings.center_x_px) / settings.focal_px;
     const float y = (splat.y_px - settings.center_y_px) / settings.focal_px;
@@ -182,28 +216,34 @@ inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {
     return settings.orthographic ? key : std::sqrt(key / (1.0f + x * x + y * y));
 }
 
-/// Everything about the splats `which` of the batch. `table`: the one footprint table of all layers, or null.
+/// Everything about the splats `which` of the batch.
 template <class Pixels>
-void prepare_splats(const FoldJob& job, const FootprintTable* table, SplatBits which, SplatBatch& batch) {
+void prepare_splats(const FoldJob& job, const FoldCommon& common, SplatBits which, SplatBatch& batch) {
     while (which.any()) {
         const int i = which.take_first();
         const ScreenSplat& splat = *job.splats[batch.index[i]];
-        const FoldLayer& layer = job.layers[splat.layer];
         batch.radius_px[i] = splat.radius_px;
         batch.alpha[i] = splat.opacity;
         for (int k = 0; k < 3; ++k) batch.color[k][i] = splat.color[k];
-        batch.linear_in_distance[i] = layer.footprints->linear_in_distance;
-        table ? look_up_footprint(*table, batch, i) : prepare_weight(*layer.footprints, batch, i);
-        if constexpr (Pixels::general) prepare_occlusion(splat, layer, batch, i);
+        common.footprints ? look_up_footprint(*common.footprints, batch, i)
+                          : prepare_weight(*job.layers[splat.layer].footprints, batch, i);
+        if constexpr (Pixels::general)
+            if (!common.screen) prepare_occlusion(splat, job.layers[splat.layer], batch, i);
         if constexpr (Pixels::aovs) {
             batch.layer[i] = splat.layer;
             batch.depth[i] = depth_of(splat, job.settings);
         }
     }
+    constexpr float faint = 0.99f;  // leaves more room than the cubics go above 1
+    M is_faint = hn::Eq(hn::Zero(D()), hn::Zero(D()));
     for (int n = 0; n < batch.count; n += lanes) {
-        if (table) normalise_footprints(*table, batch, n);
-        store(hn::Mul(load(batch.alpha + n), load(batch.weight_gain + n)), batch.opacity + n);
+        if (common.footprints) normalise_footprints(*common.footprints, batch, n);
+        const V opacity = hn::Mul(load(batch.alpha + n), load(batch.weight_gain + n));
+        store(opacity, batch.opacity + n);
+        is_faint = hn::And(is_faint, hn::Lt(opacity, all(faint)));
+        if (Pixels::general && common.screen) prepare_screens(batch, n);
     }
+    batch.is_faint = hn::AllTrue(D(), is_faint);
 }
 
 }  // namespace astrosplat::HWY_NAMESPACE

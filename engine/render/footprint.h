@@ -45,6 +45,9 @@ struct alignas(64) FootprintNode {
 struct FootprintTable {
     static constexpr int first_exponent = -6;
     static constexpr float smallest_radius_px = 1.0f / 64.0f;  // 2^first_exponent
+    // A node's radius, as bits of a float: 32 nodes an octave, told apart by the mantissa's five top bits.
+    static constexpr int node_bits = 23 - 5;
+    static constexpr std::int64_t first_node = std::int64_t{127 + first_exponent} << 5;
     std::vector<FootprintNode> nodes;
     bool linear_in_distance = false;  // u linear in d, not in d^2
     bool flat_core = false;           // constant and trapezoid: exactly 1 inside, so only the edge is scaled
@@ -84,11 +87,9 @@ struct FootprintNodes {
     float t;
 };
 inline FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px) {
-    constexpr std::uint32_t step_bits =
-        23 - 5;  // nodes per octave: the five top bits of the float's mantissa
-    constexpr std::int64_t first = std::int64_t{127 + FootprintTable::first_exponent} << 5;
+    constexpr int step_bits = FootprintTable::node_bits;
     const auto bits = std::bit_cast<std::uint32_t>(radius_px);
-    const std::int64_t index = (bits >> step_bits) - first;
+    const std::int64_t index = (bits >> step_bits) - FootprintTable::first_node;
     if (index < 0) return {table.nodes.data(), table.nodes.data(), 0.0f};
     const FootprintNode* node = table.nodes.data() + index;
     if (node >= &table.nodes.back()) return {&table.nodes.back(), &table.nodes.back(), 0.0f};
@@ -98,10 +99,10 @@ inline FootprintNodes footprint_nodes(const FootprintTable& table, float radius_
 
 /// -cos(2 pi i / 256): splat centres are snapped to 1/256 px.
 extern const std::array<float, 256> pixel_cosines;
+constexpr float pixel_cosine_far_px = 1e6f;  // so far out nothing of a splat this small shows
 /// cos of the phase of a coordinate, snapped to 1/256 px, relative to the pixel centres.
 inline float pixel_cosine(float coordinate_px) {
-    constexpr float far_px = 1e6f;  // so far out nothing of a splat this small shows
-    const float inside = std::min(std::max(coordinate_px, -far_px), far_px);
+    const float inside = std::min(std::max(coordinate_px, -pixel_cosine_far_px), pixel_cosine_far_px);
     return pixel_cosines[static_cast<std::size_t>(static_cast<int>(inside * 256.0f) & 255)];
 }
 

@@ -65,7 +65,8 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
     : grid_(grid), groups_(groups) {
     std::int64_t columns = grid.columns(), rows = grid.rows();
     for (;;) {
-        levels_.push_back({bins_per_group_, columns, rows});
+        const auto last_x = static_cast<float>(columns - 1), last_y = static_cast<float>(rows - 1);
+        levels_.push_back({bins_per_group_, columns, rows, {last_x, last_y, last_x, last_y}});
         bins_per_group_ += columns * rows;
         if (columns == 1 && rows == 1) break;
         columns = (columns + 1) / 2;
@@ -86,15 +87,17 @@ TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px, 
         ++number;
     }
     const Level& level = levels_[number];
-    const auto bin = [&](float px, std::int64_t count) {  // clamped first: rounding towards 0 is then floor
-        const float b = std::min(std::max(px * bins_per_px, 0.0f), static_cast<float>(count - 1));
-        return static_cast<std::uint32_t>(static_cast<std::int32_t>(b));
-    };
     const float x = splat.x_px - static_cast<float>(grid_.x0), y = splat.y_px - static_cast<float>(grid_.y0);
-    const std::uint32_t x0 = bin(x - support_px, level.columns), y0 = bin(y - support_px, level.rows);
+    const float corner_px[4] = {x - support_px, y - support_px, x + support_px, y + support_px};
+    std::int32_t bin[4];  // clamped first: rounding towards 0 is then floor
+    for (int k = 0; k < 4; ++k)
+        bin[k] = static_cast<std::int32_t>(
+            std::min(std::max(corner_px[k] * bins_per_px, 0.0f), level.last_bin[k]));
     const auto columns = static_cast<std::uint32_t>(level.columns);
-    return {static_cast<std::uint32_t>(group * bins_per_group_ + level.first_bin) + y0 * columns + x0,
-            columns, bin(x + support_px, level.columns) - x0 + 1, bin(y + support_px, level.rows) - y0 + 1};
+    const auto first_bin = static_cast<std::uint32_t>(group * bins_per_group_ + level.first_bin);
+    return {first_bin + static_cast<std::uint32_t>(bin[1]) * columns + static_cast<std::uint32_t>(bin[0]),
+            columns, static_cast<std::uint32_t>(bin[2] - bin[0] + 1),
+            static_cast<std::uint32_t>(bin[3] - bin[1] + 1)};
 }
 
 /// The bins of the splats just projected.

@@ -75,6 +75,7 @@ class TileBins {
   private:
     struct Level {
         std::int64_t first_bin = 0, columns = 0, rows = 0;
+        float last_bin[4];  // columns - 1, rows - 1, twice
     };
     struct BinRect {
         std::uint32_t first_bin;  // at x0, y0
