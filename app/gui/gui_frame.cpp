@@ -1,7 +1,6 @@
 // The few things all parts of the window do.
 #include "gui/gui_frame.h"
 
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include "core/error.h"
@@ -48,16 +47,6 @@ FrameRange frame_range(const Scene& scene) {
         // Said where it is typed; the timeline shows one frame meanwhile.
     }
     return {};
-}
-
-std::string short_count(std::int64_t count) {
-    const double n = static_cast<double>(count);
-    if (count < 1000) return fmt::format("{}", count);
-    if (n < 9.95e3) return fmt::format("{:.1f} k", n / 1e3);
-    if (n < 999.5e3) return fmt::format("{:.0f} k", n / 1e3);
-    if (n < 99.95e6) return fmt::format("{:.1f} M", n / 1e6);
-    if (n < 999.5e6) return fmt::format("{:.0f} M", n / 1e6);
-    return fmt::format("{:.1f} G", n / 1e9);
 }
 
 }  // namespace astrosplat

@@ -12,6 +12,7 @@
 #include "edit/status.h"
 #include "edit/view_state.h"
 #include "gui/gui.h"
+#include "gui/short_count.h"
 
 namespace astrosplat {
 
@@ -41,8 +42,5 @@ struct FrameRange {
     double first = 1.0, last = 1.0;
 };
 FrameRange frame_range(const Scene& scene);
-
-/// "240", "24 k", "12.4 M": three digits at most.
-std::string short_count(std::int64_t count);
 
 }  // namespace astrosplat

@@ -24,12 +24,7 @@ TEST(PanelWords, LargeIntegersAreGrouped) {
     EXPECT_EQ(figures(std::int64_t{-65536}), "-65 536");
 }
 
-TEST(PanelWords, CountsAreShort) {
-    EXPECT_EQ(short_count(340), "340");
-    EXPECT_EQ(short_count(1234), "1.2 k");
-    EXPECT_EQ(short_count(812345), "812 k");
-    EXPECT_EQ(short_count(2900000), "2.9 M");
-    EXPECT_EQ(short_count(3200000000), "3.20 G");
+TEST(PanelWords, SharesArePercent) {
     EXPECT_EQ(percent(0.614), "61 %");
     EXPECT_EQ(percent(0.004), "0.4 %");
 }

@@ -48,16 +48,6 @@ std::string figures(double number) {
 
 std::string figures(std::int64_t number) { return grouped(fmt::format("{}", number)); }
 
-std::string short_count(std::int64_t count) {
-    const double n = static_cast<double>(count);
-    if (count < 1000) return fmt::format("{}", count);
-    if (count < 999500)
-        return count < 9950 ? fmt::format("{:.1f} k", n / 1e3) : fmt::format("{:.0f} k", n / 1e3);
-    if (count < 999500000)
-        return count < 99500000 ? fmt::format("{:.1f} M", n / 1e6) : fmt::format("{:.0f} M", n / 1e6);
-    return fmt::format("{:.2f} G", n / 1e9);
-}
-
 std::string percent(double share) {
     const double p = share * 100.0;
     return p > 0.0 && p < 1.0 ? fmt::format("{:.1f} %", p) : fmt::format("{:.0f} %", p);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "gui/short_count.h"
 #include "scene/parameter.h"
 
 namespace astrosplat::panel {
@@ -13,9 +14,6 @@ std::string figures(double number);
 
 /// Of an integer: groups of three from 10,000 on.
 std::string figures(std::int64_t number);
-
-/// "2.9 M", "812 k", "340".
-std::string short_count(std::int64_t count);
 
 /// "61 %"; `share` 0..1.
 std::string percent(double share);
