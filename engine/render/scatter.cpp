@@ -73,7 +73,8 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
         rows = (rows + 1) / 2;
     }
     // The last block of each bin and worker is half empty on average: an eighth of the memory at most.
-    block_records_ = std::clamp<std::int64_t>(expected_records / (4 * bins() * thread_count()), 8, 128);
+    const std::int64_t writers_bins = std::max<std::int64_t>(1, bins() * thread_count());
+    block_records_ = std::clamp<std::int64_t>(expected_records / (4 * writers_bins), 8, 128);
 }
 
 /// The bins that a splat's square of support touches. A level is chosen whose bins are at least as wide as
