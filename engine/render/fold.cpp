@@ -114,10 +114,17 @@ HWY_INLINE bool fold_block(const SplatBatch& batch, SplatBits bits, const Cell& 
     return open;
 }
 
+/// A record may lie in two cache lines.
+HWY_INLINE void prefetch(const ScreenSplat& splat) {
+    hwy::Prefetch(&splat);
+    hwy::Prefetch(&splat.hybrid);
+}
+
 /// Prepares those splats of the batch that touch an open block, and folds the batch.
 template <class Pixels, bool kFlat>
 void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch, Cell& cell,
                 TilePlanes& planes) {
+    for (int i = 0; i < batch.count; ++i) prefetch(*job.splats[batch.index[i]]);
     find_touched_blocks(batch, cell.x0_px, cell.y0_px);
     SplatBits touching;
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1)
@@ -129,12 +136,6 @@ void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch,
         if (!fold_block<Pixels, kFlat>(batch, batch.touches[block], cell, block, job.settings.stop, planes))
             cell.open &= ~(std::uint64_t{1} << block);
     }
-}
-
-/// A record may lie in two cache lines.
-HWY_INLINE void prefetch(const ScreenSplat& splat) {
-    hwy::Prefetch(&splat);
-    hwy::Prefetch(&splat.hybrid);
 }
 
 /// Sets the places of all splats.

@@ -227,30 +227,35 @@ double TileBins::footprint_px() const {
     return sum;
 }
 
-std::int64_t estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
-                              const Progress& progress) {
+std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
+                                           std::span<const int> tile_sizes_px, const Progress& progress) {
     constexpr std::int64_t block = 16, stride = 64 * block;
     const ScreenRect rect = rect_of(grid);
-    double sum = 0.0;
+    std::vector<double> sums(tile_sizes_px.size(), 0.0);
     std::vector<ScreenSplat> splats;
     for (const LayerProjection& layer : layers) {
+        const std::int64_t count = layer.splats->size();
+        std::vector<double> found(tile_sizes_px.size(), 0.0);
         std::int64_t sampled = 0;
-        double records = 0.0;
-        for (std::int64_t begin = 0; begin < layer.splats->size(); begin += stride) {
+        for (std::int64_t begin = 0; begin < count; begin += stride) {
             progress.check();
-            const std::int64_t end = std::min(begin + block, layer.splats->size());
+            const std::int64_t end = std::min(begin + block, count);
             splats.clear();
             project(layer, begin, end, rect, splats);
             sampled += end - begin;
-            for (const ScreenSplat& splat : splats) {
-                const float tiles = 1.0f + 2.0f * support_of(layer, splat) / static_cast<float>(grid.tile_px);
-                records += std::min(9.0f, tiles * tiles);
-            }
+            for (const ScreenSplat& splat : splats)
+                for (std::size_t t = 0; t < found.size(); ++t) {
+                    const float tiles =
+                        1.0f + 2.0f * support_of(layer, splat) / static_cast<float>(tile_sizes_px[t]);
+                    found[t] += std::min(9.0f, tiles * tiles);
+                }
         }
-        if (sampled > 0)
-            sum += records * static_cast<double>(layer.splats->size()) / static_cast<double>(sampled);
+        for (std::size_t t = 0; t < found.size() && sampled > 0; ++t)
+            sums[t] += found[t] * static_cast<double>(count) / static_cast<double>(sampled);
     }
-    return static_cast<std::int64_t>(sum);
+    std::vector<std::int64_t> records;
+    for (const double sum : sums) records.push_back(static_cast<std::int64_t>(sum));
+    return records;
 }
 
 }  // namespace astrosplat

@@ -123,8 +123,9 @@ class TileBins {
     std::vector<std::size_t> first_block_;              // of each bin; one more at the end
 };
 
-/// Screen splats that the layers will take, estimated from every 64th block.
-std::int64_t estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
-                              const Progress& progress);
+/// Records that the layers will take in tiles of each of the sizes, estimated from every 64th block of
+/// splats.
+std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
+                                           std::span<const int> tile_sizes_px, const Progress& progress);
 
 }  // namespace astrosplat
