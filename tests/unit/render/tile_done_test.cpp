@@ -84,7 +84,9 @@ TEST(TileDone, TheMiddleComesFirst) {
     const int before = thread_count();
     set_thread_count(1);
     std::vector<std::int64_t> distances;  // of the tiles' centres from the picture's, squared and times four
-    watch(settings_of(width_px, height_px), [&](const Region& t, const RenderedFrame&) {
+    RenderSettings settings = settings_of(width_px, height_px);
+    settings.tile_px = 32;
+    watch(settings, [&](const Region& t, const RenderedFrame&) {
         const std::int64_t x = 2 * t.x + t.width - width_px, y = 2 * t.y + t.height - height_px;
         distances.push_back(x * x + y * y);
     });
