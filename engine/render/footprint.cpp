@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "core/parallel.h"
 #include "core/quadrature.h"
@@ -234,9 +235,10 @@ float ripple(const FootprintNodes& nodes, float (FootprintMoments::*spectrum)[3]
 
 }  // namespace
 
-FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px, const Progress& progress) {
+FootprintTable begin_footprint_table(const Falloff& falloff, float pixel_filter_px) {
     using Shape = Falloff::Shape;
     FootprintTable table;
+    table.falloff = falloff;
     table.linear_in_distance = falloff.shape != Shape::constant && falloff.shape != Shape::gaussian;
     table.flat_core = falloff.shape == Shape::constant || falloff.shape == Shape::trapezoid;
     table.pixel_filter_px = pixel_filter_px;
@@ -250,13 +252,35 @@ FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_p
     if (falloff.shape == Shape::exponential && falloff.sharpness > exponent)
         table.reach = static_cast<float>(exponent / falloff.sharpness);
     table.nodes.resize(octaves * steps_per_octave + 1);
-    parallel_for(static_cast<std::int64_t>(table.nodes.size()), [&](std::int64_t i, int) {
+    return table;
+}
+
+void make_footprint_nodes(FootprintTable& table, float least_px, float largest_px, const Progress& progress) {
+    const auto number = [&](const FootprintNode* node) {
+        return static_cast<std::size_t>(node - table.nodes.data());
+    };
+    std::size_t first = number(footprint_nodes(table, least_px).a);
+    std::size_t end = number(footprint_nodes(table, largest_px).b) + 1;
+    if (table.first_made < table.end_made) {  // they stay in one piece
+        first = std::min(first, table.first_made);
+        end = std::max(end, table.end_made);
+    }
+    parallel_for(static_cast<std::int64_t>(end - first), [&](std::int64_t n, int) {
+        const std::size_t i = first + static_cast<std::size_t>(n);
+        if (i >= table.first_made && i < table.end_made) return;
         progress.check();
         const double octave = static_cast<double>(std::uint64_t{1} << (i / steps_per_octave));
         const double radius_px = double{FootprintTable::smallest_radius_px} * octave *
                                  (1.0 + double(i % steps_per_octave) / steps_per_octave);
-        table.nodes[i] = make_node(table, falloff, radius_px);
+        table.nodes[i] = make_node(table, table.falloff, radius_px);
     });
+    table.first_made = first;
+    table.end_made = end;
+}
+
+FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px, const Progress& progress) {
+    FootprintTable table = begin_footprint_table(falloff, pixel_filter_px);
+    make_footprint_nodes(table, 0.0f, std::numeric_limits<float>::max(), progress);
     return table;
 }
 

@@ -49,6 +49,8 @@ struct FootprintTable {
     static constexpr int node_bits = 23 - 5;
     static constexpr std::int64_t first_node = std::int64_t{127 + first_exponent} << 5;
     std::vector<FootprintNode> nodes;
+    std::size_t first_made = 0, end_made = 0;  // the nodes that exist
+    Falloff falloff;
     bool linear_in_distance = false;  // u linear in d, not in d^2
     bool flat_core = false;           // constant and trapezoid: exactly 1 inside, so only the edge is scaled
     float pixel_filter_px = 0.5f;
@@ -76,7 +78,13 @@ struct Footprint {
     float support_px = 0.0f;
 };
 
-/// Builds the table for every radius from 2^-6 to 2^10 px (larger ones reuse the last shape). About 30 ms.
+/// A table without nodes: all that does not depend on the radius.
+FootprintTable begin_footprint_table(const Falloff& falloff, float pixel_filter_px);
+/// Makes those nodes that radii in [least, largest] need and that do not exist yet. All of them take about
+/// 60 ms of a core. When Cancelled is thrown the table is as before.
+void make_footprint_nodes(FootprintTable& table, float least_px, float largest_px,
+                          const Progress& progress = {});
+/// The table for every radius from 2^-6 to 2^10 px (larger ones reuse the last shape).
 FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_px,
                                     const Progress& progress = {});
 

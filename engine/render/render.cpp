@@ -119,10 +119,9 @@ struct RenderCache::State {
     std::map<TableKey, std::unique_ptr<FootprintTable>> footprints;
     std::map<FalloffKey, std::unique_ptr<LodTable>> lods;
 
-    const FootprintTable& footprint(const Falloff& falloff, float pixel_filter, const Progress& progress) {
+    FootprintTable& footprint(const Falloff& falloff, float pixel_filter) {
         std::unique_ptr<FootprintTable>& table = footprints[{key_of(falloff), pixel_filter}];
-        if (!table)
-            table = std::make_unique<FootprintTable>(make_footprint_table(falloff, pixel_filter, progress));
+        if (!table) table = std::make_unique<FootprintTable>(begin_footprint_table(falloff, pixel_filter));
         return *table;
     }
     const LodTable& lod(const Falloff& falloff, int finest, const Progress& progress) {
@@ -170,8 +169,7 @@ void prepare(Job& job, RenderCache::State& cache) {
     keep_small(cache.lods);
     for (std::size_t l = 0; l < layers.size(); ++l) {
         const LayerRender& render = layers[l].render;
-        const FootprintTable& footprints =
-            cache.footprint(render.falloff, settings.pixel_filter, job.progress);
+        const FootprintTable& footprints = cache.footprint(render.falloff, settings.pixel_filter);
         LayerProjection projection =
             make_projection(layers[l], static_cast<std::uint16_t>(l), camera, settings);
         projection.reach = footprints.reach;
@@ -253,13 +251,23 @@ std::vector<std::int64_t> tile_order(const Job& job, const TileGrid& grid) {
     return order;
 }
 
+/// Makes the footprints that the splats of a band ask for.
+void make_footprints(const Job& job, const TileBins& bins, RenderCache::State& cache) {
+    const auto [least_px, largest_px] = bins.radii_px();
+    if (least_px > largest_px) return;
+    for (const RenderLayer& layer : job.layers)
+        make_footprint_nodes(cache.footprint(layer.render.falloff, job.settings.pixel_filter), least_px,
+                             largest_px, job.progress);
+}
+
 /// One band, which will take about so many `records`; `before` of the picture's share is done already.
-void render_band(const Job& job, const TileGrid& grid, std::int64_t records, double before, SplatStore& store,
-                 RenderedFrame& frame) {
+void render_band(const Job& job, const TileGrid& grid, std::int64_t records, double before,
+                 RenderCache::State& cache, RenderedFrame& frame) {
     const double share = static_cast<double>(grid.height) / static_cast<double>(job.region.height);
-    store.clear();
+    cache.store.clear();
     TileBins bins(grid, static_cast<int>(job.groups.size()), records);
-    bins.scatter(job.projections, job.group_of_layer, store, job.progress);
+    bins.scatter(job.projections, job.group_of_layer, cache.store, job.progress);
+    make_footprints(job, bins, cache);
     job.progress.at(before + 0.4 * share);
     std::vector<TileWorker> workers;
     for (int i = 0; i < thread_count(); ++i)
@@ -350,7 +358,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     RenderedFrame frame = make_frame(layers, settings, job.region);
     double done = 0.0;
     for (const TileGrid& band : make_bands(job, grid, band_rows)) {
-        render_band(job, band, records / bands, done, state.store, frame);
+        render_band(job, band, records / bands, done, state, frame);
         done += static_cast<double>(band.height) / static_cast<double>(grid.height);
     }
     if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);

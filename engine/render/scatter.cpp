@@ -120,6 +120,8 @@ std::span<const TileBins::Entry> TileBins::list_entries(const LayerProjection& l
             for (std::uint32_t y = 0; y < r.high; ++y)
                 for (std::uint32_t x = 0; x < r.wide; ++x) *end++ = {r.first_bin + y * r.columns + x, number};
         }
+        sums.least_px = std::min(sums.least_px, splat.radius_px);
+        sums.largest_px = std::max(sums.largest_px, splat.radius_px);
         if (!counts_here(grid_, splat.y_px)) continue;
         ++sums.instances;
         sums.footprint_px += real::pi * splat.radius_px * splat.radius_px;
@@ -225,6 +227,15 @@ double TileBins::footprint_px() const {
     double sum = 0.0;
     for (const Sums& chunk : sums_) sum += chunk.footprint_px;
     return sum;
+}
+
+std::pair<float, float> TileBins::radii_px() const {
+    Sums all;
+    for (const Sums& chunk : sums_) {
+        all.least_px = std::min(all.least_px, chunk.least_px);
+        all.largest_px = std::max(all.largest_px, chunk.largest_px);
+    }
+    return {all.least_px, all.largest_px};
 }
 
 std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,

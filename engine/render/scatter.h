@@ -9,8 +9,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/buffer.h"
@@ -71,6 +73,8 @@ class TileBins {
     std::int64_t records() const;    // written, a splat once per bin it touches
     std::int64_t instances() const;  // splats (children counted one by one), each in one band only
     double footprint_px() const;     // sum of their footprints' areas, square px
+    /// The least and the largest radius in px; empty (least > largest) without records.
+    std::pair<float, float> radii_px() const;
 
   private:
     struct Level {
@@ -88,6 +92,7 @@ class TileBins {
     struct Sums {  // over a chunk of splats
         std::int64_t instances = 0;
         double footprint_px = 0.0;
+        float least_px = std::numeric_limits<float>::max(), largest_px = 0.0f;  // radii
     };
     struct Block {
         ScreenSplat* records;

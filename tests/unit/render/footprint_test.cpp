@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
+#include <utility>
+#include <vector>
 
 #include "core/real.h"
 #include "unit/render/scenes.h"
@@ -147,6 +150,57 @@ TEST(Footprint, ProfileIsTheConvolution) {
             }
         }
     }
+}
+
+bool same_nodes(const FootprintNode& a, const FootprintNode& b) {
+    return std::memcmp(a.cubic, b.cubic, sizeof a.cubic) == 0 &&
+           std::memcmp(&a.moments, &b.moments, sizeof a.moments) == 0;
+}
+
+TEST(Footprint, NodesMadeWhenAskedForAreThoseOfTheWholeTable) {
+    const Falloff falloff{Falloff::Shape::trapezoid, 0.5f, 4.5f};
+    const FootprintTable whole = make_footprint_table(falloff, 0.5f);
+    FootprintTable table = begin_footprint_table(falloff, 0.5f);
+    EXPECT_EQ(table.end_made, 0u);
+    // The second range lies apart from the first, the third within both, the last beyond the table.
+    for (const auto& [least, largest] : std::vector<std::pair<float, float>>{
+             {2.0f, 3.1f}, {9.0f, 9.0f}, {2.5f, 8.0f}, {0.001f, 0.001f}, {0.5f, 5000.0f}}) {
+        make_footprint_nodes(table, least, largest);
+        for (const float radius : {least, largest}) {
+            const FootprintNodes made = footprint_nodes(table, radius),
+                                 wanted = footprint_nodes(whole, radius);
+            EXPECT_TRUE(same_nodes(*made.a, *wanted.a)) << radius;
+            EXPECT_TRUE(same_nodes(*made.b, *wanted.b)) << radius;
+        }
+    }
+    EXPECT_EQ(table.first_made, 0u);
+    EXPECT_EQ(table.end_made, table.nodes.size());
+    for (std::size_t i = 0; i < table.nodes.size(); ++i)
+        EXPECT_TRUE(same_nodes(table.nodes[i], whole.nodes[i])) << i;
+}
+
+// The fold does not clamp s to 1 where opacities stay below 0.99.
+void expect_cubics_in_unit_interval(const Falloff& falloff) {
+    const FootprintTable table = make_footprint_table(falloff, 0.5f);
+    float least = 1.0f, largest = 0.0f;
+    for (const FootprintNode& node : table.nodes)
+        for (int s = 0; s < FootprintNode::segments; ++s)
+            for (int k = 0; k <= 32; ++k) {
+                const float f = static_cast<float>(k) / 32.0f;
+                const auto(&c)[4][FootprintNode::segments] = node.cubic;
+                const float p = ((c[3][s] * f + c[2][s]) * f + c[1][s]) * f + c[0][s];
+                least = std::min(least, p);
+                largest = std::max(largest, p);
+            }
+    EXPECT_GT(least, -0.005f) << int(falloff.shape) << " " << falloff.sharpness;
+    EXPECT_LT(largest, 1.005f) << int(falloff.shape) << " " << falloff.sharpness;
+}
+
+TEST(Footprint, CubicsHardlyLeaveTheUnitInterval) {
+    for (const Falloff::Shape shape : all_shapes) expect_cubics_in_unit_interval({shape, 0.5f, 4.5f});
+    for (const Falloff::Shape shape : {Falloff::Shape::gaussian, Falloff::Shape::exponential})
+        for (const float sharpness : {0.5f, 12.0f, 100.0f})
+            expect_cubics_in_unit_interval({shape, 0.5f, sharpness});
 }
 
 }  // namespace
