@@ -1,7 +1,7 @@
-// A block looks at all candidates from its middle and keeps those that can matter to it, and each group of
-// sixteen does the same with those. The candidates over which a group lies come first: each position is
-// measured against the one whose bound is lowest there. What that leaves of the others is little; it is
-// measured where its bounds ask for it.
+// Each group of sixteen positions measures the candidate nearest to its middle. With what that leaves
+// possible the block chooses the candidates that can matter to it, and each group does the same with those.
+// The ones over which a group lies come first: each position is measured against the one whose bound is
+// lowest there. What that leaves of the others is little; it is measured where its bounds ask for it.
 #include "splats/block_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -90,69 +90,83 @@ constexpr auto all_places = [] {
     return places;
 }();
 
+constexpr std::size_t block_groups = block_positions / group;
+
 class GroupQuery {
   public:
-    GroupQuery(const BlockMeasure& measure, BlockScratch& scratch, BlockPositions& positions)
+    GroupQuery(const BlockMeasure& measure, BlockScratch& scratch, BlockPositions& local,
+               BlockAnswers& answers, std::size_t first)
         : m_(measure),
           c_(scratch.chosen),
           rows_(scratch.rows),
-          local_(positions),
-          survey_(scratch.chosen, scratch.notes, measure.slack) {}
-
-    void run(BlockAnswers& answers, std::size_t first) {
-        start(answers, first);
-        const LocalPositions positions = local_.part(first, group);
-        const std::size_t nearest = survey_.look(positions, widest_);
-        if (nearest != Survey::nothing) {
-            first_ = c_.triangle[nearest];
-            measure(first_);
-            update_limits();
-            survey_.note_gaps(nearest, widest_);
-            bound(positions, Survey::Gaps::none);
-            measure_lowest();
-            survey_.update_room(widest_);
-            bound(positions, Survey::Gaps::some);
-            measure_rest();
-        }
-        finish(answers, first);
-    }
-
-    /// Measures all candidates of a short list.
-    void run_all(const CandidateList& candidates, BlockAnswers& answers, std::size_t first) {
-        start(answers, first);
-        for (std::size_t i = 0; i < candidates.count; ++i) measure(candidates.triangle[i]);
-        finish(answers, first);
-    }
-
-  private:
-    void start(const BlockAnswers& answers, std::size_t first) {
+          notes_(scratch.notes),
+          answers_(answers),
+          first_position_(first),
+          positions_(local.part(first, group)),
+          limit_(local.limit + first) {
         g_.x = &answers.x[first], g_.y = &answers.y[first], g_.z = &answers.z[first];
         std::fill_n(g_.squared, group, m_.max_distance * m_.max_distance);
         std::fill_n(g_.triangle, group, static_cast<double>(ClosestPoint::none));
         std::fill_n(g_.v, group, 0.0);
         std::fill_n(g_.w, group, 0.0);
-        std::fill_n(lowest_, group, std::numeric_limits<float>::infinity());
-        std::fill_n(lowest_row_, group, 0u);
-        rows_.count = 0;
-        limit_ = local_.limit + first;
-        update_limits();
     }
 
-    void finish(BlockAnswers& answers, std::size_t first) const {
+    /// Measures the candidate that is nearest to the group's middle. False when none matters.
+    bool measure_nearest(const CandidateList& candidates) {
+        update_limits();
+        box_ = box_around(positions_, m_.slack);
+        const std::size_t nearest = Survey(candidates, notes_, m_.slack).nearest(box_, widest_);
+        if (nearest == Survey::nothing) {
+            std::fill_n(limit_, group, -1.0f);  // the block need not care
+            return false;
+        }
+        first_ = candidates.slot[nearest];
+        reference_ = candidates.bound(nearest);
+        measure(first_);
+        update_limits();
+        return true;
+    }
+
+    /// Measures what is left of the chosen candidates.
+    void measure_chosen() {
+        rows_.count = 0;
+        std::fill_n(lowest_, group, std::numeric_limits<float>::infinity());
+        std::fill_n(lowest_row_, group, 0u);
+        Survey survey(c_, notes_, m_.slack);
+        survey.note(positions_, box_, reference_, widest_);
+        bound(survey, Survey::Gaps::none);
+        measure_lowest();
+        survey.update_room(widest_);
+        bound(survey, Survey::Gaps::some);
+        measure_rest();
+    }
+
+    /// Measures all candidates of a short list.
+    void measure_all_of(const CandidateList& candidates) {
+        for (std::size_t i = 0; i < candidates.count; ++i) measure(candidates.slot[i]);
+    }
+
+    void finish() {
+        const std::size_t first = first_position_;
         for (std::size_t i = 0; i < group; ++i) {
-            answers.distance_squared[first + i] = g_.squared[i];
-            answers.triangle[first + i] = static_cast<std::uint32_t>(g_.triangle[i]);
-            answers.v[first + i] = g_.v[i];
-            answers.w[first + i] = g_.w[i];
+            answers_.distance_squared[first + i] = g_.squared[i];
+            answers_.triangle[first + i] = static_cast<std::uint32_t>(g_.triangle[i]);
+            answers_.v[first + i] = g_.v[i];
+            answers_.w[first + i] = g_.w[i];
         }
     }
 
+    float widest() const { return widest_; }
+    const TriangleBound& reference() const { return reference_; }
+
+  private:
     // True when the triangle is nearest for a position of the group.
-    bool measure(std::uint32_t triangle) {
-        const TriangleShape s = triangle_shape(m_.corners[triangle]);
-        if (has_no_inside(s)) return offer_thin(s, triangle, g_);
+    bool measure(std::uint32_t slot) {
+        const ClusteredTriangle& triangle = m_.triangles[slot];
+        const TriangleShape s = triangle_shape(triangle.corners);
+        if (has_no_inside(s)) return offer_thin(s, triangle.number, g_);
         bool any = false;
-        const ShapeLanes lanes = same_shape(s, triangle);
+        const ShapeLanes lanes = same_shape(s, triangle.number);
         for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles())) any |= offer(lanes, g_, i);
         return any;
     }
@@ -172,29 +186,29 @@ class GroupQuery {
     }
 
     // New rows, for the candidates that matter.
-    void bound(const LocalPositions& positions, Survey::Gaps gaps) {
+    void bound(const Survey& survey, Survey::Gaps gaps) {
         const Many d;
         const ManyNumbers du;
         const std::size_t first_row = rows_.count;
         for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const auto taken = hn::RebindMask(du, survey_.matter(i, gaps));
+            const auto taken = hn::RebindMask(du, survey.matter(i, gaps));
             append(du, &all_places[i], taken, &rows_.place[rows_.count]);
             rows_.count += hn::CountTrue(du, taken);
         }
-        for (std::size_t i = 0; i < group; i += hn::Lanes(Floats())) bound_lanes(positions, first_row, i);
+        for (std::size_t i = 0; i < group; i += hn::Lanes(Floats())) bound_lanes(survey, first_row, i);
     }
 
     // Rows from first_row on, for one vector of positions, and the lowest of them.
-    void bound_lanes(const LocalPositions& positions, std::size_t first_row, std::size_t i) {
+    void bound_lanes(const Survey& survey, std::size_t first_row, std::size_t i) {
         const Floats d;
         const hn::RebindToUnsigned<Floats> du;
-        const auto px = hn::Load(d, positions.x + i), py = hn::Load(d, positions.y + i),
-                   pz = hn::Load(d, positions.z + i);
+        const auto px = hn::Load(d, positions_.x + i), py = hn::Load(d, positions_.y + i),
+                   pz = hn::Load(d, positions_.z + i);
         auto lowest = hn::Load(d, lowest_ + i);
         auto lowest_row = hn::Load(du, lowest_row_ + i);
         for (std::size_t row = first_row; row < rows_.count; ++row) {
             const std::size_t place = rows_.place[row];
-            const auto bound = bound_of(place, hn::Sub(px, hn::Set(d, c_.center_x[place])),
+            const auto bound = bound_of(survey, place, hn::Sub(px, hn::Set(d, c_.center_x[place])),
                                         hn::Sub(py, hn::Set(d, c_.center_y[place])),
                                         hn::Sub(pz, hn::Set(d, c_.center_z[place])));
             hn::Store(bound, d, &rows_.bound[row * group + i]);
@@ -208,20 +222,20 @@ class GroupQuery {
 
     // Square of at most the distance from a triangle, for positions relative to its disc's middle: the height
     // above its plane, and how far outside one of its edges a position lies.
-    HWY_INLINE hn::Vec<Floats> bound_of(std::size_t place, hn::Vec<Floats> x, hn::Vec<Floats> y,
-                                        hn::Vec<Floats> z) const {
+    HWY_INLINE hn::Vec<Floats> bound_of(const Survey& survey, std::size_t place, hn::Vec<Floats> x,
+                                        hn::Vec<Floats> y, hn::Vec<Floats> z) const {
         const Floats d;
         const float normal_x = c_.normal_x[place], normal_y = c_.normal_y[place],
                     normal_z = c_.normal_z[place];
         const auto along = [&](float nx, float ny, float nz) HWY_ATTR {
             return dot3(x, y, z, hn::Set(d, nx), hn::Set(d, ny), hn::Set(d, nz));
         };
-        const auto off = hn::Set(d, survey_.rounding(c_.radius[place]));
+        const auto off = hn::Set(d, survey.rounding(c_.radius[place]));
         auto height = hn::Abs(along(normal_x, normal_y, normal_z)), outside = hn::Zero(d);
         if (!has_plane(place)) {
             outside = hn::Sub(hn::Sqrt(dot3(x, y, z, x, y, z)), hn::Set(d, c_.radius[place]));
         } else {
-            const TriangleEdges& e = m_.edges[c_.triangle[place]];
+            const TriangleEdges& e = m_.triangles[c_.slot[place]].edges;
             const auto beyond = [&](std::size_t k) HWY_ATTR {
                 return hn::Sub(along(e.normal_x[k], e.normal_y[k], e.normal_z[k]), hn::Set(d, e.offset[k]));
             };
@@ -237,25 +251,25 @@ class GroupQuery {
         return c_.normal_x[place] != 0.0f || c_.normal_y[place] != 0.0f || c_.normal_z[place] != 0.0f;
     }
 
-    std::uint32_t number(std::size_t row) const { return c_.triangle[rows_.place[row]]; }
+    std::uint32_t slot(std::size_t row) const { return c_.slot[rows_.place[row]]; }
 
     // Each position against the row whose bound is lowest there.
     void measure_lowest() {
         if (rows_.count == 0) return;
-        std::uint32_t numbers[group];
+        std::uint32_t slots[group];
         bool same = true, usable = true;
         for (std::size_t i = 0; i < group; ++i) {
-            numbers[i] = number(lowest_row_[i]);
-            same = same && numbers[i] == numbers[0];
+            slots[i] = slot(lowest_row_[i]);
+            same = same && slots[i] == slots[0];
             usable = usable && has_plane(rows_.place[lowest_row_[i]]);
         }
-        if (same && numbers[0] == first_) return;
+        if (same && slots[0] == first_) return;
         if (!same && !usable) return;  // to measure_rest
         if (same) {
-            measure(numbers[0]);
+            measure(slots[0]);
         } else {
             for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles()))
-                offer(shapes_of(m_.corners, numbers + i), g_, i);
+                offer(shapes_of(m_.triangles, slots + i), g_, i);
         }
         for (std::size_t i = 0; i < group; ++i)
             rows_.bound[lowest_row_[i] * group + i] = std::numeric_limits<float>::infinity();
@@ -264,7 +278,7 @@ class GroupQuery {
 
     void measure_rest() {
         for (std::size_t row = 0; row < rows_.count; ++row) {
-            if (matters(row) && number(row) != first_ && measure(number(row))) update_limits();
+            if (matters(row) && slot(row) != first_ && measure(slot(row))) update_limits();
         }
     }
 
@@ -280,12 +294,16 @@ class GroupQuery {
     const BlockMeasure& m_;
     const CandidateList& c_;
     BoundRows& rows_;
-    BlockPositions& local_;
-    Survey survey_;
+    SurveyNotes& notes_;
+    BlockAnswers& answers_;
+    std::size_t first_position_;
+    LocalPositions positions_;
+    float* limit_;
+    PositionsBox box_;
     Group g_;
-    float* limit_ = nullptr;
     float widest_ = 0.0f;      // largest root of a limit
     std::uint32_t first_ = 0;  // the triangle that was measured first
+    TriangleBound reference_;  // its bound
     alignas(64) float lowest_[group];
     alignas(64) std::uint32_t lowest_row_[group];
 };
@@ -296,23 +314,6 @@ void to_local(const double* at, double origin, float* local) {
     for (std::size_t i = 0; i < block_positions; ++i) local[i] = static_cast<float>(at[i] - origin);
 }
 
-// Limits from one point of a triangle: no position is farther from the meshes than from that. Their largest
-// root.
-float limit_by_point(const glm::vec3& point, float max_distance, float slack, BlockPositions& local) {
-    const Floats d;
-    auto widest = hn::Zero(d);
-    for (std::size_t i = 0; i < block_positions; i += hn::Lanes(d)) {
-        const auto x = hn::Sub(hn::Load(d, local.x + i), hn::Set(d, point.x)),
-                   y = hn::Sub(hn::Load(d, local.y + i), hn::Set(d, point.y)),
-                   z = hn::Sub(hn::Load(d, local.z + i), hn::Set(d, point.z));
-        const auto distance = hn::Min(hn::Sqrt(dot3(x, y, z, x, y, z)), hn::Set(d, max_distance));
-        const auto limit = hn::Add(hn::Mul(distance, hn::Set(d, 1.00001f)), hn::Set(d, slack));
-        hn::Store(hn::Mul(limit, limit), d, local.limit + i);
-        widest = hn::Max(widest, limit);
-    }
-    return hn::GetLane(hn::MaxOfLanes(d, widest));
-}
-
 void choose(const CandidateList& from, const Survey& survey, CandidateList& to) {
     const Many d;
     const ManyNumbers du;
@@ -321,7 +322,7 @@ void choose(const CandidateList& from, const Survey& survey, CandidateList& to) 
         const auto taken = survey.matter(i);
         const auto copy = [&](const auto& source, auto& target)
                               HWY_ATTR { append(d, &source[i], taken, &target[to.count]); };
-        append(du, &from.triangle[i], hn::RebindMask(du, taken), &to.triangle[to.count]);
+        append(du, &from.slot[i], hn::RebindMask(du, taken), &to.slot[to.count]);
         copy(from.center_x, to.center_x), copy(from.center_y, to.center_y), copy(from.center_z, to.center_z);
         copy(from.normal_x, to.normal_x), copy(from.normal_y, to.normal_y), copy(from.normal_z, to.normal_z);
         copy(from.radius, to.radius);
@@ -329,45 +330,55 @@ void choose(const CandidateList& from, const Survey& survey, CandidateList& to) 
     }
 }
 
-// To scratch.chosen. False when no candidate matters.
-bool choose_candidates(const BlockMeasure& m, BlockScratch& scratch, BlockPositions& local) {
-    Survey survey(scratch.candidates, scratch.notes, m.slack);
-    const auto max_distance = static_cast<float>(m.max_distance) * 1.00001f;
+float distance_squared(const glm::vec3& a, const glm::vec3& b) {
+    const glm::vec3 apart = a - b;
+    return apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
+}
+
+// To scratch.chosen, what the groups that are near something need. The reference is that of the group which
+// is nearest to the block's middle.
+void choose_candidates(const BlockMeasure& m, BlockScratch& scratch, const BlockPositions& local,
+                       const std::array<GroupQuery*, block_groups>& near, std::size_t near_count) {
     const LocalPositions positions = local.part(0, block_positions);
-    const std::size_t nearest = survey.look(positions, max_distance + m.slack);
-    if (nearest == Survey::nothing) return false;
-    const TriangleShape shape = triangle_shape(m.corners[scratch.candidates.triangle[nearest]]);
-    float widest = max_distance + m.slack;
-    if (is_narrow(shape)) {
-        std::fill_n(local.limit, block_positions, widest * widest);
-    } else {
-        const ClosestPoint closest = closest_on_triangle(m.origin + glm::dvec3(survey.middle()), shape);
-        const glm::dvec3 point =
-            shape.a + shape.ab * closest.barycentric.x + shape.ac * closest.barycentric.y;
-        widest = limit_by_point(glm::vec3(point - m.origin), max_distance, m.slack, local);
+    const PositionsBox box = box_around(positions, m.slack);
+    const TriangleBound* reference = nullptr;
+    float widest = 0.0f;
+    for (std::size_t i = 0; i < near_count; ++i) {
+        const TriangleBound& other = near[i]->reference();
+        const bool nearer = !reference || distance_squared(other.center, box.middle) <
+                                              distance_squared(reference->center, box.middle);
+        if (nearer) reference = &other;
+        widest = std::max(widest, near[i]->widest());
     }
-    survey.note_gaps(nearest, widest);
+    Survey survey(scratch.candidates, scratch.notes, m.slack);
+    survey.note(positions, box, *reference, widest);
     choose(scratch.candidates, survey, scratch.chosen);
-    return true;
+    for (std::size_t i = 0; i < scratch.chosen.count; ++i) {  // most will be needed soon
+        const auto* triangle = reinterpret_cast<const char*>(&m.triangles[scratch.chosen.slot[i]]);
+        __builtin_prefetch(triangle), __builtin_prefetch(triangle + 64);
+    }
 }
 
 void measure_all(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers) {
     constexpr std::size_t few = 3;  // candidates that are measured in less time than bounded
     BlockPositions local;
-    GroupQuery query(measure, scratch, local);
-    if (scratch.candidates.count <= few) {
-        for (std::size_t first = 0; first < block_positions; first += group)
-            query.run_all(scratch.candidates, answers, first);
-        return;
-    }
     to_local(answers.x.data(), measure.origin.x, local.x);
     to_local(answers.y.data(), measure.origin.y, local.y);
     to_local(answers.z.data(), measure.origin.z, local.z);
-    if (!choose_candidates(measure, scratch, local)) {
-        answers.triangle.fill(ClosestPoint::none);
-        return;
+    const auto query = [&](std::size_t g)
+                           HWY_ATTR { return GroupQuery(measure, scratch, local, answers, g * group); };
+    std::array<GroupQuery, block_groups> groups{query(0), query(1), query(2), query(3)};
+    std::array<GroupQuery*, block_groups> near;
+    std::size_t near_count = 0;
+    for (GroupQuery& g : groups) {
+        if (scratch.candidates.count <= few)
+            g.measure_all_of(scratch.candidates);
+        else if (g.measure_nearest(scratch.candidates))
+            near[near_count++] = &g;
     }
-    for (std::size_t first = 0; first < block_positions; first += group) query.run(answers, first);
+    if (near_count > 0) choose_candidates(measure, scratch, local, near, near_count);
+    for (std::size_t i = 0; i < near_count; ++i) near[i]->measure_chosen();
+    for (GroupQuery& g : groups) g.finish();
 }
 
 }  // namespace

@@ -43,11 +43,10 @@ struct BlockAnswers {
 void place_block(const BlockPlaces& places, BlockAnswers& answers);
 
 struct BlockMeasure {
-    const TriangleCorners* corners;  // of all triangles
-    const TriangleEdges* edges;      // likewise
-    glm::dvec3 origin;               // of the candidates' coordinates
-    float slack;                     // see ClosestPointIndex::slack, for all positions of the block
-    double max_distance;             // scene units
+    const ClusteredTriangle* triangles;  // all, by slot
+    glm::dvec3 origin;                   // of the candidates' coordinates
+    float slack;                         // see ClosestPointIndex::slack, for all positions of the block
+    double max_distance;                 // scene units
 };
 
 /// A thread's working memory: the triangles that may be closest to a position of a block, those that are left

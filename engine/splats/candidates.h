@@ -26,18 +26,21 @@ struct TriangleEdges {
     std::array<float, 3> offset;  // scene units
 };
 
-/// Bounds of N triangles as arrays.
+/// Bounds of N triangles as arrays; `slot` says where the rest of them is kept.
 template <std::size_t N>
 struct BoundArrays {
     using Numbers = std::array<float, N>;
-    std::array<std::uint32_t, N> triangle;
+    std::array<std::uint32_t, N> slot;
     Numbers center_x, center_y, center_z, normal_x, normal_y, normal_z, radius;
 
-    void set(std::size_t i, std::uint32_t number, const TriangleBound& b) {
-        triangle[i] = number;
+    void set(std::size_t i, std::uint32_t place, const TriangleBound& b) {
+        slot[i] = place;
         center_x[i] = b.center.x, center_y[i] = b.center.y, center_z[i] = b.center.z;
         normal_x[i] = b.normal.x, normal_y[i] = b.normal.y, normal_z[i] = b.normal.z;
         radius[i] = b.radius;
+    }
+    TriangleBound bound(std::size_t i) const {
+        return {{center_x[i], center_y[i], center_z[i]}, {normal_x[i], normal_y[i], normal_z[i]}, radius[i]};
     }
 };
 
@@ -87,12 +90,12 @@ struct CandidateList : BoundArrays<2048 + 64> {
     /// False when there is no room.
     bool add(const TriangleCluster& cluster) {
         if (count + TriangleCluster::size > most) return false;
-        copy(cluster.triangle, triangle);
+        copy(cluster.slot, slot);
         copy(cluster.center_x, center_x), copy(cluster.center_y, center_y), copy(cluster.center_z, center_z);
         copy(cluster.normal_x, normal_x), copy(cluster.normal_y, normal_y), copy(cluster.normal_z, normal_z);
         copy(cluster.radius, radius);
         std::size_t used = TriangleCluster::size;
-        while (used > 1 && cluster.triangle[used - 1] == cluster.triangle[used - 2]) --used;
+        while (used > 1 && cluster.slot[used - 1] == cluster.slot[used - 2]) --used;
         count += used;
         return true;
     }
@@ -104,12 +107,11 @@ struct CandidateList : BoundArrays<2048 + 64> {
     }
 };
 
-/// What positions know of each candidate of a list, seen from their middle.
+/// What positions know of each candidate of a list, see Survey::note.
 struct SurveyNotes {
     using Numbers = CandidateList::Numbers;
-    alignas(64) Numbers height, across;   // of the middle: along the normal and in the plane, scene units
-    alignas(64) Numbers gap;              // how far the disc stays outside the positions' shadow on its plane
-    alignas(64) Numbers allowance, rise;  // square scene units, see Survey::note_gaps
+    alignas(64) Numbers gap;         // how far the disc stays outside the positions' shadow on its plane
+    alignas(64) Numbers need, away;  // square scene units
 };
 
 /// Candidates, by place in a list, with lower bounds of their squared distances from each of a few positions.

@@ -60,15 +60,15 @@ HWY_INLINE ShapeLanes same_shape(const TriangleShape& s, double number) {
             hn::Set(d, number)};
 }
 
-HWY_INLINE ShapeLanes shapes_of(const TriangleCorners* corners, const std::uint32_t* numbers) {
+HWY_INLINE ShapeLanes shapes_of(const ClusteredTriangle* triangles, const std::uint32_t* slots) {
     constexpr std::size_t lanes = hn::MaxLanes(Doubles());
     const Doubles d;
     const hn::Rebind<float, Doubles> df;
     alignas(64) float at[9][lanes];
     alignas(64) double number[lanes];
     for (std::size_t i = 0; i < lanes; ++i) {
-        const TriangleCorners& t = corners[numbers[i]];
-        number[i] = numbers[i];
+        const TriangleCorners& t = triangles[slots[i]].corners;
+        number[i] = triangles[slots[i]].number;
         at[0][i] = t.a.x, at[1][i] = t.a.y, at[2][i] = t.a.z;
         at[3][i] = t.b.x, at[4][i] = t.b.y, at[5][i] = t.b.z;
         at[6][i] = t.c.x, at[7][i] = t.c.y, at[8][i] = t.c.z;

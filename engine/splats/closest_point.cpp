@@ -213,8 +213,8 @@ ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const
 }
 
 struct ClosestPointIndex::State {
-    Buffer<TriangleCorners> corners;
-    Buffer<TriangleEdges> edges;
+    Buffer<ClusteredTriangle> triangles;
+    Buffer<std::uint32_t> slots;  // by number
     Buffer<TriangleCluster> clusters;
     Buffer<ClusterBox> boxes;  // of the clusters
     glm::dvec3 center{0.0};    // Embree's origin, scene units
@@ -230,11 +230,12 @@ struct ClosestPointIndex::State {
         if (device) rtcReleaseDevice(device);
     }
 
-    void copy_triangles(std::span<const Mesh* const> meshes);
     void place_origin(std::span<const Mesh* const> meshes);
-    void make_clusters();
-    void make_cluster(std::size_t cluster, const Buffer<std::uint64_t>& order);
-    void build();
+    void make_clusters(const Buffer<TriangleCorners>& corners);
+    void make_cluster(std::size_t cluster, const Buffer<TriangleCorners>& corners,
+                      const Buffer<std::uint64_t>& order);
+    void build(std::span<const Mesh* const> meshes);
+    TriangleShape shape(std::uint32_t slot) const { return triangle_shape(triangles[slot].corners); }
     template <class Visit>
     void query(const glm::dvec3& p, double distance, Visit visit) const;
 
@@ -250,14 +251,15 @@ struct ClosestPointIndex::State {
     }
 };
 
-void ClosestPointIndex::State::copy_triangles(std::span<const Mesh* const> meshes) {
+// Of all triangles, by number.
+static Buffer<TriangleCorners> corners_of(std::span<const Mesh* const> meshes) {
     std::size_t count = 0;
     for (const Mesh* mesh : meshes) count += mesh->triangles.size();
     if (count > most_triangles) {
         bad_input("meshes", "", fmt::format("at most {} triangles", most_triangles),
                   fmt::format("{}", count));
     }
-    corners.resize(count);
+    Buffer<TriangleCorners> corners(count);
     std::size_t first = 0;
     for (const Mesh* mesh : meshes) {
         const auto triangles = static_cast<std::int64_t>(mesh->triangles.size());
@@ -271,7 +273,7 @@ void ClosestPointIndex::State::copy_triangles(std::span<const Mesh* const> meshe
         });
         first += mesh->triangles.size();
     }
-    place_origin(meshes);
+    return corners;
 }
 
 void ClosestPointIndex::State::place_origin(std::span<const Mesh* const> meshes) {
@@ -287,7 +289,7 @@ void ClosestPointIndex::State::place_origin(std::span<const Mesh* const> meshes)
 }
 
 // Eight at a time along a Hilbert curve through the middles of the triangles.
-void ClosestPointIndex::State::make_clusters() {
+void ClosestPointIndex::State::make_clusters(const Buffer<TriangleCorners>& corners) {
     const auto count = static_cast<std::int64_t>(corners.size());
     Buffer<std::uint64_t> order(corners.size());  // place on the curve, then number
     parallel_chunks(count, 4096, [&](std::int64_t begin, std::int64_t end, int) {
@@ -301,29 +303,33 @@ void ClosestPointIndex::State::make_clusters() {
     constexpr std::size_t size = TriangleCluster::size;
     clusters.resize((corners.size() + size - 1) / size);
     boxes.resize(clusters.size());
-    edges.resize(corners.size());
+    triangles.resize(corners.size());
+    slots.resize(corners.size());
     parallel_chunks(static_cast<std::int64_t>(clusters.size()), 512,
                     [&](std::int64_t begin, std::int64_t end, int) {
                         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-                            make_cluster(i, order);
+                            make_cluster(i, corners, order);
                     });
 }
 
-void ClosestPointIndex::State::make_cluster(std::size_t cluster, const Buffer<std::uint64_t>& order) {
+void ClosestPointIndex::State::make_cluster(std::size_t cluster, const Buffer<TriangleCorners>& corners,
+                                            const Buffer<std::uint64_t>& order) {
     constexpr float far = std::numeric_limits<float>::infinity();
     boxes[cluster] = {glm::vec3(far), glm::vec3(-far)};
     for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
-        const std::size_t place = std::min(cluster * TriangleCluster::size + i, order.size() - 1);
-        const auto number = static_cast<std::uint32_t>(order[place]);
+        const std::size_t slot = std::min(cluster * TriangleCluster::size + i, order.size() - 1);
+        const auto number = static_cast<std::uint32_t>(order[slot]);
         const TriangleShape shape = triangle_shape(corners[number]);
-        clusters[cluster].set(i, number, triangle_bound(shape, center));
+        clusters[cluster].set(i, static_cast<std::uint32_t>(slot), triangle_bound(shape, center));
         extend(boxes[cluster], shape, center);
-        edges[number] = triangle_edges(shape);
+        triangles[slot] = {corners[number], number, triangle_edges(shape)};
+        slots[number] = static_cast<std::uint32_t>(slot);
     }
 }
 
-void ClosestPointIndex::State::build() {
-    make_clusters();
+void ClosestPointIndex::State::build(std::span<const Mesh* const> meshes) {
+    place_origin(meshes);
+    make_clusters(corners_of(meshes));
     device = rtcNewDevice("threads=1");  // keeps Embree off TBB's pool
     if (!device) throw std::runtime_error("Embree gave no device");
     scene = rtcNewScene(device);
@@ -375,15 +381,13 @@ void ClosestPointIndex::State::query(const glm::dvec3& p, double distance, Visit
 
 ClosestPointIndex::ClosestPointIndex(std::span<const Mesh* const> meshes)
     : state_(std::make_unique<State>()) {
-    state_->copy_triangles(meshes);
-    state_->build();
+    state_->build(meshes);
 }
 
 ClosestPointIndex::ClosestPointIndex(std::span<const Mesh> meshes) : state_(std::make_unique<State>()) {
     std::vector<const Mesh*> pointers;
     for (const Mesh& mesh : meshes) pointers.push_back(&mesh);
-    state_->copy_triangles(pointers);
-    state_->build();
+    state_->build(pointers);
 }
 
 ClosestPointIndex::~ClosestPointIndex() = default;
@@ -406,9 +410,9 @@ struct ClosestPointIndex::Search {
         update_limit();
     }
     void update_limit() { limit = State::widened(std::sqrt(best.distance_squared), slack); }
-    void offer(std::uint32_t triangle) {
-        ClosestPoint other = closest_on_triangle(p, triangle_shape(state.corners[triangle]));
-        other.triangle = triangle;
+    void offer(std::uint32_t slot) {
+        ClosestPoint other = closest_on_triangle(p, state.shape(slot));
+        other.triangle = state.triangles[slot].number;
         if (!nearer(other, best)) return;
         best = other;
         update_limit();
@@ -417,13 +421,13 @@ struct ClosestPointIndex::Search {
         const auto rounding = static_cast<float>(slack) + 2e-6f * limit;
         const auto squared = disc_distances(cluster, local, rounding);
         for (std::size_t i = 0; i < TriangleCluster::size; ++i)
-            if (!(squared[i] > limit * limit)) offer(cluster.triangle[i]);
+            if (!(squared[i] > limit * limit)) offer(cluster.slot[i]);
     }
 };
 
 ClosestPoint ClosestPointIndex::closest(const glm::dvec3& p, double max_distance, std::uint32_t hint) const {
     Search search(*state_, p, max_distance);
-    if (hint != ClosestPoint::none) search.offer(hint);
+    if (hint != ClosestPoint::none) search.offer(state_->slots[hint]);
     state_->query(p, std::sqrt(search.best.distance_squared), [&](std::uint32_t cluster) {
         search.offer_cluster(state_->clusters[cluster]);
         return std::sqrt(search.best.distance_squared);
@@ -435,7 +439,7 @@ ClosestPoint ClosestPointIndex::closest_of(ClusterList& list, const glm::dvec3& 
                                            std::uint32_t hint) const {
     Search search(*state_, p, max_distance);
     box_distances(list, search.local);
-    if (hint != ClosestPoint::none) search.offer(hint);
+    if (hint != ClosestPoint::none) search.offer(state_->slots[hint]);
     for (std::size_t i = 0; i < list.cluster.size(); ++i) {
         if (!(list.squared[i] > search.limit * search.limit))
             search.offer_cluster(state_->clusters[list.cluster[i]]);
@@ -445,7 +449,7 @@ ClosestPoint ClosestPointIndex::closest_of(ClusterList& list, const glm::dvec3& 
 
 ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double max_distance) const {
     ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
-    for (std::uint32_t triangle = 0; triangle < state_->corners.size(); ++triangle) {
+    for (std::uint32_t triangle = 0; triangle < state_->slots.size(); ++triangle) {
         const ClosestPoint other = closest_of(triangle, p);
         if (nearer(other, best)) best = other;
     }
@@ -473,9 +477,15 @@ bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, Cluster
 }
 
 void ClosestPointIndex::collect(std::span<const std::uint32_t> clusters, CandidateList& candidates) const {
+    constexpr std::size_t ahead = 4;
+    const auto prefetch = [](const TriangleCluster* cluster) {
+        const auto* bytes = reinterpret_cast<const char*>(cluster);
+        for (std::size_t line = 0; line < sizeof *cluster; line += 64) __builtin_prefetch(bytes + line);
+    };
     candidates.count = 0;
-    for (const std::uint32_t cluster : clusters) {
-        [[maybe_unused]] const bool fits = candidates.add(state_->clusters[cluster]);
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+        if (i + ahead < clusters.size()) prefetch(&state_->clusters[clusters[i + ahead]]);
+        [[maybe_unused]] const bool fits = candidates.add(state_->clusters[clusters[i]]);
         assert(fits);
     }
 }
@@ -497,11 +507,13 @@ ClosestPoint ClosestPointIndex::closest_of(std::uint32_t triangle, const glm::dv
     return closest;
 }
 
-const TriangleCorners* ClosestPointIndex::corners() const { return state_->corners.data(); }
-const TriangleEdges* ClosestPointIndex::edges() const { return state_->edges.data(); }
+TriangleShape ClosestPointIndex::shape(std::uint32_t triangle) const {
+    return state_->shape(state_->slots[triangle]);
+}
+const ClusteredTriangle* ClosestPointIndex::triangles() const { return state_->triangles.data(); }
 
 std::int64_t ClosestPointIndex::triangle_count() const {
-    return static_cast<std::int64_t>(state_->corners.size());
+    return static_cast<std::int64_t>(state_->slots.size());
 }
 
 }  // namespace astrosplat

@@ -69,6 +69,14 @@ inline bool nearer(const ClosestPoint& a, const ClosestPoint& b) {
            (a.distance_squared == b.distance_squared && a.triangle < b.triangle);
 }
 
+/// What is kept of a triangle, in the order of the clusters, so that neighbours lie together in memory. Its
+/// place there is its slot.
+struct ClusteredTriangle {
+    TriangleCorners corners;
+    std::uint32_t number;  // over all meshes' triangles in order
+    TriangleEdges edges;
+};
+
 class ClosestPointIndex {
   public:
     /// Keeps its own copy of the triangles; meshes are numbered and concatenated in order. Throws InputError
@@ -108,9 +116,8 @@ class ClosestPointIndex {
 
     /// The closest point of one triangle, numbered.
     ClosestPoint closest_of(std::uint32_t triangle, const glm::dvec3& p) const;
-    const TriangleCorners* corners() const;  // of all triangles
-    const TriangleEdges* edges() const;      // likewise
-    TriangleShape shape(std::uint32_t triangle) const { return triangle_shape(corners()[triangle]); }
+    TriangleShape shape(std::uint32_t triangle) const;  // by number
+    const ClusteredTriangle* triangles() const;         // by slot
     std::int64_t triangle_count() const;
 
   private:

@@ -69,6 +69,8 @@ class Generator {
         worker.answers.resize(longest_row);
         for (std::size_t i = 0; i < row.size(); ++i) {
             query_block(index_, lattice_, settings_, row[i], kind, *worker.scratch, worker.answers[i]);
+            for (const std::uint32_t triangle : worker.answers[i].triangle)
+                if (triangle != ClosestPoint::none) __builtin_prefetch(&surface_[triangle]);
         }
         for (std::int64_t k = 0; k < block_cells; ++k) {
             for (std::int64_t j = 0; j < block_cells; ++j) {
@@ -169,7 +171,7 @@ std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const L
     for (const TexturedMesh& m : meshes) triangles += static_cast<double>(m.mesh.triangles.size());
     const double per_splat = 1.02 * static_cast<double>(kept_splat_bytes);  // and a batch that exists twice
     const double per_triangle =
-        sizeof(TriangleCorners) + sizeof(SurfaceTriangle) + 200.0;  // and Embree's tree
+        sizeof(ClusteredTriangle) + sizeof(SurfaceTriangle) + 150.0;  // and Embree's tree
     const double bytes = expected_kept(lattice, meshes, max_distance) * per_splat + triangles * per_triangle;
     return static_cast<std::int64_t>(std::min(bytes, 9e18));
 }

@@ -52,10 +52,14 @@ Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
     for (std::size_t number = 0; number < meshes.size(); ++number) {
         const TexturedMesh& m = meshes[number];
         const auto count = static_cast<std::int64_t>(m.mesh.triangles.size());
+        const auto corner = [&](const Mesh::Triangle& face, std::size_t k) {
+            return glm::dvec3(m.mesh.positions[face.position[k]]);
+        };
         parallel_chunks(count, 4096, [&](std::int64_t begin, std::int64_t end, int) {
             for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                const TriangleShape shape = index.shape(static_cast<std::uint32_t>(first + i));
-                triangles[first + i] = surface_triangle(m, m.mesh.triangles[i], shape, spacing);
+                const Mesh::Triangle& face = m.mesh.triangles[i];
+                const TriangleShape shape = triangle_shape(corner(face, 0), corner(face, 1), corner(face, 2));
+                triangles[first + i] = surface_triangle(m, face, shape, spacing);
                 triangles[first + i].mesh = static_cast<std::uint32_t>(number);
             }
         });

@@ -58,6 +58,33 @@ struct LocalPositions {
     std::size_t count;
 };
 
+/// The box around positions along the axes.
+struct PositionsBox {
+    glm::vec3 middle, half;
+
+    float reach() const { return std::sqrt(half.x * half.x + half.y * half.y + half.z * half.z) * 1.00001f; }
+};
+
+HWY_INLINE void middle_of(const float* values, std::size_t count, float slack, float& middle, float& half) {
+    const Floats d;
+    auto lowest = hn::Load(d, values), highest = lowest;
+    for (std::size_t i = hn::Lanes(d); i < count; i += hn::Lanes(d)) {
+        lowest = hn::Min(lowest, hn::Load(d, values + i));
+        highest = hn::Max(highest, hn::Load(d, values + i));
+    }
+    const float low = hn::GetLane(hn::MinOfLanes(d, lowest)), high = hn::GetLane(hn::MaxOfLanes(d, highest));
+    middle = 0.5f * (low + high);
+    half = 0.5f * (high - low) + slack;
+}
+
+HWY_INLINE PositionsBox box_around(const LocalPositions& p, float slack) {
+    PositionsBox box;
+    middle_of(p.x, p.count, slack, box.middle.x, box.half.x);
+    middle_of(p.y, p.count, slack, box.middle.y, box.half.y);
+    middle_of(p.z, p.count, slack, box.middle.z, box.half.z);
+    return box;
+}
+
 class Survey {
   public:
     Survey(const CandidateList& candidates, SurveyNotes& notes, float slack)
@@ -65,70 +92,63 @@ class Survey {
 
     static constexpr std::size_t nothing = ~std::size_t{0};
 
-    /// Looks at every candidate from the middle of the positions, whose limits have roots of at most
-    /// `widest`. The one whose disc is nearest, or `nothing` if none matters.
-    std::size_t look(const LocalPositions& positions, float widest) {
-        p_ = positions;
-        widest_ = widest;
-        find_middle();
+    /// The candidate whose disc is nearest to the middle of some positions, whose limits have roots of at
+    /// most `widest`; `nothing` if none matters.
+    std::size_t nearest(const PositionsBox& box, float widest) const {
         const Many d;
         const ManyNumbers du;
-        const Lanes px = hn::Set(d, middle_.x), py = hn::Set(d, middle_.y), pz = hn::Set(d, middle_.z);
-        Lanes lowest = hn::Set(d, std::numeric_limits<float>::infinity());
+        Lanes lowest = hn::Set(d, std::numeric_limits<float>::infinity()), largest = hn::Zero(d);
         auto lowest_place = hn::Zero(du), place = hn::Iota(du, 0);
         for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const Lanes x = hn::Sub(px, hn::LoadU(d, &c_.center_x[i])),
-                        y = hn::Sub(py, hn::LoadU(d, &c_.center_y[i])),
-                        z = hn::Sub(pz, hn::LoadU(d, &c_.center_z[i]));
-            const Lanes height = dot3(x, y, z, hn::LoadU(d, &c_.normal_x[i]), hn::LoadU(d, &c_.normal_y[i]),
-                                      hn::LoadU(d, &c_.normal_z[i]));
-            const Lanes squared = hn::Mul(dot3(x, y, z, x, y, z), hn::Set(d, 1.0f - 4e-6f));
-            const Lanes across = hn::Sqrt(hn::Max(hn::Sub(squared, hn::Mul(height, height)), hn::Zero(d)));
-            hn::StoreU(height, d, &notes_.height[i]);
-            hn::StoreU(across, d, &notes_.across[i]);
-            const Lanes radius = hn::LoadU(d, &c_.radius[i]), off = rounding(d, radius);
-            const Lanes outside = hn::Max(hn::Sub(hn::Sub(across, radius), off), hn::Zero(d));
-            const Lanes above = hn::Max(hn::Sub(hn::Abs(height), off), hn::Zero(d));
-            const Lanes bound = hn::Add(hn::Mul(outside, outside), hn::Mul(above, above));
-            const auto lower = hn::And(hn::Lt(bound, lowest), hn::FirstN(d, c_.count - i));
+            const Disc disc = from_middle(box, i);
+            const Lanes outside = hn::Max(hn::Sub(disc.across, disc.radius), hn::Zero(d));
+            const Lanes bound = hn::Add(hn::Mul(outside, outside), hn::Mul(disc.height, disc.height));
+            const auto inside_list = hn::FirstN(d, c_.count - i);
+            const auto lower = hn::And(hn::Lt(bound, lowest), inside_list);
             lowest = hn::IfThenElse(lower, bound, lowest);
             lowest_place = hn::IfThenElse(hn::RebindMask(du, lower), place, lowest_place);
+            largest = hn::Max(largest, hn::IfThenElseZero(inside_list, disc.radius));
             place = hn::Add(place, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(d))));
         }
         const Lanes best = hn::MinOfLanes(d, lowest);
-        const float farthest = (widest_ + reach_) * 1.00001f + slack_;
-        if (c_.count == 0 || hn::AllTrue(d, hn::Gt(best, hn::Set(d, farthest * farthest)))) return nothing;
+        const float reach = box.reach();
+        const float off = rounding_of(hn::GetLane(hn::MaxOfLanes(d, largest)), widest + reach);
+        const float farthest = (widest + reach) * 1.00001f + slack_ + 2.0f * off;
+        if (c_.count == 0 || hn::GetLane(best) > farthest * farthest) return nothing;
         const auto lane = hn::FindFirstTrue(d, hn::Eq(lowest, best));
         return lane < 0 ? 0 : hn::ExtractLane(lowest_place, static_cast<std::size_t>(lane));
     }
 
     /// Of each candidate: a triangle T matters to a position p when distance(p, T)^2 <= limit(p). With h the
     /// height of p above T's plane and h0 that above a reference plane, distance(p, T)^2 is at least h^2 +
-    /// gap^2, where gap is how far T's disc stays outside the shadow of all positions on T's plane; and
-    /// limit(p) is at most room + h0^2. So gap^2 <= room + (h0^2 - h^2), and h0^2 - h^2 is at most
-    /// `allowance`, because the planes' heights differ by at most `apart` among the positions. Likewise gap^2
-    /// <= widest^2 - rise, where rise is the least h^2. The reference plane is that of candidate `reference`.
-    void note_gaps(std::size_t reference, float widest) {
+    /// gap^2, where gap is how far T's disc stays outside the shadow of the positions' box on T's plane, in
+    /// the direction of the box's middle; and limit(p) is at most room + h0^2. So gap^2 <= room + (h0^2 -
+    /// h^2). With D = h0 - h, h0^2 - h^2 = D (2 h0 - D): among the positions D and h0 lie in intervals, and
+    /// its largest value there is subtracted from gap^2 to give what T `need`s for room. Likewise T is
+    /// `away`, at least: gap^2 and the least h^2, to be compared with widest^2.
+    void note(const LocalPositions& positions, const PositionsBox& box, const TriangleBound& reference,
+              float widest) {
+        p_ = positions;
+        box_ = box;
         widest_ = widest;
+        reach_ = box.reach();
         take_reference(reference);
         const Many d;
-        const Lanes reach = hn::Set(d, reach_);
         for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const Lanes similar = dot3(hn::LoadU(d, &c_.normal_x[i]), hn::LoadU(d, &c_.normal_y[i]),
-                                       hn::LoadU(d, &c_.normal_z[i]), hn::Set(d, normal_.x),
-                                       hn::Set(d, normal_.y), hn::Set(d, normal_.z));
-            const Lanes turned_squared =
-                hn::Sub(hn::Set(d, 2.0f + 1e-6f), hn::Mul(hn::Abs(similar), hn::Set(d, 2.0f)));
-            const Lanes tilt = hn::Mul(hn::Sqrt(hn::Max(turned_squared, hn::Zero(d))), reach);
-            const Lanes radius = hn::LoadU(d, &c_.radius[i]), off = rounding(d, radius);
-            const Lanes shadow = hn::Add(hn::Add(hn::Set(d, flat_reach_), tilt), off);
-            hn::StoreU(hn::Sub(hn::Sub(hn::LoadU(d, &notes_.across[i]), radius), shadow), d, &notes_.gap[i]);
-            const Lanes height = hn::LoadU(d, &notes_.height[i]);
-            const Lanes same_side = hn::Mul(height, hn::CopySignToAbs(hn::Set(d, 1.0f), similar));
-            const Lanes apart = hn::Add(hn::Add(hn::Abs(hn::Sub(same_side, hn::Set(d, height_))), tilt), off);
-            hn::StoreU(hn::Mul(apart, hn::Add(apart, hn::Set(d, 2.0f * highest_))), d, &notes_.allowance[i]);
-            const Lanes least = hn::Max(hn::Sub(hn::Sub(hn::Abs(height), reach), off), hn::Zero(d));
-            hn::StoreU(hn::Mul(least, least), d, &notes_.rise[i]);
+            const Disc disc = from_middle(box_, i);
+            const Lanes off = rounding(disc.radius);
+            const auto flat = [&](Lanes to, Lanes normal)
+                                  HWY_ATTR { return hn::Sub(to, hn::Mul(normal, disc.height)); };
+            const Lanes toward = box_along(flat(disc.x, disc.normal_x), flat(disc.y, disc.normal_y),
+                                           flat(disc.z, disc.normal_z));
+            const Lanes shadow = hn::Add(hn::Div(toward, disc.across), off);
+            const Lanes gap = hn::Sub(hn::Sub(disc.across, disc.radius), shadow);
+            const Lanes outside = hn::Max(gap, hn::Zero(d)), outside_squared = hn::Mul(outside, outside);
+            const Lanes least =
+                hn::Max(hn::Sub(hn::Sub(hn::Abs(disc.height), hn::Set(d, reach_)), off), hn::Zero(d));
+            hn::StoreU(gap, d, &notes_.gap[i]);
+            hn::StoreU(hn::Sub(outside_squared, allowance(disc, off)), d, &notes_.need[i]);
+            hn::StoreU(hn::Add(outside_squared, hn::Mul(least, least)), d, &notes_.away[i]);
         }
     }
 
@@ -137,13 +157,9 @@ class Survey {
         widest_ = widest;
         const Floats d;
         auto room = hn::Set(d, -std::numeric_limits<float>::infinity());
-        const auto normal_x = hn::Set(d, normal_.x), normal_y = hn::Set(d, normal_.y),
-                   normal_z = hn::Set(d, normal_.z);
         for (std::size_t i = 0; i < p_.count; i += hn::Lanes(d)) {
-            const auto rise = dot3(from_middle(p_.x, middle_.x, i), from_middle(p_.y, middle_.y, i),
-                                   from_middle(p_.z, middle_.z, i), normal_x, normal_y, normal_z);
-            const auto height = hn::Abs(hn::Add(rise, hn::Set(d, height_)));
-            const auto least = hn::Max(hn::Sub(height, hn::Set(d, reference_off_)), hn::Zero(d));
+            const auto least =
+                hn::Max(hn::Sub(hn::Abs(height_of(i)), hn::Set(d, reference_off_)), hn::Zero(d));
             room = hn::Max(room, hn::Sub(hn::Load(d, p_.limit + i), hn::Mul(least, least)));
         }
         room_ = hn::GetLane(hn::MaxOfLanes(d, room));
@@ -154,10 +170,9 @@ class Survey {
     /// Which of the candidates from place i on matter. Comparisons with what is not a number count as yes.
     HWY_INLINE hn::Mask<Many> matter(std::size_t i) const {
         const Many d;
-        const Lanes outside = hn::Max(hn::LoadU(d, &notes_.gap[i]), hn::Zero(d));
-        const Lanes most = hn::Min(hn::Add(hn::Set(d, room_), hn::LoadU(d, &notes_.allowance[i])),
-                                   hn::Sub(hn::Set(d, widest_ * widest_), hn::LoadU(d, &notes_.rise[i])));
-        return hn::AndNot(hn::Gt(hn::Mul(outside, outside), most), hn::FirstN(d, c_.count - i));
+        const auto too_far = hn::Or(hn::Gt(hn::LoadU(d, &notes_.need[i]), hn::Set(d, room_)),
+                                    hn::Gt(hn::LoadU(d, &notes_.away[i]), hn::Set(d, widest_ * widest_)));
+        return hn::AndNot(too_far, hn::FirstN(d, c_.count - i));
     }
     HWY_INLINE hn::Mask<Many> matter(std::size_t i, Gaps gaps) const {
         const Many d;
@@ -167,71 +182,101 @@ class Survey {
 
     /// More than the rounding of a position's distance to a candidate that matters: of its normal, of the
     /// subtraction of nearly equal squares.
-    float rounding(float radius) const { return (radius + widest_ + reach_) * 2e-6f + slack_; }
-    const glm::vec3& middle() const { return middle_; }
+    float rounding(float radius) const { return rounding_of(radius, widest_ + reach_); }
 
   private:
-    HWY_INLINE Lanes rounding(Many d, Lanes radius) const {
+    // Candidates seen from the middle of a box.
+    struct Disc {
+        Lanes x, y, z;  // from the disc's middle to the box's
+        Lanes normal_x, normal_y, normal_z, radius;
+        Lanes height, across;  // of the box's middle: along the normal and, at most, in the plane
+    };
+    HWY_INLINE Disc from_middle(const PositionsBox& box, std::size_t i) const {
+        const Many d;
+        Disc disc;
+        disc.x = hn::Sub(hn::Set(d, box.middle.x), hn::LoadU(d, &c_.center_x[i]));
+        disc.y = hn::Sub(hn::Set(d, box.middle.y), hn::LoadU(d, &c_.center_y[i]));
+        disc.z = hn::Sub(hn::Set(d, box.middle.z), hn::LoadU(d, &c_.center_z[i]));
+        disc.normal_x = hn::LoadU(d, &c_.normal_x[i]);
+        disc.normal_y = hn::LoadU(d, &c_.normal_y[i]);
+        disc.normal_z = hn::LoadU(d, &c_.normal_z[i]);
+        disc.radius = hn::LoadU(d, &c_.radius[i]);
+        disc.height = dot3(disc.x, disc.y, disc.z, disc.normal_x, disc.normal_y, disc.normal_z);
+        const Lanes squared =
+            hn::Mul(dot3(disc.x, disc.y, disc.z, disc.x, disc.y, disc.z), hn::Set(d, 1.0f - 4e-6f));
+        disc.across = hn::Sqrt(hn::Max(hn::Sub(squared, hn::Mul(disc.height, disc.height)), hn::Zero(d)));
+        return disc;
+    }
+
+    // How far the box reaches from its middle along vectors, times their lengths.
+    HWY_INLINE Lanes box_along(Lanes x, Lanes y, Lanes z) const {
+        const Many d;
+        return dot3(hn::Abs(x), hn::Abs(y), hn::Abs(z), hn::Set(d, box_.half.x), hn::Set(d, box_.half.y),
+                    hn::Set(d, box_.half.z));
+    }
+
+    // The largest h0^2 - h^2.
+    HWY_INLINE Lanes allowance(const Disc& disc, Lanes off) const {
+        const Many d;
+        const Lanes similar = dot3(disc.normal_x, disc.normal_y, disc.normal_z, hn::Set(d, normal_.x),
+                                   hn::Set(d, normal_.y), hn::Set(d, normal_.z));
+        const Lanes side = hn::CopySignToAbs(hn::Set(d, 1.0f), similar);
+        const auto turned = [&](float normal, Lanes other)
+                                HWY_ATTR { return hn::Sub(hn::Set(d, normal), hn::Mul(other, side)); };
+        const Lanes tilt =
+            hn::Add(box_along(turned(normal_.x, disc.normal_x), turned(normal_.y, disc.normal_y),
+                              turned(normal_.z, disc.normal_z)),
+                    hn::Add(off, hn::Set(d, reference_off_)));
+        const Lanes apart = hn::Sub(hn::Set(d, height_), hn::Mul(disc.height, side));
+        const Lanes least = hn::Sub(apart, tilt), most = hn::Add(apart, tilt);
+        const auto largest = [&](float height) HWY_ATTR {
+            const Lanes h0 = hn::Set(d, height), difference = hn::Min(hn::Max(h0, least), most);
+            return hn::Mul(difference, hn::Sub(hn::Add(h0, h0), difference));
+        };
+        return hn::Max(largest(lowest_), largest(highest_));
+    }
+
+    float rounding_of(float radius, float around) const { return (radius + around) * 2e-6f + slack_; }
+    HWY_INLINE Lanes rounding(Lanes radius) const {
+        const Many d;
         return hn::Add(hn::Mul(hn::Add(radius, hn::Set(d, widest_ + reach_)), hn::Set(d, 2e-6f)),
                        hn::Set(d, slack_));
     }
 
-    static HWY_INLINE hn::Vec<Floats> from_middle(const float* at, float middle, std::size_t i) {
+    // Of positions from place i on, above the reference plane.
+    HWY_INLINE hn::Vec<Floats> height_of(std::size_t i) const {
         const Floats d;
-        return hn::Sub(hn::Load(d, at + i), hn::Set(d, middle));
+        const auto at = [&](const float* values, float middle)
+                            HWY_ATTR { return hn::Sub(hn::Load(d, values + i), hn::Set(d, middle)); };
+        const auto rise = dot3(at(p_.x, box_.middle.x), at(p_.y, box_.middle.y), at(p_.z, box_.middle.z),
+                               hn::Set(d, normal_.x), hn::Set(d, normal_.y), hn::Set(d, normal_.z));
+        return hn::Add(rise, hn::Set(d, height_));
     }
 
-    float middle_of(const float* values) const {
+    void take_reference(const TriangleBound& reference) {
+        normal_ = reference.normal;
+        const glm::vec3 from = box_.middle - reference.center;
+        height_ = from.x * normal_.x + from.y * normal_.y + from.z * normal_.z;
+        reference_off_ = rounding(reference.radius);
         const Floats d;
-        auto lowest = hn::Load(d, values), highest = lowest;
+        auto lowest = height_of(0), highest = lowest;
         for (std::size_t i = hn::Lanes(d); i < p_.count; i += hn::Lanes(d)) {
-            lowest = hn::Min(lowest, hn::Load(d, values + i));
-            highest = hn::Max(highest, hn::Load(d, values + i));
+            lowest = hn::Min(lowest, height_of(i));
+            highest = hn::Max(highest, height_of(i));
         }
-        return 0.5f * (hn::GetLane(hn::MinOfLanes(d, lowest)) + hn::GetLane(hn::MaxOfLanes(d, highest)));
-    }
-
-    void find_middle() {
-        middle_ = {middle_of(p_.x), middle_of(p_.y), middle_of(p_.z)};
-        const Floats d;
-        auto farthest = hn::Zero(d);
-        for (std::size_t i = 0; i < p_.count; i += hn::Lanes(d)) {
-            const auto x = from_middle(p_.x, middle_.x, i), y = from_middle(p_.y, middle_.y, i),
-                       z = from_middle(p_.z, middle_.z, i);
-            farthest = hn::Max(farthest, dot3(x, y, z, x, y, z));
-        }
-        reach_ = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, farthest))) * 1.00001f + slack_;
-    }
-
-    void take_reference(std::size_t place) {
-        normal_ = {c_.normal_x[place], c_.normal_y[place], c_.normal_z[place]};
-        height_ = notes_.height[place];
-        reference_off_ = rounding(c_.radius[place]);
-        const Floats d;
-        auto flat = hn::Zero(d), highest = hn::Zero(d);
-        const auto normal_x = hn::Set(d, normal_.x), normal_y = hn::Set(d, normal_.y),
-                   normal_z = hn::Set(d, normal_.z);
-        for (std::size_t i = 0; i < p_.count; i += hn::Lanes(d)) {
-            const auto x = from_middle(p_.x, middle_.x, i), y = from_middle(p_.y, middle_.y, i),
-                       z = from_middle(p_.z, middle_.z, i);
-            const auto rise = dot3(x, y, z, normal_x, normal_y, normal_z);
-            const auto squared = hn::Mul(dot3(x, y, z, x, y, z), hn::Set(d, 1.0f + 4e-6f));
-            flat = hn::Max(flat, hn::Sub(squared, hn::Mul(rise, rise)));
-            highest = hn::Max(highest, hn::Abs(hn::Add(rise, hn::Set(d, height_))));
-        }
-        flat_reach_ = std::sqrt(hn::GetLane(hn::MaxOfLanes(d, flat))) * 1.00001f + slack_;
-        highest_ = hn::GetLane(hn::MaxOfLanes(d, highest)) + slack_;
+        lowest_ = hn::GetLane(hn::MinOfLanes(d, lowest)) - reference_off_;
+        highest_ = hn::GetLane(hn::MaxOfLanes(d, highest)) + reference_off_;
         update_room(widest_);
     }
 
     const CandidateList& c_;
     SurveyNotes& notes_;
     LocalPositions p_;
+    PositionsBox box_;
     float slack_;
-    glm::vec3 middle_, normal_;  // of the positions; of the reference plane
-    float widest_, reach_;       // largest root of a limit; of the positions from the middle
-    float height_, highest_;     // above the reference plane, of the middle and of all
-    float flat_reach_;           // as reach_, along the reference plane
+    float widest_, reach_;             // largest root of a limit; of the box from its middle
+    glm::vec3 normal_;                 // of the reference plane
+    float height_, lowest_, highest_;  // above the reference plane, of the middle and of the positions
     float reference_off_, room_;
 };
 
