@@ -89,23 +89,27 @@ HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_
 void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
                     const ScreenRect& rect, std::vector<ScreenSplat>& out) {
     const bool hybrid = layer.render.blend == Blend::hybrid;
+    const std::size_t before = out.size();
+    out.resize(before + static_cast<std::size_t>(end - begin));
+    ScreenSplat* to = out.data() + before;
     Columns c;
     for (; begin < end; begin += lanes) {
         for (std::uint32_t bits = project_block(layer, begin, rect, c); bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
             const std::int64_t index = begin + i;
             const glm::vec3& color = layer.splats->color[static_cast<std::size_t>(index)];
-            out.push_back({c.x_px[i],
-                           c.y_px[i],
-                           c.radius_px[i],
-                           c.opacity[i],
-                           {color.x, color.y, color.z},
-                           std::bit_cast<std::uint32_t>(c.depth[i]),
-                           static_cast<std::uint32_t>(index),
-                           layer.layer,
-                           hybrid ? hybrid_of(layer, {c.x[i], c.y[i], c.z[i]}) : std::uint16_t{0}});
+            *to++ = {c.x_px[i],
+                     c.y_px[i],
+                     c.radius_px[i],
+                     c.opacity[i],
+                     {color.x, color.y, color.z},
+                     std::bit_cast<std::uint32_t>(c.depth[i]),
+                     static_cast<std::uint32_t>(index),
+                     layer.layer,
+                     hybrid ? hybrid_of(layer, {c.x[i], c.y[i], c.z[i]}) : std::uint16_t{0}};
         }
     }
+    out.resize(static_cast<std::size_t>(to - out.data()));
 }
 
 int block_size() { return lanes; }

@@ -79,7 +79,8 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
 
 /// The bins that a splat's square of support touches. A level is chosen whose bins are at least as wide as
 /// the support, so they are at most three by three.
-TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px, int group) const {
+[[gnu::always_inline]] inline TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px,
+                                                                  int group) const {
     float bins_per_px = 1.0f / static_cast<float>(grid_.tile_px), bin_px = static_cast<float>(grid_.tile_px);
     std::size_t number = 0;
     while (support_px > bin_px && number + 1 < levels_.size()) {
