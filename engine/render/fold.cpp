@@ -230,9 +230,9 @@ void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSpl
 
 template <class Pixels, bool kFlat>
 void fold_cells(const FoldJob& job, TilePlanes& planes) {
-    constexpr std::size_t step =
-        1024;  // splats looked at before some are folded: what is found stays in cache
+    constexpr std::size_t step = 1024;  // splats looked at before some are folded, while in cache
     static_assert(step % lanes == 0);
+    constexpr std::size_t most_kept = 1 << 20;  // places that a thread keeps for its next tile
     static thread_local const std::unique_ptr<FoldScratch> scratch = std::make_unique<FoldScratch>();
     const FoldCommon common = common_of(job.layers);
     std::fill_n(scratch->batch.linear_in_distance, SplatBatch::size,
@@ -255,6 +255,7 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
         }
         if constexpr (Pixels::closes) close_cell<Pixels>(cell, job.settings.stop, planes);
     }
+    if (job.splats.size() > most_kept) scratch->places = {};
 }
 
 template <class Pixels>
