@@ -278,17 +278,34 @@ class GroupQuery {
 
     void measure_rest() {
         for (std::size_t row = 0; row < rows_.count; ++row) {
-            if (matters(row) && slot(row) != first_ && measure(slot(row))) update_limits();
+            if (matters(row, 0, group) && slot(row) != first_ && measure_row(row)) update_limits();
         }
     }
 
-    bool matters(std::size_t row) const {
-        const Floats d;
-        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
-            const auto bound = hn::Load(d, &rows_.bound[row * group + i]);
-            if (!hn::AllFalse(d, hn::Le(bound, hn::Load(d, limit_ + i)))) return true;
-        }
+    // As measure(), for the vectors of positions to which the row matters.
+    bool measure_row(std::size_t row) {
+        const ClusteredTriangle& triangle = m_.triangles[slot(row)];
+        const TriangleShape s = triangle_shape(triangle.corners);
+        if (has_no_inside(s)) return offer_thin(s, triangle.number, g_);
+        bool any = false;
+        const ShapeLanes lanes = same_shape(s, triangle.number);
+        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles()))
+            if (matters(row, i, hn::Lanes(Doubles()))) any |= offer(lanes, g_, i);
+        return any;
+    }
+
+    // To one of `count` positions of the group.
+    bool matters(std::size_t row, std::size_t first, std::size_t count) const {
+        const hn::CappedTag<float, 16> d;
+        if (count < hn::Lanes(d)) return matters_to(hn::Rebind<float, Doubles>(), row, first);
+        for (std::size_t i = first; i < first + count; i += hn::Lanes(d))
+            if (matters_to(d, row, i)) return true;
         return false;
+    }
+    template <class D>
+    HWY_INLINE bool matters_to(D d, std::size_t row, std::size_t i) const {
+        const auto bound = hn::LoadU(d, &rows_.bound[row * group + i]);
+        return !hn::AllFalse(d, hn::Le(bound, hn::LoadU(d, limit_ + i)));
     }
 
     const BlockMeasure& m_;
@@ -320,6 +337,7 @@ void choose(const CandidateList& from, const Survey& survey, CandidateList& to) 
     to.count = 0;
     for (std::size_t i = 0; i < from.count; i += hn::Lanes(d)) {
         const auto taken = survey.matter(i);
+        if (hn::AllFalse(d, taken)) continue;
         const auto copy = [&](const auto& source, auto& target)
                               HWY_ATTR { append(d, &source[i], taken, &target[to.count]); };
         append(du, &from.slot[i], hn::RebindMask(du, taken), &to.slot[to.count]);
