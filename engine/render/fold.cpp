@@ -140,10 +140,11 @@ void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch,
 
 /// Sets the places of all splats.
 void find_places(const FoldJob& job, TilePlaces& places) {
-    constexpr std::size_t fetch_ahead = 16;
+    constexpr std::size_t fetch_ahead = 16, check_every = 65536;
     const std::size_t count = job.splats.size();
     places.resize(count + lanes);
     for (std::size_t i = 0; i < count; ++i) {
+        if (i % check_every == 0) job.progress.check();
         if (i + fetch_ahead < count) prefetch(*job.splats[i + fetch_ahead]);
         const ScreenSplat& splat = *job.splats[i];
         places.x_px[i] = splat.x_px;
