@@ -379,17 +379,20 @@ void choose_candidates(const BlockMeasure& m, BlockScratch& scratch, const Block
 
 void measure_all(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers) {
     constexpr std::size_t few = 3;  // candidates that are measured in less time than bounded
+    const bool all = scratch.candidates.count <= few;
     BlockPositions local;
-    to_local(answers.x.data(), measure.origin.x, local.x);
-    to_local(answers.y.data(), measure.origin.y, local.y);
-    to_local(answers.z.data(), measure.origin.z, local.z);
+    if (!all) {
+        to_local(answers.x.data(), measure.origin.x, local.x);
+        to_local(answers.y.data(), measure.origin.y, local.y);
+        to_local(answers.z.data(), measure.origin.z, local.z);
+    }
     const auto query = [&](std::size_t g)
                            HWY_ATTR { return GroupQuery(measure, scratch, local, answers, g * group); };
     std::array<GroupQuery, block_groups> groups{query(0), query(1), query(2), query(3)};
     std::array<GroupQuery*, block_groups> near;
     std::size_t near_count = 0;
     for (GroupQuery& g : groups) {
-        if (scratch.candidates.count <= few)
+        if (all)
             g.measure_all_of(scratch.candidates);
         else if (g.measure_nearest(scratch.candidates))
             near[near_count++] = &g;
