@@ -132,6 +132,11 @@ bool Gui::busy() const {
            state_->timeline.busy() || state_->panel.busy();
 }
 
+bool Gui::opening() const {
+    const bool takes_text = ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive();
+    return !takes_text && (state_->popup || state_->flow.busy() || state_->panel.busy());
+}
+
 void Gui::set_file_chooser(std::function<bool(const FileQuery&)> chooser) {
     state_->flow.set_chooser(std::move(chooser));
 }

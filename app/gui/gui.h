@@ -87,6 +87,8 @@ class Gui {
     void ask_to_quit(const Document& document);
     /// Something moves or waits (a drag, a text cursor, an open dialog): the next frame must be drawn soon.
     bool busy() const;
+    /// An entry, a menu or a dialog is open in which nothing is typed: its focus may be on the way.
+    bool opening() const;
     /// Files are chosen through `chooser` instead of the own dialog where it returns true;
     /// it must then call file_chosen later, with nothing when the person thought better of it.
     void set_file_chooser(std::function<bool(const FileQuery&)> chooser);

@@ -52,7 +52,9 @@ class Loop {
     void wait() {
         double due = session_.next_due(seconds_now());
         if (chooser_.is_open()) due = std::min(due, 0.1);
-        if (frames_left_ > 0 || gui_.busy() || due <= 0.0) {
+        if (window_.has_input()) {
+            window_.wait(0.0);
+        } else if (frames_left_ > 0 || gui_.busy() || due <= 0.0) {
             window_.wait(still_ ? screen_frame_s : 0.0);  // where nothing is shown, no screen sets the pace
             frames_left_ = std::max(0, frames_left_ - 1);
         } else {
@@ -72,7 +74,9 @@ class Loop {
         const double now = seconds_now();
         session_.advance(now);
         if (session_.title() != title_) window_.set_title(title_ = session_.title());
-        if (!window_.begin_frame()) return;
+        if (window_.has_input()) frames_left_ = frames_after_event;
+        if (!window_.begin_frame(gui_.opening())) return;
+        const bool was_settled = session_.settled();
         Commands commands = session_.take_dropped();
         gui_.draw(session_.document(), session_.view(), session_.status(), commands);
         session_.navigate(gui_.viewport_input(), now);
@@ -82,6 +86,11 @@ class Loop {
             make_layout(session_.view(), io.DisplaySize.x, io.DisplaySize.y, window_.content_scale());
         session_.draw(static_cast<int>(layout.viewport.width * io.DisplayFramebufferScale.x),
                       static_cast<int>(layout.viewport.height * io.DisplayFramebufferScale.y), now);
+        // The badge was drawn before the picture: it must not call a preview final.
+        if (was_settled && !session_.settled()) {
+            frames_left_ = frames_after_event;
+            return window_.drop_frame();
+        }
         still_ = !window_.end_frame(session_.picture_version());
         if (const auto text = session_.take_clipboard()) ImGui::SetClipboardText(text->c_str());
         if (const auto file = session_.take_screenshot_request()) {

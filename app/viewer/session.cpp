@@ -124,6 +124,7 @@ void Session::Impl::load_sets(double now) {
     const bool same_layers = sources.size() == wanted_sources.size();
     if (same_layers && sources != wanted_sources && source_edited_at < 0.0) source_edited_at = now;
     if (source_edited_at >= 0.0 && now - source_edited_at < rest_s) return;
+    watch_files();  // before they are read, so that no change after that is missed
     loader.want(document.scene());
     wanted_revision = document.revision();
     wanted_sources = std::move(sources);

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "splats/checksum.h"
@@ -83,14 +84,10 @@ Window::Window(int width, int height, const std::string& title) {
         auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
         for (int i = 0; i < count; ++i) self->dropped_.emplace_back(paths[i]);
     });
-    // Dear ImGui's backend calls this one before its own.
-    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
-        if (action == GLFW_PRESS && key >= 0)
-            static_cast<Window*>(glfwGetWindowUserPointer(window))->pressed_.push_back({key, modifiers});
-    });
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
-    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    ImGui_ImplGlfw_InitForOpenGL(window_, false);
+    listen();
     ImGui_ImplOpenGL3_Init("#version 410 core");
 }
 
@@ -111,20 +108,25 @@ void Window::wait(double seconds) {
 
 void Window::wake() { glfwPostEmptyEvent(); }
 
-bool Window::begin_frame() {
+bool Window::begin_frame(bool opening) {
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
     if (width <= 0 || height <= 0) return false;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
-    hold_short_presses();
+    feed_frame(opening);
     ImGui::NewFrame();
     return true;
 }
 
+void Window::drop_frame() {
+    ImGui::EndFrame();
+    frame_took_s_ = glfwGetTime() - frame_began_s_;
+}
+
 bool Window::end_frame(std::uint64_t pictures) {
     ImGui::Render();
-    release_short_presses();
+    frame_took_s_ = glfwGetTime() - frame_began_s_;
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
     const FrameMark frame{hash_of(*ImGui::GetDrawData()), pictures, width, height};
@@ -136,26 +138,90 @@ bool Window::end_frame(std::uint64_t pictures) {
     return true;
 }
 
-void Window::hold_short_presses() {
+/// The events of mouse and keyboard go into the queue rather than to Dear ImGui's backend.
+void Window::listen() {
+    using Kind = InputEvent::Kind;
+    static const auto self = [](GLFWwindow* w) { return static_cast<Window*>(glfwGetWindowUserPointer(w)); };
+    glfwSetWindowFocusCallback(window_, ImGui_ImplGlfw_WindowFocusCallback);
+    glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int entered) {
+        ImGui_ImplGlfw_CursorEnterCallback(window, entered);
+        double x = 0.0, y = 0.0;
+        glfwGetCursorPos(window, &x, &y);
+        self(window)->push({Kind::move, 0, 0, x, y, 0.0});
+    });
+    glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+        self(window)->push({Kind::move, 0, 0, x, y, 0.0});
+    });
+    glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+        if (button >= 0 && button < static_cast<int>(std::size(self(window)->button_down_)))
+            self(window)->push({action == GLFW_PRESS ? Kind::press : Kind::release, button, 0, 0, 0, 0.0});
+    });
+    glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
+        self(window)->push({Kind::wheel, 0, 0, x, y, 0.0});
+    });
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
+        if (action != GLFW_REPEAT && key >= 0)
+            self(window)->push(
+                {action == GLFW_PRESS ? Kind::key_down : Kind::key_up, key, modifiers, 0, 0, 0.0});
+    });
+    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) {
+        self(window)->push({Kind::character, static_cast<int>(character), 0, 0, 0, 0.0});
+    });
+}
+
+void Window::push(InputEvent event) {
+    event.time_s = glfwGetTime();
+    input_.push(event);
+}
+
+void Window::feed(const InputEvent& event) {
+    using Kind = InputEvent::Kind;
     ImGuiIO& io = ImGui::GetIO();
-    for (const KeyPress& press : pressed_) {
-        if (press.key < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[press.key] = true;
-        io.KeyCtrl |= (press.modifiers & GLFW_MOD_CONTROL) != 0;
-        io.KeyShift |= (press.modifiers & GLFW_MOD_SHIFT) != 0;
-        io.KeyAlt |= (press.modifiers & GLFW_MOD_ALT) != 0;
+    switch (event.kind) {
+        case Kind::move:
+            mouse_x_ = event.x;
+            mouse_y_ = event.y;
+            mouse_known_ = true;
+            return;
+        case Kind::press:
+        case Kind::release:
+            button_down_[event.code] = event.kind == Kind::press;
+            return;
+        case Kind::wheel:
+            return ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
+        case Kind::key_down:
+            ImGui_ImplGlfw_KeyCallback(window_, event.code, 0, GLFW_PRESS, event.modifiers);
+            // Also those that were held before the window had the keyboard.
+            io.KeyCtrl |= (event.modifiers & GLFW_MOD_CONTROL) != 0;
+            io.KeyShift |= (event.modifiers & GLFW_MOD_SHIFT) != 0;
+            io.KeyAlt |= (event.modifiers & GLFW_MOD_ALT) != 0;
+            return;
+        case Kind::key_up:
+            return ImGui_ImplGlfw_KeyCallback(window_, event.code, 0, GLFW_RELEASE, event.modifiers);
+        case Kind::character:
+            return ImGui_ImplGlfw_CharCallback(window_, static_cast<unsigned>(event.code));
     }
 }
 
-void Window::release_short_presses() {
-    if (pressed_.empty()) return;
+void Window::feed_frame(bool opening) {
+    constexpr double double_click_s = 0.3, shortest_frame_s = 1e-4;
+    constexpr int longest_opening = 4;  // frames until the keyboard's focus has come to a new widget
+    frames_opening_ = opening ? frames_opening_ + 1 : 0;
+    const bool may_type = frames_opening_ == 0 || frames_opening_ > longest_opening;
+    const std::vector<InputEvent> events = input_.take(may_type);
+    for (const InputEvent& event : events) feed(event);
     ImGuiIO& io = ImGui::GetIO();
-    const auto down = [this](int key) { return glfwGetKey(window_, key) == GLFW_PRESS; };
-    for (const KeyPress& press : pressed_)
-        if (press.key < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[press.key] = down(press.key);
-    io.KeyCtrl = down(GLFW_KEY_LEFT_CONTROL) || down(GLFW_KEY_RIGHT_CONTROL);
-    io.KeyShift = down(GLFW_KEY_LEFT_SHIFT) || down(GLFW_KEY_RIGHT_SHIFT);
-    io.KeyAlt = down(GLFW_KEY_LEFT_ALT) || down(GLFW_KEY_RIGHT_ALT);
-    pressed_.clear();
+    std::copy(std::begin(button_down_), std::end(button_down_), io.MouseDown);
+    if (mouse_known_ && ImGui::IsMousePosValid(&io.MousePos))
+        io.MousePos = {static_cast<float>(mouse_x_), static_cast<float>(mouse_y_)};
+    // The widgets' clock stands while they catch up. When an event came is known to a frame: as much later
+    // may the second click of two be seen.
+    frame_began_s_ = glfwGetTime();
+    const double now = input_.empty() || events.empty() ? frame_began_s_ : events.back().time_s;
+    const double step = std::max(shortest_frame_s, now - widget_time_s_);
+    widget_time_s_ += step;
+    io.DeltaTime = static_cast<float>(step);
+    io.MouseDoubleClickTime = static_cast<float>(double_click_s + frame_took_s_);
 }
 
 bool Window::close_requested() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gl/context.h"
+#include "viewer/input_queue.h"
 
 struct GLFWwindow;
 
@@ -27,8 +28,13 @@ class Window {
     void wait(double seconds);
     /// Ends a wait() from any thread.
     static void wake();
-    /// Begins a frame of widgets; false while the window is minimised.
-    bool begin_frame();
+    /// What the hand did waits for the next frame.
+    bool has_input() const { return !input_.empty(); }
+    /// Begins a frame of widgets; false while the window is minimised. `opening`: something was opened that
+    /// may be about to take what is typed.
+    bool begin_frame(bool opening);
+    /// Ends the frame without showing it.
+    void drop_frame();
     /// Draws the widgets and shows the frame, unless it would look like the one before: filling the window
     /// takes a software rasteriser 30 ms. `pictures`: differs whenever the pixels of a texture do that the
     /// widgets show.
@@ -46,13 +52,11 @@ class Window {
     std::vector<unsigned char> read(int& width, int& height) const;
 
   private:
-    struct KeyPress {
-        int key, modifiers;
-    };
-    /// Dear ImGui looks at the state of a key once a frame: a key pressed and released between two frames
-    /// would be lost. It is held down for the one frame instead.
-    void hold_short_presses();
-    void release_short_presses();
+    void listen();
+    void push(InputEvent event);
+    void feed(const InputEvent& event);
+    /// Gives the widgets a portion of what the hand did, as if it were now.
+    void feed_frame(bool opening);
 
     /// What a frame looks like.
     struct FrameMark {
@@ -63,8 +67,13 @@ class Window {
 
     GLFWwindow* window_ = nullptr;
     FrameMark shown_;
-    bool damaged_ = true;            // the system wants the frame drawn again
-    std::vector<KeyPress> pressed_;  // since the last frame
+    bool damaged_ = true;  // the system wants the frame drawn again
+    InputQueue input_;
+    double mouse_x_ = 0.0, mouse_y_ = 0.0;  // as the widgets know it
+    bool mouse_known_ = false;
+    bool button_down_[3] = {};
+    int frames_opening_ = 0;
+    double widget_time_s_ = 0.0, frame_began_s_ = 0.0, frame_took_s_ = 0.0;
     GlInfo gl_;
     std::vector<std::filesystem::path> dropped_;
 };

@@ -1,0 +1,35 @@
+// What a hand did at mouse and keyboard, in its order, given out in portions that one frame of widgets can
+// take. In: events as they come. Out: those of the next frame. Knows neither window nor widgets.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+namespace astrosplat {
+
+struct InputEvent {
+    enum class Kind { move, press, release, wheel, key_down, key_up, character };
+    Kind kind = Kind::move;
+    int code = 0;             // mouse button, key, or character
+    int modifiers = 0;        // with a key
+    double x = 0.0, y = 0.0;  // position, or notches of the wheel
+    double time_s = 0.0;      // when it was seen
+    bool operator==(const InputEvent&) const = default;
+};
+
+/// Dear ImGui looks at mouse and keys once a frame. Where a frame takes long, a click, a drag or a word falls
+/// between two frames: what it cannot tell apart waits for the frame after.
+class InputQueue {
+  public:
+    void push(const InputEvent& event) { events_.push_back(event); }
+    bool empty() const { return events_.empty(); }
+    /// The longest beginning of what waits in which nothing hides what came before: no button or key is
+    /// changed twice, a button is pressed and let go where the mouse was last seen, and no key or character
+    /// comes before another that was meant to be first. `may_type`: keys are not kept for later.
+    std::vector<InputEvent> take(bool may_type = true);
+
+  private:
+    std::deque<InputEvent> events_;
+};
+
+}  // namespace astrosplat

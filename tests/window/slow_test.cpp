@@ -1,0 +1,44 @@
+// What is done while the program is busy with one long frame happens afterwards as it was done.
+#include "edit/keys.h"
+#include "window/window_test.h"
+
+namespace astrosplat::test {
+namespace {
+
+class WindowSlow : public WindowTest {
+  protected:
+    /// The longest frame there can be: the program does nothing until go_on().
+    void stop() { program->signal(SIGSTOP); }
+    void go_on() { program->signal(SIGCONT); }
+};
+
+TEST_F(WindowSlow, AValueIsKeyedAtTwoFramesBlindly) {
+    start();
+    const Pixels first = settled_picture();
+    TestWindow& widgets = same_widgets();
+    const float y = widgets.at("ruler").y, from = widgets.at("key camera.position 1").x,
+                to = widgets.at("key camera.position 24").x;
+    stop();
+    person->click(diamond(power));
+    person->drag({from, y}, {to - from, 0.0f});
+    person->move({from, y});
+    person->double_click(value_box(power));
+    person->type("3.25");
+    person->key("Return");
+    person->key("ctrl+s");
+    EXPECT_EQ(picture(), first);
+    go_on();
+    const auto keys = [&] {
+        const Scene scene = saved();
+        const Track* track = find_track(scene, power);
+        return track ? track->keys : decltype(Track::keys)();
+    };
+    ASSERT_TRUE(comes_true([&] { return keys().size() == 2; })) << "it was not saved, or not as it was";
+    EXPECT_EQ(keys()[0].frame, 1.0);
+    EXPECT_EQ(keys()[0].value, std::vector<double>{1.0});
+    EXPECT_EQ(keys()[1].frame, 24.0);
+    EXPECT_EQ(keys()[1].value, std::vector<double>{3.25});
+}
+
+}  // namespace
+}  // namespace astrosplat::test
