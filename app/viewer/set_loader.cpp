@@ -79,7 +79,7 @@ std::string reason(const std::exception& error) {
 }  // namespace
 
 struct SetLoader::Impl {
-    SetCache cache;
+    Load load_set;
     std::int64_t preview_limit;
 
     mutable std::mutex mutex;  // for all below
@@ -92,8 +92,8 @@ struct SetLoader::Impl {
     bool held = false, ending = false;
     std::thread thread;  // last: it uses all the others
 
-    Impl(const SetCache& where, std::int64_t limit)
-        : cache(where), preview_limit(limit), thread([this] { work(); }) {}
+    Impl(Load load, std::int64_t limit)
+        : load_set(std::move(load)), preview_limit(limit), thread([this] { work(); }) {}
     ~Impl() {
         {
             const std::lock_guard lock(mutex);
@@ -254,8 +254,8 @@ void SetLoader::Impl::load(Job& current) {
     Progress progress;
     progress.cancelled = &current.cancelled;
     progress.report = [&](double fraction) { current.progress = static_cast<float>(fraction); };
-    auto set = std::make_shared<const SplatSet>(
-        load_source(cache, current.source, current.name, progress, &current.growing).set);
+    auto set =
+        std::make_shared<const SplatSet>(load_set(current.source, current.name, progress, current.growing));
     auto loaded = std::make_shared<const LoadedLayer>(
         whole_layer(std::move(set), current.source, current.name, preview_limit));
 
@@ -307,7 +307,12 @@ void SetLoader::Impl::fail(const Job& current, const std::string& why) {
 }
 
 SetLoader::SetLoader(const SetCache& cache, std::int64_t preview_limit)
-    : impl_(std::make_unique<Impl>(cache, preview_limit)) {}
+    : SetLoader(
+          [cache](const SourceParams& source, const std::string& name, const Progress& progress,
+                  KeptWatcher& watcher) { return load_source(cache, source, name, progress, &watcher).set; },
+          preview_limit) {}
+SetLoader::SetLoader(Load load, std::int64_t preview_limit)
+    : impl_(std::make_unique<Impl>(std::move(load), preview_limit)) {}
 SetLoader::~SetLoader() = default;
 
 void SetLoader::want(const Scene& scene) {

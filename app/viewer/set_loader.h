@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -15,8 +16,14 @@ namespace astrosplat {
 
 class SetLoader {
   public:
+    /// Loads or generates a set, as load_source does, and tells the watcher of it.
+    using Load = std::function<SplatSet(const SourceParams& source, const std::string& layer_name,
+                                        const Progress& progress, KeptWatcher& watcher)>;
+
     /// `preview_limit`: largest number of splats of a layer that a preview will ever draw.
     SetLoader(const SetCache& cache, std::int64_t preview_limit);
+    /// Sets come from `load`, called in another thread.
+    SetLoader(Load load, std::int64_t preview_limit);
     ~SetLoader();  // cancels and waits
 
     /// Makes sure that every layer of the scene has its set or is on its way: starts what is missing or

@@ -5,7 +5,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
 #include <numeric>
+#include <utility>
 
 #include "splats/generate.h"
 #include "splats/ply.h"
@@ -183,62 +188,127 @@ TEST_F(SetLoaderTest, ACancelledLayerWaitsForRetryOrAnotherSource) {
     EXPECT_TRUE(loaded("gas"));
 }
 
-TEST_F(SetLoaderTest, ASetIsSeenGrowingAndThenWhole) {
-    SetLoader many(SetCache{}, 1'000'000);
-    LayerParams& gas = small.scene.layers[0];
-    gas.source.count = 4000000;
-    small.scene.layers.resize(1);
-    EXPECT_FALSE(many.grow());
-    many.want(small.scene);
-    while (!many.grow()) ASSERT_FALSE(many.sets_there()) << "it was never seen";
-    const auto growing = many.layer("gas");
+/// Generates as the program does, but stays where its progress first reaches a mark until it may go on.
+class HeldGeneration {
+  public:
+    explicit HeldGeneration(double mark) : mark_(mark) {}
+    SplatSet operator()(const SourceParams& source, const std::string& name, const Progress& progress,
+                        KeptWatcher& watcher) {
+        Progress held = progress;
+        held.report = [&](double fraction) {
+            progress.at(fraction);
+            if (fraction >= mark_) stay(progress);
+        };
+        return load_source(source, name, held, &watcher);
+    }
+    /// Until a set is held half made.
+    void wait() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return held_; });
+    }
+    void go_on() {
+        const std::lock_guard lock(mutex_);
+        may_go_on_ = true;
+        changed_.notify_all();
+    }
+
+  private:
+    void stay(const Progress& progress) {
+        std::unique_lock lock(mutex_);
+        held_ = true;
+        changed_.notify_all();
+        while (!may_go_on_ && !progress.stop()) changed_.wait_for(lock, std::chrono::milliseconds(1));
+    }
+
+    double mark_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    bool held_ = false, may_go_on_ = false;
+};
+
+class GrowingSetsTest : public testing::Test {
+  protected:
+    static constexpr std::int64_t limit = 1'000'000;
+
+    GrowingSetsTest() {
+        small.scene.layers.resize(1);
+        gas().source.count = 400000;
+    }
+    LayerParams& gas() { return small.scene.layers[0]; }
+
+    SmallScene small;
+};
+
+TEST_F(GrowingSetsTest, ASetIsSeenGrowingAndThenWhole) {
+    HeldGeneration held(0.3);
+    SetLoader loader(std::ref(held), limit);
+    EXPECT_FALSE(loader.grow());
+    loader.want(small.scene);
+    held.wait();
+    ASSERT_TRUE(loader.grow());
+    const auto growing = loader.layer("gas");
     ASSERT_TRUE(growing);
-    const std::uint64_t revision = many.revision();
+    const std::uint64_t revision = loader.revision();
     EXPECT_FALSE(growing->set) << "what is not whole is no final picture";
     EXPECT_GT(growing->preview->size(), 0);
     EXPECT_GE(growing->splats, growing->preview->size());
-    EXPECT_LE(growing->preview->size(), 1'000'000 / 16);
-    EXPECT_TRUE(many.status(gas).loading);
-    EXPECT_GE(many.status(gas).found, growing->splats);
-    EXPECT_GT(many.status(gas).radius_min, 0.0);
-    many.wait();
-    const auto whole = many.layer("gas");
-    EXPECT_GT(many.revision(), revision);
-    EXPECT_FALSE(many.grow());
+    EXPECT_LE(growing->preview->size(), limit / 16);
+    EXPECT_TRUE(loader.status(gas()).loading);
+    EXPECT_GE(loader.status(gas()).found, growing->splats);
+    EXPECT_GT(loader.status(gas()).radius_min, 0.0);
+    EXPECT_FALSE(loader.sets_there());
+    held.go_on();
+    loader.wait();
+    const auto whole = loader.layer("gas");
+    EXPECT_GT(loader.revision(), revision);
+    EXPECT_FALSE(loader.grow());
     ASSERT_TRUE(whole && whole->set);
-    const SplatSet wanted = load_source(gas.source, gas.name);
+    const SplatSet wanted = load_source(gas().source, gas().name);
+    EXPECT_LT(growing->splats, wanted.size());
     EXPECT_EQ(whole->splats, wanted.size());
     EXPECT_TRUE(std::equal(wanted.id.begin(), wanted.id.end(), whole->set->id.begin(), whole->set->id.end()));
     EXPECT_TRUE(std::equal(wanted.position.begin(), wanted.position.end(), whole->set->position.begin()));
     EXPECT_NEAR(growing->radius.x, whole->radius.x, 1e-12);
 }
 
-TEST_F(SetLoaderTest, WhatGrewIsGoneWhenCancelled) {
-    small.scene.layers.resize(1);
-    LayerParams& gas = small.scene.layers[0];
-    gas.source.count = 4000000;
+TEST_F(GrowingSetsTest, WhatGrewIsGoneWhenCancelled) {
+    HeldGeneration held(0.3);
+    SetLoader loader(std::ref(held), limit);
     loader.want(small.scene);
-    while (!loader.grow()) ASSERT_FALSE(loader.sets_there());
+    held.wait();
+    ASSERT_TRUE(loader.grow());
     EXPECT_TRUE(loader.layer("gas"));
     loader.cancel("gas");
     EXPECT_FALSE(loader.grow());
     EXPECT_FALSE(loader.layer("gas"));
-    EXPECT_EQ(status(0).splats, 0);
+    EXPECT_EQ(loader.status(gas()).splats, 0);
 }
 
-TEST_F(SetLoaderTest, AnOldSetIsReplacedOnceTheNewOneIsEverywhere) {
-    small.scene.layers.resize(1);
-    const auto first = loaded("gas");
-    LayerParams& gas = small.scene.layers[0];
-    gas.source.count = 4000000;
-    loader.want(small.scene);
-    while (!loader.grow()) ASSERT_FALSE(loader.sets_there());
-    EXPECT_GE(status(0).progress, 0.5f);
-    EXPECT_NE(loader.layer("gas"), first);
-    EXPECT_EQ(loader.layer("gas")->box.lo, first->box.lo) << "the picture would move";
-    EXPECT_FALSE(status(0).stale);
-    loader.cancel("gas");
-    EXPECT_EQ(loader.layer("gas")->set, first->set);
+TEST_F(GrowingSetsTest, AnOldSetStaysUntilTheNewOneIsEverywhere) {
+    for (const double mark : {0.3, 0.6}) {
+        HeldGeneration held(mark);
+        bool first_set = true;
+        SetLoader loader(
+            [&](const SourceParams& source, const std::string& name, const Progress& progress,
+                KeptWatcher& watcher) {
+                const bool free = std::exchange(first_set, false);
+                return free ? load_source(source, name, progress, &watcher)
+                            : held(source, name, progress, watcher);
+            },
+            limit);
+        loader.want(small.scene);
+        loader.wait();
+        const auto first = loader.layer("gas");
+        gas().source.count += 400000;
+        loader.want(small.scene);
+        held.wait();
+        EXPECT_EQ(loader.grow(), mark > 0.5);
+        EXPECT_EQ(loader.layer("gas") != first, mark > 0.5);
+        EXPECT_EQ(loader.layer("gas")->box.lo, first->box.lo) << "the picture would move";
+        EXPECT_FALSE(loader.status(gas()).stale);
+        loader.cancel("gas");
+        EXPECT_EQ(loader.layer("gas")->set, first->set);
+    }
 }
 
 TEST_F(SetLoaderTest, EndsInTheMiddleOfLoading) {
