@@ -72,8 +72,7 @@ void query_block(const ClosestPointIndex& index, const Lattice& lattice, const C
     const BlockBall ball = block_ball(lattice, settings.jitter, first, block_cells);
     if (collect(index, settings, block, ball, scratch.candidates)) {
         const auto slack = static_cast<float>(index.slack(ball.center, 2.0 * ball.radius));
-        measure_block({index.triangles(), index.origin(), slack, settings.max_distance}, scratch,
-                      answers);
+        measure_block({index.triangles(), index.origin(), slack, settings.max_distance}, scratch, answers);
     } else {
         ask_embree(index, settings.max_distance, block.nearest, answers);
     }
