@@ -1,5 +1,6 @@
 // A set is seen in the picture while it is generated.
 #include <algorithm>
+#include <csignal>
 
 #include "window/window_test.h"
 
@@ -29,8 +30,11 @@ class WindowGrowth : public WindowTest {
 TEST_F(WindowGrowth, APartOfTheSetIsSeenBeforeItIsWhole) {
     start({scene_file.string(), "--no-cache", "--threads", "1"});
     ASSERT_TRUE(comes_true([&] { return something_is_seen(); }));
-    // Escape gives up what is being generated, and leaves alone what is whole.
+    // Escape gives up what is being generated, and leaves alone what is whole: nothing goes on until it is
+    // pressed.
+    program->signal(SIGSTOP);
     person->key("Escape");
+    program->signal(SIGCONT);
     EXPECT_TRUE(comes_true([&] { return !something_is_seen(); })) << "what was given up stays in the picture";
     EXPECT_TRUE(running());
 }

@@ -63,8 +63,9 @@ void all_densities(Context& context) {
 
 void density_section(Context& context) {
     const LayerStatus& status = context.layer_status();
-    const std::string kept =
-        status.splats > 0 ? percent(double(status.kept) / double(status.splats)) + " kept" : "";
+    // Of a set that is still growing the preview knows too little.
+    const bool is_known = status.splats > 0 && status.kept >= 0 && !status.loading;
+    const std::string kept = is_known ? percent(double(status.kept) / double(status.splats)) + " kept" : "";
     if (!section(context, "Density with distance", kept, true)) return;
     const Look& look = context.layer().look;
     // With thickness keys each has a shape of its own, and this one is not used.
