@@ -46,7 +46,7 @@ BlockPart block_part(const Cell& cell, int block, int part) {
             cell.first_pixel + static_cast<std::size_t>(block * TilePlanes::block_pixels + part)};
 }
 
-/// Folds the splats `bits` of a batch into a part of a block, kWays at a time. kMayClose: without it all
+/// Folds the splats `bits` of a batch into a part of a block, kWays at a time. Unless kMayClose, all its
 /// pixels have to be open to the end, and the batch faint.
 template <bool kFlat, bool kMayClose, int kWays, class Pixels>
 HWY_INLINE void fold_splats(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
@@ -138,38 +138,38 @@ void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch,
     }
 }
 
-/// Sets the places of all splats.
-void find_places(const FoldJob& job, TilePlaces& places) {
+/// Sets the discs of all splats.
+void find_discs(const FoldJob& job, Discs& discs) {
     constexpr std::size_t fetch_ahead = 16, check_every = 65536;
     const std::size_t count = job.splats.size();
-    places.resize(count + lanes);
+    discs.resize(count + lanes);
     for (std::size_t i = 0; i < count; ++i) {
         if (i % check_every == 0) job.progress.check();
         if (i + fetch_ahead < count) prefetch(*job.splats[i + fetch_ahead]);
         const ScreenSplat& splat = *job.splats[i];
-        places.x_px[i] = splat.x_px;
-        places.y_px[i] = splat.y_px;
         // Radii below the smallest tabulated one have its support; rounding must not lose a pixel.
-        places.reach_px[i] = job.layers[splat.layer].footprints->drawn_support_px(splat.radius_px) * 1.0001f;
+        const float reach_px =
+            job.layers[splat.layer].footprints->drawn_support_px(splat.radius_px) * 1.0001f;
+        discs.set(i, splat.x_px, splat.y_px, reach_px);
     }
-    for (std::size_t i = count; i < count + lanes; ++i) places.set(i, 0.0f, 0.0f, -1e30f);  // nowhere
+    for (std::size_t i = count; i < count + lanes; ++i) discs.set_nowhere(i);
 }
 
 /// Appends those of the splats [begin, end) whose support may touch the cell.
-void find_in_cell(const TilePlaces& places, std::size_t begin, std::size_t end, const Cell& cell,
+void find_in_cell(const Discs& discs, std::size_t begin, std::size_t end, const Cell& cell,
                   CellSplats& found) {
     constexpr float half = 0.5f * static_cast<float>(TilePlanes::cell_px);
     const hn::RebindToUnsigned<D> du;
     const V middle_x = all(cell.x0_px + half), middle_y = all(cell.y0_px + half);
     for (std::size_t i = begin; i < end; i += lanes) {
-        const V x = hn::Load(D(), &places.x_px[i]), y = hn::Load(D(), &places.y_px[i]),
-                reach = hn::Load(D(), &places.reach_px[i]);
+        const V x = hn::Load(D(), &discs.x_px[i]), y = hn::Load(D(), &discs.y_px[i]),
+                reach = hn::Load(D(), &discs.reach_px[i]);
         const V distance = hn::Max(hn::Abs(hn::Sub(x, middle_x)), hn::Abs(hn::Sub(y, middle_y)));
         const M near = hn::Lt(distance, hn::Add(reach, all(half)));
         const std::size_t n = found.count;
-        hn::StoreU(hn::Compress(x, near), D(), &found.x_px[n]);
-        hn::StoreU(hn::Compress(y, near), D(), &found.y_px[n]);
-        hn::StoreU(hn::Compress(hn::Mul(reach, reach), near), D(), &found.reach_squared[n]);
+        hn::StoreU(hn::Compress(x, near), D(), &found.discs.x_px[n]);
+        hn::StoreU(hn::Compress(y, near), D(), &found.discs.y_px[n]);
+        hn::StoreU(hn::Compress(reach, near), D(), &found.discs.reach_px[n]);
         hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(i)), hn::RebindMask(du, near)), du,
                    &found.index[n]);
         found.count = n + hn::CountTrue(D(), near);
@@ -218,11 +218,11 @@ void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSpl
     for (; begin + size <= found.count || (last && begin < found.count); begin += size) {
         job.progress.check();
         batch.count = static_cast<int>(std::min(size, found.count - begin));
-        batch.x_px = &found.x_px[begin];
-        batch.y_px = &found.y_px[begin];
-        batch.reach_squared = &found.reach_squared[begin];
+        batch.x_px = &found.discs.x_px[begin];
+        batch.y_px = &found.discs.y_px[begin];
+        batch.reach_px = &found.discs.reach_px[begin];
         batch.index = &found.index[begin];
-        for (std::size_t i = begin + batch.count; i % lanes != 0; ++i) found.set(i, 0.0f, 0.0f, -1.0f);
+        for (std::size_t i = begin + batch.count; i % lanes != 0; ++i) found.discs.set_nowhere(i);
         fold_batch<Pixels, kFlat>(job, common, batch, cell, planes);
         if (cell.open == 0) return;
     }
@@ -233,12 +233,12 @@ template <class Pixels, bool kFlat>
 void fold_cells(const FoldJob& job, TilePlanes& planes) {
     constexpr std::size_t step = 1024;  // splats looked at before some are folded, while in cache
     static_assert(step % lanes == 0);
-    constexpr std::size_t most_kept = 1 << 20;  // places that a thread keeps for its next tile
+    constexpr std::size_t most_kept = 1 << 20;  // discs that a thread keeps for its next tile
     static thread_local const std::unique_ptr<FoldScratch> scratch = std::make_unique<FoldScratch>();
     const FoldCommon common = common_of(job.layers);
     std::fill_n(scratch->batch.linear_in_distance, SplatBatch::size,
                 common.footprints && common.footprints->linear_in_distance);
-    find_places(job, scratch->places);
+    find_discs(job, scratch->discs);
     CellSplats& found = scratch->found;
     found.resize(step + SplatBatch::size + lanes);
     for (int n = 0; n < planes.cell_columns * planes.cell_rows; ++n) {
@@ -250,13 +250,13 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
         found.count = 0;
         for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; i += step) {
             const std::size_t end = std::min(i + step, job.splats.size());
-            find_in_cell(scratch->places, i, end, cell, found);
+            find_in_cell(scratch->discs, i, end, cell, found);
             fold_found<Pixels, kFlat>(job, common, end == job.splats.size(), found, scratch->batch, cell,
                                       planes);
         }
         if constexpr (Pixels::closes) close_cell<Pixels>(cell, job.settings.stop, planes);
     }
-    if (job.splats.size() > most_kept) scratch->places = {};
+    if (job.splats.size() > most_kept) scratch->discs = {};
 }
 
 template <class Pixels>

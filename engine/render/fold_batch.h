@@ -40,10 +40,10 @@ struct SplatBatch {
     static constexpr int blocks = TilePlanes::cell_blocks * TilePlanes::cell_blocks;
     int count = 0;
     bool is_faint = false;  // no splat's opacity comes near 1: s needs no clamping
-    // Of the whole picture; places from `count` to the next whole vector have a reach below 0.
+    // Of the whole picture; from `count` to the next whole vector they touch nothing.
     const float* x_px = nullptr;
     const float* y_px = nullptr;
-    const float* reach_squared = nullptr;
+    const float* reach_px = nullptr;
     const std::uint32_t* index = nullptr;   // in the job's splats
     alignas(64) SplatBits touches[blocks];  // splats that may have weight in the block
     std::uint16_t layer[places];
@@ -76,8 +76,8 @@ struct FoldCommon {
     bool screen = false;                         // all are screens
 };
 
-/// Where a tile's splats are and how far they reach, in order; the arrays end with some that are nowhere.
-struct TilePlaces {
+/// Where splats are on the picture and how far they reach, value by value.
+struct Discs {
     Buffer<float> x_px, y_px, reach_px;
     void resize(std::size_t size) {
         x_px.resize(size);
@@ -89,32 +89,27 @@ struct TilePlaces {
         y_px[i] = y;
         reach_px[i] = reach;
     }
+    /// Touches nothing: fills the last vector.
+    void set_nowhere(std::size_t i) { set(i, 1e30f, 1e30f, 0.0f); }
 };
 
 /// Those of a tile's splats that may touch a cell.
 struct CellSplats {
-    Buffer<float> x_px, y_px, reach_squared;
-    Buffer<std::uint32_t> index;
+    Discs discs;
+    Buffer<std::uint32_t> index;  // in the job's splats
     std::size_t count = 0;
     void resize(std::size_t size) {
-        x_px.resize(size);
-        y_px.resize(size);
-        reach_squared.resize(size);
+        discs.resize(size);
         index.resize(size);
-    }
-    void set(std::size_t i, float x, float y, float reach2) {
-        x_px[i] = x;
-        y_px[i] = y;
-        reach_squared[i] = reach2;
     }
     /// Forgets those before `begin`.
     void keep_from(std::size_t begin) {
         const auto keep = [&](auto& values) {
             std::copy(values.data() + begin, values.data() + count, values.data());
         };
-        keep(x_px);
-        keep(y_px);
-        keep(reach_squared);
+        keep(discs.x_px);
+        keep(discs.y_px);
+        keep(discs.reach_px);
         keep(index);
         count -= begin;
     }
@@ -122,7 +117,7 @@ struct CellSplats {
 
 /// Memory of one thread that folds.
 struct FoldScratch {
-    TilePlaces places;
+    Discs discs;  // of the tile, in order
     CellSplats found;
     SplatBatch batch{};
 };

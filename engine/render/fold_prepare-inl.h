@@ -45,14 +45,15 @@ inline void find_touched_blocks(SplatBatch& batch, float x0_px, float y0_px) {
     constexpr int side = TilePlanes::cell_blocks;
     for (SplatBits& bits : batch.touches) bits = {};
     for (int n = 0; n < batch.count; n += lanes) {
-        const V x = load(batch.x_px + n), y = load(batch.y_px + n), reach = load(batch.reach_squared + n);
+        const V x = load(batch.x_px + n), y = load(batch.y_px + n), reach = load(batch.reach_px + n);
+        const V reach_squared = hn::Mul(reach, reach);
         V dx[side];
         for (int c = 0; c < side; ++c)
             dx[c] = distance_to_block(x, x0_px + static_cast<float>(c * TilePlanes::block_px));
         for (int r = 0; r < side; ++r) {
             const V dy = distance_to_block(y, y0_px + static_cast<float>(r * TilePlanes::block_px));
             for (int c = 0; c < side; ++c)
-                set_bits(hn::Le(hn::Add(dx[c], dy), reach), n, &batch.touches[r * side + c].low);
+                set_bits(hn::Le(hn::Add(dx[c], dy), reach_squared), n, &batch.touches[r * side + c].low);
         }
     }
 }

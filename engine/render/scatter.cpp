@@ -212,12 +212,6 @@ void TileBins::collect(std::int64_t tile, int group, std::vector<std::span<const
     }
 }
 
-std::int64_t TileBins::records() const {
-    std::int64_t sum = 0;
-    for (const std::span<const ScreenSplat>& block : blocks_) sum += static_cast<std::int64_t>(block.size());
-    return sum;
-}
-
 std::int64_t TileBins::instances() const {
     std::int64_t sum = 0;
     for (const Sums& chunk : sums_) sum += chunk.instances;

@@ -70,7 +70,6 @@ class TileBins {
     void collect(std::int64_t tile, int group, std::vector<std::span<const ScreenSplat>>& out) const;
 
     const TileGrid& grid() const { return grid_; }
-    std::int64_t records() const;    // written, a splat once per bin it touches
     std::int64_t instances() const;  // splats (children counted one by one), each in one band only
     double footprint_px() const;     // sum of their footprints' areas, square px
     /// The least and the largest radius in px; empty (least > largest) without records.
