@@ -46,46 +46,31 @@ BlockPart block_part(const Cell& cell, int block, int part) {
             cell.first_pixel + static_cast<std::size_t>(block * TilePlanes::block_pixels + part)};
 }
 
-/// Folds the splats `bits` of a batch into a part of a block, kWays at a time. Unless kMayClose, all its
-/// pixels have to be open to the end, and the batch faint.
-template <bool kFlat, bool kMayClose, int kWays, class Pixels>
+/// Folds the splats `bits` of a batch into a part of a block. Unless kMayClose, all its pixels have to be
+/// open to the end, and the batch faint.
+template <bool kFlat, bool kMayClose, class Pixels>
 HWY_INLINE void fold_splats(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
                             TilePlanes& planes, Pixels& pixels) {
-    while (bits.any()) {
-        int i[kWays];
-        V w[kWays];
-        for (int n = 0; n < kWays; ++n) i[n] = bits.take_first();  // with none left, SplatBatch::none
-        for (int n = 0; n < kWays; ++n) {
-            const V dx = hn::Sub(part.x_px, all(batch.x_px[i[n]])),
-                    dy = hn::Sub(part.y_px, all(batch.y_px[i[n]]));
-            w[n] = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
-        }
-        weights_at<kFlat>(batch, i, w);
-        for (int n = 0; n < kWays; ++n) {
-            FoldStep step{batch, i[n], {}};
+    constexpr int ways = lanes == TilePlanes::block_pixels ? 2 : 1;  // narrow vectors have few registers
+    auto next = begin_splats<kFlat, ways>(batch, bits, part.x_px, part.y_px);
+    for (bool more = true; more;) {
+        const auto now = next;
+        more = bits.any();
+        next = begin_splats<kFlat, ways>(batch, bits, part.x_px, part.y_px);
+        V w[ways];
+        end_splats<kFlat>(batch, now, w);
+        for (int n = 0; n < ways; ++n) {
+            const int i = now.i[n];
+            FoldStep step{batch, i, {}};
             if constexpr (Pixels::aovs)
                 for (std::size_t k = 0; k < 4; ++k)
                     step.layer_light[k] =
-                        planes.layer_light[4 * std::size_t{batch.layer[i[n]]} + k].data() + part.at;
-            const V s = clamp_zero(hn::Mul(all(batch.opacity[i[n]]), w[n]));
+                        planes.layer_light[4 * std::size_t{batch.layer[i]} + k].data() + part.at;
+            const V s = clamp_zero(hn::Mul(all(batch.opacity[i]), w[n]));
             pixels.template fold<kMayClose>(step, kMayClose ? clamp_one(s) : s,
-                                            hn::Mul(w[n], all(batch.weight_gain[i[n]])), stop);
+                                            hn::Mul(w[n], all(batch.weight_gain[i])), stop);
         }
     }
-}
-
-/// fold_splats, as many at a time as pays: four are quicker by 8 % than two where up to three places without
-/// a splat do not count. Narrower vectors come with too few registers for more than one.
-template <bool kFlat, bool kMayClose, class Pixels>
-HWY_INLINE void fold_part(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
-                          TilePlanes& planes, Pixels& pixels) {
-    constexpr int enough_for_four = 16;
-    if constexpr (lanes < TilePlanes::block_pixels)
-        fold_splats<kFlat, kMayClose, 1>(batch, bits, part, stop, planes, pixels);
-    else if (bits.count() < enough_for_four)
-        fold_splats<kFlat, kMayClose, 2>(batch, bits, part, stop, planes, pixels);
-    else
-        fold_splats<kFlat, kMayClose, 4>(batch, bits, part, stop, planes, pixels);
 }
 
 /// Folds the splats `bits` of a batch into one block; false when all of its pixels are closed.
@@ -102,12 +87,12 @@ HWY_INLINE bool fold_block(const SplatBatch& batch, SplatBits bits, const Cell& 
         // needed to ask. (With AOVs the layers' light is already written by then.)
         if constexpr (!kFlat && !Pixels::aovs) {
             if (batch.is_faint && hn::AllTrue(D(), pixels.open(stop))) {
-                fold_part<kFlat, false>(batch, bits, part, stop, planes, pixels);
+                fold_splats<kFlat, false>(batch, bits, part, stop, planes, pixels);
                 done = hn::AllTrue(D(), pixels.open(stop));
                 if (!done) pixels = Pixels(planes, part.at);
             }
         }
-        if (!done) fold_part<kFlat, true>(batch, bits, part, stop, planes, pixels);
+        if (!done) fold_splats<kFlat, true>(batch, bits, part, stop, planes, pixels);
         pixels.store_to(planes, part.at);
         if constexpr (Pixels::closes) open = open || !hn::AllFalse(D(), pixels.open(stop));
     }

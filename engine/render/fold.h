@@ -2,7 +2,7 @@
 // order with a transmittance per channel; vector code through Highway, the same bits on every instruction
 // set.
 //
-// A tile is made of cells of 32 x 32 px, a cell of 8 x 8 blocks of 4 x 4 px. Splats are prepared 64 at a
+// A tile is made of cells of 32 x 32 px, a cell of 8 x 8 blocks of 4 x 4 px. Splats are prepared 128 at a
 // time; then each block folds those of them that touch it, with its pixels in registers.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the fold knows of the splats it is about to fold: up to 64 at a time, in total order, value by value.
+// What the fold knows of the splats it is about to fold: up to 128 at a time, in total order, value by value.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,6 @@ struct SplatBits {
     static constexpr int size = 128;
     std::uint64_t low = 0, high = 0;
     bool any() const { return (low | high) != 0; }
-    int count() const { return std::popcount(low) + std::popcount(high); }
     SplatBits& operator|=(const SplatBits& other) {
         low |= other.low;
         high |= other.high;

@@ -50,39 +50,58 @@ HWY_INLINE V look_up(const float* c, VI segment) {
     return r;
 }
 
-/// Weights of kWays splats i[..] at squared distances `w` from their centres, without the amplitudes. Not
-/// clamped: the cubics may leave [0, 1] by a few 1e-5. kFlat: the footprint may have a flat inside.
-///
-/// The splats go side by side because the chain of operations of one is long, and a core does not look ahead
-/// over enough of them to keep its units busy.
+/// Splats on their way to be folded into `lanes` pixels: which, and where in their cubics the pixels are.
+/// A few go side by side, and the next few begin before these end: the chain of operations of one is long,
+/// and a core does not look ahead over enough of them to keep its units busy.
+template <int kWays>
+struct SplatsUnderway {
+    int i[kWays];
+    V segment[kWays];  // its number in the lowest bits of the float
+    V place[kWays];    // in the segment, 0 to 1
+};
+
+constexpr float rounding = 12582912.0f;  // 1.5 * 2^23: added to it, a number is rounded to a whole one
+
+/// Takes the next splats out of `bits` (with none left, SplatBatch::none).
 template <bool kFlat, int kWays>
-HWY_INLINE void weights_at(const SplatBatch& batch, const int (&i)[kWays], V (&w)[kWays]) {
-    const D d;
-    V u[kWays], rounded[kWays], f[kWays], p[kWays];
+HWY_INLINE SplatsUnderway<kWays> begin_splats(const SplatBatch& batch, SplatBits& bits, V x_px, V y_px) {
+    SplatsUnderway<kWays> to;
+    V u[kWays];
+    for (int n = 0; n < kWays; ++n) to.i[n] = bits.take_first();
     for (int n = 0; n < kWays; ++n) {
-        const V place = batch.linear_in_distance[i[n]] ? hn::Sqrt(w[n]) : w[n];
-        u[n] =
-            kFlat ? hn::Max(hn::Mul(hn::Sub(place, all(batch.lo[i[n]])), all(batch.scale[i[n]])), hn::Zero(d))
-                  : hn::Mul(place, all(batch.scale[i[n]]));
+        const int i = to.i[n];
+        const V dx = hn::Sub(x_px, all(batch.x_px[i])), dy = hn::Sub(y_px, all(batch.y_px[i]));
+        u[n] = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+        if (batch.linear_in_distance[i]) u[n] = hn::Sqrt(u[n]);
+        if (kFlat) u[n] = hn::Sub(u[n], all(batch.lo[i]));
+        u[n] = hn::Mul(u[n], all(batch.scale[i]));
+        if (kFlat) u[n] = clamp_zero(u[n]);
     }
-    // Rounding to the nearest whole number in the lowest bits of a float is the segment; on a segment's end
-    // either side will do. Far outside, both are nonsense that the mask takes away.
-    const V magic = all(12582912.0f);  // 1.5 * 2^23
-    for (int n = 0; n < kWays; ++n) rounded[n] = hn::Sub(u[n], all(0.5f));
-    for (int n = 0; n < kWays; ++n) rounded[n] = hn::Add(rounded[n], magic);
-    for (int n = 0; n < kWays; ++n) f[n] = hn::Sub(rounded[n], magic);
-    for (int n = 0; n < kWays; ++n) f[n] = hn::Sub(u[n], f[n]);
-    for (int n = 0; n < kWays; ++n) p[n] = look_up(batch.cubic[i[n]][3], hn::BitCast(DI(), rounded[n]));
+    // On a segment's end either side will do. Far outside, both are nonsense that end_splats takes away.
+    for (int n = 0; n < kWays; ++n) to.segment[n] = hn::Sub(u[n], all(0.5f));
+    for (int n = 0; n < kWays; ++n) to.segment[n] = hn::Add(to.segment[n], all(rounding));
+    for (int n = 0; n < kWays; ++n) to.place[n] = hn::Sub(u[n], hn::Sub(to.segment[n], all(rounding)));
+    return to;
+}
+
+/// Their weights at the pixels, without the amplitudes. Not clamped: the cubics may leave [0, 1] by a few
+/// 1e-5. kFlat: the footprint may have a flat inside.
+template <bool kFlat, int kWays>
+HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway<kWays>& from, V (&w)[kWays]) {
+    const auto coefficient = [&](int n, int power) {
+        return look_up(batch.cubic[from.i[n]][power], hn::BitCast(DI(), from.segment[n]));
+    };
+    for (int n = 0; n < kWays; ++n) w[n] = coefficient(n, 3);
     for (int power = 2; power >= 0; --power) {
-        for (int n = 0; n < kWays; ++n) p[n] = hn::Mul(p[n], f[n]);
-        for (int n = 0; n < kWays; ++n)
-            p[n] = hn::Add(p[n], look_up(batch.cubic[i[n]][power], hn::BitCast(DI(), rounded[n])));
+        for (int n = 0; n < kWays; ++n) w[n] = hn::Mul(w[n], from.place[n]);
+        for (int n = 0; n < kWays; ++n) w[n] = hn::Add(w[n], coefficient(n, power));
     }
+    const V outside = all(rounding + static_cast<float>(segments));
     for (int n = 0; n < kWays; ++n) {
-        p[n] = hn::IfThenElseZero(hn::Lt(u[n], all(static_cast<float>(segments))), p[n]);
-        w[n] = kFlat ? hn::Add(p[n],
-                               hn::Mul(all(batch.edge_gain[i[n]]), hn::Mul(p[n], hn::Sub(all(1.0f), p[n]))))
-                     : p[n];
+        w[n] = hn::IfThenElseZero(hn::Lt(from.segment[n], outside), w[n]);
+        if (kFlat)
+            w[n] = hn::Add(w[n],
+                           hn::Mul(all(batch.edge_gain[from.i[n]]), hn::Mul(w[n], hn::Sub(all(1.0f), w[n]))));
     }
 }
 

@@ -23,7 +23,7 @@ std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const 
             const glm::i64vec3 at =
                 parent.at * std::int64_t{2} + glm::i64vec3(child & 1, child >> 1 & 1, child >> 2);
             if (at.x <= last.x && at.y <= last.y && at.z <= last.z)
-                children.push_back({at, 0.0, parent.nearest, 0, nullptr});
+                children.push_back({at, 0.0, parent.nearest, 0, 0, nullptr});
         }
     }
     return children;
@@ -105,6 +105,7 @@ class TileCull {
                                             : index_.closest(ball.center, reach, block.nearest);
         if (closest.triangle == ClosestPoint::none) return;
         block.nearest = closest.triangle;
+        block.near_slot = index_.slot(closest.triangle);
         block.distance = std::sqrt(closest.distance_squared);
         found.first_cluster.push_back(found.clusters.size());
         if (known_) add_clusters(ball, closest, block, found.clusters);
@@ -185,7 +186,7 @@ NearBlocks blocks_near(const ClosestPointIndex& index, const Lattice& lattice, c
     constexpr std::int64_t tile_cells = 2 * block_cells;
     std::int64_t cells = tile_cells;
     while (cells <= std::max({lattice.n.x, lattice.n.y, lattice.n.z})) cells *= 2;
-    std::vector<LatticeBlock> tiles{{glm::i64vec3(0), 0.0, ClosestPoint::none, 0, nullptr}};
+    std::vector<LatticeBlock> tiles{{glm::i64vec3(0), 0.0, ClosestPoint::none, 0, 0, nullptr}};
     while (true) {
         progress.check();
         drop_far(tiles, cells, index, lattice, settings);

@@ -26,6 +26,7 @@ struct LatticeBlock {
     glm::i64vec3 at;
     double distance;                // of the ball's middle from the meshes, scene units
     std::uint32_t nearest;          // triangle there
+    std::uint32_t near_slot;
     std::uint32_t cluster_count;    // 0: too many to be kept
     const std::uint32_t* clusters;  // at least those with a triangle that is closest to one of the positions
     static constexpr std::size_t most_clusters = 128;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -92,82 +93,61 @@ constexpr auto all_places = [] {
 
 constexpr std::size_t block_groups = block_positions / group;
 
+constexpr int most_paired = 6;  // positions; more are measured against one triangle together
+
 class GroupQuery {
   public:
     GroupQuery(const BlockMeasure& measure, BlockScratch& scratch, BlockPositions& local,
-               BlockAnswers& answers, std::size_t first)
+               const BestAnswers& best, Pairs& pairs, std::size_t first)
         : m_(measure),
           c_(scratch.chosen),
           rows_(scratch.rows),
           notes_(scratch.notes),
-          answers_(answers),
-          first_position_(first),
+          best_(best),
+          pairs_(pairs),
+          first_place_(first),
           positions_(local.part(first, group)),
-          limit_(local.limit + first) {
-        g_.x = &answers.x[first], g_.y = &answers.y[first], g_.z = &answers.z[first];
-        std::fill_n(g_.squared, group, m_.max_distance * m_.max_distance);
-        std::fill_n(g_.triangle, group, static_cast<double>(ClosestPoint::none));
-        std::fill_n(g_.v, group, 0.0);
-        std::fill_n(g_.w, group, 0.0);
+          limit_(local.limit + first) {}
+
+    /// Measures a first triangle.
+    void measure_first(std::uint32_t slot) {
+        first_ = slot;
+        measure(slot);
+        update_limits();
     }
 
-    /// Measures the candidate that is nearest to the group's middle. False when none matters.
-    bool measure_nearest(const CandidateList& candidates) {
-        update_limits();
-        box_ = box_around(positions_, m_.slack);
-        const std::size_t nearest = Survey(candidates, notes_, m_.slack).nearest(box_, widest_);
-        if (nearest == Survey::nothing) {
-            std::fill_n(limit_, group, -1.0f);  // the block need not care
-            return false;
-        }
-        first_ = candidates.slot[nearest];
-        reference_ = candidates.bound(nearest);
-        measure(first_);
-        update_limits();
-        return true;
-    }
-
-    /// Measures what is left of the chosen candidates.
+    /// Measures the chosen candidates that matter.
     void measure_chosen() {
+        const PositionsBox box = box_around(positions_, m_.slack);
+        const std::size_t nearest = nearest_disc(c_, box.middle);
+        if (c_.slot[nearest] != first_) measure_first(c_.slot[nearest]);
+        View view(positions_, box, c_.bound(nearest), widest_, m_.slack);
+        if (!note(view)) return;
         rows_.count = 0;
         std::fill_n(lowest_, group, std::numeric_limits<float>::infinity());
         std::fill_n(lowest_row_, group, 0u);
-        Survey survey(c_, notes_, m_.slack);
-        survey.note(positions_, box_, reference_, widest_);
-        bound(survey, Survey::Gaps::none);
+        bound(view, Gaps::none);
         measure_lowest();
-        survey.update_room(widest_);
-        bound(survey, Survey::Gaps::some);
+        view.update_room(widest_);
+        bound(view, Gaps::some);
         measure_rest();
     }
 
-    /// Measures all candidates of a short list.
-    void measure_all_of(const CandidateList& candidates) {
-        for (std::size_t i = 0; i < candidates.count; ++i) measure(candidates.slot[i]);
-    }
-
-    void finish() {
-        const std::size_t first = first_position_;
-        for (std::size_t i = 0; i < group; ++i) {
-            answers_.distance_squared[first + i] = g_.squared[i];
-            answers_.triangle[first + i] = static_cast<std::uint32_t>(g_.triangle[i]);
-            answers_.v[first + i] = g_.v[i];
-            answers_.w[first + i] = g_.w[i];
-        }
+    void measure(const TriangleCluster& cluster, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) measure(cluster.slot[i]);
     }
 
     float widest() const { return widest_; }
-    const TriangleBound& reference() const { return reference_; }
 
   private:
     // True when the triangle is nearest for a position of the group.
     bool measure(std::uint32_t slot) {
         const ClusteredTriangle& triangle = m_.triangles[slot];
         const TriangleShape s = triangle_shape(triangle.corners);
-        if (has_no_inside(s)) return offer_thin(s, triangle.number, g_);
+        if (has_no_inside(s)) return offer_thin(s, triangle.number, best_, first_place_);
         bool any = false;
         const ShapeLanes lanes = same_shape(s, triangle.number);
-        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles())) any |= offer(lanes, g_, i);
+        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles())) any |= offer(lanes, best_, first_place_ + i);
         return any;
     }
 
@@ -177,7 +157,7 @@ class GroupQuery {
         const hn::Rebind<float, Doubles> df;
         auto widest = hn::Zero(df);
         for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
-            const auto distance = hn::DemoteTo(df, hn::Sqrt(hn::Load(d, g_.squared + i)));
+            const auto distance = hn::DemoteTo(df, hn::Sqrt(hn::Load(d, best_.squared + first_place_ + i)));
             const auto limit = hn::Add(hn::Mul(distance, hn::Set(df, 1.00001f)), hn::Set(df, m_.slack));
             hn::StoreU(hn::Mul(limit, limit), df, limit_ + i);
             widest = hn::Max(widest, limit);
@@ -185,21 +165,41 @@ class GroupQuery {
         widest_ = hn::GetLane(hn::MaxOfLanes(df, widest));
     }
 
+    // About each candidate. False when none matters.
+    bool note(const View& view) {
+        const Many d;
+        bool any = false;
+        for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
+            const View::Note n = view.note(bounds_of(c_, i));
+            hn::StoreU(n.gap, d, &notes_.gap[i]);
+            hn::StoreU(n.need, d, &notes_.need[i]);
+            hn::StoreU(n.away, d, &notes_.away[i]);
+            any |= !hn::AllFalse(d, hn::And(view.matter(n.need, n.away), hn::FirstN(d, c_.count - i)));
+        }
+        return any;
+    }
+
+    enum class Gaps { none, some };  // the group is over the candidate, or beside it
+
     // New rows, for the candidates that matter.
-    void bound(const Survey& survey, Survey::Gaps gaps) {
+    void bound(const View& view, Gaps gaps) {
         const Many d;
         const ManyNumbers du;
         const std::size_t first_row = rows_.count;
         for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const auto taken = hn::RebindMask(du, survey.matter(i, gaps));
+            const auto matter = hn::And(view.matter(hn::LoadU(d, &notes_.need[i]), hn::LoadU(d, &notes_.away[i])),
+                                        hn::FirstN(d, c_.count - i));
+            const auto beside = hn::Gt(hn::LoadU(d, &notes_.gap[i]), hn::Zero(d));
+            const auto taken = hn::RebindMask(
+                du, gaps == Gaps::some ? hn::And(matter, beside) : hn::AndNot(beside, matter));
             append(du, &all_places[i], taken, &rows_.place[rows_.count]);
             rows_.count += hn::CountTrue(du, taken);
         }
-        for (std::size_t i = 0; i < group; i += hn::Lanes(Floats())) bound_lanes(survey, first_row, i);
+        for (std::size_t i = 0; i < group; i += hn::Lanes(Floats())) bound_lanes(view, first_row, i);
     }
 
     // Rows from first_row on, for one vector of positions, and the lowest of them.
-    void bound_lanes(const Survey& survey, std::size_t first_row, std::size_t i) {
+    void bound_lanes(const View& view, std::size_t first_row, std::size_t i) {
         const Floats d;
         const hn::RebindToUnsigned<Floats> du;
         const auto px = hn::Load(d, positions_.x + i), py = hn::Load(d, positions_.y + i),
@@ -208,7 +208,7 @@ class GroupQuery {
         auto lowest_row = hn::Load(du, lowest_row_ + i);
         for (std::size_t row = first_row; row < rows_.count; ++row) {
             const std::size_t place = rows_.place[row];
-            const auto bound = bound_of(survey, place, hn::Sub(px, hn::Set(d, c_.center_x[place])),
+            const auto bound = bound_of(view, place, hn::Sub(px, hn::Set(d, c_.center_x[place])),
                                         hn::Sub(py, hn::Set(d, c_.center_y[place])),
                                         hn::Sub(pz, hn::Set(d, c_.center_z[place])));
             hn::Store(bound, d, &rows_.bound[row * group + i]);
@@ -222,7 +222,7 @@ class GroupQuery {
 
     // Square of at most the distance from a triangle, for positions relative to its disc's middle: the height
     // above its plane, and how far outside one of its edges a position lies.
-    HWY_INLINE hn::Vec<Floats> bound_of(const Survey& survey, std::size_t place, hn::Vec<Floats> x,
+    HWY_INLINE hn::Vec<Floats> bound_of(const View& view, std::size_t place, hn::Vec<Floats> x,
                                         hn::Vec<Floats> y, hn::Vec<Floats> z) const {
         const Floats d;
         const float normal_x = c_.normal_x[place], normal_y = c_.normal_y[place],
@@ -230,20 +230,22 @@ class GroupQuery {
         const auto along = [&](float nx, float ny, float nz) HWY_ATTR {
             return dot3(x, y, z, hn::Set(d, nx), hn::Set(d, ny), hn::Set(d, nz));
         };
-        const auto off = hn::Set(d, survey.rounding(c_.radius[place]));
+        const auto off = hn::Set(d, view.rounding(c_.radius[place]));
         auto height = hn::Abs(along(normal_x, normal_y, normal_z)), outside = hn::Zero(d);
         if (!has_plane(place)) {
             outside = hn::Sub(hn::Sqrt(dot3(x, y, z, x, y, z)), hn::Set(d, c_.radius[place]));
         } else {
             const TriangleEdges& e = m_.triangles[c_.slot[place]].edges;
             const auto beyond = [&](std::size_t k) HWY_ATTR {
-                return hn::Sub(along(e.normal_x[k], e.normal_y[k], e.normal_z[k]), hn::Set(d, e.offset[k]));
+                const auto along_z = hn::MulSub(z, hn::Set(d, e.normal_z[k]), hn::Set(d, e.offset[k]));
+                return hn::MulAdd(x, hn::Set(d, e.normal_x[k]),
+                                  hn::MulAdd(y, hn::Set(d, e.normal_y[k]), along_z));
             };
             outside = hn::Max(hn::Max(beyond(0), beyond(1)), beyond(2));
         }
         height = hn::Max(hn::Sub(height, off), hn::Zero(d));
         outside = hn::Max(hn::Sub(outside, off), hn::Zero(d));
-        return hn::Add(hn::Mul(height, height), hn::Mul(outside, outside));
+        return hn::MulAdd(height, height, hn::Mul(outside, outside));
     }
 
     // Otherwise the candidate's bound is a ball.
@@ -269,58 +271,60 @@ class GroupQuery {
             measure(slots[0]);
         } else {
             for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles()))
-                offer(shapes_of(m_.triangles, slots + i), g_, i);
+                offer(shapes_of(m_.triangles, slots + i), best_, first_place_ + i);
         }
         for (std::size_t i = 0; i < group; ++i)
             rows_.bound[lowest_row_[i] * group + i] = std::numeric_limits<float>::infinity();
         update_limits();
     }
 
+    // Each position against the rows that matter to it: several rows at once where few positions care.
     void measure_rest() {
         for (std::size_t row = 0; row < rows_.count; ++row) {
-            if (matters(row, 0, group) && slot(row) != first_ && measure_row(row)) update_limits();
+            const unsigned positions = positions_for(row);
+            if (positions == 0 || slot(row) == first_) continue;
+            if (std::popcount(positions) > most_paired || !has_plane(rows_.place[row])) {
+                if (measure(slot(row))) update_limits();
+            } else {
+                pair(slot(row), positions);
+            }
         }
     }
 
-    // As measure(), for the vectors of positions to which the row matters.
-    bool measure_row(std::size_t row) {
-        const ClusteredTriangle& triangle = m_.triangles[slot(row)];
-        const TriangleShape s = triangle_shape(triangle.corners);
-        if (has_no_inside(s)) return offer_thin(s, triangle.number, g_);
-        bool any = false;
-        const ShapeLanes lanes = same_shape(s, triangle.number);
-        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles()))
-            if (matters(row, i, hn::Lanes(Doubles()))) any |= offer(lanes, g_, i);
-        return any;
+    void pair(std::uint32_t slot, unsigned positions) {
+        for (; positions != 0; positions &= positions - 1) {
+            const auto place = first_place_ + static_cast<std::size_t>(std::countr_zero(positions));
+            pairs_.slot[pairs_.count] = slot;
+            pairs_.place[pairs_.count++] = static_cast<std::uint32_t>(place);
+            if (pairs_.count == Pairs::most) {
+                offer_pairs(m_.triangles, pairs_, best_);
+                update_limits();
+            }
+        }
     }
 
-    // To one of `count` positions of the group.
-    bool matters(std::size_t row, std::size_t first, std::size_t count) const {
-        const hn::CappedTag<float, 16> d;
-        if (count < hn::Lanes(d)) return matters_to(hn::Rebind<float, Doubles>(), row, first);
-        for (std::size_t i = first; i < first + count; i += hn::Lanes(d))
-            if (matters_to(d, row, i)) return true;
-        return false;
-    }
-    template <class D>
-    HWY_INLINE bool matters_to(D d, std::size_t row, std::size_t i) const {
-        const auto bound = hn::LoadU(d, &rows_.bound[row * group + i]);
-        return !hn::AllFalse(d, hn::Le(bound, hn::LoadU(d, limit_ + i)));
+    // As bits.
+    unsigned positions_for(std::size_t row) const {
+        const Floats d;
+        unsigned positions = 0;
+        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
+            const auto bound = hn::Load(d, &rows_.bound[row * group + i]);
+            positions |= static_cast<unsigned>(bits_of(d, hn::Le(bound, hn::Load(d, limit_ + i)))) << i;
+        }
+        return positions;
     }
 
     const BlockMeasure& m_;
     const CandidateList& c_;
     BoundRows& rows_;
     SurveyNotes& notes_;
-    BlockAnswers& answers_;
-    std::size_t first_position_;
+    const BestAnswers& best_;
+    Pairs& pairs_;  // still to be measured
+    std::size_t first_place_;
     LocalPositions positions_;
     float* limit_;
-    PositionsBox box_;
-    Group g_;
     float widest_ = 0.0f;      // largest root of a limit
     std::uint32_t first_ = 0;  // the triangle that was measured first
-    TriangleBound reference_;  // its bound
     alignas(64) float lowest_[group];
     alignas(64) std::uint32_t lowest_row_[group];
 };
@@ -331,75 +335,128 @@ void to_local(const double* at, double origin, float* local) {
     for (std::size_t i = 0; i < block_positions; ++i) local[i] = static_cast<float>(at[i] - origin);
 }
 
-void choose(const CandidateList& from, const Survey& survey, CandidateList& to) {
+// Bounds of the triangles of cluster i of some, and of the clusters after it where a vector holds more.
+HWY_INLINE BoundLanes bounds_of(const TriangleCluster* all, const std::uint32_t* clusters, std::size_t i) {
+    const Many d;
+    constexpr std::size_t size = TriangleCluster::size;
+#if HWY_TARGET <= HWY_AVX3
+    const hn::Half<Many> half;
+    const TriangleCluster &one = all[clusters[i / size]], &two = all[clusters[i / size + 1]];
+    const auto load = [&](const auto& first, const auto& second) HWY_ATTR {
+        return hn::Combine(d, hn::LoadU(half, second.data()), hn::LoadU(half, first.data()));
+    };
+    return {load(one.center_x, two.center_x), load(one.center_y, two.center_y),
+            load(one.center_z, two.center_z), load(one.normal_x, two.normal_x),
+            load(one.normal_y, two.normal_y), load(one.normal_z, two.normal_z),
+            load(one.radius, two.radius)};
+#else
+    const TriangleCluster& c = all[clusters[i / size]];
+    const auto load = [&](const auto& values) HWY_ATTR { return hn::LoadU(d, &values[i % size]); };
+    return {load(c.center_x), load(c.center_y), load(c.center_z), load(c.normal_x),
+            load(c.normal_y), load(c.normal_z), load(c.radius)};
+#endif
+}
+HWY_INLINE hn::Vec<ManyNumbers> slots_of(const TriangleCluster* all, const std::uint32_t* clusters, std::size_t i) {
+    const ManyNumbers d;
+    constexpr std::size_t size = TriangleCluster::size;
+#if HWY_TARGET <= HWY_AVX3
+    const hn::Half<ManyNumbers> half;
+    return hn::Combine(d, hn::LoadU(half, all[clusters[i / size + 1]].slot.data()), hn::LoadU(half, all[clusters[i / size]].slot.data()));
+#else
+    return hn::LoadU(d, &all[clusters[i / size]].slot[i % size]);
+#endif
+}
+
+template <class D, class V, class M, class A>
+HWY_INLINE void append_lanes(D d, V v, M mask, A& to, std::size_t count) {
+#if HWY_TARGET <= HWY_AVX3
+    hn::StoreU(hn::Compress(v, mask), d, &to[count]);
+#else
+    alignas(32) hn::TFromD<D> from[hn::MaxLanes(D())];
+    hn::Store(v, d, from);
+    append(d, from, mask, &to[count]);
+#endif
+}
+
+// To scratch.chosen, what can matter to the block's positions; false when it does not fit.
+bool choose_candidates(const BlockMeasure& m, const BlockSurroundings& around, const View& view,
+                       CandidateList& to) {
     const Many d;
     const ManyNumbers du;
     to.count = 0;
-    for (std::size_t i = 0; i < from.count; i += hn::Lanes(d)) {
-        const auto taken = survey.matter(i);
+    const std::size_t count = around.clusters.size() * TriangleCluster::size;
+    std::uint32_t last_two[2] = {around.clusters.back(), around.clusters.back()};
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const bool last = i + hn::Lanes(d) > count;
+        const std::uint32_t* clusters = last ? last_two : around.clusters.data();
+        const std::size_t at = last ? 0 : i;
+        const BoundLanes b = bounds_of(m.clusters, clusters, at);
+        const View::Note n = view.note(b);
+        const auto taken = hn::And(view.matter(n.need, n.away), hn::FirstN(d, count - i));
         if (hn::AllFalse(d, taken)) continue;
-        const auto copy = [&](const auto& source, auto& target)
-                              HWY_ATTR { append(d, &source[i], taken, &target[to.count]); };
-        append(du, &from.slot[i], hn::RebindMask(du, taken), &to.slot[to.count]);
-        copy(from.center_x, to.center_x), copy(from.center_y, to.center_y), copy(from.center_z, to.center_z);
-        copy(from.normal_x, to.normal_x), copy(from.normal_y, to.normal_y), copy(from.normal_z, to.normal_z);
-        copy(from.radius, to.radius);
+        if (to.count + hn::Lanes(d) > CandidateList::most) return false;
+        const auto copy = [&](Lanes values, auto& target) HWY_ATTR { append_lanes(d, values, taken, target, to.count); };
+        append_lanes(du, slots_of(m.clusters, clusters, at), hn::RebindMask(du, taken), to.slot, to.count);
+        copy(b.center_x, to.center_x), copy(b.center_y, to.center_y), copy(b.center_z, to.center_z);
+        copy(b.normal_x, to.normal_x), copy(b.normal_y, to.normal_y), copy(b.normal_z, to.normal_z);
+        copy(b.radius, to.radius);
         to.count += hn::CountTrue(d, taken);
     }
-}
-
-float distance_squared(const glm::vec3& a, const glm::vec3& b) {
-    const glm::vec3 apart = a - b;
-    return apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
-}
-
-// To scratch.chosen, what the groups that are near something need. The reference is that of the group which
-// is nearest to the block's middle.
-void choose_candidates(const BlockMeasure& m, BlockScratch& scratch, const BlockPositions& local,
-                       const std::array<GroupQuery*, block_groups>& near, std::size_t near_count) {
-    const LocalPositions positions = local.part(0, block_positions);
-    const PositionsBox box = box_around(positions, m.slack);
-    const TriangleBound* reference = nullptr;
-    float widest = 0.0f;
-    for (std::size_t i = 0; i < near_count; ++i) {
-        const TriangleBound& other = near[i]->reference();
-        const bool nearer = !reference || distance_squared(other.center, box.middle) <
-                                              distance_squared(reference->center, box.middle);
-        if (nearer) reference = &other;
-        widest = std::max(widest, near[i]->widest());
-    }
-    Survey survey(scratch.candidates, scratch.notes, m.slack);
-    survey.note(positions, box, *reference, widest);
-    choose(scratch.candidates, survey, scratch.chosen);
-    for (std::size_t i = 0; i < scratch.chosen.count; ++i) {  // most will be needed soon
-        const auto* triangle = reinterpret_cast<const char*>(&m.triangles[scratch.chosen.slot[i]]);
+    for (std::size_t i = 0; i < to.count; ++i) {  // most will be needed soon
+        const auto* triangle = reinterpret_cast<const char*>(&m.triangles[to.slot[i]]);
         __builtin_prefetch(triangle), __builtin_prefetch(triangle + 64);
     }
+    return true;
 }
 
-void measure_all(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers) {
+std::size_t distinct(const TriangleCluster& cluster) {
+    std::size_t count = TriangleCluster::size;
+    while (count > 1 && cluster.slot[count - 1] == cluster.slot[count - 2]) --count;
+    return count;
+}
+
+bool measure_all(const BlockMeasure& measure, const BlockSurroundings& around, BlockScratch& scratch,
+                 BlockAnswers& answers) {
     constexpr std::size_t few = 3;  // candidates that are measured in less time than bounded
-    const bool all = scratch.candidates.count <= few;
+    const TriangleCluster& first = measure.clusters[around.clusters[0]];
+    const bool all = around.clusters.size() == 1 && distinct(first) <= few;
     BlockPositions local;
     if (!all) {
         to_local(answers.x.data(), measure.origin.x, local.x);
         to_local(answers.y.data(), measure.origin.y, local.y);
         to_local(answers.z.data(), measure.origin.z, local.z);
     }
+    Pairs pairs;
+    alignas(64) double triangles[block_positions];
+    const BestAnswers best{answers.x.data(), answers.y.data(), answers.z.data(), answers.distance_squared.data(), triangles, answers.v.data(), answers.w.data()};
+    answers.distance_squared.fill(measure.max_distance * measure.max_distance);
+    std::fill_n(triangles, block_positions, static_cast<double>(ClosestPoint::none));
+    answers.v.fill(0.0);
+    answers.w.fill(0.0);
     const auto query = [&](std::size_t g)
-                           HWY_ATTR { return GroupQuery(measure, scratch, local, answers, g * group); };
+                           HWY_ATTR { return GroupQuery(measure, scratch, local, best, pairs, g * group); };
     std::array<GroupQuery, block_groups> groups{query(0), query(1), query(2), query(3)};
-    std::array<GroupQuery*, block_groups> near;
-    std::size_t near_count = 0;
+    float widest = 0.0f;
     for (GroupQuery& g : groups) {
         if (all)
-            g.measure_all_of(scratch.candidates);
-        else if (g.measure_nearest(scratch.candidates))
-            near[near_count++] = &g;
+            g.measure(first, distinct(first));
+        else
+            g.measure_first(around.near_slot);
+        widest = std::max(widest, g.widest());
     }
-    if (near_count > 0) choose_candidates(measure, scratch, local, near, near_count);
-    for (std::size_t i = 0; i < near_count; ++i) near[i]->measure_chosen();
-    for (GroupQuery& g : groups) g.finish();
+    if (!all) {
+        const LocalPositions positions = local.part(0, block_positions);
+        const std::uint32_t size = TriangleCluster::size;
+        const TriangleBound reference = measure.clusters[around.near_slot / size].bound(around.near_slot % size);
+        const View view(positions, box_around(positions, measure.slack), reference, widest, measure.slack);
+        if (!choose_candidates(measure, around, view, scratch.chosen)) return false;
+        if (scratch.chosen.count > 0)
+            for (GroupQuery& g : groups) g.measure_chosen();
+    }
+    if (pairs.count > 0) offer_pairs(measure.triangles, pairs, best);
+    for (std::size_t i = 0; i < block_positions; ++i)
+        answers.triangle[i] = static_cast<std::uint32_t>(triangles[i]);
+    return true;
 }
 
 }  // namespace
@@ -417,8 +474,9 @@ void place_block(const BlockPlaces& places, BlockAnswers& answers) {
     HWY_DYNAMIC_DISPATCH(place)(places, answers);
 }
 
-void measure_block(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers) {
-    HWY_DYNAMIC_DISPATCH(measure_all)(measure, scratch, answers);
+bool measure_block(const BlockMeasure& measure, const BlockSurroundings& around, BlockScratch& scratch,
+                   BlockAnswers& answers) {
+    return HWY_DYNAMIC_DISPATCH(measure_all)(measure, around, scratch, answers);
 }
 
 }  // namespace astrosplat

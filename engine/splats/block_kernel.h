@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
+#include <vector>
 
 #include "splats/candidates.h"
 #include "splats/closest_point.h"
@@ -44,6 +46,7 @@ void place_block(const BlockPlaces& places, BlockAnswers& answers);
 
 struct BlockMeasure {
     const ClusteredTriangle* triangles;  // all, by slot
+    const TriangleCluster* clusters;     // all, by number
     glm::dvec3 origin;                   // of the candidates' coordinates
     float slack;                         // see ClosestPointIndex::slack, for all positions of the block
     double max_distance;                 // scene units
@@ -52,13 +55,22 @@ struct BlockMeasure {
 /// A thread's working memory: the triangles that may be closest to a position of a block, those that are left
 /// of them, and notes about both.
 struct BlockScratch {
-    CandidateList candidates, chosen;
+    std::vector<std::uint32_t> clusters;
+    CandidateList chosen;
     SurveyNotes notes;
     BoundRows rows;
 };
 
-/// Fills in the closest points. A position for which scratch.candidates include every triangle that could be
-/// closest gets the answer of ClosestPointIndex::closest_brute_force.
-void measure_block(const BlockMeasure& measure, BlockScratch& scratch, BlockAnswers& answers);
+/// The clusters that may hold a triangle that is closest to one of the positions, and the slot of a triangle
+/// that is probably near all of them.
+struct BlockSurroundings {
+    std::span<const std::uint32_t> clusters;
+    std::uint32_t near_slot;
+};
+
+/// Fills in the closest points: to the bits those of ClosestPointIndex::closest_brute_force. False when more
+/// triangles can matter than `scratch` has room for.
+bool measure_block(const BlockMeasure& measure, const BlockSurroundings& around, BlockScratch& scratch,
+                   BlockAnswers& answers);
 
 }  // namespace astrosplat

@@ -30,13 +30,13 @@ void drop_outside(std::size_t nx, std::size_t ny, std::size_t nz, BlockAnswers& 
                 if (i >= nx || j >= ny || k >= nz) answers.triangle[block_slot(i, j, k)] = ClosestPoint::none;
 }
 
-// All triangles that may be closest to a position of the block; false when they are too many.
-bool collect(const ClosestPointIndex& index, const CullSettings& settings, const LatticeBlock& block,
-             const BlockBall& ball, CandidateList& candidates) {
-    if (block.cluster_count == 0)
-        return index.collect(ball.center, candidate_radius(settings, ball, block.distance), candidates);
-    index.collect({block.clusters, block.cluster_count}, candidates);
-    return true;
+// Clusters with all triangles that may be closest to a position of the block.
+std::span<const std::uint32_t> clusters_of(const ClosestPointIndex& index, const CullSettings& settings,
+                                           const LatticeBlock& block, const BlockBall& ball,
+                                           std::vector<std::uint32_t>& found) {
+    if (block.cluster_count > 0) return {block.clusters, block.cluster_count};
+    index.collect(ball.center, candidate_radius(settings, ball, block.distance), found);
+    return found;
 }
 
 void ask_embree(const ClosestPointIndex& index, double max_distance, std::uint32_t hint,
@@ -54,6 +54,15 @@ void ask_embree(const ClosestPointIndex& index, double max_distance, std::uint32
 
 }  // namespace
 
+void prefetch_block(const ClosestPointIndex& index, const LatticeBlock& block) {
+    const auto prefetch = [](const auto& record) {
+        const auto* bytes = reinterpret_cast<const char*>(&record);
+        for (std::size_t line = 0; line < sizeof record; line += 64) __builtin_prefetch(bytes + line, 0, 2);
+    };
+    prefetch(index.triangles()[block.near_slot]);
+    for (std::uint32_t i = 0; i < block.cluster_count; ++i) prefetch(index.clusters()[block.clusters[i]]);
+}
+
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
                  const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers) {
     const glm::i64vec3 first = block.at * block_cells;
@@ -70,12 +79,13 @@ void query_block(const ClosestPointIndex& index, const Lattice& lattice, const C
     place_block(places, answers);
 
     const BlockBall ball = block_ball(lattice, settings.jitter, first, block_cells);
-    if (collect(index, settings, block, ball, scratch.candidates)) {
-        const auto slack = static_cast<float>(index.slack(ball.center, 2.0 * ball.radius));
-        measure_block({index.triangles(), index.origin(), slack, settings.max_distance}, scratch, answers);
-    } else {
+    const auto slack = static_cast<float>(index.slack(ball.center, 2.0 * ball.radius));
+    const BlockMeasure measure{index.triangles(), index.clusters(), index.origin(), slack,
+                               settings.max_distance};
+    const BlockSurroundings around{clusters_of(index, settings, block, ball, scratch.clusters),
+                                   block.near_slot};
+    if (!measure_block(measure, around, scratch, answers))
         ask_embree(index, settings.max_distance, block.nearest, answers);
-    }
     drop_outside(nx, ny, nz, answers);
 }
 

@@ -14,6 +14,7 @@ namespace astrosplat {
 enum class Positions { corners, centres };
 
 /// Answers for one block's positions of one kind; places beyond the lattice's end are not kept.
+void prefetch_block(const ClosestPointIndex& index, const LatticeBlock& block);
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
                  const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers);
 

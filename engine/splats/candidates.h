@@ -107,7 +107,7 @@ struct CandidateList : BoundArrays<2048 + 64> {
     }
 };
 
-/// What positions know of each candidate of a list, see Survey::note.
+/// What positions know of each candidate of a list, see View::note.
 struct SurveyNotes {
     using Numbers = CandidateList::Numbers;
     alignas(64) Numbers gap;         // how far the disc stays outside the positions' shadow on its plane

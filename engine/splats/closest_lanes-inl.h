@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -24,10 +25,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t group = 16;              // positions
 using Doubles = hn::CappedTag<double, group>;  // a group's coordinates, in one vector or several
 
-/// The positions, and the best answer so far for each.
-struct Group {
-    const double *x, *y, *z;                                                 // scene units
-    alignas(64) double squared[group], triangle[group], v[group], w[group];  // triangles' numbers are exact
+/// Positions, and the best answer so far for each: arrays of whole groups.
+struct BestAnswers {
+    const double *x, *y, *z;              // scene units
+    double *squared, *triangle, *v, *w;  // as ClosestPoint; triangles' numbers are exact
 };
 
 struct Vector3 {
@@ -80,15 +81,17 @@ HWY_INLINE ShapeLanes shapes_of(const ClusteredTriangle* triangles, const std::u
     return {a, ab, ac, dot(ab, ab), dot(ab, ac), dot(ac, ac), hn::Load(d, number)};
 }
 
-// Ericson's regions as masks: closest_on_triangle without branches, to the same bits, for one vector of
-// positions. True when its triangle is nearest for one of them.
-HWY_INLINE bool offer(const ShapeLanes& s, Group& g, std::size_t i) {
+struct ClosestLanes {
+    hn::Vec<Doubles> squared, v, w;  // as ClosestPoint
+};
+
+// Ericson's regions as masks: closest_on_triangle without branches, to the same bits.
+HWY_INLINE ClosestLanes closest_lanes(const ShapeLanes& s, const Vector3& p) {
     const Doubles d;
     const auto zero = hn::Zero(d), one = hn::Set(d, 1.0);
     const Vector3 &ab = s.ab, &ac = s.ac, &a = s.a;
-    const Vector3 ap{hn::Sub(hn::LoadU(d, g.x + i), a.x), hn::Sub(hn::LoadU(d, g.y + i), a.y),
-                     hn::Sub(hn::LoadU(d, g.z + i), a.z)};
-    const auto ab_ab = s.ab_ab, ab_ac = s.ab_ac, ac_ac = s.ac_ac, this_one = s.number;
+    const Vector3 ap{hn::Sub(p.x, a.x), hn::Sub(p.y, a.y), hn::Sub(p.z, a.z)};
+    const auto ab_ab = s.ab_ab, ab_ac = s.ab_ac, ac_ac = s.ac_ac;
     const auto d1 = dot(ab, ap), d2 = dot(ac, ap);
     const auto d3 = hn::Sub(d1, ab_ab), d4 = hn::Sub(d2, ab_ac), d5 = hn::Sub(d1, ab_ac),
                d6 = hn::Sub(d2, ac_ac);
@@ -117,34 +120,69 @@ HWY_INLINE bool offer(const ShapeLanes& s, Group& g, std::size_t i) {
     w = hn::IfThenElse(on_ab, zero, w);
     w = hn::IfThenElse(at_b, zero, hn::IfThenElse(at_c, one, w));
     w = hn::IfThenElse(at_a, zero, w);
-    const auto left = [&](auto p, auto b, auto c)
-                          HWY_ATTR { return hn::Sub(hn::Sub(p, hn::Mul(b, v)), hn::Mul(c, w)); };
+    const auto left = [&](auto from, auto b, auto c)
+                          HWY_ATTR { return hn::Sub(hn::Sub(from, hn::Mul(b, v)), hn::Mul(c, w)); };
     const Vector3 r{left(ap.x, ab.x, ac.x), left(ap.y, ab.y, ac.y), left(ap.z, ab.z, ac.z)};
-    const auto squared = dot(r, r);
+    return {dot(r, r), v, w};
+}
+
+// For the vector of positions from place i on. True when its triangle is nearest for one of them.
+HWY_INLINE bool offer(const ShapeLanes& s, const BestAnswers& g, std::size_t i) {
+    const Doubles d;
+    const ClosestLanes c =
+        closest_lanes(s, {hn::LoadU(d, g.x + i), hn::LoadU(d, g.y + i), hn::LoadU(d, g.z + i)});
     const auto best = hn::Load(d, g.squared + i), triangle = hn::Load(d, g.triangle + i);
-    const auto tie_won = hn::And(hn::Eq(squared, best), hn::Lt(this_one, triangle));
-    const auto nearer = hn::Or(hn::Lt(squared, best), tie_won);
+    const auto tie_won = hn::And(hn::Eq(c.squared, best), hn::Lt(s.number, triangle));
+    const auto nearer = hn::Or(hn::Lt(c.squared, best), tie_won);
     if (hn::AllFalse(d, nearer)) return false;
-    hn::Store(hn::IfThenElse(nearer, squared, best), d, g.squared + i);
-    hn::Store(hn::IfThenElse(nearer, this_one, triangle), d, g.triangle + i);
-    hn::Store(hn::IfThenElse(nearer, v, hn::Load(d, g.v + i)), d, g.v + i);
-    hn::Store(hn::IfThenElse(nearer, w, hn::Load(d, g.w + i)), d, g.w + i);
+    hn::Store(hn::IfThenElse(nearer, c.squared, best), d, g.squared + i);
+    hn::Store(hn::IfThenElse(nearer, s.number, triangle), d, g.triangle + i);
+    hn::Store(hn::IfThenElse(nearer, c.v, hn::Load(d, g.v + i)), d, g.v + i);
+    hn::Store(hn::IfThenElse(nearer, c.w, hn::Load(d, g.w + i)), d, g.w + i);
     return true;
 }
 
-// Triangles without a usable inside, by the scalar code.
-bool offer_thin(const TriangleShape& shape, double number, Group& g) {
-    bool any = false;
-    for (std::size_t i = 0; i < group; ++i) {
-        const ClosestPoint c = closest_on_triangle({g.x[i], g.y[i], g.z[i]}, shape);
-        const bool tie_won = c.distance_squared == g.squared[i] && number < g.triangle[i];
-        if (!(c.distance_squared < g.squared[i] || tie_won)) continue;
-        any = true;
-        g.squared[i] = c.distance_squared;
-        g.triangle[i] = number;
-        g.v[i] = c.barycentric.x;
-        g.w[i] = c.barycentric.y;
+HWY_INLINE bool offer_one(const ClosestPoint& c, double number, const BestAnswers& g, std::size_t i) {
+    const bool tie_won = c.distance_squared == g.squared[i] && number < g.triangle[i];
+    if (!(c.distance_squared < g.squared[i] || tie_won)) return false;
+    g.squared[i] = c.distance_squared;
+    g.triangle[i] = number;
+    g.v[i] = c.barycentric.x;
+    g.w[i] = c.barycentric.y;
+    return true;
+}
+
+/// Triangles, each with the place of a position.
+struct Pairs {
+    static constexpr std::size_t most = hn::MaxLanes(Doubles());
+    std::size_t count = 0;
+    std::uint32_t slot[most], place[most];
+};
+
+// Empties `pairs`: at least one, of triangles with an inside.
+void offer_pairs(const ClusteredTriangle* triangles, Pairs& pairs, const BestAnswers& g) {
+    const Doubles d;
+    alignas(64) double x[Pairs::most], y[Pairs::most], z[Pairs::most];
+    for (std::size_t i = 0; i < Pairs::most; ++i) {
+        const std::size_t from = std::min(i, pairs.count - 1), p = pairs.place[from];
+        pairs.slot[i] = pairs.slot[from];
+        x[i] = g.x[p], y[i] = g.y[p], z[i] = g.z[p];
     }
+    const ShapeLanes shapes = shapes_of(triangles, pairs.slot);
+    const ClosestLanes c = closest_lanes(shapes, {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)});
+    alignas(64) double squared[Pairs::most], v[Pairs::most], w[Pairs::most], number[Pairs::most];
+    hn::Store(c.squared, d, squared), hn::Store(c.v, d, v), hn::Store(c.w, d, w);
+    hn::Store(shapes.number, d, number);
+    for (std::size_t i = 0; i < pairs.count; ++i)
+        offer_one({squared[i], 0, {v[i], w[i]}}, number[i], g, pairs.place[i]);
+    pairs.count = 0;
+}
+
+// Triangles without a usable inside, by the scalar code, for the group of positions from place `first` on.
+bool offer_thin(const TriangleShape& shape, double number, const BestAnswers& g, std::size_t first) {
+    bool any = false;
+    for (std::size_t i = first; i < first + group; ++i)
+        any |= offer_one(closest_on_triangle({g.x[i], g.y[i], g.z[i]}, shape), number, g, i);
     return any;
 }
 

@@ -414,14 +414,13 @@ ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double 
     return best;
 }
 
-bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, CandidateList& candidates) const {
-    bool fits = true;
-    candidates.count = 0;
+void ClosestPointIndex::collect(const glm::dvec3& center, double radius,
+                                std::vector<std::uint32_t>& clusters) const {
+    clusters.clear();
     state_->query(center, radius, [&](std::uint32_t cluster) {
-        fits = candidates.add(state_->clusters[cluster]);
-        return fits ? radius : -1.0;
+        clusters.push_back(cluster);
+        return radius;
     });
-    return fits;
 }
 
 bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, ClusterList& list) const {
@@ -434,19 +433,6 @@ bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, Cluster
     return fits;
 }
 
-void ClosestPointIndex::collect(std::span<const std::uint32_t> clusters, CandidateList& candidates) const {
-    constexpr std::size_t ahead = 4;
-    const auto prefetch = [](const TriangleCluster* cluster) {
-        const auto* bytes = reinterpret_cast<const char*>(cluster);
-        for (std::size_t line = 0; line < sizeof *cluster; line += 64) __builtin_prefetch(bytes + line);
-    };
-    candidates.count = 0;
-    for (std::size_t i = 0; i < clusters.size(); ++i) {
-        if (i + ahead < clusters.size()) prefetch(&state_->clusters[clusters[i + ahead]]);
-        [[maybe_unused]] const bool fits = candidates.add(state_->clusters[clusters[i]]);
-        assert(fits);
-    }
-}
 
 glm::dvec3 ClosestPointIndex::point(const ClosestPoint& closest) const {
     const TriangleShape s = shape(closest.triangle);
@@ -469,6 +455,8 @@ TriangleShape ClosestPointIndex::shape(std::uint32_t triangle) const {
     return state_->shape(state_->slots[triangle]);
 }
 const ClusteredTriangle* ClosestPointIndex::triangles() const { return state_->triangles.data(); }
+const TriangleCluster* ClosestPointIndex::clusters() const { return state_->clusters.data(); }
+std::uint32_t ClosestPointIndex::slot(std::uint32_t triangle) const { return state_->slots[triangle]; }
 
 std::int64_t ClosestPointIndex::triangle_count() const {
     return static_cast<std::int64_t>(state_->slots.size());

@@ -97,14 +97,12 @@ class ClosestPointIndex {
 
     /// Puts at least the triangles that come within `radius` of `center` into `candidates`, in any order;
     /// false when they do not fit. Thread-safe.
-    bool collect(const glm::dvec3& center, double radius, CandidateList& candidates) const;
+    void collect(const glm::dvec3& center, double radius, std::vector<std::uint32_t>& clusters) const;
 
     /// The same as clusters. And the closest point, like closest(), of those alone; it fills in `squared`.
     bool collect(const glm::dvec3& center, double radius, ClusterList& list) const;
     ClosestPoint closest_of(ClusterList& list, const glm::dvec3& p, double max_distance,
                             std::uint32_t hint) const;
-    /// The triangles of some clusters.
-    void collect(std::span<const std::uint32_t> clusters, CandidateList& candidates) const;
 
     /// Where the float coordinates of candidates have their origin, scene units.
     const glm::dvec3& origin() const;
@@ -118,6 +116,8 @@ class ClosestPointIndex {
     ClosestPoint closest_of(std::uint32_t triangle, const glm::dvec3& p) const;
     TriangleShape shape(std::uint32_t triangle) const;  // by number
     const ClusteredTriangle* triangles() const;         // by slot
+    const TriangleCluster* clusters() const;            // by number
+    std::uint32_t slot(std::uint32_t triangle) const;
     std::int64_t triangle_count() const;
 
   private:

@@ -33,11 +33,23 @@ struct BlockRange {
 std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const BlockRange& batch) {
     std::vector<BlockRange> rows;
     for (std::size_t i = batch.begin; i < batch.end; ++i) {
-        const bool joins = !rows.empty() && i - rows.back().begin < longest_row &&
+        static const bool gaps = getenv("GAPS");
+        const bool joins = !rows.empty() && i - rows.back().begin < longest_row && (!gaps || blocks[i-1].at.x + 1 == blocks[i].at.x) &&
                            blocks[i - 1].at.y == blocks[i].at.y && blocks[i - 1].at.z == blocks[i].at.z;
         if (!joins) rows.push_back({i, i});
         rows.back().end = i + 1;
     }
+    const auto key = [&](const BlockRange& r) {
+        const auto& at = blocks[r.begin].at;
+        std::uint64_t k = 0;
+        for (unsigned b = 0; b < 16; ++b) {
+            k |= (static_cast<std::uint64_t>(at.x) >> b & 1u) << (3 * b);
+            k |= (static_cast<std::uint64_t>(at.y) >> b & 1u) << (3 * b + 1);
+            k |= (static_cast<std::uint64_t>(at.z) >> b & 1u) << (3 * b + 2);
+        }
+        return k;
+    };
+    if (!getenv("NOM")) std::sort(rows.begin(), rows.end(), [&](const BlockRange& a, const BlockRange& b) { return key(a) < key(b); });
     return rows;
 }
 
@@ -68,6 +80,7 @@ class Generator {
     void run(std::span<const LatticeBlock> row, Positions kind, Worker& worker, KeptStore& kept) const {
         worker.answers.resize(longest_row);
         for (std::size_t i = 0; i < row.size(); ++i) {
+            if (i + 1 < row.size()) prefetch_block(index_, row[i + 1]);
             query_block(index_, lattice_, settings_, row[i], kind, *worker.scratch, worker.answers[i]);
             for (const std::uint32_t triangle : worker.answers[i].triangle)
                 if (triangle != ClosestPoint::none) __builtin_prefetch(&surface_[triangle]);

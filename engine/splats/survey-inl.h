@@ -31,9 +31,18 @@ using ManyNumbers = hn::RebindToUnsigned<Many>;
 using Lanes = hn::Vec<Many>;
 using Floats = hn::CappedTag<float, 16>;  // positions
 
+/// For bounds only, which allow for rounding: multiplications and additions may be fused.
 template <class V>
 HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
-    return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
+    return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
+}
+
+template <class D, class Mask>
+HWY_INLINE unsigned bits_of(D d, Mask mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    static_assert(hn::MaxLanes(D()) <= 16);
+    return bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
 }
 
 /// Writes the values of the lanes in `mask` one after the other to `to`, which has room for a whole vector
@@ -44,10 +53,7 @@ HWY_INLINE void append(D d, const hn::TFromD<D>* from, Mask mask, hn::TFromD<D>*
 #if HWY_TARGET <= HWY_AVX3
     hn::StoreU(hn::Compress(hn::LoadU(d, from), mask), d, to);
 #else
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    static_assert(hn::MaxLanes(D()) <= 8);
-    for (unsigned bits = bytes[0]; bits != 0; bits &= bits - 1) *to++ = from[std::countr_zero(bits)];
+    for (unsigned bits = bits_of(d, mask); bits != 0; bits &= bits - 1) *to++ = from[std::countr_zero(bits)];
 #endif
 }
 
@@ -85,71 +91,100 @@ HWY_INLINE PositionsBox box_around(const LocalPositions& p, float slack) {
     return box;
 }
 
-class Survey {
+/// Bounds of as many candidates as a vector has lanes.
+struct BoundLanes {
+    Lanes center_x, center_y, center_z, normal_x, normal_y, normal_z, radius;
+};
+
+HWY_INLINE BoundLanes bounds_of(const CandidateList& list, std::size_t i) {
+    const Many d;
+    return {hn::LoadU(d, &list.center_x[i]), hn::LoadU(d, &list.center_y[i]), hn::LoadU(d, &list.center_z[i]),
+            hn::LoadU(d, &list.normal_x[i]), hn::LoadU(d, &list.normal_y[i]), hn::LoadU(d, &list.normal_z[i]),
+            hn::LoadU(d, &list.radius[i])};
+}
+
+// A disc seen from the middle of a box.
+struct Disc {
+    Lanes x, y, z;         // from the disc's middle to the box's
+    Lanes height, across;  // of the box's middle: along the normal and, at most, in the plane
+};
+
+HWY_INLINE Disc seen_from(const glm::vec3& middle, const BoundLanes& b) {
+    const Many d;
+    Disc disc;
+    disc.x = hn::Sub(hn::Set(d, middle.x), b.center_x);
+    disc.y = hn::Sub(hn::Set(d, middle.y), b.center_y);
+    disc.z = hn::Sub(hn::Set(d, middle.z), b.center_z);
+    disc.height = dot3(disc.x, disc.y, disc.z, b.normal_x, b.normal_y, b.normal_z);
+    const Lanes squared =
+        hn::Mul(dot3(disc.x, disc.y, disc.z, disc.x, disc.y, disc.z), hn::Set(d, 1.0f - 4e-6f));
+    disc.across = hn::Sqrt(hn::Max(hn::NegMulAdd(disc.height, disc.height, squared), hn::Zero(d)));
+    return disc;
+}
+
+/// The candidate whose disc is nearest to a point; 0 for none.
+HWY_INLINE std::size_t nearest_disc(const CandidateList& list, const glm::vec3& point) {
+    const Many d;
+    const ManyNumbers du;
+    Lanes lowest = hn::Set(d, std::numeric_limits<float>::infinity());
+    auto lowest_place = hn::Zero(du), place = hn::Iota(du, 0);
+    for (std::size_t i = 0; i < list.count; i += hn::Lanes(d)) {
+        const BoundLanes b = bounds_of(list, i);
+        const Disc disc = seen_from(point, b);
+        const Lanes outside = hn::Max(hn::Sub(disc.across, b.radius), hn::Zero(d));
+        const Lanes bound = hn::MulAdd(outside, outside, hn::Mul(disc.height, disc.height));
+        const auto lower = hn::And(hn::Lt(bound, lowest), hn::FirstN(d, list.count - i));
+        lowest = hn::IfThenElse(lower, bound, lowest);
+        lowest_place = hn::IfThenElse(hn::RebindMask(du, lower), place, lowest_place);
+        place = hn::Add(place, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(d))));
+    }
+    const auto lane = hn::FindFirstTrue(d, hn::Eq(lowest, hn::MinOfLanes(d, lowest)));
+    return lane < 0 ? 0 : hn::ExtractLane(lowest_place, static_cast<std::size_t>(lane));
+}
+
+/// A few positions, and what they have: which candidates can matter to them?
+class View {
   public:
-    Survey(const CandidateList& candidates, SurveyNotes& notes, float slack)
-        : c_(candidates), notes_(notes), slack_(slack) {}
-
-    static constexpr std::size_t nothing = ~std::size_t{0};
-
-    /// The candidate whose disc is nearest to the middle of some positions, whose limits have roots of at
-    /// most `widest`; `nothing` if none matters.
-    std::size_t nearest(const PositionsBox& box, float widest) const {
-        const Many d;
-        const ManyNumbers du;
-        Lanes lowest = hn::Set(d, std::numeric_limits<float>::infinity()), largest = hn::Zero(d);
-        auto lowest_place = hn::Zero(du), place = hn::Iota(du, 0);
-        for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const Disc disc = from_middle(box, i);
-            const Lanes outside = hn::Max(hn::Sub(disc.across, disc.radius), hn::Zero(d));
-            const Lanes bound = hn::Add(hn::Mul(outside, outside), hn::Mul(disc.height, disc.height));
-            const auto inside_list = hn::FirstN(d, c_.count - i);
-            const auto lower = hn::And(hn::Lt(bound, lowest), inside_list);
-            lowest = hn::IfThenElse(lower, bound, lowest);
-            lowest_place = hn::IfThenElse(hn::RebindMask(du, lower), place, lowest_place);
-            largest = hn::Max(largest, hn::IfThenElseZero(inside_list, disc.radius));
-            place = hn::Add(place, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(d))));
-        }
-        const Lanes best = hn::MinOfLanes(d, lowest);
-        const float reach = box.reach();
-        const float off = rounding_of(hn::GetLane(hn::MaxOfLanes(d, largest)), widest + reach);
-        const float farthest = (widest + reach) * 1.00001f + slack_ + 2.0f * off;
-        if (c_.count == 0 || hn::GetLane(best) > farthest * farthest) return nothing;
-        const auto lane = hn::FindFirstTrue(d, hn::Eq(lowest, best));
-        return lane < 0 ? 0 : hn::ExtractLane(lowest_place, static_cast<std::size_t>(lane));
+    /// The roots of the positions' limits are at most `widest`.
+    View(const LocalPositions& positions, const PositionsBox& box, const TriangleBound& reference,
+         float widest, float slack)
+        : p_(positions), box_(box), slack_(slack), widest_(widest), reach_(box.reach()) {
+        take_reference(reference);
     }
 
-    /// Of each candidate: a triangle T matters to a position p when distance(p, T)^2 <= limit(p). With h the
+    struct Note {
+        Lanes gap, need, away;
+    };
+
+    /// Of a candidate: a triangle T matters to a position p when distance(p, T)^2 <= limit(p). With h the
     /// height of p above T's plane and h0 that above a reference plane, distance(p, T)^2 is at least h^2 +
     /// gap^2, where gap is how far T's disc stays outside the shadow of the positions' box on T's plane, in
     /// the direction of the box's middle; and limit(p) is at most room + h0^2. So gap^2 <= room + (h0^2 -
     /// h^2). With D = h0 - h, h0^2 - h^2 = D (2 h0 - D): among the positions D and h0 lie in intervals, and
     /// its largest value there is subtracted from gap^2 to give what T `need`s for room. Likewise T is
     /// `away`, at least: gap^2 and the least h^2, to be compared with widest^2.
-    void note(const LocalPositions& positions, const PositionsBox& box, const TriangleBound& reference,
-              float widest) {
-        p_ = positions;
-        box_ = box;
-        widest_ = widest;
-        reach_ = box.reach();
-        take_reference(reference);
+    HWY_INLINE Note note(const BoundLanes& b) const {
         const Many d;
-        for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const Disc disc = from_middle(box_, i);
-            const Lanes off = rounding(disc.radius);
-            const auto flat = [&](Lanes to, Lanes normal)
-                                  HWY_ATTR { return hn::Sub(to, hn::Mul(normal, disc.height)); };
-            const Lanes toward = box_along(flat(disc.x, disc.normal_x), flat(disc.y, disc.normal_y),
-                                           flat(disc.z, disc.normal_z));
-            const Lanes shadow = hn::Add(hn::Div(toward, disc.across), off);
-            const Lanes gap = hn::Sub(hn::Sub(disc.across, disc.radius), shadow);
-            const Lanes outside = hn::Max(gap, hn::Zero(d)), outside_squared = hn::Mul(outside, outside);
-            const Lanes least =
-                hn::Max(hn::Sub(hn::Sub(hn::Abs(disc.height), hn::Set(d, reach_)), off), hn::Zero(d));
-            hn::StoreU(gap, d, &notes_.gap[i]);
-            hn::StoreU(hn::Sub(outside_squared, allowance(disc, off)), d, &notes_.need[i]);
-            hn::StoreU(hn::Add(outside_squared, hn::Mul(least, least)), d, &notes_.away[i]);
-        }
+        const Disc disc = seen_from(box_.middle, b);
+        const Lanes off = rounding(b.radius);
+        const auto flat = [&](Lanes to, Lanes normal)
+                              HWY_ATTR { return hn::NegMulAdd(normal, disc.height, to); };
+        const Lanes toward =
+            box_along(flat(disc.x, b.normal_x), flat(disc.y, b.normal_y), flat(disc.z, b.normal_z));
+        const Lanes shadow = hn::Add(hn::Div(toward, disc.across), off);
+        const Lanes gap = hn::Sub(hn::Sub(disc.across, b.radius), shadow);
+        const Lanes outside = hn::Max(gap, hn::Zero(d));
+        const Lanes least =
+            hn::Max(hn::Sub(hn::Sub(hn::Abs(disc.height), hn::Set(d, reach_)), off), hn::Zero(d));
+        return {gap, hn::MulSub(outside, outside, allowance(b, disc.height, off)),
+                hn::MulAdd(outside, outside, hn::Mul(least, least))};
+    }
+
+    /// Which of them can matter. Comparisons with what is not a number count as yes.
+    HWY_INLINE hn::Mask<Many> matter(Lanes need, Lanes away) const {
+        const Many d;
+        return hn::Not(
+            hn::Or(hn::Gt(need, hn::Set(d, room_)), hn::Gt(away, hn::Set(d, widest_ * widest_))));
     }
 
     /// The limits have shrunk.
@@ -165,49 +200,11 @@ class Survey {
         room_ = hn::GetLane(hn::MaxOfLanes(d, room));
     }
 
-    enum class Gaps { none, some };  // the positions are over the candidate, or beside it
-
-    /// Which of the candidates from place i on matter. Comparisons with what is not a number count as yes.
-    HWY_INLINE hn::Mask<Many> matter(std::size_t i) const {
-        const Many d;
-        const auto too_far = hn::Or(hn::Gt(hn::LoadU(d, &notes_.need[i]), hn::Set(d, room_)),
-                                    hn::Gt(hn::LoadU(d, &notes_.away[i]), hn::Set(d, widest_ * widest_)));
-        return hn::AndNot(too_far, hn::FirstN(d, c_.count - i));
-    }
-    HWY_INLINE hn::Mask<Many> matter(std::size_t i, Gaps gaps) const {
-        const Many d;
-        const auto beside = hn::Gt(hn::LoadU(d, &notes_.gap[i]), hn::Zero(d));
-        return gaps == Gaps::some ? hn::And(matter(i), beside) : hn::AndNot(beside, matter(i));
-    }
-
     /// More than the rounding of a position's distance to a candidate that matters: of its normal, of the
     /// subtraction of nearly equal squares.
     float rounding(float radius) const { return rounding_of(radius, widest_ + reach_); }
 
   private:
-    // Candidates seen from the middle of a box.
-    struct Disc {
-        Lanes x, y, z;  // from the disc's middle to the box's
-        Lanes normal_x, normal_y, normal_z, radius;
-        Lanes height, across;  // of the box's middle: along the normal and, at most, in the plane
-    };
-    HWY_INLINE Disc from_middle(const PositionsBox& box, std::size_t i) const {
-        const Many d;
-        Disc disc;
-        disc.x = hn::Sub(hn::Set(d, box.middle.x), hn::LoadU(d, &c_.center_x[i]));
-        disc.y = hn::Sub(hn::Set(d, box.middle.y), hn::LoadU(d, &c_.center_y[i]));
-        disc.z = hn::Sub(hn::Set(d, box.middle.z), hn::LoadU(d, &c_.center_z[i]));
-        disc.normal_x = hn::LoadU(d, &c_.normal_x[i]);
-        disc.normal_y = hn::LoadU(d, &c_.normal_y[i]);
-        disc.normal_z = hn::LoadU(d, &c_.normal_z[i]);
-        disc.radius = hn::LoadU(d, &c_.radius[i]);
-        disc.height = dot3(disc.x, disc.y, disc.z, disc.normal_x, disc.normal_y, disc.normal_z);
-        const Lanes squared =
-            hn::Mul(dot3(disc.x, disc.y, disc.z, disc.x, disc.y, disc.z), hn::Set(d, 1.0f - 4e-6f));
-        disc.across = hn::Sqrt(hn::Max(hn::Sub(squared, hn::Mul(disc.height, disc.height)), hn::Zero(d)));
-        return disc;
-    }
-
     // How far the box reaches from its middle along vectors, times their lengths.
     HWY_INLINE Lanes box_along(Lanes x, Lanes y, Lanes z) const {
         const Many d;
@@ -216,21 +213,21 @@ class Survey {
     }
 
     // The largest h0^2 - h^2.
-    HWY_INLINE Lanes allowance(const Disc& disc, Lanes off) const {
+    HWY_INLINE Lanes allowance(const BoundLanes& b, Lanes height, Lanes off) const {
         const Many d;
-        const Lanes similar = dot3(disc.normal_x, disc.normal_y, disc.normal_z, hn::Set(d, normal_.x),
+        const Lanes similar = dot3(b.normal_x, b.normal_y, b.normal_z, hn::Set(d, normal_.x),
                                    hn::Set(d, normal_.y), hn::Set(d, normal_.z));
         const Lanes side = hn::CopySignToAbs(hn::Set(d, 1.0f), similar);
         const auto turned = [&](float normal, Lanes other)
-                                HWY_ATTR { return hn::Sub(hn::Set(d, normal), hn::Mul(other, side)); };
+                                HWY_ATTR { return hn::NegMulAdd(other, side, hn::Set(d, normal)); };
         const Lanes tilt =
-            hn::Add(box_along(turned(normal_.x, disc.normal_x), turned(normal_.y, disc.normal_y),
-                              turned(normal_.z, disc.normal_z)),
+            hn::Add(box_along(turned(normal_.x, b.normal_x), turned(normal_.y, b.normal_y),
+                              turned(normal_.z, b.normal_z)),
                     hn::Add(off, hn::Set(d, reference_off_)));
-        const Lanes apart = hn::Sub(hn::Set(d, height_), hn::Mul(disc.height, side));
+        const Lanes apart = hn::NegMulAdd(height, side, hn::Set(d, height_));
         const Lanes least = hn::Sub(apart, tilt), most = hn::Add(apart, tilt);
-        const auto largest = [&](float height) HWY_ATTR {
-            const Lanes h0 = hn::Set(d, height), difference = hn::Min(hn::Max(h0, least), most);
+        const auto largest = [&](float reference_height) HWY_ATTR {
+            const Lanes h0 = hn::Set(d, reference_height), difference = hn::Min(hn::Max(h0, least), most);
             return hn::Mul(difference, hn::Sub(hn::Add(h0, h0), difference));
         };
         return hn::Max(largest(lowest_), largest(highest_));
@@ -239,8 +236,7 @@ class Survey {
     float rounding_of(float radius, float around) const { return (radius + around) * 2e-6f + slack_; }
     HWY_INLINE Lanes rounding(Lanes radius) const {
         const Many d;
-        return hn::Add(hn::Mul(hn::Add(radius, hn::Set(d, widest_ + reach_)), hn::Set(d, 2e-6f)),
-                       hn::Set(d, slack_));
+        return hn::MulAdd(radius, hn::Set(d, 2e-6f), hn::Set(d, rounding(0.0f)));
     }
 
     // Of positions from place i on, above the reference plane.
@@ -269,8 +265,6 @@ class Survey {
         update_room(widest_);
     }
 
-    const CandidateList& c_;
-    SurveyNotes& notes_;
     LocalPositions p_;
     PositionsBox box_;
     float slack_;
