@@ -5,12 +5,18 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <memory>
 #include <tuple>
 
 #include "core/parallel.h"
+#include "splats/cluster_filter.h"
 
 namespace astrosplat {
 namespace {
+
+// How much farther than the closest place the one may be that is found, in radii of a block.
+constexpr double tolerated = 0.2;
 
 // Blocks of the next finer level that begin inside the lattice; corners reach one cell further than centres.
 std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const Lattice& lattice,
@@ -23,7 +29,7 @@ std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const 
             const glm::i64vec3 at =
                 parent.at * std::int64_t{2} + glm::i64vec3(child & 1, child >> 1 & 1, child >> 2);
             if (at.x <= last.x && at.y <= last.y && at.z <= last.z)
-                children.push_back({at, 0.0, parent.nearest, 0, 0, nullptr});
+                children.push_back({at, 0.0, parent.near_slot, 0, nullptr});
         }
     }
     return children;
@@ -36,46 +42,21 @@ void drop_far(std::vector<LatticeBlock>& blocks, std::int64_t cells, const Close
             for (std::int64_t i = begin; i < end; ++i) {
                 LatticeBlock& block = blocks[static_cast<std::size_t>(i)];
                 const BlockBall ball = block_ball(lattice, settings.jitter, block.at * cells, cells);
-                const ClosestPoint closest =
-                    index.closest(ball.center, settings.max_distance + ball.radius, block.nearest);
-                block.nearest = closest.triangle;
-                block.distance = std::sqrt(closest.distance_squared);
+                const NearPlace near = index.near_place(ball.center, settings.max_distance + ball.radius,
+                                                        tolerated * ball.radius, block.near_slot);
+                block.near_slot = near.slot;
+                block.distance = near.distance;
             }
         });
-    std::erase_if(blocks, [](const LatticeBlock& block) { return block.nearest == ClosestPoint::none; });
+    std::erase_if(blocks, [](const LatticeBlock& block) { return block.near_slot == ClosestPoint::none; });
 }
 
-// A point y can only be closer to a position p than the meshes' point c if it is on p's side of the plane
-// midway between y and c: with y and p relative to c, if y^2 - 2 p y <= 0. Over p in a box with middle m and
-// half sides h, the least of that is a sum over the axes of y^2 - 2 m y - 2 h |y|, and over y in a box as
-// well each axis has its own least.
-class Bisectors {
-  public:
-    Bisectors(const BlockBall& ball, const glm::dvec3& point, const glm::dvec3& origin, double slack)
-        : point_(point - origin),
-          low_(ball.center - point - ball.half),
-          high_(ball.center - point + ball.half) {
-        const double reach = glm::length(ball.center - point) + glm::length(ball.half);
-        rounding_ = static_cast<float>(32.0 * reach * (slack + 1e-6 * reach));
-    }
-
-    /// Whether no point of that box can be closer to a position.
-    bool keep_away(const ClusterList& list, std::size_t i) const {
-        const float x = least(low_.x, high_.x, list.lo_x[i] - point_.x, list.hi_x[i] - point_.x);
-        const float y = least(low_.y, high_.y, list.lo_y[i] - point_.y, list.hi_y[i] - point_.y);
-        const float z = least(low_.z, high_.z, list.lo_z[i] - point_.z, list.hi_z[i] - point_.z);
-        return x + y + z > rounding_;
-    }
-
-  private:
-    static float least(float low, float high, float from, float to) {
-        const float a = std::clamp(low, from, to), b = std::clamp(high, from, to);
-        return std::min(a * (a - 2.0f * low), b * (b - 2.0f * high));
-    }
-
-    glm::vec3 point_, low_, high_;
-    float rounding_;
-};
+Bisectors bisectors_of(const BlockBall& ball, const NearPlace& near, const glm::dvec3& origin, double slack) {
+    const glm::dvec3 middle = ball.center - near.at;
+    const double reach = glm::length(middle) + glm::length(ball.half);
+    return {near.at - origin, middle - ball.half, middle + ball.half,
+            static_cast<float>(32.0 * reach * (slack + 1e-6 * reach))};
+}
 
 // Blocks of one chunk of the tiles, and their clusters.
 struct ChunkBlocks {
@@ -101,30 +82,29 @@ class TileCull {
     void add_if_near(LatticeBlock& block, ChunkBlocks& found) {
         const BlockBall ball = block_ball(lattice_, settings_.jitter, block.at * block_cells, block_cells);
         const double reach = settings_.max_distance + ball.radius;
-        const ClosestPoint closest = known_ ? index_.closest_of(list_, ball.center, reach, block.nearest)
-                                            : index_.closest(ball.center, reach, block.nearest);
-        if (closest.triangle == ClosestPoint::none) return;
-        block.nearest = closest.triangle;
-        block.near_slot = index_.slot(closest.triangle);
-        block.distance = std::sqrt(closest.distance_squared);
+        const double tolerance = tolerated * ball.radius;
+        const NearPlace near = known_
+                                   ? index_.near_place(list_, ball.center, reach, tolerance, block.near_slot)
+                                   : index_.near_place(ball.center, reach, tolerance, block.near_slot);
+        if (near.slot == ClosestPoint::none) return;
+        block.near_slot = near.slot;
+        block.distance = near.distance;
         found.first_cluster.push_back(found.clusters.size());
-        if (known_) add_clusters(ball, closest, block, found.clusters);
+        if (known_) add_clusters(ball, near, block, found.clusters);
         found.blocks.push_back(block);
     }
 
-    void add_clusters(const BlockBall& ball, const ClosestPoint& closest, LatticeBlock& block,
+    void add_clusters(const BlockBall& ball, const NearPlace& near, LatticeBlock& block,
                       std::vector<std::uint32_t>& clusters) {
         const double slack = index_.slack(ball.center, 2.0 * ball.radius);
         const double radius = candidate_radius(settings_, ball, block.distance) * 1.00001 + slack;
         const auto limit = static_cast<float>(radius * radius);
-        const bool narrow = is_narrow(index_.shape(closest.triangle));
-        const Bisectors bisectors(ball, index_.point(closest), index_.origin(), slack);
+        Bisectors bisectors = bisectors_of(ball, near, index_.origin(), slack);
+        if (!index_.has_plane(near.slot)) bisectors.rounding = std::numeric_limits<float>::infinity();
         const std::size_t first = clusters.size();
-        for (std::size_t i = 0; i < list_.cluster.size(); ++i) {
-            const bool far = list_.squared[i] > limit || (!narrow && bisectors.keep_away(list_, i));
-            if (!far) clusters.push_back(list_.cluster[i]);
-        }
-        const std::size_t count = clusters.size() - first;
+        clusters.resize(first + list_.count + 64);
+        const std::size_t count = filter_clusters(list_, limit, bisectors, &clusters[first]);
+        clusters.resize(first + count);
         if (count > LatticeBlock::most_clusters)
             clusters.resize(first);
         else
@@ -142,11 +122,13 @@ NearBlocks blocks_of(const std::vector<LatticeBlock>& tiles, const ClosestPointI
                      const Lattice& lattice, const CullSettings& settings) {
     constexpr std::size_t chunk = 32;
     std::vector<ChunkBlocks> chunks((tiles.size() + chunk - 1) / chunk);
-    parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t number, int) {
+    std::vector<std::unique_ptr<TileCull>> culls(static_cast<std::size_t>(thread_count()));
+    parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t number, int worker) {
         const auto c = static_cast<std::size_t>(number);
-        TileCull cull(index, lattice, settings);
+        std::unique_ptr<TileCull>& cull = culls[static_cast<std::size_t>(worker)];
+        if (!cull) cull = std::make_unique<TileCull>(index, lattice, settings);
         for (std::size_t i = c * chunk; i < std::min((c + 1) * chunk, tiles.size()); ++i)
-            cull.run(tiles[i], chunks[c]);
+            cull->run(tiles[i], chunks[c]);
     });
     NearBlocks near;
     for (ChunkBlocks& found : chunks) {
@@ -186,7 +168,7 @@ NearBlocks blocks_near(const ClosestPointIndex& index, const Lattice& lattice, c
     constexpr std::int64_t tile_cells = 2 * block_cells;
     std::int64_t cells = tile_cells;
     while (cells <= std::max({lattice.n.x, lattice.n.y, lattice.n.z})) cells *= 2;
-    std::vector<LatticeBlock> tiles{{glm::i64vec3(0), 0.0, ClosestPoint::none, 0, 0, nullptr}};
+    std::vector<LatticeBlock> tiles{{glm::i64vec3(0), 0.0, ClosestPoint::none, 0, nullptr}};
     while (true) {
         progress.check();
         drop_far(tiles, cells, index, lattice, settings);

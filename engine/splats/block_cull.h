@@ -24,12 +24,11 @@ struct CullSettings {
 /// A block of block_cells^3 cells: the corners and centres whose index divided by block_cells is `at`.
 struct LatticeBlock {
     glm::i64vec3 at;
-    double distance;                // of the ball's middle from the meshes, scene units
-    std::uint32_t nearest;          // triangle there
-    std::uint32_t near_slot;
+    double distance;                // of the ball's middle from the meshes, at most; scene units
+    std::uint32_t near_slot;        // of a triangle about there
     std::uint32_t cluster_count;    // 0: too many to be kept
     const std::uint32_t* clusters;  // at least those with a triangle that is closest to one of the positions
-    static constexpr std::size_t most_clusters = 128;
+    static constexpr std::size_t most_clusters = 1024;
 };
 
 /// Blocks and what they point to.

@@ -1,7 +1,8 @@
-// Each group of sixteen positions measures the candidate nearest to its middle. With what that leaves
-// possible the block chooses the candidates that can matter to it, and each group does the same with those.
-// The ones over which a group lies come first: each position is measured against the one whose bound is
-// lowest there. What that leaves of the others is little; it is measured where its bounds ask for it.
+// The triangle that is near the block's middle is measured against all positions first. With what that leaves
+// possible the block chooses the triangles of its clusters that can matter to it, and each group of sixteen
+// positions does the same with those, after the one nearest to its own middle. Of the ones over which a group
+// lies each position is measured against the one whose bound is lowest there. What that leaves of the others
+// is little; it is measured where its bounds ask for it.
 #include "splats/block_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -84,13 +85,6 @@ struct BlockPositions {
     }
 };
 
-// 0, 1, 2 ..., to pick from.
-constexpr auto all_places = [] {
-    std::array<std::uint32_t, CandidateList::most + 64> places{};
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = static_cast<std::uint32_t>(i);
-    return places;
-}();
-
 constexpr std::size_t block_groups = block_positions / group;
 
 constexpr int most_paired = 6;  // positions; more are measured against one triangle together
@@ -133,7 +127,8 @@ class GroupQuery {
         measure_rest();
     }
 
-    void measure(const TriangleCluster& cluster, std::size_t count) {
+    /// Measures the first triangles of a cluster.
+    void measure_all(const TriangleCluster& cluster, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) measure(cluster.slot[i]);
     }
 
@@ -147,7 +142,8 @@ class GroupQuery {
         if (has_no_inside(s)) return offer_thin(s, triangle.number, best_, first_place_);
         bool any = false;
         const ShapeLanes lanes = same_shape(s, triangle.number);
-        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles())) any |= offer(lanes, best_, first_place_ + i);
+        for (std::size_t i = 0; i < group; i += hn::Lanes(Doubles()))
+            any |= offer(lanes, best_, first_place_ + i);
         return any;
     }
 
@@ -186,14 +182,17 @@ class GroupQuery {
         const Many d;
         const ManyNumbers du;
         const std::size_t first_row = rows_.count;
+        auto place = counting(du);
         for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const auto matter = hn::And(view.matter(hn::LoadU(d, &notes_.need[i]), hn::LoadU(d, &notes_.away[i])),
-                                        hn::FirstN(d, c_.count - i));
+            const auto matter =
+                hn::And(view.matter(hn::LoadU(d, &notes_.need[i]), hn::LoadU(d, &notes_.away[i])),
+                        hn::FirstN(d, c_.count - i));
             const auto beside = hn::Gt(hn::LoadU(d, &notes_.gap[i]), hn::Zero(d));
-            const auto taken = hn::RebindMask(
-                du, gaps == Gaps::some ? hn::And(matter, beside) : hn::AndNot(beside, matter));
-            append(du, &all_places[i], taken, &rows_.place[rows_.count]);
+            const auto taken =
+                hn::RebindMask(du, gaps == Gaps::some ? hn::And(matter, beside) : hn::AndNot(beside, matter));
+            append(du, place, taken, &rows_.place[rows_.count]);
             rows_.count += hn::CountTrue(du, taken);
+            place = hn::Add(place, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(du))));
         }
         for (std::size_t i = 0; i < group; i += hn::Lanes(Floats())) bound_lanes(view, first_row, i);
     }
@@ -248,9 +247,11 @@ class GroupQuery {
         return hn::MulAdd(height, height, hn::Mul(outside, outside));
     }
 
-    // Otherwise the candidate's bound is a ball.
+    // Otherwise the candidate's bound is a ball. (Its normal's zeros are +0; three comparisons of floats cost
+    // a fourth of bound_of.)
     bool has_plane(std::size_t place) const {
-        return c_.normal_x[place] != 0.0f || c_.normal_y[place] != 0.0f || c_.normal_z[place] != 0.0f;
+        const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
+        return (bits(c_.normal_x[place]) | bits(c_.normal_y[place]) | bits(c_.normal_z[place])) != 0;
     }
 
     std::uint32_t slot(std::size_t row) const { return c_.slot[rows_.place[row]]; }
@@ -335,127 +336,136 @@ void to_local(const double* at, double origin, float* local) {
     for (std::size_t i = 0; i < block_positions; ++i) local[i] = static_cast<float>(at[i] - origin);
 }
 
-// Bounds of the triangles of cluster i of some, and of the clusters after it where a vector holds more.
-HWY_INLINE BoundLanes bounds_of(const TriangleCluster* all, const std::uint32_t* clusters, std::size_t i) {
-    const Many d;
-    constexpr std::size_t size = TriangleCluster::size;
-#if HWY_TARGET <= HWY_AVX3
-    const hn::Half<Many> half;
-    const TriangleCluster &one = all[clusters[i / size]], &two = all[clusters[i / size + 1]];
-    const auto load = [&](const auto& first, const auto& second) HWY_ATTR {
-        return hn::Combine(d, hn::LoadU(half, second.data()), hn::LoadU(half, first.data()));
-    };
-    return {load(one.center_x, two.center_x), load(one.center_y, two.center_y),
-            load(one.center_z, two.center_z), load(one.normal_x, two.normal_x),
-            load(one.normal_y, two.normal_y), load(one.normal_z, two.normal_z),
-            load(one.radius, two.radius)};
-#else
-    const TriangleCluster& c = all[clusters[i / size]];
-    const auto load = [&](const auto& values) HWY_ATTR { return hn::LoadU(d, &values[i % size]); };
-    return {load(c.center_x), load(c.center_y), load(c.center_z), load(c.normal_x),
-            load(c.normal_y), load(c.normal_z), load(c.radius)};
-#endif
-}
-HWY_INLINE hn::Vec<ManyNumbers> slots_of(const TriangleCluster* all, const std::uint32_t* clusters, std::size_t i) {
-    const ManyNumbers d;
-    constexpr std::size_t size = TriangleCluster::size;
-#if HWY_TARGET <= HWY_AVX3
-    const hn::Half<ManyNumbers> half;
-    return hn::Combine(d, hn::LoadU(half, all[clusters[i / size + 1]].slot.data()), hn::LoadU(half, all[clusters[i / size]].slot.data()));
-#else
-    return hn::LoadU(d, &all[clusters[i / size]].slot[i % size]);
-#endif
-}
+// Triangles of clusters, as many as a vector has lanes.
+struct ClusterLanes {
+    BoundLanes bounds;
+    hn::Vec<ManyNumbers> slots;
+};
 
-template <class D, class V, class M, class A>
-HWY_INLINE void append_lanes(D d, V v, M mask, A& to, std::size_t count) {
-#if HWY_TARGET <= HWY_AVX3
-    hn::StoreU(hn::Compress(v, mask), d, &to[count]);
-#else
-    alignas(32) hn::TFromD<D> from[hn::MaxLanes(D())];
-    hn::Store(v, d, from);
-    append(d, from, mask, &to[count]);
-#endif
-}
-
-// To scratch.chosen, what can matter to the block's positions; false when it does not fit.
-bool choose_candidates(const BlockMeasure& m, const BlockSurroundings& around, const View& view,
-                       CandidateList& to) {
+// From the i-th triangle of some clusters on: of one cluster, or of it and the next.
+HWY_INLINE ClusterLanes lanes_of(const TriangleCluster* all, const std::uint32_t* numbers, std::size_t i) {
+    constexpr std::size_t size = TriangleCluster::size;
     const Many d;
     const ManyNumbers du;
-    to.count = 0;
-    const std::size_t count = around.clusters.size() * TriangleCluster::size;
-    std::uint32_t last_two[2] = {around.clusters.back(), around.clusters.back()};
+    const TriangleCluster& one = all[numbers[i / size]];
+#if HWY_TARGET <= HWY_AVX3
+    static_assert(hn::MaxLanes(Many()) == 2 * size);
+    const TriangleCluster& two = all[numbers[i / size + 1]];
+    const auto load = [](auto tag, const auto& first, const auto& second) HWY_ATTR {
+        const hn::Half<decltype(tag)> half;
+        return hn::Combine(tag, hn::LoadU(half, second.data()), hn::LoadU(half, first.data()));
+    };
+#else
+    const TriangleCluster& two = one;
+    const auto load = [&](auto tag, const auto& values, const auto&)
+                          HWY_ATTR { return hn::LoadU(tag, &values[i % size]); };
+#endif
+    return {{load(d, one.center_x, two.center_x), load(d, one.center_y, two.center_y),
+             load(d, one.center_z, two.center_z), load(d, one.normal_x, two.normal_x),
+             load(d, one.normal_y, two.normal_y), load(d, one.normal_z, two.normal_z),
+             load(d, one.radius, two.radius)},
+            load(du, one.slot, two.slot)};
+}
+
+// At the end of the list, the lanes in `mask`; there is room for a whole vector.
+HWY_INLINE void append_candidates(const ClusterLanes& lanes, hn::Mask<Many> mask, CandidateList& to) {
+    const Many d;
+    const ManyNumbers du;
+    const BoundLanes& b = lanes.bounds;
+    const auto copy = [&](Lanes values, CandidateList::Numbers& array)
+                          HWY_ATTR { append(d, values, mask, &array[to.count]); };
+    append(du, lanes.slots, hn::RebindMask(du, mask), &to.slot[to.count]);
+    copy(b.center_x, to.center_x), copy(b.center_y, to.center_y), copy(b.center_z, to.center_z);
+    copy(b.normal_x, to.normal_x), copy(b.normal_y, to.normal_y), copy(b.normal_z, to.normal_z);
+    copy(b.radius, to.radius);
+    to.count += hn::CountTrue(d, mask);
+}
+
+// Most edges of the list's triangles will be needed soon.
+void prefetch_edges(const ClusteredTriangle* triangles, const CandidateList& list) {
+    for (std::size_t i = 0; i < list.count; ++i) {
+        const TriangleEdges& edges = triangles[list.slot[i]].edges;
+        __builtin_prefetch(edges.normal_x.data()), __builtin_prefetch(&edges.offset[2]);
+    }
+}
+
+// To `chosen`, the triangles of the clusters that can matter to the view; false when they do not fit.
+bool choose(const BlockMeasure& m, std::span<const std::uint32_t> clusters, const View& view,
+            CandidateList& chosen) {
+    const Many d;
+    const std::size_t count = clusters.size() * TriangleCluster::size;
+    const std::uint32_t last_twice[2] = {clusters.back(), clusters.back()};
+    chosen.count = 0;
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-        const bool last = i + hn::Lanes(d) > count;
-        const std::uint32_t* clusters = last ? last_two : around.clusters.data();
-        const std::size_t at = last ? 0 : i;
-        const BoundLanes b = bounds_of(m.clusters, clusters, at);
-        const View::Note n = view.note(b);
+        const bool whole = i + hn::Lanes(d) <= count;
+        const ClusterLanes lanes = lanes_of(m.clusters, whole ? clusters.data() : last_twice, whole ? i : 0);
+        const View::Note n = view.note(lanes.bounds);
         const auto taken = hn::And(view.matter(n.need, n.away), hn::FirstN(d, count - i));
         if (hn::AllFalse(d, taken)) continue;
-        if (to.count + hn::Lanes(d) > CandidateList::most) return false;
-        const auto copy = [&](Lanes values, auto& target) HWY_ATTR { append_lanes(d, values, taken, target, to.count); };
-        append_lanes(du, slots_of(m.clusters, clusters, at), hn::RebindMask(du, taken), to.slot, to.count);
-        copy(b.center_x, to.center_x), copy(b.center_y, to.center_y), copy(b.center_z, to.center_z);
-        copy(b.normal_x, to.normal_x), copy(b.normal_y, to.normal_y), copy(b.normal_z, to.normal_z);
-        copy(b.radius, to.radius);
-        to.count += hn::CountTrue(d, taken);
+        if (chosen.count + hn::Lanes(d) > CandidateList::most) return false;
+        append_candidates(lanes, taken, chosen);
     }
-    for (std::size_t i = 0; i < to.count; ++i) {  // most will be needed soon
-        const auto* triangle = reinterpret_cast<const char*>(&m.triangles[to.slot[i]]);
-        __builtin_prefetch(triangle), __builtin_prefetch(triangle + 64);
-    }
+    prefetch_edges(m.triangles, chosen);
     return true;
 }
 
+// All but the copies of the last in a cluster that has fewer than others.
 std::size_t distinct(const TriangleCluster& cluster) {
     std::size_t count = TriangleCluster::size;
     while (count > 1 && cluster.slot[count - 1] == cluster.slot[count - 2]) --count;
     return count;
 }
 
-bool measure_all(const BlockMeasure& measure, const BlockSurroundings& around, BlockScratch& scratch,
-                 BlockAnswers& answers) {
-    constexpr std::size_t few = 3;  // candidates that are measured in less time than bounded
-    const TriangleCluster& first = measure.clusters[around.clusters[0]];
-    const bool all = around.clusters.size() == 1 && distinct(first) <= few;
-    BlockPositions local;
-    if (!all) {
-        to_local(answers.x.data(), measure.origin.x, local.x);
-        to_local(answers.y.data(), measure.origin.y, local.y);
-        to_local(answers.z.data(), measure.origin.z, local.z);
-    }
-    Pairs pairs;
-    alignas(64) double triangles[block_positions];
-    const BestAnswers best{answers.x.data(), answers.y.data(), answers.z.data(), answers.distance_squared.data(), triangles, answers.v.data(), answers.w.data()};
-    answers.distance_squared.fill(measure.max_distance * measure.max_distance);
-    std::fill_n(triangles, block_positions, static_cast<double>(ClosestPoint::none));
-    answers.v.fill(0.0);
-    answers.w.fill(0.0);
-    const auto query = [&](std::size_t g)
-                           HWY_ATTR { return GroupQuery(measure, scratch, local, best, pairs, g * group); };
-    std::array<GroupQuery, block_groups> groups{query(0), query(1), query(2), query(3)};
+using GroupQueries = std::array<GroupQuery, block_groups>;
+
+// False when more triangles can matter than there is room for.
+bool measure_groups(const BlockMeasure& m, const BlockSurroundings& around, BlockScratch& scratch,
+                    const BlockAnswers& answers, BlockPositions& local, GroupQueries& groups) {
+    to_local(answers.x.data(), m.origin.x, local.x);
+    to_local(answers.y.data(), m.origin.y, local.y);
+    to_local(answers.z.data(), m.origin.z, local.z);
     float widest = 0.0f;
     for (GroupQuery& g : groups) {
-        if (all)
-            g.measure(first, distinct(first));
-        else
-            g.measure_first(around.near_slot);
+        g.measure_first(around.near_slot);
         widest = std::max(widest, g.widest());
     }
-    if (!all) {
-        const LocalPositions positions = local.part(0, block_positions);
-        const std::uint32_t size = TriangleCluster::size;
-        const TriangleBound reference = measure.clusters[around.near_slot / size].bound(around.near_slot % size);
-        const View view(positions, box_around(positions, measure.slack), reference, widest, measure.slack);
-        if (!choose_candidates(measure, around, view, scratch.chosen)) return false;
-        if (scratch.chosen.count > 0)
-            for (GroupQuery& g : groups) g.measure_chosen();
+    constexpr std::uint32_t size = TriangleCluster::size;
+    const TriangleBound reference = m.clusters[around.near_slot / size].bound(around.near_slot % size);
+    const LocalPositions positions = local.part(0, block_positions);
+    const View view(positions, box_around(positions, m.slack), reference, widest, m.slack);
+    if (!choose(m, around.clusters, view, scratch.chosen)) return false;
+    if (scratch.chosen.count == 0) return true;
+    for (GroupQuery& g : groups) g.measure_chosen();
+    return true;
+}
+
+bool measure_all(const BlockMeasure& m, const BlockSurroundings& around, BlockScratch& scratch,
+                 BlockAnswers& answers) {
+    alignas(64) double triangle[block_positions];
+    const BestAnswers best{
+        answers.x.data(), answers.y.data(), answers.z.data(), answers.distance_squared.data(),
+        triangle,         answers.v.data(), answers.w.data()};
+    answers.distance_squared.fill(m.max_distance * m.max_distance);
+    std::fill_n(triangle, block_positions, static_cast<double>(ClosestPoint::none));
+    answers.v.fill(0.0);
+    answers.w.fill(0.0);
+
+    BlockPositions local;
+    Pairs pairs;
+    const auto query = [&](std::size_t g)
+                           HWY_ATTR { return GroupQuery(m, scratch, local, best, pairs, g * group); };
+    GroupQueries groups{query(0), query(1), query(2), query(3)};
+    constexpr std::size_t few = 3;  // triangles that are measured in less time than bounded
+    const TriangleCluster& first = m.clusters[around.clusters[0]];
+    const std::size_t all = distinct(first);
+    if (around.clusters.size() == 1 && all <= few) {
+        for (GroupQuery& g : groups) g.measure_all(first, all);
+    } else if (!measure_groups(m, around, scratch, answers, local, groups)) {
+        return false;
     }
-    if (pairs.count > 0) offer_pairs(measure.triangles, pairs, best);
+    if (pairs.count > 0) offer_pairs(m.triangles, pairs, best);
     for (std::size_t i = 0; i < block_positions; ++i)
-        answers.triangle[i] = static_cast<std::uint32_t>(triangles[i]);
+        answers.triangle[i] = static_cast<std::uint32_t>(triangle[i]);
     return true;
 }
 

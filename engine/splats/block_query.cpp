@@ -60,7 +60,8 @@ void prefetch_block(const ClosestPointIndex& index, const LatticeBlock& block) {
         for (std::size_t line = 0; line < sizeof record; line += 64) __builtin_prefetch(bytes + line, 0, 2);
     };
     prefetch(index.triangles()[block.near_slot]);
-    for (std::uint32_t i = 0; i < block.cluster_count; ++i) prefetch(index.clusters()[block.clusters[i]]);
+    const TriangleCluster* const clusters = index.clusters();
+    for (std::uint32_t i = 0; i < block.cluster_count; ++i) prefetch(clusters[block.clusters[i]]);
 }
 
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
@@ -85,7 +86,7 @@ void query_block(const ClosestPointIndex& index, const Lattice& lattice, const C
     const BlockSurroundings around{clusters_of(index, settings, block, ball, scratch.clusters),
                                    block.near_slot};
     if (!measure_block(measure, around, scratch, answers))
-        ask_embree(index, settings.max_distance, block.nearest, answers);
+        ask_embree(index, settings.max_distance, index.triangles()[block.near_slot].number, answers);
     drop_outside(nx, ny, nz, answers);
 }
 

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <glm/vec3.hpp>
-#include <vector>
 
 namespace astrosplat {
 
@@ -56,35 +55,26 @@ struct ClusterBox {
 
 /// Clusters near some place, by number, and their boxes.
 struct ClusterList {
-    using Numbers = std::vector<float>;
-    static constexpr std::size_t most = 4096;
-    std::vector<std::uint32_t> cluster;
-    Numbers lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
-    Numbers squared;  // distance from the point that was asked for last, square scene units
+    static constexpr std::size_t most = 4096;  // the arrays have room for whole vectors at the end
+    using Numbers = std::array<float, most + 64>;
+    std::size_t count = 0;
+    alignas(64) std::array<std::uint32_t, most + 64> cluster;
+    alignas(64) Numbers lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
+    alignas(64) Numbers squared;  // distance from the point that was asked for last, square scene units
 
-    void clear() {
-        for_each([](auto& values) { values.clear(); });
-    }
     /// False when there is no room.
     bool add(std::uint32_t number, const ClusterBox& box) {
-        if (cluster.size() == most) return false;
-        cluster.push_back(number);
-        lo_x.push_back(box.lo.x), lo_y.push_back(box.lo.y), lo_z.push_back(box.lo.z);
-        hi_x.push_back(box.hi.x), hi_y.push_back(box.hi.y), hi_z.push_back(box.hi.z);
-        squared.push_back(0.0f);
+        if (count == most) return false;
+        cluster[count] = number;
+        lo_x[count] = box.lo.x, lo_y[count] = box.lo.y, lo_z[count] = box.lo.z;
+        hi_x[count] = box.hi.x, hi_y[count] = box.hi.y, hi_z[count] = box.hi.z;
+        ++count;
         return true;
-    }
-
-  private:
-    template <class Visit>
-    void for_each(Visit visit) {
-        visit(cluster);
-        for (Numbers* values : {&lo_x, &lo_y, &lo_z, &hi_x, &hi_y, &hi_z, &squared}) visit(*values);
     }
 };
 
-struct CandidateList : BoundArrays<2048 + 64> {
-    static constexpr std::size_t most = 2048;  // the rest is room for whole vectors at the end
+struct CandidateList : BoundArrays<8192 + 64> {
+    static constexpr std::size_t most = 8192;  // the rest is room for whole vectors at the end
     std::size_t count = 0;
 
     /// False when there is no room.

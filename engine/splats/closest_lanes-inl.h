@@ -27,7 +27,7 @@ using Doubles = hn::CappedTag<double, group>;  // a group's coordinates, in one 
 
 /// Positions, and the best answer so far for each: arrays of whole groups.
 struct BestAnswers {
-    const double *x, *y, *z;              // scene units
+    const double *x, *y, *z;             // scene units
     double *squared, *triangle, *v, *w;  // as ClosestPoint; triangles' numbers are exact
 };
 

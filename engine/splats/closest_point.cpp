@@ -23,6 +23,7 @@
 #include "core/buffer.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "splats/cluster_filter.h"
 #include "splats/curve_order.h"
 
 namespace astrosplat {
@@ -116,28 +117,23 @@ TriangleEdges triangle_edges(const TriangleShape& s) {
 
 // Squares of at most the distances of p from a cluster's triangles; `rounding` is more than theirs amounts
 // to.
-std::array<float, TriangleCluster::size> disc_distances(const TriangleCluster& c, const glm::vec3& p,
-                                                        float rounding) {
-    std::array<float, TriangleCluster::size> distances;
+struct DiscDistances {
+    std::array<float, TriangleCluster::size> least;   // as said
+    std::array<float, TriangleCluster::size> middle;  // of the discs' middles, square scene units
+};
+DiscDistances disc_distances(const TriangleCluster& c, const glm::vec3& p, float rounding) {
+    DiscDistances squared;
     for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
         const float x = p.x - c.center_x[i], y = p.y - c.center_y[i], z = p.z - c.center_z[i];
         const float height = x * c.normal_x[i] + y * c.normal_y[i] + z * c.normal_z[i];
-        const float flat = (x * x + y * y + z * z) * (1.0f - 4e-6f) - height * height;
+        squared.middle[i] = x * x + y * y + z * z;
+        const float flat = squared.middle[i] * (1.0f - 4e-6f) - height * height;
         const float off = rounding + 2e-6f * c.radius[i];
         const float outside = std::max(std::sqrt(std::max(flat, 0.0f)) - c.radius[i] - off, 0.0f);
         const float above = std::max(std::fabs(height) - off, 0.0f);
-        distances[i] = outside * outside + above * above;
+        squared.least[i] = outside * outside + above * above;
     }
-    return distances;
-}
-
-void box_distances(ClusterList& list, const glm::vec3& p) {
-    for (std::size_t i = 0; i < list.cluster.size(); ++i) {
-        const float x = std::max(std::max(list.lo_x[i] - p.x, p.x - list.hi_x[i]), 0.0f);
-        const float y = std::max(std::max(list.lo_y[i] - p.y, p.y - list.hi_y[i]), 0.0f);
-        const float z = std::max(std::max(list.lo_z[i] - p.z, p.z - list.hi_z[i]), 0.0f);
-        list.squared[i] = x * x + y * y + z * z;
-    }
+    return squared;
 }
 
 }  // namespace
@@ -292,6 +288,7 @@ void ClosestPointIndex::State::build(std::span<const Mesh* const> meshes) {
     if (!device) throw std::runtime_error("Embree gave no device");
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_LOW);  // serial work; a better tree saves less
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(clusters.size()));
     rtcSetGeometryUserData(geometry, boxes.data());
@@ -379,7 +376,7 @@ struct ClosestPointIndex::Search {
         const auto rounding = static_cast<float>(slack) + 2e-6f * limit;
         const auto squared = disc_distances(cluster, local, rounding);
         for (std::size_t i = 0; i < TriangleCluster::size; ++i)
-            if (!(squared[i] > limit * limit)) offer(cluster.slot[i]);
+            if (!(squared.least[i] > limit * limit)) offer(cluster.slot[i]);
     }
 };
 
@@ -393,16 +390,80 @@ ClosestPoint ClosestPointIndex::closest(const glm::dvec3& p, double max_distance
     return search.best;
 }
 
-ClosestPoint ClosestPointIndex::closest_of(ClusterList& list, const glm::dvec3& p, double max_distance,
-                                           std::uint32_t hint) const {
-    Search search(*state_, p, max_distance);
-    box_distances(list, search.local);
-    if (hint != ClosestPoint::none) search.offer(state_->slots[hint]);
-    for (std::size_t i = 0; i < list.cluster.size(); ++i) {
-        if (!(list.squared[i] > search.limit * search.limit))
-            search.offer_cluster(state_->clusters[list.cluster[i]]);
+// The search of a near place. The middle of a small triangle's disc, which lies on the triangle, will do: its
+// record need not be fetched.
+struct ClosestPointIndex::Approach {
+    const State& state;
+    glm::dvec3 p;
+    glm::vec3 local;
+    double slack, tolerance;
+    NearPlace best;
+    float limit;  // of bounds that may still matter
+
+    Approach(const State& all, const glm::dvec3& point, double max_distance, double tolerated)
+        : state(all),
+          p(point),
+          local(point - all.center),
+          slack(all.slack(point - all.center)),
+          tolerance(tolerated),
+          best{ClosestPoint::none, max_distance, {}},
+          limit(State::widened(max_distance, slack)) {}
+
+    // What is left to look for, or a negative number.
+    double left() const {
+        return best.slot == ClosestPoint::none ? best.distance : best.distance - tolerance;
     }
-    return search.best;
+    void take(const NearPlace& place) {
+        best = place;
+        limit = left() < 0.0 ? -1.0f : State::widened(left(), slack);
+    }
+    void offer(std::uint32_t slot) {
+        const TriangleShape s = state.shape(slot);
+        const ClosestPoint c = closest_on_triangle(p, s);
+        const double distance = std::sqrt(c.distance_squared);
+        if (distance < best.distance || (best.slot == ClosestPoint::none && distance == best.distance))
+            take({slot, distance, s.a + s.ab * c.barycentric.x + s.ac * c.barycentric.y});
+    }
+    void offer_cluster(const TriangleCluster& cluster) {
+        const auto rounding = static_cast<float>(slack) + 2e-6f * std::max(limit, 0.0f);
+        const DiscDistances squared = disc_distances(cluster, local, rounding);
+        for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
+            if (limit < 0.0f || squared.least[i] > limit * limit) continue;
+            const double middle = std::sqrt(squared.middle[i]);
+            if (cluster.bound(i).normal == glm::vec3(0.0f) ||
+                middle - std::sqrt(squared.least[i]) > tolerance)
+                offer(cluster.slot[i]);
+            else if (best.slot == ClosestPoint::none || middle < best.distance)
+                take({cluster.slot[i], middle, glm::dvec3(cluster.bound(i).center) + state.center});
+        }
+    }
+    void start(std::uint32_t hint) {
+        if (hint != ClosestPoint::none) offer_cluster(state.clusters[hint / TriangleCluster::size]);
+    }
+};
+
+NearPlace ClosestPointIndex::near_place(const glm::dvec3& p, double max_distance, double tolerance,
+                                        std::uint32_t hint) const {
+    Approach approach(*state_, p, max_distance, tolerance);
+    approach.start(hint);
+    if (approach.left() < 0.0) return approach.best;
+    state_->query(p, approach.left(), [&](std::uint32_t cluster) {
+        approach.offer_cluster(state_->clusters[cluster]);
+        return approach.left();
+    });
+    return approach.best;
+}
+
+NearPlace ClosestPointIndex::near_place(ClusterList& list, const glm::dvec3& p, double max_distance,
+                                        double tolerance, std::uint32_t hint) const {
+    Approach approach(*state_, p, max_distance, tolerance);
+    measure_boxes(list, approach.local);
+    approach.start(hint);
+    for (std::size_t i = 0; i < list.count && approach.limit >= 0.0f; ++i) {
+        if (!(list.squared[i] > approach.limit * approach.limit))
+            approach.offer_cluster(state_->clusters[list.cluster[i]]);
+    }
+    return approach.best;
 }
 
 ClosestPoint ClosestPointIndex::closest_brute_force(const glm::dvec3& p, double max_distance) const {
@@ -425,18 +486,12 @@ void ClosestPointIndex::collect(const glm::dvec3& center, double radius,
 
 bool ClosestPointIndex::collect(const glm::dvec3& center, double radius, ClusterList& list) const {
     bool fits = true;
-    list.clear();
+    list.count = 0;
     state_->query(center, radius, [&](std::uint32_t cluster) {
         fits = list.add(cluster, state_->boxes[cluster]);
         return fits ? radius : -1.0;
     });
     return fits;
-}
-
-
-glm::dvec3 ClosestPointIndex::point(const ClosestPoint& closest) const {
-    const TriangleShape s = shape(closest.triangle);
-    return s.a + s.ab * closest.barycentric.x + s.ac * closest.barycentric.y;
 }
 
 const glm::dvec3& ClosestPointIndex::origin() const { return state_->center; }
@@ -456,7 +511,11 @@ TriangleShape ClosestPointIndex::shape(std::uint32_t triangle) const {
 }
 const ClusteredTriangle* ClosestPointIndex::triangles() const { return state_->triangles.data(); }
 const TriangleCluster* ClosestPointIndex::clusters() const { return state_->clusters.data(); }
-std::uint32_t ClosestPointIndex::slot(std::uint32_t triangle) const { return state_->slots[triangle]; }
+
+bool ClosestPointIndex::has_plane(std::uint32_t slot) const {
+    const TriangleCluster& cluster = state_->clusters[slot / TriangleCluster::size];
+    return cluster.bound(slot % TriangleCluster::size).normal != glm::vec3(0.0f);
+}
 
 std::int64_t ClosestPointIndex::triangle_count() const {
     return static_cast<std::int64_t>(state_->slots.size());

@@ -77,6 +77,13 @@ struct ClusteredTriangle {
     TriangleEdges edges;
 };
 
+/// A place on a triangle, to within ClosestPointIndex::slack.
+struct NearPlace {
+    std::uint32_t slot;  // of the triangle; ClosestPoint::none: no place
+    double distance;     // from the point that was asked for, scene units
+    glm::dvec3 at;       // scene units
+};
+
 class ClosestPointIndex {
   public:
     /// Keeps its own copy of the triangles; meshes are numbered and concatenated in order. Throws InputError
@@ -99,15 +106,20 @@ class ClosestPointIndex {
     /// false when they do not fit. Thread-safe.
     void collect(const glm::dvec3& center, double radius, std::vector<std::uint32_t>& clusters) const;
 
-    /// The same as clusters. And the closest point, like closest(), of those alone; it fills in `squared`.
+    /// The same with boxes; false when they do not fit.
     bool collect(const glm::dvec3& center, double radius, ClusterList& list) const;
-    ClosestPoint closest_of(ClusterList& list, const glm::dvec3& p, double max_distance,
-                            std::uint32_t hint) const;
+
+    /// A place on the meshes that is no more than `tolerance` farther than the closest; `none` only if
+    /// nothing is within `max_distance`. `hint` is the slot of a triangle that is probably near, or `none`.
+    /// Thread-safe.
+    NearPlace near_place(const glm::dvec3& p, double max_distance, double tolerance,
+                         std::uint32_t hint) const;
+    /// The same among the clusters of a list; fills in its `squared`.
+    NearPlace near_place(ClusterList& list, const glm::dvec3& p, double max_distance, double tolerance,
+                         std::uint32_t hint) const;
 
     /// Where the float coordinates of candidates have their origin, scene units.
     const glm::dvec3& origin() const;
-    /// The point itself that closest() found, scene units.
-    glm::dvec3 point(const ClosestPoint& closest) const;
     /// How much rounding to those coordinates may move a point or a triangle, along any direction, with
     /// plenty of room, for points within `radius` of `center`. Scene units.
     double slack(const glm::dvec3& center, double radius) const;
@@ -117,12 +129,14 @@ class ClosestPointIndex {
     TriangleShape shape(std::uint32_t triangle) const;  // by number
     const ClusteredTriangle* triangles() const;         // by slot
     const TriangleCluster* clusters() const;            // by number
-    std::uint32_t slot(std::uint32_t triangle) const;
+    /// Whether the bound of the triangle in a slot is a disc, not a ball: it has an area and is not narrow.
+    bool has_plane(std::uint32_t slot) const;
     std::int64_t triangle_count() const;
 
   private:
     struct State;
     struct Search;
+    struct Approach;
     std::unique_ptr<State> state_;
 };
 

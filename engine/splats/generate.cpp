@@ -34,7 +34,8 @@ std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const B
     std::vector<BlockRange> rows;
     for (std::size_t i = batch.begin; i < batch.end; ++i) {
         static const bool gaps = getenv("GAPS");
-        const bool joins = !rows.empty() && i - rows.back().begin < longest_row && (!gaps || blocks[i-1].at.x + 1 == blocks[i].at.x) &&
+        const bool joins = !rows.empty() && i - rows.back().begin < longest_row &&
+                           (!gaps || blocks[i - 1].at.x + 1 == blocks[i].at.x) &&
                            blocks[i - 1].at.y == blocks[i].at.y && blocks[i - 1].at.z == blocks[i].at.z;
         if (!joins) rows.push_back({i, i});
         rows.back().end = i + 1;
@@ -49,7 +50,9 @@ std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const B
         }
         return k;
     };
-    if (!getenv("NOM")) std::sort(rows.begin(), rows.end(), [&](const BlockRange& a, const BlockRange& b) { return key(a) < key(b); });
+    if (!getenv("NOM"))
+        std::sort(rows.begin(), rows.end(),
+                  [&](const BlockRange& a, const BlockRange& b) { return key(a) < key(b); });
     return rows;
 }
 
@@ -80,6 +83,7 @@ class Generator {
     void run(std::span<const LatticeBlock> row, Positions kind, Worker& worker, KeptStore& kept) const {
         worker.answers.resize(longest_row);
         for (std::size_t i = 0; i < row.size(); ++i) {
+            if (i + 1 < row.size()) prefetch_block(index_, row[i + 1]);
             if (i + 1 < row.size()) prefetch_block(index_, row[i + 1]);
             query_block(index_, lattice_, settings_, row[i], kind, *worker.scratch, worker.answers[i]);
             for (const std::uint32_t triangle : worker.answers[i].triangle)

@@ -10,13 +10,13 @@
 
 #include <hwy/highway.h>
 
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <limits>
 
+#include "splats/append-inl.h"
 #include "splats/candidates.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -35,26 +35,6 @@ using Floats = hn::CappedTag<float, 16>;  // positions
 template <class V>
 HWY_INLINE V dot3(V ax, V ay, V az, V bx, V by, V bz) {
     return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
-}
-
-template <class D, class Mask>
-HWY_INLINE unsigned bits_of(D d, Mask mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, mask, bytes);
-    static_assert(hn::MaxLanes(D()) <= 16);
-    return bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
-}
-
-/// Writes the values of the lanes in `mask` one after the other to `to`, which has room for a whole vector
-/// more. (Before AVX-512, Highway 1.0.3 copies a table of 1 KiB for each Compress, where bit by bit is
-/// faster.)
-template <class D, class Mask>
-HWY_INLINE void append(D d, const hn::TFromD<D>* from, Mask mask, hn::TFromD<D>* to) {
-#if HWY_TARGET <= HWY_AVX3
-    hn::StoreU(hn::Compress(hn::LoadU(d, from), mask), d, to);
-#else
-    for (unsigned bits = bits_of(d, mask); bits != 0; bits &= bits - 1) *to++ = from[std::countr_zero(bits)];
-#endif
 }
 
 /// A multiple of sixteen positions, in the candidates' coordinates.
@@ -127,7 +107,7 @@ HWY_INLINE std::size_t nearest_disc(const CandidateList& list, const glm::vec3& 
     const Many d;
     const ManyNumbers du;
     Lanes lowest = hn::Set(d, std::numeric_limits<float>::infinity());
-    auto lowest_place = hn::Zero(du), place = hn::Iota(du, 0);
+    auto lowest_place = hn::Zero(du), place = counting(du);
     for (std::size_t i = 0; i < list.count; i += hn::Lanes(d)) {
         const BoundLanes b = bounds_of(list, i);
         const Disc disc = seen_from(point, b);
@@ -183,8 +163,7 @@ class View {
     /// Which of them can matter. Comparisons with what is not a number count as yes.
     HWY_INLINE hn::Mask<Many> matter(Lanes need, Lanes away) const {
         const Many d;
-        return hn::Not(
-            hn::Or(hn::Gt(need, hn::Set(d, room_)), hn::Gt(away, hn::Set(d, widest_ * widest_))));
+        return hn::Not(hn::Or(hn::Gt(need, hn::Set(d, room_)), hn::Gt(away, hn::Set(d, widest_ * widest_))));
     }
 
     /// The limits have shrunk.
@@ -220,10 +199,9 @@ class View {
         const Lanes side = hn::CopySignToAbs(hn::Set(d, 1.0f), similar);
         const auto turned = [&](float normal, Lanes other)
                                 HWY_ATTR { return hn::NegMulAdd(other, side, hn::Set(d, normal)); };
-        const Lanes tilt =
-            hn::Add(box_along(turned(normal_.x, b.normal_x), turned(normal_.y, b.normal_y),
-                              turned(normal_.z, b.normal_z)),
-                    hn::Add(off, hn::Set(d, reference_off_)));
+        const Lanes tilt = hn::Add(box_along(turned(normal_.x, b.normal_x), turned(normal_.y, b.normal_y),
+                                             turned(normal_.z, b.normal_z)),
+                                   hn::Add(off, hn::Set(d, reference_off_)));
         const Lanes apart = hn::NegMulAdd(height, side, hn::Set(d, height_));
         const Lanes least = hn::Sub(apart, tilt), most = hn::Add(apart, tilt);
         const auto largest = [&](float reference_height) HWY_ATTR {

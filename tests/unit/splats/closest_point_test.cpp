@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "core/shared_maths.h"
 #include "unit/splats/generate_support.h"
@@ -115,6 +116,39 @@ TEST(ClosestPointIndex, EqualsBruteForceWhereverTheMeshLies) {
             hint = i % static_cast<std::uint32_t>(mesh.triangles.size());
         }
     }
+}
+
+// The middle of a triangle's disc counts only where it is near enough; with no tolerance it is the closest
+// point itself. The place lies on the mesh.
+TEST(ClosestPointIndex, ANearPlaceIsFartherByTheToleranceAtMost) {
+    Mesh mesh = builtin_mesh("sphere", 1.0);
+    for (glm::vec3& p : mesh.positions) p = p * 2.0f;
+    const ClosestPointIndex index(std::vector<Mesh>{mesh});
+    std::uint32_t hint = ClosestPoint::none;
+    int none = 0, middles = 0;
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+        const auto random = [&](std::uint32_t axis) {
+            return 60.0 * static_cast<double>(shared::as_uniform(shared::as_hash(i, axis, 0, 98))) - 30.0;
+        };
+        const dvec3 p(random(0), random(1), random(2));
+        const double tolerance = i % 4 * 0.5;
+        const ClosestPoint closest = index.closest_brute_force(p, 12.0);
+        const NearPlace near = index.near_place(p, 12.0, tolerance, hint);
+        if (near.slot == ClosestPoint::none) {
+            EXPECT_EQ(closest.triangle, ClosestPoint::none) << i;
+            ++none;
+            continue;
+        }
+        const double least = std::sqrt(index.closest_brute_force(p, 100.0).distance_squared);
+        EXPECT_LE(near.distance, least + tolerance + 1e-4) << i;
+        EXPECT_GE(near.distance, least - 1e-4) << i;
+        EXPECT_NEAR(glm::length(near.at - p), near.distance, 1e-4) << i;
+        EXPECT_NEAR(index.closest_brute_force(near.at, 1.0).distance_squared, 0.0, 1e-8) << i;
+        middles += near.distance > least + 1e-4;
+        hint = near.slot;
+    }
+    EXPECT_GT(none, 100);
+    EXPECT_GT(middles, 100);
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+// Lanes that a mask picks, one after the other in memory; masks as bits. Included once per instruction set.
+#if defined(ASTROSPLAT_SPLATS_APPEND_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef ASTROSPLAT_SPLATS_APPEND_INL_H
+#undef ASTROSPLAT_SPLATS_APPEND_INL_H
+#else
+#define ASTROSPLAT_SPLATS_APPEND_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace astrosplat {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// 0, 1, 2 ... (Highway 1.0.3's Iota fills an array each time.)
+template <class D>
+HWY_INLINE hn::Vec<D> counting(D d) {
+    alignas(64) static constexpr std::uint32_t numbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                              8, 9, 10, 11, 12, 13, 14, 15};
+    static_assert(hn::MaxLanes(D()) <= 16);
+    return hn::Load(d, numbers);
+}
+
+/// Lane 0 is the lowest bit.
+template <class D, class Mask>
+HWY_INLINE unsigned bits_of(D d, Mask mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, mask, bytes);
+    static_assert(hn::MaxLanes(D()) <= 16);
+    return bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
+}
+
+/// Writes the lanes in `mask` one after the other to `to`, which has room for a whole vector more. (Before
+/// AVX-512, Highway 1.0.3 copies a table of 1 KiB for each Compress, where bit by bit is faster.)
+template <class D, class Mask>
+HWY_INLINE void append(D d, hn::Vec<D> values, Mask mask, hn::TFromD<D>* to) {
+#if HWY_TARGET <= HWY_AVX3
+    hn::StoreU(hn::Compress(values, mask), d, to);
+#else
+    alignas(32) hn::TFromD<D> from[hn::MaxLanes(D())];
+    hn::Store(values, d, from);
+    for (unsigned bits = bits_of(d, mask); bits != 0; bits &= bits - 1) *to++ = from[std::countr_zero(bits)];
+#endif
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace astrosplat
+HWY_AFTER_NAMESPACE();
+
+#endif  // toggle
