@@ -247,10 +247,16 @@ void ClosestPointIndex::State::make_clusters(const Buffer<TriangleCorners>& corn
     const auto count = static_cast<std::int64_t>(corners.size());
     Buffer<std::uint64_t> order(corners.size());  // place on the curve, then number
     parallel_chunks(count, 4096, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            const TriangleShape s = triangle_shape(corners[i]);
-            const glm::dvec3 middle = s.a - center + (s.ab + s.ac) / 3.0;
-            order[i] = std::uint64_t{curve_place(middle, reach)} << 32 | i;
+        CurvePlaces places;
+        const auto last = static_cast<std::size_t>(end);
+        for (auto first = static_cast<std::size_t>(begin); first < last; first += CurvePlaces::most) {
+            const std::size_t stop = std::min(first + CurvePlaces::most, last);
+            for (std::size_t i = first; i < stop; ++i) {
+                const TriangleCorners& t = corners[i];
+                places.add((glm::dvec3(t.a) + glm::dvec3(t.b) + glm::dvec3(t.c)) / 3.0 - center, reach);
+            }
+            const CurvePlaces::Numbers& place = places.finish();
+            for (std::size_t i = first; i < stop; ++i) order[i] = std::uint64_t{place[i - first]} << 32 | i;
         }
     });
     sort_by_place(order);

@@ -18,22 +18,38 @@ std::uint32_t spread_bits(std::uint32_t v) {
 
 }  // namespace
 
-std::uint32_t curve_place(const glm::dvec3& p, double reach) {
+void CurvePlaces::add(const glm::dvec3& p, double reach) {
     const double scale = reach > 0.0 ? 1023.0 / (2.0 * reach) : 0.0;
-    glm::uvec3 cell(glm::clamp((p + reach) * scale, 0.0, 1023.0));
-    for (std::uint32_t bit = 512; bit > 1; bit >>= 1) {
-        for (glm::length_t axis = 0; axis < 3; ++axis) {
-            const std::uint32_t swapped = (cell.x ^ cell[axis]) & (bit - 1), flip = cell[axis] & bit;
-            cell.x ^= flip ? bit - 1 : swapped;
-            cell[axis] ^= flip ? 0 : swapped;
+    const glm::uvec3 cell(glm::clamp((p + reach) * scale, 0.0, 1023.0));
+    x_[count_] = cell.x, y_[count_] = cell.y, z_[count_] = cell.z;
+    ++count_;
+}
+
+// Bit by bit for all at once, so that the compiler makes vectors of it.
+const CurvePlaces::Numbers& CurvePlaces::finish() {
+    const auto turn = [&](Numbers& axis, std::uint32_t bit) {
+        for (std::size_t i = 0; i < most; ++i) {
+            const std::uint32_t low = bit - 1, flip = axis[i] & bit ? low : 0;
+            const std::uint32_t swapped = (x_[i] ^ axis[i]) & (low ^ flip);
+            x_[i] ^= flip | swapped;
+            axis[i] ^= swapped;
         }
+    };
+    for (std::uint32_t bit = 512; bit > 1; bit >>= 1) {
+        for (std::size_t i = 0; i < most; ++i) x_[i] ^= x_[i] & bit ? bit - 1 : 0;
+        turn(y_, bit);
+        turn(z_, bit);
     }
-    cell.y ^= cell.x;
-    cell.z ^= cell.y;
-    std::uint32_t turned = 0;
-    for (std::uint32_t bit = 512; bit > 1; bit >>= 1) turned ^= cell.z & bit ? bit - 1 : 0;
-    cell ^= turned;
-    return spread_bits(cell.x) << 2 | spread_bits(cell.y) << 1 | spread_bits(cell.z);
+    for (std::size_t i = 0; i < most; ++i) {
+        y_[i] ^= x_[i];
+        z_[i] ^= y_[i];
+        std::uint32_t turned = 0;
+        for (std::uint32_t bit = 512; bit > 1; bit >>= 1) turned ^= z_[i] & bit ? bit - 1 : 0;
+        x_[i] =
+            spread_bits(x_[i] ^ turned) << 2 | spread_bits(y_[i] ^ turned) << 1 | spread_bits(z_[i] ^ turned);
+    }
+    count_ = 0;
+    return x_;
 }
 
 void sort_by_place(Buffer<std::uint64_t>& order) {
