@@ -1,0 +1,19 @@
+// What encloses a triangle, for closest-point searches. In: a triangle in double. Out: its disc or ball, the
+// planes through its edges and its box, in float, wide enough for what closest_on_triangle may answer.
+#pragma once
+
+#include "splats/candidates.h"
+#include "splats/closest_triangle.h"
+
+namespace astrosplat {
+
+struct TriangleBounds {
+    TriangleBound disc;
+    TriangleEdges edges;
+    ClusterBox box;
+};
+
+/// Relative to `origin`.
+TriangleBounds triangle_bounds(const TriangleShape& shape, const glm::dvec3& origin);
+
+}  // namespace astrosplat
