@@ -1,6 +1,5 @@
-// Block queries. All triangles that can be closest to some position of the block are collected once, with
-// bounds, and the block's positions are measured against them in groups (block_kernel). Blocks with too many
-// triangles ask Embree for each position instead.
+// Block queries. The block's positions are measured together against the triangles of the clusters that the
+// cull found for it (block_kernel). Blocks with too many triangles ask Embree for each position instead.
 #include "splats/block_query.h"
 
 #include <algorithm>

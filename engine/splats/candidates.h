@@ -6,7 +6,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <glm/vec3.hpp>
 
 namespace astrosplat {
@@ -73,28 +72,10 @@ struct ClusterList {
     }
 };
 
+/// Triangles that a block chose.
 struct CandidateList : BoundArrays<8192 + 64> {
     static constexpr std::size_t most = 8192;  // the rest is room for whole vectors at the end
     std::size_t count = 0;
-
-    /// False when there is no room.
-    bool add(const TriangleCluster& cluster) {
-        if (count + TriangleCluster::size > most) return false;
-        copy(cluster.slot, slot);
-        copy(cluster.center_x, center_x), copy(cluster.center_y, center_y), copy(cluster.center_z, center_z);
-        copy(cluster.normal_x, normal_x), copy(cluster.normal_y, normal_y), copy(cluster.normal_z, normal_z);
-        copy(cluster.radius, radius);
-        std::size_t used = TriangleCluster::size;
-        while (used > 1 && cluster.slot[used - 1] == cluster.slot[used - 2]) --used;
-        count += used;
-        return true;
-    }
-
-  private:
-    template <class From, class To>
-    void copy(const From& from, To& to) const {
-        std::memcpy(to.data() + count, from.data(), sizeof from);
-    }
 };
 
 /// What positions know of each candidate of a list, see View::note.
