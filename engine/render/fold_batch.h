@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/buffer.h"
+#include "render/discs.h"
 #include "render/fold.h"
 #include "render/footprint.h"
 
@@ -65,6 +66,8 @@ struct SplatBatch {
 
     // What the weights are made of, while they are prepared.
     alignas(64) float radius_px[places];
+    alignas(64) std::int32_t node[places];    // of the footprint table: the one before the radius
+    alignas(64) float node_share[places];     // of the next one
     alignas(64) float alpha[places];          // opacity as the splat has it
     alignas(64) float moments[3][places][4];  // of FootprintMoments, four by four
 };
@@ -73,23 +76,6 @@ struct SplatBatch {
 struct FoldCommon {
     const FootprintTable* footprints = nullptr;  // the one table of all layers, or null
     bool screen = false;                         // all are screens
-};
-
-/// Where splats are on the picture and how far they reach, value by value.
-struct Discs {
-    Buffer<float> x_px, y_px, reach_px;
-    void resize(std::size_t size) {
-        x_px.resize(size);
-        y_px.resize(size);
-        reach_px.resize(size);
-    }
-    void set(std::size_t i, float x, float y, float reach) {
-        x_px[i] = x;
-        y_px[i] = y;
-        reach_px[i] = reach;
-    }
-    /// Touches nothing: fills the last vector.
-    void set_nowhere(std::size_t i) { set(i, 1e30f, 1e30f, 0.0f); }
 };
 
 /// Those of a tile's splats that may touch a cell.

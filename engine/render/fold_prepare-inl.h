@@ -72,15 +72,30 @@ HWY_INLINE void interpolate_cubics(const FootprintNode& a, const FootprintNode& 
             interpolate(D(), a.cubic[power] + s, b.cubic[power] + s, t, batch.cubic[i][power] + s);
 }
 
+/// Between which of a table's nodes the radii of splats n to n + lanes lie: footprint_nodes, many at once.
+HWY_INLINE void find_nodes(const FootprintTable& table, SplatBatch& batch, int n) {
+    constexpr int bits = FootprintTable::node_bits;
+    const hn::RebindToUnsigned<D> du;
+    const VI radius = hn::BitCast(DI(), load(batch.radius_px + n)), zero = hn::Zero(DI()),
+             last = hn::Set(DI(), static_cast<int>(table.nodes.size()) - 1);
+    const VI index = hn::Sub(hn::BitCast(DI(), hn::ShiftRight<bits>(hn::BitCast(du, radius))),
+                             hn::Set(DI(), static_cast<int>(FootprintTable::first_node)));
+    const VI first = hn::Min(hn::Max(index, zero), last);
+    const VI rest = hn::IfThenElseZero(hn::Eq(first, index), hn::And(radius, hn::Set(DI(), (1 << bits) - 1)));
+    store(hn::Mul(hn::ConvertTo(D(), rest), all(1.0f / (1 << bits))), batch.node_share + n);
+    hn::Store(first, DI(), batch.node + n);
+}
+
 /// The part of a footprint that is looked up: cubics and moments between the table's nodes.
 HWY_INLINE void look_up_footprint(const FootprintTable& table, SplatBatch& batch, int i) {
     const hn::CappedTag<float, 4> four;
-    const FootprintNodes nodes = footprint_nodes(table, batch.radius_px[i]);
-    interpolate_cubics(*nodes.a, *nodes.b, nodes.t, batch, i);
+    const FootprintNode* a = table.nodes.data() + batch.node[i];
+    const FootprintNode* b = std::min(a + 1, &table.nodes.back());
+    const float t = batch.node_share[i];
+    interpolate_cubics(*a, *b, t, batch, i);
     const int quads = table.linear_in_distance ? 3 : table.flat_core ? 2 : 1;
     for (int q = 0; q < quads; ++q)
-        interpolate(four, &nodes.a->moments.mean + 4 * q, &nodes.b->moments.mean + 4 * q, nodes.t,
-                    batch.moments[q][i]);
+        interpolate(four, &a->moments.mean + 4 * q, &b->moments.mean + 4 * q, t, batch.moments[q][i]);
 }
 
 /// pixel_cosine of `lanes` coordinates.
@@ -220,20 +235,23 @@ inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {
 /// Everything about the splats `which` of the batch.
 template <class Pixels>
 void prepare_splats(const FoldJob& job, const FoldCommon& common, SplatBits which, SplatBatch& batch) {
-    while (which.any()) {
-        const int i = which.take_first();
+    for (SplatBits rest = which; rest.any();) {
+        const int i = rest.take_first();
         const ScreenSplat& splat = *job.splats[batch.index[i]];
         batch.radius_px[i] = splat.radius_px;
         batch.alpha[i] = splat.opacity;
         for (int k = 0; k < 3; ++k) batch.color[k][i] = splat.color[k];
-        common.footprints ? look_up_footprint(*common.footprints, batch, i)
-                          : prepare_weight(*job.layers[splat.layer].footprints, batch, i);
+        if (!common.footprints) prepare_weight(*job.layers[splat.layer].footprints, batch, i);
         if constexpr (Pixels::general)
             if (!common.screen) prepare_occlusion(splat, job.layers[splat.layer], batch, i);
         if constexpr (Pixels::aovs) {
             batch.layer[i] = splat.layer;
             batch.depth[i] = depth_of(splat, job.settings);
         }
+    }
+    if (common.footprints) {
+        for (int n = 0; n < batch.count; n += lanes) find_nodes(*common.footprints, batch, n);
+        while (which.any()) look_up_footprint(*common.footprints, batch, which.take_first());
     }
     constexpr float faint = 0.99f;  // leaves more room than the cubics go above 1
     M is_faint = hn::Eq(hn::Zero(D()), hn::Zero(D()));
