@@ -100,7 +100,7 @@ LevelShades shade_levels(const LayerProjection& layer, const LevelChoice& choice
 }
 
 void project_level(const LayerProjection& layer, const CameraSplat& parent, std::int64_t index, int level,
-                   const LevelShade& shade, const ScreenRect& rect, std::vector<ScreenSplat>& out) {
+                   const LevelShade& shade, const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     if (!(shade.alpha > 0.0f)) return;
     const ShadedSplats& splats = *layer.splats;
     CameraSplat child{parent.position, parent.radius * child_radius_scale(level), shade.alpha, shade.color};
@@ -119,7 +119,7 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
 /// True when the splat was replaced by children (of which none may show). A splat whose centre has passed the
 /// camera may still have children in front of it, so the size is taken no nearer than the near plane.
 bool project_as_children(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
-                         const ScreenRect& rect, std::vector<ScreenSplat>& out) {
+                         const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     const float z = std::max(-splat.position.z, layer.near), reach = splat.radius * 1.25f;
     const float px_per_unit = layer.orthographic ? layer.focal_px : layer.focal_px / z;
     const LevelChoice choice =
@@ -179,7 +179,7 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
 }
 
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
-             std::vector<ScreenSplat>& out) {
+             Buffer<ScreenSplat>& out) {
     const ShadedSplats& splats = *layer.splats;
     if (!layer.lod) begin = project_whole_blocks(layer, begin, end, rect, out);
     for (std::int64_t i = begin; i < end; ++i) {

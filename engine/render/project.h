@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "camera/camera.h"
+#include "core/buffer.h"
 #include "render/lod.h"
 #include "render/render.h"
 #include "render/screen_splat.h"
@@ -41,6 +41,6 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
 
 /// Appends the screen splats of shaded splats [begin, end) whose support touches `rect`.
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
-             std::vector<ScreenSplat>& out);
+             Buffer<ScreenSplat>& out);
 
 }  // namespace astrosplat

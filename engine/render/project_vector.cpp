@@ -18,13 +18,13 @@ using V = hn::Vec<D>;
 using VD = hn::Vec<DD>;
 constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
 
-/// `lanes` splats, value by value: first as the layer has them, then as the picture does.
-struct Columns {
-    alignas(64) float x[lanes], y[lanes], z[lanes];  // layer space, then camera space
-    alignas(64) float x_px[lanes], y_px[lanes], radius_px[lanes], opacity[lanes], depth[lanes];
+/// `lanes` splats on the picture.
+struct Projected {
+    alignas(64) float x[lanes], y[lanes], z[lanes];  // camera space
+    alignas(64) float disc[lanes][4];                // x_px, y_px, radius_px, opacity
+    alignas(64) float depth[lanes];
 };
 
-HWY_INLINE V load(const float* p) { return hn::Load(D(), p); }
 HWY_INLINE V all(float v) { return hn::Set(D(), v); }
 
 /// Row `k` of camera_from_layer times the place, plus the origin; rounded to float last.
@@ -42,16 +42,15 @@ HWY_INLINE V snap(V px) {
 
 /// Projects `lanes` splats from `begin` on; bit i of the result: splat begin + i shows.
 HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_t begin,
-                                       const ScreenRect& rect, Columns& c) {
+                                       const ScreenRect& rect, Projected& c) {
     const DD dd;
     const ShadedSplats& splats = *layer.splats;
     const auto first = static_cast<std::size_t>(begin);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(lanes); ++i) {
-        const glm::vec3& p = splats.position[first + i];
-        c.x[i] = p.x, c.y[i] = p.y, c.z[i] = p.z;
-    }
-    const VD lx = hn::PromoteTo(dd, load(c.x)), ly = hn::PromoteTo(dd, load(c.y)),
-             lz = hn::PromoteTo(dd, load(c.z));
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    V layer_x, layer_y, layer_z;
+    hn::LoadInterleaved3(D(), &splats.position[first].x, layer_x, layer_y, layer_z);
+    const VD lx = hn::PromoteTo(dd, layer_x), ly = hn::PromoteTo(dd, layer_y),
+             lz = hn::PromoteTo(dd, layer_z);
     const V x = camera_coordinate(layer, 0, lx, ly, lz), y = camera_coordinate(layer, 1, lx, ly, lz),
             pz = camera_coordinate(layer, 2, lx, ly, lz), z = hn::Neg(pz);
     const V alpha = hn::LoadU(D(), &splats.alpha[first]);
@@ -76,10 +75,7 @@ HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_
     hn::Store(x, D(), c.x);
     hn::Store(y, D(), c.y);
     hn::Store(pz, D(), c.z);
-    hn::Store(x_px, D(), c.x_px);
-    hn::Store(y_px, D(), c.y_px);
-    hn::Store(radius_px, D(), c.radius_px);
-    hn::Store(opacity, D(), c.opacity);
+    hn::StoreInterleaved4(x_px, y_px, radius_px, opacity, D(), c.disc[0]);
     hn::Store(layer.orthographic ? z : squared, D(), c.depth);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(D(), shows, bits);
@@ -87,21 +83,21 @@ HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_
 }
 
 void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
-                    const ScreenRect& rect, std::vector<ScreenSplat>& out) {
+                    const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     const bool hybrid = layer.render.blend == Blend::hybrid;
     const std::size_t before = out.size();
     out.resize(before + static_cast<std::size_t>(end - begin));
     ScreenSplat* to = out.data() + before;
-    Columns c;
+    Projected c;
     for (; begin < end; begin += lanes) {
         for (std::uint32_t bits = project_block(layer, begin, rect, c); bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
             const std::int64_t index = begin + i;
             const glm::vec3& color = layer.splats->color[static_cast<std::size_t>(index)];
-            *to++ = {c.x_px[i],
-                     c.y_px[i],
-                     c.radius_px[i],
-                     c.opacity[i],
+            *to++ = {c.disc[i][0],
+                     c.disc[i][1],
+                     c.disc[i][2],
+                     c.disc[i][3],
                      {color.x, color.y, color.z},
                      std::bit_cast<std::uint32_t>(c.depth[i]),
                      static_cast<std::uint32_t>(index),
@@ -124,7 +120,7 @@ HWY_EXPORT(project_blocks);
 HWY_EXPORT(block_size);
 
 std::int64_t project_whole_blocks(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
-                                  const ScreenRect& rect, std::vector<ScreenSplat>& out) {
+                                  const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     const std::int64_t size = HWY_DYNAMIC_DISPATCH(block_size)();
     const std::int64_t whole = begin + (end - begin) / size * size;
     HWY_DYNAMIC_DISPATCH(project_blocks)(layer, begin, whole, rect, out);

@@ -12,7 +12,6 @@ namespace {
 constexpr std::int64_t slab_bytes = std::int64_t{40} << 20;
 constexpr std::int64_t chunk_splats = 8192;  // handed out to a worker
 constexpr std::int64_t step_splats = 512;    // projected before they are written: they stay in cache
-constexpr std::int64_t most_bins = 9;        // of one splat, see bins_of
 
 ScreenRect rect_of(const TileGrid& grid) {
     return {static_cast<float>(grid.x0), static_cast<float>(grid.y0),
@@ -65,8 +64,8 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
     : grid_(grid), groups_(groups) {
     std::int64_t columns = grid.columns(), rows = grid.rows();
     for (;;) {
-        const auto last_x = static_cast<float>(columns - 1), last_y = static_cast<float>(rows - 1);
-        levels_.push_back({bins_per_group_, columns, rows, {last_x, last_y, last_x, last_y}});
+        levels_.push_back({static_cast<std::uint32_t>(bins_per_group_), static_cast<std::uint32_t>(columns),
+                           static_cast<float>(columns - 1), static_cast<float>(rows - 1)});
         bins_per_group_ += columns * rows;
         if (columns == 1 && rows == 1) break;
         columns = (columns + 1) / 2;
@@ -77,55 +76,49 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
     block_records_ = std::clamp<std::int64_t>(expected_records / (4 * writers_bins), 8, 128);
 }
 
-/// The bins that a splat's square of support touches. A level is chosen whose bins are at least as wide as
-/// the support, so they are at most three by three.
-[[gnu::always_inline]] inline TileBins::BinRect TileBins::bins_of(const ScreenSplat& splat, float support_px,
-                                                                  int group) const {
-    float bins_per_px = 1.0f / static_cast<float>(grid_.tile_px), bin_px = static_cast<float>(grid_.tile_px);
-    std::size_t number = 0;
-    while (support_px > bin_px && number + 1 < levels_.size()) {
-        bin_px *= 2.0f;
-        bins_per_px *= 0.5f;
-        ++number;
+/// Adds the splats just projected to the sums over their chunk.
+void TileBins::add(std::span<const ScreenSplat> splats, Sums& sums) const {
+    Sums sum = sums;  // in registers
+    for (const ScreenSplat& splat : splats) {
+        sum.least_px = std::min(sum.least_px, splat.radius_px);
+        sum.largest_px = std::max(sum.largest_px, splat.radius_px);
+        if (!counts_here(grid_, splat.y_px)) continue;
+        ++sum.instances;
+        sum.footprint_px += real::pi * splat.radius_px * splat.radius_px;
     }
-    const Level& level = levels_[number];
-    const float x = splat.x_px - static_cast<float>(grid_.x0), y = splat.y_px - static_cast<float>(grid_.y0);
-    const float corner_px[4] = {x - support_px, y - support_px, x + support_px, y + support_px};
-    std::int32_t bin[4];  // clamped first: rounding towards 0 is then floor
-    for (int k = 0; k < 4; ++k)
-        bin[k] = static_cast<std::int32_t>(
-            std::min(std::max(corner_px[k] * bins_per_px, 0.0f), level.last_bin[k]));
-    const auto columns = static_cast<std::uint32_t>(level.columns);
-    const auto first_bin = static_cast<std::uint32_t>(group * bins_per_group_ + level.first_bin);
-    return {first_bin + static_cast<std::uint32_t>(bin[1]) * columns + static_cast<std::uint32_t>(bin[0]),
-            columns, static_cast<std::uint32_t>(bin[2] - bin[0] + 1),
-            static_cast<std::uint32_t>(bin[3] - bin[1] + 1)};
+    sums = sum;
 }
 
 /// The bins of the splats just projected.
 std::span<const TileBins::Entry> TileBins::list_entries(const LayerProjection& layer, int group,
-                                                        Writer& writer, Sums& sums) const {
-    writer.entries.resize(writer.splats.size() * most_bins);
-    Entry* end = writer.entries.data();
-    for (std::size_t i = 0; i < writer.splats.size(); ++i) {
+                                                        Writer& writer) const {
+    const std::size_t count = writer.splats.size();
+    writer.discs.resize(count + bin_rect_room);
+    writer.rects.resize(count + bin_rect_room);
+    writer.entries.resize(count * most_bins);
+    for (std::size_t i = 0; i < count; ++i) {
         const ScreenSplat& splat = writer.splats[i];
-        const auto number = static_cast<std::uint32_t>(i);
-        const BinRect r = bins_of(splat, support_of(layer, splat), group);
+        writer.discs.set(i, splat.x_px, splat.y_px, support_of(layer, splat));
+    }
+    find_bins({static_cast<float>(grid_.x0), static_cast<float>(grid_.y0), static_cast<float>(grid_.tile_px),
+               levels_},
+              writer.discs, count, writer.rects.data());
+    const auto group_bin = static_cast<std::uint32_t>(group * bins_per_group_);
+    const BinRect* const rects = writer.rects.data();
+    Entry* end = writer.entries.data();
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const BinRect r = rects[i];
+        const std::uint32_t first = group_bin + r.first_bin;
         if (r.wide <= 2 && r.high <= 2) {  // nearly always: without branches that cannot be foretold
             const std::uint32_t two_wide = r.wide - 1, two_high = r.high - 1;
-            *end++ = {r.first_bin, number};
-            *end = {r.first_bin + 1, number}, end += two_wide;
-            *end = {r.first_bin + r.columns, number}, end += two_high;
-            *end = {r.first_bin + r.columns + 1, number}, end += two_wide & two_high;
+            *end++ = {first, i};
+            *end = {first + 1, i}, end += two_wide;
+            *end = {first + r.columns, i}, end += two_high;
+            *end = {first + r.columns + 1, i}, end += two_wide & two_high;
         } else {
             for (std::uint32_t y = 0; y < r.high; ++y)
-                for (std::uint32_t x = 0; x < r.wide; ++x) *end++ = {r.first_bin + y * r.columns + x, number};
+                for (std::uint32_t x = 0; x < r.wide; ++x) *end++ = {first + y * r.columns + x, i};
         }
-        sums.least_px = std::min(sums.least_px, splat.radius_px);
-        sums.largest_px = std::max(sums.largest_px, splat.radius_px);
-        if (!counts_here(grid_, splat.y_px)) continue;
-        ++sums.instances;
-        sums.footprint_px += real::pi * splat.radius_px * splat.radius_px;
     }
     return {writer.entries.data(), end};
 }
@@ -192,7 +185,8 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
             progress.check();
             writer.splats.clear();
             project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats);
-            write(list_entries(layer, group, writer, sums_[static_cast<std::size_t>(c)]), store, writer);
+            add(writer.splats, sums_[static_cast<std::size_t>(c)]);
+            write(list_entries(layer, group, writer), store, writer);
         }
     });
     sort_blocks(writers);
@@ -202,7 +196,7 @@ void TileBins::collect(std::int64_t tile, int group, std::vector<std::span<const
     out.clear();
     const std::int64_t column = tile % grid_.columns(), row = tile / grid_.columns();
     for (std::size_t l = 0; l < levels_.size(); ++l) {
-        const Level& level = levels_[l];
+        const BinLevel& level = levels_[l];
         const std::int64_t bin =
             group * bins_per_group_ + level.first_bin + (row >> l) * level.columns + (column >> l);
         const auto at = [&](std::int64_t b) {
@@ -238,7 +232,7 @@ std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> laye
     constexpr std::int64_t block = 16, stride = 64 * block;
     const ScreenRect rect = rect_of(grid);
     std::vector<double> sums(tile_sizes_px.size(), 0.0);
-    std::vector<ScreenSplat> splats;
+    Buffer<ScreenSplat> splats;
     for (const LayerProjection& layer : layers) {
         const std::int64_t count = layer.splats->size();
         std::vector<double> found(tile_sizes_px.size(), 0.0);

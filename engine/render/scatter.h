@@ -17,6 +17,7 @@
 
 #include "core/buffer.h"
 #include "core/progress.h"
+#include "render/bin_rects.h"
 #include "render/project.h"
 #include "render/screen_splat.h"
 
@@ -76,15 +77,6 @@ class TileBins {
     std::pair<float, float> radii_px() const;
 
   private:
-    struct Level {
-        std::int64_t first_bin = 0, columns = 0, rows = 0;
-        float last_bin[4];  // columns - 1, rows - 1, twice
-    };
-    struct BinRect {
-        std::uint32_t first_bin;  // at x0, y0
-        std::uint32_t columns;    // of the level
-        std::uint32_t wide, high;
-    };
     struct Entry {  // a splat in a bin
         std::uint32_t bin, splat;
     };
@@ -106,13 +98,14 @@ class TileBins {
         std::vector<Block> blocks;    // in the order in which they were begun
         ScreenSplat* unused = nullptr;
         ScreenSplat* unused_end = nullptr;
-        std::vector<ScreenSplat> splats;  // just projected
+        Buffer<ScreenSplat> splats;  // just projected
+        Discs discs;                 // their supports
+        Buffer<BinRect> rects;
         Buffer<Entry> entries;
     };
     std::int64_t bins() const { return bins_per_group_ * groups_; }
-    BinRect bins_of(const ScreenSplat& splat, float support_px, int group) const;
-    std::span<const Entry> list_entries(const LayerProjection& layer, int group, Writer& writer,
-                                        Sums& sums) const;
+    void add(std::span<const ScreenSplat> splats, Sums& sums) const;
+    std::span<const Entry> list_entries(const LayerProjection& layer, int group, Writer& writer) const;
     void begin_block(std::uint32_t bin, SplatStore& store, Writer& writer) const;
     void write(std::span<const Entry> entries, SplatStore& store, Writer& writer) const;
     void sort_blocks(std::span<const Writer> writers);
@@ -121,7 +114,7 @@ class TileBins {
     int groups_ = 1;
     std::int64_t bins_per_group_ = 0;
     std::int64_t block_records_ = 0;
-    std::vector<Level> levels_;
+    std::vector<BinLevel> levels_;
     std::vector<Sums> sums_;                            // by chunk
     std::vector<std::span<const ScreenSplat>> blocks_;  // bin by bin
     std::vector<std::size_t> first_block_;              // of each bin; one more at the end

@@ -1,0 +1,39 @@
+// Which bins of a pyramid splats touch, many splats at once. Takes where the splats are and how far they
+// reach; gives each a rectangle of bins on one level.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "render/discs.h"
+
+namespace astrosplat {
+
+/// One level of a pyramid of bins; each is made of bins twice as wide as those of the level before.
+struct BinLevel {
+    std::uint32_t first_bin, columns;
+    float last_column, last_row;
+};
+
+/// Bins over a part of the picture.
+struct BinPyramid {
+    float x0_px, y0_px;  // its corner in the whole picture
+    float bin_px;        // width of the bins of the first level
+    std::span<const BinLevel> levels;
+};
+
+/// Bins first_bin + row * columns + column, with column < wide and row < high.
+struct BinRect {
+    std::uint32_t first_bin, columns, wide, high;
+};
+
+constexpr std::size_t most_bins = 9;       // that find_bins gives one disc
+constexpr std::size_t bin_rect_room = 15;  // that it wants at the end of its arrays
+
+/// Sets the bins that the square around each of `count` discs touches. They are of the first level whose bins
+/// are at least as wide as the disc's reach, or of the last one, and three by three at most. Both arrays need
+/// bin_rect_room more places, whatever is in it.
+void find_bins(const BinPyramid& pyramid, const Discs& discs, std::size_t count, BinRect* rects);
+
+}  // namespace astrosplat
