@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/memory.h"
@@ -30,29 +31,19 @@ struct BlockRange {
     std::size_t begin, end;
 };
 
+// Rows that lie above each other follow each other: they need much the same triangles.
 std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const BlockRange& batch) {
     std::vector<BlockRange> rows;
     for (std::size_t i = batch.begin; i < batch.end; ++i) {
-        static const bool gaps = getenv("GAPS");
         const bool joins = !rows.empty() && i - rows.back().begin < longest_row &&
-                           (!gaps || blocks[i - 1].at.x + 1 == blocks[i].at.x) &&
                            blocks[i - 1].at.y == blocks[i].at.y && blocks[i - 1].at.z == blocks[i].at.z;
         if (!joins) rows.push_back({i, i});
         rows.back().end = i + 1;
     }
-    const auto key = [&](const BlockRange& r) {
-        const auto& at = blocks[r.begin].at;
-        std::uint64_t k = 0;
-        for (unsigned b = 0; b < 16; ++b) {
-            k |= (static_cast<std::uint64_t>(at.x) >> b & 1u) << (3 * b);
-            k |= (static_cast<std::uint64_t>(at.y) >> b & 1u) << (3 * b + 1);
-            k |= (static_cast<std::uint64_t>(at.z) >> b & 1u) << (3 * b + 2);
-        }
-        return k;
-    };
-    if (!getenv("NOM"))
-        std::sort(rows.begin(), rows.end(),
-                  [&](const BlockRange& a, const BlockRange& b) { return key(a) < key(b); });
+    std::sort(rows.begin(), rows.end(), [&](const BlockRange& a, const BlockRange& b) {
+        const glm::i64vec3 &p = blocks[a.begin].at, &q = blocks[b.begin].at;
+        return std::tie(p.y, p.z, p.x) < std::tie(q.y, q.z, q.x);
+    });
     return rows;
 }
 
