@@ -56,7 +56,7 @@ HWY_INLINE void fold_splats(const SplatBatch& batch, SplatBits bits, const Block
     for (bool more = true; more;) {
         const auto now = next;
         more = bits.any();
-        next = begin_splats<kFlat, ways>(batch, bits, part.x_px, part.y_px);
+        if (more) next = begin_splats<kFlat, ways>(batch, bits, part.x_px, part.y_px);
         V w[ways];
         end_splats<kFlat>(batch, now, w);
         for (int n = 0; n < ways; ++n) {
@@ -73,28 +73,43 @@ HWY_INLINE void fold_splats(const SplatBatch& batch, SplatBits bits, const Block
     }
 }
 
+/// Folds the splats `bits` of a batch into a part of a block as if no pixel closed; false, and nothing done,
+/// if one does.
+template <class Pixels>
+HWY_INLINE bool fold_open(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
+                          TilePlanes& planes) {
+    Pixels pixels(planes, part.at);
+    if (!hn::AllTrue(D(), pixels.open(stop))) return false;
+    fold_splats<false, false>(batch, bits, part, stop, planes, pixels);
+    // Transmittances never grow: if all pixels are open at the end they were all the time, and nobody needed
+    // to ask.
+    if (!hn::AllTrue(D(), pixels.open(stop))) return false;
+    pixels.store_to(planes, part.at);
+    return true;
+}
+
+/// The same, asking of every splat which pixels are open; false if none is at the end.
+template <class Pixels, bool kFlat>
+HWY_NOINLINE bool fold_closing(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
+                               TilePlanes& planes) {
+    Pixels pixels(planes, part.at);
+    fold_splats<kFlat, true>(batch, bits, part, stop, planes, pixels);
+    pixels.store_to(planes, part.at);
+    return !Pixels::closes || !hn::AllFalse(D(), pixels.open(stop));
+}
+
 /// Folds the splats `bits` of a batch into one block; false when all of its pixels are closed.
 template <class Pixels, bool kFlat>
 HWY_INLINE bool fold_block(const SplatBatch& batch, SplatBits bits, const Cell& cell, int block,
                            float stop_at, TilePlanes& planes) {
     const V stop = all(stop_at);
-    bool open = !Pixels::closes;
+    bool open = false;
     for (int first = 0; first < TilePlanes::block_pixels; first += lanes) {
         const BlockPart part = block_part(cell, block, first);
-        Pixels pixels(planes, part.at);
-        bool done = false;
-        // Transmittances never grow: if all pixels are open at the end they were all the time, and nobody
-        // needed to ask. (With AOVs the layers' light is already written by then.)
-        if constexpr (!kFlat && !Pixels::aovs) {
-            if (batch.is_faint && hn::AllTrue(D(), pixels.open(stop))) {
-                fold_splats<kFlat, false>(batch, bits, part, stop, planes, pixels);
-                done = hn::AllTrue(D(), pixels.open(stop));
-                if (!done) pixels = Pixels(planes, part.at);
-            }
-        }
-        if (!done) fold_splats<kFlat, true>(batch, bits, part, stop, planes, pixels);
-        pixels.store_to(planes, part.at);
-        if constexpr (Pixels::closes) open = open || !hn::AllFalse(D(), pixels.open(stop));
+        bool is_done = false;
+        if constexpr (!kFlat && !Pixels::aovs)  // AOVs write the layers' light at once
+            is_done = batch.is_faint && fold_open<Pixels>(batch, bits, part, stop, planes);
+        open |= is_done || fold_closing<Pixels, kFlat>(batch, bits, part, stop, planes);
     }
     return open;
 }
