@@ -34,7 +34,7 @@ void sort_by_digit(const Keys& from, Keys& to, int shift, const Progress& progre
 
 /// Sets keys_ and splats_; returns how many bits of the keys' depths are in use.
 int SplatSorter::read(std::span<const std::span<const ScreenSplat>> runs, const Progress& progress) {
-    constexpr std::size_t runs_ahead = 6;
+    constexpr std::size_t runs_ahead = 3;
     std::size_t n = 0;
     for (const std::span<const ScreenSplat>& run : runs) n += run.size();
     keys_.resize(n);
