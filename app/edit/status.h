@@ -31,7 +31,7 @@ struct LayerHistograms {
 
 struct LayerStatus {
     std::int64_t splats = 0;  // in the set
-    std::int64_t kept = 0;    // by the look, estimated from the preview's share
+    std::int64_t kept = 0;    // by the look, estimated from the preview's share; -1: not known
     std::int64_t shown = 0;   // by the preview
     bool loading = false;
     float progress = 0.0f;                      // 0..1 while loading

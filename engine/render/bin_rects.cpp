@@ -1,5 +1,7 @@
 #include "render/bin_rects.h"
 
+#include <cassert>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/bin_rects.cpp"
 #include <hwy/foreach_target.h>
@@ -89,6 +91,7 @@ namespace astrosplat {
 HWY_EXPORT(find_bins_here);
 
 void find_bins(const BinPyramid& pyramid, const Discs& discs, std::size_t count, BinRect* rects) {
+    assert(!pyramid.levels.empty());
     HWY_DYNAMIC_DISPATCH(find_bins_here)(pyramid, discs, count, rects);
 }
 

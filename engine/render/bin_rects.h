@@ -18,9 +18,9 @@ struct BinLevel {
 
 /// Bins over a part of the picture.
 struct BinPyramid {
-    float x0_px, y0_px;  // its corner in the whole picture
-    float bin_px;        // width of the bins of the first level
-    std::span<const BinLevel> levels;
+    float x0_px, y0_px;                // its corner in the whole picture
+    float bin_px;                      // width of the bins of the first level, a multiple of 8
+    std::span<const BinLevel> levels;  // the last one is a single bin
 };
 
 /// Bins first_bin + row * columns + column, with column < wide and row < high.
@@ -33,7 +33,7 @@ constexpr std::size_t bin_rect_room = 15;  // that it wants at the end of its ar
 
 /// Sets the bins that the square around each of `count` discs touches. They are of the first level whose bins
 /// are at least as wide as the disc's reach, or of the last one, and three by three at most. Both arrays need
-/// bin_rect_room more places, whatever is in it.
+/// bin_rect_room more places, whatever is in them.
 void find_bins(const BinPyramid& pyramid, const Discs& discs, std::size_t count, BinRect* rects);
 
 }  // namespace astrosplat

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <memory>
 
 #include "render/fold_batch.h"
@@ -88,7 +87,7 @@ HWY_INLINE bool fold_open(const SplatBatch& batch, SplatBits bits, const BlockPa
     return true;
 }
 
-/// The same, asking of every splat which pixels are open; false if none is at the end.
+/// Folds them asking of every splat which pixels are open; false if they close, and none is open at the end.
 template <class Pixels, bool kFlat>
 HWY_NOINLINE bool fold_closing(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
                                TilePlanes& planes) {

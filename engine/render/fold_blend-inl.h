@@ -60,7 +60,7 @@ struct SplatsUnderway {
     V place[kWays];    // in the segment, 0 to 1
 };
 
-constexpr float rounding = 12582912.0f;  // 1.5 * 2^23: added to it, a number is rounded to a whole one
+constexpr float to_whole = 12582912.0f;  // 1.5 * 2^23: a number added to it is rounded to a whole one
 
 /// Takes the next splats out of `bits` (with none left, SplatBatch::none).
 template <bool kFlat, int kWays>
@@ -79,8 +79,8 @@ HWY_INLINE SplatsUnderway<kWays> begin_splats(const SplatBatch& batch, SplatBits
     }
     // On a segment's end either side will do. Far outside, both are nonsense that end_splats takes away.
     for (int n = 0; n < kWays; ++n) to.segment[n] = hn::Sub(u[n], all(0.5f));
-    for (int n = 0; n < kWays; ++n) to.segment[n] = hn::Add(to.segment[n], all(rounding));
-    for (int n = 0; n < kWays; ++n) to.place[n] = hn::Sub(u[n], hn::Sub(to.segment[n], all(rounding)));
+    for (int n = 0; n < kWays; ++n) to.segment[n] = hn::Add(to.segment[n], all(to_whole));
+    for (int n = 0; n < kWays; ++n) to.place[n] = hn::Sub(u[n], hn::Sub(to.segment[n], all(to_whole)));
     return to;
 }
 
@@ -96,7 +96,7 @@ HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway<kWays>&
         for (int n = 0; n < kWays; ++n) w[n] = hn::Mul(w[n], from.place[n]);
         for (int n = 0; n < kWays; ++n) w[n] = hn::Add(w[n], coefficient(n, power));
     }
-    const V outside = all(rounding + static_cast<float>(segments));
+    const V outside = all(to_whole + static_cast<float>(segments));
     for (int n = 0; n < kWays; ++n) {
         w[n] = hn::IfThenElseZero(hn::Lt(from.segment[n], outside), w[n]);
         if (kFlat)

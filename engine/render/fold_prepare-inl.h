@@ -73,6 +73,7 @@ HWY_INLINE void interpolate_cubics(const FootprintNode& a, const FootprintNode& 
 }
 
 /// Between which of a table's nodes the radii of splats n to n + lanes lie: footprint_nodes, many at once.
+/// Beyond the table the share is 0, or both nodes are the last one.
 HWY_INLINE void find_nodes(const FootprintTable& table, SplatBatch& batch, int n) {
     constexpr int bits = FootprintTable::node_bits;
     const hn::RebindToUnsigned<D> du;
@@ -94,8 +95,8 @@ HWY_INLINE void look_up_footprint(const FootprintTable& table, SplatBatch& batch
     const float t = batch.node_share[i];
     interpolate_cubics(*a, *b, t, batch, i);
     const int quads = table.linear_in_distance ? 3 : table.flat_core ? 2 : 1;
-    for (int q = 0; q < quads; ++q)
-        interpolate(four, &a->moments.mean + 4 * q, &b->moments.mean + 4 * q, t, batch.moments[q][i]);
+    for (int k = 0; k < 4 * quads; k += static_cast<int>(hn::MaxLanes(four)))  // one without vectors
+        interpolate(four, &a->moments.mean + k, &b->moments.mean + k, t, batch.moments[k / 4][i] + k % 4);
 }
 
 /// pixel_cosine of `lanes` coordinates.

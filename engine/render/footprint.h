@@ -48,7 +48,7 @@ struct FootprintTable {
     // A node's radius, as bits of a float: 32 nodes an octave, told apart by the mantissa's five top bits.
     static constexpr int node_bits = 23 - 5;
     static constexpr std::int64_t first_node = std::int64_t{127 + first_exponent} << 5;
-    std::vector<FootprintNode> nodes;
+    std::vector<FootprintNode> nodes;          // 0 until they are made
     std::size_t first_made = 0, end_made = 0;  // the nodes that exist
     Falloff falloff;
     bool linear_in_distance = false;  // u linear in d, not in d^2

@@ -339,7 +339,8 @@ std::vector<TileGrid> make_bands(const Job& job, const TileGrid& grid, std::int6
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                      const Environment* environment, const RenderSettings& settings, const Progress& progress,
                      RenderCache* cache, const TileDone& tile_done) {
-    assert(settings.tile_px == 0 || (settings.tile_px >= 16 && settings.tile_px <= TilePlanes::widest_px));
+    assert(settings.tile_px == 0 || (settings.tile_px >= 16 && settings.tile_px <= TilePlanes::widest_px &&
+                                     settings.tile_px % 8 == 0));
     const auto start = std::chrono::steady_clock::now();
     for (const RenderLayer& layer : layers)
         if (layer.splats->size() > 0xffffffffLL)

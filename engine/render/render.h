@@ -38,7 +38,7 @@ struct RenderSettings {
     float pixel_filter = 0.5f;  // px, standard deviation
     float exposure = 0.0f;      // stops; only tightens the stop rule
     bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
-    int tile_px = 0;                      // 16..128; 0: the quicker of 32 and 64. Changes no bit
+    int tile_px = 0;  // a multiple of 8 from 16 to 128; 0: the quicker of 32 and 64. Changes no bit
     std::int64_t memory_limit_bytes = 0;  // for screen splats; 0: none. Rendered in bands, same bits
     /// For previews: the whole picture's backdrop (backdrop.h), which stands for the environment; null: none.
     const Image* backdrop = nullptr;

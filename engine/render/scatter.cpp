@@ -1,7 +1,6 @@
 #include "render/scatter.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -77,7 +76,7 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
 }
 
 /// Adds the splats just projected to the sums over their chunk.
-void TileBins::add(std::span<const ScreenSplat> splats, Sums& sums) const {
+void TileBins::sum_up(std::span<const ScreenSplat> splats, Sums& sums) const {
     Sums sum = sums;  // in registers
     for (const ScreenSplat& splat : splats) {
         sum.least_px = std::min(sum.least_px, splat.radius_px);
@@ -185,7 +184,7 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
             progress.check();
             writer.splats.clear();
             project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats);
-            add(writer.splats, sums_[static_cast<std::size_t>(c)]);
+            sum_up(writer.splats, sums_[static_cast<std::size_t>(c)]);
             write(list_entries(layer, group, writer), store, writer);
         }
     });

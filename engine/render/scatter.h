@@ -104,7 +104,7 @@ class TileBins {
         Buffer<Entry> entries;
     };
     std::int64_t bins() const { return bins_per_group_ * groups_; }
-    void add(std::span<const ScreenSplat> splats, Sums& sums) const;
+    void sum_up(std::span<const ScreenSplat> splats, Sums& sums) const;
     std::span<const Entry> list_entries(const LayerProjection& layer, int group, Writer& writer) const;
     void begin_block(std::uint32_t bin, SplatStore& store, Writer& writer) const;
     void write(std::span<const Entry> entries, SplatStore& store, Writer& writer) const;

@@ -1,6 +1,5 @@
 // A set is seen in the picture while it is generated.
 #include <algorithm>
-#include <csignal>
 
 #include "window/window_test.h"
 
@@ -32,9 +31,9 @@ TEST_F(WindowGrowth, APartOfTheSetIsSeenBeforeItIsWhole) {
     ASSERT_TRUE(comes_true([&] { return something_is_seen(); }));
     // Escape gives up what is being generated, and leaves alone what is whole: nothing goes on until it is
     // pressed.
-    program->signal(SIGSTOP);
+    stop();
     person->key("Escape");
-    program->signal(SIGCONT);
+    go_on();
     EXPECT_TRUE(comes_true([&] { return !something_is_seen(); })) << "what was given up stays in the picture";
     EXPECT_TRUE(running());
 }

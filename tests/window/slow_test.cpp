@@ -5,12 +5,7 @@
 namespace astrosplat::test {
 namespace {
 
-class WindowSlow : public WindowTest {
-  protected:
-    /// The longest frame there can be: the program does nothing until go_on().
-    void stop() { program->signal(SIGSTOP); }
-    void go_on() { program->signal(SIGCONT); }
-};
+class WindowSlow : public WindowTest {};
 
 TEST_F(WindowSlow, AValueIsKeyedAtTwoFramesBlindly) {
     start();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <csignal>
 #include <optional>
 
 #include "gui/panel/panel.h"
@@ -78,6 +79,9 @@ class WindowTest : public ViewerTest {
     glm::vec2 diamond(const std::string& key);
     /// Waits until the window shows the widgets' control of this name, and clicks it.
     void click_when_shown(const std::string& name);
+    /// The longest frame there can be: the program does nothing until go_on().
+    void stop() { program->signal(SIGSTOP); }
+    void go_on() { program->signal(SIGCONT); }
     /// Clicks menu after menu of "Render/Cancel".
     void choose(const std::string& path);
 
