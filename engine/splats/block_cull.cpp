@@ -55,7 +55,7 @@ Bisectors bisectors_of(const BlockBall& ball, const NearPlace& near, const glm::
     const glm::dvec3 middle = ball.center - near.at;
     const double reach = glm::length(middle) + glm::length(ball.half);
     return {near.at - origin, middle - ball.half, middle + ball.half,
-            static_cast<float>(32.0 * reach * (slack + 1e-6 * reach))};
+            static_cast<float>(32.0 * (reach + slack) * (slack + 1e-6 * reach))};
 }
 
 // Blocks of one chunk of the tiles, and their clusters.
@@ -83,18 +83,22 @@ class TileCull {
         const BlockBall ball = block_ball(lattice_, settings_.jitter, block.at * block_cells, block_cells);
         const double reach = settings_.max_distance + ball.radius;
         const double tolerance = tolerated * ball.radius;
+        if (known_) measure_boxes(list_, glm::vec3(ball.center - index_.origin()));
         const NearPlace near = known_
                                    ? index_.near_place(list_, ball.center, reach, tolerance, block.near_slot)
                                    : index_.near_place(ball.center, reach, tolerance, block.near_slot);
         if (near.slot == ClosestPoint::none) return;
         block.near_slot = near.slot;
         block.distance = near.distance;
-        found.first_cluster.push_back(found.clusters.size());
-        if (known_) add_clusters(ball, near, block, found.clusters);
+        const std::size_t first = found.clusters.size();
+        if (known_ && !add_clusters(ball, near, block, found.clusters)) return;
+        found.first_cluster.push_back(first);
         found.blocks.push_back(block);
     }
 
-    void add_clusters(const BlockBall& ball, const NearPlace& near, LatticeBlock& block,
+    // From the list, whose distances are those from the ball's middle. False when no cluster can matter,
+    // which happens where the near place is of a disc that comes nearer than its triangle.
+    bool add_clusters(const BlockBall& ball, const NearPlace& near, LatticeBlock& block,
                       std::vector<std::uint32_t>& clusters) {
         const double slack = index_.slack(ball.center, 2.0 * ball.radius);
         const double radius = candidate_radius(settings_, ball, block.distance) * 1.00001 + slack;
@@ -109,6 +113,7 @@ class TileCull {
             clusters.resize(first);
         else
             block.cluster_count = static_cast<std::uint32_t>(count);
+        return count > 0;
     }
 
     const ClosestPointIndex& index_;

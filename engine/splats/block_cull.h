@@ -1,6 +1,6 @@
 // Which parts of a lattice can lie near a mesh at all: an octree of lattice blocks, dropped from the top
-// where the closest point of a block's middle is too far away. In: lattice, index, distance. Out: the blocks
-// that are left.
+// where no place near a block's middle is found. In: lattice, index, distance. Out: the blocks that are left,
+// each with the clusters of triangles that can matter to it.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct LatticeBlock {
     glm::i64vec3 at;
     double distance;                // of the ball's middle from the meshes, at most; scene units
     std::uint32_t near_slot;        // of a triangle about there
-    std::uint32_t cluster_count;    // 0: too many to be kept
+    std::uint32_t cluster_count;    // 0: not known, or too many to be kept
     const std::uint32_t* clusters;  // at least those with a triangle that is closest to one of the positions
     static constexpr std::size_t most_clusters = 1024;
 };

@@ -1,6 +1,7 @@
 // The arithmetic of block queries, compiled once for every instruction set with the same bits on each. A
 // block's 64 positions go in groups of sixteen neighbours (4 x 2 x 2), so that one vector holds one
-// coordinate of a group and a triangle is measured against all of them at once.
+// coordinate of a group and a triangle is measured against all of them at once. In: the positions and the
+// clusters around them. Out: closest points.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +35,7 @@ struct BlockScratch {
 /// The clusters that may hold a triangle that is closest to one of the positions, and the slot of a triangle
 /// that is probably near all of them.
 struct BlockSurroundings {
-    std::span<const std::uint32_t> clusters;
+    std::span<const std::uint32_t> clusters;  // at least one
     std::uint32_t near_slot;
 };
 

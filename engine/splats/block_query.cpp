@@ -1,5 +1,6 @@
 // Block queries. The block's positions are measured together against the triangles of the clusters that the
-// cull found for it (block_kernel). Blocks with too many triangles ask Embree for each position instead.
+// cull found for it, or that are looked for now (block_kernel). Blocks with too many triangles ask Embree for
+// each position instead.
 #include "splats/block_query.h"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ void drop_outside(std::size_t nx, std::size_t ny, std::size_t nz, BlockAnswers& 
                 if (i >= nx || j >= ny || k >= nz) answers.triangle[block_slot(i, j, k)] = ClosestPoint::none;
 }
 
-// Clusters with all triangles that may be closest to a position of the block.
+// Clusters with all triangles that may be closest to a position of the block; there may be none.
 std::span<const std::uint32_t> clusters_of(const ClosestPointIndex& index, const CullSettings& settings,
                                            const LatticeBlock& block, const BlockBall& ball,
                                            std::vector<std::uint32_t>& found) {
@@ -79,12 +80,16 @@ void query_block(const ClosestPointIndex& index, const Lattice& lattice, const C
     place_block(places, answers);
 
     const BlockBall ball = block_ball(lattice, settings.jitter, first, block_cells);
+    const std::span<const std::uint32_t> clusters =
+        clusters_of(index, settings, block, ball, scratch.clusters);
+    if (clusters.empty()) {
+        answers.triangle.fill(ClosestPoint::none);
+        return;
+    }
     const auto slack = static_cast<float>(index.slack(ball.center, 2.0 * ball.radius));
     const BlockMeasure measure{index.triangles(), index.clusters(), index.origin(), slack,
                                settings.max_distance};
-    const BlockSurroundings around{clusters_of(index, settings, block, ball, scratch.clusters),
-                                   block.near_slot};
-    if (!measure_block(measure, around, scratch, answers))
+    if (!measure_block(measure, {clusters, block.near_slot}, scratch, answers))
         ask_embree(index, settings.max_distance, index.triangles()[block.near_slot].number, answers);
     drop_outside(nx, ny, nz, answers);
 }

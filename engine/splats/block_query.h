@@ -4,7 +4,6 @@
 
 #include "splats/block_cull.h"
 #include "splats/block_kernel.h"
-#include "splats/candidates.h"
 #include "splats/closest_point.h"
 #include "splats/lattice.h"
 

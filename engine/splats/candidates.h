@@ -59,7 +59,7 @@ struct ClusterList {
     std::size_t count = 0;
     alignas(64) std::array<std::uint32_t, most + 64> cluster;
     alignas(64) Numbers lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
-    alignas(64) Numbers squared;  // distance from the point that was asked for last, square scene units
+    alignas(64) Numbers squared;  // distance from the point of the last measure_boxes, square scene units
 
     /// False when there is no room.
     bool add(std::uint32_t number, const ClusterBox& box) {

@@ -6,8 +6,8 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
+#include <vector>
 
-#include "core/bounds.h"
 #include "source/mesh.h"
 #include "splats/candidates.h"
 #include "splats/closest_triangle.h"
@@ -40,20 +40,22 @@ class ClosestPointIndex {
     /// The same by trying every triangle: the oracle of the tests.
     ClosestPoint closest_brute_force(const glm::dvec3& p, double max_distance) const;
 
-    /// Puts at least the triangles that come within `radius` of `center` into `candidates`, in any order;
-    /// false when they do not fit. Thread-safe.
+    /// Puts at least the clusters with a triangle that comes within `radius` of `center` into `clusters`, in
+    /// any order; none when there are none. Thread-safe.
     void collect(const glm::dvec3& center, double radius, std::vector<std::uint32_t>& clusters) const;
 
-    /// The same with boxes; false when they do not fit.
+    /// The same clusters with their boxes; false when they do not fit, and `list` is of no use then.
     bool collect(const glm::dvec3& center, double radius, ClusterList& list) const;
 
     /// A place on the meshes that is no more than `tolerance` farther than the closest; `none` only if
-    /// nothing is within `max_distance`. `hint` is the slot of a triangle that is probably near, or `none`.
+    /// nothing is within `max_distance`. It may itself be farther than that by `tolerance`, so a place does
+    /// not mean that something is within. `hint` is the slot of a triangle that is probably near, or `none`.
     /// Thread-safe.
     NearPlace near_place(const glm::dvec3& p, double max_distance, double tolerance,
                          std::uint32_t hint) const;
-    /// The same among the clusters of a list; fills in its `squared`.
-    NearPlace near_place(ClusterList& list, const glm::dvec3& p, double max_distance, double tolerance,
+    /// The same among the clusters of a list, whose `squared` must be measured from `p` (measure_boxes), and
+    /// the hint's cluster, be that one of the list or not.
+    NearPlace near_place(const ClusterList& list, const glm::dvec3& p, double max_distance, double tolerance,
                          std::uint32_t hint) const;
 
     /// Where the float coordinates of candidates have their origin, scene units.

@@ -1,3 +1,4 @@
+// The Hilbert curve's arithmetic on many places at once, and a radix sort by three digits.
 #include "splats/curve_order.h"
 
 #include <array>

@@ -75,7 +75,6 @@ class Generator {
         worker.answers.resize(longest_row);
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (i + 1 < row.size()) prefetch_block(index_, row[i + 1]);
-            if (i + 1 < row.size()) prefetch_block(index_, row[i + 1]);
             query_block(index_, lattice_, settings_, row[i], kind, *worker.scratch, worker.answers[i]);
             for (const std::uint32_t triangle : worker.answers[i].triangle)
                 if (triangle != ClosestPoint::none) __builtin_prefetch(&surface_[triangle]);

@@ -4,7 +4,6 @@
 #include <cstddef>
 
 #include "splats/closest_point_state.h"
-#include "splats/cluster_filter.h"
 
 namespace astrosplat {
 
@@ -55,6 +54,7 @@ struct ClosestPointIndex::Approach {
                 take({cluster.slot[i], middle, glm::dvec3(cluster.bound(i).center) + state.center});
         }
     }
+    // The cluster's box is not asked: a disc may come near where neither box nor triangle does.
     void start(std::uint32_t hint) {
         if (hint != ClosestPoint::none) offer_cluster(state.clusters[hint / TriangleCluster::size]);
     }
@@ -72,10 +72,9 @@ NearPlace ClosestPointIndex::near_place(const glm::dvec3& p, double max_distance
     return approach.best;
 }
 
-NearPlace ClosestPointIndex::near_place(ClusterList& list, const glm::dvec3& p, double max_distance,
+NearPlace ClosestPointIndex::near_place(const ClusterList& list, const glm::dvec3& p, double max_distance,
                                         double tolerance, std::uint32_t hint) const {
     Approach approach(*state_, p, max_distance, tolerance);
-    measure_boxes(list, approach.local);
     approach.start(hint);
     for (std::size_t i = 0; i < list.count && approach.limit >= 0.0f; ++i) {
         if (!(list.squared[i] > approach.limit * approach.limit))

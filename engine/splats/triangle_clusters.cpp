@@ -16,7 +16,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::size_t most_triangles = ClosestPoint::none / 3;  // numbers and clusters fit into 32 bits
+constexpr std::size_t most_triangles = ClosestPoint::none;  // so that it is no triangle's number or slot
 constexpr std::int64_t chunk = 4096;
 
 // Of all triangles, by number.

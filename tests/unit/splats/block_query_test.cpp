@@ -1,5 +1,5 @@
 // Block queries against every triangle, for meshes that bounds could get wrong: needles, points, huge beside
-// tiny triangles, few triangles, far from the origin; on every instruction set.
+// tiny triangles, few triangles, more than lists hold, far from the origin; on every instruction set.
 #include "splats/block_query.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
 #include "splats/lattice.h"
+#include "unit/splats/generate_support.h"
 
 namespace astrosplat {
 namespace {
@@ -39,10 +40,13 @@ Mesh soup(std::uint32_t count) {
     return mesh;
 }
 
-void expect_brute_force(const Mesh& mesh, const Lattice& lattice, double max_distance) {
+// Returns how many positions are near enough.
+std::int64_t expect_brute_force(const Mesh& mesh, const Lattice& lattice, double max_distance,
+                                double jitter = 1.0) {
     const Mesh* const shape = &mesh;
     const ClosestPointIndex index({&shape, 1});
-    const CullSettings settings{max_distance, 1.0, 3};
+    const test::Oracle oracle(mesh);
+    const CullSettings settings{max_distance, jitter, 3};
     const auto scratch = std::make_unique<BlockScratch>();
     std::int64_t kept = 0, wrong = 0;
     const NearBlocks near = blocks_near(index, lattice, settings, {});
@@ -53,7 +57,7 @@ void expect_brute_force(const Mesh& mesh, const Lattice& lattice, double max_dis
             for (std::size_t s = 0; s < block_positions; ++s) {
                 if (answers.triangle[s] == ClosestPoint::none) continue;
                 const ClosestPoint c =
-                    index.closest_brute_force({answers.x[s], answers.y[s], answers.z[s]}, max_distance);
+                    oracle.closest({answers.x[s], answers.y[s], answers.z[s]}, max_distance);
                 ++kept;
                 wrong += c.triangle != answers.triangle[s] ||
                          c.distance_squared != answers.distance_squared[s] ||
@@ -63,12 +67,13 @@ void expect_brute_force(const Mesh& mesh, const Lattice& lattice, double max_dis
     }
     std::int64_t near_enough = 0;
     for (std::uint64_t id = 0; id < static_cast<std::uint64_t>(lattice.positions()); ++id) {
-        const glm::dvec3 p = jittered_position(lattice, id, 1.0, 3);
-        near_enough += index.closest_brute_force(p, max_distance).triangle != ClosestPoint::none;
+        const glm::dvec3 p = jittered_position(lattice, id, jitter, 3);
+        near_enough += oracle.closest(p, max_distance).triangle != ClosestPoint::none;
     }
     EXPECT_GT(kept, 0);
     EXPECT_EQ(kept, near_enough);
     EXPECT_EQ(wrong, 0);
+    return near_enough;
 }
 
 Lattice lattice_around(const glm::dvec3& middle, double reach) {
@@ -120,6 +125,49 @@ TEST_F(BlockQuery, FarFromTheOriginAndForAnyDistance) {
     expect_brute_force(mesh, lattice_around({3000, -800, 100}, 1.3), 0.2);
     for (const double reach : {1e6, 1e25})  // in float, squares of the latter are infinite
         expect_brute_force(soup(200), lattice_around(glm::dvec3(0), reach), 2.0 * reach);
+}
+
+// A disc may come within reach of a block where its triangle does not, nor its cluster's box.
+TEST_F(BlockQuery, BlocksThatOnlyDiscsComeNearTo) {
+    Mesh mesh;
+    for (const glm::vec3 middle : {glm::vec3(0), glm::vec3(39.84f, 0.5f, 0.5f)}) {
+        const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+        for (const glm::vec3 corner : {glm::vec3(0.3f, 0, 0), {0, -0.3f, 0}, {0, 0.3f, 0}})
+            mesh.positions.push_back(middle + corner);
+        for (std::size_t copy = 0; copy < TriangleCluster::size; ++copy)
+            mesh.triangles.push_back({{first, first + 1, first + 2}, {}});
+    }
+    SourceParams source;
+    source.buffer = {13.93, 9.45, 9.75};
+    source.voxels = {68, 20, 20};
+    TexturedMesh textured;
+    textured.mesh = mesh;
+    const Lattice lattice = make_lattice(source, {&textured, 1}, 1.0);
+    EXPECT_EQ(expect_brute_force(mesh, lattice, 1.0, 0.0), 28);
+}
+
+TEST_F(BlockQuery, NothingIsNearWhereNoClusterIs) {
+    const Mesh mesh = soup(9);
+    const Mesh* const shape = &mesh;
+    const ClosestPointIndex index({&shape, 1});
+    const Lattice lattice = lattice_around(glm::dvec3(0), 50.0);
+    const LatticeBlock block{{0, 0, 0}, 1e3, 0, 0, nullptr};
+    const auto scratch = std::make_unique<BlockScratch>();
+    BlockAnswers answers;
+    query_block(index, lattice, {1.0, 1.0, 3}, block, Positions::centres, *scratch, answers);
+    for (const std::uint32_t triangle : answers.triangle) EXPECT_EQ(triangle, ClosestPoint::none);
+}
+
+// More clusters than a tile keeps, more triangles than a block chooses: each position is asked for alone.
+TEST_F(BlockQuery, MoreTrianglesThanListsHold) {
+    Mesh mesh = soup(40000);
+    for (glm::vec3& p : mesh.positions) p *= 0.01f;
+    const Lattice lattice = lattice_around(glm::dvec3(0.1), 1.3);
+    const Mesh* const shape = &mesh;
+    const ClosestPointIndex index({&shape, 1});
+    const auto list = std::make_unique<ClusterList>();
+    ASSERT_FALSE(index.collect(glm::dvec3(0.0), 0.1, *list));
+    expect_brute_force(mesh, lattice, 0.4);
 }
 
 }  // namespace
