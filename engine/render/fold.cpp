@@ -13,6 +13,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "core/append-inl.h"
 #include "render/fold_blend-inl.h"
 #include "render/fold_prepare-inl.h"
 
@@ -165,12 +166,12 @@ void find_in_cell(const Discs& discs, std::size_t begin, std::size_t end, const 
                 reach = hn::Load(D(), &discs.reach_px[i]);
         const V distance = hn::Max(hn::Abs(hn::Sub(x, middle_x)), hn::Abs(hn::Sub(y, middle_y)));
         const M near = hn::Lt(distance, hn::Add(reach, all(half)));
+        const auto index = hn::Add(counting(du), hn::Set(du, static_cast<std::uint32_t>(i)));
         const std::size_t n = found.count;
-        hn::StoreU(hn::Compress(x, near), D(), &found.discs.x_px[n]);
-        hn::StoreU(hn::Compress(y, near), D(), &found.discs.y_px[n]);
-        hn::StoreU(hn::Compress(reach, near), D(), &found.discs.reach_px[n]);
-        hn::StoreU(hn::Compress(hn::Iota(du, static_cast<std::uint32_t>(i)), hn::RebindMask(du, near)), du,
-                   &found.index[n]);
+        append(D(), x, near, &found.discs.x_px[n]);
+        append(D(), y, near, &found.discs.y_px[n]);
+        append(D(), reach, near, &found.discs.reach_px[n]);
+        append(du, index, hn::RebindMask(du, near), &found.index[n]);
         found.count = n + hn::CountTrue(D(), near);
     }
 }

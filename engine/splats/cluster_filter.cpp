@@ -7,7 +7,7 @@
 // after foreach_target.h
 #include <hwy/highway.h>
 
-#include "splats/append-inl.h"
+#include "core/append-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat {

@@ -16,7 +16,7 @@
 #include <glm/vec3.hpp>
 #include <limits>
 
-#include "splats/append-inl.h"
+#include "core/append-inl.h"
 #include "splats/candidates.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,9 +1,9 @@
 // Lanes that a mask picks, one after the other in memory; masks as bits. Included once per instruction set.
-#if defined(ASTROSPLAT_SPLATS_APPEND_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef ASTROSPLAT_SPLATS_APPEND_INL_H
-#undef ASTROSPLAT_SPLATS_APPEND_INL_H
+#if defined(ASTROSPLAT_CORE_APPEND_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef ASTROSPLAT_CORE_APPEND_INL_H
+#undef ASTROSPLAT_CORE_APPEND_INL_H
 #else
-#define ASTROSPLAT_SPLATS_APPEND_INL_H
+#define ASTROSPLAT_CORE_APPEND_INL_H
 #endif
 
 #include <hwy/highway.h>
