@@ -1,5 +1,6 @@
-// Chunks are numbered as they are taken, so the chunk whose turn it is always belongs to a thread that is
-// running.
+// A ring of buffers between the threads that format and the file. Whoever finishes a chunk while nobody
+// writes becomes the writer and empties the ring as far as it is filled without a gap, so that the file never
+// waits for a thread to wake up.
 #include "splats/ordered_writer.h"
 
 #include <algorithm>
@@ -15,39 +16,63 @@ namespace astrosplat {
 
 namespace {
 
-/// Lets the threads append one after the other.
-class Turns {
+/// Chunks on their way to the file. Chunk n lies in slot n % slots; chunks are taken in order, so the one the
+/// file waits for is always written already or in the hands of a running thread.
+class Ring {
   public:
+    struct Slot {
+        Buffer<char> bytes;
+        std::size_t size = 0;
+        bool full = false;
+    };
+
+    Ring(AtomicFile& file, std::size_t slots) : file_(file), slots_(slots) {}
+
+    Slot& slot(std::int64_t chunk) { return slots_[static_cast<std::size_t>(chunk) % slots_.size()]; }
+
+    /// The next chunk to format, once its slot is free; -1 when another thread failed.
     std::int64_t take() {
-        const std::lock_guard lock(mutex_);
-        return taken_++;
-    }
-    /// False when another thread failed and nothing more is to be written.
-    bool await(std::int64_t number) {
         std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return failed_ || turn_ == number; });
-        return !failed_;
-    }
-    void pass() {
-        change([&] { ++turn_; });
-    }
-    void fail() {
-        change([&] { failed_ = true; });
+        const std::int64_t chunk = taken_++;
+        changed_.wait(lock,
+                      [&] { return failed_ || chunk < written_ + static_cast<std::int64_t>(slots_.size()); });
+        return failed_ ? -1 : chunk;
     }
 
-  private:
-    template <class Change>
-    void change(Change&& apply) {
+    /// The chunk's slot is full. Writes what can be written, unless another thread is at it.
+    void put(std::int64_t chunk) {
+        std::unique_lock lock(mutex_);
+        slot(chunk).full = true;
+        if (writing_) return;
+        writing_ = true;
+        while (!failed_ && slot(written_).full) {
+            Slot& next = slot(written_);
+            lock.unlock();
+            file_.write(next.bytes.data(), next.size);
+            lock.lock();
+            next.full = false;
+            ++written_;
+            changed_.notify_all();
+        }
+        writing_ = false;
+    }
+
+    /// Nothing more will be written.
+    void fail() {
         {
             const std::lock_guard lock(mutex_);
-            apply();
+            failed_ = true;
         }
         changed_.notify_all();
     }
+
+  private:
+    AtomicFile& file_;
+    std::vector<Slot> slots_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::int64_t taken_ = 0, turn_ = 0;
-    bool failed_ = false;
+    std::int64_t taken_ = 0, written_ = 0;  // chunks
+    bool writing_ = false, failed_ = false;
 };
 
 }  // namespace
@@ -59,23 +84,23 @@ void write_ordered(const std::filesystem::path& file, std::string_view header, s
     output.write(header);
     const std::int64_t chunks = (count + chunk - 1) / chunk;
     const std::size_t bytes = static_cast<std::size_t>(std::min(chunk, count)) * row_bytes;
-    std::vector<Buffer<char>> buffers(static_cast<std::size_t>(thread_count()));
-    Turns turns;
-    parallel_for(chunks, [&](std::int64_t, int worker) {
-        const std::int64_t number = turns.take();
+    Ring ring(output, static_cast<std::size_t>(thread_count()) + 1);
+    parallel_for(chunks, [&](std::int64_t, int) {
         try {
             progress.check();
-            Buffer<char>& buffer = buffers[static_cast<std::size_t>(worker)];
-            buffer.resize(bytes);
-            const char* end = format(number * chunk, std::min((number + 1) * chunk, count), buffer.data());
-            if (!turns.await(number)) return;
-            output.write(buffer.data(), static_cast<std::size_t>(end - buffer.data()));
+            const std::int64_t number = ring.take();
+            if (number < 0) return;
+            Ring::Slot& slot = ring.slot(number);
+            slot.bytes.resize(bytes);
+            const char* end =
+                format(number * chunk, std::min((number + 1) * chunk, count), slot.bytes.data());
+            slot.size = static_cast<std::size_t>(end - slot.bytes.data());
+            ring.put(number);
+            progress.at(static_cast<double>(number + 1) / static_cast<double>(chunks));
         } catch (...) {
-            turns.fail();
+            ring.fail();
             throw;
         }
-        turns.pass();
-        progress.at(static_cast<double>(number + 1) / static_cast<double>(chunks));
     });
     progress.check();
     if (footer) output.write(footer());

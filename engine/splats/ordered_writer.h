@@ -1,5 +1,6 @@
-// Writes a file whose rows are formatted in parallel and come out in order: a thread formats a chunk of rows
-// into its own memory, waits for its turn, and appends it. The file's bytes do not depend on the threads.
+// Writes a file whose rows are formatted in parallel and come out in order: threads format chunks of rows
+// into memory of a few chunks, and one of them at a time appends what is complete. The bytes do not depend on
+// threads.
 #pragma once
 
 #include <cstddef>

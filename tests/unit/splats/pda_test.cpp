@@ -1,7 +1,10 @@
 // PDA: exact round trips, everything a header may look like, and one test for each thing that can be wrong.
 #include "splats/pda.h"
 
+#include <sys/resource.h>
+
 #include <clocale>
+#include <csignal>
 #include <locale>
 #include <string>
 
@@ -267,6 +270,35 @@ TEST_F(Pda, CancelLeavesNothing) {
     progress.cancelled = &stop;
     EXPECT_THROW(write_pda(path("a.pda"), awkward_set(10), progress), Cancelled);
     EXPECT_TRUE(std::filesystem::is_empty(path("a.pda").parent_path()));
+}
+
+TEST_F(Pda, CancelInTheMiddleLeavesNothing) {
+    const SplatSet set = awkward_set(200000);
+    for (const int threads : {1, 2, 5}) {
+        set_thread_count(threads);
+        std::atomic<bool> stop{false};
+        Progress progress;
+        progress.cancelled = &stop;
+        progress.report = [&](double fraction) { stop = fraction > 0.3; };
+        EXPECT_THROW(write_pda(path("a.pda"), set, progress), Cancelled);
+        EXPECT_TRUE(std::filesystem::is_empty(path("a.pda").parent_path()));
+    }
+}
+
+TEST_F(Pda, AFullDiskIsOneErrorAndLeavesNothing) {
+    const SplatSet set = awkward_set(200000);
+    rlimit before;
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    for (const int threads : {1, 2, 5}) {
+        set_thread_count(threads);
+        const rlimit small{8 << 20, before.rlim_max};
+        ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+        EXPECT_THROW(write_pda(path("a.pda"), set), OutputError);
+        setrlimit(RLIMIT_FSIZE, &before);
+        EXPECT_TRUE(std::filesystem::is_empty(path("a.pda").parent_path()));
+    }
+    std::signal(SIGXFSZ, handler);
 }
 
 }  // namespace
