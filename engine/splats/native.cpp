@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <glm/common.hpp>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -131,20 +132,30 @@ std::string header_bytes(const SplatSet& set, RowOrder order) {
     return bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
 }
 
-/// Rows [begin, end) of every array; `order` says which splat a row is, empty: the splats as they are.
-char* pack(const SplatSet& set, const Buffer<std::int64_t>& order, std::int64_t begin, std::int64_t end,
-           char* out) {
+/// Rows [begin, end) of every array.
+char* pack(const SplatSet& set, std::int64_t begin, std::int64_t end, char* out) {
     visit_arrays(set, [&](const auto& array, std::uint32_t) {
         if (array.empty()) return;
-        if (order.empty()) {
-            const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
-            std::memcpy(out, &array[static_cast<std::size_t>(begin)], bytes);
-            out += bytes;
-            return;
-        }
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            std::memcpy(out, &array[static_cast<std::size_t>(order[i])], sizeof array[0]);
-            out += sizeof array[0];
+        const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
+        std::memcpy(out, &array[static_cast<std::size_t>(begin)], bytes);
+        out += bytes;
+    });
+    return out;
+}
+
+/// Rows order[begin, end) of every array. Neighbours in space lie far apart in a set, so that fetching them
+/// ahead of time is worth more than all else here.
+template <class Row>
+char* pack(const SplatSet& set, const Buffer<Row>& order, std::int64_t begin, std::int64_t end, char* out) {
+    constexpr std::ptrdiff_t ahead = 256;
+    visit_arrays(set, [&](const auto& array, std::uint32_t) {
+        if (array.empty()) return;
+        const auto* const from = array.data();
+        const Row* const last = order.data() + end - 1;
+        for (const Row* row = order.data() + begin; row <= last; ++row) {
+            __builtin_prefetch(from + row[std::min(ahead, last - row)]);
+            std::memcpy(out, from + *row, sizeof *from);
+            out += sizeof *from;
         }
     });
     return out;
@@ -154,6 +165,30 @@ std::string table_bytes(const std::vector<BlockEntry>& table) {
     std::string bytes(reinterpret_cast<const char*>(table.data()), table.size() * sizeof(BlockEntry));
     const std::uint64_t checksum = xxh64(bytes);
     return bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+}
+
+/// The file, whose blocks are what `pack_rows` makes of their rows.
+void write_blocks(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
+                  const Progress& progress, const FormatRows& pack_rows) {
+    std::vector<BlockEntry> table(block_count(static_cast<std::uint64_t>(set.size()), splats_per_block));
+    write_ordered(
+        file, header_bytes(set, order), set.size(), splats_per_block, bytes_per_splat(flags_of(set, order)),
+        progress,
+        [&](std::int64_t begin, std::int64_t end, char* out) {
+            char* const stop = pack_rows(begin, end, out);
+            table[static_cast<std::size_t>(begin / splats_per_block)] = describe_block(
+                {out, static_cast<std::size_t>(stop - out)}, static_cast<std::size_t>(end - begin));
+            return stop;
+        },
+        [&] { return table_bytes(table); });
+}
+
+template <class Row>
+void write_in_space(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+    const Buffer<Row> order = spatial_order<Row>(set);
+    write_blocks(file, set, RowOrder::space, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
+        return pack(set, order, begin, end, out);
+    });
 }
 
 // ---- reading
@@ -334,24 +369,18 @@ void write_native(const std::filesystem::path& file, const SplatSet& set, const 
     write_native(file, set, RowOrder::space, progress);
 }
 
-void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrder row_order,
+void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
                   const Progress& progress) {
     check_consistent(set);
-    assert(row_order == RowOrder::space || std::is_sorted(set.id.begin(), set.id.end()));
-    const std::string header = header_bytes(set, row_order);
-    const Buffer<std::int64_t> order =
-        row_order == RowOrder::space ? spatial_order(set) : Buffer<std::int64_t>{};
-    std::vector<BlockEntry> table(block_count(static_cast<std::uint64_t>(set.size()), splats_per_block));
-    write_ordered(
-        file, header, set.size(), splats_per_block,
-        bytes_per_splat(has_uv | has_normal | has_mesh | has_radius), progress,
-        [&](std::int64_t begin, std::int64_t end, char* out) {
-            char* const stop = pack(set, order, begin, end, out);
-            table[static_cast<std::size_t>(begin / splats_per_block)] = describe_block(
-                {out, static_cast<std::size_t>(stop - out)}, static_cast<std::size_t>(end - begin));
-            return stop;
-        },
-        [&] { return table_bytes(table); });
+    assert(order == RowOrder::space || std::is_sorted(set.id.begin(), set.id.end()));
+    if (order == RowOrder::id)
+        write_blocks(file, set, order, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
+            return pack(set, begin, end, out);
+        });
+    else if (set.size() <= std::numeric_limits<std::uint32_t>::max())
+        write_in_space<std::uint32_t>(file, set, progress);
+    else
+        write_in_space<std::uint64_t>(file, set, progress);
 }
 
 std::int64_t native_file_bytes(const SplatSet& set) {

@@ -136,16 +136,18 @@ TEST_F(Native, NeighboursShareBlocks) {
                                 static_cast<float>(i / side / side)});
         set.id.push_back(i);
     }
-    const Buffer<std::int64_t> order = spatial_order(set);
+    const auto order = spatial_order<std::uint32_t>(set);
     for (std::size_t block = 0; block < 64; ++block) {  // 4096 rows: a cube of 16 along the Morton curve
         Bounds box;
         for (std::size_t i = block * 4096; i < (block + 1) * 4096; ++i)
-            box.add(glm::dvec3(set.position[static_cast<std::size_t>(order[i])]));
+            box.add(glm::dvec3(set.position[order[i]]));
         EXPECT_EQ(box.extent(), glm::dvec3(15.0));
     }
-    Buffer<std::int64_t> sorted = order;
+    const auto wide = spatial_order<std::uint64_t>(set);
+    EXPECT_TRUE(std::equal(order.begin(), order.end(), wide.begin(), wide.end()));
+    Buffer<std::uint32_t> sorted = order;
     std::sort(sorted.begin(), sorted.end());
-    for (std::size_t i = 0; i < sorted.size(); ++i) ASSERT_EQ(sorted[i], static_cast<std::int64_t>(i));
+    for (std::size_t i = 0; i < sorted.size(); ++i) ASSERT_EQ(sorted[i], i);
 }
 
 TEST_F(Native, OneCellKeepsTheOrderOfIds) {
@@ -154,8 +156,10 @@ TEST_F(Native, OneCellKeepsTheOrderOfIds) {
         set.position.push_back(glm::vec3(1.0f));
         set.id.push_back(id);
     }
-    const Buffer<std::int64_t> order = spatial_order(set);
-    EXPECT_EQ(std::vector<std::int64_t>(order.begin(), order.end()), (std::vector<std::int64_t>{1, 3, 0, 2}));
+    const auto order = spatial_order<std::uint32_t>(set);
+    EXPECT_EQ(std::vector(order.begin(), order.end()), (std::vector<std::uint32_t>{1, 3, 0, 2}));
+    const auto wide = spatial_order<std::uint64_t>(set);
+    EXPECT_EQ(std::vector(wide.begin(), wide.end()), (std::vector<std::uint64_t>{1, 3, 0, 2}));
 }
 
 TEST(Checksum, PublishedValues) {
