@@ -28,7 +28,7 @@ namespace astrosplat {
 
 namespace {
 
-constexpr std::int64_t rows_per_chunk = 1 << 14;
+constexpr std::int64_t rows_per_chunk = 1 << 15;
 
 // ---- which property is which field
 
@@ -154,17 +154,51 @@ auto with_number(NumberType type, const char* p, bool swap, Use&& use) {
     }
 }
 
+template <class T>
+bool store_value(const Column& column, std::size_t row, T value) {
+    if (!is_whole(column.field)) return store(column, row, static_cast<float>(value));
+    if (!(value >= 0)) return false;
+    if constexpr (std::is_floating_point_v<T>) {
+        constexpr double exact = 9007199254740992.0;  // 2^53
+        if (!(value <= exact) || value != std::floor(value)) return false;
+    }
+    return store_whole(column, row, static_cast<std::uint64_t>(value));
+}
+
 bool store_number(const Column& column, std::size_t row, const char* p, bool swap) {
-    if (!is_whole(column.field))
-        return with_number(column.type, p, swap,
-                           [&](auto value) { return store(column, row, static_cast<float>(value)); });
-    return with_number(column.type, p, swap, [&](auto value) {
-        if (!(value >= 0)) return false;
-        if constexpr (std::is_floating_point_v<decltype(value)>) {
-            constexpr double exact = 9007199254740992.0;  // 2^53
-            if (!(value <= exact) || value != std::floor(value)) return false;
-        }
-        return store_whole(column, row, static_cast<std::uint64_t>(value));
+    return with_number(column.type, p, swap, [&](auto value) { return store_value(column, row, value); });
+}
+
+/// Some rows of equal length.
+struct Rows {
+    std::size_t first, count;
+    const char* p;  // the column's number in the first row
+    std::size_t bytes;
+};
+
+/// Floats as they are in memory: most of most files. False when one lies outside of the field's limits.
+bool store_floats(const Column& column, const Rows& rows) {
+    float* const out = column.out + rows.first * column.stride;
+    const std::size_t stride = column.stride;
+    const float lowest = column.lowest, highest = column.highest;
+    bool inside = true;
+    for (std::size_t i = 0; i < rows.count; ++i) {
+        const auto value = load<float>(rows.p + i * rows.bytes, false);
+        inside &= value >= lowest && value <= highest;
+        out[i * stride] = value;
+    }
+    return inside;
+}
+
+/// False when the field cannot take one of the values.
+bool store_column(const Column& column, const Rows& rows, bool swap) {
+    const bool plain = column.type == NumberType::f32 && !swap && column.codes.empty();
+    if (plain && !is_whole(column.field) && store_floats(column, rows)) return true;
+    return with_number(column.type, rows.p, swap, [&]<class T>(T) {
+        bool stored = true;
+        for (std::size_t i = 0; i < rows.count; ++i)
+            stored &= store_value(column, rows.first + i, load<T>(rows.p + i * rows.bytes, swap));
+        return stored;
     });
 }
 
@@ -236,6 +270,30 @@ struct BinaryReader {
 
     /// Reads rows [begin, end) whose first byte is at `at`; all of them are known to lie within the data.
     void read_rows(const SplatTable& table, std::int64_t begin, std::int64_t end, std::size_t at) const {
+        constexpr std::int64_t in_cache = 256;  // rows
+        const std::size_t row_bytes = fixed_row_bytes(table.columns);
+        if (row_bytes == 0) return read_one_by_one(table, begin, end, at);
+        for (; begin < end; begin += in_cache, at += in_cache * row_bytes) {
+            const std::int64_t stop = std::min(end, begin + in_cache);
+            if (!read_by_column(table, begin, stop, at, row_bytes)) read_one_by_one(table, begin, stop, at);
+        }
+    }
+
+    bool read_by_column(const SplatTable& table, std::int64_t begin, std::int64_t end, std::size_t at,
+                        std::size_t row_bytes) const {
+        Rows rows{static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin), data.data() + at,
+                  row_bytes};
+        bool stored = true;
+        for (const Column& column : table.columns) {
+            if (column.field != Field::skip) stored &= store_column(column, rows, swap);
+            rows.p += size_of(column.type);
+        }
+        return stored;
+    }
+
+    /// Any rows, and says what is wrong with the first wrong number.
+    void read_one_by_one(const SplatTable& table, std::int64_t begin, std::int64_t end,
+                         std::size_t at) const {
         for (std::int64_t row = begin; row < end; ++row) {
             for (const Column& column : table.columns) {
                 if (column.field != Field::skip &&

@@ -14,12 +14,12 @@ namespace astrosplat {
 
 namespace {
 
-constexpr std::int64_t fill_chunk = 1 << 16;  // rows
+constexpr std::int64_t rows_per_chunk = 1 << 16;
 
 template <class T>
 void fill(Buffer<T>& array, std::size_t rows, const T& value) {
     array.resize(rows);
-    parallel_chunks(static_cast<std::int64_t>(rows), fill_chunk,
+    parallel_chunks(static_cast<std::int64_t>(rows), rows_per_chunk,
                     [&](std::int64_t begin, std::int64_t end, int) {
                         std::fill(array.begin() + begin, array.begin() + end, value);
                     });
@@ -107,11 +107,21 @@ void bind(Column& column, SplatTable& table) {
     }
 }
 
+float largest(const Buffer<float>& values) {
+    std::vector<float> of_chunk((values.size() + rows_per_chunk - 1) / rows_per_chunk, 0.0f);
+    parallel_chunks(static_cast<std::int64_t>(values.size()), rows_per_chunk,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        of_chunk[static_cast<std::size_t>(begin / rows_per_chunk)] =
+                            *std::max_element(values.begin() + begin, values.begin() + end);
+                    });
+    return of_chunk.empty() ? 0.0f : *std::max_element(of_chunk.begin(), of_chunk.end());
+}
+
 void finish_ids(SplatTable& table) {
     Buffer<std::uint64_t>& id = table.set.id;
     const bool numbered = table.has(Field::id);
     if (numbered && table.id_high.empty()) return;
-    parallel_chunks(table.set.size(), fill_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+    parallel_chunks(table.set.size(), rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
             id[i] = numbered ? id[i] | std::uint64_t{table.id_high[i]} << 32 : i;
     });
@@ -137,7 +147,7 @@ SplatSet finish_table(SplatTable& table, const std::filesystem::path& file) {
     if (set.alpha.empty()) fill(set.alpha, rows, 1.0f);
     if (set.distance.empty()) fill(set.distance, rows, 0.0f);
     finish_ids(table);
-    for (const float distance : set.distance) set.max_distance = std::max(set.max_distance, double{distance});
+    set.max_distance = largest(set.distance);
     if (table.clamped > 0)
         log_warning(fmt::format("{}: {} of {} opacities lie outside 0..1; they are clamped", file.string(),
                                 table.clamped.load(), rows));

@@ -2,9 +2,12 @@
 // error.
 #include "splats/ply.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "core/log.h"
 #include "unit/splats/file_support.h"
 
 namespace astrosplat {
@@ -214,6 +217,38 @@ TEST_F(Ply, WrongValues) {
               "a.ply:11: expected a whole number 0..255 for green, found '256'");
     EXPECT_EQ(error(header("ascii", codes) + "1 2 3 0 0.5 0\n"),
               "a.ply:11: expected a whole number 0..255 for green, found '0.5'");
+}
+
+TEST_F(Ply, TheFirstWrongVertexIsNamedWhateverItsColumn) {
+    std::string bytes = header("binary_little_endian", vertex("90000", "property float radius\n"));
+    for (int i = 0; i < 90000; ++i)
+        bytes += raw(i == 70001 || i == 80000 ? INFINITY : 1.0f) + raw(2.0f) + raw(3.0f) +
+                 raw(i == 70000 ? -1.0f : 4.0f);
+    for (const int threads : {1, 4}) {
+        set_thread_count(threads);
+        EXPECT_EQ(error(bytes), "a.ply:vertex 70000: expected a finite number >= 0 for radius, found -1");
+    }
+}
+
+TEST_F(Ply, OpacitiesOutsideAreClampedAndCountedOnce) {
+    for (const bool wide : {false, true}) {
+        const int rows = wide ? 1000 : 900;  // the same warning is not given twice
+        const std::string type = wide ? "property double alpha\n" : "property float alpha\n";
+        std::string bytes = header("binary_little_endian", vertex(std::to_string(rows), type));
+        for (int i = 0; i < rows; ++i) {
+            const float alpha = i == 3 ? -0.5f : i >= rows - 2 ? 1.5f : 0.25f;
+            bytes += xyz() + (wide ? raw(double{alpha}) : raw(alpha));
+        }
+        std::string warning;
+        set_log_sink([&](LogLevel, const std::string& line) { warning = line; });
+        const SplatSet set = read(bytes);
+        set_log_sink(nullptr);
+        EXPECT_EQ(set.alpha[2], 0.25f);
+        EXPECT_EQ(set.alpha[3], 0.0f);
+        EXPECT_EQ(set.alpha.back(), 1.0f);
+        EXPECT_NE(warning.find(fmt::format("3 of {} opacities lie outside 0..1", rows)), std::string::npos)
+            << warning;
+    }
 }
 
 TEST_F(Ply, EveryTruncationIsAnError) {
