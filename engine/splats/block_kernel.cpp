@@ -1,8 +1,8 @@
-// The triangle that is near the block's middle is measured against all positions first. With what that leaves
-// possible the block chooses the triangles of its clusters that can matter to it, and each group of sixteen
-// positions does the same with those, after the one nearest to its own middle. Of the ones over which a group
-// lies each position is measured against the one whose bound is lowest there. What that leaves of the others
-// is little; it is measured where its bounds ask for it.
+// The triangle that is near the block's middle is measured against all positions first, or just its middle.
+// With what that leaves possible the block chooses the triangles of its clusters that can matter to it, and
+// each group of sixteen positions does the same with those, after the one nearest to its own middle. Of the
+// ones over which a group lies each position is measured against the one whose bound is lowest there. What
+// that leaves of the others is little; it is measured where its bounds ask for it.
 #include "splats/block_kernel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -46,15 +46,21 @@ bool measure_groups(const BlockMeasure& m, const BlockSurroundings& around, Bloc
     to_local(answers.x.data(), m.origin.x, local.x);
     to_local(answers.y.data(), m.origin.y, local.y);
     to_local(answers.z.data(), m.origin.z, local.z);
-    float widest = 0.0f;
-    for (GroupQuery& g : groups) {
-        g.measure_first(around.near_slot);
-        widest = std::max(widest, g.widest());
-    }
     constexpr std::uint32_t size = TriangleCluster::size;
     const TriangleBound reference = m.clusters[around.near_slot / size].bound(around.near_slot % size);
     const LocalPositions positions = local.part(0, block_positions);
-    const View view(positions, box_around(positions, m.slack), reference, widest, m.slack);
+    const PositionsBox box = box_around(positions, m.slack);
+    // Of a triangle no larger than a part of the block, its middle says enough.
+    const bool small = reference.radius < 0.5f * box.reach() && reference.normal != glm::vec3(0.0f);
+    float widest = 0.0f;
+    for (GroupQuery& g : groups) {
+        if (small)
+            g.expect(reference);
+        else
+            g.measure_first(around.near_slot);
+        widest = std::max(widest, g.widest());
+    }
+    const View view(positions, box, reference, widest, m.slack);
     if (!choose(m, around.clusters, view, scratch.chosen)) return false;
     if (scratch.chosen.count == 0) return true;
     for (GroupQuery& g : groups) g.measure_chosen();

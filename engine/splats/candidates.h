@@ -78,10 +78,11 @@ struct CandidateList : BoundArrays<8192 + 64> {
     std::size_t count = 0;
 };
 
-/// What positions know of each candidate of a list, see View::note.
+/// Candidates, by place in a list, that may matter to a few positions: see View::note.
 struct SurveyNotes {
     using Numbers = CandidateList::Numbers;
-    alignas(64) Numbers gap;         // how far the disc stays outside the positions' shadow on its plane
+    std::size_t count = 0;
+    alignas(64) std::array<std::uint32_t, CandidateList::most + 64> place;
     alignas(64) Numbers need, away;  // square scene units
 };
 

@@ -58,20 +58,39 @@ class GroupQuery {
         update_limits();
     }
 
+    /// Instead of measure_first, and less: limits from the middle of a triangle's disc, which lies on it.
+    void expect(const TriangleBound& near) {
+        const Floats d;
+        const auto farthest = hn::Set(d, static_cast<float>(m_.max_distance));
+        auto widest = hn::Zero(d);
+        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
+            const auto x = hn::Sub(hn::Load(d, positions_.x + i), hn::Set(d, near.center.x)),
+                       y = hn::Sub(hn::Load(d, positions_.y + i), hn::Set(d, near.center.y)),
+                       z = hn::Sub(hn::Load(d, positions_.z + i), hn::Set(d, near.center.z));
+            const auto distance = hn::Min(hn::Sqrt(dot3(x, y, z, x, y, z)), farthest);
+            const auto limit = hn::MulAdd(distance, hn::Set(d, 1.00001f), hn::Set(d, m_.slack));
+            hn::Store(hn::Mul(limit, limit), d, limit_ + i);
+            widest = hn::Max(widest, limit);
+        }
+        widest_ = hn::GetLane(hn::MaxOfLanes(d, widest));
+    }
+
     /// Measures the chosen candidates that matter.
     void measure_chosen() {
         const PositionsBox box = box_around(positions_, m_.slack);
-        const std::size_t nearest = nearest_disc(c_, box.middle);
+        const std::size_t nearest = nearest_candidate(c_, box.middle);
         if (c_.slot[nearest] != first_) measure_first(c_.slot[nearest]);
         View view(positions_, box, c_.bound(nearest), widest_, m_.slack);
-        if (!note(view)) return;
         rows_.count = 0;
         std::fill_n(lowest_, group, std::numeric_limits<float>::infinity());
         std::fill_n(lowest_row_, group, 0u);
-        bound(view, Gaps::none);
+        survey(view);
+        bound(view, 0);
         measure_lowest();
         view.update_room(widest_);
-        bound(view, Gaps::some);
+        const std::size_t over = rows_.count;
+        add_beside(view);
+        bound(view, over);
         measure_rest();
     }
 
@@ -109,39 +128,43 @@ class GroupQuery {
         widest_ = hn::GetLane(hn::MaxOfLanes(df, widest));
     }
 
-    // About each candidate. False when none matters.
-    bool note(const View& view) {
-        const Many d;
-        bool any = false;
-        for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const View::Note n = view.note(bounds_of(c_, i));
-            hn::StoreU(n.gap, d, &notes_.gap[i]);
-            hn::StoreU(n.need, d, &notes_.need[i]);
-            hn::StoreU(n.away, d, &notes_.away[i]);
-            any |= !hn::AllFalse(d, hn::And(view.matter(n.need, n.away), hn::FirstN(d, c_.count - i)));
-        }
-        return any;
-    }
-
-    enum class Gaps { none, some };  // the group is over the candidate, or beside it
-
-    // New rows, for the candidates that matter.
-    void bound(const View& view, Gaps gaps) {
+    // Of the candidates that matter, those over which the group lies become rows. The others, beside it, wait
+    // until the limits are narrower.
+    void survey(const View& view) {
         const Many d;
         const ManyNumbers du;
-        const std::size_t first_row = rows_.count;
         auto place = counting(du);
+        notes_.count = 0;
         for (std::size_t i = 0; i < c_.count; i += hn::Lanes(d)) {
-            const auto matter =
-                hn::And(view.matter(hn::LoadU(d, &notes_.need[i]), hn::LoadU(d, &notes_.away[i])),
-                        hn::FirstN(d, c_.count - i));
-            const auto beside = hn::Gt(hn::LoadU(d, &notes_.gap[i]), hn::Zero(d));
-            const auto taken =
-                hn::RebindMask(du, gaps == Gaps::some ? hn::And(matter, beside) : hn::AndNot(beside, matter));
-            append(du, place, taken, &rows_.place[rows_.count]);
-            rows_.count += hn::CountTrue(du, taken);
+            const View::Note n = view.note(bounds_of(c_, i));
+            const auto matter = hn::And(view.matter(n.need, n.away), hn::FirstN(d, c_.count - i));
+            const auto beside = hn::And(matter, hn::Gt(n.gap, hn::Zero(d)));
+            add_rows(place, hn::AndNot(beside, matter));
+            append(du, place, hn::RebindMask(du, beside), &notes_.place[notes_.count]);
+            append(d, n.need, beside, &notes_.need[notes_.count]);
+            append(d, n.away, beside, &notes_.away[notes_.count]);
+            notes_.count += hn::CountTrue(d, beside);
             place = hn::Add(place, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(du))));
         }
+    }
+
+    // Of the candidates beside the group, those that still matter.
+    void add_beside(const View& view) {
+        const Many d;
+        for (std::size_t i = 0; i < notes_.count; i += hn::Lanes(d)) {
+            const auto matter = view.matter(hn::LoadU(d, &notes_.need[i]), hn::LoadU(d, &notes_.away[i]));
+            add_rows(hn::LoadU(ManyNumbers(), &notes_.place[i]),
+                     hn::And(matter, hn::FirstN(d, notes_.count - i)));
+        }
+    }
+
+    HWY_INLINE void add_rows(hn::Vec<ManyNumbers> places, hn::Mask<Many> taken) {
+        const ManyNumbers du;
+        append(du, places, hn::RebindMask(du, taken), &rows_.place[rows_.count]);
+        rows_.count += hn::CountTrue(Many(), taken);
+    }
+
+    void bound(const View& view, std::size_t first_row) {
         for (std::size_t i = 0; i < group; i += hn::Lanes(Floats())) bound_lanes(view, first_row, i);
     }
 
@@ -272,8 +295,8 @@ class GroupQuery {
     std::size_t first_place_;
     LocalPositions positions_;
     float* limit_;
-    float widest_ = 0.0f;      // largest root of a limit
-    std::uint32_t first_ = 0;  // the triangle that was measured first
+    float widest_ = 0.0f;                       // largest root of a limit
+    std::uint32_t first_ = ClosestPoint::none;  // the triangle that was measured first
     alignas(64) float lowest_[group];
     alignas(64) std::uint32_t lowest_row_[group];
 };

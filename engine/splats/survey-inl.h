@@ -102,19 +102,22 @@ HWY_INLINE Disc seen_from(const glm::vec3& middle, const BoundLanes& b) {
     return disc;
 }
 
-/// The candidate whose disc is nearest to a point; 0 for none.
-HWY_INLINE std::size_t nearest_disc(const CandidateList& list, const glm::vec3& point) {
+/// A candidate that is as good as the nearest to a point: the one in whose ball the point lies deepest, by
+/// its power |p - center|^2 - radius^2. Where the balls are around the triangles' circumcircles, two powers
+/// are equal above the edge that two triangles share. 0 for none.
+HWY_INLINE std::size_t nearest_candidate(const CandidateList& list, const glm::vec3& point) {
     const Many d;
     const ManyNumbers du;
     Lanes lowest = hn::Set(d, std::numeric_limits<float>::infinity());
     auto lowest_place = hn::Zero(du), place = counting(du);
     for (std::size_t i = 0; i < list.count; i += hn::Lanes(d)) {
-        const BoundLanes b = bounds_of(list, i);
-        const Disc disc = seen_from(point, b);
-        const Lanes outside = hn::Max(hn::Sub(disc.across, b.radius), hn::Zero(d));
-        const Lanes bound = hn::MulAdd(outside, outside, hn::Mul(disc.height, disc.height));
-        const auto lower = hn::And(hn::Lt(bound, lowest), hn::FirstN(d, list.count - i));
-        lowest = hn::IfThenElse(lower, bound, lowest);
+        const Lanes x = hn::Sub(hn::LoadU(d, &list.center_x[i]), hn::Set(d, point.x));
+        const Lanes y = hn::Sub(hn::LoadU(d, &list.center_y[i]), hn::Set(d, point.y));
+        const Lanes z = hn::Sub(hn::LoadU(d, &list.center_z[i]), hn::Set(d, point.z));
+        const Lanes radius = hn::LoadU(d, &list.radius[i]);
+        const Lanes power = hn::NegMulAdd(radius, radius, dot3(x, y, z, x, y, z));
+        const auto lower = hn::And(hn::Lt(power, lowest), hn::FirstN(d, list.count - i));
+        lowest = hn::IfThenElse(lower, power, lowest);
         lowest_place = hn::IfThenElse(hn::RebindMask(du, lower), place, lowest_place);
         place = hn::Add(place, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(d))));
     }
