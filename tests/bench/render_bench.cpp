@@ -1,5 +1,5 @@
 // Whole frames, look already applied: project to finished float image in memory. Prints memory bandwidth
-// beside them.
+// beside them, and what memory a frame takes beyond the splats.
 #include <benchmark/benchmark.h>
 
 #include <cstring>
@@ -7,6 +7,7 @@
 #include "core/buffer.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
+#include "measure.h"
 #include "render/render.h"
 
 namespace astrosplat {
@@ -51,11 +52,15 @@ void frame(benchmark::State& state, std::int64_t count, float diameter_px, float
     camera.center_y_px = 540.0;
     RenderCache cache;
     const RenderSettings settings;
+    const std::int64_t before = bench::resident_bytes();
+    bench::forget_peak();
     render({&layer, 1}, camera, nullptr, settings, {}, &cache);  // buffers and tables, as in a sequence
     for (auto _ : state) {
         const RenderedFrame result = render({&layer, 1}, camera, nullptr, settings, {}, &cache);
         benchmark::DoNotOptimize(result.beauty.pixels.data());
     }
+    state.counters["extra_B"] =
+        static_cast<double>(bench::peak_bytes() - before) / static_cast<double>(count);
     state.counters["Msplats/s"] =
         benchmark::Counter(static_cast<double>(count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
 }
