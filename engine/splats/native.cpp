@@ -12,6 +12,7 @@
 #include <cstring>
 #include <glm/common.hpp>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "splats/checksum.h"
 #include "splats/mapped_file.h"
 #include "splats/ordered_writer.h"
+#include "splats/row_order.h"
 #include "splats/spatial_order.h"
 
 namespace astrosplat {
@@ -143,20 +145,11 @@ char* pack(const SplatSet& set, std::int64_t begin, std::int64_t end, char* out)
     return out;
 }
 
-/// Rows order[begin, end) of every array. Neighbours in space lie far apart in a set, so that fetching them
-/// ahead of time is worth more than all else here.
+/// Those rows of every array.
 template <class Row>
-char* pack(const SplatSet& set, const Buffer<Row>& order, std::int64_t begin, std::int64_t end, char* out) {
-    constexpr std::ptrdiff_t ahead = 256;
+char* pack(const SplatSet& set, std::span<const Row> rows, char* out) {
     visit_arrays(set, [&](const auto& array, std::uint32_t) {
-        if (array.empty()) return;
-        const auto* const from = array.data();
-        const Row* const last = order.data() + end - 1;
-        for (const Row* row = order.data() + begin; row <= last; ++row) {
-            __builtin_prefetch(from + row[std::min(ahead, last - row)]);
-            std::memcpy(out, from + *row, sizeof *from);
-            out += sizeof *from;
-        }
+        if (!array.empty()) out = gather(array.data(), rows, out);
     });
     return out;
 }
@@ -187,7 +180,8 @@ template <class Row>
 void write_in_space(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
     const Buffer<Row> order = spatial_order<Row>(set);
     write_blocks(file, set, RowOrder::space, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
-        return pack(set, order, begin, end, out);
+        const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+        return pack(set, std::span(order).subspan(first, count), out);
     });
 }
 
@@ -355,7 +349,7 @@ SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& w
     });
     for (const std::string& error : errors)
         if (!error.empty()) throw InputError(error);
-    if ((layout.header.flags & by_id) && !std::is_sorted(set.id.begin(), set.id.end()))
+    if ((layout.header.flags & by_id) && !ids_ascend(set.id))
         checker.fail("", "ids in ascending order", "another order");
     return set;
 }
@@ -372,7 +366,7 @@ void write_native(const std::filesystem::path& file, const SplatSet& set, const 
 void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
                   const Progress& progress) {
     check_consistent(set);
-    assert(order == RowOrder::space || std::is_sorted(set.id.begin(), set.id.end()));
+    assert(order == RowOrder::space || ids_ascend(set.id));
     if (order == RowOrder::id)
         write_blocks(file, set, order, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
             return pack(set, begin, end, out);

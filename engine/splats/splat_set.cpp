@@ -1,30 +1,47 @@
-// Bounds, order and consistency of splat sets.
+// Bounds, order and consistency of splat sets. Rows are sorted by the upper bits of their ids, counted, and
+// then in each step by all of them.
 #include "splats/splat_set.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
-#include <numeric>
+#include <limits>
+#include <span>
 #include <vector>
 
+#include "core/memory.h"
 #include "core/parallel.h"
+#include "splats/row_order.h"
 
 namespace astrosplat {
 namespace {
 
 constexpr std::int64_t chunk = 1 << 16;
 
-template <class T>
-void permute(Buffer<T>& values, const Buffer<std::int64_t>& from) {
+template <class T, class Row>
+void permute(Buffer<T>& values, const Buffer<Row>& from) {
     if (values.empty()) return;
-    Buffer<T> sorted;
-    sorted.resize(values.size());
-    parallel_chunks(
-        static_cast<std::int64_t>(from.size()), chunk, [&](std::int64_t begin, std::int64_t end, int) {
-            for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                sorted[i] = values[static_cast<std::size_t>(from[i])];
-            }
-        });
+    Buffer<T> sorted(values.size());
+    parallel_chunks(static_cast<std::int64_t>(from.size()), chunk,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        gather(values.data(), std::span<const Row>(from.data() + begin, from.data() + end),
+                               reinterpret_cast<char*>(sorted.data() + begin));
+                    });
     values = std::move(sorted);
+}
+
+/// Ids in some tens of thousands of equal steps from the lowest to the highest.
+struct IdSteps {
+    std::uint64_t lowest;
+    int shift;
+    std::size_t count;
+};
+
+IdSteps steps_of(const Buffer<std::uint64_t>& ids) {
+    constexpr int step_bits = 16;
+    const auto [lowest, highest] = std::minmax_element(ids.begin(), ids.end());
+    const int shift = std::max(0, static_cast<int>(std::bit_width(*highest - *lowest)) - step_bits);
+    return {*lowest, shift, static_cast<std::size_t>((*highest - *lowest) >> shift) + 1};
 }
 
 template <class T>
@@ -43,6 +60,18 @@ void for_each_array(SplatSet& set, Visit visit) {
     visit(set.normal);
     visit(set.mesh);
     visit(set.radius);
+}
+
+template <class Row>
+void sort_rows(SplatSet& set) {
+    const IdSteps steps = steps_of(set.id);
+    Buffer<std::uint32_t> keys(set.id.size());
+    parallel_chunks(set.size(), chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            keys[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
+    });
+    const Buffer<Row> order = rows_by_key<Row>(keys, steps.count, set.id);
+    for_each_array(set, [&](auto& values) { permute(values, order); });
 }
 
 }  // namespace
@@ -75,14 +104,13 @@ Bounds bounds(const SplatSet& set) {
 
 void sort_by_id(SplatSet& set) {
     check_consistent(set);
-    if (std::is_sorted(set.id.begin(), set.id.end())) return;
-    Buffer<std::int64_t> order;
-    order.resize(set.id.size());
-    std::iota(order.begin(), order.end(), std::int64_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::int64_t a, std::int64_t b) {
-        return set.id[static_cast<std::size_t>(a)] < set.id[static_cast<std::size_t>(b)];
-    });
-    for_each_array(set, [&](auto& values) { permute(values, order); });
+    if (ids_ascend(set.id)) return;
+    constexpr std::int64_t bytes_per_row = sizeof(std::uint64_t) + sizeof(std::uint32_t) + sizeof(glm::vec3);
+    claim_memory(set.size() * bytes_per_row, "sorting splats by id");
+    if (set.size() <= std::numeric_limits<std::uint32_t>::max())
+        sort_rows<std::uint32_t>(set);
+    else
+        sort_rows<std::uint64_t>(set);
 }
 
 void check_consistent([[maybe_unused]] const SplatSet& set) {

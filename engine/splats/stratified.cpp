@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
+#include "splats/row_order.h"
 
 namespace astrosplat {
 namespace {
@@ -143,7 +144,7 @@ Buffer<KeyedRow> morton_order(const SplatSet& set, const Progress& progress) {
     std::vector<std::int64_t> starts;
     Buffer<KeyedRow> rows = scatter_to_parts(set, progress, starts);
     progress.at(0.4);
-    const bool by_id = std::is_sorted(set.id.begin(), set.id.end());
+    const bool by_id = ids_ascend(set.id);
     std::vector<std::vector<KeyedRow>> scratch(static_cast<std::size_t>(thread_count()));
     parallel_chunks(
         static_cast<std::int64_t>(parts), 8, [&](std::int64_t begin, std::int64_t end, int worker) {
