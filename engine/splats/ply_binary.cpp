@@ -194,7 +194,7 @@ struct BinaryReader {
         return stored;
     }
 
-    /// Any rows, and says what is wrong with the first wrong number.
+    /// Any rows, also those with lists. Throws InputError with the first wrong number.
     void read_one_by_one(const SplatTable& table, std::int64_t begin, std::int64_t end,
                          std::size_t at) const {
         for (std::int64_t row = begin; row < end; ++row) {
