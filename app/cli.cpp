@@ -232,6 +232,10 @@ int run_window(Invocation& call) {
 int run(Invocation& call) {
     apply_common(call.common);
     call.batch_options.cache = call.generate.cache = cache_of(call.common);
+    if (call.common.quiet)
+        for (ProgressMode* mode :
+             {&call.batch_options.progress, &call.generate.progress, &call.convert.progress})
+            if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
     if (call.action) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
         return call.action();
@@ -240,9 +244,6 @@ int run(Invocation& call) {
     if (!call.screenshot.output.empty()) bad_input("--batch", "", "no --screenshot beside it", "both");
     if (call.input.empty()) bad_input("--batch", "", "a scene file", "none (see --help)");
     call.batch_options.scene = call.input;
-    if (call.common.quiet && call.batch_options.progress == ProgressMode::automatic) {
-        call.batch_options.progress = ProgressMode::none;
-    }
     return run_batch(call.batch_options);
 }
 

@@ -23,6 +23,13 @@ TEST_F(Commands, ConvertKeepsEverySplat) {
     EXPECT_EQ(described.at("splats"), 300);
 }
 
+TEST_F(Commands, QuietMeansNoProgressEither) {
+    EXPECT_NE(run({"convert", "stars.pda", "a.splats"}).err, "");
+    const RunResult quiet = run({"-q", "convert", "stars.pda", "b.splats"});
+    EXPECT_EQ(quiet.code, 0);
+    EXPECT_EQ(quiet.err, "");
+}
+
 TEST_F(Commands, ConvertRefusesWhatItShould) {
     expect_one_line(run({"convert", "stars.pda", "stars.xyz"}), 2, ".splats");
     expect_one_line(run({"convert", "stars.pda", "dust.pda"}), 2, "--overwrite");
