@@ -204,6 +204,12 @@ SetCache cache_of(const CommonOptions& common) {
     return {common.cache.empty() ? default_cache_folder() : std::filesystem::path(common.cache)};
 }
 
+/// Of every command, unless a mode was asked for.
+void silence_progress(Invocation& call) {
+    for (ProgressMode* mode : {&call.batch_options.progress, &call.generate.progress, &call.convert.progress})
+        if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
+}
+
 void refuse_without_screenshot(const ScreenshotOptions& shot) {
     const char* option = shot.size      ? "--size"
                          : shot.frame   ? "--frame"
@@ -232,10 +238,7 @@ int run_window(Invocation& call) {
 int run(Invocation& call) {
     apply_common(call.common);
     call.batch_options.cache = call.generate.cache = cache_of(call.common);
-    if (call.common.quiet)
-        for (ProgressMode* mode :
-             {&call.batch_options.progress, &call.generate.progress, &call.convert.progress})
-            if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
+    if (call.common.quiet) silence_progress(call);
     if (call.action) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
         return call.action();

@@ -67,10 +67,7 @@ class GroupQuery {
             const auto x = hn::Sub(hn::Load(d, positions_.x + i), hn::Set(d, near.center.x)),
                        y = hn::Sub(hn::Load(d, positions_.y + i), hn::Set(d, near.center.y)),
                        z = hn::Sub(hn::Load(d, positions_.z + i), hn::Set(d, near.center.z));
-            const auto distance = hn::Min(hn::Sqrt(dot3(x, y, z, x, y, z)), farthest);
-            const auto limit = hn::MulAdd(distance, hn::Set(d, 1.00001f), hn::Set(d, m_.slack));
-            hn::Store(hn::Mul(limit, limit), d, limit_ + i);
-            widest = hn::Max(widest, limit);
+            widest = hn::Max(widest, set_limit(d, i, hn::Min(hn::Sqrt(dot3(x, y, z, x, y, z)), farthest)));
         }
         widest_ = hn::GetLane(hn::MaxOfLanes(d, widest));
     }
@@ -114,16 +111,21 @@ class GroupQuery {
         return any;
     }
 
-    // As ClosestPointIndex's queries widen their radius.
+    // For positions from place i on, as ClosestPointIndex's queries widen their radius. Returns the roots.
+    template <class Tag>
+    HWY_INLINE hn::Vec<Tag> set_limit(Tag d, std::size_t i, hn::Vec<Tag> distance) {
+        const auto limit = hn::Add(hn::Mul(distance, hn::Set(d, 1.00001f)), hn::Set(d, m_.slack));
+        hn::StoreU(hn::Mul(limit, limit), d, limit_ + i);
+        return limit;
+    }
+
     void update_limits() {
         const Doubles d;
         const hn::Rebind<float, Doubles> df;
         auto widest = hn::Zero(df);
         for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
             const auto distance = hn::DemoteTo(df, hn::Sqrt(hn::Load(d, best_.squared + first_place_ + i)));
-            const auto limit = hn::Add(hn::Mul(distance, hn::Set(df, 1.00001f)), hn::Set(df, m_.slack));
-            hn::StoreU(hn::Mul(limit, limit), df, limit_ + i);
-            widest = hn::Max(widest, limit);
+            widest = hn::Max(widest, set_limit(df, i, distance));
         }
         widest_ = hn::GetLane(hn::MaxOfLanes(df, widest));
     }

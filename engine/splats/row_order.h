@@ -16,8 +16,8 @@ namespace astrosplat {
 bool ids_ascend(const Buffer<std::uint64_t>& ids);
 
 /// The rows in ascending order of key, those of equal key in ascending order of id, those of equal id in
-/// ascending order. Keys are below `key_count`. The same for any thread count. Row: std::uint32_t, for at
-/// most 2^32 rows, or std::uint64_t.
+/// ascending order. Keys are below `key_count`. The same for any thread count. Row: std::uint32_t, for
+/// fewer than 2^32 rows, or std::uint64_t.
 template <class Row>
 Buffer<Row> rows_by_key(const Buffer<std::uint32_t>& keys, std::size_t key_count,
                         const Buffer<std::uint64_t>& ids);

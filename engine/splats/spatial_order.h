@@ -11,7 +11,7 @@ namespace astrosplat {
 
 /// Cubic cells, 64 along the longest side of the set's box, in Morton order (x lowest); inside a cell
 /// ascending ids, equal ids in the set's order. The same for any thread count. Row: std::uint32_t, for sets
-/// of at most 2^32 splats, or std::uint64_t.
+/// of fewer than 2^32 splats, or std::uint64_t.
 template <class Row>
 Buffer<Row> spatial_order(const SplatSet& set);
 
