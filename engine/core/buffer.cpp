@@ -1,11 +1,16 @@
-// Memory for big arrays: mapped straight from the system, aligned to 2 MiB and advised for huge pages.
+// Memory for big arrays: mapped straight from the system, aligned to 2 MiB and advised for huge pages. What
+// is freed stays mapped for the next array of its size, lent to the system until then.
 #include "core/buffer.h"
 
 #include <sys/mman.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <new>
+#include <vector>
 
 namespace astrosplat {
 namespace {
@@ -14,18 +19,102 @@ constexpr std::size_t cache_line = 64;
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 constexpr std::size_t map_from = std::size_t{4} << 20;
 
-std::size_t whole_pages(std::size_t bytes) { return (bytes + huge_page - 1) / huge_page * huge_page; }
+// What is mapped for so many bytes: whole huge pages in steps of an eighth, so that nearly equal arrays get
+// equal blocks. Pages beyond `bytes` are never touched and cost nothing.
+std::size_t block_size(std::size_t bytes) {
+    const std::size_t step = std::max(huge_page, std::bit_floor(bytes) / 8);
+    return (bytes + step - 1) / step * step;
+}
 
-// The system maps at 4 KiB steps: take one huge page too many and hand the ends back.
-void* map_aligned(std::size_t size) {
+// The system maps at 4 KiB steps: take one huge page too many and hand the ends back. Null when there is no
+// room.
+void* map_block(std::size_t size) {
     const std::size_t taken = size + huge_page;
     void* start = mmap(nullptr, taken, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (start == MAP_FAILED) throw std::bad_alloc();
+    if (start == MAP_FAILED) return nullptr;
     char* first = static_cast<char*>(start);
     const std::size_t head = (huge_page - reinterpret_cast<std::uintptr_t>(first) % huge_page) % huge_page;
     if (head > 0) munmap(first, head);
     if (taken - head - size > 0) munmap(first + head + size, taken - head - size);
+    madvise(first + head, size, MADV_HUGEPAGE);  // only advice: a kernel without huge pages is fine
     return first + head;
+}
+
+// The blocks of this process. Those in use and the spare ones together never exceed the most that was ever in
+// use at once, so keeping them costs nothing that was not needed before.
+class Blocks {
+  public:
+    Blocks() { spare_.reserve(most_spare); }
+
+    void* take(std::size_t size) {
+        const std::lock_guard lock(mutex_);
+        void* memory = take_spare(size);
+        if (!memory) memory = map_block(size);
+        if (!memory) {
+            drop_spare(0);
+            memory = map_block(size);
+        }
+        if (!memory) throw std::bad_alloc();
+        used_bytes_ += size;
+        most_used_bytes_ = std::max(most_used_bytes_, used_bytes_);
+        drop_spare(most_used_bytes_ - used_bytes_);
+        return memory;
+    }
+
+    // The system may take the pages when it is short of some; else they are here when they are wanted next.
+    void give_back(void* memory, std::size_t size) noexcept {
+        const std::lock_guard lock(mutex_);
+        used_bytes_ -= size;
+        if (spare_.size() == most_spare || madvise(memory, size, MADV_FREE) != 0) {
+            munmap(memory, size);
+            return;
+        }
+        spare_.push_back({memory, size});
+        spare_bytes_ += size;
+    }
+
+    void drop_all() {
+        const std::lock_guard lock(mutex_);
+        drop_spare(0);
+    }
+
+  private:
+    struct Block {
+        void* memory;
+        std::size_t size;
+    };
+
+    // The one that was given back last, whose pages are the likeliest to be there. Null when there is none.
+    void* take_spare(std::size_t size) {
+        const auto last = std::find_if(spare_.rbegin(), spare_.rend(),
+                                       [&](const Block& block) { return block.size == size; });
+        if (last == spare_.rend()) return nullptr;
+        void* const memory = last->memory;
+        spare_.erase(std::next(last).base());
+        spare_bytes_ -= size;
+        return memory;
+    }
+
+    // The oldest, until at most `bytes` are left.
+    void drop_spare(std::size_t bytes) {
+        std::size_t count = 0;
+        for (; spare_bytes_ > bytes; ++count) {
+            munmap(spare_[count].memory, spare_[count].size);
+            spare_bytes_ -= spare_[count].size;
+        }
+        spare_.erase(spare_.begin(), spare_.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+
+    static constexpr std::size_t most_spare = 256;
+    std::mutex mutex_;
+    std::vector<Block> spare_;  // by age
+    std::size_t used_bytes_ = 0, most_used_bytes_ = 0, spare_bytes_ = 0;
+};
+
+// Never destroyed: arrays may be freed after it would be.
+Blocks& blocks() {
+    static Blocks& all = *new Blocks;
+    return all;
 }
 
 }  // namespace
@@ -33,16 +122,16 @@ void* map_aligned(std::size_t size) {
 void* allocate_pages(std::size_t bytes) {
     if (bytes > std::numeric_limits<std::size_t>::max() / 2) throw std::bad_alloc();
     if (bytes < map_from) return ::operator new (bytes, std::align_val_t{cache_line});
-    void* memory = map_aligned(whole_pages(bytes));
-    madvise(memory, whole_pages(bytes), MADV_HUGEPAGE);  // only advice: a kernel without huge pages is fine
-    return memory;
+    return blocks().take(block_size(bytes));
 }
 
 void free_pages(void* memory, std::size_t bytes) noexcept {
     if (bytes < map_from)
         ::operator delete (memory, std::align_val_t{cache_line});
     else
-        munmap(memory, whole_pages(bytes));
+        blocks().give_back(memory, block_size(bytes));
 }
+
+void release_spare_pages() { blocks().drop_all(); }
 
 }  // namespace astrosplat

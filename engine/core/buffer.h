@@ -14,7 +14,11 @@ namespace astrosplat {
 /// Raw memory, 64-byte aligned; 2 MiB aligned and advised for huge pages from 4 MiB on. Throws
 /// std::bad_alloc.
 void* allocate_pages(std::size_t bytes);
+/// Blocks of 4 MiB and more stay mapped for the next of about their size. The system may take their pages in
+/// the meantime, and they count as available memory.
 void free_pages(void* memory, std::size_t bytes) noexcept;
+/// Hands all of those back to the system.
+void release_spare_pages();
 
 template <class T>
 struct PageAllocator {

@@ -51,10 +51,13 @@ std::int64_t field(const std::string& text, const std::string& key) {
         .value_or(-1);
 }
 
+std::string text_of(const char* file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
 std::int64_t machine_available_bytes() {
-    std::ifstream in("/proc/meminfo");
-    const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const std::int64_t kib = field(text, "MemAvailable:");
+    const std::int64_t kib = field(text_of("/proc/meminfo"), "MemAvailable:");
     return kib < 0 ? unlimited : kib * 1024;
 }
 
@@ -95,10 +98,13 @@ std::int64_t peak_memory_bytes() {
 }
 
 std::int64_t resident_memory_bytes() {
-    std::ifstream in("/proc/self/statm");
-    std::int64_t size = 0, resident = 0;
-    in >> size >> resident;
-    return resident * sysconf(_SC_PAGESIZE);
+    const std::string rollup = text_of("/proc/self/smaps_rollup");
+    const std::int64_t resident = field(rollup, "Rss:"), lent = field(rollup, "LazyFree:");
+    if (resident >= 0) return 1024 * (resident - std::max<std::int64_t>(0, lent));
+    std::ifstream in("/proc/self/statm");  // before Linux 4.14
+    std::int64_t size = 0, pages = 0;
+    in >> size >> pages;
+    return pages * sysconf(_SC_PAGESIZE);
 }
 
 void claim_memory(std::int64_t bytes, const std::string& what) {

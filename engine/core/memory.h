@@ -15,7 +15,7 @@ std::string human_count(double count);
 std::int64_t available_memory_bytes();
 /// Largest resident size of this process so far.
 std::int64_t peak_memory_bytes();
-/// Resident size of this process now.
+/// Resident size of this process now, without what was freed and is lent to the system (core/buffer).
 std::int64_t resident_memory_bytes();
 
 /// Announces `bytes` for `what` (at detail level), and throws InputError with one line that states both

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstring>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -99,6 +101,44 @@ TEST(Buffer, BigBlocksAreAlignedAndKeepTheirContents) {
         EXPECT_EQ(bytes[size - 1], 7);
         bytes.shrink_to_fit();
     }
+}
+
+std::int64_t pages_of_process() {
+    std::ifstream in("/proc/self/statm");
+    std::int64_t size = 0, resident = 0;
+    in >> size >> resident;
+    return resident;
+}
+
+// Blocks whose pages are all there.
+void* written_pages(std::size_t bytes) {
+    void* const memory = allocate_pages(bytes);
+    std::memset(memory, 1, bytes);
+    return memory;
+}
+
+TEST(Buffer, FreedBlocksServeTheNextOfTheirSize) {
+    if (!std::ifstream("/proc/self/smaps_rollup"))
+        GTEST_SKIP() << "the system does not tell what was lent to it";
+    constexpr std::size_t size = std::size_t{96} << 20;
+    void* const first = written_pages(size);
+    const std::int64_t used = resident_memory_bytes();
+    free_pages(first, size);
+    EXPECT_LT(resident_memory_bytes(), used - static_cast<std::int64_t>(size / 2));
+    void* const nearly = allocate_pages(size - 100);
+    EXPECT_EQ(nearly, first);
+    free_pages(nearly, size - 100);
+}
+
+TEST(Buffer, SpareBlocksNeverAddToTheMostInUse) {
+    release_spare_pages();
+    const std::int64_t page = 4096, before = pages_of_process();
+    constexpr std::size_t large = std::size_t{512} << 20;  // more than any test before
+    for (std::size_t size = large / 4; size <= large; size += large / 8)
+        free_pages(written_pages(size), size);
+    EXPECT_LE((pages_of_process() - before) * page, static_cast<std::int64_t>(large + large / 16));
+    release_spare_pages();
+    EXPECT_LT((pages_of_process() - before) * page, static_cast<std::int64_t>(large / 16));
 }
 
 TEST(Buffer, TooMuchIsBadAlloc) {
