@@ -58,11 +58,24 @@ Bisectors bisectors_of(const BlockBall& ball, const NearPlace& near, const glm::
             static_cast<float>(32.0 * (reach + slack) * (slack + 1e-6 * reach))};
 }
 
-// Blocks of one chunk of the tiles, and their clusters.
-struct ChunkBlocks {
-    std::vector<LatticeBlock> blocks;
-    std::vector<std::size_t> first_cluster;  // of each block
-    std::vector<std::uint32_t> clusters;
+// One thread's lists of clusters, in pieces that stay where they are.
+class ClusterStore {
+  public:
+    // Room for `count` numbers, of which take() then keeps some.
+    std::uint32_t* room(std::size_t count) {
+        if (static_cast<std::size_t>(end_ - next_) < count) {
+            constexpr std::size_t piece = std::size_t{1} << 20;  // whole huge pages
+            next_ = pieces_.emplace_back(std::max(piece, count)).data();
+            end_ = next_ + pieces_.back().size();
+        }
+        return next_;
+    }
+    void take(std::size_t count) { next_ += count; }
+    std::vector<Buffer<std::uint32_t>>& pieces() { return pieces_; }
+
+  private:
+    std::vector<Buffer<std::uint32_t>> pieces_;
+    std::uint32_t *next_ = nullptr, *end_ = nullptr;
 };
 
 // What a tile of 2^3 blocks knows is enough for each of its blocks.
@@ -71,48 +84,45 @@ class TileCull {
     TileCull(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings)
         : index_(index), lattice_(lattice), settings_(settings) {}
 
-    void run(const LatticeBlock& tile, ChunkBlocks& found) {
+    void run(const LatticeBlock& tile, std::vector<LatticeBlock>& found) {
         const std::int64_t cells = 2 * block_cells;
         const BlockBall ball = block_ball(lattice_, settings_.jitter, tile.at * cells, cells);
         known_ = index_.collect(ball.center, candidate_radius(settings_, ball, tile.distance), list_);
         for (LatticeBlock& block : split({tile}, lattice_, block_cells)) add_if_near(block, found);
     }
 
+    ClusterStore& clusters() { return clusters_; }
+
   private:
-    void add_if_near(LatticeBlock& block, ChunkBlocks& found) {
+    void add_if_near(LatticeBlock& block, std::vector<LatticeBlock>& found) {
         const BlockBall ball = block_ball(lattice_, settings_.jitter, block.at * block_cells, block_cells);
         const double reach = settings_.max_distance + ball.radius;
         const double tolerance = tolerated * ball.radius;
         if (known_) measure_boxes(list_, glm::vec3(ball.center - index_.origin()));
-        const NearPlace near = known_
-                                   ? index_.near_place(list_, ball.center, reach, tolerance, block.near_slot)
-                                   : index_.near_place(ball.center, reach, tolerance, block.near_slot);
+        const NearPlace near = known_ ? index_.near_place(list_, ball.center, reach, tolerance)
+                                      : index_.near_place(ball.center, reach, tolerance, block.near_slot);
         if (near.slot == ClosestPoint::none) return;
         block.near_slot = near.slot;
         block.distance = near.distance;
-        const std::size_t first = found.clusters.size();
-        if (known_ && !add_clusters(ball, near, block, found.clusters)) return;
-        found.first_cluster.push_back(first);
-        found.blocks.push_back(block);
+        if (known_ && !add_clusters(ball, near, block)) return;
+        found.push_back(block);
     }
 
     // From the list, whose distances are those from the ball's middle. False when no cluster can matter,
     // which happens where the near place is of a disc that comes nearer than its triangle.
-    bool add_clusters(const BlockBall& ball, const NearPlace& near, LatticeBlock& block,
-                      std::vector<std::uint32_t>& clusters) {
+    bool add_clusters(const BlockBall& ball, const NearPlace& near, LatticeBlock& block) {
         const double slack = index_.slack(ball.center, 2.0 * ball.radius);
         const double radius = candidate_radius(settings_, ball, block.distance) * 1.00001 + slack;
         const auto limit = static_cast<float>(radius * radius);
         Bisectors bisectors = bisectors_of(ball, near, index_.origin(), slack);
         if (!index_.has_plane(near.slot)) bisectors.rounding = std::numeric_limits<float>::infinity();
-        const std::size_t first = clusters.size();
-        clusters.resize(first + list_.count + 64);
-        const std::size_t count = filter_clusters(list_, limit, bisectors, &clusters[first]);
-        clusters.resize(first + count);
-        if (count > LatticeBlock::most_clusters)
-            clusters.resize(first);
-        else
+        std::uint32_t* const numbers = clusters_.room(list_.count + 64);
+        const std::size_t count = filter_clusters(list_, limit, bisectors, numbers);
+        if (count <= LatticeBlock::most_clusters) {
+            block.clusters = numbers;
             block.cluster_count = static_cast<std::uint32_t>(count);
+            clusters_.take(count);
+        }
         return count > 0;
     }
 
@@ -121,12 +131,13 @@ class TileCull {
     const CullSettings& settings_;
     ClusterList list_;   // of the tile
     bool known_ = true;  // whether all of its clusters fit in there
+    ClusterStore clusters_;
 };
 
 NearBlocks blocks_of(const std::vector<LatticeBlock>& tiles, const ClosestPointIndex& index,
                      const Lattice& lattice, const CullSettings& settings) {
     constexpr std::size_t chunk = 32;
-    std::vector<ChunkBlocks> chunks((tiles.size() + chunk - 1) / chunk);
+    std::vector<std::vector<LatticeBlock>> chunks((tiles.size() + chunk - 1) / chunk);
     std::vector<std::unique_ptr<TileCull>> culls(static_cast<std::size_t>(thread_count()));
     parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t number, int worker) {
         const auto c = static_cast<std::size_t>(number);
@@ -136,12 +147,13 @@ NearBlocks blocks_of(const std::vector<LatticeBlock>& tiles, const ClosestPointI
             cull->run(tiles[i], chunks[c]);
     });
     NearBlocks near;
-    for (ChunkBlocks& found : chunks) {
-        near.clusters.push_back(std::move(found.clusters));
-        for (std::size_t i = 0; i < found.blocks.size(); ++i) {
-            near.blocks.push_back(found.blocks[i]);
-            near.blocks.back().clusters = near.clusters.back().data() + found.first_cluster[i];
-        }
+    near.blocks.reserve(8 * tiles.size());
+    for (const std::vector<LatticeBlock>& found : chunks)
+        near.blocks.insert(near.blocks.end(), found.begin(), found.end());
+    for (const std::unique_ptr<TileCull>& cull : culls) {
+        if (!cull) continue;
+        for (Buffer<std::uint32_t>& piece : cull->clusters().pieces())
+            near.clusters.push_back(std::move(piece));
     }
     return near;
 }

@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/buffer.h"
 #include "core/progress.h"
 #include "splats/block_kernel.h"
 #include "splats/closest_point.h"
@@ -33,8 +34,8 @@ struct LatticeBlock {
 
 /// Blocks and what they point to.
 struct NearBlocks {
-    std::vector<LatticeBlock> blocks;
-    std::vector<std::vector<std::uint32_t>> clusters;
+    Buffer<LatticeBlock> blocks;
+    std::vector<Buffer<std::uint32_t>> clusters;
 };
 
 /// A ball, and a box with the same middle, around all positions, after jitter, of the `cells`^3 cells from

@@ -47,9 +47,11 @@ struct TriangleCluster : BoundArrays<8> {
     static constexpr std::size_t size = 8;
 };
 
-/// The box of a cluster, in the same coordinates.
+/// The box of a cluster, in the same coordinates, and a place on one of its triangles.
 struct ClusterBox {
     glm::vec3 lo, hi;
+    glm::vec3 place;     // the middle of a disc; not a number where all bounds are balls
+    std::uint32_t slot;  // of that triangle
 };
 
 /// Clusters near some place, by number, and their boxes.
@@ -57,14 +59,20 @@ struct ClusterList {
     static constexpr std::size_t most = 4096;  // the arrays have room for whole vectors at the end
     using Numbers = std::array<float, most + 64>;
     std::size_t count = 0;
-    alignas(64) std::array<std::uint32_t, most + 64> cluster;
-    alignas(64) Numbers lo_x, lo_y, lo_z, hi_x, hi_y, hi_z;
-    alignas(64) Numbers squared;  // distance from the point of the last measure_boxes, square scene units
+    alignas(64) std::array<std::uint32_t, most + 64> cluster, slot;
+    alignas(64) Numbers lo_x, lo_y, lo_z, hi_x, hi_y, hi_z, place_x, place_y, place_z;
+    // By the last measure_boxes: squared distances of the boxes from its point, and whose place is nearest to
+    // it; `count` when there is none.
+    alignas(64) Numbers squared;
+    std::size_t nearest;
+
+    glm::vec3 place(std::size_t i) const { return {place_x[i], place_y[i], place_z[i]}; }
 
     /// False when there is no room.
     bool add(std::uint32_t number, const ClusterBox& box) {
         if (count == most) return false;
-        cluster[count] = number;
+        cluster[count] = number, slot[count] = box.slot;
+        place_x[count] = box.place.x, place_y[count] = box.place.y, place_z[count] = box.place.z;
         lo_x[count] = box.lo.x, lo_y[count] = box.lo.y, lo_z[count] = box.lo.z;
         hi_x[count] = box.hi.x, hi_y[count] = box.hi.y, hi_z[count] = box.hi.z;
         ++count;

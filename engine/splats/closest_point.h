@@ -53,10 +53,9 @@ class ClosestPointIndex {
     /// Thread-safe.
     NearPlace near_place(const glm::dvec3& p, double max_distance, double tolerance,
                          std::uint32_t hint) const;
-    /// The same among the clusters of a list, whose `squared` must be measured from `p` (measure_boxes), and
-    /// the hint's cluster, be that one of the list or not.
-    NearPlace near_place(const ClusterList& list, const glm::dvec3& p, double max_distance, double tolerance,
-                         std::uint32_t hint) const;
+    /// The same among the clusters of a list that was measured from `p` (measure_boxes).
+    NearPlace near_place(const ClusterList& list, const glm::dvec3& p, double max_distance,
+                         double tolerance) const;
 
     /// Where the float coordinates of candidates have their origin, scene units.
     const glm::dvec3& origin() const;

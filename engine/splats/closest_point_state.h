@@ -2,10 +2,12 @@
 // boxes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
 
+#include "core/parallel.h"
 #include "splats/closest_point.h"
 #include "splats/cluster_tree.h"
 #include "splats/triangle_clusters.h"
@@ -15,8 +17,18 @@ namespace astrosplat {
 struct ClosestPointIndex::State : TriangleClusters {
     ClusterTree tree;
 
-    explicit State(std::span<const Mesh* const> meshes)
-        : TriangleClusters(make_clusters(meshes)), tree(boxes) {}
+    /// The tree is built beside the bounds: by one thread, because Embree's threads are not ours.
+    explicit State(std::span<const Mesh* const> meshes) : TriangleClusters(place_clusters(meshes)) {
+        constexpr std::size_t chunk = 512;
+        parallel_for(static_cast<std::int64_t>(1 + (clusters.size() + chunk - 1) / chunk),
+                     [&](std::int64_t task, int) {
+                         const std::size_t end = static_cast<std::size_t>(task) * chunk;
+                         if (task == 0)
+                             tree.build(boxes);
+                         else
+                             bound_clusters(end - chunk, std::min(end, clusters.size()), *this);
+                     });
+    }
 
     /// For at least every cluster with a triangle within `distance`; see ClusterTree::query.
     template <class Visit>

@@ -7,6 +7,8 @@
 // after foreach_target.h
 #include <hwy/highway.h>
 
+#include <limits>
+
 #include "core/append-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,16 +23,45 @@ using Lanes = hn::Vec<Boxes>;
 
 void measure_boxes(ClusterList& list, const glm::vec3& point) {
     const Boxes d;
+    const hn::RebindToUnsigned<Boxes> du;
     const auto beside = [&](const float* low, const float* high, float at) HWY_ATTR {
         const Lanes p = hn::Set(d, at);
         return hn::Max(hn::Max(hn::Sub(hn::Load(d, low), p), hn::Sub(p, hn::Load(d, high))), hn::Zero(d));
     };
+    Lanes least = hn::Set(d, std::numeric_limits<float>::max());
+    auto nearest = hn::Set(du, static_cast<std::uint32_t>(list.count)), number = counting(du);
+    const auto sum = [](Lanes x, Lanes y, Lanes z)
+                         HWY_ATTR { return hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)); };
     for (std::size_t i = 0; i < list.count; i += hn::Lanes(d)) {
         const Lanes x = beside(&list.lo_x[i], &list.hi_x[i], point.x);
         const Lanes y = beside(&list.lo_y[i], &list.hi_y[i], point.y);
         const Lanes z = beside(&list.lo_z[i], &list.hi_z[i], point.z);
-        hn::Store(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)), d, &list.squared[i]);
+        hn::Store(sum(x, y, z), d, &list.squared[i]);
+        const Lanes squared = sum(hn::Sub(hn::Load(d, &list.place_x[i]), hn::Set(d, point.x)),
+                                  hn::Sub(hn::Load(d, &list.place_y[i]), hn::Set(d, point.y)),
+                                  hn::Sub(hn::Load(d, &list.place_z[i]), hn::Set(d, point.z)));
+        const auto nearer = hn::And(hn::Lt(squared, least), hn::FirstN(d, list.count - i));
+        least = hn::IfThenElse(nearer, squared, least);
+        nearest = hn::IfThenElse(hn::RebindMask(du, nearer), number, nearest);
+        number = hn::Add(number, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(d))));
     }
+    const auto lane = hn::FindFirstTrue(d, hn::Eq(least, hn::MinOfLanes(d, least)));
+    list.nearest = hn::ExtractLane(nearest, static_cast<std::size_t>(lane));
+}
+
+std::size_t near_clusters(const ClusterList& list, float limit, std::uint32_t* places) {
+    const Boxes d;
+    const hn::RebindToUnsigned<Boxes> du;
+    auto place = counting(du);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < list.count; i += hn::Lanes(d)) {
+        const auto far = hn::Gt(hn::Load(d, &list.squared[i]), hn::Set(d, limit));
+        const auto near = hn::AndNot(far, hn::FirstN(d, list.count - i));
+        append(du, place, hn::RebindMask(du, near), places + count);
+        count += hn::CountTrue(d, near);
+        place = hn::Add(place, hn::Set(du, static_cast<std::uint32_t>(hn::Lanes(d))));
+    }
+    return count;
 }
 
 // Along one axis: the least of y^2 - 2 p y over p in low .. high and y in from .. to.
@@ -74,10 +105,15 @@ HWY_AFTER_NAMESPACE();
 namespace astrosplat {
 
 HWY_EXPORT(measure_boxes);
+HWY_EXPORT(near_clusters);
 HWY_EXPORT(filter_clusters);
 
 void measure_boxes(ClusterList& list, const glm::vec3& point) {
     HWY_DYNAMIC_DISPATCH(measure_boxes)(list, point);
+}
+
+std::size_t near_clusters(const ClusterList& list, float limit, std::uint32_t* places) {
+    return HWY_DYNAMIC_DISPATCH(near_clusters)(list, limit, places);
 }
 
 std::size_t filter_clusters(const ClusterList& list, float limit, const Bisectors& bisectors,

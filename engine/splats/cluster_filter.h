@@ -11,8 +11,13 @@
 
 namespace astrosplat {
 
-/// Fills in list.squared: at most the squared distances of the boxes from a point in their coordinates.
+/// Fills in list.squared, at most the squared distances of the boxes from a point in their coordinates, and
+/// list.nearest.
 void measure_boxes(ClusterList& list, const glm::vec3& point);
+
+/// To `places`, which has room for ClusterList::most + 64: the places in the list of the clusters whose boxes
+/// are within the root of `limit` by list.squared. Returns how many.
+std::size_t near_clusters(const ClusterList& list, float limit, std::uint32_t* places);
 
 /// A point y can only be closer to a position p than the meshes' point c if it is on p's side of the plane
 /// midway between y and c: with y and p relative to c, if y^2 - 2 p y <= 0. Over p in a box with middle m and

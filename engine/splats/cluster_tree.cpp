@@ -10,7 +10,7 @@
 
 namespace astrosplat {
 
-ClusterTree::ClusterTree(std::span<const ClusterBox> boxes) {
+void ClusterTree::build(std::span<const ClusterBox> boxes) {
     device_ = rtcNewDevice("threads=1");  // keeps Embree off TBB's pool
     if (!device_) throw std::runtime_error("Embree gave no device");
     scene_ = rtcNewScene(device_);

@@ -15,11 +15,14 @@ namespace astrosplat {
 
 class ClusterTree {
   public:
-    /// Refers to `boxes`. Throws std::bad_alloc or std::runtime_error where Embree gives up.
-    explicit ClusterTree(std::span<const ClusterBox> boxes);
+    ClusterTree() = default;
     ~ClusterTree();
     ClusterTree(const ClusterTree&) = delete;
     ClusterTree& operator=(const ClusterTree&) = delete;
+
+    /// Once, on one thread. Refers to `boxes`. Throws std::bad_alloc or std::runtime_error where Embree gives
+    /// up.
+    void build(std::span<const ClusterBox> boxes);
 
     /// `visit(cluster number)` is called for at least every cluster whose box is within `distance` of
     /// `local`, give or take `slack`; it returns the distance that still matters, which may only shrink, or a

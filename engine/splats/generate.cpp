@@ -32,7 +32,7 @@ struct BlockRange {
 };
 
 // Rows that lie above each other follow each other: they need much the same triangles.
-std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const BlockRange& batch) {
+std::vector<BlockRange> rows_of(const Buffer<LatticeBlock>& blocks, const BlockRange& batch) {
     std::vector<BlockRange> rows;
     for (std::size_t i = batch.begin; i < batch.end; ++i) {
         const bool joins = !rows.empty() && i - rows.back().begin < longest_row &&
@@ -48,7 +48,7 @@ std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const B
 }
 
 // Ids of one batch come before those of the next, because a batch ends where a layer of blocks does.
-std::vector<BlockRange> batches_of(const std::vector<LatticeBlock>& blocks) {
+std::vector<BlockRange> batches_of(const Buffer<LatticeBlock>& blocks) {
     std::vector<BlockRange> batches;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const bool new_layer = i == 0 || blocks[i - 1].at.z != blocks[i].at.z;
@@ -126,7 +126,7 @@ class Generator {
 
 // All corners, then all centres, as their ids ask for; each time batch by batch, so that little is stored
 // twice.
-std::int64_t run_blocks(const Generator& generator, const std::vector<LatticeBlock>& blocks,
+std::int64_t run_blocks(const Generator& generator, const Buffer<LatticeBlock>& blocks,
                         const Progress& progress, KeptWatcher* watcher, SplatSet& set) {
     std::vector<Worker> workers(static_cast<std::size_t>(thread_count()));
     std::vector<KeptStore> stores(workers.size());
@@ -192,7 +192,7 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     const Buffer<SurfaceTriangle> surface = surface_triangles(meshes, index, lattice.spacing());
     const CullSettings settings{max_distance, jitter, seed};
     const NearBlocks near = blocks_near(index, lattice, settings, progress);
-    const std::vector<LatticeBlock>& blocks = near.blocks;
+    const Buffer<LatticeBlock>& blocks = near.blocks;
 
     SplatSet set;
     describe_set(meshes, lattice, max_distance, set);

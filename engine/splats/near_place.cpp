@@ -1,9 +1,12 @@
 // Near places, to within a tolerance. In: a point, and clusters from the tree or a list. Out: NearPlace.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <glm/geometric.hpp>
 
 #include "splats/closest_point_state.h"
+#include "splats/cluster_filter.h"
 
 namespace astrosplat {
 
@@ -73,12 +76,19 @@ NearPlace ClosestPointIndex::near_place(const glm::dvec3& p, double max_distance
 }
 
 NearPlace ClosestPointIndex::near_place(const ClusterList& list, const glm::dvec3& p, double max_distance,
-                                        double tolerance, std::uint32_t hint) const {
+                                        double tolerance) const {
     Approach approach(*state_, p, max_distance, tolerance);
-    approach.start(hint);
-    for (std::size_t i = 0; i < list.count && approach.limit >= 0.0f; ++i) {
-        if (!(list.squared[i] > approach.limit * approach.limit))
-            approach.offer_cluster(state_->clusters[list.cluster[i]]);
+    if (list.nearest < list.count) {
+        const glm::dvec3 place = glm::dvec3(list.place(list.nearest)) + state_->center;
+        const double distance = glm::length(place - p);
+        if (distance < max_distance) approach.take({list.slot[list.nearest], distance, place});
+    }
+    if (approach.limit < 0.0f) return approach.best;
+    std::array<std::uint32_t, ClusterList::most + 64> near;
+    const std::size_t count = near_clusters(list, approach.limit * approach.limit, near.data());
+    for (std::size_t i = 0; i < count && approach.limit >= 0.0f; ++i) {
+        if (!(list.squared[near[i]] > approach.limit * approach.limit))
+            approach.offer_cluster(state_->clusters[list.cluster[near[i]]]);
     }
     return approach.best;
 }

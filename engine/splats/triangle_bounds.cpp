@@ -58,17 +58,20 @@ TriangleEdges edges_of(const TriangleShape& s, const glm::dvec3& normal, const g
 
 }  // namespace
 
+TriangleBox triangle_box(const TriangleShape& s, const glm::dvec3& origin) {
+    const glm::dvec3 a = s.a - origin, b = a + s.ab, c = a + s.ac;
+    const glm::dvec3 lo = glm::min(glm::min(a, b), c), hi = glm::max(glm::max(a, b), c);
+    const glm::dvec3 more = (hi - lo) * overshoot(s);
+    return {glm::vec3(lo - more), glm::vec3(hi + more)};
+}
+
 TriangleBounds triangle_bounds(const TriangleShape& s, const glm::dvec3& origin) {
     const glm::dvec3 middle = circle_middle(s), normal = usable_normal(s);
     const double radius =
         std::sqrt(std::max({squared(middle), squared(middle - s.ab), squared(middle - s.ac)}));
-    const double beyond = overshoot(s);
-    const glm::dvec3 a = s.a - origin, b = a + s.ab, c = a + s.ac;
-    const glm::dvec3 lo = glm::min(glm::min(a, b), c), hi = glm::max(glm::max(a, b), c);
-    const glm::dvec3 more = (hi - lo) * beyond;
-    return {{glm::vec3(a + middle), glm::vec3(normal), static_cast<float>(radius * (1.0 + beyond))},
-            edges_of(s, normal, middle),
-            {glm::vec3(lo - more), glm::vec3(hi + more)}};
+    return {{glm::vec3(s.a - origin + middle), glm::vec3(normal),
+             static_cast<float>(radius * (1.0 + overshoot(s)))},
+            edges_of(s, normal, middle)};
 }
 
 }  // namespace astrosplat

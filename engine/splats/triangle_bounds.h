@@ -10,10 +10,15 @@ namespace astrosplat {
 struct TriangleBounds {
     TriangleBound disc;
     TriangleEdges edges;
-    ClusterBox box;
+};
+
+/// Its box along the axes, in the same coordinates.
+struct TriangleBox {
+    glm::vec3 lo, hi;
 };
 
 /// Relative to `origin`.
+TriangleBox triangle_box(const TriangleShape& shape, const glm::dvec3& origin);
 TriangleBounds triangle_bounds(const TriangleShape& shape, const glm::dvec3& origin);
 
 }  // namespace astrosplat

@@ -91,26 +91,46 @@ Buffer<std::uint64_t> curve_order(const Buffer<TriangleCorners>& corners, const 
     return order;
 }
 
-// One that has fewer triangles repeats its last.
-void make_cluster(std::size_t cluster, const Buffer<TriangleCorners>& corners,
-                  const Buffer<std::uint64_t>& order, TriangleClusters& to) {
+// The slot of a cluster's i-th triangle. One that has fewer repeats its last.
+std::size_t slot_of(std::size_t cluster, std::size_t i, std::size_t triangles) {
+    return std::min(cluster * TriangleCluster::size + i, triangles - 1);
+}
+
+void place_cluster(std::size_t cluster, const Buffer<TriangleCorners>& corners,
+                   const Buffer<std::uint64_t>& order, TriangleClusters& to) {
     constexpr float far = std::numeric_limits<float>::infinity();
-    ClusterBox box{glm::vec3(far), glm::vec3(-far)};
+    ClusterBox& box = to.boxes[cluster];
+    box.lo = glm::vec3(far), box.hi = glm::vec3(-far);
     for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
-        const std::size_t slot = std::min(cluster * TriangleCluster::size + i, order.size() - 1);
+        const std::size_t slot = slot_of(cluster, i, order.size());
         const auto number = static_cast<std::uint32_t>(order[slot]);
-        const TriangleBounds bounds = triangle_bounds(triangle_shape(corners[number]), to.center);
-        to.clusters[cluster].set(i, static_cast<std::uint32_t>(slot), bounds.disc);
-        to.triangles[slot] = {corners[number], number, bounds.edges};
+        to.triangles[slot].corners = corners[number];
+        to.triangles[slot].number = number;
         to.slots[number] = static_cast<std::uint32_t>(slot);
-        box = {glm::min(box.lo, bounds.box.lo), glm::max(box.hi, bounds.box.hi)};
+        const TriangleBox triangle = triangle_box(triangle_shape(corners[number]), to.center);
+        box.lo = glm::min(box.lo, triangle.lo), box.hi = glm::max(box.hi, triangle.hi);
     }
-    to.boxes[cluster] = box;
+}
+
+// The place is on a triangle from the middle of the cluster, where that has a plane.
+void bound_cluster(std::size_t cluster, TriangleClusters& to) {
+    ClusterBox& box = to.boxes[cluster];
+    box.place = glm::vec3(std::numeric_limits<float>::quiet_NaN()), box.slot = 0;
+    bool placed = false;
+    for (std::size_t i = 0; i < TriangleCluster::size; ++i) {
+        const std::size_t slot = slot_of(cluster, i, to.triangles.size());
+        const TriangleBounds bounds = triangle_bounds(triangle_shape(to.triangles[slot].corners), to.center);
+        to.clusters[cluster].set(i, static_cast<std::uint32_t>(slot), bounds.disc);
+        to.triangles[slot].edges = bounds.edges;
+        if (bounds.disc.normal == glm::vec3(0.0f) || (placed && i > TriangleCluster::size / 2)) continue;
+        box.place = bounds.disc.center, box.slot = static_cast<std::uint32_t>(slot);
+        placed = true;
+    }
 }
 
 }  // namespace
 
-TriangleClusters make_clusters(std::span<const Mesh* const> meshes) {
+TriangleClusters place_clusters(std::span<const Mesh* const> meshes) {
     const Buffer<TriangleCorners> corners = corners_of(meshes);
     TriangleClusters to;
     place_origin(corners, to);
@@ -123,9 +143,13 @@ TriangleClusters make_clusters(std::span<const Mesh* const> meshes) {
     parallel_chunks(static_cast<std::int64_t>(to.clusters.size()), chunk / std::int64_t{size},
                     [&](std::int64_t begin, std::int64_t end, int) {
                         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-                            make_cluster(i, corners, order, to);
+                            place_cluster(i, corners, order, to);
                     });
     return to;
+}
+
+void bound_clusters(std::size_t begin, std::size_t end, TriangleClusters& clusters) {
+    for (std::size_t i = begin; i < end; ++i) bound_cluster(i, clusters);
 }
 
 }  // namespace astrosplat

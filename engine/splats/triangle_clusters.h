@@ -45,7 +45,10 @@ struct TriangleClusters {
 /// The radius of a search that is to find everything within `distance`.
 inline float widened(double distance, double slack) { return static_cast<float>(1.00001 * distance + slack); }
 
-/// Meshes are numbered and concatenated in order. Throws InputError for more triangles than 32 bits count.
-TriangleClusters make_clusters(std::span<const Mesh* const> meshes);
+/// Meshes are numbered and concatenated in order. All but what bound_clusters fills in. Throws InputError for
+/// more triangles than 32 bits count.
+TriangleClusters place_clusters(std::span<const Mesh* const> meshes);
+/// The bounds of clusters begin .. end-1 and of their triangles, and the places in their boxes.
+void bound_clusters(std::size_t begin, std::size_t end, TriangleClusters& clusters);
 
 }  // namespace astrosplat
