@@ -54,16 +54,6 @@ void ask_embree(const ClosestPointIndex& index, double max_distance, std::uint32
 
 }  // namespace
 
-void prefetch_block(const ClosestPointIndex& index, const LatticeBlock& block) {
-    const auto prefetch = [](const auto& record) {
-        const auto* bytes = reinterpret_cast<const char*>(&record);
-        for (std::size_t line = 0; line < sizeof record; line += 64) __builtin_prefetch(bytes + line, 0, 2);
-    };
-    prefetch(index.triangles()[block.near_slot]);
-    const TriangleCluster* const clusters = index.clusters();
-    for (std::uint32_t i = 0; i < block.cluster_count; ++i) prefetch(clusters[block.clusters[i]]);
-}
-
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
                  const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers) {
     const glm::i64vec3 first = block.at * block_cells;

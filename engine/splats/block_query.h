@@ -12,9 +12,6 @@ namespace astrosplat {
 /// The two kinds of lattice positions; corners have the lower ids.
 enum class Positions { corners, centres };
 
-/// Asks for the memory that query_block will read first.
-void prefetch_block(const ClosestPointIndex& index, const LatticeBlock& block);
-
 /// Answers for one block's positions of one kind; places beyond the lattice's end are not kept.
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
                  const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers);

@@ -74,7 +74,6 @@ class Generator {
     void run(std::span<const LatticeBlock> row, Positions kind, Worker& worker, KeptStore& kept) const {
         worker.answers.resize(longest_row);
         for (std::size_t i = 0; i < row.size(); ++i) {
-            if (i + 1 < row.size()) prefetch_block(index_, row[i + 1]);
             query_block(index_, lattice_, settings_, row[i], kind, *worker.scratch, worker.answers[i]);
             for (const std::uint32_t triangle : worker.answers[i].triangle)
                 if (triangle != ClosestPoint::none) __builtin_prefetch(&surface_[triangle]);
