@@ -40,8 +40,9 @@ void* map_block(std::size_t size) {
     return first + head;
 }
 
-// The blocks of this process. Those in use and the spare ones together never exceed the most that was ever in
-// use at once, so keeping them costs nothing that was not needed before.
+// The blocks of this process. Those in use and the spare ones together exceed the most that was ever in use
+// at once by an eighth or by 256 MiB at most: what a stage takes only for a while is not in that most, but
+// wanted again next time.
 class Blocks {
   public:
     Blocks() { spare_.reserve(most_spare); }
@@ -57,7 +58,7 @@ class Blocks {
         if (!memory) throw std::bad_alloc();
         used_bytes_ += size;
         most_used_bytes_ = std::max(most_used_bytes_, used_bytes_);
-        drop_spare(most_used_bytes_ - used_bytes_);
+        drop_spare(most_used_bytes_ - used_bytes_ + std::max(most_used_bytes_ / 8, least_more));
         return memory;
     }
 
@@ -105,7 +106,8 @@ class Blocks {
         spare_.erase(spare_.begin(), spare_.begin() + static_cast<std::ptrdiff_t>(count));
     }
 
-    static constexpr std::size_t most_spare = 256;
+    static constexpr std::size_t most_spare = 256;                     // blocks
+    static constexpr std::size_t least_more = std::size_t{256} << 20;  // bytes
     std::mutex mutex_;
     std::vector<Block> spare_;  // by age
     std::size_t used_bytes_ = 0, most_used_bytes_ = 0, spare_bytes_ = 0;

@@ -31,6 +31,9 @@ BENCHMARK(copy)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(4);
 // Memory the process did not have before: the system clears it first.
 void fresh_memory(benchmark::State& state) {
     for (auto _ : state) {
+        state.PauseTiming();
+        release_spare_pages();
+        state.ResumeTiming();
         Buffer<char> to;
         to.resize(static_cast<std::size_t>(bytes));
         parallel_chunks(bytes, 2 * chunk, [&](std::int64_t begin, std::int64_t end, int) {

@@ -52,6 +52,7 @@ void frame(benchmark::State& state, std::int64_t count, float diameter_px, float
     camera.center_y_px = 540.0;
     RenderCache cache;
     const RenderSettings settings;
+    release_spare_pages();
     const std::int64_t before = bench::resident_bytes();
     bench::forget_peak();
     render({&layer, 1}, camera, nullptr, settings, {}, &cache);  // buffers and tables, as in a sequence
