@@ -1,4 +1,6 @@
 // new, generate, convert, info, compare and parameters.
+#include <sys/resource.h>
+
 #include "scene_fixture.h"
 
 namespace astrosplat::test {
@@ -28,6 +30,18 @@ TEST_F(Commands, QuietMeansNoProgressEither) {
     const RunResult quiet = run({"-q", "convert", "stars.pda", "b.splats"});
     EXPECT_EQ(quiet.code, 0);
     EXPECT_EQ(quiet.err, "");
+}
+
+TEST_F(Commands, AFileLargerThanAllowedIsOneErrorAndLeavesNothing) {
+    rlimit before;
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const std::set<std::string> names = names_in(".");
+    const rlimit small{4096, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    const RunResult result = run({"-q", "convert", "stars.pda", "a.splats"});
+    setrlimit(RLIMIT_FSIZE, &before);
+    expect_one_line(result, 4, "a.splats");
+    EXPECT_EQ(names_in("."), names);
 }
 
 TEST_F(Commands, ConvertRefusesWhatItShould) {
