@@ -17,17 +17,16 @@ namespace astrosplat {
 struct ClosestPointIndex::State : TriangleClusters {
     ClusterTree tree;
 
-    /// The tree is built beside the bounds: by one thread, because Embree's threads are not ours.
+    /// The tree is built beside the bounds: by one thread, because Embree's threads are not ours. It reads
+    /// the boxes' sides only, not the places that are filled in meanwhile.
     explicit State(std::span<const Mesh* const> meshes) : TriangleClusters(place_clusters(meshes)) {
         constexpr std::size_t chunk = 512;
-        parallel_for(static_cast<std::int64_t>(1 + (clusters.size() + chunk - 1) / chunk),
-                     [&](std::int64_t task, int) {
-                         const std::size_t end = static_cast<std::size_t>(task) * chunk;
-                         if (task == 0)
-                             tree.build(boxes);
-                         else
-                             bound_clusters(end - chunk, std::min(end, clusters.size()), *this);
-                     });
+        const std::size_t chunks = (clusters.size() + chunk - 1) / chunk;
+        parallel_for(static_cast<std::int64_t>(1 + chunks), [&](std::int64_t task, int) {
+            if (task == 0) return tree.build(boxes);
+            const std::size_t begin = (static_cast<std::size_t>(task) - 1) * chunk;
+            bound_clusters(begin, std::min(begin + chunk, clusters.size()), *this);
+        });
     }
 
     /// For at least every cluster with a triangle within `distance`; see ClusterTree::query.

@@ -12,12 +12,12 @@ struct TriangleBounds {
     TriangleEdges edges;
 };
 
-/// Its box along the axes, in the same coordinates.
+/// A triangle's box along the axes.
 struct TriangleBox {
     glm::vec3 lo, hi;
 };
 
-/// Relative to `origin`.
+/// Both relative to `origin`.
 TriangleBox triangle_box(const TriangleShape& shape, const glm::dvec3& origin);
 TriangleBounds triangle_bounds(const TriangleShape& shape, const glm::dvec3& origin);
 
