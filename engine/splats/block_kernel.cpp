@@ -82,7 +82,7 @@ bool measure_all(const BlockMeasure& m, const BlockSurroundings& around, BlockSc
     Pairs pairs;
     const auto query = [&](std::size_t g)
                            HWY_ATTR { return GroupQuery(m, scratch, local, best, pairs, g * group); };
-    GroupQueries groups{query(0), query(1), query(2), query(3)};
+    GroupQueries groups{query(0), query(1), query(2), query(3), query(4), query(5), query(6), query(7)};
     constexpr std::size_t few = 3;  // triangles that are measured in less time than bounded
     const TriangleCluster& first = m.clusters[around.clusters[0]];
     const std::size_t all = distinct(first);

@@ -1,5 +1,5 @@
 // The arithmetic of block queries, compiled once for every instruction set with the same bits on each. A
-// block's 64 positions go in groups of sixteen neighbours (4 x 2 x 2), so that one vector holds one
+// block's 128 positions go in groups of sixteen neighbours (see block_places.h), so that one vector holds one
 // coordinate of a group and a triangle is measured against all of them at once. In: the positions and the
 // clusters around them. Out: closest points.
 #pragma once

@@ -35,24 +35,33 @@ HWY_FLATTEN void add_jitter(const uint* HWY_RESTRICT id_low, const uint* HWY_RES
     }
 }
 
-void place(const BlockPlaces& places, BlockAnswers& answers) {
-    std::array<uint, block_positions> id_low, id_high;
+struct IdHalves {
+    std::array<uint, block_positions> low, high;
+};
+
+void place_kind(const KindPlaces& places, Positions kind, IdHalves& ids, BlockAnswers& answers) {
     for (std::size_t k = 0; k < block_cells; ++k) {
         for (std::size_t j = 0; j < block_cells; ++j) {
             for (std::size_t i = 0; i < block_cells; ++i) {
-                const std::size_t s = block_slot(i, j, k);
+                const std::size_t s = block_slot(kind, i, j, k);
                 const std::uint64_t id = places.first_id + i + j * places.row_ids + k * places.slice_ids;
-                id_low[s] = static_cast<uint>(id);
-                id_high[s] = static_cast<uint>(id >> 32);
+                ids.low[s] = static_cast<uint>(id);
+                ids.high[s] = static_cast<uint>(id >> 32);
                 answers.x[s] = places.x[i];
                 answers.y[s] = places.y[j];
                 answers.z[s] = places.z[k];
             }
         }
     }
+}
+
+void place(const BlockPlaces& places, BlockAnswers& answers) {
+    IdHalves ids;
+    place_kind(places.corners, Positions::corners, ids, answers);
+    place_kind(places.centres, Positions::centres, ids, answers);
     const glm::dvec3& range = places.half_range;
     const auto add = [&](std::uint32_t purpose, double half_range, double* at) HWY_ATTR {
-        add_jitter(id_low.data(), id_high.data(), {places.seed, purpose, half_range}, at);
+        add_jitter(ids.low.data(), ids.high.data(), {places.seed, purpose, half_range}, at);
     };
     add(PURPOSE_JITTER_X, range.x, answers.x.data());
     add(PURPOSE_JITTER_Y, range.y, answers.y.data());

@@ -10,24 +10,41 @@
 namespace astrosplat {
 namespace {
 
-// Coordinates of a block's positions along one axis, before jitter, and how many of them the lattice has.
-std::size_t axis_places(const Lattice& lattice, int axis, std::int64_t first, Positions kind,
-                        std::array<double, block_cells>& at) {
-    const bool centres = kind == Positions::centres;
+// What a kind of positions has along an axis beyond the number of cells.
+std::int64_t beyond(Positions kind) { return kind == Positions::corners ? 1 : 0; }
+
+// Coordinates of positions along one axis, before jitter, from cell `first` on.
+std::array<double, block_cells> axis_places(const Lattice& lattice, int axis, std::int64_t first,
+                                            Positions kind) {
+    const double offset = kind == Positions::centres ? 0.5 : 0.0;
+    std::array<double, block_cells> at;
     for (std::int64_t i = 0; i < block_cells; ++i)
         at[static_cast<std::size_t>(i)] =
-            lattice_coordinate(lattice, axis, static_cast<double>(first + i) + (centres ? 0.5 : 0.0));
-    const std::int64_t end = lattice.n[axis] + (centres ? 0 : 1);
-    return static_cast<std::size_t>(std::clamp(end - first, std::int64_t{0}, block_cells));
+            lattice_coordinate(lattice, axis, static_cast<double>(first + i) + offset);
+    return at;
+}
+
+KindPlaces kind_places(const Lattice& lattice, const glm::i64vec3& first, Positions kind) {
+    const glm::i64vec3 count = lattice.n + beyond(kind);
+    return {axis_places(lattice, 0, first.x, kind),
+            axis_places(lattice, 1, first.y, kind),
+            axis_places(lattice, 2, first.z, kind),
+            kind == Positions::centres ? centre_id(lattice, first) : corner_id(lattice, first),
+            static_cast<std::uint64_t>(count.x),
+            static_cast<std::uint64_t>(count.x * count.y)};
 }
 
 // Places beyond the lattice's end were measured with the rest.
-void drop_outside(std::size_t nx, std::size_t ny, std::size_t nz, BlockAnswers& answers) {
-    if (nx == block_cells && ny == block_cells && nz == block_cells) return;
-    for (std::size_t k = 0; k < block_cells; ++k)
-        for (std::size_t j = 0; j < block_cells; ++j)
-            for (std::size_t i = 0; i < block_cells; ++i)
-                if (i >= nx || j >= ny || k >= nz) answers.triangle[block_slot(i, j, k)] = ClosestPoint::none;
+void drop_outside(const Lattice& lattice, const glm::i64vec3& first, Positions kind, BlockAnswers& answers) {
+    const glm::i64vec3 inside = glm::clamp(lattice.n + beyond(kind) - first, std::int64_t{0}, block_cells);
+    if (inside == glm::i64vec3(block_cells)) return;
+    for (std::int64_t k = 0; k < block_cells; ++k)
+        for (std::int64_t j = 0; j < block_cells; ++j)
+            for (std::int64_t i = 0; i < block_cells; ++i)
+                if (i >= inside.x || j >= inside.y || k >= inside.z)
+                    answers.triangle[block_slot(kind, static_cast<std::size_t>(i),
+                                                static_cast<std::size_t>(j), static_cast<std::size_t>(k))] =
+                        ClosestPoint::none;
 }
 
 // Clusters with all triangles that may be closest to a position of the block; there may be none.
@@ -55,19 +72,12 @@ void ask_embree(const ClosestPointIndex& index, double max_distance, std::uint32
 }  // namespace
 
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
-                 const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers) {
+                 const LatticeBlock& block, BlockScratch& scratch, BlockAnswers& answers) {
     const glm::i64vec3 first = block.at * block_cells;
-    const glm::i64vec3 beside = lattice.n + std::int64_t{kind == Positions::centres ? 0 : 1};
-    BlockPlaces places;
-    const std::size_t nx = axis_places(lattice, 0, first.x, kind, places.x),
-                      ny = axis_places(lattice, 1, first.y, kind, places.y),
-                      nz = axis_places(lattice, 2, first.z, kind, places.z);
-    places.first_id = kind == Positions::centres ? centre_id(lattice, first) : corner_id(lattice, first);
-    places.row_ids = static_cast<std::uint64_t>(beside.x);
-    places.slice_ids = static_cast<std::uint64_t>(beside.x * beside.y);
-    places.half_range = lattice.spacing() * (0.5 * settings.jitter);
-    places.seed = settings.seed;
-    place_block(places, answers);
+    place_block(
+        {kind_places(lattice, first, Positions::corners), kind_places(lattice, first, Positions::centres),
+         lattice.spacing() * (0.5 * settings.jitter), settings.seed},
+        answers);
 
     const BlockBall ball = block_ball(lattice, settings.jitter, first, block_cells);
     const std::span<const std::uint32_t> clusters =
@@ -81,7 +91,8 @@ void query_block(const ClosestPointIndex& index, const Lattice& lattice, const C
                                settings.max_distance};
     if (!measure_block(measure, {clusters, block.near_slot}, scratch, answers))
         ask_embree(index, settings.max_distance, index.triangles()[block.near_slot].number, answers);
-    drop_outside(nx, ny, nz, answers);
+    drop_outside(lattice, first, Positions::corners, answers);
+    drop_outside(lattice, first, Positions::centres, answers);
 }
 
 }  // namespace astrosplat

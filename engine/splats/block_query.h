@@ -9,11 +9,8 @@
 
 namespace astrosplat {
 
-/// The two kinds of lattice positions; corners have the lower ids.
-enum class Positions { corners, centres };
-
-/// Answers for one block's positions of one kind; places beyond the lattice's end are not kept.
+/// Answers for one block's positions; places beyond the lattice's end are not kept.
 void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
-                 const LatticeBlock& block, Positions kind, BlockScratch& scratch, BlockAnswers& answers);
+                 const LatticeBlock& block, BlockScratch& scratch, BlockAnswers& answers);
 
 }  // namespace astrosplat

@@ -23,7 +23,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::size_t longest_row = 64;         // blocks: their answers stay in the second-level cache
+constexpr std::size_t longest_row = 32;         // blocks: their answers stay in the second-level cache
 constexpr std::size_t batch_blocks = 1u << 13;  // about this many are kept apart before they join the set
 
 /// Blocks begin .. end-1: a row has the same (y, z) and ascending x, a batch is whole layers of the same z.
@@ -62,6 +62,8 @@ std::vector<BlockRange> batches_of(const Buffer<LatticeBlock>& blocks) {
 struct Worker {
     std::vector<BlockAnswers> answers;
     std::unique_ptr<BlockScratch> scratch = std::make_unique<BlockScratch>();
+    KeptStore corners, centres;
+    std::vector<std::size_t> centre_runs{0};  // how many there were before each batch
     std::int64_t zero_alpha = 0;
 };
 
@@ -71,13 +73,20 @@ class Generator {
               const CullSettings& settings)
         : index_(index), surface_(surface), lattice_(lattice), settings_(settings) {}
 
-    void run(std::span<const LatticeBlock> row, Positions kind, Worker& worker, KeptStore& kept) const {
+    void run(std::span<const LatticeBlock> row, Worker& worker) const {
         worker.answers.resize(longest_row);
         for (std::size_t i = 0; i < row.size(); ++i) {
-            query_block(index_, lattice_, settings_, row[i], kind, *worker.scratch, worker.answers[i]);
+            query_block(index_, lattice_, settings_, row[i], *worker.scratch, worker.answers[i]);
             for (const std::uint32_t triangle : worker.answers[i].triangle)
                 if (triangle != ClosestPoint::none) __builtin_prefetch(&surface_[triangle]);
         }
+        store_rows(row, Positions::corners, worker, worker.corners);
+        store_rows(row, Positions::centres, worker, worker.centres);
+    }
+
+  private:
+    void store_rows(std::span<const LatticeBlock> row, Positions kind, Worker& worker,
+                    KeptStore& kept) const {
         for (std::int64_t k = 0; k < block_cells; ++k) {
             for (std::int64_t j = 0; j < block_cells; ++j) {
                 kept.begin_run();
@@ -86,7 +95,6 @@ class Generator {
         }
     }
 
-  private:
     // The answers in order of id: one lattice row across all blocks.
     void store_lattice_row(std::span<const LatticeBlock> row, const glm::i64vec3& in_block, Positions kind,
                            Worker& worker, KeptStore& kept) const {
@@ -96,8 +104,8 @@ class Generator {
                 kind == Positions::centres ? centre_id(lattice_, first) : corner_id(lattice_, first);
             const BlockAnswers& answers = worker.answers[b];
             for (std::size_t i = 0; i < block_cells; ++i) {
-                const std::size_t slot =
-                    block_slot(i, static_cast<std::size_t>(in_block.y), static_cast<std::size_t>(in_block.z));
+                const std::size_t slot = block_slot(kind, i, static_cast<std::size_t>(in_block.y),
+                                                    static_cast<std::size_t>(in_block.z));
                 if (answers.triangle[slot] != ClosestPoint::none) store(answers, slot, id + i, worker, kept);
             }
         }
@@ -123,28 +131,54 @@ class Generator {
     const CullSettings& settings_;
 };
 
-// All corners, then all centres, as their ids ask for; each time batch by batch, so that little is stored
-// twice.
+void append_corners(std::vector<Worker>& workers, SplatSet& set) {
+    std::vector<KeptStore::Run> runs;
+    for (const Worker& worker : workers)
+        runs.insert(runs.end(), worker.corners.runs().begin(), worker.corners.runs().end());
+    append_sorted(runs, set);
+    for (Worker& worker : workers) worker.corners.clear();
+}
+
+void append_centres(std::vector<Worker>& workers, std::size_t batch, SplatSet& set) {
+    std::vector<KeptStore::Run> runs;
+    for (const Worker& worker : workers) {
+        const KeptStore::Run* const all = worker.centres.runs().data();
+        runs.insert(runs.end(), all + worker.centre_runs[batch], all + worker.centre_runs[batch + 1]);
+    }
+    append_sorted(runs, set);
+    for (Worker& worker : workers) worker.centres.free_before(worker.centre_runs[batch + 1]);
+}
+
+// Batch by batch, so that little is stored twice. Corners and centres of a block are measured together, but
+// have the lower and the higher ids: the centres wait until all corners are in the set, and leave their
+// blocks of memory as they join it.
 std::int64_t run_blocks(const Generator& generator, const Buffer<LatticeBlock>& blocks,
                         const Progress& progress, KeptWatcher* watcher, SplatSet& set) {
     std::vector<Worker> workers(static_cast<std::size_t>(thread_count()));
-    std::vector<KeptStore> stores(workers.size());
+    const std::vector<BlockRange> batches = batches_of(blocks);
     std::atomic<std::size_t> done{0};
-    for (const Positions kind : {Positions::corners, Positions::centres}) {
-        for (const BlockRange& batch : batches_of(blocks)) {
-            const std::vector<BlockRange> rows = rows_of(blocks, batch);
-            parallel_for(static_cast<std::int64_t>(rows.size()), [&](std::int64_t row, int worker) {
-                progress.check();
-                const BlockRange& range = rows[static_cast<std::size_t>(row)];
-                const std::size_t count = range.end - range.begin;
-                const auto w = static_cast<std::size_t>(worker);
-                const std::size_t runs = stores[w].runs().size();
-                generator.run({&blocks[range.begin], count}, kind, workers[w], stores[w]);
-                if (watcher) watcher->keeps(std::span(stores[w].runs()).subspan(runs));
-                progress.at(0.5 * static_cast<double>(done += count) / static_cast<double>(blocks.size()));
-            });
-            append_sorted(stores, set);
-        }
+    for (const BlockRange& batch : batches) {
+        const std::vector<BlockRange> rows = rows_of(blocks, batch);
+        parallel_for(static_cast<std::int64_t>(rows.size()), [&](std::int64_t row, int number) {
+            progress.check();
+            const BlockRange& range = rows[static_cast<std::size_t>(row)];
+            const std::size_t count = range.end - range.begin;
+            Worker& worker = workers[static_cast<std::size_t>(number)];
+            const std::size_t corner_runs = worker.corners.runs().size();
+            const std::size_t centre_runs = worker.centres.runs().size();
+            generator.run({&blocks[range.begin], count}, worker);
+            if (watcher) {
+                watcher->keeps(std::span(worker.corners.runs()).subspan(corner_runs));
+                watcher->keeps(std::span(worker.centres.runs()).subspan(centre_runs));
+            }
+            progress.at(static_cast<double>(done += count) / static_cast<double>(blocks.size()));
+        });
+        append_corners(workers, set);
+        for (Worker& worker : workers) worker.centre_runs.push_back(worker.centres.runs().size());
+    }
+    for (std::size_t batch = 0; batch < batches.size(); ++batch) {
+        progress.check();
+        append_centres(workers, batch, set);
     }
     std::int64_t zero_alpha = 0;
     for (const Worker& worker : workers) zero_alpha += worker.zero_alpha;

@@ -58,15 +58,23 @@ void KeptStore::clear() {
     open_ = false;
 }
 
+// Runs fill the blocks one after the other.
+void KeptStore::free_before(std::size_t run) {
+    const auto holds_run = [&](const Buffer<KeptSplat>& block) {
+        return run < runs_.size() && block.data() <= runs_[run].splats &&
+               runs_[run].splats < block.data() + block.size();
+    };
+    blocks_.erase(blocks_.begin(), std::find_if(blocks_.begin(), blocks_.end(), holds_run));
+}
+
 void reserve(SplatSet& set, std::size_t count) {
     for_each_array(set, [&](auto& values) { values.reserve(count); });
 }
 
-void append_sorted(std::span<KeptStore> stores, SplatSet& set) {
+void append_sorted(std::span<const KeptStore::Run> runs, SplatSet& set) {
     std::vector<Move> moves;
-    for (const KeptStore& store : stores) {
-        for (const KeptStore::Run& run : store.runs()) moves.push_back({run.splats, run.count, 0});
-    }
+    moves.reserve(runs.size());
+    for (const KeptStore::Run& run : runs) moves.push_back({run.splats, run.count, 0});
     std::sort(moves.begin(), moves.end(),
               [](const Move& a, const Move& b) { return a.from->id < b.from->id; });
     std::size_t size = set.position.size();
@@ -80,7 +88,6 @@ void append_sorted(std::span<KeptStore> stores, SplatSet& set) {
                         for (std::int64_t i = begin; i < end; ++i)
                             unpack(moves[static_cast<std::size_t>(i)], set);
                     });
-    for (KeptStore& store : stores) store.clear();
 }
 
 }  // namespace astrosplat

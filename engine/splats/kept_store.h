@@ -40,6 +40,9 @@ class KeptStore {
     }
     const std::vector<Run>& runs() const { return runs_; }
     void clear();
+    /// Frees the blocks in which no run from number `run` on lies; for a store that nothing is added to any
+    /// more.
+    void free_before(std::size_t run);
 
   private:
     void next_block();
@@ -54,7 +57,7 @@ class KeptStore {
 /// Address space for `count` splats; memory is taken only where it is written.
 void reserve(SplatSet& set, std::size_t count);
 
-/// Appends all stores' splats to `set`, ordered by id, and clears the stores.
-void append_sorted(std::span<KeptStore> stores, SplatSet& set);
+/// Appends the splats of some runs to `set`, ordered by id.
+void append_sorted(std::span<const KeptStore::Run> runs, SplatSet& set);
 
 }  // namespace astrosplat

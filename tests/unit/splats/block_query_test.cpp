@@ -51,18 +51,14 @@ std::int64_t expect_brute_force(const Mesh& mesh, const Lattice& lattice, double
     std::int64_t kept = 0, wrong = 0;
     const NearBlocks near = blocks_near(index, lattice, settings, {});
     for (const LatticeBlock& block : near.blocks) {
-        for (const Positions kind : {Positions::corners, Positions::centres}) {
-            BlockAnswers answers;
-            query_block(index, lattice, settings, block, kind, *scratch, answers);
-            for (std::size_t s = 0; s < block_positions; ++s) {
-                if (answers.triangle[s] == ClosestPoint::none) continue;
-                const ClosestPoint c =
-                    oracle.closest({answers.x[s], answers.y[s], answers.z[s]}, max_distance);
-                ++kept;
-                wrong += c.triangle != answers.triangle[s] ||
-                         c.distance_squared != answers.distance_squared[s] ||
-                         c.barycentric != glm::dvec2(answers.v[s], answers.w[s]);
-            }
+        BlockAnswers answers;
+        query_block(index, lattice, settings, block, *scratch, answers);
+        for (std::size_t s = 0; s < block_positions; ++s) {
+            if (answers.triangle[s] == ClosestPoint::none) continue;
+            const ClosestPoint c = oracle.closest({answers.x[s], answers.y[s], answers.z[s]}, max_distance);
+            ++kept;
+            wrong += c.triangle != answers.triangle[s] || c.distance_squared != answers.distance_squared[s] ||
+                     c.barycentric != glm::dvec2(answers.v[s], answers.w[s]);
         }
     }
     std::int64_t near_enough = 0;
@@ -154,7 +150,7 @@ TEST_F(BlockQuery, NothingIsNearWhereNoClusterIs) {
     const LatticeBlock block{{0, 0, 0}, 1e3, 0, 0, nullptr};
     const auto scratch = std::make_unique<BlockScratch>();
     BlockAnswers answers;
-    query_block(index, lattice, {1.0, 1.0, 3}, block, Positions::centres, *scratch, answers);
+    query_block(index, lattice, {1.0, 1.0, 3}, block, *scratch, answers);
     for (const std::uint32_t triangle : answers.triangle) EXPECT_EQ(triangle, ClosestPoint::none);
 }
 

@@ -154,6 +154,23 @@ TEST_F(GenerateTest, IdsAscendAndDistancesStayBelowTheLimit) {
                 0.02);  // both sides count
 }
 
+// The centres of all batches come after the corners of all batches.
+TEST_F(GenerateTest, SeveralBatchesKeepTheOrderOfIds) {
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(builtin_mesh("plane", 1.0), flat_texture({1, 1, 1, 1})));
+    SourceParams source;
+    source.voxels = i64vec3(2, 370, 370);  // 1 x 93 x 93 blocks, all of them near enough
+    source.buffer = dvec3(0, 0.1, 0);
+    const Lattice lattice = make_lattice(source, meshes, 20.0);
+    set_thread_count(3);
+    const SplatSet set = generate(meshes, lattice, 20.0, 1.0, 3);
+    ASSERT_EQ(set.size(), lattice.positions());
+    for (std::size_t i = 0; i < set.id.size(); ++i) {
+        ASSERT_EQ(set.id[i], i);
+        ASSERT_EQ(set.position[i], glm::vec3(jittered_position(lattice, i, 1.0, 3)));
+    }
+}
+
 TEST_F(GenerateTest, AutomaticVoxelsKeepAboutCount) {
     for (const char* name : {"plane", "sphere"}) {
         std::vector<TexturedMesh> meshes;
