@@ -59,10 +59,20 @@ std::vector<BlockRange> batches_of(const Buffer<LatticeBlock>& blocks) {
     return batches;
 }
 
+/// A position that is near enough, before the picture says whether it is kept.
+struct Hit {
+    std::uint64_t id;
+    glm::vec3 position;
+    float distance;
+    glm::vec2 uv;
+    std::uint32_t triangle;
+};
+
 struct Worker {
     std::vector<BlockAnswers> answers;
     std::unique_ptr<BlockScratch> scratch = std::make_unique<BlockScratch>();
-    KeptStore corners, centres;
+    KeptStore kept;
+    RunStore<Hit> centres;
     std::vector<std::size_t> centre_runs{0};  // how many there were before each batch
     std::int64_t zero_alpha = 0;
 };
@@ -73,56 +83,73 @@ class Generator {
               const CullSettings& settings)
         : index_(index), surface_(surface), lattice_(lattice), settings_(settings) {}
 
-    void run(std::span<const LatticeBlock> row, Worker& worker) const {
+    /// Keeps the splats of a row's corners, and the hits of its centres.
+    void measure(std::span<const LatticeBlock> row, Worker& worker) const {
         worker.answers.resize(longest_row);
         for (std::size_t i = 0; i < row.size(); ++i) {
             query_block(index_, lattice_, settings_, row[i], *worker.scratch, worker.answers[i]);
             for (const std::uint32_t triangle : worker.answers[i].triangle)
                 if (triangle != ClosestPoint::none) __builtin_prefetch(&surface_[triangle]);
         }
-        store_rows(row, Positions::corners, worker, worker.corners);
-        store_rows(row, Positions::centres, worker, worker.centres);
+        each_hit(row, Positions::corners, worker.answers, worker.kept,
+                 [&](const Hit& hit) { add_splat(hit, worker); });
+        each_hit(row, Positions::centres, worker.answers, worker.centres,
+                 [&](const Hit& hit) { worker.centres.add(hit); });
+    }
+
+    /// Keeps the splats of hits. Triangles are fetched one run ahead.
+    void keep(std::span<const RunStore<Hit>::Run> runs, Worker& worker) const {
+        for (std::size_t r = 0; r < runs.size(); ++r) {
+            if (r + 1 < runs.size())
+                for (std::size_t i = 0; i < runs[r + 1].count; ++i)
+                    __builtin_prefetch(&surface_[runs[r + 1].splats[i].triangle]);
+            worker.kept.begin_run();
+            for (std::size_t i = 0; i < runs[r].count; ++i) add_splat(runs[r].splats[i], worker);
+        }
     }
 
   private:
-    void store_rows(std::span<const LatticeBlock> row, Positions kind, Worker& worker,
-                    KeptStore& kept) const {
-        for (std::int64_t k = 0; k < block_cells; ++k) {
-            for (std::int64_t j = 0; j < block_cells; ++j) {
-                kept.begin_run();
-                store_lattice_row(row, glm::i64vec3(0, j, k), kind, worker, kept);
+    // Visits the answers in order of id, each lattice row across all blocks, which is a run of the store.
+    template <class Store, class Visit>
+    void each_hit(std::span<const LatticeBlock> row, Positions kind, std::span<const BlockAnswers> answers,
+                  Store& store, const Visit& visit) const {
+        for (std::size_t k = 0; k < block_cells; ++k) {
+            for (std::size_t j = 0; j < block_cells; ++j) {
+                store.begin_run();
+                for (std::size_t b = 0; b < row.size(); ++b)
+                    each_hit_of_block(row[b].at * block_cells, kind, j, k, answers[b], visit);
             }
         }
     }
 
-    // The answers in order of id: one lattice row across all blocks.
-    void store_lattice_row(std::span<const LatticeBlock> row, const glm::i64vec3& in_block, Positions kind,
-                           Worker& worker, KeptStore& kept) const {
-        for (std::size_t b = 0; b < row.size(); ++b) {
-            const glm::i64vec3 first = row[b].at * block_cells + in_block;
-            const std::uint64_t id =
-                kind == Positions::centres ? centre_id(lattice_, first) : corner_id(lattice_, first);
-            const BlockAnswers& answers = worker.answers[b];
-            for (std::size_t i = 0; i < block_cells; ++i) {
-                const std::size_t slot = block_slot(kind, i, static_cast<std::size_t>(in_block.y),
-                                                    static_cast<std::size_t>(in_block.z));
-                if (answers.triangle[slot] != ClosestPoint::none) store(answers, slot, id + i, worker, kept);
-            }
+    template <class Visit>
+    void each_hit_of_block(const glm::i64vec3& first, Positions kind, std::size_t j, std::size_t k,
+                           const BlockAnswers& answers, const Visit& visit) const {
+        const glm::i64vec3 at = first + glm::i64vec3(0, j, k);
+        const std::uint64_t id =
+            kind == Positions::centres ? centre_id(lattice_, at) : corner_id(lattice_, at);
+        for (std::size_t i = 0; i < block_cells; ++i) {
+            const std::size_t slot = block_slot(kind, i, j, k);
+            if (answers.triangle[slot] != ClosestPoint::none) visit(hit_of(answers, slot, id + i));
         }
     }
 
-    void store(const BlockAnswers& answers, std::size_t slot, std::uint64_t id, Worker& worker,
-               KeptStore& kept) const {
-        const SurfaceTriangle& surface = surface_[answers.triangle[slot]];
-        const glm::vec2 uv = uv_at(surface, {answers.v[slot], answers.w[slot]});
-        const TextureSample picture = sample(*surface.texture, uv, surface.box_texels);
+    Hit hit_of(const BlockAnswers& answers, std::size_t slot, std::uint64_t id) const {
+        const std::uint32_t triangle = answers.triangle[slot];
+        return {id, glm::vec3(glm::dvec3(answers.x[slot], answers.y[slot], answers.z[slot])),
+                static_cast<float>(std::sqrt(answers.distance_squared[slot])),
+                uv_at(surface_[triangle], {answers.v[slot], answers.w[slot]}), triangle};
+    }
+
+    void add_splat(const Hit& hit, Worker& worker) const {
+        const SurfaceTriangle& surface = surface_[hit.triangle];
+        const TextureSample picture = sample(*surface.texture, hit.uv, surface.box_texels);
         if (picture.alpha == 0.0f) {
             ++worker.zero_alpha;
             return;
         }
-        const glm::vec3 position(glm::dvec3(answers.x[slot], answers.y[slot], answers.z[slot]));
-        const auto distance = static_cast<float>(std::sqrt(answers.distance_squared[slot]));
-        kept.add({position, picture.color, picture.alpha, distance, id, uv, surface.normal, surface.mesh});
+        worker.kept.add({hit.position, picture.color, picture.alpha, hit.distance, hit.id, hit.uv,
+                         surface.normal, surface.mesh});
     }
 
     const ClosestPointIndex& index_;
@@ -131,59 +158,91 @@ class Generator {
     const CullSettings& settings_;
 };
 
-void append_corners(std::vector<Worker>& workers, SplatSet& set) {
-    std::vector<KeptStore::Run> runs;
-    for (const Worker& worker : workers)
-        runs.insert(runs.end(), worker.corners.runs().begin(), worker.corners.runs().end());
-    append_sorted(runs, set);
-    for (Worker& worker : workers) worker.corners.clear();
-}
+// Corners and centres of a block are measured together, but have the lower and the higher ids: hits of
+// centres wait until all corners are in the set, and leave their blocks of memory as they join it. All goes
+// batch by batch, so that little is stored twice.
+class BlockRun {
+  public:
+    BlockRun(const Generator& generator, const Buffer<LatticeBlock>& blocks, const Progress& progress,
+             KeptWatcher* watcher)
+        : generator_(generator),
+          blocks_(blocks),
+          progress_(progress),
+          watcher_(watcher),
+          workers_(static_cast<std::size_t>(thread_count())) {}
 
-void append_centres(std::vector<Worker>& workers, std::size_t batch, SplatSet& set) {
-    std::vector<KeptStore::Run> runs;
-    for (const Worker& worker : workers) {
-        const KeptStore::Run* const all = worker.centres.runs().data();
-        runs.insert(runs.end(), all + worker.centre_runs[batch], all + worker.centre_runs[batch + 1]);
+    void run(SplatSet& set) {
+        const std::vector<BlockRange> batches = batches_of(blocks_);
+        for (const BlockRange& batch : batches) {
+            measure(batch);
+            append_kept(set);
+        }
+        for (std::size_t batch = 0; batch < batches.size(); ++batch) {
+            keep_centres(batch);
+            append_kept(set);
+            progress_.at(measuring + (1.0 - measuring) * static_cast<double>(batch + 1) /
+                                         static_cast<double>(batches.size()));
+        }
+        for (const Worker& worker : workers_) set.zero_alpha += worker.zero_alpha;
     }
-    append_sorted(runs, set);
-    for (Worker& worker : workers) worker.centres.free_before(worker.centre_runs[batch + 1]);
-}
 
-// Batch by batch, so that little is stored twice. Corners and centres of a block are measured together, but
-// have the lower and the higher ids: the centres wait until all corners are in the set, and leave their
-// blocks of memory as they join it.
-std::int64_t run_blocks(const Generator& generator, const Buffer<LatticeBlock>& blocks,
-                        const Progress& progress, KeptWatcher* watcher, SplatSet& set) {
-    std::vector<Worker> workers(static_cast<std::size_t>(thread_count()));
-    const std::vector<BlockRange> batches = batches_of(blocks);
-    std::atomic<std::size_t> done{0};
-    for (const BlockRange& batch : batches) {
-        const std::vector<BlockRange> rows = rows_of(blocks, batch);
+  private:
+    static constexpr double measuring = 0.8;  // of the time
+
+    void measure(const BlockRange& batch) {
+        const std::vector<BlockRange> rows = rows_of(blocks_, batch);
         parallel_for(static_cast<std::int64_t>(rows.size()), [&](std::int64_t row, int number) {
-            progress.check();
+            progress_.check();
             const BlockRange& range = rows[static_cast<std::size_t>(row)];
             const std::size_t count = range.end - range.begin;
-            Worker& worker = workers[static_cast<std::size_t>(number)];
-            const std::size_t corner_runs = worker.corners.runs().size();
-            const std::size_t centre_runs = worker.centres.runs().size();
-            generator.run({&blocks[range.begin], count}, worker);
-            if (watcher) {
-                watcher->keeps(std::span(worker.corners.runs()).subspan(corner_runs));
-                watcher->keeps(std::span(worker.centres.runs()).subspan(centre_runs));
-            }
-            progress.at(static_cast<double>(done += count) / static_cast<double>(blocks.size()));
+            watched(number, [&](Worker& worker) {
+                generator_.measure({&blocks_[range.begin], count}, worker);
+            });
+            progress_.at(measuring * static_cast<double>(done_ += count) /
+                         static_cast<double>(blocks_.size()));
         });
-        append_corners(workers, set);
-        for (Worker& worker : workers) worker.centre_runs.push_back(worker.centres.runs().size());
+        for (Worker& worker : workers_) worker.centre_runs.push_back(worker.centres.runs().size());
     }
-    for (std::size_t batch = 0; batch < batches.size(); ++batch) {
-        progress.check();
-        append_centres(workers, batch, set);
+
+    void keep_centres(std::size_t batch) {
+        std::vector<RunStore<Hit>::Run> runs;
+        for (const Worker& worker : workers_) {
+            const RunStore<Hit>::Run* const all = worker.centres.runs().data();
+            runs.insert(runs.end(), all + worker.centre_runs[batch], all + worker.centre_runs[batch + 1]);
+        }
+        parallel_chunks(static_cast<std::int64_t>(runs.size()), 128,
+                        [&](std::int64_t begin, std::int64_t end, int number) {
+                            progress_.check();
+                            const std::span part(runs.data() + begin, runs.data() + end);
+                            watched(number, [&](Worker& worker) { generator_.keep(part, worker); });
+                        });
+        for (Worker& worker : workers_) worker.centres.free_before(worker.centre_runs[batch + 1]);
     }
-    std::int64_t zero_alpha = 0;
-    for (const Worker& worker : workers) zero_alpha += worker.zero_alpha;
-    return zero_alpha;
-}
+
+    // Shows what the worker's task keeps.
+    template <class Task>
+    void watched(int number, const Task& task) {
+        Worker& worker = workers_[static_cast<std::size_t>(number)];
+        const std::size_t runs = worker.kept.runs().size();
+        task(worker);
+        if (watcher_) watcher_->keeps(std::span(worker.kept.runs()).subspan(runs));
+    }
+
+    void append_kept(SplatSet& set) {
+        std::vector<KeptStore::Run> runs;
+        for (const Worker& worker : workers_)
+            runs.insert(runs.end(), worker.kept.runs().begin(), worker.kept.runs().end());
+        append_sorted(runs, set);
+        for (Worker& worker : workers_) worker.kept.clear();
+    }
+
+    const Generator& generator_;
+    const Buffer<LatticeBlock>& blocks_;
+    const Progress& progress_;
+    KeptWatcher* watcher_;
+    std::vector<Worker> workers_;
+    std::atomic<std::size_t> done_{0};  // blocks
+};
 
 void describe_set(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
                   SplatSet& set) {
@@ -231,7 +290,7 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     describe_set(meshes, lattice, max_distance, set);
     if (watcher) watcher->begins(set, lattice.box);
     reserve(set, blocks.size() * 2 * block_positions);
-    set.zero_alpha = run_blocks(Generator(index, surface, lattice, settings), blocks, progress, watcher, set);
+    BlockRun(Generator(index, surface, lattice, settings), blocks, progress, watcher).run(set);
     check_consistent(set);
     return set;
 }

@@ -42,31 +42,6 @@ void unpack(const Move& move, SplatSet& set) {
 
 }  // namespace
 
-// A run that reaches the end of its block goes on as another.
-void KeptStore::next_block() {
-    constexpr std::size_t block_splats = (std::size_t{4} << 20) / sizeof(KeptSplat);  // whole huge pages
-    if (used_ == blocks_.size()) blocks_.emplace_back(block_splats);
-    next_ = blocks_[used_++].data();
-    end_ = next_ + block_splats;
-    open_ = false;
-}
-
-void KeptStore::clear() {
-    runs_.clear();
-    used_ = 0;
-    next_ = end_ = nullptr;
-    open_ = false;
-}
-
-// Runs fill the blocks one after the other.
-void KeptStore::free_before(std::size_t run) {
-    const auto holds_run = [&](const Buffer<KeptSplat>& block) {
-        return run < runs_.size() && block.data() <= runs_[run].splats &&
-               runs_[run].splats < block.data() + block.size();
-    };
-    blocks_.erase(blocks_.begin(), std::find_if(blocks_.begin(), blocks_.end(), holds_run));
-}
-
 void reserve(SplatSet& set, std::size_t count) {
     for_each_array(set, [&](auto& values) { values.reserve(count); });
 }

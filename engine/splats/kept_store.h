@@ -3,6 +3,8 @@
 // SplatSet.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,16 +24,17 @@ struct KeptSplat {
 };
 constexpr std::int64_t kept_splat_bytes = 3 * 12 + 8 + 8 + 2 * 4 + 4;  // in a SplatSet's arrays
 
-/// One thread's splats, in blocks that stay where they are and serve again after clear(). A run has ascending
-/// ids, and no other run has ids in between.
-class KeptStore {
+/// What one thread keeps, splats or what may become one, in blocks that stay where they are and serve again
+/// after clear(). A run has ascending ids, and no other run has ids in between.
+template <class T>
+class RunStore {
   public:
     struct Run {
-        const KeptSplat* splats;
+        const T* splats;
         std::size_t count;
     };
     void begin_run() { open_ = false; }
-    void add(const KeptSplat& splat) {
+    void add(const T& splat) {
         if (next_ == end_) next_block();
         if (!open_) runs_.push_back({next_, 0});
         open_ = true;
@@ -39,20 +42,39 @@ class KeptStore {
         *next_++ = splat;
     }
     const std::vector<Run>& runs() const { return runs_; }
-    void clear();
+    void clear() {
+        runs_.clear();
+        used_ = 0;
+        next_ = end_ = nullptr;
+        open_ = false;
+    }
     /// Frees the blocks in which no run from number `run` on lies; for a store that nothing is added to any
     /// more.
-    void free_before(std::size_t run);
+    void free_before(std::size_t run) {
+        const auto holds_run = [&](const Buffer<T>& block) {
+            return run < runs_.size() && block.data() <= runs_[run].splats &&
+                   runs_[run].splats < block.data() + block.size();
+        };
+        blocks_.erase(blocks_.begin(), std::find_if(blocks_.begin(), blocks_.end(), holds_run));
+    }
 
   private:
-    void next_block();
+    // A run that reaches the end of its block goes on as another.
+    void next_block() {
+        constexpr std::size_t block_splats = (std::size_t{6} << 20) / sizeof(T);  // three huge pages
+        if (used_ == blocks_.size()) blocks_.emplace_back(block_splats);
+        next_ = blocks_[used_++].data();
+        end_ = next_ + block_splats;
+        open_ = false;
+    }
 
-    std::vector<Buffer<KeptSplat>> blocks_;
+    std::vector<Buffer<T>> blocks_;  // filled one after the other
     std::vector<Run> runs_;
     std::size_t used_ = 0;  // blocks
-    KeptSplat *next_ = nullptr, *end_ = nullptr;
+    T *next_ = nullptr, *end_ = nullptr;
     bool open_ = false;
 };
+using KeptStore = RunStore<KeptSplat>;
 
 /// Address space for `count` splats; memory is taken only where it is written.
 void reserve(SplatSet& set, std::size_t count);
