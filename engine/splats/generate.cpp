@@ -158,9 +158,9 @@ class Generator {
     const CullSettings& settings_;
 };
 
-// Corners and centres of a block are measured together, but have the lower and the higher ids: hits of
-// centres wait until all corners are in the set, and leave their blocks of memory as they join it. All goes
-// batch by batch, so that little is stored twice.
+// Corners and centres of a block are measured together, but the corners have all the lower ids: the centres'
+// hits wait until the corners are in the set, and are freed as they join it. All goes batch by batch, so that
+// little is stored twice.
 class BlockRun {
   public:
     BlockRun(const Generator& generator, const Buffer<LatticeBlock>& blocks, const Progress& progress,
@@ -290,7 +290,8 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     describe_set(meshes, lattice, max_distance, set);
     if (watcher) watcher->begins(set, lattice.box);
     reserve(set, blocks.size() * 2 * block_positions);
-    BlockRun(Generator(index, surface, lattice, settings), blocks, progress, watcher).run(set);
+    const Generator generator(index, surface, lattice, settings);
+    BlockRun(generator, blocks, progress, watcher).run(set);
     check_consistent(set);
     return set;
 }
