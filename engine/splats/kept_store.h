@@ -61,7 +61,9 @@ class RunStore {
   private:
     // A run that reaches the end of its block goes on as another.
     void next_block() {
-        constexpr std::size_t block_splats = (std::size_t{6} << 20) / sizeof(T);  // three huge pages
+        // Whole huge pages, or just too little for a block that stays mapped when it is freed (core/buffer):
+        // what waits is to make room for the set in a process that never had the memory.
+        constexpr std::size_t block_splats = (std::size_t{4} << 20) / sizeof(T);
         if (used_ == blocks_.size()) blocks_.emplace_back(block_splats);
         next_ = blocks_[used_++].data();
         end_ = next_ + block_splats;
