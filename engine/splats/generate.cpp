@@ -68,11 +68,14 @@ struct Hit {
     std::uint32_t triangle;
 };
 
+/// Blocks too small to stay mapped once they are freed (core/buffer): they make room for the set.
+using HitStore = RunStore<Hit, std::size_t{3} << 20>;
+
 struct Worker {
     std::vector<BlockAnswers> answers;
     std::unique_ptr<BlockScratch> scratch = std::make_unique<BlockScratch>();
     KeptStore kept;
-    RunStore<Hit> centres;
+    HitStore centres;
     std::vector<std::size_t> centre_runs{0};  // how many there were before each batch
     std::int64_t zero_alpha = 0;
 };
@@ -98,7 +101,7 @@ class Generator {
     }
 
     /// Keeps the splats of hits. Triangles are fetched one run ahead.
-    void keep(std::span<const RunStore<Hit>::Run> runs, Worker& worker) const {
+    void keep(std::span<const HitStore::Run> runs, Worker& worker) const {
         for (std::size_t r = 0; r < runs.size(); ++r) {
             if (r + 1 < runs.size())
                 for (std::size_t i = 0; i < runs[r + 1].count; ++i)
@@ -205,9 +208,9 @@ class BlockRun {
     }
 
     void keep_centres(std::size_t batch) {
-        std::vector<RunStore<Hit>::Run> runs;
+        std::vector<HitStore::Run> runs;
         for (const Worker& worker : workers_) {
-            const RunStore<Hit>::Run* const all = worker.centres.runs().data();
+            const HitStore::Run* const all = worker.centres.runs().data();
             runs.insert(runs.end(), all + worker.centre_runs[batch], all + worker.centre_runs[batch + 1]);
         }
         parallel_chunks(static_cast<std::int64_t>(runs.size()), 128,

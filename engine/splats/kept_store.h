@@ -26,7 +26,7 @@ constexpr std::int64_t kept_splat_bytes = 3 * 12 + 8 + 8 + 2 * 4 + 4;  // in a S
 
 /// What one thread keeps, splats or what may become one, in blocks that stay where they are and serve again
 /// after clear(). A run has ascending ids, and no other run has ids in between.
-template <class T>
+template <class T, std::size_t block_bytes>
 class RunStore {
   public:
     struct Run {
@@ -61,9 +61,7 @@ class RunStore {
   private:
     // A run that reaches the end of its block goes on as another.
     void next_block() {
-        // Whole huge pages, or just too little for a block that stays mapped when it is freed (core/buffer):
-        // what waits is to make room for the set in a process that never had the memory.
-        constexpr std::size_t block_splats = (std::size_t{4} << 20) / sizeof(T);
+        constexpr std::size_t block_splats = block_bytes / sizeof(T);
         if (used_ == blocks_.size()) blocks_.emplace_back(block_splats);
         next_ = blocks_[used_++].data();
         end_ = next_ + block_splats;
@@ -76,7 +74,7 @@ class RunStore {
     T *next_ = nullptr, *end_ = nullptr;
     bool open_ = false;
 };
-using KeptStore = RunStore<KeptSplat>;
+using KeptStore = RunStore<KeptSplat, std::size_t{4} << 20>;  // whole huge pages
 
 /// Address space for `count` splats; memory is taken only where it is written.
 void reserve(SplatSet& set, std::size_t count);
