@@ -1,8 +1,10 @@
 #include "render/fold.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <memory>
+#include <utility>
 
 #include "render/fold_batch.h"
 
@@ -27,13 +29,7 @@ struct Cell {
     std::uint64_t open;       // blocks that take more light
 };
 
-/// Some of a block's pixels: those of one vector.
-struct BlockPart {
-    V x_px, y_px;    // of the whole picture
-    std::size_t at;  // in the planes
-};
-
-BlockPart block_part(const Cell& cell, int block, int part) {
+BlockPart block_part(const Cell& cell, int block, int first) {
     alignas(64) static constexpr float column[16] = {0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f,
                                                      0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f};
     alignas(64) static constexpr float row[16] = {0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f, 1.5f, 1.5f,
@@ -41,34 +37,75 @@ BlockPart block_part(const Cell& cell, int block, int part) {
     const auto edge = [](float corner, int n) {
         return corner + static_cast<float>(n * TilePlanes::block_px);
     };
-    return {hn::Add(load(column + part), all(edge(cell.x0_px, block % TilePlanes::cell_blocks))),
-            hn::Add(load(row + part), all(edge(cell.y0_px, block / TilePlanes::cell_blocks))),
-            cell.first_pixel + static_cast<std::size_t>(block * TilePlanes::block_pixels + part)};
+    const float x_px = edge(cell.x0_px, block % TilePlanes::cell_blocks),
+                y_px = edge(cell.y0_px, block / TilePlanes::cell_blocks);
+    BlockPart part;
+    for (int p = 0; p < parts; ++p) {
+        // Whole rows have the same columns: what is computed of them serves all.
+        part.x_px[p] = p > 0 && lanes % TilePlanes::block_px == 0
+                           ? part.x_px[0]
+                           : hn::Add(load(column + first + p * lanes), all(x_px));
+        part.y_px[p] = hn::Add(load(row + first + p * lanes), all(y_px));
+    }
+    part.at = cell.first_pixel + static_cast<std::size_t>(block * TilePlanes::block_pixels + first);
+    return part;
+}
+
+/// The state of a part of a block.
+template <class Pixels>
+using PartPixels = std::array<Pixels, parts>;
+
+template <class Pixels, std::size_t... kPart>
+HWY_INLINE PartPixels<Pixels> load_pixels(const TilePlanes& planes, std::size_t at,
+                                          std::index_sequence<kPart...>) {
+    return {Pixels(planes, at + kPart * lanes)...};
+}
+template <class Pixels>
+HWY_INLINE PartPixels<Pixels> load_pixels(const TilePlanes& planes, std::size_t at) {
+    return load_pixels<Pixels>(planes, at, std::make_index_sequence<parts>());
+}
+
+template <class Pixels>
+HWY_INLINE void store_pixels(const PartPixels<Pixels>& pixels, TilePlanes& planes, std::size_t at) {
+    for (std::size_t p = 0; p < parts; ++p) pixels[p].store_to(planes, at + p * lanes);
+}
+
+template <class Pixels>
+HWY_INLINE bool all_open(const PartPixels<Pixels>& pixels, V stop) {
+    M open = pixels[0].open(stop);
+    for (std::size_t p = 1; p < parts; ++p) open = hn::And(open, pixels[p].open(stop));
+    return hn::AllTrue(D(), open);
+}
+
+template <class Pixels>
+HWY_INLINE bool any_open(const PartPixels<Pixels>& pixels, V stop) {
+    M open = pixels[0].open(stop);
+    for (std::size_t p = 1; p < parts; ++p) open = hn::Or(open, pixels[p].open(stop));
+    return !hn::AllFalse(D(), open);
 }
 
 /// Folds the splats `bits` of a batch into a part of a block. Unless kMayClose, all its pixels have to be
 /// open to the end, and the batch faint.
 template <bool kFlat, bool kMayClose, class Pixels>
 HWY_INLINE void fold_splats(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
-                            TilePlanes& planes, Pixels& pixels) {
-    constexpr int ways = lanes == TilePlanes::block_pixels ? 2 : 1;  // narrow vectors have few registers
-    auto next = begin_splats<kFlat, ways>(batch, bits, part.x_px, part.y_px);
+                            TilePlanes& planes, PartPixels<Pixels>& pixels) {
+    auto next = begin_splats<kFlat>(batch, bits, part);
     for (bool more = true; more;) {
         const auto now = next;
         more = bits.any();
-        if (more) next = begin_splats<kFlat, ways>(batch, bits, part.x_px, part.y_px);
-        V w[ways];
+        if (more) next = begin_splats<kFlat>(batch, bits, part);
+        V w[sides];
         end_splats<kFlat>(batch, now, w);
-        for (int n = 0; n < ways; ++n) {
+        for (int n = 0; n < sides; ++n) {
             const int i = now.i[n];
             FoldStep step{batch, i, {}};
             if constexpr (Pixels::aovs)
                 for (std::size_t k = 0; k < 4; ++k)
-                    step.layer_light[k] =
-                        planes.layer_light[4 * std::size_t{batch.layer[i]} + k].data() + part.at;
+                    step.layer_light[k] = planes.layer_light[4 * std::size_t{batch.layer[i]} + k].data() +
+                                          part.at + part_of(n) * lanes;
             const V s = clamp_zero(hn::Mul(all(batch.opacity[i]), w[n]));
-            pixels.template fold<kMayClose>(step, kMayClose ? clamp_one(s) : s,
-                                            hn::Mul(w[n], all(batch.weight_gain[i])), stop);
+            pixels[part_of(n)].template fold<kMayClose>(step, kMayClose ? clamp_one(s) : s,
+                                                        hn::Mul(w[n], all(batch.weight_gain[i])), stop);
         }
     }
 }
@@ -78,13 +115,13 @@ HWY_INLINE void fold_splats(const SplatBatch& batch, SplatBits bits, const Block
 template <class Pixels>
 HWY_INLINE bool fold_open(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
                           TilePlanes& planes) {
-    Pixels pixels(planes, part.at);
-    if (!hn::AllTrue(D(), pixels.open(stop))) return false;
+    auto pixels = load_pixels<Pixels>(planes, part.at);
+    if (!all_open(pixels, stop)) return false;
     fold_splats<false, false>(batch, bits, part, stop, planes, pixels);
     // Transmittances never grow: if all pixels are open at the end they were all the time, and nobody needed
     // to ask.
-    if (!hn::AllTrue(D(), pixels.open(stop))) return false;
-    pixels.store_to(planes, part.at);
+    if (!all_open(pixels, stop)) return false;
+    store_pixels(pixels, planes, part.at);
     return true;
 }
 
@@ -92,10 +129,10 @@ HWY_INLINE bool fold_open(const SplatBatch& batch, SplatBits bits, const BlockPa
 template <class Pixels, bool kFlat>
 HWY_NOINLINE bool fold_closing(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
                                TilePlanes& planes) {
-    Pixels pixels(planes, part.at);
+    auto pixels = load_pixels<Pixels>(planes, part.at);
     fold_splats<kFlat, true>(batch, bits, part, stop, planes, pixels);
-    pixels.store_to(planes, part.at);
-    return !Pixels::closes || !hn::AllFalse(D(), pixels.open(stop));
+    store_pixels(pixels, planes, part.at);
+    return !Pixels::closes || any_open(pixels, stop);
 }
 
 /// Folds the splats `bits` of a batch into one block; false when all of its pixels are closed.
@@ -104,7 +141,7 @@ HWY_INLINE bool fold_block(const SplatBatch& batch, SplatBits bits, const Cell& 
                            float stop_at, TilePlanes& planes) {
     const V stop = all(stop_at);
     bool open = false;
-    for (int first = 0; first < TilePlanes::block_pixels; first += lanes) {
+    for (int first = 0; first < TilePlanes::block_pixels; first += lanes * parts) {
         const BlockPart part = block_part(cell, block, first);
         bool is_done = false;
         if constexpr (!kFlat && !Pixels::aovs)  // AOVs write the layers' light at once

@@ -35,12 +35,16 @@ HWY_INLINE V saturate(V v) { return clamp_one(clamp_zero(v)); }
 
 /// One of sixteen coefficients per lane, by the lowest four bits of `segment`.
 HWY_INLINE V look_up(const float* c, VI segment) {
-    // The permute of full vectors ignores higher bits by itself; only Highway's own debug checks do not.
-    constexpr bool ignores_high_bits = lanes == segments && !HWY_IS_DEBUG_BUILD;
+    // Permutes across a whole vector ignore higher bits by themselves; only Highway's own debug checks do
+    // not.
+    constexpr bool ignores_high_bits = lanes >= 8 && !HWY_IS_DEBUG_BUILD;
     const VI low = ignores_high_bits ? segment : hn::And(segment, hn::Set(DI(), lanes - 1));
     const auto index = hn::IndicesFromVec(D(), low);
     V r = hn::TableLookupLanes(load(c), index);
-    if constexpr (lanes < segments) {
+    if constexpr (lanes * 2 == segments) {  // the fourth bit, as a sign
+        const V upper = hn::TableLookupLanes(load(c + lanes), index);
+        r = hn::IfNegativeThenElse(hn::BitCast(D(), hn::ShiftLeft<28>(segment)), upper, r);
+    } else if constexpr (lanes < segments) {
         const VI whole = hn::And(segment, hn::Set(DI(), segments - 1));
         for (int i = 1; i < segments / lanes; ++i) {
             const auto here = hn::RebindMask(D(), hn::Gt(whole, hn::Set(DI(), i * lanes - 1)));
@@ -50,27 +54,38 @@ HWY_INLINE V look_up(const float* c, VI segment) {
     return r;
 }
 
-/// Splats on their way to be folded into `lanes` pixels: which, and where in their cubics the pixels are.
-/// A few go side by side, and the next few begin before these end: the chain of operations of one is long,
-/// and a core does not look ahead over enough of them to keep its units busy.
-template <int kWays>
+// The chain of operations from a splat to a pixel is long, and a core does not look ahead over enough of them
+// to keep its units busy. So two vectors go side by side, and the next two begin before these end: two splats
+// where a block's pixels are one vector, else two vectors of pixels, which share what is read of their splat.
+constexpr int sides = 2;
+constexpr int parts = lanes == TilePlanes::block_pixels ? 1 : sides;
+constexpr std::size_t part_of(int side) { return parts == 1 ? 0 : static_cast<std::size_t>(side); }
+
+/// Some of a block's pixels: those of one vector or two.
+struct BlockPart {
+    V x_px[parts], y_px[parts];  // of the whole picture
+    std::size_t at;              // in the planes
+};
+
+/// Splats on their way to be folded into pixels: which, and where in their cubics the pixels are.
 struct SplatsUnderway {
-    int i[kWays];
-    V segment[kWays];  // its number in the lowest bits of the float
-    V place[kWays];    // in the segment, 0 to 1
+    int i[sides];
+    V segment[sides];  // its number in the lowest bits of the float
+    V place[sides];    // in the segment, 0 to 1
 };
 
 constexpr float to_whole = 12582912.0f;  // 1.5 * 2^23: a number added to it is rounded to a whole one
 
 /// Takes the next splats out of `bits` (with none left, SplatBatch::none).
-template <bool kFlat, int kWays>
-HWY_INLINE SplatsUnderway<kWays> begin_splats(const SplatBatch& batch, SplatBits& bits, V x_px, V y_px) {
-    SplatsUnderway<kWays> to;
-    V u[kWays];
-    for (int n = 0; n < kWays; ++n) to.i[n] = bits.take_first();
-    for (int n = 0; n < kWays; ++n) {
+template <bool kFlat>
+HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits, const BlockPart& part) {
+    SplatsUnderway to;
+    V u[sides];
+    for (int n = 0; n < sides; ++n) to.i[n] = n == 0 || parts == 1 ? bits.take_first() : to.i[0];
+    for (int n = 0; n < sides; ++n) {
         const int i = to.i[n];
-        const V dx = hn::Sub(x_px, all(batch.x_px[i])), dy = hn::Sub(y_px, all(batch.y_px[i]));
+        const V dx = hn::Sub(part.x_px[part_of(n)], all(batch.x_px[i])),
+                dy = hn::Sub(part.y_px[part_of(n)], all(batch.y_px[i]));
         u[n] = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
         if (batch.linear_in_distance[i]) u[n] = hn::Sqrt(u[n]);
         if (kFlat) u[n] = hn::Sub(u[n], all(batch.lo[i]));
@@ -78,26 +93,26 @@ HWY_INLINE SplatsUnderway<kWays> begin_splats(const SplatBatch& batch, SplatBits
         if (kFlat) u[n] = clamp_zero(u[n]);
     }
     // On a segment's end either side will do. Far outside, both are nonsense that end_splats takes away.
-    for (int n = 0; n < kWays; ++n) to.segment[n] = hn::Sub(u[n], all(0.5f));
-    for (int n = 0; n < kWays; ++n) to.segment[n] = hn::Add(to.segment[n], all(to_whole));
-    for (int n = 0; n < kWays; ++n) to.place[n] = hn::Sub(u[n], hn::Sub(to.segment[n], all(to_whole)));
+    for (int n = 0; n < sides; ++n) to.segment[n] = hn::Sub(u[n], all(0.5f));
+    for (int n = 0; n < sides; ++n) to.segment[n] = hn::Add(to.segment[n], all(to_whole));
+    for (int n = 0; n < sides; ++n) to.place[n] = hn::Sub(u[n], hn::Sub(to.segment[n], all(to_whole)));
     return to;
 }
 
 /// Their weights at the pixels, without the amplitudes. Not clamped: the cubics may leave [0, 1] by a few
 /// 1e-5. kFlat: the footprint may have a flat inside.
-template <bool kFlat, int kWays>
-HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway<kWays>& from, V (&w)[kWays]) {
+template <bool kFlat>
+HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway& from, V (&w)[sides]) {
     const auto coefficient = [&](int n, int power) {
         return look_up(batch.cubic[from.i[n]][power], hn::BitCast(DI(), from.segment[n]));
     };
-    for (int n = 0; n < kWays; ++n) w[n] = coefficient(n, 3);
+    for (int n = 0; n < sides; ++n) w[n] = coefficient(n, 3);
     for (int power = 2; power >= 0; --power) {
-        for (int n = 0; n < kWays; ++n) w[n] = hn::Mul(w[n], from.place[n]);
-        for (int n = 0; n < kWays; ++n) w[n] = hn::Add(w[n], coefficient(n, power));
+        for (int n = 0; n < sides; ++n) w[n] = hn::Mul(w[n], from.place[n]);
+        for (int n = 0; n < sides; ++n) w[n] = hn::Add(w[n], coefficient(n, power));
     }
     const V outside = all(to_whole + static_cast<float>(segments));
-    for (int n = 0; n < kWays; ++n) {
+    for (int n = 0; n < sides; ++n) {
         w[n] = hn::IfThenElseZero(hn::Lt(from.segment[n], outside), w[n]);
         if (kFlat)
             w[n] = hn::Add(w[n],
