@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -14,16 +12,14 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "splats/block_cull.h"
-#include "splats/block_query.h"
+#include "splats/block_sampler.h"
 #include "splats/closest_point.h"
-#include "splats/kept_store.h"
 #include "splats/kept_watcher.h"
 #include "splats/surface.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr std::size_t longest_row = 32;         // blocks: their answers stay in the second-level cache
 constexpr std::size_t batch_blocks = 1u << 13;  // about this many are kept apart before they join the set
 
 /// Blocks begin .. end-1: a row has the same (y, z) and ascending x, a batch is whole layers of the same z.
@@ -35,7 +31,7 @@ struct BlockRange {
 std::vector<BlockRange> rows_of(const Buffer<LatticeBlock>& blocks, const BlockRange& batch) {
     std::vector<BlockRange> rows;
     for (std::size_t i = batch.begin; i < batch.end; ++i) {
-        const bool joins = !rows.empty() && i - rows.back().begin < longest_row &&
+        const bool joins = !rows.empty() && i - rows.back().begin < BlockSampler::longest_row &&
                            blocks[i - 1].at.y == blocks[i].at.y && blocks[i - 1].at.z == blocks[i].at.z;
         if (!joins) rows.push_back({i, i});
         rows.back().end = i + 1;
@@ -59,106 +55,8 @@ std::vector<BlockRange> batches_of(const Buffer<LatticeBlock>& blocks) {
     return batches;
 }
 
-/// A position that is near enough, before the picture says whether it is kept.
-struct Hit {
-    std::uint64_t id;
-    glm::vec3 position;
-    float distance;
-    glm::vec2 uv;
-    std::uint32_t triangle;
-};
-
-/// Blocks too small to stay mapped once they are freed (core/buffer): they make room for the set.
-using HitStore = RunStore<Hit, std::size_t{3} << 20>;
-
-struct Worker {
-    std::vector<BlockAnswers> answers;
-    std::unique_ptr<BlockScratch> scratch = std::make_unique<BlockScratch>();
-    KeptStore kept;
-    HitStore centres;
+struct Worker : SamplerWorker {
     std::vector<std::size_t> centre_runs{0};  // how many there were before each batch
-    std::int64_t zero_alpha = 0;
-};
-
-class Generator {
-  public:
-    Generator(const ClosestPointIndex& index, const Buffer<SurfaceTriangle>& surface, const Lattice& lattice,
-              const CullSettings& settings)
-        : index_(index), surface_(surface), lattice_(lattice), settings_(settings) {}
-
-    /// Keeps the splats of a row's corners, and the hits of its centres.
-    void measure(std::span<const LatticeBlock> row, Worker& worker) const {
-        worker.answers.resize(longest_row);
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            query_block(index_, lattice_, settings_, row[i], *worker.scratch, worker.answers[i]);
-            for (const std::uint32_t triangle : worker.answers[i].triangle)
-                if (triangle != ClosestPoint::none) __builtin_prefetch(&surface_[triangle]);
-        }
-        each_hit(row, Positions::corners, worker.answers, worker.kept,
-                 [&](const Hit& hit) { add_splat(hit, worker); });
-        each_hit(row, Positions::centres, worker.answers, worker.centres,
-                 [&](const Hit& hit) { worker.centres.add(hit); });
-    }
-
-    /// Keeps the splats of hits. Triangles are fetched one run ahead.
-    void keep(std::span<const HitStore::Run> runs, Worker& worker) const {
-        for (std::size_t r = 0; r < runs.size(); ++r) {
-            if (r + 1 < runs.size())
-                for (std::size_t i = 0; i < runs[r + 1].count; ++i)
-                    __builtin_prefetch(&surface_[runs[r + 1].splats[i].triangle]);
-            worker.kept.begin_run();
-            for (std::size_t i = 0; i < runs[r].count; ++i) add_splat(runs[r].splats[i], worker);
-        }
-    }
-
-  private:
-    // Visits the answers in order of id, each lattice row across all blocks, which is a run of the store.
-    template <class Store, class Visit>
-    void each_hit(std::span<const LatticeBlock> row, Positions kind, std::span<const BlockAnswers> answers,
-                  Store& store, const Visit& visit) const {
-        for (std::size_t k = 0; k < block_cells; ++k) {
-            for (std::size_t j = 0; j < block_cells; ++j) {
-                store.begin_run();
-                for (std::size_t b = 0; b < row.size(); ++b)
-                    each_hit_of_block(row[b].at * block_cells, kind, j, k, answers[b], visit);
-            }
-        }
-    }
-
-    template <class Visit>
-    void each_hit_of_block(const glm::i64vec3& first, Positions kind, std::size_t j, std::size_t k,
-                           const BlockAnswers& answers, const Visit& visit) const {
-        const glm::i64vec3 at = first + glm::i64vec3(0, j, k);
-        const std::uint64_t id =
-            kind == Positions::centres ? centre_id(lattice_, at) : corner_id(lattice_, at);
-        for (std::size_t i = 0; i < block_cells; ++i) {
-            const std::size_t slot = block_slot(kind, i, j, k);
-            if (answers.triangle[slot] != ClosestPoint::none) visit(hit_of(answers, slot, id + i));
-        }
-    }
-
-    Hit hit_of(const BlockAnswers& answers, std::size_t slot, std::uint64_t id) const {
-        const std::uint32_t triangle = answers.triangle[slot];
-        return {id, glm::vec3(glm::dvec3(answers.x[slot], answers.y[slot], answers.z[slot])),
-                static_cast<float>(std::sqrt(answers.distance_squared[slot])),
-                uv_at(surface_[triangle], {answers.v[slot], answers.w[slot]}), triangle};
-    }
-
-    void add_splat(const Hit& hit, Worker& worker) const {
-        const SurfaceTriangle& surface = surface_[hit.triangle];
-        const TextureSample picture = sample(*surface.texture, hit.uv, surface.box_texels);
-        if (picture.alpha == 0.0f) {
-            ++worker.zero_alpha;
-            return;
-        }
-        worker.kept.add({hit.position, picture.color, picture.alpha, hit.distance, hit.id, hit.uv,
-                         surface.normal, surface.mesh});
-    }
-
-    const ClosestPointIndex& index_;
-    const Buffer<SurfaceTriangle>& surface_;
-    const Lattice& lattice_;
-    const CullSettings& settings_;
 };
 
 // Corners and centres of a block are measured together, but the corners have all the lower ids: the centres'
@@ -166,9 +64,9 @@ class Generator {
 // little is stored twice.
 class BlockRun {
   public:
-    BlockRun(const Generator& generator, const Buffer<LatticeBlock>& blocks, const Progress& progress,
+    BlockRun(const BlockSampler& sampler, const Buffer<LatticeBlock>& blocks, const Progress& progress,
              KeptWatcher* watcher)
-        : generator_(generator),
+        : sampler_(sampler),
           blocks_(blocks),
           progress_(progress),
           watcher_(watcher),
@@ -198,8 +96,8 @@ class BlockRun {
             progress_.check();
             const BlockRange& range = rows[static_cast<std::size_t>(row)];
             const std::size_t count = range.end - range.begin;
-            watched(number, [&](Worker& worker) {
-                generator_.measure({&blocks_[range.begin], count}, worker);
+            watched(number, [&](SamplerWorker& worker) {
+                sampler_.measure({&blocks_[range.begin], count}, worker);
             });
             progress_.at(measuring * static_cast<double>(done_ += count) /
                          static_cast<double>(blocks_.size()));
@@ -217,7 +115,7 @@ class BlockRun {
                         [&](std::int64_t begin, std::int64_t end, int number) {
                             progress_.check();
                             const std::span part(runs.data() + begin, runs.data() + end);
-                            watched(number, [&](Worker& worker) { generator_.keep(part, worker); });
+                            watched(number, [&](SamplerWorker& worker) { sampler_.keep(part, worker); });
                         });
         for (Worker& worker : workers_) worker.centres.free_before(worker.centre_runs[batch + 1]);
     }
@@ -239,7 +137,7 @@ class BlockRun {
         for (Worker& worker : workers_) worker.kept.clear();
     }
 
-    const Generator& generator_;
+    const BlockSampler& sampler_;
     const Buffer<LatticeBlock>& blocks_;
     const Progress& progress_;
     KeptWatcher* watcher_;
@@ -293,8 +191,8 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     describe_set(meshes, lattice, max_distance, set);
     if (watcher) watcher->begins(set, lattice.box);
     reserve(set, blocks.size() * 2 * block_positions);
-    const Generator generator(index, surface, lattice, settings);
-    BlockRun(generator, blocks, progress, watcher).run(set);
+    const BlockSampler sampler(index, surface, lattice, settings);
+    BlockRun(sampler, blocks, progress, watcher).run(set);
     check_consistent(set);
     return set;
 }
