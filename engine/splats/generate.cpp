@@ -190,7 +190,7 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     SplatSet set;
     describe_set(meshes, lattice, max_distance, set);
     if (watcher) watcher->begins(set, lattice.box);
-    reserve(set, blocks.size() * 2 * block_positions);
+    reserve(set, blocks.size() * block_positions);
     const BlockSampler sampler(index, surface, lattice, settings);
     BlockRun(sampler, blocks, progress, watcher).run(set);
     check_consistent(set);
