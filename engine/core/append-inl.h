@@ -41,7 +41,8 @@ HWY_INLINE unsigned bits_of(D d, Mask mask) {
 #if HWY_TARGET == HWY_AVX2
 using PickedLanes = std::array<std::array<std::uint8_t, 8>, 256>;
 
-// Of each mask of eight lanes, as bits: the numbers of its lanes, then zeros.
+// Of each mask of eight lanes, as bits: the numbers of its lanes, then zeros. A constant in bytes, for
+// Highway 1.0.3's own Compress copies a table to the stack in each call before AVX-512.
 constexpr PickedLanes make_picked_lanes() {
     PickedLanes picked{};
     for (unsigned mask = 0; mask < picked.size(); ++mask) {
@@ -54,8 +55,7 @@ constexpr PickedLanes make_picked_lanes() {
 constexpr PickedLanes picked_lanes = make_picked_lanes();
 #endif
 
-/// Writes the lanes in `mask` one after the other to `to`, which has room for a whole vector more. (Before
-/// AVX-512, Highway 1.0.3 copies a table of 1 KiB for each Compress.)
+/// Writes the lanes in `mask` one after the other to `to`, which has room for a whole vector more.
 template <class D, class Mask>
 HWY_INLINE void append(D d, hn::Vec<D> values, Mask mask, hn::TFromD<D>* to) {
     static_assert(sizeof(hn::TFromD<D>) == 4);
