@@ -1,0 +1,111 @@
+// What the layers of a scene want as sets, what they have, and what is to be done next. In: wishes, and what
+// came of each job. Out: the next job, the newest wish first, and each layer's set and status. Knows no
+// threads: SetLoader holds the lock and does the work.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "edit/status.h"
+#include "scene/scene.h"
+#include "viewer/growing_set.h"
+#include "viewer/loaded_layer.h"
+
+namespace astrosplat {
+
+/// What is done for a layer, the first for all layers before the second for any.
+enum class SetTask { load, arrange, describe };
+
+/// One task for one layer. Only the atomics and `growing` change once it has begun.
+struct SetJob {
+    SetTask task = SetTask::load;
+    std::string name;
+    SourceParams source, identity;
+    std::shared_ptr<const LoadedLayer> loaded;  // what the layer had when it began
+    std::atomic<bool> cancelled{false};
+    std::atomic<float> progress{0.0f};
+    GrowingSet growing;
+
+    explicit SetJob(std::int64_t growing_limit) : growing(growing_limit) {}
+};
+
+class SetList {
+  public:
+    using Layer = std::shared_ptr<const LoadedLayer>;
+
+    /// `preview_limit` as SetLoader's.
+    explicit SetList(std::int64_t preview_limit) : preview_limit_(preview_limit) {}
+
+    // Wishes, with SetLoader's meaning.
+    void want(const Scene& scene);
+    void outdate(const std::string& name);
+    void retry(const std::string& name);
+    void cancel(const std::string& name);
+    void cancel_job() {
+        if (job_) job_->cancelled = true;
+    }
+    /// False: it was so already.
+    bool hold(bool held) { return std::exchange(held_, held) != held; }
+
+    /// What should be done now.
+    std::optional<SetTask> next_task() const;
+    /// Begins it; it lasts until end().
+    std::shared_ptr<SetJob> begin_next();
+    void end() { job_.reset(); }
+
+    /// A loading job's result. Gives back what it replaces, or itself where nobody wants it any more: large,
+    /// to be let go without the lock.
+    Layer keep(const SetJob& finished, Layer loaded);
+    /// The same set with more known of it; gives back likewise.
+    Layer replace(const SetJob& finished, Layer loaded);
+    void fail(const SetJob& finished, const std::string& why);
+
+    /// The job whose set may be shown as far as it is; null: there is none, or nothing new of it.
+    std::shared_ptr<SetJob> growing_job() const;
+    /// Shows it; false: the job is over, or nobody wants its set any more.
+    bool grow(const SetJob& job, LoadedLayer grown);
+
+    std::uint64_t revision() const { return revision_; }
+    /// The latest set of a layer, or what there is of the one being generated; null: none.
+    Layer shown(const std::string& name) const;
+    LayerStatus status(const LayerParams& layer) const;
+    /// Some layer is being loaded, or waits for it.
+    bool loading() const;
+    /// There is nothing to be done.
+    bool resting() const;
+
+  private:
+    enum class Stage { waiting, loading, ready, failed, cancelled };
+
+    struct Entry {
+        std::optional<SourceParams> identity;  // of what was wanted last; none: nothing
+        Stage stage = Stage::waiting;
+        std::string error;
+        Layer loaded;
+        Layer growing;  // shown instead, while the next one is generated
+    };
+
+    Layer find_loaded(const SourceParams& identity) const;
+    void stop_growing(Entry& entry);
+    void stop(const std::string& name);
+    bool want_layer(const LayerParams& layer);
+    void forget_layers_not_in(const Scene& scene);
+    bool is_wanted(const SetJob& finished) const;
+    void queue_rest(const std::string& name, const LoadedLayer& loaded);
+
+    std::int64_t preview_limit_;
+    std::map<std::string, Entry> entries_;  // by layer name
+    std::map<std::string, SourceParams> sources_;
+    std::map<SetTask, std::list<std::string>> queues_;  // names of layers; the next one first
+    std::shared_ptr<SetJob> job_;                       // being done
+    std::uint64_t revision_ = 0;
+    bool held_ = false;
+};
+
+}  // namespace astrosplat

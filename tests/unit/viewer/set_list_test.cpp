@@ -1,0 +1,121 @@
+// What is done next for which layer, and what becomes of a result.
+#include "viewer/set_list.h"
+
+#include <gtest/gtest.h>
+
+namespace astrosplat {
+namespace {
+
+class SetListTest : public testing::Test {
+  protected:
+    Scene scene;
+    SetList list{1000};
+
+    void add_layer(const std::string& name) {
+        LayerParams layer;
+        layer.name = name;
+        scene.layers.push_back(layer);
+    }
+    /// What the list begins next, as "task name"; "": nothing.
+    std::string begun() {
+        if (!list.next_task()) return "";
+        job = list.begin_next();
+        static constexpr const char* names[] = {"load ", "arrange ", "describe "};
+        return names[static_cast<int>(job->task)] + job->name;
+    }
+    /// What a job would bring.
+    SetList::Layer result(bool whole) const {
+        auto layer = std::make_shared<LoadedLayer>();
+        layer->source = job->source;
+        layer->name = job->name;
+        layer->arranged = whole;
+        if (whole) layer->histograms = std::make_shared<LayerHistograms>();
+        return layer;
+    }
+    SetList::Layer keep(bool whole) {
+        const SetList::Layer given_back = list.keep(*job, result(whole));
+        list.end();
+        return given_back;
+    }
+
+    std::shared_ptr<SetJob> job;
+};
+
+TEST_F(SetListTest, TheNewestWishComesFirst) {
+    add_layer("gas");
+    add_layer("dust");
+    list.want(scene);
+    EXPECT_EQ(begun(), "load gas");
+    add_layer("stars");
+    list.want(scene);
+    keep(true);
+    EXPECT_EQ(begun(), "load stars");
+    keep(true);
+    EXPECT_EQ(begun(), "load dust");
+    keep(true);
+    EXPECT_EQ(begun(), "");
+    EXPECT_TRUE(list.resting());
+}
+
+TEST_F(SetListTest, WhatComesLaterWaitsForAllSetsAndWhileItIsHeld) {
+    add_layer("gas");
+    add_layer("dust");
+    list.want(scene);
+    EXPECT_EQ(begun(), "load gas");
+    keep(false);
+    EXPECT_EQ(begun(), "load dust");
+    EXPECT_TRUE(list.loading());
+    keep(false);
+    EXPECT_FALSE(list.loading());
+    EXPECT_TRUE(list.hold(true));
+    EXPECT_FALSE(list.hold(true));
+    EXPECT_EQ(begun(), "");
+    EXPECT_FALSE(list.resting());
+    list.hold(false);
+    for (const char* next : {"arrange gas", "arrange dust", "describe gas", "describe dust"}) {
+        EXPECT_EQ(begun(), next);
+        list.end();
+    }
+    EXPECT_TRUE(list.resting());
+}
+
+TEST_F(SetListTest, AJobKeepsWhatItBeganWithWhateverBecomesOfItsLayer) {
+    add_layer("gas");
+    list.want(scene);
+    begun();
+    keep(false);
+    const SetList::Layer first = list.shown("gas");
+    EXPECT_EQ(begun(), "arrange gas");
+    scene.layers.clear();
+    list.want(scene);
+    EXPECT_TRUE(job->cancelled);
+    EXPECT_EQ(job->loaded, first);
+    EXPECT_FALSE(list.shown("gas"));
+    const std::uint64_t revision = list.revision();
+    const SetList::Layer late = result(true);
+    EXPECT_EQ(list.replace(*job, late), late) << "nobody wants it any more";
+    EXPECT_EQ(list.keep(*job, late), late);
+    list.fail(*job, "too late");
+    EXPECT_FALSE(list.shown("gas"));
+    EXPECT_EQ(list.revision(), revision);
+    list.end();
+    EXPECT_TRUE(list.resting());
+}
+
+TEST_F(SetListTest, AResultGivesBackWhatItReplaces) {
+    add_layer("gas");
+    list.want(scene);
+    begun();
+    EXPECT_FALSE(keep(true));
+    const SetList::Layer first = list.shown("gas");
+    list.outdate("gas");
+    const SetList::Layer old = list.shown("gas");
+    EXPECT_NE(old, first) << "marked as outdated";
+    list.want(scene);
+    EXPECT_EQ(begun(), "load gas");
+    EXPECT_EQ(keep(true), old);
+    EXPECT_NE(list.shown("gas"), old);
+}
+
+}  // namespace
+}  // namespace astrosplat
