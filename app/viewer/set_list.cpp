@@ -58,7 +58,7 @@ void SetList::stop(const std::string& name) {
 bool SetList::want_layer(const LayerParams& layer) {
     const SourceParams identity = identity_of(layer.source, layer.name);
     Entry& entry = entries_[layer.name];
-    sources_[layer.name] = layer.source;
+    entry.source = layer.source;
     if (entry.identity == identity) return false;
     stop(layer.name);
     entry.identity = identity;
@@ -84,7 +84,6 @@ void SetList::forget_layers_not_in(const Scene& scene) {
             stop(it->first);
             if (entry.stage != Stage::ready) entry.identity.reset();  // shown again: begins again
         }
-        if (absent) sources_.erase(it->first);
         it = absent ? entries_.erase(it) : std::next(it);
     }
 }
@@ -146,7 +145,7 @@ std::shared_ptr<SetJob> SetList::begin_next() {
     job_->name = names.front();
     names.pop_front();
     Entry& entry = entries_[job_->name];
-    job_->source = sources_[job_->name];
+    job_->source = entry.source;
     job_->identity = *entry.identity;
     job_->loaded = entry.loaded;
     if (task == SetTask::load) entry.stage = Stage::loading;

@@ -84,7 +84,8 @@ class SetList {
     enum class Stage { waiting, loading, ready, failed, cancelled };
 
     struct Entry {
-        std::optional<SourceParams> identity;  // of what was wanted last; none: nothing
+        SourceParams source;                   // wanted last
+        std::optional<SourceParams> identity;  // of `source`; none: to be begun again
         Stage stage = Stage::waiting;
         std::string error;
         Layer loaded;
@@ -100,8 +101,7 @@ class SetList {
     void queue_rest(const std::string& name, const LoadedLayer& loaded);
 
     std::int64_t preview_limit_;
-    std::map<std::string, Entry> entries_;  // by layer name
-    std::map<std::string, SourceParams> sources_;
+    std::map<std::string, Entry> entries_;              // by layer name
     std::map<SetTask, std::list<std::string>> queues_;  // names of layers; the next one first
     std::shared_ptr<SetJob> job_;                       // being done
     std::uint64_t revision_ = 0;
