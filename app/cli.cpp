@@ -14,6 +14,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "interrupt.h"
 #include "places.h"
 #include "viewer/viewer.h"
 
@@ -228,7 +229,7 @@ int run_window(Invocation& call) {
     ScreenshotOptions& shot = call.screenshot;
     if (shot.output.empty()) {
         refuse_without_screenshot(shot);
-        return run_viewer(viewer);
+        return run_viewer(viewer, interrupted());
     }
     prove_writable(folder_of(shot.output));
     shot.scene = viewer;

@@ -18,7 +18,7 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr float width = 760, height = 520, places_width = 168, row_height = 26;
+constexpr float dialog_width = 760, dialog_height = 520, places_width = 168, row_height = 26;
 
 std::string size_text(std::uintmax_t bytes) {
     const double n = static_cast<double>(bytes);
@@ -101,8 +101,8 @@ void FileDialog::draw_path(GuiFrame& frame) {
     if (icon_button("up", Icon::chevron_up, {px(28), px(28)}, px(11), color::dim, "Folder above"))
         go_to(folder_.parent_path());
     ImGui::SameLine(0, px(4));
-    row_text(fitting(folder_.string() + (folder_ == folder_.root_path() ? "" : "/"), px(width - 60)), px(28),
-             color::dim);
+    row_text(fitting(folder_.string() + (folder_ == folder_.root_path() ? "" : "/"), px(dialog_width - 60)),
+             px(28), color::dim);
     if (focus_path_) ImGui::SetKeyboardFocusHere();
     focus_path_ = false;
     ImGui::SetNextItemWidth(-1);
@@ -191,7 +191,7 @@ FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
 }
 
 FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
-    if (!begin_dialog("file dialog", query_.title, open_, width, height)) return {};
+    if (!begin_dialog("file dialog", query_.title, open_, dialog_width, dialog_height)) return {};
     draw_path(frame);
     ImGui::Dummy({0, px(4)});
     const float list_height = ImGui::GetContentRegionAvail().y - px(44);

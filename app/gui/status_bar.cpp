@@ -15,7 +15,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr float margin = 12, gap = 24, bar_width = 120;
+constexpr float bar_margin = 12, gap = 24, bar_width = 120;
 
 // Where the probe's numbers begin, after its left edge; the last is its width.
 constexpr float probe_columns[] = {0, 46, 100, 150, 200, 250, 300, 352};
@@ -97,16 +97,17 @@ void StatusBar::take_message(const Status& status) {
 void StatusBar::draw(GuiFrame& frame, const Rect& area) {
     take_message(frame.status);
     ImGui::PushFont(small_font());
-    float right = right_text(machine_text(frame.status), area.x + area.width - px(margin), area, color::dim);
+    float right =
+        right_text(machine_text(frame.status), area.x + area.width - px(bar_margin), area, color::dim);
     right = draw_job(frame, right - px(gap), area);
     right = draw_probe(frame.status, right, area);
     const bool error = !unread_.empty();
     const std::string whole = error                        ? unread_
                               : frame.status.message.error ? ""  // was read
                                                            : frame.status.message.text;
-    const float room = right - area.x - px(margin);
+    const float room = right - area.x - px(bar_margin);
     const std::string text = fitting(whole, error ? room - px(20) : room);
-    ImGui::SetCursorScreenPos({area.x + px(margin), area.y});
+    ImGui::SetCursorScreenPos({area.x + px(bar_margin), area.y});
     if (error) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         draw_icon(ImGui::GetWindowDrawList(), Icon::warning, {at.x + px(6), at.y + area.height * 0.5f},

@@ -15,7 +15,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr float reach = 7, sample_px = 3, margin_y = 10;
+constexpr float point_reach = 7, sample_px = 3, margin_y = 10;
 
 // x, y, z, w or r, g, b: told apart, not shouting.
 ImU32 component_color(std::size_t component, std::size_t count) {
@@ -90,7 +90,7 @@ void Timeline::draw_graph_keys(GuiFrame& frame, const Track& track, const Rect& 
             const ImVec2 at{scale_.x_of(key.frame), y_of(key.value[c], area)};
             const bool held =
                 drag_ == Drag::value && graph_.grabbed_key == key.frame && graph_.component == c;
-            const bool near = hovered && std::hypot(at.x - mouse.x, at.y - mouse.y) <= px(reach);
+            const bool near = hovered && std::hypot(at.x - mouse.x, at.y - mouse.y) <= px(point_reach);
             if (near && drag_ == Drag::none && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
                 drag_ = Drag::value;
                 gesture_ = new_gesture();

@@ -16,7 +16,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr float row_height = 26, reach = 7;
+constexpr float row_height = 26, key_reach = 7;
 
 const char* name_of(Interpolation interpolation) {
     return interpolation == Interpolation::linear   ? "linear"
@@ -59,7 +59,7 @@ const Timeline::KeyPlace* Timeline::key_under_mouse(const Scene& scene, float ro
     const int row = static_cast<int>(std::floor((mouse.y - rows_y) / px(row_height)));
     if (row < 0 || row >= static_cast<int>(scene.animation.size())) return nullptr;
     const Track& track = scene.animation[static_cast<std::size_t>(row)];
-    float nearest = px(reach);
+    float nearest = px(key_reach);
     bool found = false;
     for (const auto& key : track.keys) {
         const float distance = std::fabs(scale_.x_of(key.frame) - mouse.x);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float wipe_grip = 6;  // px at either side
 constexpr double zoom_least = 1.0 / 16, zoom_most = 32;
-constexpr double zoom_step = 1.189207115002721;  // a quarter of doubling, for a notch of the wheel
+constexpr double notch_zoom = 1.189207115002721;  // a quarter of doubling, for a notch of the wheel
 
 bool near_wipe(const GuiFrame& frame, const Rect& picture) {
     if (frame.view.compare != CompareMode::wipe) return false;
@@ -71,7 +71,7 @@ void Viewport::move_picture(GuiFrame& frame, const Rect& area) {
     if (input_.wheel == 0.0f || input_.drag == ViewportInput::Drag::look) return;
     double zoom = view.zoom;
     for (int i = 0; i < std::abs(static_cast<int>(std::round(input_.wheel))); ++i)
-        zoom *= input_.wheel > 0 ? zoom_step : 1.0 / zoom_step;
+        zoom *= input_.wheel > 0 ? notch_zoom : 1.0 / notch_zoom;
     zoom = std::clamp(zoom, zoom_least, zoom_most);
     if (std::fabs(zoom - std::round(zoom)) < 0.01) zoom = std::round(zoom);
     // What lies under the mouse stays there.

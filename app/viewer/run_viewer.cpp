@@ -2,13 +2,14 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <chrono>
+#include <atomic>
 #include <exception>
 
 #include "core/error.h"
 #include "core/log.h"
 #include "edit/preferences.h"
-#include "interrupt.h"
+#include "exit_code.h"
+#include "viewer/clock.h"
 #include "viewer/native_chooser.h"
 #include "viewer/session.h"
 #include "viewer/viewer.h"
@@ -17,13 +18,6 @@
 namespace astrosplat {
 namespace {
 
-constexpr int exit_done = 0, exit_own_fault = 1;
-
-double seconds_now() {
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
-
 /// Frames drawn after the last event, so that hovers, tooltips and layouts come to rest.
 constexpr int frames_after_event = 4;
 
@@ -31,8 +25,9 @@ constexpr double screen_frame_s = 1.0 / 60.0;
 
 class Loop {
   public:
-    Loop(const ViewerOptions& options, const Preferences& preferences)
-        : window_(preferences.window_width, preferences.window_height, "astrosplat"),
+    Loop(const ViewerOptions& options, const Preferences& preferences, const std::atomic<bool>& interrupted)
+        : interrupted_(interrupted),
+          window_(preferences.window_width, preferences.window_height, "astrosplat"),
           session_(options, window_.gl()) {
         apply_theme(window_.content_scale());
         gui_.set_file_chooser([this](const FileQuery& request) { return chooser_.open(request); });
@@ -66,7 +61,7 @@ class Loop {
     }
 
     void frame() {
-        if (interrupted()) session_.interrupt();
+        if (interrupted_) session_.interrupt();
         if (window_.close_requested()) gui_.ask_to_quit(session_.document());
         const std::vector<std::filesystem::path> dropped = window_.take_dropped();
         if (!dropped.empty()) session_.drop(dropped);
@@ -100,6 +95,7 @@ class Loop {
         }
     }
 
+    const std::atomic<bool>& interrupted_;
     Window window_;
     Session session_;
     Gui gui_;
@@ -111,10 +107,10 @@ class Loop {
 
 }  // namespace
 
-int run_viewer(const ViewerOptions& options) {
+int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupted) {
     std::unique_ptr<Loop> loop;
     try {
-        loop = std::make_unique<Loop>(options, load_preferences());
+        loop = std::make_unique<Loop>(options, load_preferences(), interrupted);
     } catch (const NoContext& error) {
         log_error(std::string("no window: ") + error.what() +
                   "; frames render without one: astrosplat --batch SCENE");

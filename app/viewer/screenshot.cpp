@@ -7,21 +7,16 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/text.h"
+#include "exit_code.h"
 #include "output/write.h"
 #include "output/write_picture.h"
+#include "viewer/clock.h"
 #include "viewer/session.h"
 #include "viewer/viewer.h"
 #include "viewer/widget_target.h"
 
 namespace astrosplat {
 namespace {
-
-constexpr int exit_done = 0, exit_own_fault = 1;
-
-double seconds_now() {
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
 
 /// Advances until the sets are there and the picture is what was asked for.
 template <class DrawFrame>

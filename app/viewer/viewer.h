@@ -2,6 +2,7 @@
 // asks for. Out: the exit code. Where no OpenGL context can be had, one line that names --batch.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -17,7 +18,8 @@ struct ViewerOptions {
     std::vector<Assignment> assignments;  // --set
     SetCache cache;
 };
-int run_viewer(const ViewerOptions& options);
+/// Once `interrupted`, throws Cancelled; an autosave with what was not saved stays.
+int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupted);
 
 struct ScreenshotOptions {
     ViewerOptions scene;

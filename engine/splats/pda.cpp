@@ -174,26 +174,26 @@ std::vector<Column> columns_of(const std::vector<Attribute>& attributes) {
     return columns;
 }
 
-char* put(char* out, float value) { return put_float(out, value); }
-char* put(char* out, std::uint64_t value) { return std::to_chars(out, out + 20, value).ptr; }
-char* put(char* out, const glm::vec3& v) {
-    out = put(out, v.x);
+char* put_text(char* out, float value) { return put_float(out, value); }
+char* put_text(char* out, std::uint64_t value) { return std::to_chars(out, out + 20, value).ptr; }
+char* put_text(char* out, const glm::vec3& v) {
+    out = put_text(out, v.x);
     *out++ = ' ';
-    out = put(out, v.y);
+    out = put_text(out, v.y);
     *out++ = ' ';
-    return put(out, v.z);
+    return put_text(out, v.z);
 }
 template <class T>
 char* put_next(char* out, const T& value) {
     *out++ = ' ';
-    return put(out, value);
+    return put_text(out, value);
 }
 
 /// The longest row: nine floats, a mesh, an id, blanks and the newline.
 constexpr std::size_t longest_row = 9 * (float_text_room + 1) + 11 + 21 + 1;
 
 char* put_row(char* out, const SplatSet& set, std::size_t i) {
-    out = put(out, set.position[i]);
+    out = put_text(out, set.position[i]);
     out = put_next(out, set.color[i]);
     out = put_next(out, set.alpha[i]);
     out = put_next(out, set.distance[i]);

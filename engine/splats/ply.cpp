@@ -25,7 +25,7 @@ namespace astrosplat {
 
 namespace {
 
-constexpr std::int64_t rows_per_chunk = 1 << 15;
+constexpr std::int64_t rows_written_at_once = 1 << 15;
 
 // ---- which property is which field
 
@@ -137,21 +137,21 @@ void read_ascii(const PlyHeader& header, std::size_t vertex, SplatTable& table,
 // ---- writing
 
 template <class T>
-char* put(char* out, const T& value) {
+char* put_bytes(char* out, const T& value) {
     std::memcpy(out, &value, sizeof value);
     return out + sizeof value;
 }
 
 char* put_row(char* out, const SplatSet& set, bool wide_ids, std::size_t i) {
-    out = put(out, set.position[i]);
-    out = put(out, set.color[i]);
-    out = put(out, set.alpha[i]);
-    out = put(out, set.distance[i]);
-    if (!set.radius.empty()) out = put(out, set.radius[i]);
-    if (!set.uv.empty()) out = put(out, set.uv[i]);
-    if (!set.mesh.empty()) out = put(out, set.mesh[i]);
-    out = put(out, static_cast<std::uint32_t>(set.id[i]));
-    if (wide_ids) out = put(out, static_cast<std::uint32_t>(set.id[i] >> 32));
+    out = put_bytes(out, set.position[i]);
+    out = put_bytes(out, set.color[i]);
+    out = put_bytes(out, set.alpha[i]);
+    out = put_bytes(out, set.distance[i]);
+    if (!set.radius.empty()) out = put_bytes(out, set.radius[i]);
+    if (!set.uv.empty()) out = put_bytes(out, set.uv[i]);
+    if (!set.mesh.empty()) out = put_bytes(out, set.mesh[i]);
+    out = put_bytes(out, static_cast<std::uint32_t>(set.id[i]));
+    if (wide_ids) out = put_bytes(out, static_cast<std::uint32_t>(set.id[i] >> 32));
     return out;
 }
 
@@ -195,7 +195,7 @@ void write_ply(const std::filesystem::path& file, const SplatSet& set, const Pro
     const bool wide_ids =
         std::any_of(set.id.begin(), set.id.end(), [](std::uint64_t id) { return id >> 32 != 0; });
     constexpr std::size_t longest_row = 17 * sizeof(float);
-    write_ordered(file, header_text(set, wide_ids), set.size(), rows_per_chunk, longest_row, progress,
+    write_ordered(file, header_text(set, wide_ids), set.size(), rows_written_at_once, longest_row, progress,
                   [&](std::int64_t begin, std::int64_t end, char* out) {
                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
                           out = put_row(out, set, wide_ids, i);

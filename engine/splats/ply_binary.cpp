@@ -22,7 +22,7 @@ namespace astrosplat {
 
 namespace {
 
-constexpr std::int64_t rows_per_chunk = 1 << 14;
+constexpr std::int64_t rows_read_at_once = 1 << 14;
 
 template <class T>
 T load(const char* p, bool swap) {
@@ -151,19 +151,19 @@ struct BinaryReader {
         return at;
     }
 
-    /// Starts of every rows_per_chunk-th row from `at` on, and the end behind the last row.
+    /// Starts of every rows_read_at_once-th row from `at` on, and the end behind the last row.
     std::vector<std::size_t> chunk_starts(const PlyElement& element, std::size_t at) const {
         std::vector<std::size_t> starts;
         const std::size_t row_bytes = fixed_row_bytes(element.properties);
         if (element.properties.empty()) return {at};
         if (row_bytes != 0) {
             if (element.count > (data.size() - at) / row_bytes) truncated(element.name, element.count);
-            for (std::uint64_t row = 0; row < element.count; row += rows_per_chunk)
+            for (std::uint64_t row = 0; row < element.count; row += rows_read_at_once)
                 starts.push_back(at + row * row_bytes);
             at += element.count * row_bytes;
         } else {
             for (std::uint64_t row = 0; row < element.count; ++row) {
-                if (row % rows_per_chunk == 0) starts.push_back(at);
+                if (row % rows_read_at_once == 0) starts.push_back(at);
                 at = after_row(element, at);
             }
         }
@@ -228,9 +228,9 @@ void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& t
     parallel_for(static_cast<std::int64_t>(errors.size()), [&](std::int64_t chunk, int) {
         progress.check();
         const auto i = static_cast<std::size_t>(chunk);
-        const std::int64_t first = chunk * rows_per_chunk;
+        const std::int64_t first = chunk * rows_read_at_once;
         try {
-            reader.read_rows(table, first, std::min(first + rows_per_chunk, count), starts[i]);
+            reader.read_rows(table, first, std::min(first + rows_read_at_once, count), starts[i]);
         } catch (const InputError& error) {
             errors[i] = error.what();
         }

@@ -16,13 +16,13 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t chunk = 1 << 16;
+constexpr std::int64_t splats_per_chunk = 1 << 16;
 
 template <class T, class Row>
 void permute(Buffer<T>& values, const Buffer<Row>& from) {
     if (values.empty()) return;
     Buffer<T> sorted(values.size());
-    parallel_chunks(static_cast<std::int64_t>(from.size()), chunk,
+    parallel_chunks(static_cast<std::int64_t>(from.size()), splats_per_chunk,
                     [&](std::int64_t begin, std::int64_t end, int) {
                         gather(values.data(), std::span<const Row>(from.data() + begin, from.data() + end),
                                reinterpret_cast<char*>(sorted.data() + begin));
@@ -66,7 +66,7 @@ template <class Row>
 void sort_rows(SplatSet& set) {
     const IdSteps steps = steps_of(set.id);
     Buffer<std::uint32_t> keys(set.id.size());
-    parallel_chunks(set.size(), chunk, [&](std::int64_t begin, std::int64_t end, int) {
+    parallel_chunks(set.size(), splats_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
             keys[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
     });
@@ -87,12 +87,12 @@ void drop_columns(SplatSet& set, const OptionalColumns& wanted) {
 }
 
 Bounds bounds(const SplatSet& set) {
-    const std::int64_t chunks = (set.size() + chunk - 1) / chunk;
+    const std::int64_t chunks = (set.size() + splats_per_chunk - 1) / splats_per_chunk;
     std::vector<Bounds> parts(static_cast<std::size_t>(chunks));
     parallel_for(chunks, [&](std::int64_t part, int) {
         Bounds box;  // kept apart from its neighbours in `parts`, which other threads write
-        const std::int64_t end = std::min(set.size(), (part + 1) * chunk);
-        for (std::int64_t i = part * chunk; i < end; ++i) {
+        const std::int64_t end = std::min(set.size(), (part + 1) * splats_per_chunk);
+        for (std::int64_t i = part * splats_per_chunk; i < end; ++i) {
             box.add(glm::dvec3(set.position[static_cast<std::size_t>(i)]));
         }
         parts[static_cast<std::size_t>(part)] = box;

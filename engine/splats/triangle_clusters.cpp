@@ -17,7 +17,7 @@ namespace astrosplat {
 namespace {
 
 constexpr std::size_t most_triangles = ClosestPoint::none;  // so that it is no triangle's number or slot
-constexpr std::int64_t chunk = 4096;
+constexpr std::int64_t triangles_per_chunk = 4096;
 
 // Of all triangles, by number.
 Buffer<TriangleCorners> corners_of(std::span<const Mesh* const> meshes) {
@@ -31,7 +31,7 @@ Buffer<TriangleCorners> corners_of(std::span<const Mesh* const> meshes) {
     std::size_t first = 0;
     for (const Mesh* mesh : meshes) {
         const auto triangles = static_cast<std::int64_t>(mesh->triangles.size());
-        parallel_chunks(triangles, chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        parallel_chunks(triangles, triangles_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
             for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
                 const auto corner = [&](std::size_t k) {
                     return mesh->positions[mesh->triangles[t].position[k]];
@@ -46,12 +46,13 @@ Buffer<TriangleCorners> corners_of(std::span<const Mesh* const> meshes) {
 
 Bounds box_of(const Buffer<TriangleCorners>& corners) {
     const auto count = static_cast<std::int64_t>(corners.size());
-    std::vector<Bounds> boxes(static_cast<std::size_t>((count + chunk - 1) / chunk));
-    parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
+    std::vector<Bounds> boxes(
+        static_cast<std::size_t>((count + triangles_per_chunk - 1) / triangles_per_chunk));
+    parallel_chunks(count, triangles_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         Bounds box;
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
             for (const glm::vec3& p : {corners[i].a, corners[i].b, corners[i].c}) box.add(glm::dvec3(p));
-        boxes[static_cast<std::size_t>(begin / chunk)] = box;
+        boxes[static_cast<std::size_t>(begin / triangles_per_chunk)] = box;
     });
     Bounds all;
     for (const Bounds& box : boxes) {
@@ -74,7 +75,7 @@ Buffer<std::uint64_t> curve_order(const Buffer<TriangleCorners>& corners, const 
                                   double reach) {
     const auto count = static_cast<std::int64_t>(corners.size());
     Buffer<std::uint64_t> order(corners.size());
-    parallel_chunks(count, chunk, [&](std::int64_t begin, std::int64_t end, int) {
+    parallel_chunks(count, triangles_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         CurvePlaces places;
         const auto last = static_cast<std::size_t>(end);
         for (auto first = static_cast<std::size_t>(begin); first < last; first += CurvePlaces::most) {
@@ -140,7 +141,7 @@ TriangleClusters place_clusters(std::span<const Mesh* const> meshes) {
     to.boxes.resize(to.clusters.size());
     to.triangles.resize(corners.size());
     to.slots.resize(corners.size());
-    parallel_chunks(static_cast<std::int64_t>(to.clusters.size()), chunk / std::int64_t{size},
+    parallel_chunks(static_cast<std::int64_t>(to.clusters.size()), triangles_per_chunk / std::int64_t{size},
                     [&](std::int64_t begin, std::int64_t end, int) {
                         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
                             place_cluster(i, corners, order, to);

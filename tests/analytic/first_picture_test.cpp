@@ -14,11 +14,11 @@ namespace {
 
 using namespace astrosplat::analytic;
 
-constexpr int texture_px = 128;
+constexpr int galaxy_px = 128;
 
 /// A two-armed spiral with a bright core and a bluish disc, linear light, without alpha of its own (1).
 glm::vec4 galaxy(int x, int y) {
-    const double dx = (x + 0.5) / texture_px - 0.5, dy = (y + 0.5) / texture_px - 0.5;
+    const double dx = (x + 0.5) / galaxy_px - 0.5, dy = (y + 0.5) / galaxy_px - 0.5;
     const double r = std::sqrt(dx * dx + dy * dy), angle = std::atan2(dy, dx);
     const double arms = 0.5 + 0.5 * std::cos(2.0 * angle - 12.0 * std::sqrt(r));
     const double disc = 0.5 * std::exp(-r / 0.15) * arms, core = std::exp(-r * r / 0.003);
@@ -28,15 +28,15 @@ glm::vec4 galaxy(int x, int y) {
 
 glm::dvec3 mean_light() {
     glm::dvec3 sum(0.0);
-    for (int y = 0; y < texture_px; ++y)
-        for (int x = 0; x < texture_px; ++x) sum += glm::dvec3(galaxy(x, y));
-    return sum / static_cast<double>(texture_px * texture_px);
+    for (int y = 0; y < galaxy_px; ++y)
+        for (int x = 0; x < galaxy_px; ++x) sum += glm::dvec3(galaxy(x, y));
+    return sum / static_cast<double>(galaxy_px * galaxy_px);
 }
 
 /// The scene as written, at a size for tests, with further assignments. The texture's alpha of 1 everywhere
 /// is passed over for the brightness, as for a picture without alpha.
 Scene first_scene(const TempFolder& folder, std::vector<Assignment> changes) {
-    write_float_tiff(folder / "my galaxy.tif", texture_px, texture_px, galaxy);
+    write_float_tiff(folder / "my galaxy.tif", galaxy_px, galaxy_px, galaxy);
     const std::string text = new_scene_text(folder / "my galaxy.tif", "plane", folder / "scene.toml");
     changes.push_back({"output.resolution", "[100, 100]"});
     changes.push_back({"layer.my_galaxy.source.count", "200000"});

@@ -40,7 +40,7 @@ constexpr const char* everything_moves = R"(
 "layer.cloud.render.lod.max_px" = { keys = [[1, 300.0], [9, 600.0]] }
 )";
 
-void write_inputs(const TempFolder& folder) {
+void write_cloud(const TempFolder& folder) {
     write_float_tiff(folder / "cloud.tif", 16, 16, [](int x, int y) {
         return glm::vec4(0.2 + x / 20.0, 0.9 - y / 20.0, 0.5, 0.1 + (x * 7 + y * 5) % 11 / 14.0);
     });
@@ -48,7 +48,7 @@ void write_inputs(const TempFolder& folder) {
 
 TEST(Frames, OpacityTrackFadesTheLightAsItSays) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_cloud(folder);
     Pipeline pipeline(scene_of(
         folder, moving_scene("add", R"("layer.cloud.render.opacity" = { keys = [[1, 1.0], [9, 0.0]] })")));
     const Image full = render_frame(pipeline, 1.0).beauty;
@@ -64,7 +64,7 @@ TEST(Frames, OpacityTrackFadesTheLightAsItSays) {
 
 TEST(Frames, GradeTracksChangeTheColourAsTheySay) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_cloud(folder);
     Pipeline pipeline(scene_of(
         folder, moving_scene("over", R"("layer.cloud.look.grade.gain" = { keys = [[1, 1.0], [3, 4.0]] }
 "layer.cloud.look.grade.tint" = { keys = [[1, [1, 1, 1]], [3, [1, 0.5, 0]]] }
@@ -80,7 +80,7 @@ TEST(Frames, GradeTracksChangeTheColourAsTheySay) {
 
 TEST(Frames, AloneInASequenceBackwardsAndTwiceAreTheSameBits) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_cloud(folder);
     const Scene scene = scene_of(folder, moving_scene("over", everything_moves));
     std::vector<std::string> alone;
     for (int frame = 1; frame <= 9; ++frame) {

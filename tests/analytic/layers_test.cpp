@@ -52,7 +52,7 @@ count = 8000
     return text;
 }
 
-void write_inputs(const TempFolder& folder) {
+void write_pictures(const TempFolder& folder) {
     write_float_tiff(folder / "picture.tif", 16, 16, [](int x, int y) {
         return glm::vec4(0.1 + x / 16.0, 0.9 - y / 20.0, 0.4, 0.3 + 0.04 * x);
     });
@@ -62,7 +62,7 @@ void write_inputs(const TempFolder& folder) {
 
 TEST(Layers, AndEnvironmentSumToTheBeauty) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_pictures(folder);
     const StoredFile once = read_stored_file(write_text(folder, layered_scene(1.0, "float")));
     const StoredFile twice = read_stored_file(write_text(folder, layered_scene(2.0, "float")));
     double most_environment = 0.0;
@@ -90,7 +90,7 @@ TEST(Layers, AndEnvironmentSumToTheBeauty) {
 
 TEST(Layers, ChannelsHaveTheirNamesAndTypes) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_pictures(folder);
     for (const std::string depth : {"half", "float"}) {
         const StoredFile file = read_stored_file(write_text(folder, layered_scene(1.0, depth.c_str())));
         std::vector<std::pair<std::string, std::string>> expected = {

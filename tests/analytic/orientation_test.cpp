@@ -16,7 +16,7 @@ namespace {
 
 using namespace astrosplat::analytic;
 
-constexpr int texture_px = 64, view_px = 64;
+constexpr int letter_px = 64, view_px = 64;
 constexpr const char* letter[8] = {"RR....GG",  //
                                    "R.####.G",  //
                                    "..#.....",  //
@@ -131,9 +131,9 @@ max_distance = 0.05
                        fmt::arg("uv", view.uv));
 }
 
-void write_inputs(const TempFolder& folder) {
-    write_float_tiff(folder / "letter.tif", texture_px, texture_px, [](int x, int y) {
-        return glm::vec4(letter_color((x + 0.5) / texture_px, 1.0 - (y + 0.5) / texture_px), 1.0f);
+void write_letter(const TempFolder& folder) {
+    write_float_tiff(folder / "letter.tif", letter_px, letter_px, [](int x, int y) {
+        return glm::vec4(letter_color((x + 0.5) / letter_px, 1.0 - (y + 0.5) / letter_px), 1.0f);
     });
     const char* face = "f 1 2 3 4\n";
     folder.file("xy.obj", std::string("v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\n") + face);
@@ -145,7 +145,7 @@ class Orientation : public ::testing::TestWithParam<View> {};
 
 TEST_P(Orientation, OrthographicViewReadsRight) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_letter(folder);
     expect_reads_right(render_text(folder, view_scene(GetParam(), false)).beauty, GetParam().mapping);
 }
 
@@ -163,7 +163,7 @@ class OrientationInPerspective : public ::testing::TestWithParam<View> {};
 
 TEST_P(OrientationInPerspective, ReadsRight) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_letter(folder);
     expect_reads_right(render_text(folder, view_scene(GetParam(), true)).beauty, GetParam().mapping);
 }
 
@@ -177,7 +177,7 @@ INSTANTIATE_TEST_SUITE_P(Views, OrientationInPerspective,
 
 TEST(OrientationOfFiles, PngTiffAndExrReadRight) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_letter(folder);
     const View plane{"Plane", "plane", "mesh", "[0, 20, 0]", whole};
     for (const char* name : {"out.png", "out.tif", "out.exr"}) {
         SCOPED_TRACE(name);

@@ -17,7 +17,7 @@ namespace {
 using namespace astrosplat::analytic;
 
 const glm::vec3 stored(1.0f, 0.6f, 0.2f);  // sRGB, multiples of 1/255
-constexpr int texture_px = 32;
+constexpr int disc_px = 32;
 
 /// A bright disc that fades out over half its radius. Empty texels are black, as painting programs write
 /// them.
@@ -55,7 +55,7 @@ blend = "{}"
 
 TEST(SoftEdge, EverySplatHasTheColourOfThePicture) {
     const TempFolder folder;
-    write_png(folder / "disc.png", texture_px, texture_px, soft_disc);
+    write_png(folder / "disc.png", disc_px, disc_px, soft_disc);
     for (const char* filter : {"nearest", "bilinear", "area"}) {
         const Scene scene = scene_of(folder, disc_scene(filter, "over"));
         const SplatSet set = load_source(scene.layers[0].source, "disc");
@@ -75,7 +75,7 @@ TEST(SoftEdge, EverySplatHasTheColourOfThePicture) {
 
 TEST(SoftEdge, RenderedPictureKeepsTheHue) {
     const TempFolder folder;
-    write_png(folder / "disc.png", texture_px, texture_px, soft_disc);
+    write_png(folder / "disc.png", disc_px, disc_px, soft_disc);
     const Image over = render_text(folder, disc_scene("bilinear", "over")).beauty;
     int soft = 0;
     for (std::int64_t y = 0; y < 64; ++y) {
@@ -91,7 +91,7 @@ TEST(SoftEdge, RenderedPictureKeepsTheHue) {
 
 TEST(SoftEdge, StraightPngKeepsTheStoredColour) {
     const TempFolder folder;
-    write_png(folder / "disc.png", texture_px, texture_px, soft_disc);
+    write_png(folder / "disc.png", disc_px, disc_px, soft_disc);
     const StoredFile file = read_stored_file(
         write_text(folder, disc_scene("bilinear", "over", "path = \"out.png\"\nalpha = \"straight\"")));
     int soft = 0;

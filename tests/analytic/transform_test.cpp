@@ -88,7 +88,7 @@ TEST(Transform, ScalesTurnsAboutXThenYThenZAndMoves) {
     }
 }
 
-void write_inputs(const TempFolder& folder) {
+void write_texture(const TempFolder& folder) {
     write_float_tiff(folder / "cloud.tif", 16, 16, [](int x, int y) {
         return glm::vec4(0.2 + x / 20.0, 0.9 - y / 20.0, 0.5, (x * 7 + y * 5) % 11 / 11.0);
     });
@@ -118,7 +118,7 @@ count = 20000
 
 TEST(Transform, KeepsThePlaceOfANebulaInsideAGalaxy) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_texture(folder);
     const Image here = render_text(folder, cloud_scene(glm::dvec3(0.0))).beauty;
     const Image far_out = render_text(folder, cloud_scene({1e6, -2e6, 3e6})).beauty;
     EXPECT_GT(mean(here).a, 0.1);
@@ -131,7 +131,7 @@ TEST(Transform, KeepsThePlaceOfANebulaInsideAGalaxy) {
 
 TEST(Transform, NeverRegeneratesNorAppliesTheLookAgain) {
     const TempFolder folder;
-    write_inputs(folder);
+    write_texture(folder);
     Pipeline pipeline(scene_of(folder, cloud_scene(glm::dvec3(0.0), R"([animation]
 "layer.cloud.transform.rotate" = { keys = [[1, [0, 0, 0]], [3, [0, 90, 0]]] }
 "layer.cloud.transform.scale" = { keys = [[1, 1.0], [3, 2.0]] }

@@ -11,7 +11,7 @@
 namespace astrosplat {
 namespace {
 
-using testing::GlTest;
+using test::GlTest;
 using View = DisplaySettings::View;
 using Mode = DisplaySettings::Mode;
 

@@ -9,7 +9,7 @@
 
 #include "gl/context.h"
 
-namespace astrosplat::testing {
+namespace astrosplat::test {
 
 /// The program's only context; null where none can be had, with the reason.
 struct SharedContext {
@@ -36,4 +36,4 @@ class GlTest : public ::testing::Test {
     }
 };
 
-}  // namespace astrosplat::testing
+}  // namespace astrosplat::test

@@ -17,7 +17,7 @@
 namespace astrosplat {
 namespace {
 
-using testing::GlTest;
+using test::GlTest;
 
 constexpr std::int64_t count = 20000;
 
@@ -168,7 +168,7 @@ class GpuLook : public GlTest {
 
     void expect_like_engine(const LookCase& c) {
         SCOPED_TRACE(c.name);
-        auto set = std::make_shared<SplatSet>(*testing::cloud(count, 3));
+        auto set = std::make_shared<SplatSet>(*test::cloud(count, 3));
         Look look = with_radius();
         LookInputs inputs;
         inputs.seed = 99;
@@ -203,7 +203,7 @@ TEST_F(GpuLook, EveryOperatorAsTheEngine) {
 }
 
 TEST_F(GpuLook, ASharePreservesAlphaTimesArea) {
-    const auto set = testing::cloud(2000, 3);
+    const auto set = test::cloud(2000, 3);
     const auto whole = run(set, with_radius(), {}), tenth = run(set, with_radius(), {}, 0.1f);
     ASSERT_EQ(whole.size(), tenth.size());
     for (const auto& [id, splat] : whole) {

@@ -10,7 +10,7 @@
 #include "render/render.h"
 #include "support/temp_folder.h"
 
-namespace astrosplat::testing {
+namespace astrosplat::test {
 namespace {
 
 float random(std::uint32_t seed, std::uint32_t id, std::uint32_t purpose) {
@@ -125,4 +125,4 @@ Likeness compare_shown(const Image& a, const Image& b) {
     return likeness;
 }
 
-}  // namespace astrosplat::testing
+}  // namespace astrosplat::test

@@ -9,7 +9,7 @@
 #include "camera/camera.h"
 #include "gl/preview.h"
 
-namespace astrosplat::testing {
+namespace astrosplat::test {
 
 /// A flat cloud of `count` splats in [-1, 1] x [-0.2, 0.2] x [-1, 1], with every array a set can have;
 /// places, colours and alpha are hashes of (seed, id).
@@ -37,4 +37,4 @@ struct Likeness {
 };
 Likeness compare_shown(const Image& a, const Image& b);
 
-}  // namespace astrosplat::testing
+}  // namespace astrosplat::test

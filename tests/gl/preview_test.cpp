@@ -10,7 +10,7 @@
 namespace astrosplat {
 namespace {
 
-using testing::GlTest;
+using test::GlTest;
 
 constexpr int width = 320, height = 200;
 
@@ -38,8 +38,8 @@ class PreviewPicture : public GlTest {
 
     void expect_like_offline(const std::vector<PreviewLayer>& layers, const Camera& camera,
                              const Environment* environment = nullptr) {
-        const Image offline = testing::offline(layers, camera, environment, width, height);
-        const testing::Likeness likeness = testing::compare_shown(draw(layers, camera, environment), offline);
+        const Image offline = test::offline(layers, camera, environment, width, height);
+        const test::Likeness likeness = test::compare_shown(draw(layers, camera, environment), offline);
         EXPECT_GE(likeness.psnr_db, 45.0);
         EXPECT_LE(likeness.difference_999, 1.0 / 255.0);
         EXPECT_NEAR(likeness.brightness, 1.0, 2e-3);
@@ -54,11 +54,11 @@ LayerRender render_with(Falloff::Shape shape, Blend blend = Blend::over) {
 }
 
 TEST_F(PreviewPicture, EveryFalloff) {
-    for (const auto shape : testing::all_shapes) {
+    for (const auto shape : test::all_shapes) {
         SCOPED_TRACE(static_cast<int>(shape));
         for (float radius : {0.002f, 0.03f, 0.15f})
-            expect_like_offline({testing::cloud_layer(3000, 5, radius, render_with(shape))},
-                                testing::perspective_camera(width, height));
+            expect_like_offline({test::cloud_layer(3000, 5, radius, render_with(shape))},
+                                test::perspective_camera(width, height));
     }
 }
 
@@ -69,10 +69,9 @@ TEST_F(PreviewPicture, SharpFalloffsAndCores) {
     spike.falloff.sharpness = 30.0f;
     LayerRender core = render_with(Falloff::Shape::trapezoid);
     core.falloff.core = 0.9f;
-    expect_like_offline(
-        {testing::cloud_layer(1500, 9, 0.1f, sharp), testing::cloud_layer(1500, 5, 0.1f, spike),
-         testing::cloud_layer(1500, 4, 0.1f, core)},
-        testing::perspective_camera(width, height));
+    expect_like_offline({test::cloud_layer(1500, 9, 0.1f, sharp), test::cloud_layer(1500, 5, 0.1f, spike),
+                         test::cloud_layer(1500, 4, 0.1f, core)},
+                        test::perspective_camera(width, height));
 }
 
 TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
@@ -83,106 +82,106 @@ TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
             render.isolate = isolate;
             render.opacity = 0.8f;
             const std::vector<PreviewLayer> layers = {
-                testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
-                testing::cloud_layer(1500, 5, 0.06f, render),
-                testing::cloud_layer(500, 7, 0.1f, render_with(Falloff::Shape::constant))};
-            expect_like_offline(layers, testing::perspective_camera(width, height));
+                test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
+                test::cloud_layer(1500, 5, 0.06f, render),
+                test::cloud_layer(500, 7, 0.1f, render_with(Falloff::Shape::constant))};
+            expect_like_offline(layers, test::perspective_camera(width, height));
         }
     }
 }
 
 TEST_F(PreviewPicture, LightAboveOneUnderScreen) {
     PreviewLayer bright =
-        testing::cloud_layer(1500, 5, 0.06f, render_with(Falloff::Shape::gaussian, Blend::screen));
+        test::cloud_layer(1500, 5, 0.06f, render_with(Falloff::Shape::gaussian, Blend::screen));
     bright.look.grade.gain = 5.0f;
-    expect_like_offline({testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright},
-                        testing::perspective_camera(width, height));
+    expect_like_offline({test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright},
+                        test::perspective_camera(width, height));
     bright.layer.render.isolate = true;
-    expect_like_offline({testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright},
-                        testing::perspective_camera(width, height));
+    expect_like_offline({test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)), bright},
+                        test::perspective_camera(width, height));
 }
 
 TEST_F(PreviewPicture, HoldoutsMergedAndIsolatedWithAndWithoutEnvironment) {
-    const Environment sky = testing::small_sky(1);
+    const Environment sky = test::small_sky(1);
     for (bool isolate : {false, true}) {
         LayerRender holds = render_with(Falloff::Shape::gaussian);
         holds.holdout = true;
         holds.isolate = isolate;
         const std::vector<PreviewLayer> layers = {
-            testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
-            testing::cloud_layer(1500, 5, 0.08f, holds)};
-        expect_like_offline(layers, testing::perspective_camera(width, height));
-        expect_like_offline(layers, testing::perspective_camera(width, height), &sky);
+            test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
+            test::cloud_layer(1500, 5, 0.08f, holds)};
+        expect_like_offline(layers, test::perspective_camera(width, height));
+        expect_like_offline(layers, test::perspective_camera(width, height), &sky);
     }
 }
 
 TEST_F(PreviewPicture, EnvironmentsOfOneAndOfSixFaces) {
     for (int faces : {1, 6}) {
-        const Environment sky = testing::small_sky(faces);
-        expect_like_offline({}, testing::perspective_camera(width, height), &sky);
-        expect_like_offline({testing::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian))},
-                            testing::orthographic_camera(width, height), &sky);
+        const Environment sky = test::small_sky(faces);
+        expect_like_offline({}, test::perspective_camera(width, height), &sky);
+        expect_like_offline({test::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian))},
+                            test::orthographic_camera(width, height), &sky);
         expect_like_offline(
-            {testing::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian, Blend::add))},
-            testing::perspective_camera(width, height), &sky);
+            {test::cloud_layer(800, 5, 0.08f, render_with(Falloff::Shape::gaussian, Blend::add))},
+            test::perspective_camera(width, height), &sky);
     }
 }
 
 TEST_F(PreviewPicture, Orthographic) {
     expect_like_offline(
-        {testing::cloud_layer(2000, 9, 0.06f, render_with(Falloff::Shape::gaussian)),
-         testing::cloud_layer(1000, 5, 0.06f, render_with(Falloff::Shape::linear, Blend::hybrid))},
-        testing::orthographic_camera(width, height));
+        {test::cloud_layer(2000, 9, 0.06f, render_with(Falloff::Shape::gaussian)),
+         test::cloud_layer(1000, 5, 0.06f, render_with(Falloff::Shape::linear, Blend::hybrid))},
+        test::orthographic_camera(width, height));
 }
 
 TEST_F(PreviewPicture, LayersPlacedFarFromTheOrigin) {
-    PreviewLayer layer = testing::cloud_layer(2000, 9, 0.06f, render_with(Falloff::Shape::gaussian));
+    PreviewLayer layer = test::cloud_layer(2000, 9, 0.06f, render_with(Falloff::Shape::gaussian));
     layer.layer.scale = 0.5;
     layer.layer.world_from_layer = rotation_from_degrees({20.0, 50.0, -10.0});
     layer.layer.translate = {1e5, -2e5, 3e5};
-    Camera camera = testing::perspective_camera(width, height);
+    Camera camera = test::perspective_camera(width, height);
     camera.eye = camera.eye + layer.layer.translate;
     expect_like_offline({layer}, camera);
 }
 
 TEST_F(PreviewPicture, FromInsideWithDotsWiderThanPoints) {
-    Camera camera = testing::perspective_camera(width, height);
+    Camera camera = test::perspective_camera(width, height);
     camera.eye = {0.1, 0.02, 0.3};
     camera.near_fade = 0.05;
     for (const auto blend : {Blend::over, Blend::add, Blend::lighten})
-        expect_like_offline(
-            {testing::cloud_layer(2000, 9, 0.3f, render_with(Falloff::Shape::gaussian, blend))}, camera);
+        expect_like_offline({test::cloud_layer(2000, 9, 0.3f, render_with(Falloff::Shape::gaussian, blend))},
+                            camera);
 }
 
 TEST_F(PreviewPicture, NothingAndEmptyLayers) {
-    expect_like_offline({}, testing::perspective_camera(width, height));
-    PreviewLayer empty = testing::cloud_layer(0, 9, 0.1f, render_with(Falloff::Shape::gaussian));
-    expect_like_offline({empty}, testing::perspective_camera(width, height));
+    expect_like_offline({}, test::perspective_camera(width, height));
+    PreviewLayer empty = test::cloud_layer(0, 9, 0.1f, render_with(Falloff::Shape::gaussian));
+    expect_like_offline({empty}, test::perspective_camera(width, height));
 }
 
 TEST_F(PreviewPicture, AShareIsAsBrightAsTheWhole) {
     for (const auto blend : {Blend::over, Blend::add, Blend::screen}) {
         SCOPED_TRACE(static_cast<int>(blend));
         PreviewLayer layer =
-            testing::cloud_layer(60000, 9, 0.012f, render_with(Falloff::Shape::gaussian, blend));
+            test::cloud_layer(60000, 9, 0.012f, render_with(Falloff::Shape::gaussian, blend));
         layer.look.alpha.gain = 0.1f;  // many faint splats, as sets of millions have
-        const Camera camera = testing::perspective_camera(width, height);
+        const Camera camera = test::perspective_camera(width, height);
         const Image whole = draw({layer}, camera);
         layer.share = 0.1f;
-        EXPECT_NEAR(testing::compare_shown(draw({layer}, camera), whole).brightness, 1.0, 0.02);
+        EXPECT_NEAR(test::compare_shown(draw({layer}, camera), whole).brightness, 1.0, 0.02);
     }
 }
 
 TEST_F(PreviewPicture, ChangesOfLookShareLayersAndCameraAllArrive) {
     GlPreview old;
     std::vector<PreviewLayer> layers = {
-        testing::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
-        testing::cloud_layer(1500, 5, 0.06f, render_with(Falloff::Shape::gaussian))};
-    Camera camera = testing::perspective_camera(width, height);
+        test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
+        test::cloud_layer(1500, 5, 0.06f, render_with(Falloff::Shape::gaussian))};
+    Camera camera = test::perspective_camera(width, height);
     const auto expect_fresh = [&](const char* what) {
         GlPreview fresh;
         const Image expected = draw_with(fresh, layers, camera);
-        EXPECT_GE(testing::compare_shown(draw_with(old, layers, camera), expected).psnr_db, 199.0) << what;
+        EXPECT_GE(test::compare_shown(draw_with(old, layers, camera), expected).psnr_db, 199.0) << what;
     };
     expect_fresh("first");
     layers[1].look.density = 0.4f;

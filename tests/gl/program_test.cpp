@@ -12,7 +12,7 @@
 namespace astrosplat {
 namespace {
 
-using testing::GlTest;
+using test::GlTest;
 
 class Programs : public GlTest {};
 

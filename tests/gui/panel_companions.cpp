@@ -7,7 +7,7 @@
 namespace astrosplat {
 namespace {
 
-const char* const scene_text = R"(astrosplat = 1
+const char* const companions_scene = R"(astrosplat = 1
 [[layer]]
 name = "dust"
 [layer.source]
@@ -24,7 +24,7 @@ void type(PanelDriver& d, const std::string& key, const std::string& text) {
 }
 
 TEST(PanelCompanions, SmallestAndLargestSizePushEachOther) {
-    PanelDriver d(scene_text);
+    PanelDriver d(companions_scene);
     d.show(PanelTab::look);
     type(d, look + "radius.min", "0.2");
     EXPECT_DOUBLE_EQ(d.value(look + "radius.max").number(), 0.2);
@@ -50,7 +50,7 @@ TEST(PanelCompanions, ACustomCurveBeginsAsTheShapeBefore) {
 }
 
 TEST(PanelCompanions, ChoosingCurveInTheListWorks) {
-    PanelDriver d(scene_text);
+    PanelDriver d(companions_scene);
     d.show(PanelTab::look);
     d.click(d.row(look + "pdf.shape").value);
     d.frames(2);
@@ -63,7 +63,7 @@ TEST(PanelCompanions, ChoosingCurveInTheListWorks) {
 }
 
 TEST(PanelCompanions, AThicknessMapBringsItsFirstKeys) {
-    PanelDriver d(scene_text);
+    PanelDriver d(companions_scene);
     d.panel.answer({FileRequest::Kind::parameter, look + "thickness.map"}, "/nowhere/map.png", d.document,
                    d.view, d.commands);
     const Thickness& thickness = d.document.scene().layers[0].look.thickness;
@@ -75,7 +75,7 @@ TEST(PanelCompanions, AThicknessMapBringsItsFirstKeys) {
 }
 
 TEST(PanelCompanions, SplatsAskForTheirFileFirst) {
-    PanelDriver d(scene_text);
+    PanelDriver d(companions_scene);
     d.show(PanelTab::source);
     d.click(d.row("layer.dust.source.kind").value);
     d.frames(2);

@@ -6,7 +6,7 @@
 namespace astrosplat {
 namespace {
 
-const char* const scene_text = R"(astrosplat = 1
+const char* const curves_scene = R"(astrosplat = 1
 [[layer]]
 name = "dust"
 [layer.source]
@@ -29,7 +29,7 @@ glm::vec2 on_plot(const PanelDriver& d, float x, float y) {
 }
 
 TEST(PanelCurves, AClickAddsAPointOneUndoStep) {
-    PanelDriver d(scene_text);
+    PanelDriver d(curves_scene);
     d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     ASSERT_EQ(curve(d).size(), 3u);
@@ -41,7 +41,7 @@ TEST(PanelCurves, AClickAddsAPointOneUndoStep) {
 }
 
 TEST(PanelCurves, ADragMovesAPointButNotPastItsNeighbours) {
-    PanelDriver d(scene_text);
+    PanelDriver d(curves_scene);
     d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     const glm::vec2 from = on_plot(d, 0.5f, 0.25f);
@@ -57,7 +57,7 @@ TEST(PanelCurves, ADragMovesAPointButNotPastItsNeighbours) {
 }
 
 TEST(PanelCurves, ARightClickDeletesDownToTwoPoints) {
-    PanelDriver d(scene_text);
+    PanelDriver d(curves_scene);
     d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     d.click(on_plot(d, 0.5f, 0.25f), 1);
@@ -67,7 +67,7 @@ TEST(PanelCurves, ARightClickDeletesDownToTwoPoints) {
 }
 
 TEST(PanelCurves, ArrowsNudgeTheSelectedPoint) {
-    PanelDriver d(scene_text);
+    PanelDriver d(curves_scene);
     d.show(PanelTab::look);
     d.click(on_plot(d, 0.5f, 0.25f));
     const glm::vec2 before = curve(d)[1];
@@ -78,7 +78,7 @@ TEST(PanelCurves, ArrowsNudgeTheSelectedPoint) {
 }
 
 TEST(PanelCurves, AtMostSixteenPoints) {
-    PanelDriver d(scene_text);
+    PanelDriver d(curves_scene);
     d.show(PanelTab::look);
     for (int i = 0; i < 20; ++i)
         d.click(on_plot(d, 0.04f + 0.045f * static_cast<float>(i), i % 2 ? 0.3f : 0.7f));
@@ -87,7 +87,7 @@ TEST(PanelCurves, AtMostSixteenPoints) {
 }
 
 TEST(PanelCurves, BlackAndWhiteAreDraggedOverTheHistogram) {
-    PanelDriver d(scene_text);
+    PanelDriver d(curves_scene);
     auto histograms = std::make_shared<LayerHistograms>();
     histograms->values.share.assign(64, 0.5f);
     histograms->values.lo = 0.0;

@@ -7,7 +7,7 @@
 namespace astrosplat {
 namespace {
 
-const char* const scene_text = R"(astrosplat = 1
+const char* const layers_scene = R"(astrosplat = 1
 [[layer]]
 name = "disk"
 [layer.source]
@@ -37,7 +37,7 @@ std::vector<std::string> names(const PanelDriver& d) {
 using Names = std::vector<std::string>;
 
 TEST(PanelLayers, AClickSelectsAndTheEyeHides) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     d.click(at(1, name));
     EXPECT_EQ(d.view.layer, 1u);
     d.click(at(2, eye));
@@ -48,7 +48,7 @@ TEST(PanelLayers, AClickSelectsAndTheEyeHides) {
 }
 
 TEST(PanelLayers, SoloIsOfTheWindowHoldoutAndIsolateOfTheScene) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     d.click(at(1, solo));
     EXPECT_EQ(d.view.solo, std::set<std::string>{"dust"});
     EXPECT_FALSE(d.document.edited());
@@ -61,7 +61,7 @@ TEST(PanelLayers, SoloIsOfTheWindowHoldoutAndIsolateOfTheScene) {
 }
 
 TEST(PanelLayers, ADoubleClickRenames) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     d.click(at(1, solo));
     d.double_click(at(1, name));
     d.frames(2);
@@ -75,7 +75,7 @@ TEST(PanelLayers, ADoubleClickRenames) {
 }
 
 TEST(PanelLayers, ANameThatIsTakenIsRefused) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     d.double_click(at(1, name));
     d.frames(2);
     d.type("disk");
@@ -85,7 +85,7 @@ TEST(PanelLayers, ANameThatIsTakenIsRefused) {
 }
 
 TEST(PanelLayers, DraggingChangesTheOrder) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     d.drag(at(0, name), {0.0f, 56.0f});
     EXPECT_EQ(names(d), (Names{"dust", "stars", "disk"}));
     EXPECT_EQ(d.view.layer, 2u);
@@ -104,7 +104,7 @@ void choose(PanelDriver& d, int row, const std::string& item) {
 }
 
 TEST(PanelLayers, TheMenuDuplicatesAndDeletes) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     choose(d, 0, "Duplicate");
     ASSERT_EQ(d.document.scene().layers.size(), 4u);
     EXPECT_FLOAT_EQ(d.document.scene().layers[d.view.layer].render.opacity, 0.5f);
@@ -115,7 +115,7 @@ TEST(PanelLayers, TheMenuDuplicatesAndDeletes) {
 }
 
 TEST(PanelLayers, LooksAreCopiedAndGivenToAll) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     choose(d, 0, "Copy look");
     choose(d, 2, "Paste look");
     EXPECT_FLOAT_EQ(d.document.scene().layers[2].render.opacity, 0.5f);
@@ -126,7 +126,7 @@ TEST(PanelLayers, LooksAreCopiedAndGivenToAll) {
 }
 
 TEST(PanelLayers, PlusAsksForAFileAndTheAnswerImportsIt) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     d.click({360.0f - 19.0f, 16.0f});
     const std::optional<FileRequest> request = d.panel.take_request();
     ASSERT_TRUE(request);
@@ -138,7 +138,7 @@ TEST(PanelLayers, PlusAsksForAFileAndTheAnswerImportsIt) {
 }
 
 TEST(PanelLayers, AFileParametersAnswerIsAnEdit) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     const std::string key = "environment.image";
     d.panel.answer({FileRequest::Kind::parameter, key}, "/nowhere/sky.png", d.document, d.view, d.commands);
     EXPECT_EQ(to_toml(d.value(key)), "\"/nowhere/sky.png\"");
@@ -146,7 +146,7 @@ TEST(PanelLayers, AFileParametersAnswerIsAnEdit) {
 }
 
 TEST(PanelLayers, LoadingCanBeCancelledAndStaleSetsMadeAnew) {
-    PanelDriver d(scene_text);
+    PanelDriver d(layers_scene);
     d.status.layers.resize(3);
     d.status.layers[0].loading = true;
     d.status.layers[1].stale = true;

@@ -10,7 +10,7 @@
 namespace astrosplat {
 namespace {
 
-const char* const scene_text = R"(astrosplat = 1
+const char* const rows_scene = R"(astrosplat = 1
 [[layer]]
 name = "dust"
 [layer.source]
@@ -21,7 +21,7 @@ const std::string power = "layer.dust.look.alpha.power", opacity = "layer.dust.r
                   gain = "layer.dust.look.grade.gain", density = "layer.dust.look.density";
 
 TEST(PanelRows, DraggingAValueIsOneUndoStep) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::render);
     const double before = d.value(opacity).number();
     d.drag(d.row(opacity).value, {-50.0f, 0.0f});
@@ -33,7 +33,7 @@ TEST(PanelRows, DraggingAValueIsOneUndoStep) {
 }
 
 TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::render);
     d.drag(d.row(opacity).value, {-25.0f, 0.0f});
     d.drag(d.row(opacity).value, {-25.0f, 0.0f});
@@ -44,7 +44,7 @@ TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
 }
 
 TEST(PanelRows, DraggingStopsAtTheRange) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::render);
     d.drag(d.row(opacity).value, {340.0f, 0.0f});
     EXPECT_DOUBLE_EQ(d.value(opacity).number(), 1.0);
@@ -54,7 +54,7 @@ TEST(PanelRows, DraggingStopsAtTheRange) {
 }
 
 TEST(PanelRows, AltDragsFinerAndShiftCoarser) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::render);
     ImGui::GetIO().KeyAlt = true;
     d.drag(d.row(opacity).value, {-50.0f, 0.0f});
@@ -67,7 +67,7 @@ TEST(PanelRows, AltDragsFinerAndShiftCoarser) {
 }
 
 TEST(PanelRows, ADoubleClickTypesAValue) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::look);
     d.double_click(d.row(density).value);
     d.type("0.25");
@@ -79,7 +79,7 @@ TEST(PanelRows, ADoubleClickTypesAValue) {
 }
 
 TEST(PanelRows, EscapeDropsWhatWasTyped) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::look);
     d.double_click(d.row(density).value);
     d.type("0.25");
@@ -90,7 +90,7 @@ TEST(PanelRows, EscapeDropsWhatWasTyped) {
 }
 
 TEST(PanelRows, TabTypesTheNextValue) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::look);
     d.double_click(d.row("layer.dust.look.radius.min").value);
     d.type("0.1");
@@ -103,7 +103,7 @@ TEST(PanelRows, TabTypesTheNextValue) {
 }
 
 TEST(PanelRows, ARefusedValueIsSaidAndChangesNothing) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::render);
     d.double_click(d.row(opacity).value);
     d.type("2");
@@ -116,7 +116,7 @@ TEST(PanelRows, ARefusedValueIsSaidAndChangesNothing) {
 }
 
 TEST(PanelRows, TheDiamondKeysAndUnkeys) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::render);
     d.view.frame = 12.0;
     d.frames();
@@ -132,7 +132,7 @@ TEST(PanelRows, TheDiamondKeysAndUnkeys) {
 }
 
 TEST(PanelRows, AKeyedValueIsShownAsItIsAtTheFrame) {
-    PanelDriver d(std::string(scene_text) +
+    PanelDriver d(std::string(rows_scene) +
                   "[animation]\n\"layer.dust.render.opacity\" = { keys = [[1, 0.0], [101, 1.0]] }\n");
     d.show(PanelTab::render);
     d.view.frame = 51.0;
@@ -149,7 +149,7 @@ void choose(PanelDriver& d, const std::string& key, const std::string& item) {
 }
 
 TEST(PanelRows, RightClickResets) {
-    PanelDriver d(std::string(scene_text) + "[layer.look]\ngrade = { gain = 3.0 }\n");
+    PanelDriver d(std::string(rows_scene) + "[layer.look]\ngrade = { gain = 3.0 }\n");
     d.show(PanelTab::look);
     ASSERT_DOUBLE_EQ(d.value(gain).number(), 3.0);
     choose(d, gain, "Reset");
@@ -159,7 +159,7 @@ TEST(PanelRows, RightClickResets) {
 }
 
 TEST(PanelRows, TheMenuCopiesKeyAndSetOption) {
-    PanelDriver d(std::string(scene_text) + "[layer.look]\nalpha = { power = 6.0 }\n");
+    PanelDriver d(std::string(rows_scene) + "[layer.look]\nalpha = { power = 6.0 }\n");
     d.show(PanelTab::look);
     choose(d, power, "Copy key path");
     EXPECT_EQ(d.clipboard, power);
@@ -168,7 +168,7 @@ TEST(PanelRows, TheMenuCopiesKeyAndSetOption) {
 }
 
 TEST(PanelRows, TheMenuPastesASetOption) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::look);
     d.clipboard = "--set layer.other.look.alpha.power=2.5";
     choose(d, power, "Paste");
@@ -180,7 +180,7 @@ TEST(PanelRows, TheMenuPastesASetOption) {
 }
 
 TEST(PanelRows, ACheckBoxAndAVectorsComponent) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::render);
     const std::string holdout = "layer.dust.render.holdout";
     d.click(d.row(holdout).value);
@@ -194,7 +194,7 @@ TEST(PanelRows, ACheckBoxAndAVectorsComponent) {
 }
 
 TEST(PanelRows, AutoIsTypedOverAndTypedBack) {
-    PanelDriver d(scene_text);
+    PanelDriver d(rows_scene);
     d.show(PanelTab::source);
     const std::string voxels = "layer.dust.source.voxels";
     d.click(d.row(voxels).value);

@@ -23,7 +23,7 @@ glm::dvec4 about_y(double degrees) {
 }
 double degrees_about_y(const glm::dvec4& q) { return real::degrees(2.0 * real::atan2(q.y, q.w)); }
 
-void expect_near(const glm::dvec3& got, const glm::dvec3& expected, double tolerance) {
+void expect_at(const glm::dvec3& got, const glm::dvec3& expected, double tolerance) {
     EXPECT_NEAR(glm::distance(got, expected), 0.0, tolerance)
         << got.x << " " << got.y << " " << got.z << " instead of " << expected.x << " " << expected.y << " "
         << expected.z;
@@ -83,7 +83,7 @@ TEST(Positions, PassThroughTheirKeysAtTheirFrames) {
         {1, {0, 0, 0}, smooth}, {5, {3, 1, 0}, smooth}, {20, {4, 4, 4}, smooth}, {21, {0, 5, 1}, smooth}};
     for (Ends ends : {Ends::ease, Ends::through})
         for (const auto& key : keys)
-            expect_near(evaluate_position(keys, key.frame, ends, false), key.value, 1e-14);
+            expect_at(evaluate_position(keys, key.frame, ends, false), key.value, 1e-14);
 }
 
 TEST(Positions, CentripetalCurveOfFourKeysMatchesBarryAndGoldman) {
@@ -116,13 +116,13 @@ TEST(Positions, SpeedIsContinuousAtKeysOfUnevenFrames) {
     const double h = 1e-5;
     for (double f : {10.0, 12.0}) {
         auto at = [&](double frame) { return evaluate_position(keys, frame, Ends::ease, false); };
-        expect_near((at(f) - at(f - h)) / h, (at(f + h) - at(f)) / h, 1e-3);
+        expect_at((at(f) - at(f - h)) / h, (at(f + h) - at(f)) / h, 1e-3);
     }
 }
 
 TEST(Positions, EvenKeysOnALineMoveEvenly) {
     Positions keys = {{0, {0, 0, 0}, smooth}, {10, {1, 2, 3}, smooth}, {20, {2, 4, 6}, smooth}};
-    expect_near(evaluate_position(keys, 13, Ends::through, false), glm::dvec3(1.3, 2.6, 3.9), 1e-14);
+    expect_at(evaluate_position(keys, 13, Ends::through, false), glm::dvec3(1.3, 2.6, 3.9), 1e-14);
 }
 
 TEST(Positions, EaseStartsAndEndsAtRest) {
@@ -144,9 +144,9 @@ TEST(Positions, CoincidentKeysRest) {
             glm::dvec3 p = evaluate_position(keys, f, Ends::ease, constant_speed);
             EXPECT_TRUE(std::isfinite(p.x + p.y + p.z)) << f;
         }
-    expect_near(evaluate_position(keys, 15, Ends::ease, false), glm::dvec3(1, 1, 0), 0.0);
+    expect_at(evaluate_position(keys, 15, Ends::ease, false), glm::dvec3(1, 1, 0), 0.0);
     Positions still = {{0, {2, 2, 2}, smooth}, {10, {2, 2, 2}, smooth}};
-    expect_near(evaluate_position(still, 5, Ends::ease, true), glm::dvec3(2, 2, 2), 0.0);
+    expect_at(evaluate_position(still, 5, Ends::ease, true), glm::dvec3(2, 2, 2), 0.0);
 }
 
 TEST(Positions, ConstantSpeedCoversEqualLengthsInEqualTimes) {
@@ -156,13 +156,13 @@ TEST(Positions, ConstantSpeedCoversEqualLengthsInEqualTimes) {
     double first = glm::distance(at(0), at(0.01));
     for (double f : {2.0, 14.0, 37.7, 59.9})
         EXPECT_NEAR(glm::distance(at(f), at(f + 0.01)), first, 1e-5 * first) << f;
-    expect_near(at(60), keys.back().value, 0.0);
-    expect_near(at(60 - 1e-9), keys.back().value, 1e-8);
+    expect_at(at(60), keys.back().value, 0.0);
+    expect_at(at(60 - 1e-9), keys.back().value, 1e-8);
 }
 
 TEST(Positions, ConstantSpeedOnALineIsLinear) {
     Positions keys = {{0, {0, 0, 0}, linear}, {1, {1, 0, 0}, linear}, {10, {10, 0, 0}, linear}};
-    expect_near(evaluate_position(keys, 2.5, Ends::ease, true), glm::dvec3(2.5, 0, 0), 1e-12);
+    expect_at(evaluate_position(keys, 2.5, Ends::ease, true), glm::dvec3(2.5, 0, 0), 1e-12);
 }
 
 TEST(Positions, ConstantSpeedEasesOverATenthAtEachEnd) {

@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using std::chrono::seconds;
+using test::opacity;
 using test::SceneFolder;
 
-const std::string opacity = "layer.stars.render.opacity";
 const Autosave::Clock::time_point start{};
 
 std::size_t files_in(const fs::path& folder) {

@@ -14,7 +14,7 @@
 namespace astrosplat {
 namespace {
 
-const std::string opacity = "layer.stars.render.opacity";
+using test::opacity;
 
 /// The words a shell makes of a command, which is given printf instead of the program.
 std::vector<std::string> shell_words(std::string command) {

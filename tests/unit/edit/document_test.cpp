@@ -10,10 +10,9 @@ namespace astrosplat {
 namespace {
 
 using test::edit_scene;
+using test::opacity;
 using test::SceneFolder;
 using test::value_of;
-
-const std::string opacity = "layer.stars.render.opacity";
 
 TEST(Document, OpensAsTheLoaderReads) {
     const SceneFolder f;

@@ -12,8 +12,8 @@ namespace {
 
 using Frames = std::vector<double>;
 
-const std::string core = "layer.stars.render.core";        // keys at 1 and 24, smooth
-const std::string opacity = "layer.stars.render.opacity";  // none
+const std::string core = "layer.stars.render.core";  // keys at 1 and 24, smooth
+using test::opacity;
 
 struct Keys : testing::Test {
     Scene scene = parse_scene(test::edit_scene, "/scene.toml");

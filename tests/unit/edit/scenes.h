@@ -47,6 +47,9 @@ opacity = 0.5
 "layer.dust.look.noise.1.jitter" = { keys = [[1, 0.0], [48, 0.2]] }
 )toml";
 
+/// A parameter of edit_scene that the file gives and no track moves.
+inline const std::string opacity = "layer.stars.render.opacity";
+
 /// A folder with edit_scene as "szene ä.toml".
 struct SceneFolder {
     TempFolder folder;

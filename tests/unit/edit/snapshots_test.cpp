@@ -10,7 +10,8 @@
 namespace astrosplat {
 namespace {
 
-const std::string opacity = "layer.stars.render.opacity";
+using test::opacity;
+
 const std::string power = "layer.dust.look.alpha.power";
 
 struct Snapshots : testing::Test {

@@ -11,7 +11,7 @@
 namespace astrosplat {
 namespace {
 
-using namespace astrosplat::testing;
+using namespace astrosplat::test;
 
 constexpr int size_px = 32;
 

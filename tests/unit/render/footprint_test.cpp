@@ -15,7 +15,7 @@
 namespace astrosplat {
 namespace {
 
-using testing::all_shapes;
+using test::all_shapes;
 
 TEST(Falloff, IntegralsAreTheClosedForms) {
     const double pi = real::pi;

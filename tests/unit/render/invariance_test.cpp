@@ -10,7 +10,7 @@
 namespace astrosplat {
 namespace {
 
-using namespace astrosplat::testing;
+using namespace astrosplat::test;
 
 constexpr int width_px = 211, height_px = 133;
 

@@ -10,7 +10,7 @@
 namespace astrosplat {
 namespace {
 
-using namespace astrosplat::testing;
+using namespace astrosplat::test;
 
 TEST(ChooseLevels, SmallestCountThatGetsTheChildrenUnderTheLimit) {
     EXPECT_EQ(choose_levels(10.0f, 0.0f, 4096).fine, 0);

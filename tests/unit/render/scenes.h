@@ -7,7 +7,7 @@
 #include "render/falloff.h"
 #include "render/render.h"
 
-namespace astrosplat::testing {
+namespace astrosplat::test {
 
 inline constexpr Falloff::Shape all_shapes[] = {Falloff::Shape::constant, Falloff::Shape::linear,
                                                 Falloff::Shape::trapezoid, Falloff::Shape::gaussian,
@@ -71,4 +71,4 @@ inline double total(const Image& image, int channel) {
     return sum;
 }
 
-}  // namespace astrosplat::testing
+}  // namespace astrosplat::test

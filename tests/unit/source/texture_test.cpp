@@ -52,7 +52,7 @@ fs::path write(const fs::path& file, const Written& what, const Pixels& pixels) 
     return file;
 }
 
-Pixels load(const fs::path& file, const TextureSettings& settings = {}) {
+Pixels pixels_of(const fs::path& file, const TextureSettings& settings = {}) {
     const Texture texture = load_texture({file}, settings, Wrap::clamp);
     return {texture.image.pixels.begin(), texture.image.pixels.end()};
 }
@@ -67,19 +67,19 @@ TEST(Texture, EightBitsAreSrgbFloatIsLinear) {
     TextureSettings settings;
     settings.alpha = Alpha::one;
     const auto middle = static_cast<float>(real::srgb_to_linear(128.0 / 255.0));
-    EXPECT_EQ(load(png, settings), (Pixels{1.0f, middle, 0.0f, 1.0f}));
-    EXPECT_EQ(load(exr, settings), (Pixels{1.0f, 0.5f, 0.0f, 1.0f}));
+    EXPECT_EQ(pixels_of(png, settings), (Pixels{1.0f, middle, 0.0f, 1.0f}));
+    EXPECT_EQ(pixels_of(exr, settings), (Pixels{1.0f, 0.5f, 0.0f, 1.0f}));
     settings.colorspace = Colorspace::linear;
-    EXPECT_EQ(load(png, settings), (Pixels{1.0f, 128.0f / 255.0f, 0.0f, 1.0f}));
+    EXPECT_EQ(pixels_of(png, settings), (Pixels{1.0f, 128.0f / 255.0f, 0.0f, 1.0f}));
     settings.colorspace = Colorspace::srgb;
-    EXPECT_EQ(load(exr, settings)[1], static_cast<float>(real::srgb_to_linear(0.5)));
+    EXPECT_EQ(pixels_of(exr, settings)[1], static_cast<float>(real::srgb_to_linear(0.5)));
 }
 
 TEST(Texture, SixteenBitsAreSrgbToTheLastStep) {
     const TempFolder folder;
     const fs::path tif =
         write(folder / "x.tif", {1, 1, rgb, OIIO::TypeUInt16}, {1.0f / 65535, 30000.0f / 65535, 1.0f});
-    EXPECT_EQ(load(tif)[1], static_cast<float>(real::srgb_to_linear(30000.0 / 65535.0)));
+    EXPECT_EQ(pixels_of(tif)[1], static_cast<float>(real::srgb_to_linear(30000.0 / 65535.0)));
 }
 
 TEST(Texture, DerivedAlphaIsTheBrightestChannelAndKeepsThePicture) {
@@ -87,16 +87,16 @@ TEST(Texture, DerivedAlphaIsTheBrightestChannelAndKeepsThePicture) {
     const fs::path exr = write(folder / "x.exr", {1, 1, rgb}, {0.25f, 0.5f, 0.125f});
     const Texture texture = load_texture({exr}, {}, Wrap::clamp);
     EXPECT_TRUE(texture.divided);
-    EXPECT_EQ(load(exr), (Pixels{0.25f, 0.5f, 0.125f, 0.5f}));
+    EXPECT_EQ(pixels_of(exr), (Pixels{0.25f, 0.5f, 0.125f, 0.5f}));
     const TextureSample s = sample(texture, {0.5f, 0.5f});
     EXPECT_EQ(s.color, glm::vec3(0.5f, 1.0f, 0.25f));
     EXPECT_EQ(s.alpha, 0.5f);
     TextureSettings settings;
     settings.alpha = Alpha::luminance;
-    EXPECT_FLOAT_EQ(load(exr, settings)[3], 0.2126f * 0.25f + 0.7152f * 0.5f + 0.0722f * 0.125f);
+    EXPECT_FLOAT_EQ(pixels_of(exr, settings)[3], 0.2126f * 0.25f + 0.7152f * 0.5f + 0.0722f * 0.125f);
     settings.alpha = Alpha::max;
     settings.unpremultiply = Unpremultiply::no;  // the picture squared, when somebody asks for it
-    EXPECT_EQ(load(exr, settings), (Pixels{0.125f, 0.25f, 0.0625f, 0.5f}));
+    EXPECT_EQ(pixels_of(exr, settings), (Pixels{0.125f, 0.25f, 0.0625f, 0.5f}));
 }
 
 TEST(Texture, StraightFileAlphaIsMultipliedInLinearLight) {
@@ -119,7 +119,7 @@ TEST(Texture, AssociatedFileAlphaIsDividedOut) {
     EXPECT_EQ(sample(texture, {0.5f, 0.5f}).color, glm::vec3(0.5f, 1.0f, 0.0f));
     TextureSettings settings;
     settings.unpremultiply = Unpremultiply::no;
-    EXPECT_EQ(load(exr, settings), (Pixels{0.125f, 0.25f, 0.0f, 0.5f}));
+    EXPECT_EQ(pixels_of(exr, settings), (Pixels{0.125f, 0.25f, 0.0f, 0.5f}));
 }
 
 TEST(Texture, AssociatedIntegersWereMultipliedEncoded) {
@@ -136,7 +136,7 @@ TEST(Texture, UnusualValues) {
     const TempFolder folder;
     const fs::path exr = write(folder / "x.exr", {5, 1, rgba},
                                {nan, 1, 1, 1, infinity, 0, 0, 1, -1, 0, 2, 1, 1, 1, 1, 7, 1, 1, 1, -3});
-    EXPECT_EQ(load(exr), (Pixels{0, 0, 0, 0, 65504, 0, 0, 1, 0, 0, 2, 1, 1, 1, 1, 1, 1, 1, 1, 0}));
+    EXPECT_EQ(pixels_of(exr), (Pixels{0, 0, 0, 0, 65504, 0, 0, 1, 0, 0, 2, 1, 1, 1, 1, 1, 1, 1, 1, 0}));
     EXPECT_EQ(sample(load_texture({exr}, {}, Wrap::clamp), {1.0f, 0.5f}).alpha, 0.0f);
 }
 
@@ -144,10 +144,10 @@ TEST(Texture, SingleChannelsAndGrayBecomeGray) {
     const TempFolder folder;
     for (const char* channel : {"Y", "G", "Z"}) {
         const fs::path exr = write(folder / (std::string(channel) + ".exr"), {1, 1, {channel}}, {0.5f});
-        EXPECT_EQ(load(exr), (Pixels{0.5f, 0.5f, 0.5f, 0.5f})) << channel;
+        EXPECT_EQ(pixels_of(exr), (Pixels{0.5f, 0.5f, 0.5f, 0.5f})) << channel;
     }
     const fs::path ya = write(folder / "ya.exr", {1, 1, {"Y", "A"}}, {0.25f, 0.5f});
-    EXPECT_EQ(load(ya), (Pixels{0.25f, 0.25f, 0.25f, 0.5f}));
+    EXPECT_EQ(pixels_of(ya), (Pixels{0.25f, 0.25f, 0.25f, 0.5f}));
 }
 
 TEST(Texture, LuminanceAndChromaBecomeRgb) {
@@ -155,7 +155,7 @@ TEST(Texture, LuminanceAndChromaBecomeRgb) {
     const float r = 0.5f, g = 0.25f, b = 1.0f, y = luminance(r, g, b);
     // EXR files order their channels by name.
     const fs::path exr = write(folder / "x.exr", {1, 1, {"BY", "RY", "Y"}}, {(b - y) / y, (r - y) / y, y});
-    const Pixels pixels = load(exr);
+    const Pixels pixels = pixels_of(exr);
     EXPECT_NEAR(pixels[0], r, 1e-6f);
     EXPECT_NEAR(pixels[1], g, 1e-6f);
     EXPECT_NEAR(pixels[2], b, 1e-6f);
@@ -173,7 +173,7 @@ TEST(Texture, DisplayWindowOfAnExr) {
     const Pixels pixels{1, 1, 1, 5, 5, 5};
     ASSERT_TRUE(out->open(file.string(), spec) && out->write_image(OIIO::TypeFloat, pixels.data()) &&
                 out->close());
-    EXPECT_EQ(load(file), (Pixels{0, 0, 0, 0, 1, 1, 1, 1}));
+    EXPECT_EQ(pixels_of(file), (Pixels{0, 0, 0, 0, 1, 1, 1, 1}));
 }
 
 TEST(Texture, FirstRowOfAPictureIsTheTop) {
@@ -259,7 +259,7 @@ TEST(Fits, UndefinedPixelsAreEmptyAndCounted) {
     settings.alpha = Alpha::one;
     settings.black = 0.0;
     settings.white = 5.0;
-    EXPECT_EQ(load(file, settings), (Pixels{0, 0, 0, 0, 1, 1, 1, 1}));
+    EXPECT_EQ(pixels_of(file, settings), (Pixels{0, 0, 0, 0, 1, 1, 1, 1}));
     const std::vector<FitsHdu> hdus = describe_fits(file);
     EXPECT_EQ(hdus[0].nan_count, 1);
     EXPECT_EQ(hdus[0].range.min, 5.0);
@@ -289,10 +289,10 @@ TEST(Fits, Errors) {
     settings.black = 2.0;
     settings.white = 1.0;
     EXPECT_EQ(
-        message_of<InputError>([&] { load(file, settings); }),
+        message_of<InputError>([&] { pixels_of(file, settings); }),
         file.string() + ": expected a black point below the white point, found black = 2 and white = 1");
     fs::resize_file(write_fits(folder / "cut.fits", {100, 100}, std::vector<float>(10000)), 2880 + 1000);
-    const std::string cut = message_of<InputError>([&] { load(folder / "cut.fits"); });
+    const std::string cut = message_of<InputError>([&] { pixels_of(folder / "cut.fits"); });
     EXPECT_EQ(cut.rfind((folder / "cut.fits").string() + ": FITS ", 0), 0u) << cut;
 }
 
@@ -331,12 +331,12 @@ TEST(Stretch, AsinhIsADisplayValueLinearIsLight) {
     settings.black = 0.0;
     settings.white = 2.0;
     const auto display = static_cast<float>(real::asinh(5.0) / real::asinh(10.0));
-    EXPECT_EQ(load(file, settings)[4], static_cast<float>(real::srgb_to_linear(display)));
+    EXPECT_EQ(pixels_of(file, settings)[4], static_cast<float>(real::srgb_to_linear(display)));
     settings.stretch = Stretch::linear;
-    EXPECT_EQ(load(file, settings)[4], 0.5f);
+    EXPECT_EQ(pixels_of(file, settings)[4], 0.5f);
     settings.stretch = Stretch::asinh;
     settings.colorspace = Colorspace::linear;
-    EXPECT_EQ(load(file, settings)[4], display);
+    EXPECT_EQ(pixels_of(file, settings)[4], display);
 }
 
 TEST(Stretch, PercentilesInterpolateBetweenRanks) {

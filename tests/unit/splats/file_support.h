@@ -8,7 +8,6 @@
 #include <bit>
 #include <cfloat>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -17,6 +16,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "splats/splat_set.h"
+#include "unit/splats/same_bits.h"
 
 namespace astrosplat {
 
@@ -101,11 +101,6 @@ inline SplatSet awkward_set(std::uint32_t rows) {
     return set;
 }
 
-template <class T>
-bool same_bits(const Buffer<T>& a, const Buffer<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
 /// The fields that every splat file keeps.
 inline void expect_same_splats(const SplatSet& a, const SplatSet& b) {
     EXPECT_TRUE(same_bits(a.position, b.position));
@@ -116,6 +111,19 @@ inline void expect_same_splats(const SplatSet& a, const SplatSet& b) {
     EXPECT_TRUE(same_bits(a.mesh, b.mesh));
     EXPECT_TRUE(same_bits(a.radius, b.radius));
     EXPECT_EQ(a.max_distance, b.max_distance);
+}
+
+/// All that a .splats file keeps.
+inline void expect_same_set(const SplatSet& a, const SplatSet& b) {
+    expect_same_splats(a, b);
+    EXPECT_TRUE(same_bits(a.uv, b.uv));
+    EXPECT_TRUE(same_bits(a.normal, b.normal));
+    EXPECT_EQ(a.spacing, b.spacing);
+    EXPECT_EQ(a.generated, b.generated);
+    EXPECT_EQ(a.divided, b.divided);
+    EXPECT_EQ(a.test_positions, b.test_positions);
+    EXPECT_EQ(a.zero_alpha, b.zero_alpha);
+    EXPECT_EQ(a.credit, b.credit);
 }
 
 }  // namespace astrosplat

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "core/real.h"
 #include "splats/closest_point.h"
 #include "splats/generate.h"
+#include "unit/splats/same_bits.h"
 
 namespace astrosplat::test {
 
@@ -84,11 +84,6 @@ class Oracle {
     std::vector<Corners> corners_;
     std::vector<double> x_, y_, z_, r_;
 };
-
-template <class T>
-bool same_bits(const Buffer<T>& a, const Buffer<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
 
 inline void expect_same_bits(const SplatSet& a, const SplatSet& b) {
     EXPECT_TRUE(same_bits(a.id, b.id));

@@ -32,18 +32,6 @@ SplatSet full_set(std::uint32_t rows) {
     return set;
 }
 
-void expect_same_set(const SplatSet& a, const SplatSet& b) {
-    expect_same_splats(a, b);
-    EXPECT_TRUE(same_bits(a.uv, b.uv));
-    EXPECT_TRUE(same_bits(a.normal, b.normal));
-    EXPECT_EQ(a.spacing, b.spacing);
-    EXPECT_EQ(a.generated, b.generated);
-    EXPECT_EQ(a.divided, b.divided);
-    EXPECT_EQ(a.test_positions, b.test_positions);
-    EXPECT_EQ(a.zero_alpha, b.zero_alpha);
-    EXPECT_EQ(a.credit, b.credit);
-}
-
 /// Replaces the bytes at `at` of a valid file's header and makes the header's checksum fit again.
 template <class T>
 std::string forged(std::string bytes, std::size_t at, T value, std::size_t header_end = 128) {

@@ -89,18 +89,6 @@ class SetCacheTest : public testing::Test {
     std::vector<std::string> warnings_, lines_;
 };
 
-void expect_same_set(const SplatSet& a, const SplatSet& b) {
-    expect_same_splats(a, b);
-    EXPECT_TRUE(same_bits(a.uv, b.uv));
-    EXPECT_TRUE(same_bits(a.normal, b.normal));
-    EXPECT_EQ(a.spacing, b.spacing);
-    EXPECT_EQ(a.generated, b.generated);
-    EXPECT_EQ(a.divided, b.divided);
-    EXPECT_EQ(a.test_positions, b.test_positions);
-    EXPECT_EQ(a.zero_alpha, b.zero_alpha);
-    EXPECT_EQ(a.credit, b.credit);
-}
-
 TEST_F(SetCacheTest, TheSecondTimeTheSameBitsComeFromTheFile) {
     for (const SourceParams& source : {source_, mesh_source()}) {
         const SplatSet plain = load_source(source, "dust");

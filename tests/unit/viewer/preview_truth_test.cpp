@@ -17,7 +17,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr int width = 960, height = 540;
+constexpr int frame_width = 960, frame_height = 540;
 
 float uniform(std::uint32_t i, std::uint32_t which) {
     return shared::as_uniform(shared::as_hash(11u, i, 0u, which));
@@ -77,7 +77,7 @@ Camera camera_at(const glm::dvec3& position) {
     Bounds box;
     box.add({-5.0, -0.4, -5.0});
     box.add({5.0, 0.4, 5.0});
-    return make_camera(params, width, height, box);
+    return make_camera(params, frame_width, frame_height, box);
 }
 
 double brightness(const Image& picture, const Region& part) {
@@ -92,8 +92,8 @@ double brightness(const Image& picture, const Region& part) {
 
 std::vector<double> block_brightness(const Image& picture) {
     std::vector<double> blocks;
-    for (std::int64_t y = 0; y + 64 <= height; y += 64)
-        for (std::int64_t x = 0; x + 64 <= width; x += 64)
+    for (std::int64_t y = 0; y + 64 <= frame_height; y += 64)
+        for (std::int64_t x = 0; x + 64 <= frame_width; x += 64)
             blocks.push_back(brightness(picture, {x, y, 64, 64}));
     return blocks;
 }
@@ -131,7 +131,8 @@ class PreviewTruth : public testing::TestWithParam<View> {
 
     static Image draw(float share) {
         CpuPreview preview_of_it;
-        return preview_of_it.draw({layer(share)}, camera_at(GetParam().eye), nullptr, width, height, 0.5f);
+        return preview_of_it.draw({layer(share)}, camera_at(GetParam().eye), nullptr, frame_width,
+                                  frame_height, 0.5f);
     }
 
     static std::shared_ptr<const SplatSet> whole, preview;
@@ -145,7 +146,7 @@ TEST_P(PreviewTruth, AShareShowsTheLightOfTheWhole) {
     const double brightest = *std::max_element(wanted.begin(), wanted.end());
     for (const float share : {0.1f, 0.05f}) {
         const Image part = draw(share);
-        const Region all{0, 0, width, height};
+        const Region all{0, 0, frame_width, frame_height};
         const double mean = brightness(part, all) / brightness(full, all);
         EXPECT_NEAR(mean, 1.0, 0.02) << "share " << share;
         const std::vector<double> shown = block_brightness(part);
