@@ -13,7 +13,7 @@ class Interrupt : public SceneTest {
     RunResult interrupted_run(int signal) {
         RunOptions options;
         options.folder = folder;
-        const RunningProgram program({ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "-f", "1-20000",
+        const RunningProgram program({ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "-f", "1-2000",
                                       "--resolution", "640x480", "--stats", "stats.json"},
                                      options);
         while (program.err_so_far().find("saved ") == std::string::npos) {
