@@ -21,7 +21,7 @@ constexpr unsigned axis_bits = 21;
 constexpr unsigned key_bits = 3 * axis_bits;
 constexpr unsigned part_bits = 12;  // of the key, highest first: four levels of halving the box
 constexpr std::size_t parts = std::size_t{1} << part_bits;
-constexpr std::int64_t keys_per_chunk = 1 << 16;
+constexpr std::int64_t rows_at_once = 1 << 16;
 
 struct KeyedRow {
     std::uint64_t key;
@@ -72,12 +72,12 @@ std::size_t part_of(std::uint64_t key) { return static_cast<std::size_t>(key >> 
 Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
                                   std::vector<std::int64_t>& starts) {
     const MortonKeys key_of(set);
-    const std::int64_t chunks = (set.size() + keys_per_chunk - 1) / keys_per_chunk;
+    const std::int64_t chunks = (set.size() + rows_at_once - 1) / rows_at_once;
     std::vector<std::array<std::int64_t, parts>> next(static_cast<std::size_t>(chunks));
     const auto each_row = [&](std::int64_t c, const auto& visit) {
         progress.check();
-        const std::int64_t end = std::min(set.size(), (c + 1) * keys_per_chunk);
-        for (std::int64_t row = c * keys_per_chunk; row < end; ++row)
+        const std::int64_t end = std::min(set.size(), (c + 1) * rows_at_once);
+        for (std::int64_t row = c * rows_at_once; row < end; ++row)
             visit(key_of(row), next[static_cast<std::size_t>(c)]);
     };
     parallel_for(chunks, [&](std::int64_t c, int) {
@@ -201,7 +201,7 @@ template <class T, class RowAt>
 void copy_array(const Buffer<T>& from, std::int64_t count, const RowAt& row_at, Buffer<T>& to) {
     if (from.empty()) return;
     to.resize(static_cast<std::size_t>(count));
-    parallel_chunks(count, keys_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+    parallel_chunks(count, rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
             to[i] = from[row_at(i)];
     });

@@ -11,9 +11,9 @@ namespace astrosplat {
 namespace {
 
 using Frames = std::vector<double>;
+using test::opacity;
 
 const std::string core = "layer.stars.render.core";  // keys at 1 and 24, smooth
-using test::opacity;
 
 struct Keys : testing::Test {
     Scene scene = parse_scene(test::edit_scene, "/scene.toml");
