@@ -11,13 +11,13 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "generate/generate.h"
 #include "interrupt.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "places.h"
 #include "progress_report.h"
 #include "scene/animate.h"
-#include "splats/generate.h"
 #include "stats.h"
 
 namespace astrosplat {

@@ -10,7 +10,7 @@
 
 #include "core/image.h"
 #include "exit_code.h"
-#include "splats/set_cache.h"
+#include "generate/set_cache.h"
 
 namespace astrosplat {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "batch_plan.h"
+#include "generate/generate.h"
 #include "pipeline.h"
-#include "splats/generate.h"
 
 namespace astrosplat {
 namespace {

@@ -16,7 +16,7 @@
 #include "scene/load.h"
 #include "source/fits.h"
 #include "source/mesh.h"
-#include "splats/splat_file.h"
+#include "splat_files/splat_file.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -10,7 +10,7 @@
 #include "progress_report.h"
 #include "scene/load.h"
 #include "scene/suggest.h"
-#include "splats/splat_file.h"
+#include "splat_files/splat_file.h"
 
 namespace astrosplat {
 namespace {

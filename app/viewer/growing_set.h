@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "splats/kept_watcher.h"
+#include "generate/kept_watcher.h"
 
 namespace astrosplat {
 

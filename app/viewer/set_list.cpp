@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "generate/lattice.h"
 #include "pipeline.h"
-#include "splats/lattice.h"
 
 namespace astrosplat {
 namespace {

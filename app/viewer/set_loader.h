@@ -8,8 +8,8 @@
 #include <string>
 
 #include "edit/status.h"
+#include "generate/set_cache.h"
 #include "scene/scene.h"
-#include "splats/set_cache.h"
 #include "viewer/loaded_layer.h"
 
 namespace astrosplat {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "generate/set_cache.h"
 #include "scene/load.h"
-#include "splats/set_cache.h"
 
 namespace astrosplat {
 

@@ -11,7 +11,7 @@
 #include <iterator>
 #include <utility>
 
-#include "splats/checksum.h"
+#include "splat_files/checksum.h"
 
 namespace astrosplat {
 namespace {

@@ -1,7 +1,7 @@
 #include "scene/layer_setup.h"
 
+#include "generate/lattice.h"
 #include "render/falloff.h"
-#include "splats/lattice.h"
 
 namespace astrosplat {
 namespace {

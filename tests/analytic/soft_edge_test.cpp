@@ -9,7 +9,7 @@
 #include "analytic/support.h"
 #include "core/color.h"
 #include "core/real.h"
-#include "splats/generate.h"
+#include "generate/generate.h"
 
 namespace astrosplat {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "inputs.h"
 #include "measure.h"
-#include "splats/native.h"
-#include "splats/pda.h"
-#include "splats/ply.h"
+#include "splat_files/native.h"
+#include "splat_files/pda.h"
+#include "splat_files/ply.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat::bench {

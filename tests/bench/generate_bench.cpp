@@ -5,9 +5,9 @@
 #include <chrono>
 
 #include "core/buffer.h"
+#include "generate/generate.h"
 #include "inputs.h"
 #include "measure.h"
-#include "splats/generate.h"
 
 namespace astrosplat::bench {
 namespace {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/image.h"
-#include "splats/lattice.h"
+#include "generate/lattice.h"
+#include "generate/textured_mesh.h"
 #include "splats/splat_set.h"
-#include "splats/textured_mesh.h"
 
 namespace astrosplat::bench {
 

@@ -15,10 +15,10 @@
 #include "scene/load.h"
 #include "source/mesh.h"
 #include "source/texture.h"
-#include "splats/checksum.h"
-#include "splats/native.h"
-#include "splats/pda.h"
-#include "splats/ply.h"
+#include "splat_files/checksum.h"
+#include "splat_files/native.h"
+#include "splat_files/pda.h"
+#include "splat_files/ply.h"
 
 namespace astrosplat::fuzz {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "edit/layers.h"
+#include "generate/generate.h"
 #include "scenes.h"
-#include "splats/generate.h"
-#include "splats/splat_file.h"
+#include "splat_files/splat_file.h"
 #include "support/test_data.h"
 
 namespace astrosplat {

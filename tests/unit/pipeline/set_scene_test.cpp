@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "generate/generate.h"
 #include "output/write.h"
 #include "pipeline.h"
-#include "splats/generate.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "generate/generate.h"
 #include "output/write.h"
 #include "scene/layer_setup.h"
-#include "splats/generate.h"
 #include "splats/stratified.h"
 #include "support/small_scene.h"
 

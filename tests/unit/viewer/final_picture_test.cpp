@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "core/shared_maths.h"
+#include "generate/generate.h"
 #include "output/write.h"
 #include "pipeline.h"
-#include "splats/generate.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "splats/generate.h"
+#include "generate/generate.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {

@@ -12,8 +12,8 @@
 #include <numeric>
 #include <utility>
 
-#include "splats/generate.h"
-#include "splats/ply.h"
+#include "generate/generate.h"
+#include "splat_files/ply.h"
 #include "splats/stratified.h"
 #include "support/small_scene.h"
 

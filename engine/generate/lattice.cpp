@@ -1,0 +1,151 @@
+// Lattices: choosing the cells, naming the positions, moving them.
+#include "generate/lattice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "core/error.h"
+#include "core/real.h"
+#include "core/shared_maths.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double most_positions = 4611686018427387904.0;  // 2^62: ids and their sums fit 64 bits
+
+[[noreturn]] void bad_key(const char* key, const std::string& expected, const std::string& found) {
+    bad_input(fmt::format("source.{}", key), "", expected, found);
+}
+
+double total_area(std::span<const TexturedMesh> meshes) {
+    double area = 0.0;
+    for (const TexturedMesh& m : meshes) area += surface_area(m.mesh);
+    return area;
+}
+
+// Corners and centres, in double: exact enough to compare with 2^62, and never overflowing.
+double position_count(const glm::dvec3& n) {
+    return (n.x + 1.0) * (n.y + 1.0) * (n.z + 1.0) + n.x * n.y * n.z;
+}
+
+glm::i64vec3 checked_counts(const glm::dvec3& n, const char* key) {
+    if (!(position_count(n) < most_positions)) {
+        bad_key(key, "a lattice of fewer than 2^62 positions",
+                fmt::format("{:.4g} x {:.4g} x {:.4g} voxels", n.x, n.y, n.z));
+    }
+    return glm::i64vec3(n);
+}
+
+Bounds buffered_box(const SourceParams& source, std::span<const TexturedMesh> meshes, double max_distance) {
+    const glm::dvec3 buffer = source.buffer.value_or(glm::dvec3(max_distance));
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(buffer[axis] >= 0.0 && std::isfinite(buffer[axis]))) {
+            bad_key("buffer", "numbers of at least 0", fmt::format("{}", buffer[axis]));
+        }
+    }
+    Bounds box = bounds(meshes);
+    box.lo -= buffer;
+    box.hi += buffer;
+    return box;
+}
+
+// Cubes of side `size`, as many as cover the box, which grows evenly on both sides to hold them.
+Lattice cubes(Bounds box, double size, const char* key) {
+    const glm::dvec3 n = glm::max(glm::dvec3(1.0), glm::ceil(box.extent() / size - 1e-6));
+    Lattice lattice;
+    lattice.n = checked_counts(n, key);
+    const glm::dvec3 growth = (n * size - box.extent()) * 0.5;
+    lattice.box.lo = box.lo - growth;
+    lattice.box.hi = box.hi + growth;
+    return lattice;
+}
+
+// With two positions in each voxel and a band of 2 * max_distance around the surface, kept = 4 area distance
+// / edge^3.
+double automatic_size(const SourceParams& source, std::span<const TexturedMesh> meshes, double max_distance) {
+    if (source.count < 1) bad_key("count", "at least 1", fmt::format("{}", source.count));
+    const double area = total_area(meshes);
+    if (!(area > 0.0))
+        bad_key("voxels", "numbers, because the meshes have no area to choose them by", "\"auto\"");
+    return real::pow(4.0 * area * max_distance / static_cast<double>(source.count), 1.0 / 3.0);
+}
+
+}  // namespace
+
+glm::dvec3 lattice_position(const Lattice& lattice, std::uint64_t id) {
+    const auto corners = static_cast<std::uint64_t>(lattice.corners());
+    const bool centre = id >= corners;
+    const std::uint64_t index = centre ? id - corners : id;
+    const auto nx = static_cast<std::uint64_t>(lattice.n.x + (centre ? 0 : 1));
+    const auto ny = static_cast<std::uint64_t>(lattice.n.y + (centre ? 0 : 1));
+    const double half = centre ? 0.5 : 0.0;
+    return {lattice_coordinate(lattice, 0, static_cast<double>(index % nx) + half),
+            lattice_coordinate(lattice, 1, static_cast<double>(index / nx % ny) + half),
+            lattice_coordinate(lattice, 2, static_cast<double>(index / nx / ny) + half)};
+}
+
+glm::dvec3 jitter_offset(std::uint64_t id, std::uint32_t seed, const glm::dvec3& half_range) {
+    const auto low = static_cast<std::uint32_t>(id), high = static_cast<std::uint32_t>(id >> 32);
+    const auto random = [&](std::uint32_t purpose) {
+        return 2.0 * static_cast<double>(shared::as_uniform(shared::as_hash(seed, low, high, purpose))) - 1.0;
+    };
+    return {half_range.x * random(shared::PURPOSE_JITTER_X), half_range.y * random(shared::PURPOSE_JITTER_Y),
+            half_range.z * random(shared::PURPOSE_JITTER_Z)};
+}
+
+glm::dvec3 jittered_position(const Lattice& lattice, std::uint64_t id, double jitter, std::uint32_t seed) {
+    return lattice_position(lattice, id) + jitter_offset(id, seed, lattice.spacing() * (0.5 * jitter));
+}
+
+Bounds bounds(std::span<const TexturedMesh> meshes) {
+    Bounds box;
+    for (const TexturedMesh& m : meshes) box.add(bounds(m.mesh));
+    return box;
+}
+
+double resolved_max_distance(const SourceParams& source, const Bounds& meshes_box) {
+    if (!(source.max_distance >= 0.0 && std::isfinite(source.max_distance))) {
+        bad_key("max_distance", "a number of at least 0", fmt::format("{}", source.max_distance));
+    }
+    if (source.max_distance > 0.0) return source.max_distance;
+    const glm::dvec3 extent = meshes_box.extent();
+    return 0.02 * std::max({extent.x, extent.y, extent.z});
+}
+
+std::uint32_t resolved_seed(std::uint32_t seed, const std::string& layer_name) {
+    if (seed != 0) return seed;
+    std::uint32_t hash = shared::as_mix(shared::PURPOSE_NAME);
+    for (const char c : layer_name) hash = shared::as_mix(hash + static_cast<unsigned char>(c) + 1u);
+    return hash != 0 ? hash : 1u;
+}
+
+Lattice make_lattice(const SourceParams& source, std::span<const TexturedMesh> meshes, double max_distance) {
+    const Bounds box = buffered_box(source, meshes, max_distance);
+    if (source.voxels) {
+        const glm::i64vec3 n = *source.voxels;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (n[axis] < 1) bad_key("voxels", "at least 1 per axis", fmt::format("{}", n[axis]));
+        }
+        Lattice lattice;
+        lattice.n = n;
+        lattice.box = box;
+        checked_counts(glm::dvec3(n), "voxels");
+        return lattice;
+    }
+    if (!(source.voxel_size >= 0.0 && std::isfinite(source.voxel_size))) {
+        bad_key("voxel_size", "a number above 0", fmt::format("{}", source.voxel_size));
+    }
+    if (source.voxel_size > 0.0) return cubes(box, source.voxel_size, "voxel_size");
+    return cubes(box, automatic_size(source, meshes, max_distance), "count");
+}
+
+double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance) {
+    const glm::dvec3 voxel = lattice.spacing();
+    const double band = 4.0 * total_area(meshes) * max_distance / (voxel.x * voxel.y * voxel.z);
+    return std::min(static_cast<double>(lattice.positions()), band);  // also where band is 0 / 0
+}
+
+}  // namespace astrosplat

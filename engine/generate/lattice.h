@@ -1,0 +1,66 @@
+// The test positions of a mesh source (DESIGN 4): corners and centres of equal cells over a box, each moved a
+// little by its own random numbers. In: source parameters and meshes. Out: Lattice, and positions by id.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+
+#include "core/bounds.h"
+#include "generate/textured_mesh.h"
+#include "source/source.h"
+
+namespace astrosplat {
+
+/// The positions to try: corners (n+1 per axis) and centres (n per axis) of n.x * n.y * n.z cells over a box.
+struct Lattice {
+    Bounds box;         // scene units, after buffer (and after growing to fit voxel_size)
+    glm::i64vec3 n{1};  // cells per axis
+    glm::dvec3 spacing() const { return box.extent() / glm::dvec3(n); }
+    std::int64_t corners() const { return (n.x + 1) * (n.y + 1) * (n.z + 1); }
+    std::int64_t positions() const { return corners() + n.x * n.y * n.z; }
+};
+
+/// Id of corner (i, j, k), 0..n per axis, and of the centre of cell (i, j, k), 0..n-1.
+inline std::uint64_t corner_id(const Lattice& lattice, const glm::i64vec3& at) {
+    return static_cast<std::uint64_t>((at.z * (lattice.n.y + 1) + at.y) * (lattice.n.x + 1) + at.x);
+}
+inline std::uint64_t centre_id(const Lattice& lattice, const glm::i64vec3& at) {
+    return static_cast<std::uint64_t>(lattice.corners() + (at.z * lattice.n.y + at.y) * lattice.n.x + at.x);
+}
+
+/// Coordinate along one axis at `cells` voxels (whole for corners, half for centres) from the box's lower
+/// side.
+inline double lattice_coordinate(const Lattice& lattice, int axis, double cells) {
+    return lattice.box.lo[axis] +
+           (lattice.box.hi[axis] - lattice.box.lo[axis]) * cells / static_cast<double>(lattice.n[axis]);
+}
+
+/// Position of lattice id before jitter; corners come first, then centres.
+glm::dvec3 lattice_position(const Lattice& lattice, std::uint64_t id);
+
+/// What jitter adds to a position: half_voxel * jitter * uniform[-1, 1) per axis, hashed from (seed, id).
+glm::dvec3 jitter_offset(std::uint64_t id, std::uint32_t seed, const glm::dvec3& half_range);
+
+/// lattice_position moved by jitter * half a voxel * uniform(-1, 1) per axis, hashed from (seed, id).
+glm::dvec3 jittered_position(const Lattice& lattice, std::uint64_t id, double jitter, std::uint32_t seed);
+
+/// Bounds of all vertices of all meshes.
+Bounds bounds(std::span<const TexturedMesh> meshes);
+
+/// source.max_distance, or 2 % of the longest side of the meshes' box where that is 0. Throws InputError.
+double resolved_max_distance(const SourceParams& source, const Bounds& meshes_box);
+
+/// source.seed, or the hash of the layer's name where that is 0. Never 0.
+std::uint32_t resolved_seed(std::uint32_t seed, const std::string& layer_name);
+
+/// Voxel counts as DESIGN 4 says: given, from voxel_size, or automatic from `count` and the surface area.
+/// Throws InputError for values out of range and for lattices of 2^62 positions or more.
+Lattice make_lattice(const SourceParams& source, std::span<const TexturedMesh> meshes, double max_distance);
+
+/// How many positions a cull of this lattice will keep, about: both sides of the whole surface, two positions
+/// to a voxel, no rims and no overlaps.
+double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance);
+
+}  // namespace astrosplat

@@ -1,0 +1,233 @@
+// An entry is read without a lock, for it appears whole or not at all. The lock of its key is held from
+// before generation until the file is in place; what is found unlocked was left by a process that ended
+// early.
+#include "generate/set_cache.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "core/error.h"
+#include "core/file_lock.h"
+#include "core/log.h"
+#include "core/memory.h"
+#include "generate/generate.h"
+#include "generate/set_key.h"
+#include "splat_files/native.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t largest_limit = std::int64_t{20} << 30;  // bytes
+constexpr auto poll_interval = std::chrono::milliseconds(50);
+
+fs::path entry_file(const SetCache& cache, const std::string& key) {
+    return cache.folder / (key + ".splats");
+}
+fs::path lock_file(const fs::path& folder, const std::string& key) { return folder / (key + ".lock"); }
+
+bool serves(const SetCache& cache, const SourceParams& source) {
+    return !cache.folder.empty() && source.kind == SourceKind::mesh;
+}
+
+/// All names in a folder; empty where it cannot be read.
+std::vector<fs::path> files_in(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        files.push_back(at->path());
+    return files;
+}
+
+// ---- reading
+
+/// Nothing where there is no entry, or none that can be used. Where the memory left would not hold it the
+/// generator is to say so.
+std::optional<SplatSet> read_entry(const fs::path& file, const Progress& progress,
+                                   const OptionalColumns& wanted) {
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(file, error);
+    if (error || bytes > static_cast<std::uintmax_t>(available_memory_bytes())) return std::nullopt;
+    try {
+        SplatSet set = read_native(file, wanted, progress);
+        fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // refused: it seems older
+        return set;
+    } catch (const InputError& damage) {
+        log_warning(fmt::format("{}; the set is generated anew", damage.what()));
+        fs::remove(file, error);
+    }
+    return std::nullopt;
+}
+
+// ---- keeping
+
+/// The key in the name of a temporary or lock file; empty for any other file.
+std::string key_of_leftover(const fs::path& file) {
+    constexpr std::size_t key_length = 64;
+    const std::string name = file.filename().string();
+    const auto is_key = [](std::string_view text) {
+        return text.size() == key_length &&
+               text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+    };
+    if (file.extension() == ".lock" && is_key(file.stem().string())) return file.stem().string();
+    const bool temporary = name.front() == '.' && name.find(".part") != std::string::npos;
+    const std::string key = temporary ? name.substr(1, key_length) : "";
+    return is_key(key) ? key : "";
+}
+
+/// Removes temporary and lock files of processes that ended early: those whose lock nobody holds. `own_key`
+/// is the one held by the caller.
+void remove_leftovers(const fs::path& folder, const std::string& own_key) {
+    for (const fs::path& file : files_in(folder)) {
+        const std::string key = key_of_leftover(file);
+        if (key.empty() || file == lock_file(folder, own_key)) continue;
+        FileLock lock(lock_file(folder, key));  // removes the lock file where it can be had
+        const FileLock::State state =
+            key == own_key ? FileLock::State::held : lock.try_lock(FileLock::Missing::leave);
+        const bool dead = state == FileLock::State::held || state == FileLock::State::absent;
+        std::error_code ignored;
+        if (dead && file.extension() != ".lock") fs::remove(file, ignored);
+    }
+}
+
+std::int64_t limit_of(const SetCache& cache) {
+    if (cache.limit_bytes > 0) return cache.limit_bytes;
+    std::error_code error;
+    const fs::space_info disk = fs::space(cache.folder, error);
+    if (error) return largest_limit;
+    return static_cast<std::int64_t>(std::min<std::uintmax_t>(disk.capacity / 10, largest_limit));
+}
+
+/// Removes entries, least recently used first, until they take at most `bytes` together.
+void shrink_to(const fs::path& folder, std::int64_t bytes) {
+    struct Entry {
+        fs::file_time_type used;
+        fs::path file;
+        std::int64_t bytes;
+        bool operator<(const Entry& other) const {
+            return used != other.used ? used < other.used : file < other.file;
+        }
+    };
+    std::vector<Entry> entries;
+    std::int64_t total = 0;
+    std::error_code error;
+    for (const fs::path& file : files_in(folder)) {
+        if (file.extension() != ".splats" || file.filename().string().front() == '.') continue;
+        entries.push_back({fs::last_write_time(file, error), file, 0});
+        const std::uintmax_t size = fs::file_size(file, error);
+        if (!error)
+            entries.back().bytes = static_cast<std::int64_t>(size);  // else another process removed it
+        total += entries.back().bytes;
+    }
+    std::sort(entries.begin(), entries.end());
+    for (const Entry& entry : entries) {
+        if (total <= bytes) return;
+        if (fs::remove(entry.file, error)) log_detail(entry.file.string() + ": removed from the cache");
+        total -= entry.bytes;
+    }
+}
+
+void warn_unwritable(const SetCache& cache, const std::string& why) {
+    log_warning(fmt::format("cache {}: {}; the generated set is not kept", cache.folder.string(), why));
+}
+
+/// Called with the key's lock held (or on file systems without locks).
+void keep(const SetCache& cache, const std::string& key, const SplatSet& set, const Progress& progress) {
+    const std::int64_t bytes = native_file_bytes(set), limit = limit_of(cache);
+    if (bytes > limit) {
+        log_info(fmt::format("a set of {} is not kept: the cache may hold {}",
+                             human_bytes(static_cast<double>(bytes)),
+                             human_bytes(static_cast<double>(limit))));
+        return;
+    }
+    shrink_to(cache.folder, limit - bytes);
+    try {
+        write_native(entry_file(cache, key), set, RowOrder::id, Progress{{}, progress.cancelled});
+    } catch (const OutputError& error) {
+        warn_unwritable(cache, error.what());
+    }
+}
+
+/// Waits while another process generates the same set.
+FileLock::State wait_for(FileLock& lock, const std::string& layer_name, const Progress& progress) {
+    for (int tries = 0;; ++tries) {
+        const FileLock::State state = lock.try_lock();
+        if (state != FileLock::State::busy) return state;
+        progress.check();
+        if (tries == 2)  // not for the moment in which another looks for leftovers
+            log_info(fmt::format("layer '{}': waiting for another process that generates the same set",
+                                 layer_name));
+        std::this_thread::sleep_for(poll_interval);
+    }
+}
+
+std::optional<SplatSet> find(const SetCache& cache, const std::string& key, const std::string& layer_name,
+                             const Progress& progress, const OptionalColumns& wanted) {
+    std::optional<SplatSet> set = read_entry(entry_file(cache, key), progress, wanted);
+    if (set)
+        log_info(fmt::format("layer '{}': {} splats from the cache", layer_name,
+                             human_count(static_cast<double>(set->size()))));
+    return set;
+}
+
+/// With columns that are not wanted where the set had to be generated.
+LoadedSet find_or_load(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                       const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
+    const std::string key = serves(cache, source) ? set_key(source, layer_name) : "";
+    if (key.empty()) return {load_source(source, layer_name, progress, watcher), false};
+    if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
+    std::error_code error;
+    fs::create_directories(cache.folder, error);
+    if (error) {
+        warn_unwritable(cache, "cannot be made: " + error.message());
+        return {load_source(source, layer_name, progress, watcher), false};
+    }
+    FileLock lock(lock_file(cache.folder, key));
+    const bool locked = wait_for(lock, layer_name, progress) == FileLock::State::held;
+    if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
+    if (locked) remove_leftovers(cache.folder, key);
+    LoadedSet loaded{load_source(source, layer_name, progress, watcher), false};
+    if (set_key(source, layer_name) == key) keep(cache, key, loaded.set, progress);  // else a file changed
+    return loaded;
+}
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+}  // namespace
+
+fs::path default_cache_folder() {
+    if (const std::string folder = environment("ASTROSPLAT_CACHE"); !folder.empty()) return folder;
+    const fs::path caches = environment("XDG_CACHE_HOME");
+    if (caches.is_absolute()) return caches / "astrosplat";  // its specification: relative ones are ignored
+    const fs::path home = environment("HOME");
+    return home.is_absolute() ? home / ".cache" / "astrosplat" : fs::path();
+}
+
+LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                      const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
+    LoadedSet loaded = find_or_load(cache, source, layer_name, progress, watcher, wanted);
+    drop_columns(loaded.set, wanted);
+    return loaded;
+}
+
+std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,
+                                          const std::string& layer_name) try {
+    const std::string key = serves(cache, source) ? set_key(source, layer_name) : "";
+    std::error_code error;
+    if (key.empty() || !fs::is_regular_file(entry_file(cache, key), error)) return std::nullopt;
+    return native_splat_count(entry_file(cache, key));
+} catch (const InputError&) {
+    return std::nullopt;  // load_source will say what is wrong with it
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,80 @@
+// One line for each thing that a generated set depends on.
+#include "generate/set_key.h"
+
+#include <fmt/format.h>
+
+#include <cassert>
+
+#include "core/error.h"
+#include "core/sha256.h"
+#include "generate/lattice.h"
+#include "source/mesh.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string file_line(const char* what, const fs::path& file) {
+    return fmt::format("{} {} {}\n", what, sha256_of_file(file), file.extension().string());
+}
+
+std::string mesh_lines(const MeshInput& input) {
+    const auto& [mesh, texture, relief] = input;
+    std::string text;
+    if (is_builtin_mesh(mesh)) {
+        text = fmt::format("built-in {}\n", mesh.string());
+        if (mesh == "relief") text += fmt::format("relief {}\n", relief);
+    } else {
+        text = file_line("mesh", mesh);
+        if (texture.empty())
+            for (const fs::path& file : obj_materials(mesh)) text += file_line("material", file);
+    }
+    for (const fs::path& file : texture) text += file_line("texture", file);
+    return text;
+}
+
+std::string texture_lines(const TextureSettings& settings) {
+    const auto& [colorspace, alpha, unpremultiply, hdu, plane, stretch, black, white, softening, filter,
+                 wrap] = settings;
+    const auto limit = [](const std::optional<double>& v) { return v ? fmt::format("{}", *v) : "auto"; };
+    return fmt::format("colorspace {}\nalpha {}\nunpremultiply {}\nhdu {}\nplane {}\nstretch {}\n",
+                       static_cast<int>(colorspace), static_cast<int>(alpha), static_cast<int>(unpremultiply),
+                       hdu, plane, static_cast<int>(stretch)) +
+           fmt::format("black {}\nwhite {}\nsoftening {}\nfilter {}\nwrap {}\n", limit(black), limit(white),
+                       softening, static_cast<int>(filter), static_cast<int>(wrap));
+}
+
+std::string lattice_lines(const SourceParams& source) {
+    const std::string size =
+        source.voxels ? fmt::format("voxels {} {} {}", source.voxels->x, source.voxels->y, source.voxels->z)
+        : source.voxel_size != 0 ? fmt::format("voxel_size {}", source.voxel_size)
+                                 : fmt::format("count {}", source.count);
+    const std::string buffer =
+        source.buffer ? fmt::format("{} {} {}", source.buffer->x, source.buffer->y, source.buffer->z)
+                      : "auto";
+    return fmt::format("{}\nbuffer {}\n", size, buffer);
+}
+
+}  // namespace
+
+std::string set_key_text(const SourceParams& source, const std::string& layer_name) try {
+    assert(source.kind == SourceKind::mesh);
+    // Names all fields, so that a new one cannot be forgotten: either it belongs below, or among the unused.
+    [[maybe_unused]] const auto& [kind, meshes, texture, buffer, voxels, voxel_size, count, jitter,
+                                  max_distance, uv, seed, file, stars] = source;
+    std::string text = fmt::format("set {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
+    for (const MeshInput& input : meshes) text += mesh_lines(input);
+    text += texture_lines(texture) + lattice_lines(source);
+    return text + fmt::format("jitter {}\nmax_distance {}\nuv {}\nseed {}\n", jitter, max_distance,
+                              static_cast<int>(uv), resolved_seed(seed, layer_name));
+} catch (const InputError&) {
+    return {};
+}
+
+std::string set_key(const SourceParams& source, const std::string& layer_name) {
+    const std::string text = set_key_text(source, layer_name);
+    return text.empty() ? text : Sha256().add(text).hex();
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,71 @@
+// Surface attributes of triangles, prepared once so that a kept position costs one lookup.
+#include "generate/surface.h"
+
+#include <cassert>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/parallel.h"
+
+namespace astrosplat {
+namespace {
+
+// |gradient of u * voxel side|, for u and v: the gradient is the one along the surface, so for gradients g of
+// the barycentric weights it is uv_ab * g_b + uv_ac * g_c.
+glm::vec2 texels_per_voxel(const SurfaceTriangle& t, const TriangleShape& s, const glm::dvec3& spacing) {
+    const double determinant = s.ab_ab * s.ac_ac - s.ab_ac * s.ab_ac;
+    if (!(determinant > 0.0)) return glm::vec2(0.0f);
+    const glm::dvec3 g_b = (s.ab * s.ac_ac - s.ac * s.ab_ac) / determinant;
+    const glm::dvec3 g_c = (s.ac * s.ab_ab - s.ab * s.ab_ac) / determinant;
+    const glm::dvec2 uv_ab = glm::dvec2(t.uv_b) - glm::dvec2(t.uv_a);
+    const glm::dvec2 uv_ac = glm::dvec2(t.uv_c) - glm::dvec2(t.uv_a);
+    const glm::dvec3 along_u = (g_b * uv_ab.x + g_c * uv_ac.x) * spacing;
+    const glm::dvec3 along_v = (g_b * uv_ab.y + g_c * uv_ac.y) * spacing;
+    return glm::vec2(std::sqrt(glm::dot(along_u, along_u)) * static_cast<double>(t.texture->image.width),
+                     std::sqrt(glm::dot(along_v, along_v)) * static_cast<double>(t.texture->image.height));
+}
+
+glm::vec3 face_normal(const TriangleShape& s) {
+    const glm::dvec3 n = glm::cross(s.ab, s.ac);
+    const double length = std::sqrt(glm::dot(n, n));
+    return length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0f, 1.0f, 0.0f);
+}
+
+SurfaceTriangle surface_triangle(const TexturedMesh& m, const Mesh::Triangle& face,
+                                 const TriangleShape& shape, const glm::dvec3& spacing) {
+    const auto uv = [&](std::size_t corner) {
+        return face.uv[corner] == Mesh::no_uv ? glm::vec2(0.0f) : m.mesh.uvs[face.uv[corner]];
+    };
+    const std::size_t texture = m.textures.size() == 1 ? 0 : face.material;
+    assert(texture < m.textures.size());
+    SurfaceTriangle t{uv(0), uv(1), uv(2), face_normal(shape), {}, 0, &m.textures[texture]};
+    t.box_texels = texels_per_voxel(t, shape, spacing);
+    return t;
+}
+
+}  // namespace
+
+Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
+                                          const ClosestPointIndex& index, const glm::dvec3& spacing) {
+    Buffer<SurfaceTriangle> triangles(static_cast<std::size_t>(index.triangle_count()));
+    std::size_t first = 0;
+    for (std::size_t number = 0; number < meshes.size(); ++number) {
+        const TexturedMesh& m = meshes[number];
+        const auto count = static_cast<std::int64_t>(m.mesh.triangles.size());
+        const auto corner = [&](const Mesh::Triangle& face, std::size_t k) {
+            return glm::dvec3(m.mesh.positions[face.position[k]]);
+        };
+        parallel_chunks(count, 4096, [&](std::int64_t begin, std::int64_t end, int) {
+            for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                const Mesh::Triangle& face = m.mesh.triangles[i];
+                const TriangleShape shape = triangle_shape(corner(face, 0), corner(face, 1), corner(face, 2));
+                triangles[first + i] = surface_triangle(m, face, shape, spacing);
+                triangles[first + i].mesh = static_cast<std::uint32_t>(number);
+            }
+        });
+        first += m.mesh.triangles.size();
+    }
+    return triangles;
+}
+
+}  // namespace astrosplat

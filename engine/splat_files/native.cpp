@@ -1,0 +1,388 @@
+// See native.h for the format. One list of arrays (visit_arrays) serves sizes, packing and unpacking.
+#include "splat_files/native.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cassert>
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+#include <glm/common.hpp>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "splat_files/checksum.h"
+#include "splat_files/mapped_file.h"
+#include "splat_files/ordered_writer.h"
+#include "splats/row_order.h"
+#include "splats/spatial_order.h"
+
+namespace astrosplat {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the structs below are the file's bytes");
+
+constexpr std::string_view magic = "\x89SPLAT\r\n";
+constexpr std::uint32_t version = 1;
+constexpr std::uint32_t splats_per_block = 65536;
+enum Flag : std::uint32_t {
+    generated = 1,
+    divided = 2,
+    has_uv = 4,
+    has_normal = 8,
+    has_mesh = 16,
+    has_radius = 32,
+    by_id = 64
+};
+
+struct Header {
+    char magic[8];
+    std::uint32_t version, flags;
+    std::uint64_t splats;
+    std::uint32_t block, credit_bytes;
+    glm::dvec3 spacing;
+    double max_distance;
+    std::int64_t test_positions, zero_alpha;
+};
+static_assert(sizeof(Header) == 80);
+
+struct BlockEntry {
+    glm::vec3 lo, hi;
+    std::uint64_t checksum;
+};
+static_assert(sizeof(BlockEntry) == 32);
+
+/// Calls visit(array, flag) for every array in the file's order, also for empty ones; the flag says whether a
+/// file has it, 0: always.
+template <class Set, class Visit>
+void visit_arrays(Set& set, Visit&& visit) {
+    visit(set.position, 0u);
+    visit(set.color, 0u);
+    visit(set.alpha, 0u);
+    visit(set.distance, 0u);
+    visit(set.id, 0u);
+    visit(set.uv, std::uint32_t{has_uv});
+    visit(set.normal, std::uint32_t{has_normal});
+    visit(set.mesh, std::uint32_t{has_mesh});
+    visit(set.radius, std::uint32_t{has_radius});
+}
+
+std::size_t bytes_per_splat(std::uint32_t flags) {
+    std::size_t bytes = 2 * sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(std::uint64_t);
+    if (flags & has_uv) bytes += sizeof(glm::vec2);
+    if (flags & has_normal) bytes += sizeof(glm::vec3);
+    if (flags & has_mesh) bytes += sizeof(std::uint32_t);
+    if (flags & has_radius) bytes += sizeof(float);
+    return bytes;
+}
+
+/// Where the blocks begin, behind header, credit, padding and checksum.
+std::size_t data_offset(std::size_t credit_bytes) {
+    return (sizeof(Header) + credit_bytes + sizeof(std::uint64_t) + 63) / 64 * 64;
+}
+
+std::size_t block_count(std::uint64_t splats, std::uint32_t block) {
+    return static_cast<std::size_t>(splats / block + (splats % block != 0));
+}
+
+/// Bounds and checksum of a packed block, whose first array is the positions.
+BlockEntry describe_block(std::string_view bytes, std::size_t rows) {
+    BlockEntry entry{glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), xxh64(bytes)};
+    for (std::size_t i = 0; i < rows; ++i) {
+        glm::vec3 p;
+        std::memcpy(&p, bytes.data() + i * sizeof p, sizeof p);
+        entry.lo = glm::min(entry.lo, p);
+        entry.hi = glm::max(entry.hi, p);
+    }
+    return entry;
+}
+
+// ---- writing
+
+std::uint32_t flags_of(const SplatSet& set, RowOrder order) {
+    return (set.generated ? generated : 0u) | (set.divided ? divided : 0u) | (set.uv.empty() ? 0u : has_uv) |
+           (set.normal.empty() ? 0u : has_normal) | (set.mesh.empty() ? 0u : has_mesh) |
+           (set.radius.empty() ? 0u : has_radius) | (order == RowOrder::id ? by_id : 0u);
+}
+
+std::string header_bytes(const SplatSet& set, RowOrder order) {
+    Header header{};
+    std::memcpy(header.magic, magic.data(), sizeof header.magic);
+    header.version = version;
+    header.flags = flags_of(set, order);
+    header.splats = static_cast<std::uint64_t>(set.size());
+    header.block = splats_per_block;
+    header.credit_bytes = static_cast<std::uint32_t>(set.credit.size());
+    header.spacing = set.spacing;
+    header.max_distance = set.max_distance;
+    header.test_positions = set.test_positions;
+    header.zero_alpha = set.zero_alpha;
+    std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
+    bytes += set.credit;
+    bytes.resize(data_offset(set.credit.size()) - sizeof(std::uint64_t), '\0');
+    const std::uint64_t checksum = xxh64(bytes);
+    return bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+}
+
+/// Rows [begin, end) of every array.
+char* pack(const SplatSet& set, std::int64_t begin, std::int64_t end, char* out) {
+    visit_arrays(set, [&](const auto& array, std::uint32_t) {
+        if (array.empty()) return;
+        const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
+        std::memcpy(out, &array[static_cast<std::size_t>(begin)], bytes);
+        out += bytes;
+    });
+    return out;
+}
+
+/// Those rows of every array.
+template <class Row>
+char* pack(const SplatSet& set, std::span<const Row> rows, char* out) {
+    visit_arrays(set, [&](const auto& array, std::uint32_t) {
+        if (!array.empty()) out = gather(array.data(), rows, out);
+    });
+    return out;
+}
+
+std::string table_bytes(const std::vector<BlockEntry>& table) {
+    std::string bytes(reinterpret_cast<const char*>(table.data()), table.size() * sizeof(BlockEntry));
+    const std::uint64_t checksum = xxh64(bytes);
+    return bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+}
+
+/// The file, whose blocks are what `pack_rows` makes of their rows.
+void write_blocks(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
+                  const Progress& progress, const FormatRows& pack_rows) {
+    std::vector<BlockEntry> table(block_count(static_cast<std::uint64_t>(set.size()), splats_per_block));
+    write_ordered(
+        file, header_bytes(set, order), set.size(), splats_per_block, bytes_per_splat(flags_of(set, order)),
+        progress,
+        [&](std::int64_t begin, std::int64_t end, char* out) {
+            char* const stop = pack_rows(begin, end, out);
+            table[static_cast<std::size_t>(begin / splats_per_block)] = describe_block(
+                {out, static_cast<std::size_t>(stop - out)}, static_cast<std::size_t>(end - begin));
+            return stop;
+        },
+        [&] { return table_bytes(table); });
+}
+
+template <class Row>
+void write_in_space(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+    const Buffer<Row> order = spatial_order<Row>(set);
+    write_blocks(file, set, RowOrder::space, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
+        const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+        return pack(set, std::span(order).subspan(first, count), out);
+    });
+}
+
+// ---- reading
+
+/// A file whose lengths are known to be right.
+struct Layout {
+    Header header;
+    std::string credit;
+    std::string_view blocks;
+    std::vector<BlockEntry> table;
+};
+
+struct Checker {
+    std::string file;
+
+    [[noreturn]] void fail(std::string_view place, const std::string& expected,
+                           const std::string& found) const {
+        bad_input(file, place, expected, found);
+    }
+    /// The 8 bytes behind `bytes` are their checksum.
+    void checksum(std::string_view place, std::string_view bytes) const {
+        std::uint64_t stored;
+        std::memcpy(&stored, bytes.data() + bytes.size(), sizeof stored);
+        if (stored != xxh64(bytes)) fail(place, "the checksum written with it", "another (damaged file)");
+    }
+};
+
+void check_values(const Checker& checker, const Header& header) {
+    const auto is_length = [](double v) { return v >= 0.0 && v <= DBL_MAX; };
+    if (!is_length(header.spacing.x) || !is_length(header.spacing.y) || !is_length(header.spacing.z) ||
+        !is_length(header.max_distance))
+        checker.fail("header", "spacing and max_distance finite and >= 0", "another value");
+    if (header.test_positions < 0 || header.zero_alpha < 0)
+        checker.fail("header", "counts of positions >= 0", "a negative count");
+}
+
+Header read_header(const Checker& checker, std::string_view bytes) {
+    if (bytes.size() < sizeof(Header) || bytes.substr(0, magic.size()) != magic)
+        checker.fail("", "an astrosplat .splats file", "another format");
+    Header header;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    if (header.version != version)
+        checker.fail("header", fmt::format("version {}", version), std::to_string(header.version));
+    if (header.flags >= by_id * 2) checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
+    if (header.block == 0) checker.fail("header", "blocks of at least one splat", "0");
+    return header;
+}
+
+/// Checks all lengths against the file's size, then the checksums of header and table.
+Layout read_layout(const Checker& checker, std::string_view bytes) {
+    Layout layout{read_header(checker, bytes), {}, {}, {}};
+    const Header& header = layout.header;
+    const std::size_t per_splat = bytes_per_splat(header.flags), begin = data_offset(header.credit_bytes);
+    const std::size_t blocks = block_count(header.splats, header.block);
+    const bool fits = header.splats <= bytes.size() / per_splat;
+    const std::size_t data = fits ? static_cast<std::size_t>(header.splats) * per_splat : 0;
+    const std::size_t table = blocks * sizeof(BlockEntry);
+    if (!fits || bytes.size() != begin + data + table + sizeof(std::uint64_t))
+        checker.fail("", fmt::format("the length that {} splats take", header.splats),
+                     fmt::format("{} bytes (truncated or damaged file)", bytes.size()));
+    checker.checksum("header", bytes.substr(0, begin - sizeof(std::uint64_t)));
+    checker.checksum("table", bytes.substr(begin + data, table));
+    check_values(checker, header);
+    layout.credit = bytes.substr(sizeof(Header), header.credit_bytes);
+    layout.blocks = bytes.substr(begin, data);
+    layout.table.resize(blocks);
+    if (table > 0) std::memcpy(layout.table.data(), bytes.data() + begin + data, table);
+    return layout;
+}
+
+/// The flags of the arrays that are there and wanted.
+std::uint32_t flags_to_read(const Header& header, const OptionalColumns& wanted) {
+    std::uint32_t flags = header.flags;
+    if (!wanted.uv) flags &= ~std::uint32_t{has_uv};
+    if (!wanted.normal) flags &= ~std::uint32_t{has_normal};
+    if (!wanted.mesh) flags &= ~std::uint32_t{has_mesh};
+    return flags;
+}
+
+SplatSet empty_set(const Layout& layout, const OptionalColumns& wanted, const std::string& file) {
+    const Header& header = layout.header;
+    const auto rows = static_cast<std::size_t>(header.splats);
+    const std::uint32_t flags = flags_to_read(header, wanted);
+    if (rows > 0) claim_memory(static_cast<std::int64_t>(rows * bytes_per_splat(flags)), "splats of " + file);
+    SplatSet set;
+    set.position.resize(rows);
+    set.color.resize(rows);
+    set.alpha.resize(rows);
+    set.distance.resize(rows);
+    set.id.resize(rows);
+    if (flags & has_uv) set.uv.resize(rows);
+    if (flags & has_normal) set.normal.resize(rows);
+    if (flags & has_mesh) set.mesh.resize(rows);
+    if (flags & has_radius) set.radius.resize(rows);
+    set.spacing = header.spacing;
+    set.max_distance = header.max_distance;
+    set.generated = header.flags & generated;
+    set.divided = header.flags & divided;
+    set.test_positions = header.test_positions;
+    set.zero_alpha = header.zero_alpha;
+    set.credit = layout.credit;
+    return set;
+}
+
+bool is_finite(float v) { return std::fabs(v) <= FLT_MAX; }
+bool is_finite(const glm::vec2& v) { return is_finite(v.x) && is_finite(v.y); }
+bool is_finite(const glm::vec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
+bool is_finite(std::uint32_t) { return true; }
+bool is_finite(std::uint64_t) { return true; }
+
+/// Copies a block's arrays to the set's rows from `first` on; false when a number is not finite.
+bool unpack(SplatSet& set, std::uint32_t flags, std::size_t first, std::size_t rows, const char* p) {
+    bool finite = true;
+    visit_arrays(set, [&](auto& array, std::uint32_t flag) {
+        if ((flags & flag) != flag) return;
+        const char* const from = p;
+        p += rows * sizeof array[0];
+        if (array.empty()) return;  // not wanted
+        std::memcpy(&array[first], from, rows * sizeof array[0]);
+        for (std::size_t i = first; i < first + rows; ++i) finite &= is_finite(array[i]);
+    });
+    return finite;
+}
+
+void read_block(const Checker& checker, const Layout& layout, std::size_t block, SplatSet& set) {
+    const std::size_t first = block * layout.header.block;
+    const std::size_t rows = std::min<std::size_t>(layout.header.block, set.position.size() - first);
+    const std::size_t per_splat = bytes_per_splat(layout.header.flags);
+    const std::string_view bytes = layout.blocks.substr(first * per_splat, rows * per_splat);
+    const std::string place = fmt::format("block {}", block);
+    const BlockEntry& stored = layout.table[block];
+    const BlockEntry found = describe_block(bytes, rows);
+    if (stored.checksum != found.checksum)
+        checker.fail(place, "the checksum written with it", "another (damaged file)");
+    if (stored.lo != found.lo || stored.hi != found.hi)
+        checker.fail(place, "positions within its bounds", "others");
+    if (!unpack(set, layout.header.flags, first, rows, bytes.data()))
+        checker.fail(place, "finite numbers", "infinity or NaN");
+}
+
+}  // namespace
+
+SplatSet read_native(const std::filesystem::path& file, const Progress& progress) {
+    return read_native(file, OptionalColumns{}, progress);
+}
+
+SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& wanted,
+                     const Progress& progress) {
+    const MappedFile mapped(file);
+    const Checker checker{file.string()};
+    const Layout layout = read_layout(checker, mapped.bytes());
+    SplatSet set = empty_set(layout, wanted, checker.file);
+    std::vector<std::string> errors(layout.table.size());
+    std::atomic<std::size_t> done{0};
+    parallel_for(static_cast<std::int64_t>(errors.size()), [&](std::int64_t block, int) {
+        progress.check();
+        const auto i = static_cast<std::size_t>(block);
+        try {
+            read_block(checker, layout, i, set);
+        } catch (const InputError& error) {
+            errors[i] = error.what();
+        }
+        progress.at(static_cast<double>(++done) / static_cast<double>(errors.size()));
+    });
+    for (const std::string& error : errors)
+        if (!error.empty()) throw InputError(error);
+    if ((layout.header.flags & by_id) && !ids_ascend(set.id))
+        checker.fail("", "ids in ascending order", "another order");
+    return set;
+}
+
+std::int64_t native_splat_count(const std::filesystem::path& file) {
+    const MappedFile mapped(file);
+    return static_cast<std::int64_t>(read_layout(Checker{file.string()}, mapped.bytes()).header.splats);
+}
+
+void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+    write_native(file, set, RowOrder::space, progress);
+}
+
+void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
+                  const Progress& progress) {
+    check_consistent(set);
+    assert(order == RowOrder::space || ids_ascend(set.id));
+    if (order == RowOrder::id)
+        write_blocks(file, set, order, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
+            return pack(set, begin, end, out);
+        });
+    else if (set.size() <= std::numeric_limits<std::uint32_t>::max())
+        write_in_space<std::uint32_t>(file, set, progress);
+    else
+        write_in_space<std::uint64_t>(file, set, progress);
+}
+
+std::int64_t native_file_bytes(const SplatSet& set) {
+    const auto rows = static_cast<std::uint64_t>(set.size());
+    const std::size_t table = block_count(rows, splats_per_block) * sizeof(BlockEntry);
+    return static_cast<std::int64_t>(data_offset(set.credit.size()) +
+                                     rows * bytes_per_splat(flags_of(set, RowOrder::id)) + table +
+                                     sizeof(std::uint64_t));
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,242 @@
+// See pda.h. The header is read word by word, so line breaks and blanks in it do not matter; the data line by
+// line.
+#include "splat_files/pda.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.h"
+#include "splat_files/float_text.h"
+#include "splat_files/mapped_file.h"
+#include "splat_files/number_scan.h"
+#include "splat_files/ordered_writer.h"
+#include "splat_files/splat_table.h"
+#include "splat_files/text_rows.h"
+
+namespace astrosplat {
+
+namespace {
+
+/// The header's words, with the line each stands on.
+class Words {
+  public:
+    Words(const std::filesystem::path& file, std::string_view text) : file_(file.string()), text_(text) {
+        if (text_.substr(0, 3) == "\xef\xbb\xbf") at_ = 3;  // byte order mark
+    }
+
+    /// The next word; empty at the end of the file.
+    std::string_view next() {
+        for (; at_ < text_.size() && scan::is_space(text_[at_]); ++at_) line_ += text_[at_] == '\n';
+        const std::size_t begin = at_;
+        while (at_ < text_.size() && !scan::is_space(text_[at_])) ++at_;
+        return text_.substr(begin, at_ - begin);
+    }
+    void expect(std::string_view keyword) {
+        const std::string_view word = next();
+        if (word != keyword) fail(fmt::format("'{}'", keyword), word);
+    }
+    [[noreturn]] void fail(const std::string& expected, std::string_view found) const {
+        bad_input(file_, std::to_string(line_), expected,
+                  found.empty() ? "the end of the file" : quoted(found));
+    }
+    /// The text behind the line of the last word, which must end there.
+    std::string_view rest() {
+        while (at_ < text_.size() && scan::is_blank(text_[at_])) ++at_;
+        if (at_ < text_.size() && text_[at_] != '\n') fail("nothing behind 'BEGIN DATA' on its line", next());
+        return text_.substr(std::min(at_ + 1, text_.size()));
+    }
+    std::int64_t line() const { return line_; }
+
+  private:
+    std::string file_;
+    std::string_view text_;
+    std::size_t at_ = 0;
+    std::int64_t line_ = 1;
+};
+
+struct Attribute {
+    std::string name;
+    char type = 'R';  // I, R or V
+};
+
+struct PdaHeader {
+    std::vector<Attribute> attributes;
+    std::uint64_t particles = 0;
+    std::string_view data;
+    std::int64_t data_line = 0;  // the file's line where data begins
+};
+
+/// An attribute that becomes a field of the SplatSet; V fields are three columns.
+struct KnownAttribute {
+    std::string_view name;
+    std::string_view types;
+    std::vector<Field> fields;
+};
+
+const std::vector<KnownAttribute>& known_attributes() {
+    static const std::vector<KnownAttribute> known = {
+        {"position", "V", {Field::x, Field::y, Field::z}},
+        {"rgbPP", "V", {Field::red, Field::green, Field::blue}},
+        {"opacityPP", "R", {Field::alpha}},
+        {"DistanceFromSurfaceMeshPP", "R", {Field::distance}},
+        {"radiusPP", "R", {Field::radius}},
+        {"whichMeshPP", "IR", {Field::mesh}},
+        {"particleId", "IR", {Field::id}},
+        {"id", "IR", {Field::id}},
+    };
+    return known;
+}
+
+const KnownAttribute* find_known(std::string_view name) {
+    const auto& known = known_attributes();
+    const auto found =
+        std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.name == name; });
+    return found == known.end() ? nullptr : &*found;
+}
+
+bool has_attribute(const std::vector<Attribute>& attributes, std::string_view name) {
+    return std::any_of(attributes.begin(), attributes.end(),
+                       [&](const Attribute& a) { return a.name == name; });
+}
+
+std::string_view read_attributes(Words& words, std::vector<Attribute>& attributes) {
+    std::string_view word = words.next();
+    for (; word != "TYPES"; word = words.next()) {
+        if (word.empty()) words.fail("'TYPES'", word);
+        if (has_attribute(attributes, word)) words.fail("each attribute once", word);
+        attributes.push_back({std::string(word), 'R'});
+    }
+    return word;
+}
+
+void read_types(Words& words, std::vector<Attribute>& attributes) {
+    for (Attribute& attribute : attributes) {
+        const std::string_view type = words.next();
+        if (type != "I" && type != "R" && type != "V")
+            words.fail(fmt::format("type I, R or V of attribute {}", attribute.name), type);
+        attribute.type = type[0];
+        const KnownAttribute* known = find_known(attribute.name);
+        if (known && known->types.find(attribute.type) == known->types.npos)
+            words.fail(fmt::format("type {} of attribute {}", known->types == "IR" ? "I or R" : known->types,
+                                   attribute.name),
+                       type);
+    }
+    if (!has_attribute(attributes, "position")) words.fail("an attribute position", "none");
+}
+
+/// "NUMBER_OF_PARTICLES: 30", with or without the colon, and with or without blanks around it.
+std::uint64_t read_particle_count(Words& words) {
+    constexpr std::string_view keyword = "NUMBER_OF_PARTICLES";
+    std::string_view word = words.next();
+    if (word.substr(0, keyword.size()) != keyword) words.fail("'NUMBER_OF_PARTICLES:'", word);
+    word.remove_prefix(keyword.size());
+    if (word.empty()) word = words.next();
+    if (!word.empty() && word[0] == ':') word.remove_prefix(1);
+    if (word.empty()) word = words.next();
+    std::uint64_t count = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
+    if (error != std::errc() || end != word.data() + word.size()) words.fail("a number of particles", word);
+    return count;
+}
+
+PdaHeader read_header(const std::filesystem::path& file, std::string_view text) {
+    PdaHeader header;
+    Words words(file, text);
+    words.expect("ATTRIBUTES");
+    read_attributes(words, header.attributes);
+    read_types(words, header.attributes);
+    header.particles = read_particle_count(words);
+    words.expect("BEGIN");
+    words.expect("DATA");
+    header.data = words.rest();
+    header.data_line = words.line() + 1;
+    return header;
+}
+
+std::vector<Column> columns_of(const std::vector<Attribute>& attributes) {
+    std::vector<Column> columns;
+    for (const Attribute& attribute : attributes) {
+        const KnownAttribute* known = find_known(attribute.name);
+        if (attribute.name == "id" && has_attribute(attributes, "particleId")) known = nullptr;
+        for (int component = 0; component < (attribute.type == 'V' ? 3 : 1); ++component) {
+            Column column;
+            column.name = attribute.name;
+            if (known) column.field = known->fields[static_cast<std::size_t>(component)];
+            columns.push_back(column);
+        }
+    }
+    return columns;
+}
+
+char* put_text(char* out, float value) { return put_float(out, value); }
+char* put_text(char* out, std::uint64_t value) { return std::to_chars(out, out + 20, value).ptr; }
+char* put_text(char* out, const glm::vec3& v) {
+    out = put_text(out, v.x);
+    *out++ = ' ';
+    out = put_text(out, v.y);
+    *out++ = ' ';
+    return put_text(out, v.z);
+}
+template <class T>
+char* put_next(char* out, const T& value) {
+    *out++ = ' ';
+    return put_text(out, value);
+}
+
+/// The longest row: nine floats, a mesh, an id, blanks and the newline.
+constexpr std::size_t longest_row = 9 * (float_text_room + 1) + 11 + 21 + 1;
+
+char* put_row(char* out, const SplatSet& set, std::size_t i) {
+    out = put_text(out, set.position[i]);
+    out = put_next(out, set.color[i]);
+    out = put_next(out, set.alpha[i]);
+    out = put_next(out, set.distance[i]);
+    if (!set.mesh.empty()) out = put_next(out, std::uint64_t{set.mesh[i]});
+    if (!set.radius.empty()) out = put_next(out, set.radius[i]);
+    out = put_next(out, set.id[i]);
+    *out++ = '\n';
+    return out;
+}
+
+std::string header_text(const SplatSet& set) {
+    std::string names = " position rgbPP opacityPP DistanceFromSurfaceMeshPP", types = " V V R R";
+    if (!set.mesh.empty()) names += " whichMeshPP", types += " I";
+    if (!set.radius.empty()) names += " radiusPP", types += " R";
+    return fmt::format("ATTRIBUTES\n{} particleId\nTYPES\n{} I\nNUMBER_OF_PARTICLES: {}\nBEGIN DATA\n", names,
+                       types, set.size());
+}
+
+}  // namespace
+
+SplatSet read_pda(const std::filesystem::path& file, const Progress& progress) {
+    const MappedFile mapped(file);
+    const PdaHeader header = read_header(file, mapped.bytes());
+    const TextRows rows = split_rows(header.data, header.data_line);
+    if (static_cast<std::uint64_t>(rows.rows) != header.particles)
+        bad_input(file.string(), "", fmt::format("{} rows, as NUMBER_OF_PARTICLES says", header.particles),
+                  std::to_string(rows.rows));
+    SplatTable table;
+    table.columns = columns_of(header.attributes);
+    open_table(table, rows.rows, file);
+    read_text_rows(rows, 0, rows.rows, table, file, progress);
+    return finish_table(table, file);
+}
+
+void write_pda(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+    check_consistent(set);
+    constexpr std::int64_t rows = 16384;  // about 1 MiB of text
+    write_ordered(file, header_text(set), set.size(), rows, longest_row, progress,
+                  [&](std::int64_t begin, std::int64_t end, char* out) {
+                      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                          out = put_row(out, set, i);
+                      return out;
+                  });
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,206 @@
+// See ply.h. Which property is which field, and writing; rows are read by text_rows, which PDA shares, and by
+// ply_binary.
+#include "splat_files/ply.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/color.h"
+#include "core/error.h"
+#include "splat_files/mapped_file.h"
+#include "splat_files/ordered_writer.h"
+#include "splat_files/ply_binary.h"
+#include "splat_files/ply_header.h"
+#include "splat_files/splat_table.h"
+#include "splat_files/text_rows.h"
+
+namespace astrosplat {
+
+namespace {
+
+constexpr std::int64_t rows_written_at_once = 1 << 15;
+
+// ---- which property is which field
+
+struct KnownProperty {
+    std::string_view name;
+    Field field;
+};
+constexpr KnownProperty known_properties[] = {
+    {"x", Field::x},           {"y", Field::y},
+    {"z", Field::z},           {"red", Field::red},
+    {"green", Field::green},   {"blue", Field::blue},
+    {"alpha", Field::alpha},   {"distance", Field::distance},
+    {"radius", Field::radius}, {"s", Field::s},
+    {"t", Field::t},           {"mesh", Field::mesh},
+    {"id", Field::id},         {"id_high", Field::id_high},
+};
+
+/// Fields that mean something only together.
+constexpr std::string_view groups[][3] = {{"red", "green", "blue"}, {"s", "t", ""}, {"id", "", ""}};
+
+bool has_scalar(const PlyElement& element, std::string_view name) {
+    return std::any_of(element.properties.begin(), element.properties.end(),
+                       [&](const Column& c) { return c.name == name && !c.list; });
+}
+
+/// False for a property that lacks its companions: red without green, id_high without id.
+bool is_complete(const PlyElement& vertex, std::string_view name) {
+    for (const auto& group : groups) {
+        const bool member = std::find(std::begin(group), std::end(group), name) != std::end(group) ||
+                            (name == "id_high" && group[0] == "id");
+        if (!member) continue;
+        for (const std::string_view other : group)
+            if (!other.empty() && !has_scalar(vertex, other)) return false;
+    }
+    return true;
+}
+
+/// Values of integer codes: sRGB light, or fractions of the largest code.
+std::vector<float> code_table(std::size_t codes, bool srgb) {
+    std::vector<float> values(codes);
+    for (std::size_t code = 0; code < codes; ++code) {
+        const double fraction = static_cast<double>(code) / static_cast<double>(codes - 1);
+        values[code] = static_cast<float>(srgb ? real::srgb_to_linear(fraction) : fraction);
+    }
+    return values;
+}
+
+std::span<const float> codes_for(Field field, NumberType type) {
+    const bool srgb = field != Field::alpha;
+    if (type == NumberType::u8) {
+        static const std::vector<float> light = code_table(256, true), fraction = code_table(256, false);
+        return srgb ? light : fraction;
+    }
+    static const std::vector<float> light = code_table(65536, true), fraction = code_table(65536, false);
+    return srgb ? light : fraction;
+}
+
+bool is_float(NumberType type) { return type == NumberType::f32 || type == NumberType::f64; }
+
+void assign_field(Column& column, const PlyElement& vertex, const std::filesystem::path& file) {
+    const auto* const known = std::find_if(std::begin(known_properties), std::end(known_properties),
+                                           [&](const KnownProperty& k) { return k.name == column.name; });
+    if (known == std::end(known_properties) || column.list || !is_complete(vertex, column.name)) return;
+    column.field = known->field;
+    const bool light = column.field == Field::red || column.field == Field::green ||
+                       column.field == Field::blue || column.field == Field::alpha;
+    if (!light || is_float(column.type)) return;
+    if (column.type != NumberType::u8 && column.type != NumberType::u16)
+        bad_input(file.string(), "", fmt::format("{} as float, double, uchar or ushort", column.name),
+                  "another type");
+    column.codes = codes_for(column.field, column.type);
+}
+
+std::vector<Column> columns_of(const PlyElement& vertex, const std::filesystem::path& file) {
+    for (const std::string_view name : {"x", "y", "z"})
+        if (!has_scalar(vertex, name))
+            bad_input(file.string(), "", "vertex properties x, y and z", "no " + std::string(name));
+    std::vector<Column> columns = vertex.properties;
+    for (Column& column : columns) assign_field(column, vertex, file);
+    return columns;
+}
+
+std::size_t find_vertex(const PlyHeader& header, const std::filesystem::path& file) {
+    for (std::size_t i = 0; i < header.elements.size(); ++i)
+        if (header.elements[i].name == "vertex") return i;
+    bad_input(file.string(), "", "an element vertex", "none");
+}
+
+void read_ascii(const PlyHeader& header, std::size_t vertex, SplatTable& table,
+                const std::filesystem::path& file, const Progress& progress) {
+    const TextRows rows = split_rows(header.data, header.data_line);
+    std::uint64_t left = static_cast<std::uint64_t>(rows.rows);
+    std::int64_t first = 0;
+    for (std::size_t i = 0; i < header.elements.size(); ++i) {
+        const PlyElement& element = header.elements[i];
+        if (element.count > left)
+            bad_input(file.string(), "", fmt::format("{} rows of element {}", element.count, element.name),
+                      std::to_string(left));
+        if (i < vertex) first += static_cast<std::int64_t>(element.count);
+        left -= element.count;
+    }
+    if (left > 0)
+        bad_input(file.string(), "", "as many rows as the header says", std::to_string(left) + " more");
+    const auto count = static_cast<std::int64_t>(header.elements[vertex].count);
+    open_table(table, count, file);
+    read_text_rows(rows, first, first + count, table, file, progress);
+}
+
+// ---- writing
+
+template <class T>
+char* put_bytes(char* out, const T& value) {
+    std::memcpy(out, &value, sizeof value);
+    return out + sizeof value;
+}
+
+char* put_row(char* out, const SplatSet& set, bool wide_ids, std::size_t i) {
+    out = put_bytes(out, set.position[i]);
+    out = put_bytes(out, set.color[i]);
+    out = put_bytes(out, set.alpha[i]);
+    out = put_bytes(out, set.distance[i]);
+    if (!set.radius.empty()) out = put_bytes(out, set.radius[i]);
+    if (!set.uv.empty()) out = put_bytes(out, set.uv[i]);
+    if (!set.mesh.empty()) out = put_bytes(out, set.mesh[i]);
+    out = put_bytes(out, static_cast<std::uint32_t>(set.id[i]));
+    if (wide_ids) out = put_bytes(out, static_cast<std::uint32_t>(set.id[i] >> 32));
+    return out;
+}
+
+std::string header_text(const SplatSet& set, bool wide_ids) {
+    std::string text = "ply\nformat binary_little_endian 1.0\n";
+    std::string credit = set.credit;
+    std::replace_if(
+        credit.begin(), credit.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    if (!credit.empty()) text += "comment credit: " + credit + "\n";
+    text += fmt::format("element vertex {}\n", set.size());
+    for (const char* name : {"x", "y", "z", "red", "green", "blue", "alpha", "distance"})
+        text += fmt::format("property float {}\n", name);
+    if (!set.radius.empty()) text += "property float radius\n";
+    if (!set.uv.empty()) text += "property float s\nproperty float t\n";
+    if (!set.mesh.empty()) text += "property uint mesh\n";
+    text += "property uint id\n";
+    if (wide_ids) text += "property uint id_high\n";
+    return text + "end_header\n";
+}
+
+}  // namespace
+
+SplatSet read_ply(const std::filesystem::path& file, const Progress& progress) {
+    const MappedFile mapped(file);
+    const PlyHeader header = read_ply_header(file, mapped.bytes());
+    const std::size_t vertex = find_vertex(header, file);
+    SplatTable table;
+    table.columns = columns_of(header.elements[vertex], file);
+    if (header.format == PlyFormat::ascii)
+        read_ascii(header, vertex, table, file, progress);
+    else
+        read_binary_rows(header, vertex, table, file, progress);
+    SplatSet set = finish_table(table, file);
+    set.credit = header.credit;
+    return set;
+}
+
+void write_ply(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+    static_assert(std::endian::native == std::endian::little);
+    check_consistent(set);
+    const bool wide_ids =
+        std::any_of(set.id.begin(), set.id.end(), [](std::uint64_t id) { return id >> 32 != 0; });
+    constexpr std::size_t longest_row = 17 * sizeof(float);
+    write_ordered(file, header_text(set, wide_ids), set.size(), rows_written_at_once, longest_row, progress,
+                  [&](std::int64_t begin, std::int64_t end, char* out) {
+                      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                          out = put_row(out, set, wide_ids, i);
+                      return out;
+                  });
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,243 @@
+// Rows of equal length are read column by column, a few hundred at a time; rows with lists, and those among
+// which a number is wrong, number by number.
+#include "splat_files/ply_binary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "core/error.h"
+#include "core/parallel.h"
+
+namespace astrosplat {
+
+namespace {
+
+constexpr std::int64_t rows_read_at_once = 1 << 14;
+
+template <class T>
+T load(const char* p, bool swap) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, p, sizeof(T));
+    if (swap) std::reverse(bytes, bytes + sizeof(T));
+    return std::bit_cast<T>(bytes);
+}
+
+/// Calls use(value) with the number at p in its own type.
+template <class Use>
+auto with_number(NumberType type, const char* p, bool swap, Use&& use) {
+    switch (type) {
+        case NumberType::i8:
+            return use(load<std::int8_t>(p, swap));
+        case NumberType::u8:
+            return use(load<std::uint8_t>(p, swap));
+        case NumberType::i16:
+            return use(load<std::int16_t>(p, swap));
+        case NumberType::u16:
+            return use(load<std::uint16_t>(p, swap));
+        case NumberType::i32:
+            return use(load<std::int32_t>(p, swap));
+        case NumberType::u32:
+            return use(load<std::uint32_t>(p, swap));
+        case NumberType::i64:
+            return use(load<std::int64_t>(p, swap));
+        case NumberType::u64:
+            return use(load<std::uint64_t>(p, swap));
+        case NumberType::f32:
+            return use(load<float>(p, swap));
+        default:
+            return use(load<double>(p, swap));
+    }
+}
+
+template <class T>
+bool store_value(const Column& column, std::size_t row, T value) {
+    if (!is_whole(column.field)) return store(column, row, static_cast<float>(value));
+    if (!(value >= 0)) return false;
+    if constexpr (std::is_floating_point_v<T>) {
+        constexpr double exact = 9007199254740992.0;  // 2^53
+        if (!(value <= exact) || value != std::floor(value)) return false;
+    }
+    return store_whole(column, row, static_cast<std::uint64_t>(value));
+}
+
+bool store_number(const Column& column, std::size_t row, const char* p, bool swap) {
+    return with_number(column.type, p, swap, [&](auto value) { return store_value(column, row, value); });
+}
+
+/// Some rows of equal length.
+struct Rows {
+    std::size_t first, count;
+    const char* p;  // the column's number in the first row
+    std::size_t bytes;
+};
+
+/// Floats as they are in memory: most of most files. False when one lies outside of the field's limits.
+bool store_floats(const Column& column, const Rows& rows) {
+    float* const out = column.out + rows.first * column.stride;
+    const std::size_t stride = column.stride;
+    const float lowest = column.lowest, highest = column.highest;
+    bool inside = true;
+    for (std::size_t i = 0; i < rows.count; ++i) {
+        const auto value = load<float>(rows.p + i * rows.bytes, false);
+        inside &= value >= lowest && value <= highest;
+        out[i * stride] = value;
+    }
+    return inside;
+}
+
+/// False when the field cannot take one of the values.
+bool store_column(const Column& column, const Rows& rows, bool swap) {
+    const bool plain = column.type == NumberType::f32 && !swap && column.codes.empty();
+    if (plain && !is_whole(column.field) && store_floats(column, rows)) return true;
+    return with_number(column.type, rows.p, swap, [&]<class T>(T) {
+        bool stored = true;
+        for (std::size_t i = 0; i < rows.count; ++i)
+            stored &= store_value(column, rows.first + i, load<T>(rows.p + i * rows.bytes, swap));
+        return stored;
+    });
+}
+
+/// Bytes of a row, 0 when lists make rows differ.
+std::size_t fixed_row_bytes(const std::vector<Column>& columns) {
+    std::size_t bytes = 0;
+    for (const Column& column : columns) {
+        if (column.list) return 0;
+        bytes += size_of(column.type);
+    }
+    return bytes;
+}
+
+struct BinaryReader {
+    std::string file;
+    std::string_view data;
+    bool swap;
+
+    [[noreturn]] void truncated(const std::string& element, std::uint64_t count) const {
+        bad_input(file, "", fmt::format("{} {} elements, as the header says", count, element),
+                  "the end of the file");
+    }
+
+    /// Bytes of the property at `at`; data.size() + 1 when it does not fit into the data or its count is
+    /// negative.
+    std::size_t property_bytes(const Column& column, std::size_t at) const {
+        const std::size_t too_many = data.size() + 1, size = size_of(column.type);
+        const std::size_t left = data.size() - at;
+        if (!column.list) return size <= left ? size : too_many;
+        const std::size_t head = size_of(column.list_count);
+        if (head > left) return too_many;
+        const auto count = with_number(column.list_count, data.data() + at, swap, [](auto value) {
+            return value >= 0 ? static_cast<std::uint64_t>(value) : ~std::uint64_t{0};
+        });
+        return count <= (left - head) / size ? head + static_cast<std::size_t>(count) * size : too_many;
+    }
+
+    /// Where the row behind the one at `at` begins, for rows with lists.
+    std::size_t after_row(const PlyElement& element, std::size_t at) const {
+        for (const Column& column : element.properties) {
+            const std::size_t bytes = property_bytes(column, at);
+            if (bytes > data.size() - at) truncated(element.name, element.count);
+            at += bytes;
+        }
+        return at;
+    }
+
+    /// Starts of every rows_read_at_once-th row from `at` on, and the end behind the last row.
+    std::vector<std::size_t> chunk_starts(const PlyElement& element, std::size_t at) const {
+        std::vector<std::size_t> starts;
+        const std::size_t row_bytes = fixed_row_bytes(element.properties);
+        if (element.properties.empty()) return {at};
+        if (row_bytes != 0) {
+            if (element.count > (data.size() - at) / row_bytes) truncated(element.name, element.count);
+            for (std::uint64_t row = 0; row < element.count; row += rows_read_at_once)
+                starts.push_back(at + row * row_bytes);
+            at += element.count * row_bytes;
+        } else {
+            for (std::uint64_t row = 0; row < element.count; ++row) {
+                if (row % rows_read_at_once == 0) starts.push_back(at);
+                at = after_row(element, at);
+            }
+        }
+        starts.push_back(at);
+        return starts;
+    }
+
+    /// Reads rows [begin, end) whose first byte is at `at`; all of them are known to lie within the data.
+    void read_rows(const SplatTable& table, std::int64_t begin, std::int64_t end, std::size_t at) const {
+        constexpr std::int64_t in_cache = 256;  // rows
+        const std::size_t row_bytes = fixed_row_bytes(table.columns);
+        if (row_bytes == 0) return read_one_by_one(table, begin, end, at);
+        for (; begin < end; begin += in_cache, at += in_cache * row_bytes) {
+            const std::int64_t stop = std::min(end, begin + in_cache);
+            if (!read_by_column(table, begin, stop, at, row_bytes)) read_one_by_one(table, begin, stop, at);
+        }
+    }
+
+    bool read_by_column(const SplatTable& table, std::int64_t begin, std::int64_t end, std::size_t at,
+                        std::size_t row_bytes) const {
+        Rows rows{static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin), data.data() + at,
+                  row_bytes};
+        bool stored = true;
+        for (const Column& column : table.columns) {
+            if (column.field != Field::skip) stored &= store_column(column, rows, swap);
+            rows.p += size_of(column.type);
+        }
+        return stored;
+    }
+
+    /// Any rows, also those with lists. Throws InputError with the first wrong number.
+    void read_one_by_one(const SplatTable& table, std::int64_t begin, std::int64_t end,
+                         std::size_t at) const {
+        for (std::int64_t row = begin; row < end; ++row) {
+            for (const Column& column : table.columns) {
+                if (column.field != Field::skip &&
+                    !store_number(column, static_cast<std::size_t>(row), data.data() + at, swap))
+                    bad_input(file, fmt::format("vertex {}", row), expectation(column), describe(column, at));
+                at += column.list ? property_bytes(column, at) : size_of(column.type);
+            }
+        }
+    }
+
+    std::string describe(const Column& column, std::size_t at) const {
+        return with_number(column.type, data.data() + at, swap,
+                           [](auto value) { return fmt::format("{}", value); });
+    }
+};
+
+}  // namespace
+
+void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& table,
+                      const std::filesystem::path& file, const Progress& progress) {
+    const BinaryReader reader{file.string(), header.data, header.format == PlyFormat::big_endian};
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < vertex; ++i) at = reader.chunk_starts(header.elements[i], at).back();
+    const std::vector<std::size_t> starts = reader.chunk_starts(header.elements[vertex], at);
+    const auto count = static_cast<std::int64_t>(header.elements[vertex].count);
+    open_table(table, count, file);
+    std::vector<std::string> errors(starts.size() - 1);
+    std::atomic<std::size_t> done{0};
+    parallel_for(static_cast<std::int64_t>(errors.size()), [&](std::int64_t chunk, int) {
+        progress.check();
+        const auto i = static_cast<std::size_t>(chunk);
+        const std::int64_t first = chunk * rows_read_at_once;
+        try {
+            reader.read_rows(table, first, std::min(first + rows_read_at_once, count), starts[i]);
+        } catch (const InputError& error) {
+            errors[i] = error.what();
+        }
+        progress.at(static_cast<double>(++done) / static_cast<double>(errors.size()));
+    });
+    for (const std::string& error : errors)
+        if (!error.empty()) throw InputError(error);
+}
+
+}  // namespace astrosplat

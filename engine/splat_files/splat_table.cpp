@@ -1,0 +1,174 @@
+// Allocation, defaults and checks that PDA and PLY share.
+#include "splat_files/splat_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/log.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+
+namespace astrosplat {
+
+namespace {
+
+constexpr std::int64_t rows_per_chunk = 1 << 16;
+
+template <class T>
+void fill(Buffer<T>& array, std::size_t rows, const T& value) {
+    array.resize(rows);
+    parallel_chunks(static_cast<std::int64_t>(rows), rows_per_chunk,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        std::fill(array.begin() + begin, array.begin() + end, value);
+                    });
+}
+
+std::int64_t bytes_per_row(const SplatTable& table) {
+    std::size_t bytes = 2 * sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(std::uint64_t);
+    if (table.has(Field::radius)) bytes += sizeof(float);
+    if (table.has(Field::s)) bytes += sizeof(glm::vec2);
+    if (table.has(Field::mesh)) bytes += sizeof(std::uint32_t);
+    if (table.has(Field::id_high)) bytes += sizeof(std::uint32_t);
+    return static_cast<std::int64_t>(bytes);
+}
+
+void allocate(SplatTable& table, std::size_t rows) {
+    SplatSet& set = table.set;
+    set.position.resize(rows);
+    set.id.resize(rows);
+    if (table.has(Field::red)) set.color.resize(rows);
+    if (table.has(Field::alpha)) set.alpha.resize(rows);
+    if (table.has(Field::distance)) set.distance.resize(rows);
+    if (table.has(Field::radius)) set.radius.resize(rows);
+    if (table.has(Field::s)) set.uv.resize(rows);
+    if (table.has(Field::mesh)) set.mesh.resize(rows);
+    if (table.has(Field::id_high)) table.id_high.resize(rows);
+}
+
+void point_at(Column& column, float* array, std::size_t component, std::size_t stride) {
+    column.out = array + component;
+    column.stride = stride;
+}
+
+void bind(Column& column, SplatTable& table) {
+    SplatSet& set = table.set;
+    switch (column.field) {
+        case Field::skip:
+            break;
+        case Field::x:
+            point_at(column, &set.position.data()->x, 0, 3);
+            break;
+        case Field::y:
+            point_at(column, &set.position.data()->x, 1, 3);
+            break;
+        case Field::z:
+            point_at(column, &set.position.data()->x, 2, 3);
+            break;
+        case Field::red:
+            point_at(column, &set.color.data()->x, 0, 3);
+            break;
+        case Field::green:
+            point_at(column, &set.color.data()->x, 1, 3);
+            break;
+        case Field::blue:
+            point_at(column, &set.color.data()->x, 2, 3);
+            break;
+        case Field::s:
+            point_at(column, &set.uv.data()->x, 0, 2);
+            break;
+        case Field::t:
+            point_at(column, &set.uv.data()->x, 1, 2);
+            break;
+        case Field::alpha:
+            point_at(column, set.alpha.data(), 0, 1);
+            column.lowest = 0.0f;
+            column.highest = 1.0f;
+            column.clamped = &table.clamped;
+            break;
+        case Field::distance:
+            point_at(column, set.distance.data(), 0, 1);
+            column.lowest = 0.0f;
+            break;
+        case Field::radius:
+            point_at(column, set.radius.data(), 0, 1);
+            column.lowest = 0.0f;
+            break;
+        case Field::mesh:
+            column.whole = set.mesh.data();
+            break;
+        case Field::id:
+            column.id = set.id.data();
+            break;
+        case Field::id_high:
+            column.whole = table.id_high.data();
+            break;
+    }
+}
+
+float largest(const Buffer<float>& values) {
+    std::vector<float> of_chunk((values.size() + rows_per_chunk - 1) / rows_per_chunk, 0.0f);
+    parallel_chunks(static_cast<std::int64_t>(values.size()), rows_per_chunk,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        of_chunk[static_cast<std::size_t>(begin / rows_per_chunk)] =
+                            *std::max_element(values.begin() + begin, values.begin() + end);
+                    });
+    return of_chunk.empty() ? 0.0f : *std::max_element(of_chunk.begin(), of_chunk.end());
+}
+
+void finish_ids(SplatTable& table) {
+    Buffer<std::uint64_t>& id = table.set.id;
+    const bool numbered = table.has(Field::id);
+    if (numbered && table.id_high.empty()) return;
+    parallel_chunks(table.set.size(), rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            id[i] = numbered ? id[i] | std::uint64_t{table.id_high[i]} << 32 : i;
+    });
+}
+
+}  // namespace
+
+bool SplatTable::has(Field field) const {
+    return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.field == field; });
+}
+
+void open_table(SplatTable& table, std::int64_t rows, const std::filesystem::path& file) {
+    if (rows == 0) return;
+    claim_memory(rows * bytes_per_row(table), "splats of " + file.string());
+    allocate(table, static_cast<std::size_t>(rows));
+    for (Column& column : table.columns) bind(column, table);
+}
+
+SplatSet finish_table(SplatTable& table, const std::filesystem::path& file) {
+    SplatSet& set = table.set;
+    const auto rows = static_cast<std::size_t>(set.size());
+    if (set.color.empty()) fill(set.color, rows, glm::vec3(1.0f));
+    if (set.alpha.empty()) fill(set.alpha, rows, 1.0f);
+    if (set.distance.empty()) fill(set.distance, rows, 0.0f);
+    finish_ids(table);
+    set.max_distance = largest(set.distance);
+    if (table.clamped > 0)
+        log_warning(fmt::format("{}: {} of {} opacities lie outside 0..1; they are clamped", file.string(),
+                                table.clamped.load(), rows));
+    return std::move(set);
+}
+
+std::string expectation(const Column& column) {
+    if (is_whole(column.field))
+        return fmt::format("a whole number >= 0{} for {}", column.id ? "" : " and < 2^32", column.name);
+    if (!column.codes.empty())
+        return fmt::format("a whole number 0..{} for {}", column.codes.size() - 1, column.name);
+    if (column.lowest == 0.0f && !column.clamped)
+        return fmt::format("a finite number >= 0 for {}", column.name);
+    return fmt::format("a finite number for {}", column.name);
+}
+
+bool store_outside(const Column& column, std::size_t row, float value) {
+    if (!column.clamped || !std::isfinite(value)) return false;
+    column.out[row * column.stride] = std::clamp(value, column.lowest, column.highest);
+    column.clamped->fetch_add(1, std::memory_order_relaxed);
+    return true;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,191 @@
+// See text_rows.h. A chunk is about a MiB: large enough to be cheap to hand out, small enough for the cache.
+#include "splat_files/text_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "splat_files/number_scan.h"
+
+namespace astrosplat {
+
+namespace {
+
+constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
+
+/// One line of the file while it is read.
+struct Line {
+    const char* begin;
+    std::int64_t number;  // from 1
+};
+
+const char* line_end(const char* p, const char* end) {
+    const void* newline = p < end ? std::memchr(p, '\n', static_cast<std::size_t>(end - p)) : nullptr;
+    return newline ? static_cast<const char*>(newline) : end;
+}
+
+std::vector<TextChunk> cut(std::string_view text) {
+    std::vector<TextChunk> chunks;
+    while (!text.empty()) {
+        const std::size_t newline = text.size() <= chunk_bytes ? text.npos : text.find('\n', chunk_bytes);
+        const std::size_t size = newline == text.npos ? text.size() : newline + 1;
+        chunks.push_back({text.substr(0, size), 0, 0});
+        text.remove_prefix(size);
+    }
+    return chunks;
+}
+
+/// Counts a chunk's rows and lines into its own first_row and first_line; split_rows turns them into running
+/// sums.
+void count(TextChunk& chunk) {
+    const char* p = chunk.text.data();
+    const char* const end = p + chunk.text.size();
+    while (p < end) {
+        const char* const newline = line_end(p, end);
+        if (scan::skip_blanks(p, newline) != newline) ++chunk.first_row;
+        ++chunk.first_line;
+        p = newline + 1;
+    }
+}
+
+std::string describe(const SplatTable& table) {
+    std::string names;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const Column& column = table.columns[i];
+        if (i > 0 && column.name == table.columns[i - 1].name) continue;  // components of one vector
+        names += (names.empty() ? "" : " ") + column.name;
+    }
+    return names;
+}
+
+[[noreturn]] void wrong_length(const SplatTable& table, const std::filesystem::path& file, const Line& line,
+                               const char* end) {
+    std::size_t found = 0;
+    const char* const stop = line_end(line.begin, end);
+    for (const char* p = scan::skip_blanks(line.begin, stop); p < stop; ++found)
+        p = scan::skip_blanks(scan::token_end(p, stop), stop);
+    const bool lists =
+        std::any_of(table.columns.begin(), table.columns.end(), [](const Column& c) { return c.list; });
+    bad_input(
+        file.string(), std::to_string(line.number),
+        fmt::format("{}{} numbers ({})", lists ? "at least " : "", table.columns.size(), describe(table)),
+        std::to_string(found));
+}
+
+/// Reads one number of a column that is no list; nullptr when it is bad.
+const char* read_value(const Column& column, std::size_t row, const char* p, const char* end) {
+    if (column.field == Field::skip) return scan::token_end(p, end);
+    bool good = false;
+    if (is_whole(column.field)) {
+        std::uint64_t value = 0;
+        p = scan::scan_whole(p, end, value);
+        good = p && store_whole(column, row, value);
+    } else {
+        float value = 0.0f;
+        p = scan::scan_float(p, end, value);
+        good = p && store(column, row, value);
+    }
+    return good && (p == end || scan::is_space(*p)) ? p : nullptr;
+}
+
+/// Skips a list: its count, then so many tokens, as far as the line has them; nullptr when the count is bad
+/// or the line ends too early.
+const char* skip_list(const char* p, const char* end) {
+    std::uint64_t left = 0;
+    p = scan::scan_whole(p, end, left);
+    for (; p && left > 0; --left) {
+        p = scan::skip_blanks(p, end);
+        if (p == end || *p == '\n') return nullptr;
+        p = scan::token_end(p, end);
+    }
+    return p;
+}
+
+/// Reads the row that begins at line.begin; returns the end of its line.
+const char* read_row(const SplatTable& table, std::size_t row, const Line& line, const char* end,
+                     const std::filesystem::path& file) {
+    const char* p = line.begin;
+    for (const Column& column : table.columns) {
+        p = scan::skip_blanks(p, end);
+        if (p == end || *p == '\n') wrong_length(table, file, line, end);
+        const char* const token = p;
+        p = column.list ? skip_list(p, end) : read_value(column, row, p, end);
+        if (p) continue;
+        if (column.list) wrong_length(table, file, line, end);
+        const char* const stop = scan::token_end(token, end);
+        bad_input(file.string(), std::to_string(line.number), expectation(column),
+                  quoted({token, static_cast<std::size_t>(stop - token)}));
+    }
+    p = scan::skip_blanks(p, end);
+    if (p < end && *p != '\n') wrong_length(table, file, line, end);
+    return p;
+}
+
+/// Reads the rows of one chunk that lie in [begin, end).
+void read_chunk(const TextChunk& chunk, std::int64_t begin, std::int64_t end, const SplatTable& table,
+                const std::filesystem::path& file) {
+    Line line{chunk.text.data(), chunk.first_line};
+    const char* const stop = line.begin + chunk.text.size();
+    for (std::int64_t row = chunk.first_row; line.begin < stop && row < end; ++line.number) {
+        const char* const first = scan::skip_blanks(line.begin, stop);
+        const bool blank = first == stop || *first == '\n';
+        const bool wanted = !blank && row >= begin;
+        const char* const after =
+            wanted ? read_row(table, static_cast<std::size_t>(row - begin), line, stop, file)
+                   : line_end(first, stop);
+        if (!blank) ++row;
+        line.begin = after + 1;
+    }
+}
+
+}  // namespace
+
+TextRows split_rows(std::string_view text, std::int64_t first_line) {
+    TextRows result{cut(text), 0};
+    parallel_for(static_cast<std::int64_t>(result.chunks.size()),
+                 [&](std::int64_t i, int) { count(result.chunks[static_cast<std::size_t>(i)]); });
+    for (TextChunk& chunk : result.chunks) {
+        const TextChunk counted = chunk;
+        chunk.first_row = result.rows;
+        chunk.first_line = first_line;
+        result.rows += counted.first_row;
+        first_line += counted.first_line;
+    }
+    return result;
+}
+
+void read_text_rows(const TextRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
+                    const std::filesystem::path& file, const Progress& progress) {
+    std::vector<std::string> errors(rows.chunks.size());
+    std::atomic<std::size_t> done{0};
+    parallel_for(static_cast<std::int64_t>(rows.chunks.size()), [&](std::int64_t i, int) {
+        progress.check();
+        const auto chunk = static_cast<std::size_t>(i);
+        try {
+            read_chunk(rows.chunks[chunk], begin, end, table, file);
+        } catch (const InputError& error) {
+            errors[chunk] = error.what();
+        }
+        progress.at(static_cast<double>(++done) / static_cast<double>(errors.size()));
+    });
+    for (const std::string& error : errors)
+        if (!error.empty()) throw InputError(error);
+}
+
+std::string quoted(std::string_view text) {
+    constexpr std::size_t longest = 32;
+    std::string result = "'";
+    for (const char c : text.substr(0, longest)) {
+        if (c >= ' ' && c <= '~')
+            result += c;
+        else
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+    return result + (text.size() > longest ? "...'" : "'");
+}
+
+}  // namespace astrosplat

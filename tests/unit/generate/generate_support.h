@@ -1,0 +1,100 @@
+// Small meshes, one-colour pictures and the slow but plain generation that the tests compare with.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "core/real.h"
+#include "generate/closest_point.h"
+#include "generate/generate.h"
+#include "unit/splats/same_bits.h"
+
+namespace astrosplat::test {
+
+inline Texture flat_texture(const glm::vec4& straight, std::int64_t size = 8) {
+    Texture texture;
+    texture.image = make_image(size, size, 4);
+    for (std::size_t i = 0; i < texture.image.pixels.size(); ++i) {
+        const auto c = static_cast<glm::vec4::length_type>(i % 4);
+        texture.image.pixels[i] = c == 3 ? straight.a : straight[c] * straight.a;
+    }
+    return texture;
+}
+
+inline TexturedMesh textured(Mesh mesh, Texture texture) {
+    TexturedMesh m;
+    m.mesh = std::move(mesh);
+    m.textures.push_back(std::move(texture));
+    return m;
+}
+
+/// Every position of the lattice against every triangle, one after the other; triangles that a bounding
+/// sphere rules out by more than any rounding are not measured.
+class Oracle {
+  public:
+    explicit Oracle(const Mesh& mesh) {
+        for (const Mesh::Triangle& t : mesh.triangles) {
+            const glm::dvec3 a(mesh.positions[t.position[0]]), b(mesh.positions[t.position[1]]),
+                c(mesh.positions[t.position[2]]);
+            corners_.push_back({a, b, c});
+            const glm::dvec3 m = (a + b + c) / 3.0;
+            x_.push_back(m.x), y_.push_back(m.y), z_.push_back(m.z);
+            r_.push_back(std::max({glm::length(a - m), glm::length(b - m), glm::length(c - m)}) *
+                         (1.0 + 1e-9));
+        }
+    }
+
+    ClosestPoint closest(const glm::dvec3& p, double max_distance) const {
+        ClosestPoint best{max_distance * max_distance, ClosestPoint::none, {}};
+        constexpr std::size_t step = 256;
+        for (std::size_t begin = 0; begin < r_.size(); begin += step) {
+            const std::size_t end = std::min(begin + step, r_.size());
+            const double reach = std::sqrt(best.distance_squared) * (1.0 + 1e-9);
+            int near_p = 0;
+            for (std::size_t i = begin; i < end; ++i)
+                near_p += squared(i, p) <= (reach + r_[i]) * (reach + r_[i]);
+            if (near_p == 0) continue;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (squared(i, p) > (reach + r_[i]) * (reach + r_[i])) continue;
+                ClosestPoint other = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
+                other.triangle = static_cast<std::uint32_t>(i);
+                if (other.distance_squared < best.distance_squared ||
+                    (best.triangle == ClosestPoint::none &&
+                     other.distance_squared == best.distance_squared)) {
+                    best = other;  // in ascending order: ties keep the lower index
+                }
+            }
+        }
+        return best;
+    }
+
+  private:
+    double squared(std::size_t i, const glm::dvec3& p) const {
+        const double x = p.x - x_[i], y = p.y - y_[i], z = p.z - z_[i];
+        return x * x + y * y + z * z;
+    }
+    struct Corners {
+        glm::dvec3 a, b, c;
+    };
+    std::vector<Corners> corners_;
+    std::vector<double> x_, y_, z_, r_;
+};
+
+inline void expect_same_bits(const SplatSet& a, const SplatSet& b) {
+    EXPECT_TRUE(same_bits(a.id, b.id));
+    EXPECT_TRUE(same_bits(a.position, b.position));
+    EXPECT_TRUE(same_bits(a.color, b.color));
+    EXPECT_TRUE(same_bits(a.alpha, b.alpha));
+    EXPECT_TRUE(same_bits(a.distance, b.distance));
+    EXPECT_TRUE(same_bits(a.uv, b.uv));
+    EXPECT_TRUE(same_bits(a.normal, b.normal));
+    EXPECT_TRUE(same_bits(a.mesh, b.mesh));
+    EXPECT_EQ(a.zero_alpha, b.zero_alpha);
+}
+
+}  // namespace astrosplat::test

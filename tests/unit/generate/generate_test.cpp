@@ -1,0 +1,273 @@
+// Generation against a plain loop over the lattice, for any thread count; what is stored; what is dropped.
+#include "generate/generate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "unit/generate/generate_support.h"
+
+namespace astrosplat {
+namespace {
+
+using glm::dvec3;
+using glm::i64vec3;
+using test::flat_texture;
+using test::textured;
+
+/// Everything DESIGN 4 says, one position after the other.
+SplatSet plain_generate(const TexturedMesh& m, const Lattice& lattice, double max_distance, double jitter,
+                        std::uint32_t seed) {
+    const test::Oracle oracle(m.mesh);
+    SplatSet set;
+    for (std::uint64_t id = 0; id < static_cast<std::uint64_t>(lattice.positions()); ++id) {
+        const dvec3 p = jittered_position(lattice, id, jitter, seed);
+        const ClosestPoint c = oracle.closest(p, max_distance);
+        if (c.triangle == ClosestPoint::none) continue;
+        const Mesh::Triangle& t = m.mesh.triangles[c.triangle];
+        const glm::dvec2 a(m.mesh.uvs[t.uv[0]]), b(m.mesh.uvs[t.uv[1]]), d(m.mesh.uvs[t.uv[2]]);
+        const glm::vec2 uv(a + (b - a) * c.barycentric.x + (d - a) * c.barycentric.y);
+        const TextureSample picture = sample(m.textures[0], uv);
+        if (picture.alpha == 0.0f) {
+            ++set.zero_alpha;
+            continue;
+        }
+        const dvec3 v0(m.mesh.positions[t.position[0]]);
+        const dvec3 n = glm::cross(dvec3(m.mesh.positions[t.position[1]]) - v0,
+                                   dvec3(m.mesh.positions[t.position[2]]) - v0);
+        set.id.push_back(id);
+        set.position.push_back(glm::vec3(p));
+        set.color.push_back(picture.color);
+        set.alpha.push_back(picture.alpha);
+        set.distance.push_back(static_cast<float>(std::sqrt(c.distance_squared)));
+        set.uv.push_back(uv);
+        set.normal.push_back(glm::vec3(n / std::sqrt(glm::dot(n, n))));
+        set.mesh.push_back(0);
+    }
+    return set;
+}
+
+Texture half_transparent() {
+    Texture texture = flat_texture({0.25f, 0.5f, 1.0f, 0.75f}, 64);
+    for (std::int64_t y = 0; y < 64; ++y) {
+        for (std::int64_t x = 0; x < 32; ++x) std::fill_n(texture.image.at(x, y), 4, 0.0f);
+    }
+    return texture;
+}
+
+class GenerateTest : public testing::Test {
+  protected:
+    ~GenerateTest() override { set_thread_count(0); }
+};
+
+TEST_F(GenerateTest, EqualsThePlainLoopForAnyThreadCount) {
+    for (const char* name : {"plane", "disk", "sphere"}) {
+        std::vector<TexturedMesh> meshes;
+        meshes.push_back(textured(builtin_mesh(name, 1.5), half_transparent()));
+        SourceParams source;
+        source.voxels = i64vec3(19, 16, 21);  // whole and broken blocks
+        const Lattice lattice = make_lattice(source, meshes, 0.6);
+        const SplatSet plain = plain_generate(meshes[0], lattice, 0.6, 1.0, 5);
+        EXPECT_GT(plain.size(), 100) << name;
+        EXPECT_GT(plain.zero_alpha, 100) << name;
+        for (const int threads : {1, 2, 3, 7}) {
+            set_thread_count(threads);
+            SCOPED_TRACE(name);
+            test::expect_same_bits(generate(meshes, lattice, 0.6, 1.0, 5), plain);
+        }
+    }
+}
+
+TEST_F(GenerateTest, LongAndThinLatticesToo) {
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(builtin_mesh("sphere", 1.0), flat_texture({1, 1, 1, 1})));
+    for (const i64vec3 n : {i64vec3(1, 1, 1), i64vec3(600, 2, 3), i64vec3(3, 400, 4), i64vec3(4, 1, 333)}) {
+        SourceParams source;
+        source.voxels = n;
+        const Lattice lattice = make_lattice(source, meshes, 1.0);
+        test::expect_same_bits(generate(meshes, lattice, 1.0, 0.5, 9),
+                               plain_generate(meshes[0], lattice, 1.0, 0.5, 9));
+    }
+}
+
+// More triangles near every block than a candidate list holds, so that Embree answers each position.
+TEST_F(GenerateTest, DenseMeshes) {
+    Mesh mesh = builtin_mesh("sphere", 1.0);
+    const std::size_t once = mesh.triangles.size();
+    while (mesh.triangles.size() < 6000)
+        mesh.triangles.push_back(mesh.triangles[mesh.triangles.size() - once]);
+    for (glm::vec3& p : mesh.positions) p *= 0.02f;
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(std::move(mesh), flat_texture({1, 1, 1, 1})));
+    SourceParams source;
+    source.voxels = i64vec3(6, 5, 7);
+    const Lattice lattice = make_lattice(source, meshes, 0.3);
+    const SplatSet plain = plain_generate(meshes[0], lattice, 0.3, 1.0, 2);
+    EXPECT_GT(plain.size(), 200);
+    test::expect_same_bits(generate(meshes, lattice, 0.3, 1.0, 2), plain);
+}
+
+TEST_F(GenerateTest, PlaneWithoutJitterIsKnownByHand) {
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(builtin_mesh("plane", 1.0), flat_texture({0.25f, 0.5f, 1.0f, 0.5f})));
+    SourceParams source;
+    source.voxels = i64vec3(2, 4, 2);
+    source.buffer = dvec3(0, 2, 0);  // corners at y = -2 -1 0 1 2, centres at -1.5 -0.5 0.5 1.5
+    const SplatSet set = generate(meshes, make_lattice(source, meshes, 1.0), 1.0, 0.0, 1);
+    ASSERT_EQ(set.size(), 3 * 9 + 2 * 4);  // both sides of the plane, the distance included
+    EXPECT_EQ(set.position[0], glm::vec3(-5, -1, -5));
+    EXPECT_EQ(set.distance[0], 1.0f);
+    EXPECT_EQ(set.uv[0], glm::vec2(0, 1));  // -z is the top of the picture
+    EXPECT_EQ(set.position[3], glm::vec3(-5, 0, -5));
+    EXPECT_EQ(set.distance[3], 0.0f);
+    EXPECT_EQ(set.position[27], glm::vec3(-2.5f, -0.5f, -2.5f));
+    EXPECT_EQ(set.distance[27], 0.5f);
+    EXPECT_EQ(set.id[27], 45u + 2u * 1u);  // 3 * 5 * 3 corners, then the row j = 1
+    for (std::size_t i = 0; i < set.id.size(); ++i) {
+        EXPECT_EQ(set.color[i], glm::vec3(0.25f, 0.5f, 1.0f));
+        EXPECT_EQ(set.alpha[i], 0.5f);
+        EXPECT_EQ(std::fabs(set.normal[i].y), 1.0f);
+    }
+    EXPECT_EQ(set.spacing, dvec3(5, 1, 5));
+    EXPECT_EQ(set.max_distance, 1.0);
+    EXPECT_TRUE(set.generated);
+    EXPECT_EQ(set.test_positions, 45 + 16);
+}
+
+TEST_F(GenerateTest, IdsAscendAndDistancesStayBelowTheLimit) {
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(builtin_mesh("sphere", 1.0), flat_texture({1, 1, 1, 1})));
+    SourceParams source;
+    source.count = 20000;
+    const Lattice lattice = make_lattice(source, meshes, 0.4);
+    const SplatSet set = generate(meshes, lattice, 0.4, 1.0, 3);
+    for (std::size_t i = 1; i < set.id.size(); ++i) ASSERT_LT(set.id[i - 1], set.id[i]);
+    EXPECT_LE(*std::max_element(set.distance.begin(), set.distance.end()), 0.4f);
+    EXPECT_GT(*std::max_element(set.distance.begin(), set.distance.end()), 0.39f);
+    const auto inside = std::count_if(set.position.begin(), set.position.end(),
+                                      [](const glm::vec3& p) { return glm::length(p) < 5.0f; });
+    EXPECT_NEAR(static_cast<double>(inside) / static_cast<double>(set.size()), 0.47,
+                0.02);  // both sides count
+}
+
+// The centres of all batches come after the corners of all batches.
+TEST_F(GenerateTest, SeveralBatchesKeepTheOrderOfIds) {
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(builtin_mesh("plane", 1.0), flat_texture({1, 1, 1, 1})));
+    SourceParams source;
+    source.voxels = i64vec3(2, 370, 370);  // 1 x 93 x 93 blocks, all of them near enough
+    source.buffer = dvec3(0, 0.1, 0);
+    const Lattice lattice = make_lattice(source, meshes, 20.0);
+    set_thread_count(3);
+    const SplatSet set = generate(meshes, lattice, 20.0, 1.0, 3);
+    ASSERT_EQ(set.size(), lattice.positions());
+    for (std::size_t i = 0; i < set.id.size(); ++i) {
+        ASSERT_EQ(set.id[i], i);
+        ASSERT_EQ(set.position[i], glm::vec3(jittered_position(lattice, i, 1.0, 3)));
+    }
+}
+
+TEST_F(GenerateTest, AutomaticVoxelsKeepAboutCount) {
+    for (const char* name : {"plane", "sphere"}) {
+        std::vector<TexturedMesh> meshes;
+        meshes.push_back(textured(builtin_mesh(name, 1.0), flat_texture({1, 1, 1, 1})));
+        SourceParams source;
+        source.count = 50000;
+        const double distance = resolved_max_distance(source, bounds(meshes));
+        const SplatSet set = generate(meshes, make_lattice(source, meshes, distance), distance, 1.0, 3);
+        EXPECT_NEAR(static_cast<double>(set.size()), 50000.0, 7500.0) << name;
+    }
+}
+
+TEST_F(GenerateTest, SeveralMeshesWithTheirPictures) {
+    Mesh low = builtin_mesh("plane", 1.0), high = low;
+    for (glm::vec3& p : high.positions) p.y = 1.0f;
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(low, flat_texture({1, 0, 0, 1})));
+    meshes.push_back(textured(high, flat_texture({0, 1, 0, 1})));
+    meshes[0].textures[0].credit = "NASA";
+    meshes[1].textures[0].credit = "ESA";
+    meshes[1].textures[0].divided = true;
+    meshes.push_back(meshes[0]);  // ties with the first, which wins
+    SourceParams source;
+    source.voxels = i64vec3(4, 12, 4);
+    const SplatSet set = generate(meshes, make_lattice(source, meshes, 0.3), 0.3, 1.0, 1);
+    int found[3] = {0, 0, 0};
+    for (std::size_t i = 0; i < set.id.size(); ++i) {
+        ++found[set.mesh[i]];
+        const bool upper = set.position[i].y > 0.5f;
+        EXPECT_EQ(set.mesh[i], upper ? 1u : 0u);
+        EXPECT_EQ(set.color[i], upper ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0));
+    }
+    EXPECT_GT(found[0], 50);
+    EXPECT_GT(found[1], 50);
+    EXPECT_EQ(found[2], 0);
+    EXPECT_EQ(set.credit, "NASA; ESA");
+    EXPECT_TRUE(set.divided);
+}
+
+// A picture of 1-texel stripes: a voxel 10 texels wide sees their mean, a bilinear sample sees single
+// stripes.
+TEST_F(GenerateTest, AreaFilterAveragesOverTheVoxel) {
+    Texture stripes = flat_texture({1, 1, 1, 1}, 200);
+    for (std::int64_t y = 0; y < 200; ++y) {
+        for (std::int64_t x = 0; x < 200; x += 2) std::fill_n(stripes.image.at(x, y), 3, 0.0f);
+    }
+    const auto spread = [&](TextureSettings::Filter filter) {
+        stripes.filter = filter;
+        std::vector<TexturedMesh> meshes;
+        meshes.push_back(textured(builtin_mesh("plane", 1.0), stripes));
+        SourceParams source;
+        source.voxels = i64vec3(20, 4, 20);
+        source.buffer = dvec3(0, 1, 0);
+        const SplatSet set = generate(meshes, make_lattice(source, meshes, 1.0), 1.0, 1.0, 1);
+        float lo = 1.0f, hi = 0.0f;
+        for (std::size_t i = 0; i < set.id.size(); ++i) {
+            if (std::fabs(set.uv[i].x - 0.5f) > 0.4f) continue;  // the border halves the box
+            lo = std::min(lo, set.color[i].x);
+            hi = std::max(hi, set.color[i].x);
+        }
+        return hi - lo;
+    };
+    EXPECT_GT(spread(TextureSettings::Filter::bilinear), 0.9f);
+    EXPECT_LT(spread(TextureSettings::Filter::area),
+              0.11f);  // 10 texels: at most one stripe too many or too few
+}
+
+TEST_F(GenerateTest, CancelStops) {
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(builtin_mesh("sphere", 1.0), flat_texture({1, 1, 1, 1})));
+    const std::atomic<bool> cancelled{true};
+    Progress progress;
+    progress.cancelled = &cancelled;
+    const Lattice lattice = make_lattice(SourceParams(), meshes, 0.2);
+    EXPECT_THROW(generate(meshes, lattice, 0.2, 1.0, 1, progress), Cancelled);
+}
+
+TEST_F(GenerateTest, MoreThanTheMemoryIsRefusedBeforeItIsTaken) {
+    std::vector<TexturedMesh> meshes;
+    meshes.push_back(textured(builtin_mesh("sphere", 1.0), flat_texture({1, 1, 1, 1})));
+    SourceParams source;
+    source.count = std::int64_t{1} << 50;
+    EXPECT_THROW(generate(meshes, make_lattice(source, meshes, 0.2), 0.2, 1.0, 1), InputError);
+}
+
+TEST_F(GenerateTest, EmptySpaceCostsNothing) {
+    std::vector<TexturedMesh> meshes;
+    Mesh mesh = builtin_mesh("plane", 1.0);
+    for (glm::vec3& p : mesh.positions) p *= 1e-4f;
+    meshes.push_back(textured(std::move(mesh), flat_texture({1, 1, 1, 1})));
+    SourceParams source;
+    source.voxels = i64vec3(1'000'001);  // 2e18 positions: only a search from the top can end
+    source.buffer = dvec3(500.0);
+    const SplatSet set = generate(meshes, make_lattice(source, meshes, 0.002), 0.002, 0.0, 1);
+    EXPECT_GT(set.size(), 30);
+    EXPECT_LT(set.size(), 200);
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,117 @@
+// The front door: built-in meshes, a mesh's own pictures, splat files, and its messages.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/log.h"
+#include "generate/generate.h"
+#include "splat_files/splat_file.h"
+#include "support/test_data.h"
+#include "unit/splat_files/file_support.h"
+
+namespace astrosplat {
+namespace {
+
+class LoadSourceTest : public SplatFileTest {
+  protected:
+    LoadSourceTest() {
+        set_log_sink([this](LogLevel, const std::string& line) { lines_ += line + "\n"; });
+    }
+    ~LoadSourceTest() override { set_log_sink(nullptr); }
+
+    static std::string error_of(const SourceParams& source) {
+        try {
+            load_source(source, "dust");
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "no error";
+    }
+    static SourceParams mesh_source(const std::filesystem::path& mesh,
+                                    std::vector<std::filesystem::path> texture = {}) {
+        SourceParams source;
+        source.meshes.push_back({mesh, std::move(texture), 0.15});
+        source.count = 5000;
+        return source;
+    }
+
+    std::string lines_;
+};
+
+TEST_F(LoadSourceTest, StarsComeLater) {
+    SourceParams source;
+    source.kind = SourceKind::stars;
+    EXPECT_EQ(error_of(source), "layer 'dust': kind = \"stars\" comes with a later release");
+}
+
+TEST_F(LoadSourceTest, NeedsAMesh) {
+    EXPECT_EQ(error_of(SourceParams()),
+              "layer 'dust': source.meshes: expected at least one mesh, found none");
+}
+
+TEST_F(LoadSourceTest, BuiltInMeshesNeedAPicture) {
+    EXPECT_EQ(error_of(mesh_source("plane")),
+              "layer 'dust': plane:texture: expected a picture, which built-in meshes need, found none");
+}
+
+TEST_F(LoadSourceTest, MeshesWithoutPicturesSaySo) {
+    const auto obj = write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+    EXPECT_NE(error_of(mesh_source(obj))
+                  .find("bare.obj: expected a texture in the scene, or a material with map_Kd"),
+              std::string::npos);
+}
+
+TEST_F(LoadSourceTest, SplatFilesAreSortedAndKnowTheirLargestDistance) {
+    SplatSet set;
+    for (int i = 0; i < 4; ++i) {
+        set.position.push_back(glm::vec3(static_cast<float>(i)));
+        set.color.push_back(glm::vec3(0.5f));
+        set.alpha.push_back(1.0f);
+        set.distance.push_back(0.25f * static_cast<float>(i));
+        set.id.push_back(static_cast<std::uint64_t>(10 - i));
+    }
+    SourceParams source;
+    source.kind = SourceKind::splats;
+    source.file = path("set.pda");
+    write_splats(source.file, set);
+    const SplatSet read = load_source(source, "dust");
+    ASSERT_EQ(read.size(), 4);
+    EXPECT_EQ(read.id[0], 7u);
+    EXPECT_EQ(read.position[0], glm::vec3(3.0f));
+    EXPECT_EQ(read.max_distance, 0.75);
+}
+
+TEST_F(LoadSourceTest, PlaneTakesThePicturesAspectAndSaysWhatWasChosen) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(picture, "images/m101_heic0602a.jpg");  // 1920 x 1200
+    SourceParams source = mesh_source("plane", {picture});
+    const SplatSet set = load_source(source, "dust");
+    const Bounds box = bounds(set);
+    EXPECT_NEAR(box.extent().x, 10.4, 0.3);  // the longer side, and 2 % on either side
+    EXPECT_NEAR(box.extent().z, 6.65, 0.3);
+    EXPECT_NEAR(static_cast<double>(set.size() + set.zero_alpha), 5000.0, 750.0);
+    EXPECT_NE(lines_.find("layer 'dust': "), std::string::npos);
+    EXPECT_NE(lines_.find("max distance 0.2"), std::string::npos);
+    const SplatSet other = load_source(source, "stars");  // another name, another seed
+    EXPECT_NE(other.position[0], set.position[0]);
+}
+
+TEST_F(LoadSourceTest, MeshesBringTheirOwnPicture) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(mesh, "meshes/smallbodies/phobos.obj");
+    const SplatSet set = load_source(mesh_source(mesh), "phobos");
+    EXPECT_NEAR(static_cast<double>(set.size()), 5000.0, 1000.0);
+    EXPECT_GT(set.color[0].x, 0.0f);
+}
+
+TEST_F(LoadSourceTest, MeshesWithoutUvNeedAProjection) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(mesh, "meshes/smallbodies/216Kleopatra.obj");
+    ASTROSPLAT_TEST_DATA_OR_SKIP(picture, "images/sh2-106.png");
+    SourceParams source = mesh_source(mesh, {picture});
+    EXPECT_NE(error_of(source).find("216Kleopatra.obj"), std::string::npos);
+    source.uv = UvMode::planar_xz;
+    const std::vector<TexturedMesh> meshes = load_meshes(source);
+    EXPECT_EQ(meshes[0].textures[0].wrap, TextureSettings::Wrap::clamp);
+    EXPECT_GT(load_source(source, "dust").size(), 0);
+}
+
+}  // namespace
+}  // namespace astrosplat

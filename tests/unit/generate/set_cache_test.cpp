@@ -1,0 +1,398 @@
+// The cache of generated sets: the same bits as generated, a key that follows every input, a size limit,
+// processes that share a folder, and folders and entries that cannot be used.
+#include "generate/set_cache.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <functional>
+#include <optional>
+#include <thread>
+
+#include "core/log.h"
+#include "generate/generate.h"
+#include "generate/set_key.h"
+#include "splat_files/native.h"
+#include "support/temp_folder.h"
+#include "unit/splat_files/file_support.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string picture(int size, int blue = 128) {
+    std::string text = "P6\n" + std::to_string(size) + " " + std::to_string(size) + "\n255\n";
+    for (int i = 0; i < size * size; ++i)
+        for (const int value : {i % size * 8, i / size * 8, blue}) text += static_cast<char>(value);
+    return text;
+}
+
+constexpr const char* triangle =
+    "mtllib a.mtl\nv 0 0 0\nv 4 0 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n";
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class SetCacheTest : public testing::Test {
+  protected:
+    SetCacheTest() {
+        set_log_sink([this](LogLevel level, const std::string& line) {
+            (level == LogLevel::warning ? warnings_ : lines_).push_back(line);
+        });
+        folder_.file("p.ppm", picture(16));
+        source_.meshes = {{"plane", {folder_ / "p.ppm"}, 0.15}};
+        source_.count = 3000;
+        cache_.folder = folder_ / "sets";
+    }
+    ~SetCacheTest() override {
+        flush_warning_counts();
+        set_log_sink(nullptr);
+    }
+
+    /// A source with a mesh file whose picture comes from its own material.
+    SourceParams mesh_source() const {
+        folder_.file("a.obj", triangle);
+        folder_.file("a.mtl", "newmtl m\nmap_Kd p.ppm\n");
+        SourceParams source = source_;
+        source.meshes = {{folder_ / "a.obj", {}, 0.15}};
+        return source;
+    }
+    std::vector<fs::path> entries(const std::string& ending = ".splats") const {
+        std::vector<fs::path> files;
+        std::error_code ignored;
+        for (const auto& each : fs::directory_iterator(cache_.folder, ignored))
+            if (each.path().extension() == ending) files.push_back(each.path());
+        return files;
+    }
+    LoadedSet load(const SourceParams& source, const std::string& name = "dust") const {
+        return load_source(cache_, source, name);
+    }
+    LoadedSet load() const { return load(source_); }
+    fs::path key_file(const std::string& ending) const {
+        return cache_.folder / (set_key(source_, "dust") + ending);
+    }
+
+    TempFolder folder_;
+    SourceParams source_;
+    SetCache cache_;
+    std::vector<std::string> warnings_, lines_;
+};
+
+TEST_F(SetCacheTest, TheSecondTimeTheSameBitsComeFromTheFile) {
+    for (const SourceParams& source : {source_, mesh_source()}) {
+        const SplatSet plain = load_source(source, "dust");
+        ASSERT_GT(plain.size(), 500);
+        EXPECT_EQ(cached_splats(cache_, source, "dust"), std::nullopt);
+        const LoadedSet first = load(source), second = load(source);
+        EXPECT_FALSE(first.cached);
+        EXPECT_TRUE(second.cached);
+        expect_same_set(first.set, plain);
+        expect_same_set(second.set, plain);
+        EXPECT_EQ(cached_splats(cache_, source, "dust"), plain.size());
+    }
+    EXPECT_EQ(entries().size(), 2u);
+    EXPECT_TRUE(entries(".lock").empty());
+    EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(SetCacheTest, TheFileHasAllColumnsWhateverIsWanted) {
+    const OptionalColumns wanted{true, false, false};
+    const LoadedSet first = load_source(cache_, source_, "dust", {}, nullptr, wanted);
+    const LoadedSet second = load_source(cache_, source_, "dust", {}, nullptr, wanted);
+    EXPECT_FALSE(first.cached);
+    EXPECT_TRUE(second.cached);
+    SplatSet expected = load_source(source_, "dust");
+    expect_same_set(load().set, expected);
+    drop_columns(expected, wanted);
+    expect_same_set(first.set, expected);
+    expect_same_set(second.set, expected);
+}
+
+TEST_F(SetCacheTest, WithoutAFolderNothingIsKept) {
+    EXPECT_FALSE(load_source(SetCache{}, source_, "dust").cached);
+    EXPECT_FALSE(load_source(SetCache{}, source_, "dust").cached);
+    EXPECT_FALSE(fs::exists(cache_.folder));
+}
+
+TEST_F(SetCacheTest, SplatFilesPassBy) {
+    SourceParams file;
+    file.kind = SourceKind::splats;
+    file.file = folder_ / "a.splats";
+    write_native(file.file, load_source(source_, "dust"));
+    EXPECT_FALSE(load(file).cached);
+    EXPECT_FALSE(load(file).cached);
+    EXPECT_FALSE(fs::exists(cache_.folder));
+}
+
+// ---- the key
+
+TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
+    using Settings = TextureSettings;
+    const std::vector<std::function<void(SourceParams&)>> changes = {
+        [](SourceParams& s) { s.meshes[0].mesh = "disk"; },
+        [](SourceParams& s) { s.meshes[0].mesh = "relief"; },
+        [](SourceParams& s) { s.meshes[0].mesh = "relief", s.meshes[0].relief = 0.2; },
+        [](SourceParams& s) { s.meshes.push_back(s.meshes[0]); },
+        [](SourceParams& s) { s.meshes[0].texture.push_back(s.meshes[0].texture[0]); },
+        [](SourceParams& s) { s.texture.colorspace = Settings::Colorspace::linear; },
+        [](SourceParams& s) { s.texture.alpha = Settings::Alpha::one; },
+        [](SourceParams& s) { s.texture.unpremultiply = Settings::Unpremultiply::no; },
+        [](SourceParams& s) { s.texture.hdu = "SCI"; },
+        [](SourceParams& s) { s.texture.plane = 1; },
+        [](SourceParams& s) { s.texture.stretch = Settings::Stretch::log; },
+        [](SourceParams& s) { s.texture.black = 0.25; },
+        [](SourceParams& s) { s.texture.white = 0.25; },
+        [](SourceParams& s) { s.texture.softening = 0.2; },
+        [](SourceParams& s) { s.texture.filter = Settings::Filter::area; },
+        [](SourceParams& s) { s.texture.wrap = Settings::Wrap::black; },
+        [](SourceParams& s) { s.buffer = glm::dvec3(0.1, 0.2, 0.3); },
+        [](SourceParams& s) { s.buffer = glm::dvec3(0.1, 0.2, 0.4); },
+        [](SourceParams& s) { s.voxels = glm::i64vec3(9, 8, 7); },
+        [](SourceParams& s) { s.voxels = glm::i64vec3(9, 8, 6); },
+        [](SourceParams& s) { s.voxel_size = 0.1; },
+        [](SourceParams& s) { s.count = 3001; },
+        [](SourceParams& s) { s.jitter = 0.1; },
+        [](SourceParams& s) { s.jitter = 0.1 + 1e-16 * 2; },
+        [](SourceParams& s) { s.max_distance = 0.3; },
+        [](SourceParams& s) { s.uv = UvMode::planar_xz; },
+        [](SourceParams& s) { s.seed = 5; },
+    };
+    std::vector<std::string> keys = {set_key(source_, "dust"), set_key(source_, "stars")};
+    for (const auto& change : changes) {
+        SourceParams source = source_;
+        change(source);
+        keys.push_back(set_key(source, "dust"));
+        EXPECT_EQ(keys.back().size(), 64u);
+    }
+    std::sort(keys.begin(), keys.end());
+    EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+}
+
+TEST_F(SetCacheTest, WhatDoesNotReachTheSetStaysOutOfTheKey) {
+    SourceParams seeded = source_, sized = source_, moved = source_;
+    seeded.seed = 5;
+    EXPECT_EQ(set_key(seeded, "dust"), set_key(seeded, "stars"));
+    sized.voxel_size = 0.1;
+    const std::string key = set_key(sized, "dust");
+    sized.count = 7;
+    sized.meshes[0].relief = 0.7;
+    EXPECT_EQ(set_key(sized, "dust"), key);
+    fs::copy_file(folder_ / "p.ppm", folder_ / "other.ppm");
+    moved.meshes[0].texture = {folder_ / "other.ppm"};
+    EXPECT_EQ(set_key(moved, "dust"), set_key(source_, "dust"));
+}
+
+TEST_F(SetCacheTest, BytesOfEveryInputChangeTheKey) {
+    const SourceParams source = mesh_source();
+    std::vector<std::string> keys = {set_key(source, "dust")};
+    folder_.file("p.ppm", picture(16, 129));
+    keys.push_back(set_key(source, "dust"));
+    folder_.file("a.obj", std::string(triangle) + "#\n");
+    keys.push_back(set_key(source, "dust"));
+    folder_.file("a.mtl", "newmtl m\nmap_Kd q.ppm\n");
+    keys.push_back(set_key(source, "dust"));
+    folder_.file("q.ppm", picture(8));
+    keys.push_back(set_key(source, "dust"));
+    std::sort(keys.begin(), keys.end());
+    EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+}
+
+TEST_F(SetCacheTest, InputsThatCannotBeReadHaveNoKeyAndTheLoaderSaysWhy) {
+    source_.meshes[0].texture = {folder_ / "none.ppm"};
+    EXPECT_EQ(set_key(source_, "dust"), "");
+    try {
+        load();
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("layer 'dust': "), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("none.ppm"), std::string::npos) << error.what();
+    }
+    EXPECT_FALSE(fs::exists(cache_.folder));
+}
+
+// ---- the folder
+
+TEST_F(SetCacheTest, FolderOfTheEnvironment) {
+    const auto with = [](const char* own, const char* xdg, const char* home) {
+        own ? setenv("ASTROSPLAT_CACHE", own, 1) : unsetenv("ASTROSPLAT_CACHE");
+        xdg ? setenv("XDG_CACHE_HOME", xdg, 1) : unsetenv("XDG_CACHE_HOME");
+        home ? setenv("HOME", home, 1) : unsetenv("HOME");
+        return default_cache_folder();
+    };
+    EXPECT_EQ(with("/a", "/b", "/c"), "/a");
+    EXPECT_EQ(with("", "/b", "/c"), "/b/astrosplat");
+    EXPECT_EQ(with(nullptr, "b", "/c"), "/c/.cache/astrosplat");
+    EXPECT_EQ(with(nullptr, nullptr, "/c"), "/c/.cache/astrosplat");
+    EXPECT_EQ(with(nullptr, nullptr, nullptr), "");
+}
+
+TEST_F(SetCacheTest, TheLeastRecentlyUsedGoFirst) {
+    const auto with_seed = [&](std::uint32_t seed) {
+        SourceParams source = source_;
+        source.seed = seed;
+        return source;
+    };
+    std::int64_t largest = 0;
+    for (const std::uint32_t seed : {1u, 2u, 3u})
+        largest = std::max(largest, native_file_bytes(load(with_seed(seed)).set));
+    const auto age = [&](std::uint32_t seed, int hours) {
+        fs::last_write_time(cache_.folder / (set_key(with_seed(seed), "dust") + ".splats"),
+                            fs::file_time_type::clock::now() - std::chrono::hours(hours));
+    };
+    age(1, 30), age(2, 20), age(3, 10);
+    EXPECT_TRUE(load(with_seed(1)).cached);  // used now: 2 is the oldest
+    cache_.limit_bytes = 3 * largest + 2000;
+    load(with_seed(4));
+    EXPECT_EQ(entries().size(), 3u);
+    EXPECT_EQ(cached_splats(cache_, with_seed(2), "dust"), std::nullopt);
+    for (const std::uint32_t seed : {1u, 3u, 4u}) EXPECT_TRUE(load(with_seed(seed)).cached) << seed;
+}
+
+TEST_F(SetCacheTest, ASetLargerThanTheLimitIsNotKeptAndPushesNothingOut) {
+    SourceParams small = source_;
+    small.count = 100;
+    load(small);
+    cache_.limit_bytes = 20000;
+    EXPECT_FALSE(load().cached);
+    EXPECT_FALSE(load().cached);
+    EXPECT_EQ(entries().size(), 1u);
+    EXPECT_TRUE(load(small).cached);
+    EXPECT_NE(lines_[lines_.size() - 2].find("is not kept: the cache may hold 19.5 KiB"), std::string::npos)
+        << lines_[lines_.size() - 2];
+}
+
+// ---- entries and folders that cannot be used
+
+TEST_F(SetCacheTest, DamagedEntriesAreGeneratedAnewWithAWarning) {
+    const SplatSet set = load().set;
+    const std::string whole = bytes_of(key_file(".splats"));
+    std::vector<std::string> damaged = {"", "something else", whole.substr(0, whole.size() / 2), whole};
+    damaged.back()[whole.size() / 2] ^= 1;
+    for (const std::string& bytes : damaged) {
+        fs::remove(key_file(".splats"));
+        std::ofstream(key_file(".splats"), std::ios::binary) << bytes;
+        warnings_.clear();
+        const LoadedSet again = load();
+        EXPECT_FALSE(again.cached);
+        expect_same_set(again.set, set);
+        ASSERT_EQ(warnings_.size(), 1u);
+        EXPECT_NE(warnings_[0].find("; the set is generated anew"), std::string::npos) << warnings_[0];
+        flush_warning_counts();
+        EXPECT_TRUE(load().cached);
+    }
+}
+
+TEST_F(SetCacheTest, AFolderThatCannotBeMadeIsAWarning) {
+    cache_.folder = folder_.file("file", "x") / "sets";
+    EXPECT_FALSE(load().cached);
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("cannot be made"), std::string::npos) << warnings_[0];
+}
+
+TEST_F(SetCacheTest, ThePlaceOfAnEntryTakenByAFolderIsAWarning) {
+    fs::create_directories(key_file(".splats"));
+    EXPECT_FALSE(load().cached);
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("the generated set is not kept"), std::string::npos) << warnings_[0];
+}
+
+TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
+    if (geteuid() == 0) GTEST_SKIP() << "root writes everywhere";
+    load();
+    fs::permissions(cache_.folder, fs::perms::owner_read | fs::perms::owner_exec);
+    EXPECT_TRUE(load().cached);
+    EXPECT_TRUE(warnings_.empty());
+    EXPECT_FALSE(load(source_, "stars").cached);
+    fs::permissions(cache_.folder, fs::perms::owner_all);
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("the generated set is not kept"), std::string::npos) << warnings_[0];
+}
+
+// ---- several processes
+
+TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
+    fs::create_directories(cache_.folder);
+    const std::string dead(64, 'd'), alive(64, 'a'), own = set_key(source_, "dust");
+    const auto leave = [&](const std::string& name) {
+        std::ofstream(cache_.folder / name) << "x";
+        return cache_.folder / name;
+    };
+    const auto temporary = [](const std::string& key) { return "." + key + ".1-2-3.part.splats"; };
+    const std::vector<fs::path> gone = {leave(temporary(dead)), leave(dead + ".lock"), leave(own + ".lock"),
+                                        leave(temporary(own))};
+    const std::vector<fs::path> stay = {leave(temporary(alive)), leave(alive + ".lock"), leave("mine.lock"),
+                                        leave(".mine.part.splats"), leave("notes.txt")};
+    const int lock = open(stay[1].c_str(), O_RDWR | O_CLOEXEC);
+    ASSERT_EQ(flock(lock, LOCK_EX), 0);
+    load();
+    close(lock);
+    for (const fs::path& file : gone) EXPECT_FALSE(fs::exists(file)) << file;
+    for (const fs::path& file : stay) EXPECT_TRUE(fs::exists(file)) << file;
+}
+
+TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
+    fs::create_directories(cache_.folder);
+    const SplatSet set = load_source(source_, "dust");
+    const int lock = open(key_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    ASSERT_EQ(flock(lock, LOCK_EX), 0);
+    std::optional<LoadedSet> loaded;
+    std::atomic<bool> waits{false};
+    set_log_sink([&](LogLevel, const std::string& line) { waits = waits || line.find("waiting") < 99; });
+    std::thread other([&] { loaded = load(); });
+    while (!waits) std::this_thread::yield();
+    write_native(key_file(".splats"), set, RowOrder::id, {});
+    fs::remove(key_file(".lock"));  // as FileLock gives it back
+    close(lock);
+    other.join();
+    EXPECT_TRUE(loaded->cached);
+    expect_same_set(loaded->set, set);
+}
+
+TEST_F(SetCacheTest, WaitingCanBeCancelled) {
+    fs::create_directories(cache_.folder);
+    const int lock = open(key_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    ASSERT_EQ(flock(lock, LOCK_EX), 0);
+    const std::atomic<bool> cancelled{true};
+    EXPECT_THROW(load_source(cache_, source_, "dust", Progress{{}, &cancelled}), Cancelled);
+    close(lock);
+}
+
+TEST_F(SetCacheTest, ACancelledRunLeavesNothing) {
+    const std::atomic<bool> cancelled{true};
+    EXPECT_THROW(load_source(cache_, source_, "dust", Progress{{}, &cancelled}), Cancelled);
+    EXPECT_TRUE(fs::is_empty(cache_.folder));
+}
+
+TEST_F(SetCacheTest, AProcessThatIsKilledGivesWay) {
+    fs::create_directories(cache_.folder);
+    const fs::path ready = folder_ / "ready", lock_name = key_file(".lock");
+    const pid_t child = fork();
+    if (child == 0) {  // takes the lock, says so, and is killed
+        const int lock = open(lock_name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (flock(lock, LOCK_EX) == 0) close(open(ready.c_str(), O_CREAT | O_WRONLY, 0666));
+        for (;;) pause();
+    }
+    while (!fs::exists(ready)) std::this_thread::yield();
+    std::optional<LoadedSet> loaded;
+    std::thread other([&] { loaded = load(); });
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    other.join();
+    EXPECT_FALSE(loaded->cached);
+    EXPECT_TRUE(load().cached);
+    EXPECT_TRUE(entries(".lock").empty());
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,247 @@
+// Native files: every field survives, damage anywhere is found, blocks are small regions; and the front door
+// with conversions between all formats.
+#include "splat_files/native.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "splat_files/checksum.h"
+#include "splat_files/splat_file.h"
+#include "splats/spatial_order.h"
+#include "unit/splat_files/file_support.h"
+
+namespace astrosplat {
+namespace {
+
+class Native : public SplatFileTest {
+  protected:
+    std::string error(const std::string& bytes) {
+        return error_of(write("a.splats", bytes), [](const auto& file) { read_native(file); });
+    }
+};
+
+SplatSet full_set(std::uint32_t rows) {
+    SplatSet set = awkward_set(rows);
+    set.spacing = {0.1, 0.25, 1e-300};
+    set.max_distance = 0.7;
+    set.generated = true;
+    set.divided = true;
+    set.test_positions = 1ll << 40;
+    set.zero_alpha = 12;
+    set.credit = "ESA/Hubble & NASA, \xc3\xa9 \n second line";
+    return set;
+}
+
+/// Replaces the bytes at `at` of a valid file's header and makes the header's checksum fit again.
+template <class T>
+std::string forged(std::string bytes, std::size_t at, T value, std::size_t header_end = 128) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    const std::uint64_t checksum = xxh64(std::string_view(bytes).substr(0, header_end - 8));
+    std::memcpy(bytes.data() + header_end - 8, &checksum, sizeof checksum);
+    return bytes;
+}
+
+TEST_F(Native, EverythingSurvives) {
+    const SplatSet set = full_set(200000);  // three blocks and a part
+    write_native(path("a.splats"), set);
+    SplatSet got = read_native(path("a.splats"));
+    sort_by_id(got);
+    expect_same_set(got, set);
+}
+
+TEST_F(Native, OptionalArraysStayUnknown) {
+    for (int present = 0; present < 16; ++present) {
+        SplatSet set = full_set(100);
+        if (!(present & 1)) set.uv.clear();
+        if (!(present & 2)) set.normal.clear();
+        if (!(present & 4)) set.mesh.clear();
+        if (!(present & 8)) set.radius.clear();
+        set.generated = present & 1;
+        set.divided = present & 2;
+        write_native(path("a.splats"), set);
+        SplatSet got = read_native(path("a.splats"));
+        sort_by_id(got);
+        expect_same_set(got, set);
+    }
+}
+
+TEST_F(Native, ColumnsThatAreNotWantedStayEmpty) {
+    const SplatSet set = full_set(70000);  // a block and a part
+    write_native(path("a.splats"), set, RowOrder::id, {});
+    for (int without = 0; without < 8; ++without) {
+        const OptionalColumns wanted{(without & 1) == 0, (without & 2) == 0, (without & 4) == 0};
+        SplatSet expected = set;
+        drop_columns(expected, wanted);
+        EXPECT_EQ(expected.uv.empty(), !wanted.uv);
+        EXPECT_EQ(expected.normal.empty(), !wanted.normal);
+        EXPECT_EQ(expected.mesh.empty(), !wanted.mesh);
+        expect_same_set(read_native(path("a.splats"), wanted, {}), expected);
+    }
+}
+
+TEST_F(Native, EmptySetSurvives) {
+    write_native(path("a.splats"), full_set(0));
+    expect_same_set(read_native(path("a.splats")), full_set(0));
+}
+
+TEST_F(Native, ThreadsAndOrderOfTheSetDoNotChangeBytes) {
+    SplatSet set = full_set(150000);
+    set_thread_count(1);
+    write_native(path("one.splats"), set);
+    const SplatSet shuffled = read_native(path("one.splats"));
+    set_thread_count(5);
+    write_native(path("five.splats"), shuffled);
+    EXPECT_EQ(bytes_of(path("one.splats")), bytes_of(path("five.splats")));
+}
+
+TEST_F(Native, RowsByIdNeedNoSorting) {
+    SplatSet set = full_set(200000);
+    std::sort(set.id.begin(), set.id.end());
+    write_native(path("a.splats"), set, RowOrder::id, {});
+    expect_same_set(read_native(path("a.splats")), set);
+    EXPECT_EQ(native_file_bytes(set), static_cast<std::int64_t>(bytes_of(path("a.splats")).size()));
+    EXPECT_EQ(native_splat_count(path("a.splats")), 200000);
+}
+
+TEST_F(Native, RowsThatBelieTheirOrderAreRefused) {
+    SplatSet set = full_set(2);
+    set.position[0] = glm::vec3(0.0f);
+    set.position[1] = glm::vec3(1.0f);  // behind the other in space
+    set.id[0] = 7;
+    set.id[1] = 6;
+    write_native(path("a.splats"), set);
+    const std::string bytes = bytes_of(path("a.splats"));
+    EXPECT_EQ(error(bytes), "");
+    EXPECT_EQ(error(forged(bytes, 12, 0x7fu)),
+              "a.splats: expected ids in ascending order, found another order");
+}
+
+TEST_F(Native, NeighboursShareBlocks) {
+    SplatSet set;
+    constexpr int side = 64;
+    for (std::uint32_t i = 0; i < side * side * side; ++i) {
+        set.position.push_back({static_cast<float>(i % side), static_cast<float>(i / side % side),
+                                static_cast<float>(i / side / side)});
+        set.id.push_back(i);
+    }
+    const auto order = spatial_order<std::uint32_t>(set);
+    for (std::size_t block = 0; block < 64; ++block) {  // 4096 rows: a cube of 16 along the Morton curve
+        Bounds box;
+        for (std::size_t i = block * 4096; i < (block + 1) * 4096; ++i)
+            box.add(glm::dvec3(set.position[order[i]]));
+        EXPECT_EQ(box.extent(), glm::dvec3(15.0));
+    }
+    const auto wide = spatial_order<std::uint64_t>(set);
+    EXPECT_TRUE(std::equal(order.begin(), order.end(), wide.begin(), wide.end()));
+    Buffer<std::uint32_t> sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::size_t i = 0; i < sorted.size(); ++i) ASSERT_EQ(sorted[i], i);
+}
+
+TEST_F(Native, OneCellKeepsTheOrderOfIds) {
+    SplatSet set;
+    for (const std::uint64_t id : {5u, 3u, 9u, 3u}) {
+        set.position.push_back(glm::vec3(1.0f));
+        set.id.push_back(id);
+    }
+    const auto order = spatial_order<std::uint32_t>(set);
+    EXPECT_EQ(std::vector(order.begin(), order.end()), (std::vector<std::uint32_t>{1, 3, 0, 2}));
+    const auto wide = spatial_order<std::uint64_t>(set);
+    EXPECT_EQ(std::vector(wide.begin(), wide.end()), (std::vector<std::uint64_t>{1, 3, 0, 2}));
+}
+
+TEST(Checksum, PublishedValues) {
+    EXPECT_EQ(xxh64(""), 0xef46db3751d8e999u);
+    EXPECT_EQ(xxh64("a"), 0xd24ec4f1a98c6e5bu);
+    EXPECT_EQ(xxh64("abc"), 0x44bc2cf5ad770999u);
+    EXPECT_EQ(xxh64("Nobody inspects the spammish repetition"), 0xfbcea83c8a378bf1u);
+}
+
+TEST_F(Native, EveryDamagedByteAndEveryTruncationIsFound) {
+    write_native(path("whole.splats"), full_set(20));
+    const std::string whole = bytes_of(path("whole.splats"));
+    for (std::size_t at = 0; at < whole.size(); ++at) {
+        std::string damaged = whole;
+        damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
+        EXPECT_NE(error(damaged), "") << at;
+        EXPECT_NE(error(whole.substr(0, at)), "") << at;
+    }
+    EXPECT_NE(error(whole + "x"), "");
+}
+
+TEST_F(Native, Messages) {
+    write_native(path("whole.splats"), full_set(2));
+    const std::string whole = bytes_of(path("whole.splats"));
+    const std::string size = std::to_string(whole.size());
+    EXPECT_EQ(forged(whole, 8, 1u), whole);  // the header ends where forged() believes
+    EXPECT_EQ(error(""), "a.splats: expected an astrosplat .splats file, found another format");
+    EXPECT_EQ(error("ply" + whole.substr(3)),
+              "a.splats: expected an astrosplat .splats file, found another format");
+    EXPECT_EQ(error(forged(whole, 8, 2u)), "a.splats:header: expected version 1, found 2");
+    EXPECT_EQ(error(forged(whole, 12, 0x80u)), "a.splats:header: expected known flags, found 0x80");
+    EXPECT_EQ(error(forged(whole, 24, 0u)),
+              "a.splats:header: expected blocks of at least one splat, found 0");
+    for (const std::uint64_t count :
+         {std::uint64_t{1000000000000000000}, ~std::uint64_t{0}, std::uint64_t{3}})
+        EXPECT_EQ(error(forged(whole, 16, count)), "a.splats: expected the length that " +
+                                                       std::to_string(count) + " splats take, found " + size +
+                                                       " bytes (truncated or damaged file)");
+    EXPECT_EQ(error(forged(whole, 32, std::nan(""))),
+              "a.splats:header: expected spacing and max_distance finite and >= 0, found another value");
+    EXPECT_EQ(error(forged(whole, 64, std::int64_t{-1})),
+              "a.splats:header: expected counts of positions >= 0, found a negative count");
+    std::string damaged = whole;
+    damaged[90] ^= 1;
+    EXPECT_EQ(error(damaged),
+              "a.splats:header: expected the checksum written with it, found another (damaged file)");
+    damaged = whole;
+    damaged[200] ^= 1;
+    EXPECT_EQ(error(damaged),
+              "a.splats:block 0: expected the checksum written with it, found another (damaged file)");
+    damaged = whole;
+    damaged[whole.size() - 20] ^= 1;
+    EXPECT_EQ(error(damaged),
+              "a.splats:table: expected the checksum written with it, found another (damaged file)");
+}
+
+TEST_F(Native, NumbersThatAreNotFiniteAreRefused) {
+    SplatSet set = full_set(2);
+    set.uv[1].x = INFINITY;
+    write_native(path("a.splats"), set);
+    EXPECT_EQ(error(bytes_of(path("a.splats"))),
+              "a.splats:block 0: expected finite numbers, found infinity or NaN");
+}
+
+using SplatFile = SplatFileTest;
+
+TEST_F(SplatFile, KnownEndings) {
+    for (const char* name : {"a.pda", "a.PDA", "b.ply", "c.splats", "d.Splats"})
+        EXPECT_TRUE(is_splat_file(name));
+    for (const char* name : {"a.obj", "pda", "a.ply.gz", ""}) EXPECT_FALSE(is_splat_file(name));
+}
+
+TEST_F(SplatFile, UnknownEndingsNameTheKnownOnes) {
+    const std::string expected = "a.xyz: expected the ending .pda, .ply or .splats, found .xyz";
+    EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { read_splats(file); }), expected);
+    EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { write_splats(file, SplatSet{}); }), expected);
+    EXPECT_EQ(error_of(path("a"), [](const auto& file) { read_splats(file); }),
+              "a: expected the ending .pda, .ply or .splats, found none");
+}
+
+TEST_F(SplatFile, ConversionsKeepEveryBit) {
+    const SplatSet set = awkward_set(3000);
+    const char* names[] = {"a.pda", "a.ply", "a.SPLATS"};
+    for (const char* from : names) {
+        write_splats(path(from), set);
+        for (const char* to : names) {
+            const std::filesystem::path target = path(std::string("to_") + to);
+            write_splats(target, read_splats(path(from)));
+            SplatSet got = read_splats(target);
+            sort_by_id(got);
+            expect_same_splats(got, set);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,262 @@
+// PLY: exact round trips, the three formats and their types against hand-made files, and one test for each
+// error.
+#include "splat_files/ply.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/log.h"
+#include "unit/splat_files/file_support.h"
+
+namespace astrosplat {
+namespace {
+
+/// Bytes of a number, in the file's order.
+template <class T>
+std::string raw(T value, bool big = false) {
+    std::string bytes(sizeof value, '\0');
+    std::memcpy(bytes.data(), &value, sizeof value);
+    if (big) std::reverse(bytes.begin(), bytes.end());
+    return bytes;
+}
+
+class Ply : public SplatFileTest {
+  protected:
+    SplatSet read(const std::string& bytes) { return read_ply(write("a.ply", bytes)); }
+    std::string error(const std::string& bytes) {
+        return error_of(write("a.ply", bytes), [](const auto& file) { read_ply(file); });
+    }
+    static std::string header(const std::string& format, const std::string& body) {
+        return "ply\nformat " + format + " 1.0\n" + body + "end_header\n";
+    }
+    static std::string vertex(const std::string& count, const std::string& more = "") {
+        return "element vertex " + count + "\nproperty float x\nproperty float y\nproperty float z\n" + more;
+    }
+    static std::string xyz(bool big = false) { return raw(1.0f, big) + raw(2.0f, big) + raw(3.0f, big); }
+};
+
+TEST_F(Ply, WritesAHeaderOthersRead) {
+    SplatSet set = awkward_set(1);
+    set.id[0] = 5;
+    set.normal.clear();
+    set.credit = "ESA\nHubble";
+    write_ply(path("a.ply"), set);
+    const std::string bytes = bytes_of(path("a.ply"));
+    const std::string expected =
+        "ply\nformat binary_little_endian 1.0\ncomment credit: ESA Hubble\nelement vertex 1\nproperty float "
+        "x\n"
+        "property float y\nproperty float z\nproperty float red\nproperty float green\nproperty float blue\n"
+        "property float alpha\nproperty float distance\nproperty float radius\nproperty float s\nproperty "
+        "float t\n"
+        "property uint mesh\nproperty uint id\nend_header\n";
+    EXPECT_EQ(bytes.substr(0, expected.size()), expected);
+    EXPECT_EQ(bytes.size(), expected.size() + 13 * 4);
+    EXPECT_EQ(read_ply(path("a.ply")).credit, "ESA Hubble");
+}
+
+TEST_F(Ply, EveryBitSurvives) {
+    const SplatSet set = awkward_set(50000);
+    write_ply(path("a.ply"), set);
+    const SplatSet got = read_ply(path("a.ply"));
+    expect_same_splats(got, set);
+    EXPECT_TRUE(same_bits(got.uv, set.uv));
+}
+
+TEST_F(Ply, OptionalArraysStayUnknown) {
+    SplatSet set = awkward_set(10);
+    set.radius.clear();
+    set.mesh.clear();
+    set.uv.clear();
+    write_ply(path("a.ply"), set);
+    const SplatSet got = read_ply(path("a.ply"));
+    expect_same_splats(got, set);
+    EXPECT_TRUE(got.uv.empty());
+    write_ply(path("a.ply"), SplatSet{});
+    EXPECT_EQ(read_ply(path("a.ply")).size(), 0);
+}
+
+TEST_F(Ply, ThreadsDoNotChangeBytes) {
+    const SplatSet set = awkward_set(70000);
+    set_thread_count(1);
+    write_ply(path("one.ply"), set);
+    set_thread_count(5);
+    write_ply(path("five.ply"), set);
+    EXPECT_EQ(bytes_of(path("one.ply")), bytes_of(path("five.ply")));
+    expect_same_splats(read_ply(path("five.ply")), set);
+}
+
+TEST_F(Ply, AsciiWithColourCodesAndFaces) {
+    const SplatSet set =
+        read(header("ascii", "comment by hand\nobj_info x\n" +
+                                 vertex("2",
+                                        "property uchar red\nproperty uchar green\n"
+                                        "property uchar blue\nproperty uchar alpha\n"
+                                        "property float confidence\nproperty list uchar int links\n") +
+                                 "element face 1\nproperty list uchar int vertex_indices\n") +
+             "1 2 3 255 0 188 51 9 0\n4 5 6.5 0 10 11 255 9 3 7 8 9\n3 0 1 1\n");
+    ASSERT_EQ(set.size(), 2);
+    EXPECT_EQ(set.position[1], glm::vec3(4, 5, 6.5f));
+    EXPECT_EQ(set.color[0].x, 1.0f);
+    EXPECT_EQ(set.color[0].y, 0.0f);
+    EXPECT_NEAR(set.color[0].z, std::pow((188.0 / 255.0 + 0.055) / 1.055, 2.4), 1e-7);
+    EXPECT_NEAR(set.color[1].y, 10.0 / 255.0 / 12.92, 1e-9);
+    EXPECT_EQ(set.alpha[0], 0.2f);
+}
+
+TEST_F(Ply, BigEndianOfAllTypes) {
+    const std::string body =
+        "element edge 1\nproperty short a\nelement vertex 1\nproperty double x\nproperty int16 y\nproperty "
+        "char z\n"
+        "property ushort red\nproperty ushort green\nproperty ushort blue\nproperty double alpha\n"
+        "property double radius\nproperty int distance\nproperty double id\nproperty list int float "
+        "skipped\n";
+    const std::string row = raw(0.1, true) + raw(std::int16_t{-300}, true) + raw(std::int8_t{-5}) +
+                            raw(std::uint16_t{65535}, true) + raw(std::uint16_t{0}, true) +
+                            raw(std::uint16_t{65535}, true) + raw(0.25, true) + raw(2.5, true) +
+                            raw(7, true) + raw(9007199254740992.0, true) + raw(1, true) + raw(1.0f, true);
+    const SplatSet set = read(header("binary_big_endian", body) + raw(std::int16_t{1}, true) + row);
+    ASSERT_EQ(set.size(), 1);
+    EXPECT_EQ(set.position[0], glm::vec3(0.1f, -300, -5));
+    EXPECT_EQ(set.color[0], glm::vec3(1, 0, 1));
+    EXPECT_EQ(set.alpha[0], 0.25f);
+    EXPECT_EQ(set.radius[0], 2.5f);
+    EXPECT_EQ(set.distance[0], 7.0f);
+    EXPECT_EQ(set.max_distance, 7.0);
+    EXPECT_EQ(set.id[0], 9007199254740992u);
+}
+
+TEST_F(Ply, ElementsWithListsBeforeTheVertices) {
+    const std::string body = "element face 2\nproperty list uchar int i\n" + vertex("1");
+    const std::string faces = "\x03" + raw(1) + raw(2) + raw(3) + std::string(1, '\0');
+    EXPECT_EQ(read(header("binary_little_endian", body) + faces + xyz()).position[0], glm::vec3(1, 2, 3));
+    EXPECT_EQ(read(header("ascii", body) + "3 1 2 3\n0\n1 2 3\n").position[0], glm::vec3(1, 2, 3));
+}
+
+TEST_F(Ply, IdsOfSixtyFourBits) {
+    const std::string halves =
+        header("binary_little_endian", vertex("1", "property uint id_high\nproperty uint id\n"));
+    EXPECT_EQ(read(halves + xyz() + raw(0x12345678u) + raw(0x9abcdef0u)).id[0], 0x123456789abcdef0u);
+    const std::string wide = header("binary_little_endian", vertex("1", "property uint64 id\n"));
+    EXPECT_EQ(read(wide + xyz() + raw(~0ull)).id[0], ~0ull);
+}
+
+TEST_F(Ply, WindowsLineEndsAndDefaults) {
+    const SplatSet set = read(
+        "ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nproperty float x\r\nproperty float y\r\n"
+        "property float z\r\nproperty float red\r\nend_header\r\n1 2 3 0.5\r\n");
+    EXPECT_EQ(set.position[0], glm::vec3(1, 2, 3));
+    EXPECT_EQ(set.color[0], glm::vec3(1.0f));  // red alone is no colour
+    EXPECT_EQ(set.alpha[0], 1.0f);
+    EXPECT_EQ(set.id[0], 0u);
+    EXPECT_TRUE(set.radius.empty());
+}
+
+TEST_F(Ply, WrongHeaders) {
+    EXPECT_EQ(error(""), "a.ply:1: expected 'ply', found ''");
+    EXPECT_EQ(error("plywood\n"), "a.ply:1: expected 'ply', found 'plywood'");
+    EXPECT_EQ(error("ply\nelement vertex 1\n"),
+              "a.ply:2: expected 'format ascii 1.0', binary_little_endian or binary_big_endian, found "
+              "'element vertex 1'");
+    EXPECT_EQ(error("ply\nformat ascii 1.0\nelement vertex 1\n"),
+              "a.ply:4: expected 'end_header', found the end of the file");
+    EXPECT_EQ(error(header("ascii", "element vertex\n")),
+              "a.ply:3: expected 'element NAME COUNT', found 'element vertex'");
+    EXPECT_EQ(error(header("ascii", "element vertex -1\n")),
+              "a.ply:3: expected a number of elements, found '-1'");
+    EXPECT_EQ(error(header("ascii", "element vertex 1\nproperty half x\n")),
+              "a.ply:4: expected a number type such as float or uchar, found 'half'");
+    EXPECT_EQ(error(header("ascii", "element vertex 1\nproperty x\n")),
+              "a.ply:4: expected 'property TYPE NAME', found 'property x'");
+    EXPECT_EQ(error(header("ascii", "element vertex 1\nproperty list float int x\n")),
+              "a.ply:4: expected a whole number as the list's count, found 'float'");
+    EXPECT_EQ(error(header("ascii", "element vertex 1\nproperty float x\nproperty int x\n")),
+              "a.ply:5: expected each property once, found 'x'");
+    EXPECT_EQ(error(header("ascii", "property float x\n")),
+              "a.ply:3: expected element, property, comment or end_header, found 'property float x'");
+    EXPECT_EQ(error(header("ascii", "element face 0\n")), "a.ply: expected an element vertex, found none");
+    EXPECT_EQ(error(header("ascii", "element vertex 0\nproperty float x\nproperty float y\n")),
+              "a.ply: expected vertex properties x, y and z, found no z");
+    EXPECT_EQ(error(header("ascii", vertex("0", "property int alpha\n"))),
+              "a.ply: expected alpha as float, double, uchar or ushort, found another type");
+}
+
+TEST_F(Ply, WrongCounts) {
+    const std::string huge = "1000000000000000000";
+    EXPECT_EQ(error(header("binary_little_endian", vertex(huge)) + xyz()),
+              "a.ply: expected " + huge + " vertex elements, as the header says, found the end of the file");
+    EXPECT_EQ(error(header("binary_little_endian", vertex("2")) + xyz() + "12345678901"),
+              "a.ply: expected 2 vertex elements, as the header says, found the end of the file");
+    EXPECT_EQ(error(header("ascii", vertex(huge)) + "1 2 3\n"),
+              "a.ply: expected " + huge + " rows of element vertex, found 1");
+    EXPECT_EQ(error(header("ascii", vertex("1")) + "1 2 3\n4 5 6\n"),
+              "a.ply: expected as many rows as the header says, found 1 more");
+    const std::string list =
+        header("binary_little_endian", vertex("1", "property list int uchar l\n")) + xyz();
+    for (const int count : {-1, 2, 2147483647})
+        EXPECT_EQ(error(list + raw(count) + "x"),
+                  "a.ply: expected 1 vertex elements, as the header says, found the end of the file");
+}
+
+TEST_F(Ply, WrongValues) {
+    const std::string binary =
+        header("binary_little_endian", vertex("1", "property float radius\nproperty int id\n"));
+    EXPECT_EQ(error(binary + raw(1.0f) + raw(NAN) + raw(1.0f) + raw(1.0f) + raw(1)),
+              "a.ply:vertex 0: expected a finite number for y, found nan");
+    EXPECT_EQ(error(binary + xyz() + raw(-1.0f) + raw(1)),
+              "a.ply:vertex 0: expected a finite number >= 0 for radius, found -1");
+    EXPECT_EQ(error(binary + xyz() + raw(1.0f) + raw(-7)),
+              "a.ply:vertex 0: expected a whole number >= 0 for id, found -7");
+    EXPECT_EQ(error(header("ascii", vertex("1")) + "1 2 z\n"),
+              "a.ply:8: expected a finite number for z, found 'z'");
+    EXPECT_EQ(error(header("ascii", vertex("1")) + "1 2 3 4\n"),
+              "a.ply:8: expected 3 numbers (x y z), found 4");
+    const std::string codes = vertex("1", "property uchar red\nproperty uchar green\nproperty uchar blue\n");
+    EXPECT_EQ(error(header("ascii", codes) + "1 2 3 0 256 0\n"),
+              "a.ply:11: expected a whole number 0..255 for green, found '256'");
+    EXPECT_EQ(error(header("ascii", codes) + "1 2 3 0 0.5 0\n"),
+              "a.ply:11: expected a whole number 0..255 for green, found '0.5'");
+}
+
+TEST_F(Ply, TheFirstWrongVertexIsNamedWhateverItsColumn) {
+    std::string bytes = header("binary_little_endian", vertex("90000", "property float radius\n"));
+    for (int i = 0; i < 90000; ++i)
+        bytes += raw(i == 70001 || i == 80000 ? INFINITY : 1.0f) + raw(2.0f) + raw(3.0f) +
+                 raw(i == 70000 ? -1.0f : 4.0f);
+    for (const int threads : {1, 4}) {
+        set_thread_count(threads);
+        EXPECT_EQ(error(bytes), "a.ply:vertex 70000: expected a finite number >= 0 for radius, found -1");
+    }
+}
+
+TEST_F(Ply, OpacitiesOutsideAreClampedAndCountedOnce) {
+    for (const bool wide : {false, true}) {
+        const int rows = wide ? 1000 : 900;  // the same warning is not given twice
+        const std::string type = wide ? "property double alpha\n" : "property float alpha\n";
+        std::string bytes = header("binary_little_endian", vertex(std::to_string(rows), type));
+        for (int i = 0; i < rows; ++i) {
+            const float alpha = i == 3 ? -0.5f : i >= rows - 2 ? 1.5f : 0.25f;
+            bytes += xyz() + (wide ? raw(double{alpha}) : raw(alpha));
+        }
+        std::string warning;
+        set_log_sink([&](LogLevel, const std::string& line) { warning = line; });
+        const SplatSet set = read(bytes);
+        set_log_sink(nullptr);
+        EXPECT_EQ(set.alpha[2], 0.25f);
+        EXPECT_EQ(set.alpha[3], 0.0f);
+        EXPECT_EQ(set.alpha.back(), 1.0f);
+        EXPECT_NE(warning.find(fmt::format("3 of {} opacities lie outside 0..1", rows)), std::string::npos)
+            << warning;
+    }
+}
+
+TEST_F(Ply, EveryTruncationIsAnError) {
+    write_ply(path("whole.ply"), awkward_set(2));
+    const std::string whole = bytes_of(path("whole.ply"));
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        EXPECT_NE(error(whole.substr(0, size)), "") << size;
+}
+
+}  // namespace
+}  // namespace astrosplat
