@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "commands.h"
-#include "render/render.h"
+#include "core/image.h"
 #include "scene/scene.h"
 
 namespace astrosplat {

@@ -11,7 +11,7 @@
 #include "core/image.h"
 #include "look/apply.h"
 #include "render/environment.h"
-#include "render/render.h"
+#include "render/frame.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

@@ -11,6 +11,7 @@
 #include "look/apply.h"
 #include "look/decimate.h"
 #include "render/backdrop.h"
+#include "render/render.h"
 #include "splats/stratified.h"
 
 namespace astrosplat {

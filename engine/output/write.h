@@ -11,7 +11,7 @@
 
 #include "camera/camera.h"
 #include "core/image.h"
-#include "render/render.h"
+#include "render/frame.h"
 #include "scene/scene.h"
 
 namespace astrosplat {

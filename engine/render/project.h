@@ -6,8 +6,8 @@
 
 #include "camera/camera.h"
 #include "core/buffer.h"
+#include "render/frame.h"
 #include "render/lod.h"
-#include "render/render.h"
 #include "render/screen_splat.h"
 
 namespace astrosplat {

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "camera/camera.h"
+#include "render/environment.h"
 #include "render/fold.h"
-#include "render/render.h"
+#include "render/frame.h"
 
 namespace astrosplat {
 

@@ -4,7 +4,7 @@
 
 #include "core/bounds.h"
 #include "look/apply.h"
-#include "render/render.h"
+#include "render/frame.h"
 #include "scene/scene.h"
 
 namespace astrosplat {

@@ -1,0 +1,58 @@
+// What goes into a frame and what comes out of it: layers and settings in, pictures and statistics out. The
+// vocabulary that scenes, writers and the preview share with the renderer (render.h).
+#pragma once
+
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "render/layer_render.h"
+#include "splats/shaded_splats.h"
+
+namespace astrosplat {
+
+/// One layer as the renderer sees it. world = world_from_layer * (scale * p) + translate.
+struct RenderLayer {
+    std::string name;
+    const ShadedSplats* splats = nullptr;
+    LayerRender render;
+    glm::dmat3 world_from_layer{1.0};  // rotation
+    double scale = 1.0;                // uniform; scales radii too
+    glm::dvec3 translate{0.0};
+    glm::dvec3 axis{0.0, 1.0, 0.0};  // the layer's thin direction, layer space
+    std::uint32_t seed = 1;          // for the children of level of detail
+};
+
+struct RenderSettings {
+    std::int64_t width = 1920, height = 1080;  // px, the whole picture
+    Region region;              // part to render; empty: all. The pixels are those of the whole picture
+    float pixel_filter = 0.5f;  // px, standard deviation
+    float exposure = 0.0f;      // stops; only tightens the stop rule
+    bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
+    int tile_px = 0;  // a multiple of 8 from 16 to 128; 0: the quicker of 32 and 64. Changes no bit
+    std::int64_t memory_limit_bytes = 0;  // for screen splats; 0: none. Rendered in bands, same bits
+    /// For previews: the whole picture's backdrop (backdrop.h), which stands for the environment; null: none.
+    const Image* backdrop = nullptr;
+};
+
+struct RenderStatistics {
+    std::int64_t splats_in = 0;     // shaded splats of visible layers
+    std::int64_t splats_drawn = 0;  // instances that touch the region, children included
+    double mean_overlap = 0.0;      // footprints per covered pixel
+    double seconds = 0.0;           // from shaded splats to the finished image
+};
+
+struct RenderedFrame {
+    Image beauty;  // RGBA, linear, premultiplied; region-sized
+    Image depth;   // 1 channel: opacity-weighted mean distance along the view axis, 0 where alpha is 0
+    Image
+        coverage;  // 1 channel: 1 - product of (1 - weight): covered share of the pixel, whatever the opacity
+    Image count;   // 1 channel: splats that reached the pixel
+    std::vector<Image> layers;  // RGBA each, in the order given: the layer's light as it arrives
+    RenderStatistics statistics;
+};
+
+}  // namespace astrosplat
