@@ -1,12 +1,14 @@
-// Reads a file in one go, with the messages every reader needs.
+// POSIX calls, because the C and C++ streams would wait for a writer at the end of a pipe.
 #include "core/file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 
 #include "core/error.h"
 #include "core/memory.h"
@@ -16,30 +18,63 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& file, const char* reason) {
+[[noreturn]] void cannot_read(const fs::path& file, std::string_view reason) {
     throw InputError(fmt::format("{}: cannot be read: {}", file.string(), reason));
 }
 
 }  // namespace
 
-std::string read_file(const fs::path& file) {
-    std::error_code error;
-    const fs::file_status status = fs::status(file, error);
-    if (fs::is_directory(status)) fail(file, "it is a folder");
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
-    if (!in) fail(file, std::strerror(errno));
-    std::string text;
-    if (fs::is_regular_file(status)) {  // pipes have no size
-        const std::uintmax_t size = fs::file_size(file, error);
-        if (!error) {
-            claim_memory(static_cast<std::int64_t>(size), fmt::format("reading {}", file.string()));
-            text.reserve(static_cast<std::size_t>(size));
-        }
+InputFile::InputFile(const fs::path& file) : file_(file) {
+    // The status comes first, because opening a device may do something.
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) cannot_read(file, std::strerror(errno));
+    if (S_ISDIR(status.st_mode)) cannot_read(file, "it is a folder");
+    if (!S_ISREG(status.st_mode)) cannot_read(file, "it is not a regular file");
+    descriptor_ = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor_ < 0) cannot_read(file, std::strerror(errno));
+    if (::fstat(descriptor_, &status) == 0) size_ = status.st_size;
+}
+
+InputFile::~InputFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::size_t InputFile::read(char* out, std::size_t size) {
+    for (;;) {
+        const ssize_t got = ::read(descriptor_, out, size);
+        if (got >= 0) return static_cast<std::size_t>(got);
+        if (errno != EINTR) cannot_read(file_, std::strerror(errno));
     }
-    char block[65536];
-    for (std::size_t got = 0; (got = std::fread(block, 1, sizeof block, in.get())) > 0;)
-        text.append(block, got);
-    if (std::ferror(in.get())) fail(file, std::strerror(errno));
+}
+
+void require_readable(const fs::path& file) { const InputFile opened(file); }
+
+std::string read_file(const fs::path& file, const Progress& progress) {
+    InputFile in(file);
+    claim_memory(in.size(), fmt::format("reading {}", file.string()));
+    constexpr std::size_t block = std::size_t{1} << 22;
+    std::string text;
+    text.reserve(static_cast<std::size_t>(in.size()) + 1);  // the last read finds the end
+    for (std::size_t got = 1; got > 0;) {
+        progress.check();
+        const std::size_t have = text.size();
+        text.resize(have + std::max<std::size_t>(1, std::min(block, text.capacity() - have)));
+        got = in.read(text.data() + have, text.size() - have);
+        text.resize(have + got);
+    }
+    return text;
+}
+
+std::string read_beginning(const fs::path& file, std::size_t size) {
+    std::string text(size, '\0');
+    std::size_t have = 0;
+    try {
+        InputFile in(file);
+        for (std::size_t got = 1; got > 0; have += got) got = in.read(text.data() + have, size - have);
+    } catch (const InputError&) {
+        have = 0;
+    }
+    text.resize(have);
     return text;
 }
 

@@ -1,13 +1,43 @@
-// Whole files as text.
+// Files to read from, with the same one line for every reader when that cannot be. Only regular files: a pipe
+// or a device may never end.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
+#include "core/progress.h"
+
 namespace astrosplat {
 
-/// All bytes of a regular file. Throws InputError (missing, a folder, unreadable, larger than the memory
-/// left).
-std::string read_file(const std::filesystem::path& file);
+/// An open file, closed by the destructor.
+class InputFile {
+  public:
+    /// Throws InputError "FILE: cannot be read: REASON" (missing, a folder, no permission, no regular file).
+    explicit InputFile(const std::filesystem::path& file);
+    ~InputFile();
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+
+    int descriptor() const { return descriptor_; }
+    std::int64_t size() const { return size_; }  // bytes when it was opened
+    /// The next bytes, at most `size` of them; 0 at the end. Throws InputError.
+    std::size_t read(char* out, std::size_t size);
+
+  private:
+    std::filesystem::path file_;
+    int descriptor_ = -1;
+    std::int64_t size_ = 0;
+};
+
+/// Throws InputError like InputFile: for files that a library opens itself.
+void require_readable(const std::filesystem::path& file);
+
+/// All bytes of a file. Throws InputError as InputFile does, and when it is larger than the memory left;
+/// Cancelled.
+std::string read_file(const std::filesystem::path& file, const Progress& progress = {});
+
+/// At most the first `size` bytes, such as a format's magic bytes; empty where the file cannot be read.
+std::string read_beginning(const std::filesystem::path& file, std::size_t size);
 
 }  // namespace astrosplat

@@ -5,13 +5,10 @@
 #include <openssl/evp.h>
 
 #include <cassert>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <new>
 #include <vector>
 
-#include "core/error.h"
+#include "core/file.h"
 
 namespace astrosplat {
 
@@ -43,14 +40,10 @@ std::string Sha256::hex() {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
-    if (!in) throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+    InputFile in(file);
     Sha256 hash;
     std::vector<char> block(std::size_t{1} << 20);
-    std::size_t got = 0;
-    while ((got = std::fread(block.data(), 1, block.size(), in.get())) > 0) hash.add(block.data(), got);
-    if (std::ferror(in.get()))
-        throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+    while (const std::size_t got = in.read(block.data(), block.size())) hash.add(block.data(), got);
     return hash.hex();
 }
 

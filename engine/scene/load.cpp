@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/log.h"
 #include "scene/check.h"
 #include "scene/describe.h"
@@ -127,7 +128,7 @@ class Loader {
     }
 
     void read_preset(LayerParams& layer) {
-        const toml::table root = parse_toml(read_text_file(layer.preset), layer.preset.string());
+        const toml::table root = parse_toml(read_file(layer.preset), layer.preset.string());
         check_version(root, layer.preset.string(), false);
         const EntryOrigin origin{layer.preset.string(), layer.preset.parent_path(), false, ""};
         std::vector<Entry> entries;
@@ -273,7 +274,7 @@ Value typed_value(const std::string& text) {
 }
 
 Scene load_scene(const fs::path& file, std::span<const Assignment> assignments) {
-    return parse_scene(read_text_file(file), file, assignments);
+    return parse_scene(read_file(file), file, assignments);
 }
 
 }  // namespace astrosplat

@@ -3,31 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
-
 #include "core/error.h"
 #include "scene/parameter.h"
 
 namespace astrosplat {
-namespace fs = std::filesystem;
-
-std::string read_text_file(const fs::path& file) {
-    std::error_code ignored;
-    if (fs::is_directory(file, ignored))
-        throw InputError(fmt::format("{}: expected a file, found a folder", file.string()));
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"),
-                                                                 &std::fclose);
-    if (!stream) throw InputError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-    std::string text;
-    char block[65536];
-    while (const std::size_t size = std::fread(block, 1, sizeof block, stream.get()))
-        text.append(block, size);
-    if (std::ferror(stream.get())) throw InputError(fmt::format("{}: cannot be read", file.string()));
-    return text;
-}
 
 /// "Error while parsing key-value pair: cannot redefine existing integer 'a'" -> "duplicate key 'a'"; other
 /// messages lose their head.

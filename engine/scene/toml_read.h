@@ -3,15 +3,11 @@
 #pragma once
 
 #include <toml++/toml.h>
-#include <filesystem>
 #include <string>
 
 #include "scene/value.h"
 
 namespace astrosplat {
-
-/// The bytes of a text file. Throws InputError when it is missing, a folder or unreadable.
-std::string read_text_file(const std::filesystem::path& file);
 
 /// Parses TOML; `name` and the line begin every message. Throws InputError.
 toml::table parse_toml(const std::string& text, const std::string& name);

@@ -1,11 +1,13 @@
-// A file's bytes as read-only memory. In: a path. Out: one string_view that lives as long as the object. The
-// kernel pages the file in as it is touched, so nothing is copied. A file that another program shortens
-// meanwhile ends the process with SIGBUS, as everywhere with mmap; our own writers replace files by renaming
-// and never do that.
+// A file's bytes as read-only memory. In: a path. Out: a string_view of the bytes while a reader works on
+// them. The kernel pages the file in as it is touched, so nothing is copied. Where another program shortens
+// the file meanwhile, the missing pages read as zeros instead of ending the process, and the reader fails.
 #pragma once
 
 #include <filesystem>
 #include <string_view>
+
+#include "core/error.h"
+#include "core/file.h"
 
 namespace astrosplat {
 
@@ -17,11 +19,32 @@ class MappedFile {
     MappedFile(const MappedFile&) = delete;
     MappedFile& operator=(const MappedFile&) = delete;
 
-    std::string_view bytes() const { return {static_cast<const char*>(memory_), size_}; }
+    std::string_view bytes() const { return {memory_, size_}; }
+    /// Throws InputError when the file has become shorter since it was opened: its bytes are not to be
+    /// trusted.
+    void require_whole() const;
 
   private:
-    void* memory_ = nullptr;
+    std::filesystem::path file_;
+    InputFile input_;
+    const char* memory_ = nullptr;
     std::size_t size_ = 0;
+    std::size_t guard_ = 0;  // place in the table of mappings that the signal handler knows
 };
+
+/// What read(bytes) makes of the file's bytes. Throws InputError, in words about the file's length where that
+/// changed meanwhile, whatever the reader made of it.
+template <class Read>
+auto read_mapped(const std::filesystem::path& file, const Read& read) {
+    const MappedFile mapped(file);
+    try {
+        auto result = read(mapped.bytes());
+        mapped.require_whole();
+        return result;
+    } catch (const InputError&) {
+        mapped.require_whole();
+        throw;
+    }
+}
 
 }  // namespace astrosplat

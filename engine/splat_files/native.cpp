@@ -323,17 +323,9 @@ void read_block(const Checker& checker, const Layout& layout, std::size_t block,
         checker.fail(place, "finite numbers", "infinity or NaN");
 }
 
-}  // namespace
-
-SplatSet read_native(const std::filesystem::path& file, const Progress& progress) {
-    return read_native(file, OptionalColumns{}, progress);
-}
-
-SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& wanted,
-                     const Progress& progress) {
-    const MappedFile mapped(file);
-    const Checker checker{file.string()};
-    const Layout layout = read_layout(checker, mapped.bytes());
+SplatSet read_native_bytes(const Checker& checker, std::string_view bytes, const OptionalColumns& wanted,
+                           const Progress& progress) {
+    const Layout layout = read_layout(checker, bytes);
     SplatSet set = empty_set(layout, wanted, checker.file);
     std::vector<std::string> errors(layout.table.size());
     std::atomic<std::size_t> done{0};
@@ -354,9 +346,23 @@ SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& w
     return set;
 }
 
+}  // namespace
+
+SplatSet read_native(const std::filesystem::path& file, const Progress& progress) {
+    return read_native(file, OptionalColumns{}, progress);
+}
+
+SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& wanted,
+                     const Progress& progress) {
+    return read_mapped(file, [&](std::string_view bytes) {
+        return read_native_bytes(Checker{file.string()}, bytes, wanted, progress);
+    });
+}
+
 std::int64_t native_splat_count(const std::filesystem::path& file) {
-    const MappedFile mapped(file);
-    return static_cast<std::int64_t>(read_layout(Checker{file.string()}, mapped.bytes()).header.splats);
+    return read_mapped(file, [&](std::string_view bytes) {
+        return static_cast<std::int64_t>(read_layout(Checker{file.string()}, bytes).header.splats);
+    });
 }
 
 void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {

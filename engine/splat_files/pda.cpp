@@ -212,11 +212,8 @@ std::string header_text(const SplatSet& set) {
                        types, set.size());
 }
 
-}  // namespace
-
-SplatSet read_pda(const std::filesystem::path& file, const Progress& progress) {
-    const MappedFile mapped(file);
-    const PdaHeader header = read_header(file, mapped.bytes());
+SplatSet read_pda_bytes(const std::filesystem::path& file, std::string_view bytes, const Progress& progress) {
+    const PdaHeader header = read_header(file, bytes);
     const TextRows rows = split_rows(header.data, header.data_line);
     if (static_cast<std::uint64_t>(rows.rows) != header.particles)
         bad_input(file.string(), "", fmt::format("{} rows, as NUMBER_OF_PARTICLES says", header.particles),
@@ -226,6 +223,12 @@ SplatSet read_pda(const std::filesystem::path& file, const Progress& progress) {
     open_table(table, rows.rows, file);
     read_text_rows(rows, 0, rows.rows, table, file, progress);
     return finish_table(table, file);
+}
+
+}  // namespace
+
+SplatSet read_pda(const std::filesystem::path& file, const Progress& progress) {
+    return read_mapped(file, [&](std::string_view bytes) { return read_pda_bytes(file, bytes, progress); });
 }
 
 void write_pda(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {

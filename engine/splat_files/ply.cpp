@@ -172,11 +172,8 @@ std::string header_text(const SplatSet& set, bool wide_ids) {
     return text + "end_header\n";
 }
 
-}  // namespace
-
-SplatSet read_ply(const std::filesystem::path& file, const Progress& progress) {
-    const MappedFile mapped(file);
-    const PlyHeader header = read_ply_header(file, mapped.bytes());
+SplatSet read_ply_bytes(const std::filesystem::path& file, std::string_view bytes, const Progress& progress) {
+    const PlyHeader header = read_ply_header(file, bytes);
     const std::size_t vertex = find_vertex(header, file);
     SplatTable table;
     table.columns = columns_of(header.elements[vertex], file);
@@ -187,6 +184,12 @@ SplatSet read_ply(const std::filesystem::path& file, const Progress& progress) {
     SplatSet set = finish_table(table, file);
     set.credit = header.credit;
     return set;
+}
+
+}  // namespace
+
+SplatSet read_ply(const std::filesystem::path& file, const Progress& progress) {
+    return read_mapped(file, [&](std::string_view bytes) { return read_ply_bytes(file, bytes, progress); });
 }
 
 void write_ply(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {

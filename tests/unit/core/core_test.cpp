@@ -1,8 +1,14 @@
 // Errors, log, text, memory, buffers, hashes, vector targets.
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -22,6 +28,8 @@
 
 namespace astrosplat {
 namespace {
+
+namespace fs = std::filesystem;
 
 TEST(Error, LineNamesFilePlaceExpectationAndFinding) {
     EXPECT_EQ(message_of<InputError>([] { bad_input("a.obj", "12", "three numbers", "two"); }),
@@ -170,6 +178,35 @@ TEST(File, ReadsAllBytesOrSaysWhyNot) {
               folder.path().string() + ": cannot be read: it is a folder");
     EXPECT_EQ(message_of<InputError>([&] { read_file(folder / "no"); }),
               (folder / "no").string() + ": cannot be read: No such file or directory");
+    EXPECT_EQ(read_beginning(folder.file("y", "abc"), 2), "ab");
+    EXPECT_EQ(read_beginning(folder / "y", 5), "abc");
+    EXPECT_EQ(read_beginning(folder / "no", 5), "");
+}
+
+TEST(File, PipesDevicesAndSocketsAreRefusedAtOnce) {
+    const TempFolder folder;
+    const fs::path pipe = folder / "pipe", socket_file = folder / "socket";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    // "./socket", because the name of a socket is limited to 107 bytes.
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    const int descriptor = socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{AF_UNIX, "./socket"};
+    EXPECT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    fs::current_path(before);
+    for (const fs::path& file : {pipe, socket_file, fs::path("/dev/zero")}) {
+        const std::string expected = file.string() + ": cannot be read: it is not a regular file";
+        EXPECT_EQ(message_of<InputError>([&] { read_file(file); }), expected);
+        EXPECT_EQ(message_of<InputError>([&] { sha256_of_file(file); }), expected);
+        EXPECT_EQ(read_beginning(file, 1), "");
+    }
+    close(descriptor);
+}
+
+TEST(File, ReadingStopsWhenAsked) {
+    const TempFolder folder;
+    const std::atomic<bool> stop{true};
+    EXPECT_THROW(read_file(folder.file("x", "abc"), Progress{{}, &stop}), Cancelled);
 }
 
 TEST(VectorTarget, EachOfferedOneCanBeChosen) {

@@ -228,7 +228,7 @@ TEST(Messages, FilesThatCannotBeRead) {
         return "";
     };
     const std::string folder = fs::temp_directory_path().string();
-    EXPECT_EQ(load(folder), folder + ": expected a file, found a folder");
+    EXPECT_EQ(load(folder), folder + ": cannot be read: it is a folder");
     EXPECT_EQ(load("no such.toml"), "no such.toml: cannot be read: No such file or directory");
 }
 

@@ -256,11 +256,9 @@ TEST_F(Pda, EveryTruncationIsAnErrorOrTheSameRows) {
 
 TEST_F(Pda, MissingFileFolderAndReadOnlyTarget) {
     const auto read = [](const auto& file) { read_pda(file); };
-    EXPECT_EQ(error_of(path("none.pda"), read),
-              "none.pda: expected a readable file, found No such file or directory");
+    EXPECT_EQ(error_of(path("none.pda"), read), "none.pda: cannot be read: No such file or directory");
     std::filesystem::create_directories(path("folder.pda"));
-    EXPECT_EQ(error_of(path("folder.pda"), read),
-              "folder.pda: expected a regular file, found something else");
+    EXPECT_EQ(error_of(path("folder.pda"), read), "folder.pda: cannot be read: it is a folder");
     EXPECT_THROW(write_pda(path("no such folder") / "a.pda", awkward_set(1)), OutputError);
 }
 
