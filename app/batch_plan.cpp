@@ -76,7 +76,7 @@ void apply_layers(Scene& scene, const std::string& text) {
         }
     }
     for (LayerParams& layer : scene.layers) {
-        const std::string track_key = "layer." + layer.name + ".visible";
+        const ParameterKey track_key = layer_key(layer.name) / "visible";
         const auto is_track = [&](const Track& track) { return track.key == track_key; };
         const bool shown = std::find(wanted.begin(), wanted.end(), layer.name) != wanted.end();
         layer.visible = shown;

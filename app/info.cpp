@@ -138,7 +138,7 @@ Report describe_scene(const fs::path& file) {
         parse_frames(scene.output.frames, file.string() + ": output.frames");
     Report layers = Report::array(), animated = Report::array();
     for (const LayerParams& layer : scene.layers) layers.push_back(describe_layer(layer));
-    for (const Track& track : scene.animation) animated.push_back(track.key);
+    for (const Track& track : scene.animation) animated.push_back(track.key.text());
     return {{"kind", "scene"},
             {"resolution", {scene.output.width, scene.output.height}},
             {"frames", scene.output.frames},

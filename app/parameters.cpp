@@ -41,8 +41,8 @@ Report to_report(const Value& value) {
 Report to_report(const ParameterRow& row) {
     const ParameterSpec& spec = row.spec;
     Report report = {
-        {"key", spec.key},   {"type", type_name(spec.type)}, {"default", to_report(row.standard)},
-        {"unit", spec.unit}, {"label", spec.label},          {"help", spec.help}};
+        {"key", spec.key.text()}, {"type", type_name(spec.type)}, {"default", to_report(row.standard)},
+        {"unit", spec.unit},      {"label", spec.label},          {"help", spec.help}};
     if (std::isfinite(spec.min)) report["min"] = spec.min;
     if (std::isfinite(spec.max)) report["max"] = spec.max;
     if (!spec.choices.empty()) report["choices"] = spec.choices;

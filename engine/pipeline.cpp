@@ -52,16 +52,16 @@ bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
 
 /// Whether the layer's splats are shaded alike in all frames, as far as the tracks' keys tell.
 bool shaded_alike(const Scene& scene, const std::string& name) {
-    const std::string beginning = "layer." + name + ".", harmless = beginning + "visible";
+    const ParameterKey harmless = layer_key(name) / "visible";
     return std::none_of(scene.animation.begin(), scene.animation.end(), [&](const Track& track) {
-        return track.key.compare(0, beginning.size(), beginning) == 0 && track.key != harmless;
+        return track.key.layer() == name && track.key != harmless;
     });
 }
 
 }  // namespace
 
 bool ever_visible(const Scene& scene, const LayerParams& layer) {
-    const std::string key = "layer." + layer.name + ".visible";
+    const ParameterKey key = layer_key(layer.name) / "visible";
     for (const Track& track : scene.animation) {
         if (track.key != key) continue;
         return std::any_of(track.keys.begin(), track.keys.end(),

@@ -36,7 +36,7 @@ std::vector<Assignment> assignments_between(Scene saved, Scene shown) {
     if (saved.output.path != shown.output.path) shown.output.path = full_pattern(shown);
     const Description before = describe(saved), after = describe(shown);
     for (const Parameter& parameter : after.parameters) {
-        const std::string& key = parameter.spec.key;
+        const ParameterKey& key = parameter.spec.key;
         const Parameter* old = find_parameter(before, key);
         const Value value = parameter.get();
         const bool loses_track = is_keyed(saved, key) && !is_keyed(shown, key);
@@ -48,7 +48,8 @@ std::vector<Assignment> assignments_between(Scene saved, Scene shown) {
         const bool assigned = std::any_of(assignments.begin(), assignments.end(),
                                           [&](const Assignment& a) { return a.key == track.key; });
         if (parameter && (!old || !(*old == track) || assigned))
-            assignments.push_back({"animation." + track.key, track_to_toml(track, parameter->spec)});
+            assignments.push_back(
+                {ParameterKey("animation") / track.key, track_to_toml(track, parameter->spec)});
     }
     return assignments;
 }
@@ -65,7 +66,7 @@ Scene shown_scene(const Document& document, const BatchCommandOptions& options) 
     Scene scene = document.scene();
     if (!options.camera) return scene;
     scene.camera = *options.camera;
-    std::erase_if(scene.animation, [](const Track& track) { return track.key.rfind("camera.", 0) == 0; });
+    std::erase_if(scene.animation, [](const Track& track) { return track.key.is_below("camera"); });
     return scene;
 }
 

@@ -163,8 +163,8 @@ void key_camera(Scene& scene, const CameraParams& camera, double frame) {
     Scene source = scene;
     source.camera = camera;
     for (const Parameter& parameter : describe(source).parameters) {
-        const std::string& key = parameter.spec.key;
-        if (key.rfind("camera.", 0) != 0 || key == position_key || key == target_key || key == rotation_key)
+        const ParameterKey& key = parameter.spec.key;
+        if (!key.is_below("camera") || key == position_key || key == target_key || key == rotation_key)
             continue;
         if (is_keyed(scene, key)) set_key(scene, key, frame, parameter.get());
     }

@@ -39,36 +39,35 @@ std::uint64_t next_revision() {
     return ++last;
 }
 
-bool covers(const std::string& assigned, const std::string& key) {
-    return key.compare(0, assigned.size(), assigned) == 0 &&
-           (key.size() == assigned.size() || key[assigned.size()] == '.');
+bool covers(const ParameterKey& assigned, const ParameterKey& key) {
+    return key == assigned || key.is_below(assigned);
 }
 
 /// "Opacity of dust"; parameters of no layer have their label alone.
 std::string edit_name(const ParameterSpec& spec) {
-    if (spec.key.rfind("layer.", 0) != 0) return spec.label;
-    return spec.label + " of " + spec.key.substr(6, spec.key.find('.', 6) - 6);
+    const std::string layer = spec.key.layer();
+    return layer.empty() ? spec.label : spec.label + " of " + layer;
 }
 
 /// The layer that a key such as "layer.stars.name" is of.
-std::size_t layer_index(const Scene& scene, const std::string& key) {
+std::size_t layer_index(const Scene& scene, const ParameterKey& key) {
     std::size_t index = 0;
-    while (key.rfind("layer." + scene.layers.at(index).name + ".", 0) != 0) ++index;
+    while (scene.layers.at(index).name != key.layer()) ++index;
     return index;
 }
 
-[[noreturn]] void fail_unknown(const Scene& scene, const std::string& key) {
-    if (key.rfind("layer.", 0) != 0) throw InputError(unknown_key(key, key, "layer."));
-    const std::string name = key.substr(6, key.find('.', 6) - 6);
+[[noreturn]] void fail_unknown(const Scene& scene, const ParameterKey& key) {
+    if (!key.is_below("layer")) throw InputError(unknown_key(key, key, "layer"));
+    const std::string name = key.layer();
     std::vector<std::string> names;
     for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
     if (std::find(names.begin(), names.end(), name) != names.end())
-        throw InputError(unknown_key(key, key, "layer." + name + "."));
+        throw InputError(unknown_key(key, key, layer_key(name)));
     throw InputError(fmt::format("{}: unknown layer '{}'{}", key, name, did_you_mean(name, names)));
 }
 
 /// The parameter of a key in `scene`, whose lists grow for it.
-Parameter parameter_for(Scene& scene, const std::string& key) {
+Parameter parameter_for(Scene& scene, const ParameterKey& key) {
     Description description = describe(scene);
     if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
     try {
@@ -108,8 +107,8 @@ struct Document::State {
     std::shared_ptr<const Scene> saved;
     DiskFile disk;
     std::vector<Assignment> assignments;
-    std::vector<std::string> assigned_keys;  // full
-    Scene assigned;                          // what the assignments made
+    std::vector<ParameterKey> assigned_keys;  // full
+    Scene assigned;                           // what the assignments made
 
     std::deque<Step> history;
     std::size_t now = 0;  // index into history
@@ -136,8 +135,9 @@ struct Document::State {
         assigned = scene();
         const Description description = describe(assigned);
         for (const Assignment& assignment : assignments) {
-            const bool track = assignment.key.rfind("animation.", 0) == 0;
-            assigned_keys.push_back(full_key(description, assignment.key.substr(track ? 10 : 0)));
+            const ParameterKey& key = assignment.key;
+            const bool track = key.is_below("animation");
+            assigned_keys.push_back(full_key(description, track ? key.moved("animation", {}) : key));
         }
     }
 
@@ -276,7 +276,7 @@ Value Document::default_value(const ParameterSpec& spec) {
 
 bool Document::set_by_command_line(const std::string& key) const {
     const auto& keys = state_->assigned_keys;
-    if (!std::any_of(keys.begin(), keys.end(), [&](const std::string& k) { return covers(k, key); }))
+    if (!std::any_of(keys.begin(), keys.end(), [&](const ParameterKey& k) { return covers(k, key); }))
         return false;
     Scene then = state_->assigned, current = scene();
     const Description description_then = describe(then), description_now = describe(current);

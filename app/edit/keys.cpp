@@ -84,7 +84,7 @@ void set_key(Scene& scene, const std::string& key, double frame, const Value& va
     const Parameter* parameter = find_parameter(description, key);
     if (!parameter) throw InputError(key + ": expected a parameter of the scene, found none of that name");
     if (parameter->spec.animation == Animation::no)
-        throw InputError(parameter->spec.key + ": this parameter cannot be animated");
+        throw InputError(parameter->spec.key.text() + ": this parameter cannot be animated");
     std::vector<double> numbers = numbers_for(*parameter, value);
     Track* track = track_of(scene, parameter->spec.key);
     if (!track) {
@@ -93,8 +93,8 @@ void set_key(Scene& scene, const std::string& key, double frame, const Value& va
     }
     const bool alone = track->keys.empty() || (track->keys.size() == 1 && track->keys[0].frame == frame);
     if (!alone && track->keys[0].value.size() != numbers.size())
-        throw InputError(parameter->spec.key + ": expected as many points as in the other keys, found " +
-                         "another number");
+        throw InputError(parameter->spec.key.text() +
+                         ": expected as many points as in the other keys, found " + "another number");
     const auto old = key_at(*track, frame);
     const Interpolation way = old == track->keys.end() ? track->interpolation : old->interpolation;
     insert_key(*track, {frame, std::move(numbers), way});

@@ -20,14 +20,10 @@ bool is_taken(const Scene& scene, const std::string& name) {
                        [&](const LayerParams& layer) { return layer.name == name; });
 }
 
-std::string key_head(const std::string& layer) { return "layer." + layer + "."; }
-
-bool belongs_to(const Track& track, const std::string& layer) {
-    return track.key.rfind(key_head(layer), 0) == 0;
-}
+bool belongs_to(const Track& track, const std::string& layer) { return track.key.layer() == layer; }
 
 void rekey(Track& track, const std::string& from, const std::string& to) {
-    track.key = key_head(to) + track.key.substr(key_head(from).size());
+    track.key = track.key.moved(layer_key(from), layer_key(to));
 }
 
 }  // namespace

@@ -6,8 +6,6 @@
 namespace astrosplat {
 namespace {
 
-bool starts_with(const std::string& text, const std::string& head) { return text.rfind(head, 0) == 0; }
-
 const LayerParams* find_layer(const Scene& scene, const std::string& name) {
     const auto found = std::find_if(scene.layers.begin(), scene.layers.end(),
                                     [&](const LayerParams& layer) { return layer.name == name; });
@@ -15,13 +13,12 @@ const LayerParams* find_layer(const Scene& scene, const std::string& name) {
 }
 
 /// Whether a key is part of the look of a layer that both scenes have.
-bool is_of_look(const std::string& key, const Scene& scene, const Scene& stored) {
+bool is_of_look(const ParameterKey& key, const Scene& scene, const Scene& stored) {
     if (key == "output.exposure") return true;
-    if (!starts_with(key, "layer.")) return false;
-    const std::size_t dot = key.find('.', 6);
-    if (dot == std::string::npos) return false;
-    const std::string name = key.substr(6, dot - 6), rest = key.substr(dot + 1);
-    const bool look = starts_with(rest, "look.") || starts_with(rest, "render.") || rest == "visible";
+    const std::string name = key.layer();
+    const ParameterKey layer = layer_key(name);
+    const bool look =
+        key.is_below(layer / "look") || key.is_below(layer / "render") || key == layer / "visible";
     return look && find_layer(scene, name) && find_layer(stored, name);
 }
 
@@ -43,7 +40,7 @@ Scene with_look_of(const Scene& scene, const Scene& stored) {
     }
     // A track that both have keeps its place in the list, so that going back and forth changes nothing else.
     std::vector<Track> tracks;
-    const auto find = [](const std::vector<Track>& list, const std::string& key) {
+    const auto find = [](const std::vector<Track>& list, const ParameterKey& key) {
         return std::find_if(list.begin(), list.end(), [&](const Track& t) { return t.key == key; });
     };
     for (const Track& track : scene.animation) {

@@ -162,7 +162,7 @@ void camera_from_view(GuiFrame& f) {
     const CameraParams camera = camera_of_view(f);
     const bool animated =
         std::any_of(f.document.scene().animation.begin(), f.document.scene().animation.end(),
-                    [](const Track& track) { return track.key.rfind("camera.", 0) == 0; });
+                    [](const Track& track) { return track.key.is_below("camera"); });
     if (animated) return key_camera_here(f);
     edit(f, "Camera from view", [&](Scene& scene) { scene.camera = camera; });
 }
@@ -185,8 +185,7 @@ void remove_key_here(GuiFrame& f) {
     edit(f, key.empty() ? "Remove camera key" : "Remove key of " + key, [&](Scene& scene) {
         std::vector<std::string> keys;
         for (const Track& track : scene.animation)
-            if (key.empty() ? track.key.rfind("camera.", 0) == 0 : track.key == key)
-                keys.push_back(track.key);
+            if (key.empty() ? track.key.is_below("camera") : track.key == key) keys.push_back(track.key);
         for (const std::string& k : keys)
             if (has_key_at(scene, k, f.view.frame)) remove_key(scene, k, f.view.frame);
     });

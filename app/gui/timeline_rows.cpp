@@ -133,10 +133,10 @@ void Timeline::select_in_box(const Scene& scene, float rows_y) {
 }
 
 void Timeline::draw_name(GuiFrame& frame, const Track& track, float x, float y, float width) {
-    ImGui::PushID(track.key.c_str());
+    ImGui::PushID(track.key.text().c_str());
     ImGui::SetCursorScreenPos({x, y});
     if (ImGui::InvisibleButton("name", {width, px(row_height)})) frame.view.graph_key = track.key;
-    note_item(frame, "track " + track.key);
+    note_item(frame, "track " + track.key.text());
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 low{x, y}, high{x + width, y + px(row_height)};
     const bool chosen = frame.view.graph_key == track.key;
@@ -145,11 +145,11 @@ void Timeline::draw_name(GuiFrame& frame, const Track& track, float x, float y, 
     else if (ImGui::IsItemHovered())
         list->AddRectFilled(low, high, color::hover);
     const auto spec = specs_.find(track.key);
-    const std::string whole = spec == specs_.end() ? track.key : track_label(track.key, spec->second);
+    const std::string whole = spec == specs_.end() ? track.key.text() : track_label(track.key, spec->second);
     const std::string text = fitting(whole, width - px(20));
     const float text_y = y + std::floor((px(row_height) - ImGui::GetFontSize()) * 0.5f);
     list->AddText({x + px(12), text_y}, chosen ? color::text : color::dim, text.c_str());
-    tooltip((whole + "\n" + track.key).c_str());
+    tooltip((whole + "\n" + track.key.text()).c_str());
     ImGui::PopID();
 }
 

@@ -26,7 +26,7 @@ Scene camera_part(const Scene& scene) {
     part.output.height = scene.output.height;
     part.output.frames = scene.output.frames;
     for (const Track& track : scene.animation)
-        if (track.key.rfind("camera.", 0) == 0) part.animation.push_back(track);
+        if (track.key.is_below("camera")) part.animation.push_back(track);
     return part;
 }
 

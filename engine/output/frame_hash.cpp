@@ -17,16 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool starts_with(std::string_view text, std::string_view start) {
-    return text.substr(0, start.size()) == start;
-}
-
 // Reaches no pixel of any frame.
 bool is_elsewhere(const ParameterSpec& spec) {
     constexpr std::array<std::string_view, 5> keys = {"output.path", "output.frames", "output.fps",
                                                       "output.compression", "layer.preset"};
-    return std::find(keys.begin(), keys.end(), spec.generic_key) != keys.end() ||
-           starts_with(spec.generic_key, "provenance.");
+    return std::find(keys.begin(), keys.end(), spec.generic_key.text()) != keys.end() ||
+           spec.generic_key.is_below("provenance");
 }
 
 bool shows(const EnvironmentParams& environment) {
@@ -34,9 +30,9 @@ bool shows(const EnvironmentParams& environment) {
 }
 
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
-    if (starts_with(spec.generic_key, "environment.")) return !shows(now.environment);
+    if (spec.generic_key.is_below("environment")) return !shows(now.environment);
     return std::any_of(now.layers.begin(), now.layers.end(), [&](const LayerParams& layer) {
-        return !layer.visible && starts_with(spec.key, "layer." + layer.name + ".");
+        return !layer.visible && spec.key.layer() == layer.name;
     });
 }
 
@@ -78,7 +74,7 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
         if (is_elsewhere(spec) || is_hidden(spec, now)) continue;
         Value value = parameter.get();
         bool files = spec.type == ParameterType::file || spec.type == ParameterType::files;
-        text += spec.key + " =";
+        text += spec.key.text() + " =";
         if (!files)
             text += " " + to_toml(value);
         else if (const std::string* name = value.text())

@@ -52,10 +52,9 @@ std::vector<double> track_at(const Track& track, const ParameterSpec& spec, doub
 
 Scene scene_at(const Scene& scene, double frame) {
     Scene still = scene;
-    const Description description = describe(still, [&](const std::string& beginning) {
-        return std::any_of(scene.animation.begin(), scene.animation.end(), [&](const Track& track) {
-            return track.key.compare(0, beginning.size(), beginning) == 0;
-        });
+    const Description description = describe(still, [&](const ParameterKey& group) {
+        return std::any_of(scene.animation.begin(), scene.animation.end(),
+                           [&](const Track& track) { return track.key.is_below(group); });
     });
     for (const Track& track : scene.animation) {
         const Parameter* parameter = find_parameter(description, track.key);

@@ -14,22 +14,19 @@ struct Checker {
     const Places& places;
 
     /// Of the key, or of what it is in: the [[layer]] at least.
-    std::string nearest_place(std::string key) const {
-        for (;;) {
+    std::string nearest_place(ParameterKey key) const {
+        for (; !key.empty(); key = key.parent())
             if (const auto found = places.find(key); found != places.end()) return found->second;
-            const std::size_t dot = key.rfind('.');
-            if (dot == std::string::npos) return file;
-            key.resize(dot);
-        }
+        return file;
     }
 
     /// Fails unless `holds`; `keys` are those the rule is about, the message is "KEY: expected ..., found
     /// ...".
-    void require(bool holds, std::initializer_list<std::string> keys, const std::string& message) const {
+    void require(bool holds, std::initializer_list<ParameterKey> keys, const std::string& message) const {
         if (holds) return;
-        std::string named = *keys.begin();
+        ParameterKey named = *keys.begin();
         std::string place = nearest_place(named);
-        for (const std::string& key : keys) {
+        for (const ParameterKey& key : keys) {
             const auto found = places.find(key);
             if (found == places.end()) continue;
             place = found->second;
@@ -39,59 +36,59 @@ struct Checker {
     }
 };
 
-void check_curve(const DensityCurve& curve, const std::string& at, const Checker& check) {
+void check_curve(const DensityCurve& curve, const ParameterKey& at, const Checker& check) {
     check.require(curve.shape != DensityCurve::Shape::curve || curve.points.size() >= 2,
-                  {at + "points", at + "shape"},
+                  {at / "points", at / "shape"},
                   "expected at least 2 points for shape \"curve\", found none");
 }
 
-void check_look(const Look& look, const std::string& at, const Checker& check) {
-    check_curve(look.pdf, at + "pdf.", check);
+void check_look(const Look& look, const ParameterKey& at, const Checker& check) {
+    check_curve(look.pdf, at / "pdf", check);
     for (std::size_t i = 0; i < look.thickness.keys.size(); ++i)
-        check_curve(look.thickness.keys[i].pdf, fmt::format("{}thickness.keys.{}.", at, i), check);
-    check.require(look.thickness.map.empty() || !look.thickness.keys.empty(), {at + "thickness.map"},
+        check_curve(look.thickness.keys[i].pdf, at / "thickness.keys" / i, check);
+    check.require(look.thickness.map.empty() || !look.thickness.keys.empty(), {at / "thickness.map"},
                   "expected thickness.keys that the map's colours stand for, found none");
-    check.require(!look.thickness.map.empty() || look.thickness.keys.size() <= 1, {at + "thickness.keys"},
+    check.require(!look.thickness.map.empty() || look.thickness.keys.size() <= 1, {at / "thickness.keys"},
                   "expected a thickness.map for several keys, found none");
     check.require(look.vertical.shape != VerticalAlpha::Shape::curve || look.vertical.points.size() >= 2,
-                  {at + "vertical.points", at + "vertical.shape"},
+                  {at / "vertical.points", at / "vertical.shape"},
                   "expected at least 2 points for shape \"curve\", found none");
     check.require(
-        look.radius.min <= look.radius.max, {at + "radius.min", at + "radius.max"},
+        look.radius.min <= look.radius.max, {at / "radius.min", at / "radius.max"},
         fmt::format("expected min not above max, found {} and {}", look.radius.min, look.radius.max));
 }
 
-void check_source(const SourceParams& source, const std::string& at, const Checker& check) {
-    check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at + "meshes", at + "kind"},
+void check_source(const SourceParams& source, const ParameterKey& at, const Checker& check) {
+    check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at / "meshes", at / "kind"},
                   "expected at least one mesh, found none");
     for (std::size_t i = 0; i < source.meshes.size(); ++i) {
-        const std::string mesh = fmt::format("{}meshes.{}", at, i);
-        check.require(!source.meshes[i].mesh.empty(), {mesh + ".mesh"},
+        const ParameterKey mesh = at / "meshes" / i;
+        check.require(!source.meshes[i].mesh.empty(), {mesh / "mesh"},
                       "expected a file or plane, relief, disk, sphere, found none");
         const std::size_t pictures = source.meshes[i].texture.size();
         check.require(
-            pictures <= 1 || pictures == 3, {mesh + ".texture"},
+            pictures <= 1 || pictures == 3, {mesh / "texture"},
             fmt::format("expected one picture, or three for red, green and blue, found {}", pictures));
     }
-    check.require(source.kind != SourceKind::splats || !source.file.empty(), {at + "file", at + "kind"},
+    check.require(source.kind != SourceKind::splats || !source.file.empty(), {at / "file", at / "kind"},
                   "expected a splat file for kind \"splats\", found none");
-    check.require(!source.voxels || source.voxel_size == 0.0, {at + "voxels", at + "voxel_size"},
+    check.require(!source.voxels || source.voxel_size == 0.0, {at / "voxels", at / "voxel_size"},
                   "expected voxels or voxel_size, found both");
     const TextureSettings& t = source.texture;
-    check.require(!t.black || !t.white || *t.black < *t.white, {at + "black", at + "white"},
+    check.require(!t.black || !t.white || *t.black < *t.white, {at / "black", at / "white"},
                   "expected black below white, found " +
                       (t.black && t.white ? short_number(*t.black) + " and " + short_number(*t.white) : ""));
 }
 
 void check_layer(const LayerParams& layer, const Checker& check) {
-    const std::string at = "layer." + layer.name + ".";
-    check_source(layer.source, at + "source.", check);
-    check_look(layer.look, at + "look.", check);
+    const ParameterKey at = layer_key(layer.name);
+    check_source(layer.source, at / "source", check);
+    check_look(layer.look, at / "look", check);
     check.require(layer.render.hybrid_from_deg < layer.render.hybrid_to_deg,
-                  {at + "render.hybrid.from_deg", at + "render.hybrid.to_deg"},
+                  {at / "render.hybrid.from_deg", at / "render.hybrid.to_deg"},
                   fmt::format("expected from_deg below to_deg, found {} and {}", layer.render.hybrid_from_deg,
                               layer.render.hybrid_to_deg));
-    check.require(layer.axis != glm::dvec3(0.0), {at + "axis"}, "expected a direction, found 0, 0, 0");
+    check.require(layer.axis != glm::dvec3(0.0), {at / "axis"}, "expected a direction, found 0, 0, 0");
 }
 
 }  // namespace

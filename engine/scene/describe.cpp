@@ -9,8 +9,8 @@ namespace astrosplat {
 
 void Describer::place(ParameterSpec& field_spec, bool animated) const {
     using Type = ParameterType;
-    field_spec.generic_key = generic_prefix_ + field_spec.key;
-    field_spec.key = prefix_ + field_spec.key;
+    field_spec.key = group_ / field_spec.key;
+    field_spec.generic_key = field_spec.key.generic();
     const Type type = field_spec.type;
     const bool no = type == Type::text || type == Type::words || type == Type::file || type == Type::files ||
                     type == Type::pattern;
@@ -138,62 +138,56 @@ void describe_provenance(const Describer& d, ProvenanceParams& p) {
     d(spec("type", "Type", "", "What the pictures are.").one_of({"Artwork", "Simulation"}), p.type);
 }
 
-bool is_index(const std::string& part) {
-    return !part.empty() &&
-           std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
 }  // namespace
 
 Description describe(Scene& scene) {
-    return describe(scene, [](const std::string&) { return true; });
+    return describe(scene, [](const ParameterKey&) { return true; });
 }
 
-Description describe(Scene& scene, const std::function<bool(const std::string& beginning)>& wanted) {
+Description describe(Scene& scene, const std::function<bool(const ParameterKey& group)>& wanted) {
     Description description;
-    const Describer d(description, "", "", false);
-    if (wanted("output.")) describe_output(d.section("output", false), scene.output);
-    if (wanted("camera.")) describe_camera(d.section("camera", true), scene.camera);
-    if (wanted("environment.")) describe_environment(d.section("environment", true), scene.environment);
-    if (wanted("provenance.")) describe_provenance(d.section("provenance", false), scene.provenance);
+    const Describer d(description, {}, false);
+    if (wanted("output")) describe_output(d.section("output", false), scene.output);
+    if (wanted("camera")) describe_camera(d.section("camera", true), scene.camera);
+    if (wanted("environment")) describe_environment(d.section("environment", true), scene.environment);
+    if (wanted("provenance")) describe_provenance(d.section("provenance", false), scene.provenance);
     for (LayerParams& layer : scene.layers) {
-        const std::string beginning = "layer." + layer.name + ".";
-        if (wanted(beginning)) describe_layer(Describer(description, beginning, "layer.", false), layer);
+        const ParameterKey group = layer_key(layer.name);
+        if (wanted(group)) describe_layer(Describer(description, group, false), layer);
     }
     return description;
 }
 
 Description describe_preset(Look& look, LayerRender& render) {
     Description description;
-    const Describer d(description, "", "", false);
+    const Describer d(description, {}, false);
     describe_look(d.section("look", true), look);
     describe_render(d.section("render", true), render);
     return description;
 }
 
-std::string full_key(const Description& description, const std::string& key) {
+ParameterKey full_key(const Description& description, const ParameterKey& key) {
     for (const ParameterList& list : description.lists) {
-        const std::string head = list.key + ".";
-        if (key.compare(0, head.size(), head) != 0) continue;
-        const std::string part = key.substr(head.size(), key.find('.', head.size()) - head.size());
-        return is_index(part) ? key : head + "0." + key.substr(head.size());
+        if (!key.is_below(list.key)) continue;
+        const std::string_view rest = key.below(list.key);
+        return is_list_index(rest.substr(0, rest.find('.'))) ? key : list.key / 0 / rest;
     }
     return key;
 }
 
-const Parameter* find_parameter(const Description& description, const std::string& key) {
-    const std::string full = full_key(description, key);
+const Parameter* find_parameter(const Description& description, const ParameterKey& key) {
+    const ParameterKey full = full_key(description, key);
     for (const Parameter& parameter : description.parameters)
         if (parameter.spec.key == full) return &parameter;
     return nullptr;
 }
 
-std::string section_of(const std::string& generic_key) {
-    for (const char* section :
+ParameterKey section_of(const ParameterKey& generic_key) {
+    for (const std::string_view section :
          {"layer.transform", "layer.source", "layer.look", "layer.render", "layer", "output", "camera",
           "environment", "provenance", "animation", "look", "render"})
-        if (generic_key.rfind(std::string(section) + ".", 0) == 0) return section;
-    return "";
+        if (generic_key.is_below(section)) return section;
+    return {};
 }
 
 const std::vector<ParameterRow>& parameter_rows() {
@@ -215,10 +209,10 @@ const std::vector<ParameterRow>& parameter_rows() {
 
 std::string parameter_table() {
     std::string table;
-    std::string section;
+    ParameterKey section;
     for (const ParameterRow& row : parameter_rows()) {
         const ParameterSpec& s = row.spec;
-        if (const std::string own = section_of(s.key); own != section) {
+        if (const ParameterKey own = section_of(s.key); own != section) {
             table += fmt::format("{}[{}]\n", table.empty() ? "" : "\n", own);
             section = own;
         }

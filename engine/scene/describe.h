@@ -16,22 +16,21 @@ namespace astrosplat {
 /// manual. The handles point into `scene`.
 Description describe(Scene& scene);
 
-/// Only the sections whose beginning of keys ("camera.", "layer.NAME.") is wanted: all of a scene is some
-/// hundred parameters with all their words, too much for every frame.
-Description describe(Scene& scene, const std::function<bool(const std::string& beginning)>& wanted);
+/// Only the groups ("camera", "layer.NAME") that are wanted: all of a scene is some hundred parameters with
+/// all their words, too much for every frame.
+Description describe(Scene& scene, const std::function<bool(const ParameterKey& group)>& wanted);
 
 /// Those of a preset file: "look.density" ... "render.isolate".
 Description describe_preset(Look& look, LayerRender& render);
 
 /// The key with "0" put in where a list's index is left out: layer.a.look.noise.cull is noise.0.cull.
-std::string full_key(const Description& description, const std::string& key);
+ParameterKey full_key(const Description& description, const ParameterKey& key);
 
 /// The parameter of a full key, or one with left-out indices; nullptr when there is none.
-const Parameter* find_parameter(const Description& description, const std::string& key);
+const Parameter* find_parameter(const Description& description, const ParameterKey& key);
 
-/// Sections of a scene file: "output", "layer.look", ... ; `key` may be generic or of one layer. "" at the
-/// top.
-std::string section_of(const std::string& generic_key);
+/// The section of a scene file that a generic key is written in: "output", "layer.look", ...; "" at the top.
+ParameterKey section_of(const ParameterKey& generic_key);
 
 /// One row of the manual, from a scene with one layer and one element in every list.
 struct ParameterRow {

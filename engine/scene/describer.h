@@ -20,14 +20,11 @@ inline ParameterSpec spec(std::string key, std::string label, std::string unit, 
 
 class Describer {
   public:
-    Describer(Description& description, std::string prefix, std::string generic_prefix, bool animated)
-        : description_(&description),
-          prefix_(std::move(prefix)),
-          generic_prefix_(std::move(generic_prefix)),
-          animated_(animated) {}
+    Describer(Description& description, ParameterKey group, bool animated)
+        : description_(&description), group_(std::move(group)), animated_(animated) {}
 
     Describer section(const std::string& name, bool animated) const {
-        return {*description_, prefix_ + name + ".", generic_prefix_ + name + ".", animated};
+        return {*description_, group_ / name, animated};
     }
 
     /// Describes one field. Its type follows from the field, unless the spec says more (color, position,
@@ -58,13 +55,11 @@ class Describer {
     template <class T, class DescribeElement>
     void list(const std::string& key, std::vector<T>& elements, DescribeElement describe_element) const {
         std::vector<T>* const list = &elements;
-        description_->lists.push_back({prefix_ + key, generic_prefix_ + key, [list] { return list->size(); },
+        const ParameterKey place = group_ / key;
+        description_->lists.push_back({place, place.generic(), [list] { return list->size(); },
                                        [list](std::size_t size) { list->resize(size); }});
-        for (std::size_t i = 0; i < elements.size(); ++i) {
-            const Describer element(*description_, fmt::format("{}{}.{}.", prefix_, key, i),
-                                    generic_prefix_ + key + ".", animated_);
-            describe_element(element, elements[i]);
-        }
+        for (std::size_t i = 0; i < elements.size(); ++i)
+            describe_element(Describer(*description_, place / i, animated_), elements[i]);
     }
 
   private:
@@ -82,11 +77,11 @@ class Describer {
     }
 
     Description* description_;
-    std::string prefix_, generic_prefix_;
+    ParameterKey group_;
     bool animated_;
 };
 
-/// The keys of one layer; the describer stands at "layer.NAME.".
+/// The keys of one layer; the describer stands at "layer.NAME".
 void describe_layer(const Describer& d, LayerParams& layer);
 void describe_look(const Describer& d, Look& look);
 void describe_render(const Describer& d, LayerRender& render);

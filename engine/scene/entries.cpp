@@ -15,16 +15,14 @@
 namespace astrosplat {
 namespace {
 
-bool begins_with(const std::string& text, const std::string& head) { return text.rfind(head, 0) == 0; }
-
-std::vector<std::string> known_keys(const std::string& layer_prefix) {
+std::vector<std::string> known_keys(const ParameterKey& layer_group) {
     std::vector<std::string> keys;
     for (const ParameterRow& row : parameter_rows()) {
-        const bool layer = begins_with(row.spec.key, "layer.");
-        if (layer)
-            keys.push_back(layer_prefix + row.spec.key.substr(6));
-        else if (!layer_prefix.empty())
-            keys.push_back(row.spec.key);
+        const ParameterKey& key = row.spec.key;
+        if (key.is_below("layer"))
+            keys.push_back(key.moved("layer", layer_group));
+        else if (!layer_group.empty())
+            keys.push_back(key);
     }
     return keys;
 }
@@ -32,8 +30,7 @@ std::vector<std::string> known_keys(const std::string& layer_prefix) {
 /// As written below its [section]: 'alpha.powr'.
 std::string shown_key(const Entry& entry, const EntryOrigin& origin) {
     if (origin.command_line) return entry.key;
-    const std::string section = section_of(entry.generic_key);
-    return section.empty() ? entry.generic_key : entry.generic_key.substr(section.size() + 1);
+    return std::string(entry.generic_key.below(section_of(entry.generic_key)));
 }
 
 [[noreturn]] void fail(const Entry& entry, const std::string& message) {
@@ -44,17 +41,15 @@ std::string shown_key(const Entry& entry, const EntryOrigin& origin) {
     fail(entry, fmt::format("{}: {}", origin.command_line ? entry.key : entry.generic_key, message));
 }
 
-const ParameterList* list_at(const Description& description, const std::string& key) {
+const ParameterList* list_at(const Description& description, const ParameterKey& key) {
     for (const ParameterList& list : description.lists)
         if (list.key == key) return &list;
     return nullptr;
 }
 
 /// Whether `key` names something that has parameters below it, such as layer.look.alpha.
-bool is_group(const Description& description, const std::string& key) {
-    const auto below = [&](const std::string& known) {
-        return known == key || begins_with(known, key + ".");
-    };
+bool is_group(const Description& description, const ParameterKey& key) {
+    const auto below = [&](const ParameterKey& known) { return known == key || known.is_below(key); };
     return std::any_of(description.parameters.begin(), description.parameters.end(),
                        [&](const Parameter& p) { return below(p.spec.key); }) ||
            std::any_of(description.lists.begin(), description.lists.end(),
@@ -74,7 +69,8 @@ void set_list_length(const Description& description, const Entry& entry, const E
         list->resize(0);
     } else if (entry.kind != Entry::Kind::list) {
         try {
-            extend_lists(description, entry.kind == Entry::Kind::table ? entry.key + "." : entry.key);
+            // A single table in place of a list is its first element.
+            extend_lists(description, entry.kind == Entry::Kind::table ? entry.key / 0 : entry.key);
         } catch (const ValueError& error) {
             fail_value(entry, origin, error.what());
         }
@@ -85,15 +81,14 @@ void set_list_length(const Description& description, const Entry& entry, const E
                                const Description& description) {
     if (is_group(description, entry.key) && entry.kind != Entry::Kind::table)
         fail_value(entry, origin, fmt::format("expected a table, found {}", kind_of(*entry.node)));
-    for (std::size_t dot = entry.key.rfind('.'); dot != std::string::npos && dot > 0;
-         dot = entry.key.rfind('.', dot - 1)) {
-        if (const Parameter* parameter = find_parameter(description, entry.key.substr(0, dot)))
+    for (ParameterKey key = entry.key.parent(); !key.empty(); key = key.parent()) {
+        if (const Parameter* parameter = find_parameter(description, key))
             fail(entry, fmt::format("{}: expected {}, found a table",
                                     origin.command_line ? parameter->spec.key : parameter->spec.generic_key,
                                     expectation(parameter->spec)));
     }
-    const std::string& key = origin.command_line ? entry.key : entry.generic_key;
-    fail(entry, unknown_key(shown_key(entry, origin), key, origin.layer_prefix));
+    const ParameterKey& key = origin.command_line ? entry.key : entry.generic_key;
+    fail(entry, unknown_key(shown_key(entry, origin), key, origin.layer_group));
 }
 
 /// --set may leave out the quotes; then numbers and dates are text too where text is wanted.
@@ -119,36 +114,31 @@ void set_leaf(const Description& description, const Entry& entry, const EntryOri
 void check_table(const Description& description, const Entry& entry, const EntryOrigin& origin,
                  const std::vector<Entry>& entries) {
     if (is_group(description, full_key(description, entry.key)) || is_group(description, entry.key)) return;
-    const bool has_children = std::any_of(entries.begin(), entries.end(), [&](const Entry& other) {
-        return begins_with(other.key, entry.key + ".");
-    });
+    const bool has_children = std::any_of(entries.begin(), entries.end(),
+                                          [&](const Entry& other) { return other.key.is_below(entry.key); });
     if (!has_children) fail_unknown(entry, origin, description);
 }
 
 void add_children(const toml::table& table, const Entry& parent, const EntryOrigin& origin,
                   std::vector<Entry>& entries) {
-    const auto below = [](const std::string& head, std::string_view name) {
-        return head.empty() ? std::string(name) : head + "." + std::string(name);
-    };
     for (const auto& [key, node] : table) {
         // A quoted "look.alpha" is one key with a dot in its name, which nothing has.
         const std::string name = key.str().find('.') == std::string_view::npos
                                      ? std::string(key.str())
                                      : fmt::format("\"{}\"", key.str());
-        flatten(node, below(parent.key, name), below(parent.generic_key, name), origin, key.source(),
-                entries);
+        flatten(node, parent.key / name, parent.generic_key / name, origin, key.source(), entries);
     }
 }
 
 }  // namespace
 
-std::string unknown_key(const std::string& shown, const std::string& key, const std::string& layer_prefix) {
-    const std::string hint = did_you_mean(key, known_keys(layer_prefix));
+std::string unknown_key(const std::string& shown, const ParameterKey& key, const ParameterKey& layer_group) {
+    const std::string hint = did_you_mean(key, known_keys(layer_group));
     return fmt::format("unknown key '{}'{}", shown,
                        hint.empty() ? "; 'astrosplat parameters' lists all keys" : hint);
 }
 
-void flatten(const toml::node& node, const std::string& key, const std::string& generic_key,
+void flatten(const toml::node& node, const ParameterKey& key, const ParameterKey& generic_key,
              const EntryOrigin& origin, const toml::source_region& source, std::vector<Entry>& entries) {
     Entry entry{Entry::Kind::leaf, key,   generic_key, place_of(origin.name, source),
                 source.begin,      &node, nullptr};
@@ -158,22 +148,20 @@ void flatten(const toml::node& node, const std::string& key, const std::string& 
     if (node.is_table()) add_children(*node.as_table(), entry, origin, entries);
     if (entry.kind != Entry::Kind::list) return;
     std::size_t index = 0;
-    for (const toml::node& element : *node.as_array()) {
-        const std::string part = fmt::format(".{}", index++);
-        flatten(element, key + part, generic_key, origin, element.source(), entries);
-    }
+    for (const toml::node& element : *node.as_array())
+        flatten(element, key / index++, generic_key, origin, element.source(), entries);
 }
 
-void extend_lists(const Description& description, const std::string& key) {
-    const std::string full = full_key(description, key);
+void extend_lists(const Description& description, const ParameterKey& key) {
+    const ParameterKey full = full_key(description, key);
     for (const ParameterList& list : description.lists) {
-        if (!begins_with(full, list.key + ".")) continue;
-        const char* digits = full.c_str() + list.key.size() + 1;
+        if (!full.is_below(list.key)) continue;
+        const std::string_view rest = full.below(list.key);
         std::size_t index = 0;
-        const auto [end, problem] = std::from_chars(digits, full.c_str() + full.size(), index);
+        const auto [end, problem] = std::from_chars(rest.data(), rest.data() + rest.size(), index);
         if (problem != std::errc() || index > list.size())
             throw ValueError(fmt::format("expected an index of at most {} in {}, found {}", list.size(),
-                                         list.generic_key, std::string(digits, end)));
+                                         list.generic_key, std::string(rest.data(), end)));
         if (index == list.size()) list.resize(index + 1);
     }
 }

@@ -14,9 +14,9 @@ namespace astrosplat {
 struct Entry {
     enum class Kind { leaf, table, list };
     Kind kind = Kind::leaf;
-    std::string key;          // full: "layer.stars.look.noise.1.cull"
-    std::string generic_key;  // "layer.look.noise.1.cull"
-    std::string place;        // "scene.toml:12", "--set"
+    ParameterKey key;          // full: "layer.stars.look.noise.1.cull"
+    ParameterKey generic_key;  // as the section of the file has it: "layer.look.noise.1.cull"
+    std::string place;         // "scene.toml:12", "--set"
     toml::source_position position{};
     const toml::node* node = nullptr;  // lives as long as the parsed table
     const std::string* raw = nullptr;  // --set: the text as typed
@@ -24,17 +24,17 @@ struct Entry {
 
 /// Where entries come from: how their paths are read, and how their keys are shown.
 struct EntryOrigin {
-    std::string name;                     // the file
-    std::filesystem::path folder;         // of its paths
-    bool command_line = false;            // full keys in messages; paths of frame files become absolute
-    std::string layer_prefix = "layer.";  // what "layer." of the manual's keys is called here
+    std::string name;                    // the file
+    std::filesystem::path folder;        // of its paths
+    bool command_line = false;           // full keys in messages; paths of frame files become absolute
+    ParameterKey layer_group = "layer";  // what "layer" of the manual's keys is called here; empty: a preset
 };
 
 /// Adds the node and all below it.
-void flatten(const toml::node& node, const std::string& key, const std::string& generic_key,
+void flatten(const toml::node& node, const ParameterKey& key, const ParameterKey& generic_key,
              const EntryOrigin& origin, const toml::source_region& source, std::vector<Entry>& entries);
 
-using Places = std::map<std::string, std::string>;  // full key -> place it was last set at
+using Places = std::map<ParameterKey, std::string>;  // full key -> place it was last set at
 
 /// Writes the entries in the order they stand in the file; lists get their lengths first. `describe_target`
 /// is called again after lengths changed. Throws InputError naming the entry's place.
@@ -42,9 +42,9 @@ void apply_entries(std::vector<Entry> entries, const EntryOrigin& origin,
                    const std::function<Description()>& describe_target, Places& places);
 
 /// Makes every list long enough for `key` by one element at most. Throws ValueError for an index beyond that.
-void extend_lists(const Description& description, const std::string& key);
+void extend_lists(const Description& description, const ParameterKey& key);
 
 /// "unknown key 'x'; did you mean 'y'?" for a key that no parameter has. `shown` is as the person wrote it.
-std::string unknown_key(const std::string& shown, const std::string& key, const std::string& layer_prefix);
+std::string unknown_key(const std::string& shown, const ParameterKey& key, const ParameterKey& layer_group);
 
 }  // namespace astrosplat

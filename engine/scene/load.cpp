@@ -68,12 +68,6 @@ std::vector<LayerTable> read_layers(const toml::table& root, const std::string& 
     return layers;
 }
 
-/// NAME.rest of "layer.NAME.rest"; empty where the key is of no layer.
-std::string layer_of(const std::string& key) {
-    if (key.rfind("layer.", 0) != 0) return "";
-    return key.substr(6, key.find('.', 6) - 6);
-}
-
 /// A value typed on the command line: TOML where it is TOML, otherwise the text itself.
 toml::table parse_raw(const std::string& raw) {
     try {
@@ -108,7 +102,7 @@ class Loader {
 
   private:
     void load_preset(const LayerTable& source, LayerParams& layer, std::span<const Assignment> assignments) {
-        const std::string key = "layer." + layer.name + ".preset";
+        const ParameterKey key = layer_key(layer.name) / "preset";
         EntryOrigin origin{file_, folder_};
         std::vector<Entry> entries;
         toml::table assigned;
@@ -119,7 +113,7 @@ class Loader {
             if (assignment.key != key) continue;
             raw = assignment.value;
             assigned = parse_raw(raw);
-            origin = {"--set", "", true, "layer." + layer.name + "."};
+            origin = {"--set", "", true, layer_key(layer.name)};
             entries = {{Entry::Kind::leaf, key, "layer.preset", "--set", {}, assigned.get("value"), &raw}};
         }
         apply_entries(
@@ -130,7 +124,7 @@ class Loader {
     void read_preset(LayerParams& layer) {
         const toml::table root = parse_toml(read_file(layer.preset), layer.preset.string());
         check_version(root, layer.preset.string(), false);
-        const EntryOrigin origin{layer.preset.string(), layer.preset.parent_path(), false, ""};
+        const EntryOrigin origin{layer.preset.string(), layer.preset.parent_path(), false, {}};
         std::vector<Entry> entries;
         for (const auto& [key, node] : root)
             if (key.str() != "astrosplat")
@@ -138,7 +132,7 @@ class Loader {
         Places places;
         apply_entries(
             entries, origin, [&] { return describe_preset(layer.look, layer.render); }, places);
-        for (const auto& [key, place] : places) places_["layer." + layer.name + "." + key] = place;
+        for (const auto& [key, place] : places) places_[layer_key(layer.name) / key] = place;
     }
 
     void read_keys(const toml::table& root, const std::vector<LayerTable>& layers) {
@@ -150,12 +144,12 @@ class Loader {
             flatten(node, name, name, origin, key.source(), entries);
         }
         for (const LayerTable& layer : layers) {
-            places_["layer." + layer.name] = place_of(file_, layer.table->source());
+            const ParameterKey group = layer_key(layer.name);
+            places_[group] = place_of(file_, layer.table->source());
             for (const auto& [key, node] : *layer.table) {
                 const std::string name(key.str());
                 if (name == "preset") continue;  // read before everything else, perhaps replaced by --set
-                flatten(node, "layer." + layer.name + "." + name, "layer." + name, origin, key.source(),
-                        entries);
+                flatten(node, group / name, "layer." + name, origin, key.source(), entries);
             }
         }
         apply_entries(
@@ -165,19 +159,18 @@ class Loader {
     void assign(const Assignment& assignment) {
         const toml::table value = parse_raw(assignment.value);
         const toml::node& node = *value.get("value");
-        std::string key = assignment.key;
-        if (key.rfind("animation.", 0) == 0) {
-            const std::string animated = key.substr(10);
-            add_track(read_track(animated, node, scene_, "--set"));
+        const ParameterKey& key = assignment.key;
+        if (key.is_below("animation")) {
+            add_track(read_track(key.below("animation"), node, scene_, "--set"));
             return;
         }
-        const std::string layer = layer_of(key);
+        const std::string layer = key.layer();
         if (!layer.empty()) check_layer_exists(layer, key);
-        if (key == "layer." + layer + ".name") {
+        if (key == layer_key(layer) / "name") {
             rename_layer(layer, node.is_string() ? node.as_string()->get() : assignment.value);
             return;
         }
-        EntryOrigin origin{"--set", "", true, layer.empty() ? "layer." : "layer." + layer + "."};
+        const EntryOrigin origin{"--set", "", true, layer.empty() ? "layer" : layer_key(layer)};
         std::vector<Entry> entries;
         flatten(node, key, key, origin, {}, entries);
         for (Entry& entry : entries) {
@@ -189,7 +182,7 @@ class Loader {
         for (const Entry& entry : entries) drop_track(entry.key);
     }
 
-    void check_layer_exists(const std::string& name, const std::string& key) const {
+    void check_layer_exists(const std::string& name, const ParameterKey& key) const {
         std::vector<std::string> names;
         for (const LayerParams& layer : scene_.layers) names.push_back(layer.name);
         if (std::find(names.begin(), names.end(), name) != names.end()) return;
@@ -199,7 +192,6 @@ class Loader {
 
     void rename_layer(const std::string& from, const std::string& to) {
         check_layer_name(to, "--set");
-        const std::string old_head = "layer." + from + ".", new_head = "layer." + to + ".";
         for (LayerParams& layer : scene_.layers) {
             if (layer.name == to && to != from)
                 throw InputError(
@@ -207,7 +199,7 @@ class Loader {
             if (layer.name == from) layer.name = to;
         }
         for (Track& track : scene_.animation)
-            if (track.key.rfind(old_head, 0) == 0) track.key = new_head + track.key.substr(old_head.size());
+            if (track.key.layer() == from) track.key = track.key.moved(layer_key(from), layer_key(to));
     }
 
     void add_track(Track track) {
@@ -220,8 +212,8 @@ class Loader {
     }
 
     /// --set wins over the scene: a parameter set there is no longer animated.
-    void drop_track(const std::string& key) {
-        const std::string full = full_key(describe(scene_), key);
+    void drop_track(const ParameterKey& key) {
+        const ParameterKey full = full_key(describe(scene_), key);
         auto& tracks = scene_.animation;
         const auto found =
             std::find_if(tracks.begin(), tracks.end(), [&](const Track& t) { return t.key == full; });

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "scene/parameter_key.h"
 #include "scene/scene.h"
 #include "scene/value.h"
 
@@ -13,7 +14,8 @@ namespace astrosplat {
 
 /// One `--set KEY=VALUE`; VALUE is TOML (a bare word is taken as a string).
 struct Assignment {
-    std::string key, value;
+    ParameterKey key;
+    std::string value;
 };
 Assignment parse_assignment(const std::string& text);
 

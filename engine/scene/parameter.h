@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "scene/parameter_key.h"
 #include "scene/value.h"
 
 namespace astrosplat {
@@ -36,11 +37,11 @@ enum class Scale { linear, logarithmic };
 enum class Animation { no, steps, yes };
 
 struct ParameterSpec {
-    std::string key;          // "layer.stars.look.noise.0.cull"
-    std::string generic_key;  // "layer.look.noise.cull": the same in every layer, as in the manual
-    std::string label;        // plain words
-    std::string unit;         // "scene units", "degrees", "px", "" for plain numbers
-    std::string help;         // one sentence
+    ParameterKey key;          // "layer.stars.look.noise.0.cull"
+    ParameterKey generic_key;  // "layer.look.noise.cull": the same in every layer, as in the manual
+    std::string label;         // plain words
+    std::string unit;          // "scene units", "degrees", "px", "" for plain numbers
+    std::string help;          // one sentence
     ParameterType type = ParameterType::number;
     int components = 1;
     double min = -std::numeric_limits<double>::infinity();  // hard range, of every component
@@ -85,7 +86,7 @@ struct Parameter {
 
 /// A list of tables whose elements are described one by one, as KEY.0.xxx, KEY.1.xxx.
 struct ParameterList {
-    std::string key, generic_key;
+    ParameterKey key, generic_key;
     std::function<std::size_t()> size;
     std::function<void(std::size_t)> resize;  // new elements have their defaults
 };

@@ -20,16 +20,6 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-TomlPath split(const std::string& key) {
-    TomlPath path;
-    for (std::size_t begin = 0; begin <= key.size();) {
-        const std::size_t end = std::min(key.find('.', begin), key.size());
-        path.push_back(key.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return path;
-}
-
 std::vector<std::string> layer_names(const Scene& scene) {
     std::vector<std::string> names;
     for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
@@ -37,10 +27,10 @@ std::vector<std::string> layer_names(const Scene& scene) {
 }
 
 /// The default of an element's parameter.
-const Value& standard_value(const std::string& generic_key) {
+const Value& standard_value(const ParameterKey& generic_key) {
     for (const ParameterRow& row : parameter_rows())
         if (row.spec.key == generic_key) return row.standard;
-    throw std::logic_error("no parameter " + generic_key);
+    throw std::logic_error("no parameter " + generic_key.text());
 }
 
 /// Edits one text until it says what a scene or preset says.
@@ -52,12 +42,12 @@ class Saver {
     TomlText& text() { return text_; }
 
     /// Where a full key stands: layers by index; a list given as a single table has no index.
-    TomlPath path_of(const std::string& key, const Description& description) const {
-        TomlPath path = split(key);
+    TomlPath path_of(const ParameterKey& key, const Description& description) const {
+        TomlPath path = key.parts();
         if (path[0] == "layer" && path.size() > 1) path[1] = layer_index(path[1]);
         for (const ParameterList& list : description.lists) {
-            if (key.rfind(list.key + ".0.", 0) != 0) continue;
-            const std::size_t size = split(list.key).size();
+            if (!key.is_below(list.key / 0)) continue;
+            const std::size_t size = list.key.parts().size();
             const TomlPath indexed(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(size) + 1);
             const TomlPath bare(indexed.begin(), indexed.end() - 1);
             if (!text_.contains(indexed) && text_.contains(bare))
@@ -98,15 +88,15 @@ class Saver {
         return std::to_string(std::find(layers_.begin(), layers_.end(), name) - layers_.begin());
     }
 
-    static std::size_t section_size(const std::string& generic_key) {
-        const TomlPath section = split(section_of(generic_key));
+    static std::size_t section_size(const ParameterKey& generic_key) {
+        const TomlPath section = section_of(generic_key).parts();
         return section.size() + (section[0] == "layer" ? 1 : 0);
     }
 
-    static bool same_elements(const std::string& list, const Description& base, const Description& wanted) {
+    static bool same_elements(const ParameterKey& list, const Description& base, const Description& wanted) {
         return std::all_of(wanted.parameters.begin(), wanted.parameters.end(),
                            [&](const Parameter& parameter) {
-                               if (parameter.spec.key.rfind(list + ".", 0) != 0) return true;
+                               if (!parameter.spec.key.is_below(list)) return true;
                                const Parameter* old = find_parameter(base, parameter.spec.key);
                                return old && old->get() == parameter.get();
                            });
@@ -115,16 +105,17 @@ class Saver {
     std::string list_text(const ParameterList& list, const Description& description) const {
         std::string text;
         for (std::size_t i = 0; i < list.size(); ++i) {
-            const std::string head = fmt::format("{}.{}.", list.key, i);
+            const ParameterKey element = list.key / i;
             std::string pairs;
             for (const Parameter& parameter : description.parameters) {
                 const ParameterSpec& spec = parameter.spec;
-                if (spec.key.rfind(head, 0) != 0) continue;
+                if (!spec.key.is_below(element)) continue;
                 const Value value = parameter.get();
-                const std::string generic =
-                    section_of(spec.generic_key).rfind("layer", 0) == 0 ? "" : "layer.";
-                if (value == standard_value(generic + spec.generic_key)) continue;
-                pairs += fmt::format("{}{} = {}", pairs.empty() ? "" : ", ", spec.key.substr(head.size()),
+                const bool of_preset = !spec.generic_key.is_below("layer");
+                if (value ==
+                    standard_value(of_preset ? ParameterKey("layer") / spec.generic_key : spec.generic_key))
+                    continue;
+                pairs += fmt::format("{}{} = {}", pairs.empty() ? "" : ", ", spec.key.below(element),
                                      to_toml(unresolve_paths(value, spec, folder_)));
             }
             text += (text.empty() ? "" : ", ") + (pairs.empty() ? "{}" : "{ " + pairs + " }");
@@ -174,9 +165,9 @@ void arrange_layers(TomlText& text, std::vector<std::string> old, const std::vec
 
 /// Takes out the tracks that the scene lacks, all of them when their order differs.
 void remove_tracks(TomlText& text, const Scene& scene, const Description& wanted) {
-    std::vector<std::string> kept;
+    std::vector<ParameterKey> kept;
     for (const std::string& name : text.children({"animation"})) {
-        const std::string key = full_key(wanted, name);
+        const ParameterKey key = full_key(wanted, name);
         const bool stays = std::any_of(scene.animation.begin(), scene.animation.end(),
                                        [&](const Track& track) { return track.key == key; });
         if (stays)
@@ -187,7 +178,7 @@ void remove_tracks(TomlText& text, const Scene& scene, const Description& wanted
     // New tracks come after those that are there.
     const bool in_order =
         std::equal(kept.begin(), kept.end(), scene.animation.begin(),
-                   [](const std::string& key, const Track& track) { return key == track.key; });
+                   [](const ParameterKey& key, const Track& track) { return key == track.key; });
     if (in_order) return;
     for (const std::string& name : text.children({"animation"})) text.remove({"animation", name});
 }
@@ -224,7 +215,7 @@ void set_presets(Saver& saver, const Scene& before, const Scene& scene, const De
         const auto same = [&](const LayerParams& old) { return old.name == layer.name; };
         const auto old = std::find_if(before.layers.begin(), before.layers.end(), same);
         if (old == before.layers.end() ? layer.preset.empty() : old->preset == layer.preset) continue;
-        const Parameter* parameter = find_parameter(wanted, "layer." + layer.name + ".preset");
+        const Parameter* parameter = find_parameter(wanted, layer_key(layer.name) / "preset");
         saver.set(parameter->spec, parameter->get(), wanted);
     }
 }

@@ -13,6 +13,7 @@
 #include "look/look.h"
 #include "render/environment.h"
 #include "render/layer_render.h"
+#include "scene/parameter_key.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -63,7 +64,7 @@ struct LayerParams {
 /// One animated key path, as in the file. Values are kept as numbers per component: scalars 1, colours and
 /// vectors 3, rotations 4; booleans 0 or 1; choices by their index.
 struct Track {
-    std::string key;  // "camera.position", "layer.stars.render.core"
+    ParameterKey key;  // "camera.position", "layer.stars.render.core"
     std::vector<Key<std::vector<double>>> keys;
     Interpolation interpolation = Interpolation::linear;  // the default of keys that do not say
     Ends ends = Ends::ease;

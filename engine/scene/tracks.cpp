@@ -19,7 +19,8 @@ const std::vector<std::string> ends_names{"ease", "through"};
 const std::vector<std::string> track_keys{"keys", "interpolation", "ends", "constant_speed"};
 
 struct Place {
-    std::string place, key;
+    std::string place;
+    ParameterKey key;
     [[noreturn]] void fail(const std::string& message) const {
         throw InputError(fmt::format("{}: {}: {}", place, key, message));
     }
@@ -102,21 +103,21 @@ const Parameter& animated_parameter(const Description& description, const Scene&
         if (parameter->spec.animation == Animation::no) at.fail("this parameter cannot be animated");
         return *parameter;
     }
-    std::string prefix = "layer.";
-    if (at.key.rfind("layer.", 0) == 0) {
-        const std::string name = at.key.substr(6, at.key.find('.', 6) - 6);
+    ParameterKey layer_group = "layer";
+    if (at.key.is_below("layer")) {
+        const std::string name = at.key.layer();
         std::vector<std::string> names;
         for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
         if (std::find(names.begin(), names.end(), name) == names.end())
             at.fail(fmt::format("unknown layer '{}'{}", name, did_you_mean(name, names)));
-        prefix += name + ".";
+        layer_group = layer_key(name);
     }
-    throw InputError(fmt::format("{}: {}", at.place, unknown_key(at.key, at.key, prefix)));
+    throw InputError(fmt::format("{}: {}", at.place, unknown_key(at.key, at.key, layer_group)));
 }
 
 }  // namespace
 
-Track read_track(const std::string& key, const toml::node& node, Scene& scene, const std::string& place) {
+Track read_track(const ParameterKey& key, const toml::node& node, Scene& scene, const std::string& place) {
     const Place at{place, key};
     try {
         extend_lists(describe(scene), key);

@@ -11,7 +11,7 @@ namespace astrosplat {
 
 /// Reads one track and checks it against the parameter it animates. Lists of the scene grow where a key names
 /// their next element (noise.cull where no noise is set). `place` begins every message. Throws InputError.
-Track read_track(const std::string& key, const toml::node& node, Scene& scene, const std::string& place);
+Track read_track(const ParameterKey& key, const toml::node& node, Scene& scene, const std::string& place);
 
 /// Reads all of [animation], in the order of the file.
 std::vector<Track> read_tracks(const toml::table& table, Scene& scene, const std::string& file);

@@ -88,7 +88,7 @@ std::string in_words(const ParameterSpec& spec, const Value& value) {
 }
 
 std::string tooltip_text(const ParameterSpec& spec, const Value& standard) {
-    std::string text = spec.label + ": " + spec.help + "\n" + spec.key;
+    std::string text = spec.label + ": " + spec.help + "\n" + spec.key.text();
     text += "\nTakes " + expectation(spec);
     if (!spec.unit.empty()) text += ", " + spec.unit;
     text += "; default " + to_toml(standard);

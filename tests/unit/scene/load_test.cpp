@@ -50,13 +50,7 @@ TEST(Load, FullSceneWritesEveryDescribedKey) {
     const TomlText text(full_scene);
     Scene scene = parse(full_scene);
     for (const Parameter& parameter : describe(scene).parameters) {
-        TomlPath path{""};
-        for (const char c : parameter.spec.key) {
-            if (c == '.')
-                path.emplace_back();
-            else
-                path.back().push_back(c);
-        }
+        TomlPath path = parameter.spec.key.parts();
         if (path[0] == "layer") path[1] = "0";
         if (path.size() > 4 && path[3] == "noise") path.erase(path.begin() + 4);  // one table, not a list
         EXPECT_TRUE(text.is_value(path)) << parameter.spec.key;
@@ -198,7 +192,7 @@ TEST(Load, SetTakesBareWordsAsText) {
 TEST(Load, SetReachesEveryParameter) {
     Scene scene = parse(full_scene);
     for (const Parameter& parameter : describe(scene).parameters) {
-        const std::string assignment = parameter.spec.key + "=" + to_toml(parameter.get());
+        const std::string assignment = parameter.spec.key.text() + "=" + to_toml(parameter.get());
         if (parameter.spec.key == "layer.stars.preset") continue;  // "" is no file
         EXPECT_EQ(message(full_scene, {assignment}), "") << assignment;
     }

@@ -1,0 +1,77 @@
+// Keys are kept as text: they are shown far more often than they are taken apart.
+#include "scene/parameter_key.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace astrosplat {
+namespace {
+
+constexpr std::string_view layers_group = "layer";
+
+/// The first part of `path`, which is cut off it.
+std::string_view take_part(std::string_view& path) {
+    const std::size_t dot = path.find('.');
+    const std::string_view part = path.substr(0, dot);
+    path.remove_prefix(dot == std::string_view::npos ? path.size() : dot + 1);
+    return part;
+}
+
+}  // namespace
+
+std::vector<std::string> ParameterKey::parts() const {
+    std::vector<std::string> parts;
+    for (std::string_view rest = text_; !rest.empty();) parts.emplace_back(take_part(rest));
+    return parts;
+}
+
+ParameterKey ParameterKey::operator/(std::string_view path) const {
+    if (text_.empty()) return path;
+    std::string text;
+    text.reserve(text_.size() + 1 + path.size());
+    text.append(text_).append(1, '.').append(path);
+    return text;
+}
+
+bool ParameterKey::is_below(std::string_view group) const {
+    if (group.empty()) return !text_.empty();
+    return text_.size() > group.size() && text_[group.size()] == '.' && text_.starts_with(group);
+}
+
+std::string_view ParameterKey::below(std::string_view group) const {
+    assert(is_below(group));
+    return std::string_view(text_).substr(group.empty() ? 0 : group.size() + 1);
+}
+
+ParameterKey ParameterKey::parent() const {
+    const std::size_t dot = text_.rfind('.');
+    return dot == std::string::npos ? std::string() : text_.substr(0, dot);
+}
+
+std::string ParameterKey::layer() const {
+    if (!is_below(layers_group)) return "";
+    std::string_view rest = below(layers_group);
+    return std::string(take_part(rest));
+}
+
+ParameterKey ParameterKey::generic() const {
+    std::string text;
+    text.reserve(text_.size());
+    std::string_view rest = text_;
+    for (std::size_t i = 0; !rest.empty(); ++i) {
+        const std::string_view part = take_part(rest);
+        const bool layer_name = i == 1 && text == layers_group;
+        if (layer_name || is_list_index(part)) continue;
+        text.append(text.empty() ? "" : ".").append(part);
+    }
+    return text;
+}
+
+ParameterKey layer_key(std::string_view name) { return ParameterKey(layers_group) / name; }
+
+bool is_list_index(std::string_view part) {
+    return !part.empty() &&
+           std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+}  // namespace astrosplat
