@@ -1,14 +1,38 @@
 #!/usr/bin/env bash
-# Builds everything and runs all tests through CTest. In: a preset of CMakePresets.json (default: release), then
-# arguments for ctest, such as `-R camera`. With CI=true, warnings are errors.
+# Builds and tests.
+#   tests/run.sh                           the lane ci of the Release build
+#   tests/run.sh PRESET [PROGRAM...]       the lane ci of a preset of CMakePresets.json; only these test programs: `asan render`
+#   tests/run.sh nightly                   everything: both lanes, all sanitizers, every file compiled alone
+# With CI=true, warnings are errors.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-preset="${1:-release}"
-[ $# -eq 0 ] || shift
 warnings_are_errors=OFF
 [ "${CI:-}" != true ] || warnings_are_errors=ON
 
+configure() { cmake --preset "$1" -DASTROSPLAT_TESTS=ON -DASTROSPLAT_WERROR=$warnings_are_errors; }
+
+# test_with LANES PRESET [PROGRAM...]: a regular expression of lanes, and the programs to build and run; none: all.
+test_with() {
+    local lanes=$1 preset=$2; shift 2
+    local programs='.*' log=build/$preset/Testing/Temporary/LastTest.log
+    [ $# -eq 0 ] || programs="^($(IFS='|'; echo "$*"))\$"
+    configure "$preset"
+    cmake --build --preset "$preset" ${@:+--target ${@/#/test_}}
+    local result=0 output=build/$preset/ctest.txt
+    ctest --preset "$preset" --parallel "$(nproc)" --no-label-summary -L "$lanes" -L "$programs" | tee "$output" || result=$?
+    grep --only-matching 'SKIPPED \] [A-Za-z].*' "$log" | sed 's/SKIPPED \]/skipped:/' | sort --unique || true
+    grep ' tests passed, ' "$output" || true  # once more, where a reader of the last lines finds it
+    return $result
+}
+
 bash third_party/install.sh build tests
-cmake --preset "$preset" -DASTROSPLAT_TESTS=ON -DASTROSPLAT_WERROR=$warnings_are_errors
-cmake --build --preset "$preset"
-ctest --preset "$preset" --parallel 2 "$@"
+case "${1:-release}" in
+nightly)
+    test_with '^(ci|nightly)$' release
+    configure dev
+    python3 tests/each_file_alone.py build/dev
+    test_with '^(ci|nightly)$' asan
+    test_with '^(ci|nightly)$' tsan core generate look render pipeline viewer ;;
+*)
+    test_with '^ci$' "${@:-release}" ;;
+esac

@@ -104,6 +104,7 @@ struct View {
     const char *name, *mesh, *uv;
     const char* direction;  // from the target to the camera, 20 scene units
     Mapping mapping;
+    friend void PrintTo(const View& given, std::ostream* out) { *out << given.name; }
 };
 
 std::string view_scene(const View& view, bool perspective, const std::string& output = "") {

@@ -14,6 +14,7 @@ struct Size {
     int width, height;
     const char* name;
     float scale;
+    friend void PrintTo(const Size& given, std::ostream* out) { *out << given.name; }
 };
 constexpr Size sizes[] = {
     {1600, 900, "large", 1.0f}, {1100, 700, "small", 1.0f}, {2200, 1400, "double", 2.0f}};

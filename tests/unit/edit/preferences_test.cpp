@@ -2,12 +2,12 @@
 #include "edit/preferences.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include "core/log.h"
 #include "edit/autosave.h"
 #include "edit/user_folders.h"
 #include "scenes.h"
+#include "support/variable.h"
 
 namespace astrosplat {
 namespace {
@@ -107,21 +107,6 @@ TEST(Preferences, PanelsGoIntoAViewAndBack) {
     remember_panels(back, view);
     EXPECT_EQ(back, p);
 }
-
-/// Sets a variable of the environment for a while.
-class Variable {
-  public:
-    Variable(const char* name, const char* value) : name_(name) {
-        if (const char* old = getenv(name)) before_ = old, was_set_ = true;
-        value ? setenv(name, value, 1) : unsetenv(name);
-    }
-    ~Variable() { was_set_ ? setenv(name_, before_.c_str(), 1) : unsetenv(name_); }
-
-  private:
-    const char* name_;
-    std::string before_;
-    bool was_set_ = false;
-};
 
 TEST(UserFolders, FollowTheBaseDirectorySpecification) {
     const Variable home("HOME", "/heim");

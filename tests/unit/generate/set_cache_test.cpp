@@ -12,7 +12,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <functional>
 #include <optional>
 #include <thread>
@@ -22,6 +21,7 @@
 #include "generate/set_key.h"
 #include "splat_files/native.h"
 #include "support/temp_folder.h"
+#include "support/variable.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
@@ -225,9 +225,7 @@ TEST_F(SetCacheTest, InputsThatCannotBeReadHaveNoKeyAndTheLoaderSaysWhy) {
 
 TEST_F(SetCacheTest, FolderOfTheEnvironment) {
     const auto with = [](const char* own, const char* xdg, const char* home) {
-        own ? setenv("ASTROSPLAT_CACHE", own, 1) : unsetenv("ASTROSPLAT_CACHE");
-        xdg ? setenv("XDG_CACHE_HOME", xdg, 1) : unsetenv("XDG_CACHE_HOME");
-        home ? setenv("HOME", home, 1) : unsetenv("HOME");
+        const Variable a("ASTROSPLAT_CACHE", own), b("XDG_CACHE_HOME", xdg), c("HOME", home);
         return default_cache_folder();
     };
     EXPECT_EQ(with("/a", "/b", "/c"), "/a");

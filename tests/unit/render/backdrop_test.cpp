@@ -8,6 +8,7 @@
 
 #include "core/real.h"
 #include "render/render.h"
+#include "support/printing.h"
 
 namespace astrosplat {
 namespace {

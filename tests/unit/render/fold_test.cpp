@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/vector_target.h"
 #include "render/splat_sorter.h"
+#include "support/printing.h"
 
 namespace astrosplat {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/real.h"
+#include "support/printing.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -63,6 +64,10 @@ double pixel_sum(const FootprintTable& table, float radius_px, float x_px, float
 struct FootprintCase {
     Falloff falloff;
     float pixel_filter_px;
+    friend void PrintTo(const FootprintCase& given, std::ostream* out) {
+        *out << testing::PrintToString(given.falloff.shape) << ", core " << given.falloff.core
+             << ", sharpness " << given.falloff.sharpness << ", filter " << given.pixel_filter_px;
+    }
 };
 
 class FootprintLight : public ::testing::TestWithParam<FootprintCase> {};

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/shared_maths.h"
+#include "support/printing.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -50,6 +51,10 @@ struct LodCase {
     Falloff::Shape shape;
     Blend blend;
     float alpha;
+    friend void PrintTo(const LodCase& given, std::ostream* out) {
+        *out << testing::PrintToString(given.shape) << " " << testing::PrintToString(given.blend)
+             << ", alpha " << given.alpha;
+    }
 };
 
 class LodLight : public ::testing::TestWithParam<LodCase> {};

@@ -1,12 +1,14 @@
 // Loading: every key, precedence, paths, --set, tracks.
+#include <unistd.h>
+
 #include <clocale>
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
 #include "scene/save.h"
 #include "scene/toml_text.h"
 #include "scene_texts.h"
+#include "support/variable.h"
 
 namespace astrosplat::test {
 namespace fs = std::filesystem;
@@ -16,7 +18,8 @@ namespace {
 class Folder {
   public:
     explicit Folder(const std::string& name)
-        : path_(fs::temp_directory_path() / ("astrosplat scene \xC3\xA4 " + name)) {
+        : path_(fs::temp_directory_path() /
+                ("astrosplat scene \xC3\xA4 " + name + std::to_string(getpid()))) {
         fs::remove_all(path_);
         fs::create_directories(path_);
     }
@@ -155,7 +158,7 @@ TEST(Load, SetChoosesThePresetBeforeTheSceneSpeaks) {
 }
 
 TEST(Load, PathsAreRelativeToTheFileAndKnowTheEnvironment) {
-    ::setenv("ASTROSPLAT_TEST_FOLDER", "/data/n\xC3\xA4he", 1);
+    const Variable folder("ASTROSPLAT_TEST_FOLDER", "/data/n\xC3\xA4he");
     const Scene scene = parse(small_scene() +
                                   "[environment]\nimage = \"${ASTROSPLAT_TEST_FOLDER}/sky.exr\"\n"
                                   "[output]\npath = \"${ASTROSPLAT_TEST_FOLDER}/f.####.png\"\n",

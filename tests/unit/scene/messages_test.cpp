@@ -14,6 +14,7 @@ const std::string head =
 struct Case {
     const char* lines;    // follow `head`, so the first is line 5
     const char* message;  // after "scene.toml:"
+    friend void PrintTo(const Case& given, std::ostream* out) { *out << testing::PrintToString(given.lines); }
 };
 
 class WrongKeys : public testing::TestWithParam<Case> {};

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "generate/generate.h"
 #include "output/write.h"
+#include "render/render.h"
 #include "scene/layer_setup.h"
 #include "splats/stratified.h"
 #include "support/small_scene.h"

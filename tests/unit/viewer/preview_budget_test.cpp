@@ -16,6 +16,9 @@ struct Machine {
     double frame(std::int64_t splats) const {
         return fixed_ms + ms_per_thousand * static_cast<double>(splats) / 1000.0;
     }
+    friend void PrintTo(const Machine& given, std::ostream* out) {
+        *out << given.fixed_ms << " ms and " << given.ms_per_thousand << " per thousand";
+    }
 };
 
 /// Runs `frames` frames with all the splats one may ask for.

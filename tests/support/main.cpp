@@ -1,0 +1,123 @@
+// The main of every test program. Tests share their process, so each must leave it as it found it: the one
+// that changes the environment, the locale, the working directory or a resource limit fails. A crash or a
+// test that takes longer than the limit names the test; skipped tests are named too; a program without tests
+// fails.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <clocale>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <locale>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "core/log.h"
+#include "core/parallel.h"
+
+namespace {
+
+constexpr unsigned time_limit_s = 900;  // of one test; only a hang comes near it
+
+std::array<char, 512> current_test;  // "Suite.Name\n", for the signal handler
+
+/// What a process holds for all of its tests, by name.
+std::map<std::string, std::string> process_state() {
+    std::map<std::string, std::string> state;
+    for (char** entry = environ; *entry; ++entry) {
+        const std::string variable = *entry;
+        const std::size_t equals = variable.find('=');
+        state["environment variable " + variable.substr(0, equals)] = variable.substr(equals + 1);
+    }
+    state["C locale"] = std::setlocale(LC_ALL, nullptr);
+    state["C++ locale"] = std::locale().name();
+    std::error_code gone;
+    state["working directory"] = std::filesystem::current_path(gone).string();
+    for (const auto& [name, which] : {std::pair("file size limit", RLIMIT_FSIZE),
+                                      {"memory limit", RLIMIT_AS},
+                                      {"open files limit", RLIMIT_NOFILE}}) {
+        rlimit limit = {};
+        getrlimit(which, &limit);
+        state[name] = std::to_string(limit.rlim_cur);
+    }
+    return state;
+}
+
+class SharedProcess : public testing::EmptyTestEventListener {
+    void OnTestStart(const testing::TestInfo& test) override {
+        const std::string name = std::string(test.test_suite_name()) + "." + test.name() + "\n";
+        current_test.fill('\0');
+        std::copy_n(name.begin(), std::min(name.size(), current_test.size() - 1), current_test.begin());
+        before_ = process_state();
+        alarm(time_limit_s);
+    }
+    void OnTestEnd(const testing::TestInfo& test) override {
+        alarm(0);
+        if (test.result()->Skipped()) std::cout << "[  SKIPPED ] " << current_test.data() << std::flush;
+        astrosplat::set_thread_count(0);
+        astrosplat::set_log_sink(nullptr);
+        const auto after = process_state();
+        for (const auto& [what, value] : after) {
+            const auto found = before_.find(what);
+            const std::string before = found == before_.end() ? "" : found->second;
+            EXPECT_EQ(value, before) << "the test leaves another " << what << " behind";
+        }
+        for (const auto& [what, value] : before_)
+            EXPECT_TRUE(after.count(what)) << "the test leaves no " << what << " behind; it was " << value;
+    }
+
+    std::map<std::string, std::string> before_;
+};
+
+std::map<int, struct sigaction> handlers_before;  // a sanitizer's, or none
+
+void name_the_test(int signal) {
+    const auto write_text = [](const char* text) {
+        if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
+    };
+    write_text(signal == SIGALRM ? "\n[  FAILED  ] took too long: " : "\n[  FAILED  ] crashed: ");
+    write_text(current_test.data());
+    sigaction(signal, &handlers_before.at(signal),
+              nullptr);  // a crash happens again on return, and is reported there
+    if (signal == SIGALRM) raise(signal);
+}
+
+void watch(int signal) {
+    struct sigaction action = {};
+    action.sa_handler = name_the_test;
+    sigaction(signal, &action, &handlers_before[signal]);
+}
+
+/// A parameter that GoogleTest can only show as bytes makes names that nobody can read, and that differ
+/// between runs.
+bool parameters_are_printable() {
+    const testing::UnitTest& all = *testing::UnitTest::GetInstance();
+    for (int i = 0; i < all.total_test_suite_count(); ++i)
+        for (int k = 0; k < all.GetTestSuite(i)->total_test_count(); ++k) {
+            const testing::TestInfo& test = *all.GetTestSuite(i)->GetTestInfo(k);
+            if (!test.value_param() || !std::strstr(test.value_param(), "-byte object <")) continue;
+            std::cerr << test.test_suite_name() << "." << test.name() << ": give its parameter a PrintTo\n";
+            return false;
+        }
+    return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    testing::InitGoogleTest(&argc, argv);
+    if (testing::UnitTest::GetInstance()->total_test_count() == 0) {
+        std::cerr << argv[0] << ": no tests\n";
+        return 1;
+    }
+    if (!parameters_are_printable()) return 1;
+    for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) watch(signal);
+    testing::UnitTest::GetInstance()->listeners().Append(new SharedProcess);
+    return RUN_ALL_TESTS();
+}
