@@ -1,12 +1,12 @@
 // The environment behind everything, as sample_environment in engine/render/environment.cpp: two mip levels of one
-// equirectangular picture or of six faces, each stored with a border of one texel.
+// equirectangular picture or of six faces, each stored with a border of one texel. Needs projection.glsl.
 
 uniform sampler2DArray fine_level;
 uniform sampler2DArray coarse_level;
 uniform float coarse_share;
 uniform float gain;
 uniform mat3 environment_from_camera;
-uniform vec4 camera;  // focal px, centre x, y px, 1: orthographic
+uniform Lens lens;
 
 layout(location = 0) out vec4 light;
 
@@ -44,8 +44,7 @@ vec3 read_level(sampler2DArray level, vec3 place) {
 }
 
 void main() {
-    vec2 px = gl_FragCoord.xy - camera.yz;
-    vec3 ray = camera.w != 0.0 ? vec3(0.0, 0.0, -1.0) : normalize(vec3(px.x / camera.x, -px.y / camera.x, -1.0));
+    vec3 ray = normalize(ray_through(lens, gl_FragCoord.x, gl_FragCoord.y));
     vec3 d = environment_from_camera * ray;
     vec3 place = textureSize(fine_level, 0).z == 1 ? latlong_place(d) : cube_place(d);
     vec3 color = read_level(fine_level, place);

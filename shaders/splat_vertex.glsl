@@ -1,5 +1,5 @@
 // A shaded splat onto the picture, as engine/render/project.cpp and footprint.cpp do: a point, or with QUADS the corner
-// of a square. Needs maths.glsl and blend.glsl. KIND is the number of the group's FoldKind.
+// of a square. Needs blend.glsl, projection.glsl and footprint.glsl. KIND is the number of the group's FoldKind.
 
 const int MAX_LAYERS = 64;
 
@@ -14,9 +14,8 @@ struct DrawLayer {
 };
 
 layout(std140) uniform DrawBlock {
-    vec4 camera;       // focal px, centre x, y px, 1: orthographic
-    vec4 range;        // near, far, near fade, 4 pixel filters in px
-    vec4 target;       // width, height, margin in px
+    Lens lens;
+    vec4 target;       // width, height, margin, 4 pixel filters in px
     ivec4 layers_used;
     ivec4 first_splat[MAX_LAYERS / 4];
     DrawLayer layers[MAX_LAYERS];
@@ -40,8 +39,6 @@ flat out vec4 dot_light;  // colour, opacity
 flat out vec4 dot_occlusion;  // r, g, b; 0: shows no alpha (holdout)
 #endif
 
-const float NODES = 513.0;
-const float SMALLEST_PX = 1.0 / 64.0;
 const float PROFILE_SAMPLES = 256.0;
 
 int layer_of(int index) {
@@ -50,28 +47,8 @@ int layer_of(int index) {
     return layer;
 }
 
-float snap(float px) { return floor(px * 256.0 + 0.5) * (1.0 / 256.0); }
-
 // cos of the phase of a coordinate relative to the pixel centres.
 float pixel_cosine(float px) { return -cos(6.28318531 * fract(px)); }
-
-// Relative excess of the sum over all pixels, from the spectrum at three frequencies.
-float ripple(vec3 spectrum, float cx, float cy) {
-    float c2 = (2.0 * cx * cx - 1.0) + (2.0 * cy * cy - 1.0);
-    return 2.0 * spectrum.x * (cx + cy) + 4.0 * spectrum.y * (cx * cy) + 2.0 * spectrum.z * c2;
-}
-
-// Rises from 0 at the near plane to 1 where the splat is a radius (or the camera's near fade) behind it.
-float near_fade(float z, float radius) {
-    float t = min(1.0, (z - range.x) / max(range.z, radius));
-    return t * t * (3.0 - 2.0 * t);
-}
-
-float hybrid_of(DrawLayer layer, vec3 p) {
-    float along = abs(dot(layer.axis.xyz, p));
-    float cosine = camera.w != 0.0 ? abs(layer.axis.z) : along / sqrt(dot(p, p));
-    return hybrid_amount(cosine, layer.blend.y, layer.blend.z);
-}
 
 void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside: not shown
@@ -88,43 +65,39 @@ void main() {
     DrawLayer layer = layers[layers_used.x > 1 ? layer_of(index) : 0];
     vec3 from_eye = (place.xyz - vec3(layer.right.w, layer.up.w, layer.back.w)) - layer.eye_low.xyz;
     vec3 p = vec3(dot(layer.right.xyz, from_eye), dot(layer.up.xyz, from_eye), dot(layer.back.xyz, from_eye));
-    float z = -p.z;
-    bool shows = color.a > 0.0 && z > range.x && (range.y <= 0.0 || z <= range.y);
+    Instance at = instance_of(lens, p);
+    bool shows = color.a > 0.0 && is_in_range(lens, at.depth);
 
     float radius = place.w * layer.eye_low.w;
-    float px_per_unit = camera.w != 0.0 ? camera.x : camera.x / z;
-    float radius_px = radius * px_per_unit;
-    vec2 centre = vec2(snap(camera.y + p.x * px_per_unit), snap(camera.z - p.y * px_per_unit));
+    float radius_px = radius * at.px_per_unit;
+    vec2 centre = vec2(snap_px(at.x_px), snap_px(at.y_px));
+    float tabulated_px = max(radius_px, SMALLEST_RADIUS_PX);
+    ProfileRange profile = profile_range(layer.falloff.z, layer.falloff.y, target.w, tabulated_px);
+    float support_px = profile.hi;
+    shows = shows && touches_rect(centre.x, centre.y, support_px, 0.0, 0.0, target.x, target.y);
 
-    float tabulated_px = max(radius_px, SMALLEST_PX);
-    float shrink = radius_px < SMALLEST_PX ? (radius_px / SMALLEST_PX) * (radius_px / SMALLEST_PX) : 1.0;
-    float support_px = tabulated_px * layer.falloff.y + range.w;
-    shows = shows && centre.x + support_px > 0.0 && centre.x - support_px < target.x &&
-            centre.y + support_px > 0.0 && centre.y - support_px < target.y;
-
-    // 32 nodes per octave from 2^-6 px on, linear between: the upper bits of the float.
-    float node = clamp(float(floatBitsToInt(tabulated_px) - (121 << 23)) / 262144.0, 0.0, NODES - 1.0);
-    vec2 node_at = vec2((node + 0.5) / NODES, 0.5 / float(textureSize(footprint_nodes, 0).y));
+    NodePlace node = node_of_radius(tabulated_px);
+    float node_x = (min(float(node.first) + node.share, float(NODE_COUNT - 1)) + 0.5) / float(NODE_COUNT);
+    vec2 node_at = vec2(node_x, 0.5 / float(textureSize(footprint_nodes, 0).y));
     vec4 mass = textureLod(footprint_nodes, node_at * vec2(1.0, 4.0 * layer.falloff.x + 1.0), 0.0);
     vec4 edge = textureLod(footprint_nodes, node_at * vec2(1.0, 4.0 * layer.falloff.x + 3.0), 0.0);
     float cx = pixel_cosine(centre.x);
     float cy = pixel_cosine(centre.y);
-    float found = mass.x * (1.0 + ripple(mass.yzw, cx, cy));
-    bool flat_core = layer.falloff.w != 0.0;
-    bool tabulated = node < NODES - 1.0;
-    float amplitude = tabulated && !flat_core ? shrink / found : shrink;
-    float edge_gain = tabulated && flat_core ? (1.0 - found) / (edge.x * (1.0 + ripple(edge.yzw, cx, cy))) : 0.0;
+    FootprintGains gains =
+        footprint_gains(layer.falloff.w != 0.0, is_tabulated(node), shrink_of_radius(radius_px), 1.0,
+                        mass.x * (1.0 + pixel_ripple(mass.y, mass.z, mass.w, cx, cy)),
+                        edge.x * (1.0 + pixel_ripple(edge.y, edge.z, edge.w, cx, cy)));
 
-    float lo = max(0.0, tabulated_px * layer.falloff.z - range.w);
-    float per_px = (1.0 - 1.0 / PROFILE_SAMPLES) / (support_px - lo);
-    dot_place = vec4(centre, 0.5 / PROFILE_SAMPLES - lo * per_px, per_px);
-    dot_table = vec4((node + 0.5) / NODES, layer.falloff.x, edge_gain, max(1.0, color.a));
-    float opacity = color.a * layer.axis.w * near_fade(z, radius) * amplitude;
+    float per_px = (1.0 - 1.0 / PROFILE_SAMPLES) / (profile.hi - profile.lo);
+    dot_place = vec4(centre, 0.5 / PROFILE_SAMPLES - profile.lo * per_px, per_px);
+    dot_table = vec4(node_x, layer.falloff.x, gains.edge_gain, max(1.0, color.a));
+    float opacity = color.a * layer.axis.w * near_fade(lens, at.depth, radius) * gains.amplitude;
     bool holdout = layer.blend.w != 0.0;
     dot_light = vec4(holdout ? vec3(0.0) : color.rgb, opacity);
 #if KIND == 2
     int blend = holdout ? BLEND_OVER : int(layer.blend.x);
-    float h = blend == BLEND_HYBRID ? hybrid_of(layer, p) : 0.0;
+    float cosine = axis_cosine(lens, layer.axis.xyz, p);
+    float h = blend == BLEND_HYBRID ? hybrid_amount(cosine, layer.blend.y, layer.blend.z) : 0.0;
     dot_occlusion = vec4(blend_occlusion(blend, color.r, h), blend_occlusion(blend, color.g, h),
                          blend_occlusion(blend, color.b, h), holdout ? 0.0 : 1.0);
 #endif

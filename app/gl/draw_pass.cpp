@@ -11,17 +11,20 @@
 namespace astrosplat {
 namespace {
 
-// DrawBlock of splat_vertex.glsl; all vectors of four, so that std140 is how C++ lays it out.
+// DrawBlock of splat_vertex.glsl; sixteens of bytes, so that std140 is how C++ lays it out.
 struct LayerBlock {
     glm::vec4 right, up, back, eye_low, axis, blend, falloff;
 };
 struct Block {
-    glm::vec4 camera, range, target;
+    Lens lens;
+    float unused;
+    glm::vec4 target;
     std::int32_t layers_used[4];
     std::int32_t first_splat[DrawPass::most_layers];
     LayerBlock layers[DrawPass::most_layers];
 };
-static_assert(sizeof(LayerBlock) == 7 * 16 && sizeof(Block) == 4 * 16 + 64 * 4 + 64 * 7 * 16);
+static_assert(sizeof(LayerBlock) == 7 * 16 && sizeof(Lens) == 28 &&
+              sizeof(Block) == 4 * 16 + 64 * 4 + 64 * 7 * 16);
 
 constexpr int profiles_unit = 0, nodes_unit = 1, places_unit = 2;  // and 3: colours
 constexpr float widest_useful_px = 512.0f;
@@ -84,8 +87,8 @@ const GlProgram& DrawPass::program(FoldKind kind, bool quads) {
     if (entry) return *entry;
     std::vector<std::string> defines = {"KIND " + std::to_string(static_cast<int>(kind))};
     if (quads) defines.push_back("QUADS");
-    entry = std::make_unique<GlProgram>(ProgramSource{
-        defines, {"maths.glsl", "blend.glsl", "splat_vertex.glsl"}, {"splat_fragment.glsl"}, {}});
+    entry =
+        std::make_unique<GlProgram>(ProgramSource{defines, splat_vertex_files, {"splat_fragment.glsl"}, {}});
     entry->set_block("DrawBlock", 0);
     entry->set_sampler("footprint_profiles", profiles_unit);
     entry->set_sampler("footprint_nodes", nodes_unit);
@@ -99,9 +102,8 @@ void DrawPass::upload_block(const DrawInput& input) {
     Block block;
     std::memset(&block, 0, sizeof block);
     const LayerProjection& p = input.layers[0].projection;
-    block.camera = {p.focal_px, p.center_x_px, p.center_y_px, p.orthographic ? 1.0f : 0.0f};
-    block.range = {p.near, p.far, p.near_fade, p.margin_px};
-    block.target = {float(input.width), float(input.height), 0.5f * widest_point_px_, 0.0f};
+    block.lens = p.lens;
+    block.target = {float(input.width), float(input.height), 0.5f * widest_point_px_, p.margin_px};
     block.layers_used[0] = static_cast<std::int32_t>(input.layers.size());
     for (std::size_t l = 0; l < input.layers.size(); ++l) {
         block.first_splat[l] = static_cast<std::int32_t>(input.layers[l].first);

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gl/footprint_textures.h"
@@ -12,6 +13,11 @@
 #include "render/project.h"
 
 namespace astrosplat {
+
+/// The vertex stage of what draws splats.
+inline const std::vector<std::string> splat_vertex_files = {
+    "maths.glsl",        "blend.glsl",      "lens.glsl",      "instance.glsl",    "perspective.glsl",
+    "orthographic.glsl", "projection.glsl", "footprint.glsl", "splat_vertex.glsl"};
 
 /// One layer of a group: its constants for this picture, its footprints, and where its splats begin.
 struct DrawLayer {

@@ -50,15 +50,13 @@ void EnvironmentPass::Level::hold(const Environment& environment, std::size_t le
     set_sampling(GL_TEXTURE_2D_ARRAY, GL_LINEAR);
 }
 
-EnvironmentPass::EnvironmentPass()
-    : program_({{}, {"screen_vertex.glsl"}, {"environment_fragment.glsl"}, {}}) {
+EnvironmentPass::EnvironmentPass() : program_({{}, {"screen_vertex.glsl"}, environment_fragment_files, {}}) {
     program_.set_sampler("fine_level", fine_unit);
     program_.set_sampler("coarse_level", coarse_unit);
 }
 
 void EnvironmentPass::draw(const Environment& environment, const Camera& camera) {
-    const bool orthographic = camera.projection == Projection::orthographic;
-    const double level = level_of(environment, orthographic ? 0.0 : 1.0 / camera.focal_px);
+    const double level = level_of(environment, pixel_spread(camera));
     const auto fine = static_cast<std::size_t>(level);
     const std::size_t coarse = std::min(fine + 1, (*environment.faces)[0].size() - 1);
     fine_.hold(environment, fine);
@@ -68,8 +66,11 @@ void EnvironmentPass::draw(const Environment& environment, const Camera& camera)
     program_.use();
     const glm::mat3 rotation(environment.environment_from_world * camera.world_from_camera);
     glUniformMatrix3fv(program_.uniform("environment_from_camera"), 1, GL_FALSE, glm::value_ptr(rotation));
-    glUniform4f(program_.uniform("camera"), float(camera.focal_px), float(camera.center_x_px),
-                float(camera.center_y_px), orthographic ? 1.0f : 0.0f);
+    const Lens lens = make_lens(camera);
+    glUniform1i(program_.uniform("lens.projection"), lens.projection);
+    glUniform1f(program_.uniform("lens.focal_px"), lens.focal_px);
+    glUniform1f(program_.uniform("lens.center_x_px"), lens.center_x_px);
+    glUniform1f(program_.uniform("lens.center_y_px"), lens.center_y_px);
     glUniform1f(program_.uniform("coarse_share"), float(level - double(fine)));
     glUniform1f(program_.uniform("gain"), environment.gain);
     glDisable(GL_BLEND);

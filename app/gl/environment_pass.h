@@ -9,6 +9,11 @@
 
 namespace astrosplat {
 
+/// The fragment stage of what draws the environment.
+inline const std::vector<std::string> environment_fragment_files = {
+    "lens.glsl",         "instance.glsl",   "perspective.glsl",
+    "orthographic.glsl", "projection.glsl", "environment_fragment.glsl"};
+
 class EnvironmentPass {
   public:
     EnvironmentPass();

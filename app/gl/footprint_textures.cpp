@@ -11,24 +11,18 @@ namespace astrosplat {
 namespace {
 
 constexpr int profile_samples = 256;  // as in splat_vertex.glsl
-constexpr int steps_per_octave = 32;
-constexpr int node_count = 513;
+constexpr int node_count = shared::NODE_COUNT;
 constexpr std::size_t most_tables = 16;  // more only while one picture needs them
-
-double node_radius_px(int node) {
-    const double octave = std::ldexp(1.0, node / steps_per_octave - 6);
-    return octave * (1.0 + double(node % steps_per_octave) / steps_per_octave);
-}
 
 /// Weights of one radius at equal steps of distance from the flat inside's end to the support's.
 void sample_profile(const FootprintTable& table, int node, float* samples) {
-    const auto radius_px = static_cast<float>(node_radius_px(node));
+    const float radius_px = node_radius_px(static_cast<std::size_t>(node));
     Footprint footprint;
     footprint_at(table, radius_px, 0.5f, 0.5f, footprint);
     footprint.amplitude = 1.0f;
     footprint.edge_gain = 0.0f;
-    const float lo = std::max(0.0f, radius_px * table.core - 4.0f * table.pixel_filter_px);
-    const float hi = table.support_px(radius_px);
+    const auto [lo, hi] =
+        shared::profile_range(table.core, table.reach, 4.0f * table.pixel_filter_px, radius_px);
     for (int i = 0; i < profile_samples; ++i)
         samples[i] = footprint_weight(table, footprint, lo + (hi - lo) * float(i) / (profile_samples - 1));
     samples[profile_samples - 1] = 0.0f;
@@ -40,22 +34,15 @@ struct NodeTexels {
 };
 NodeTexels node_texels(const FootprintTable& table, int node) {
     const FootprintMoments& n = table.nodes[static_cast<std::size_t>(node)].moments;
-    const double radius_px = node_radius_px(node), margin = 4.0 * double(table.pixel_filter_px);
-    const double lo = std::max(0.0, radius_px * double(table.core) - margin);
-    const double hi = radius_px * double(table.reach) + margin;
-    double mass, edge;
-    if (table.linear_in_distance) {
-        const double width = hi - lo;
-        mass = lo * lo + 2.0 * width * (lo * double(n.mean) + width * double(n.first_moment));
-        edge = 2.0 * width * (lo * double(n.edge_mean) + width * double(n.edge_first_moment));
-    } else {
-        const double width = hi * hi - lo * lo;
-        mass = lo * lo + width * double(n.mean);
-        edge = width * double(n.edge_mean);
-    }
+    const bool linear = table.linear_in_distance;
+    const double radius_px = node_radius_px(static_cast<std::size_t>(node));
+    const exact::ProfileRange range =
+        exact::profile_range(table.core, table.reach, 4.0 * double(table.pixel_filter_px), radius_px);
+    const double mass = exact::profile_mass(linear, range, n.mean, n.first_moment);
+    const double edge = exact::edge_mass(linear, range, n.edge_mean, n.edge_first_moment);
     const double wanted = double(table.integral) * radius_px * radius_px;
-    return {{float(real::pi * mass / wanted), n.ripple[0], n.ripple[1], n.ripple[2]},
-            {float(real::pi * edge / wanted), n.edge_ripple[0], n.edge_ripple[1], n.edge_ripple[2]}};
+    return {{float(mass / wanted), n.ripple[0], n.ripple[1], n.ripple[2]},
+            {float(edge / wanted), n.edge_ripple[0], n.edge_ripple[1], n.edge_ripple[2]}};
 }
 
 }  // namespace

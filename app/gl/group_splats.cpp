@@ -122,14 +122,15 @@ bool GroupSplats::request_order(const std::vector<LayerProjection>& projections,
         view.camera_from_layer.push_back(p.camera_from_layer);
         view.origin.push_back(p.origin_in_camera);
     }
-    view.orthographic = !projections.empty() && projections[0].orthographic;
+    if (!projections.empty()) view.projection = projections[0].lens.projection;
     view.far_from = far_from;
     view.places_version = places_version_;
     if (view == requested_ && first_version_ != 0) return false;
     requested_ = view;
     requested_version_ = thread.next_version();
     if (first_version_ == 0) first_version_ = requested_version_;
-    OrderJob job{places_, {}, view.orthographic, far_from, requested_version_};
+    OrderJob job{places_, {}, {}, far_from, requested_version_};
+    job.lens.projection = view.projection;
     for (std::size_t l = 0; l < parts_.size(); ++l)
         job.layers.push_back(
             {parts_[l].first, parts_[l].count, view.camera_from_layer[l], view.origin[l], parts_[l].set});

@@ -74,7 +74,7 @@ class GroupSplats {
     struct View {
         std::vector<glm::dmat3> camera_from_layer;
         std::vector<glm::dvec3> origin;
-        bool orthographic = false;
+        int projection = 0;
         double far_from = 0.0;
         std::uint64_t places_version = 0;
         bool operator==(const View&) const = default;

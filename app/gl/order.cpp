@@ -6,6 +6,8 @@
 #include <bit>
 #include <cmath>
 
+#include "camera/projection.h"
+
 namespace astrosplat {
 namespace {
 
@@ -15,10 +17,10 @@ constexpr std::uint32_t digits = 1u << digit_bits;
 /// ~depth in the upper half, so that ascending is far to near; the splat's index below.
 using Key = std::uint64_t;
 
-std::uint32_t depth_bits(const OrderLayer& layer, const glm::vec4& place, bool orthographic) {
+std::uint32_t depth_bits(const OrderLayer& layer, const glm::vec4& place, const Lens& lens) {
     const glm::vec3 p(layer.camera_from_layer * glm::dvec3(place) + layer.origin_in_camera);
-    const float depth = orthographic ? -p.z : p.x * p.x + p.y * p.y + p.z * p.z;
-    return depth > 0.0f ? std::bit_cast<std::uint32_t>(depth) : 0u;
+    const float key = shared::sort_key(lens, p);
+    return key > 0.0f ? std::bit_cast<std::uint32_t>(key) : 0u;
 }
 
 void make_keys(const OrderJob& job, Buffer<Key>& keys) {
@@ -28,7 +30,7 @@ void make_keys(const OrderJob& job, Buffer<Key>& keys) {
         for (std::int64_t i = layer.first; i < layer.first + layer.count; ++i) {
             const glm::vec4& place = (*job.places)[static_cast<std::size_t>(i)];
             if (place.w < 0.0f) continue;
-            keys.push_back(Key{~depth_bits(layer, place, job.orthographic)} << 32 | Key(i));
+            keys.push_back(Key{~depth_bits(layer, place, job.lens)} << 32 | Key(i));
         }
     }
 }
@@ -78,7 +80,7 @@ Order sort_far_to_near(const OrderJob& job, OrderScratch& scratch) {
     order.version = job.version;
     order.splats.resize(keys.size());
     for (std::size_t i = 0; i < keys.size(); ++i) order.splats[i] = static_cast<std::uint32_t>(keys[i]);
-    const auto limit = static_cast<float>(job.orthographic ? job.far_from : job.far_from * job.far_from);
+    const float limit = shared::key_of_distance(job.lens, static_cast<float>(job.far_from));
     const Key nearest_far = Key{~std::bit_cast<std::uint32_t>(std::max(limit, 0.0f))} << 32;
     order.far_count = std::lower_bound(keys.begin(), keys.end(), nearest_far) - keys.begin();
     return order;

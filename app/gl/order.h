@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "camera/lens.h"
 #include "core/buffer.h"
 #include "splats/splat_set.h"
 
@@ -31,8 +32,8 @@ struct OrderLayer {
 struct OrderJob {
     std::shared_ptr<const Buffer<glm::vec4>> places;  // layer space; w < 0: not drawn
     std::vector<OrderLayer> layers;
-    bool orthographic = false;
-    /// Distance from the eye (orthographic: depth) beyond which `far_count` counts; scene units.
+    Lens lens;  // by whose sort_key they are ordered
+    /// Distance, as the sort key measures it, beyond which `far_count` counts; scene units.
     double far_from = 0.0;
     std::uint64_t version = 0;  // the caller's number for this job
 };
@@ -48,7 +49,7 @@ struct OrderScratch {
     Buffer<std::uint64_t> keys, other;
 };
 
-/// By distance squared from the eye, or depth, with the bits the offline renderer sorts by.
+/// With the bits the offline renderer sorts by.
 Order sort_far_to_near(const OrderJob& job, OrderScratch& scratch);
 
 /// A thread that sorts. Of the jobs for one slot only the newest is done.

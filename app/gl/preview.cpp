@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 
+#include "camera/projection.h"
 #include "core/log.h"
 #include "gl/draw_pass.h"
 #include "gl/environment_pass.h"
@@ -43,15 +44,11 @@ bool needs_own_picture(const BlendGroup& group) {
     return group.blend != Blend::over && group.blend != Blend::add;
 }
 
-/// Distance from the eye (orthographic: 0 or infinity) beyond which no splat that reaches the picture is
-/// wider than a point may be, whatever its place: then z > z_limit, or it lies too far to the side.
+/// Distance, as splats are sorted, beyond which none that reaches the picture is wider than a point may be.
 double far_distance(const LayerProjection& p, double radius, double widest_px, int width, int height) {
     const double room_px = 0.5 * widest_px - double(p.margin_px) - 1.0;
-    const double focal = double(p.focal_px);
-    if (p.orthographic) return radius * focal < room_px ? -1.0 : 1e30;
-    const double z_limit = radius * focal / room_px;
-    const double half_diagonal = std::hypot(double(width), double(height)) + double(p.margin_px);
-    return std::hypot(radius + z_limit * half_diagonal / focal, z_limit);
+    const double diagonal_px = std::hypot(double(width), double(height)) + double(p.margin_px);
+    return double(shared::small_from(p.lens, float(radius), float(room_px), float(diagonal_px)));
 }
 
 /// Distance from the eye to the nearest splat a layer can have; 0 inside.
@@ -154,9 +151,8 @@ void GlPreview::State::update(std::vector<FrameGroup>& frame, int width, int hei
             if (!group.layers[l]->set) continue;
             double jitter = 0.0;
             for (const Noise& noise : group.layers[l]->look.noise) jitter += std::fabs(double(noise.jitter));
-            const double nearest = p.orthographic ? 0.0
-                                                  : distance_to(p, box_of(group.layers[l]->set)) -
-                                                        jitter * double(p.radius_scale);
+            const double nearest =
+                std::max(0.0, distance_to(p, box_of(group.layers[l]->set)) - jitter * double(p.radius_scale));
             group.all_far = group.all_far && nearest > far_from;
         }
         if (group.ordered) splats.request_order(group.projections, group.far_from, orders, g);

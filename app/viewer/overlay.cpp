@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "camera/projection.h"
 #include "scene/animate.h"
 #include "scene/load.h"
 
@@ -11,10 +12,8 @@ namespace astrosplat {
 namespace {
 
 glm::vec2 to_px(const Camera& camera, const glm::dvec3& p) {
-    const double scale =
-        camera.projection == Projection::orthographic ? camera.focal_px : camera.focal_px / -p.z;
-    return {static_cast<float>(camera.center_x_px + scale * p.x),
-            static_cast<float>(camera.center_y_px - scale * p.y)};
+    const exact::Instance at = exact::instance_of(make_exact_lens(camera), p);
+    return {static_cast<float>(at.x_px), static_cast<float>(at.y_px)};
 }
 
 }  // namespace
@@ -49,11 +48,8 @@ std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
 std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_px, double height_px,
                                              double length) {
     const auto corner = [&](double x_px, double y_px) {
-        const double x = (x_px - camera.center_x_px) / camera.focal_px,
-                     y = (camera.center_y_px - y_px) / camera.focal_px;
-        const bool flat = camera.projection == Projection::orthographic;
-        const glm::dvec3 p = flat ? glm::dvec3(x, y, -length) : length * glm::dvec3(x, y, -1.0);
-        return camera.eye + camera.world_from_camera * p;
+        return camera.eye +
+               camera.world_from_camera * exact::point_at_depth(make_exact_lens(camera), x_px, y_px, length);
     };
     const glm::dvec3 corners[] = {corner(0, 0), corner(width_px, 0), corner(width_px, height_px),
                                   corner(0, height_px)};
@@ -67,7 +63,8 @@ std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_
 
 std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std::vector<glm::dvec3>& line) {
     const glm::dmat3 camera_from_world = glm::transpose(camera.world_from_camera);
-    const double front = camera.projection == Projection::orthographic ? 1e300 : -std::max(1e-6, camera.near);
+    const double front =
+        exact::has_parallel_rays(make_exact_lens(camera)) ? 1e300 : -std::max(1e-6, camera.near);
     std::vector<std::vector<glm::vec2>> parts;
     bool open = false;
     glm::dvec3 before(0.0);

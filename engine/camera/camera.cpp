@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "camera/projection.h"
 #include "core/error.h"
 #include "core/real.h"
 
@@ -155,12 +156,36 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
     return camera;
 }
 
-glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px) {
-    if (camera.projection == Projection::orthographic) return -camera.world_from_camera[2];
-    glm::dvec3 ray((x_px - camera.center_x_px) / camera.focal_px,
-                   (camera.center_y_px - y_px) / camera.focal_px, -1.0);
-    return glm::normalize(camera.world_from_camera * ray);
+Lens make_lens(const Camera& camera) {
+    const ExactLens lens = make_exact_lens(camera);
+    return {lens.projection,
+            static_cast<float>(lens.focal_px),
+            static_cast<float>(lens.center_x_px),
+            static_cast<float>(lens.center_y_px),
+            static_cast<float>(lens.near),
+            static_cast<float>(lens.far),
+            static_cast<float>(lens.near_fade)};
 }
+
+ExactLens make_exact_lens(const Camera& camera) {
+    static_assert(static_cast<int>(Projection::perspective) == shared::PROJECTION_PERSPECTIVE &&
+                  static_cast<int>(Projection::orthographic) == shared::PROJECTION_ORTHOGRAPHIC);
+    return {static_cast<int>(camera.projection),
+            camera.focal_px,
+            camera.center_x_px,
+            camera.center_y_px,
+            camera.near,
+            camera.far,
+            camera.near_fade};
+}
+
+glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px) {
+    const ExactLens lens = make_exact_lens(camera);
+    const glm::dvec3 ray = camera.world_from_camera * exact::ray_through(lens, x_px, y_px);
+    return exact::has_parallel_rays(lens) ? ray : glm::normalize(ray);
+}
+
+double pixel_spread(const Camera& camera) { return exact::pixel_spread(make_exact_lens(camera)); }
 
 Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect) {
     return frame_box_within(box, real::tan(real::radians(vertical_fov_deg) * 0.5), aspect);

@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 
+#include "camera/lens.h"
 #include "core/bounds.h"
 
 namespace astrosplat {
@@ -55,9 +56,14 @@ void check_supported(const CameraParams& params);
 /// projections and camera files that a later release brings, and a zero view direction.
 Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box);
 
-/// Unit direction in world space through a point of the picture (px, y down) -- for environments.
-/// Orthographic cameras give the view axis.
+/// The camera as the projections of shaders/shared take it (camera/projection.h).
+Lens make_lens(const Camera& camera);
+ExactLens make_exact_lens(const Camera& camera);
+
+/// Unit direction in world space through a point of the picture (px, y down), for environments.
 glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px);
+/// Angle between the rays of neighbouring pixels, radians; 0 where rays are parallel.
+double pixel_spread(const Camera& camera);
 
 /// Position and target that frame a box from 35 degrees above +z with the given vertical field of view: its
 /// corners fill 90 % of the picture's width or height. An empty box counts as the origin, a point as a cube

@@ -16,6 +16,11 @@ using glm::vec2;
 using glm::vec3;
 using glm::vec4;
 using uint = std::uint32_t;
+// What may be a vector of lanes: render/lanes-inl.h.
+using Float = float;
+using Int = int;
+using Bool = bool;
+using Vec3 = vec3;
 
 inline float intBitsToFloat(int bits) {
     float f;
@@ -36,6 +41,7 @@ inline int min(int a, int b) { return b < a ? b : a; }
 inline int max(int a, int b) { return a < b ? b : a; }
 inline float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
 inline float mix(float a, float b, float t) { return a * (1.0f - t) + b * t; }
+inline float mix(float a, float b, bool take_b) { return take_b ? b : a; }
 inline vec3 mix(vec3 a, vec3 b, float t) { return a * (1.0f - t) + b * t; }
 inline float dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 

@@ -15,16 +15,12 @@ namespace {
 
 constexpr std::int64_t block_px = 8;
 
-double spread_of(const Camera& camera) {
-    return camera.projection == Projection::orthographic ? 0.0 : 1.0 / camera.focal_px;
-}
-
 void draw_exactly(const Environment& environment, const Camera& camera, const Region& part, Image& picture) {
     for (std::int64_t y = part.y; y < part.y + part.height; ++y) {
         for (std::int64_t x = part.x; x < part.x + part.width; ++x) {
             const glm::dvec3 ray =
                 ray_direction(camera, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
-            const glm::vec3 color = sample_environment(environment, ray, spread_of(camera));
+            const glm::vec3 color = sample_environment(environment, ray, pixel_spread(camera));
             std::copy_n(&color[0], 3, picture.at(x, y));
         }
     }
@@ -120,7 +116,7 @@ void draw_backdrop(const Environment& environment, const Camera& camera, std::in
         });
         return;
     }
-    const Image& level = nearest_level(environment, spread_of(camera));
+    const Image& level = nearest_level(environment, pixel_spread(camera));
     const Places places(environment, camera, level, picture);
     parallel_chunks(height, block_px, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t x = 0; x < width; x += block_px) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "camera/lens.h"
 #include "core/buffer.h"
 #include "core/image.h"
 #include "core/progress.h"
@@ -39,8 +40,7 @@ struct FoldSettings {
     FoldKind kind = FoldKind::general;
     float stop = 0.0f;  // a pixel takes nothing more once all its transmittances are below
     bool aovs = false;  // also depth, coverage, count and each layer's light; kinds general and lighten only
-    float focal_px = 1.0f, center_x_px = 0.0f, center_y_px = 0.0f;  // depth of a splat from its distance
-    bool orthographic = false;
+    Lens lens;          // depth of a splat from its distance
 };
 
 /// One blend group's result over one tile, plane by plane; a plane holds cell after cell, block after block,

@@ -10,14 +10,27 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
-#include "core/real.h"
 #include "render/fold_blend-inl.h"
+#include "render/lanes-inl.h"
 #include "render/shared_render.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {
+
+using Float = Lanes<D>;
+using Int = LaneInts<D>;
+using Bool = LaneBools<D>;
+using Vec3 = LaneVectors<D>;
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+namespace {
+using namespace astrosplat::glsl;
+using namespace astrosplat::shared_types;
+#include "footprint.glsl"
+}  // namespace
+#pragma GCC diagnostic pop
 
 /// Squared distance along one axis from `lanes` splats to the nearest pixel centre of a row or column of
 /// blocks.
@@ -72,19 +85,11 @@ HWY_INLINE void interpolate_cubics(const FootprintNode& a, const FootprintNode& 
             interpolate(D(), a.cubic[power] + s, b.cubic[power] + s, t, batch.cubic[i][power] + s);
 }
 
-/// Between which of a table's nodes the radii of splats n to n + lanes lie: footprint_nodes, many at once.
-/// Beyond the table the share is 0, or both nodes are the last one.
-HWY_INLINE void find_nodes(const FootprintTable& table, SplatBatch& batch, int n) {
-    constexpr int bits = FootprintTable::node_bits;
-    const hn::RebindToUnsigned<D> du;
-    const VI radius = hn::BitCast(DI(), load(batch.radius_px + n)), zero = hn::Zero(DI()),
-             last = hn::Set(DI(), static_cast<int>(table.nodes.size()) - 1);
-    const VI index = hn::Sub(hn::BitCast(DI(), hn::ShiftRight<bits>(hn::BitCast(du, radius))),
-                             hn::Set(DI(), static_cast<int>(FootprintTable::first_node)));
-    const VI first = hn::Min(hn::Max(index, zero), last);
-    const VI rest = hn::IfThenElseZero(hn::Eq(first, index), hn::And(radius, hn::Set(DI(), (1 << bits) - 1)));
-    store(hn::Mul(hn::ConvertTo(D(), rest), all(1.0f / (1 << bits))), batch.node_share + n);
-    hn::Store(first, DI(), batch.node + n);
+/// Between which nodes the radii of splats n to n + lanes lie.
+HWY_INLINE void find_nodes(SplatBatch& batch, int n) {
+    const NodePlace place = node_of_radius(load(batch.radius_px + n));
+    hn::Store(place.first.v, DI(), batch.node + n);
+    store(place.share.v, batch.node_share + n);
 }
 
 /// The part of a footprint that is looked up: cubics and moments between the table's nodes.
@@ -115,67 +120,37 @@ struct Moments {
 };
 
 /// Relative excess of the sum over all pixels over the integral; moments 1 to 3 are the spectrum.
-HWY_INLINE V ripple(const Moments& m, V cx, V cy) {
-    const V one = all(1.0f), two = all(2.0f);
-    const V c2 =
-        hn::Add(hn::Sub(hn::Mul(hn::Mul(two, cx), cx), one), hn::Sub(hn::Mul(hn::Mul(two, cy), cy), one));
-    const V sum = hn::Add(hn::Add(hn::Mul(hn::Mul(two, m.v[1]), hn::Add(cx, cy)),
-                                  hn::Mul(hn::Mul(all(4.0f), m.v[2]), hn::Mul(cx, cy))),
-                          hn::Mul(hn::Mul(two, m.v[3]), c2));
-    return hn::IfThenZeroElse(hn::Lt(hn::Abs(m.v[1]), all(1e-6f)), sum);
-}
-
-/// Not those that take the shape of the last node itself: footprint_at does not normalise them either.
-HWY_INLINE M is_tabulated(const FootprintTable& table, V radius_px) {
-    const auto node_radius_px = [&](std::size_t node) {  // the inverse of footprint_nodes
-        return all(std::bit_cast<float>(static_cast<std::uint32_t>(
-            (FootprintTable::first_node + static_cast<std::int64_t>(node)) << FootprintTable::node_bits)));
-    };
-    const std::size_t last = table.nodes.size() - 1;
-    return hn::And(hn::Lt(radius_px, node_radius_px(last)), hn::Ne(radius_px, node_radius_px(last - 1)));
-}
+HWY_INLINE Float ripple(const Moments& m, V cx, V cy) { return pixel_ripple(m.v[1], m.v[2], m.v[3], cx, cy); }
 
 /// The part of the footprint that is computed, for splats n to n + lanes: footprint_at, many at once.
 HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& batch, int n) {
-    constexpr float smallest = FootprintTable::smallest_radius_px;
-    const V zero = hn::Zero(D()), one = all(1.0f), pi = all(static_cast<float>(real::pi));
-    const V radius = load(batch.radius_px + n), tabulated_px = hn::Max(radius, all(smallest));
-    const V ratio = hn::Div(radius, all(smallest));
-    const V shrink = hn::IfThenElse(hn::Lt(radius, all(smallest)), hn::Mul(ratio, ratio), one);
-    const V margin = all(4.0f * table.pixel_filter_px);
-    const V inner = hn::Max(zero, hn::Sub(hn::Mul(tabulated_px, all(table.core)), margin));
-    const V outer = hn::Add(hn::Mul(tabulated_px, all(table.reach)), margin);
+    const bool linear = table.linear_in_distance;
+    const Float radius_px = load(batch.radius_px + n), tabulated_px = max(radius_px, SMALLEST_RADIUS_PX);
+    const NodePlace node{hn::Load(DI(), batch.node + n), load(batch.node_share + n)};
+    const ProfileRange range =
+        profile_range(table.core, table.reach, 4.0f * table.pixel_filter_px, tabulated_px);
+    Float first_moment = 0.0f, edge_first_moment = 0.0f;
+    if (linear) {
+        const Moments first(batch, 2, n);
+        first_moment = first.v[0];
+        edge_first_moment = first.v[1];
+    }
     const Moments plain(batch, 0, n);
-    V lo = inner, width = hn::Sub(outer, inner), mass, edge_mass = one;
-    if (table.linear_in_distance) {
-        const Moments edge(batch, 1, n), first(batch, 2, n);
-        const auto integral = [&](V mean, V first_moment) {
-            return hn::Add(hn::Mul(inner, mean), hn::Mul(width, first_moment));
-        };
-        mass = hn::Mul(pi, hn::Add(hn::Mul(inner, inner),
-                                   hn::Mul(hn::Mul(all(2.0f), width), integral(plain.v[0], first.v[0]))));
-        edge_mass = hn::Mul(hn::Mul(hn::Mul(pi, all(2.0f)), width), integral(edge.v[0], first.v[1]));
-    } else {
-        lo = hn::Mul(inner, inner);
-        width = hn::Sub(hn::Mul(outer, outer), lo);
-        mass = hn::Mul(pi, hn::Add(lo, hn::Mul(width, plain.v[0])));
-        if (table.flat_core) edge_mass = hn::Mul(hn::Mul(pi, width), Moments(batch, 1, n).v[0]);
-    }
     const V cx = pixel_cosines_of(load(batch.x_px + n)), cy = pixel_cosines_of(load(batch.y_px + n));
-    const V wanted = hn::Mul(hn::Mul(all(table.integral), tabulated_px), tabulated_px);
-    const V found = hn::Mul(mass, hn::Add(one, ripple(plain, cx, cy)));
-    const auto tabulated = is_tabulated(table, radius);
-    V amplitude = shrink, edge_gain = zero;
+    const Float found =
+        profile_mass(linear, range, plain.v[0], first_moment) * (1.0f + ripple(plain, cx, cy));
+    Float edge_found = 1.0f;
     if (table.flat_core) {
-        const V edge_found = hn::Mul(edge_mass, hn::Add(one, ripple(Moments(batch, 1, n), cx, cy)));
-        edge_gain = hn::IfThenElseZero(tabulated, hn::Div(hn::Sub(wanted, found), edge_found));
-    } else {
-        amplitude = hn::IfThenElse(tabulated, hn::Mul(shrink, hn::Div(wanted, found)), shrink);
+        const Moments edge(batch, 1, n);
+        edge_found = edge_mass(linear, range, edge.v[0], edge_first_moment) * (1.0f + ripple(edge, cx, cy));
     }
-    store(lo, batch.lo + n);
-    store(hn::Div(all(static_cast<float>(segments)), width), batch.scale + n);
-    store(edge_gain, batch.edge_gain + n);
-    store(amplitude, batch.weight_gain + n);
+    const FootprintGains gains =
+        footprint_gains(table.flat_core, is_tabulated(node), shrink_of_radius(radius_px),
+                        table.integral * tabulated_px * tabulated_px, found, edge_found);
+    store(profile_begin(linear, range).v, batch.lo + n);
+    store((static_cast<float>(segments) / profile_width(linear, range)).v, batch.scale + n);
+    store(gains.edge_gain.v, batch.edge_gain + n);
+    store(gains.amplitude.v, batch.weight_gain + n);
 }
 
 /// Weights of a splat whose layer is not the only one.
@@ -227,10 +202,7 @@ HWY_INLINE void prepare_screens(SplatBatch& batch, int n) {
 }
 
 inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {
-    const float x = (splat.x_px - settings.center_x_px) / settings.focal_px;
-    const float y = (splat.y_px - settings.center_y_px) / settings.focal_px;
-    const float key = std::bit_cast<float>(splat.depth);
-    return settings.orthographic ? key : std::sqrt(key / (1.0f + x * x + y * y));
+    return shared::axis_depth(settings.lens, splat.x_px, splat.y_px, std::bit_cast<float>(splat.depth));
 }
 
 /// Everything about the splats `which` of the batch.
@@ -251,7 +223,7 @@ void prepare_splats(const FoldJob& job, const FoldCommon& common, SplatBits whic
         }
     }
     if (common.footprints) {
-        for (int n = 0; n < batch.count; n += lanes) find_nodes(*common.footprints, batch, n);
+        for (int n = 0; n < batch.count; n += lanes) find_nodes(batch, n);
         while (which.any()) look_up_footprint(*common.footprints, batch, which.take_first());
     }
     constexpr float faint = 0.99f;  // leaves more room than the cubics go above 1

@@ -1,6 +1,7 @@
 #include "render/footprint.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -15,8 +16,6 @@ namespace {
 
 constexpr int segments = FootprintNode::segments;
 constexpr int samples = 3 * segments + 1;  // each cubic passes through four equidistant samples
-constexpr int steps_per_octave = 32;       // nodes per octave: the five top bits of the float's mantissa
-constexpr int octaves = 16;                // up to 2^10 px
 const double lattice_frequencies[3] = {1.0, std::sqrt(2.0), 2.0};  // of the pixel raster, cycles per px
 constexpr double ripple_limit_px = 32.0;  // beyond, the spectrum at one cycle per pixel is below 1e-4
 
@@ -119,18 +118,14 @@ class Profile {
 };
 
 /// Range of d over which u runs from 0 to 1.
-struct Range {
-    double lo_px, hi_px;
-};
-Range profile_range(const FootprintTable& table, double radius_px) {
-    const double margin = 4.0 * table.pixel_filter_px;
-    return {std::max(0.0, radius_px * table.core - margin), radius_px * table.reach + margin};
+exact::ProfileRange range_of(const FootprintTable& table, double radius_px) {
+    return exact::profile_range(table.core, table.reach, 4.0 * table.pixel_filter_px, radius_px);
 }
 
-double distance_at(const FootprintTable& table, const Range& range, double u) {
-    if (table.linear_in_distance) return range.lo_px + (range.hi_px - range.lo_px) * u;
-    const double lo = range.lo_px * range.lo_px, hi = range.hi_px * range.hi_px;
-    return std::sqrt(lo + (hi - lo) * u);
+double distance_at(const FootprintTable& table, const exact::ProfileRange& range, double u) {
+    const double place = exact::profile_begin(table.linear_in_distance, range) +
+                         exact::profile_width(table.linear_in_distance, range) * u;
+    return table.linear_in_distance ? place : std::sqrt(place);
 }
 
 /// Values of P at the samples, bent by less than 1e-4 so that it ends at exactly 0 and, with a flat inside,
@@ -138,14 +133,13 @@ double distance_at(const FootprintTable& table, const Range& range, double u) {
 std::array<double, samples> sample_profile(const FootprintTable& table, const Falloff& falloff,
                                            double radius_px) {
     const Profile profile(falloff, radius_px, table.pixel_filter_px);
-    const Range range = profile_range(table, radius_px);
+    const exact::ProfileRange range = range_of(table, radius_px);
     std::array<double, samples> p;
     for (int i = 0; i < samples; ++i) p[i] = profile.at(distance_at(table, range, double(i) / (samples - 1)));
     const double excess = p[samples - 1];
     // Also for the node just below the radius where a flat inside begins: it is interpolated with the next
     // one.
-    const bool flat_inside =
-        radius_px * (1.0 + 1.0 / steps_per_octave) * table.core > 4.0 * table.pixel_filter_px;
+    const bool flat_inside = radius_px * (1.0 + 1.0 / 32.0) * table.core > 4.0 * table.pixel_filter_px;
     const double lack = flat_inside ? 1.0 - p[0] : 0.0;
     for (int i = 0; i < samples; ++i) {
         const double u = double(i) / (samples - 1);
@@ -164,7 +158,7 @@ std::array<double, 4> cubic_through(const double* p) {
 /// Spectrum of P (1 - P) at `frequency` cycles per px.
 double edge_spectrum(const FootprintTable& table, const FootprintNode& node, double radius_px,
                      double frequency) {
-    const Range range = profile_range(table, radius_px);
+    const exact::ProfileRange range = range_of(table, radius_px);
     double sum = 0.0;
     for (int s = 0; s < segments; ++s) {
         const auto distance = [&](double f) { return distance_at(table, range, (s + f) / segments); };
@@ -221,16 +215,19 @@ std::array<float, 256> make_cosines() {
     return table;
 }
 
+/// A moment between the nodes of a radius.
+float moment(const FootprintNodes& nodes, float FootprintMoments::*field) {
+    const float a = nodes.a->moments.*field, b = nodes.b->moments.*field;
+    return a + (b - a) * nodes.t;
+}
+
 /// Relative excess of the sum over all pixels over the integral, for a spectrum of either kind.
 float ripple(const FootprintNodes& nodes, float (FootprintMoments::*spectrum)[3], float x_px, float y_px) {
     const auto at = [&](int i) {
         const float a = (nodes.a->moments.*spectrum)[i], b = (nodes.b->moments.*spectrum)[i];
         return a + (b - a) * nodes.t;
     };
-    if (std::fabs(at(0)) < 1e-6f) return 0.0f;
-    const float cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
-    const float c2 = (2.0f * cx * cx - 1.0f) + (2.0f * cy * cy - 1.0f);
-    return 2.0f * at(0) * (cx + cy) + 4.0f * at(1) * (cx * cy) + 2.0f * at(2) * c2;
+    return shared::pixel_ripple(at(0), at(1), at(2), pixel_cosine(x_px), pixel_cosine(y_px));
 }
 
 }  // namespace
@@ -251,7 +248,7 @@ FootprintTable begin_footprint_table(const Falloff& falloff, float pixel_filter_
         table.reach = static_cast<float>(std::sqrt(exponent / falloff.sharpness));
     if (falloff.shape == Shape::exponential && falloff.sharpness > exponent)
         table.reach = static_cast<float>(exponent / falloff.sharpness);
-    table.nodes.resize(octaves * steps_per_octave + 1);
+    table.nodes.resize(shared::NODE_COUNT);
     return table;
 }
 
@@ -269,10 +266,7 @@ void make_footprint_nodes(FootprintTable& table, float least_px, float largest_p
         const std::size_t i = first + static_cast<std::size_t>(n);
         if (i >= table.first_made && i < table.end_made) return;
         progress.check();
-        const double octave = static_cast<double>(std::uint64_t{1} << (i / steps_per_octave));
-        const double radius_px = double{FootprintTable::smallest_radius_px} * octave *
-                                 (1.0 + double(i % steps_per_octave) / steps_per_octave);
-        table.nodes[i] = make_node(table, table.falloff, radius_px);
+        table.nodes[i] = make_node(table, table.falloff, double{node_radius_px(i)});
     });
     table.first_made = first;
     table.end_made = end;
@@ -286,54 +280,42 @@ FootprintTable make_footprint_table(const Falloff& falloff, float pixel_filter_p
 
 const std::array<float, 256> pixel_cosines = make_cosines();
 
+FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px) {
+    const shared::NodePlace place = shared::node_of_radius(radius_px);
+    const FootprintNode* first = table.nodes.data() + place.first;
+    return {first, std::min(first + (place.share > 0.0f ? 1 : 0), &table.nodes.back()), place.share};
+}
+
+float node_radius_px(std::size_t node) {
+    const auto bits = static_cast<std::uint32_t>(shared::FIRST_NODE) + static_cast<std::uint32_t>(node);
+    return std::bit_cast<float>(bits << shared::NODE_BITS);
+}
+
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px,
                   Footprint& footprint) {
+    using Moments = FootprintMoments;
     const FootprintNodes pair = footprint_nodes(table, radius_px);
-    const auto moment = [&](float FootprintMoments::*field) {
-        const float a = pair.a->moments.*field, b = pair.b->moments.*field;
-        return a + (b - a) * pair.t;
-    };
-    footprint.node_a = pair.a;
-    footprint.node_b = pair.b;
-    footprint.t = pair.t;
-
-    constexpr float pi = static_cast<float>(real::pi);
-    constexpr float smallest = FootprintTable::smallest_radius_px;
-    const float tabulated_px =
-        std::max(radius_px, smallest);  // below, the shape is the filter's and light is R^2
-    const float shrink = radius_px < smallest ? (radius_px / smallest) * (radius_px / smallest) : 1.0f;
-    const float margin = 4.0f * table.pixel_filter_px;
-    const float lo = std::max(0.0f, tabulated_px * table.core - margin);
-    const float hi = tabulated_px * table.reach + margin;
-    const float mean = moment(&FootprintMoments::mean), edge_mean = moment(&FootprintMoments::edge_mean);
-    float mass, edge_mass;
-    if (table.linear_in_distance) {
-        const float width = hi - lo;
-        footprint.lo = lo;
-        footprint.scale = static_cast<float>(segments) / width;
-        mass = pi * (lo * lo + 2.0f * width * (lo * mean + width * moment(&FootprintMoments::first_moment)));
-        edge_mass =
-            pi * 2.0f * width * (lo * edge_mean + width * moment(&FootprintMoments::edge_first_moment));
-    } else {
-        const float width = hi * hi - lo * lo;
-        footprint.lo = lo * lo;
-        footprint.scale = static_cast<float>(segments) / width;
-        mass = pi * (lo * lo + width * mean);
-        edge_mass = pi * width * edge_mean;
-    }
-    // Beyond the table (R > 1024 px) the profile keeps its shape and the pixels sample it finely: nothing to
-    // mend.
-    const bool tabulated = pair.b != &table.nodes.back() || pair.t > 0.0f;
-    const float wanted = table.integral * tabulated_px * tabulated_px;
-    const float found = mass * (1.0f + ripple(pair, &FootprintMoments::ripple, x_px, y_px));
-    footprint.support_px = table.support_px(tabulated_px);
-    footprint.amplitude = shrink;
-    footprint.edge_gain = 0.0f;
-    if (tabulated && table.flat_core)
-        footprint.edge_gain = (wanted - found) /
-                              (edge_mass * (1.0f + ripple(pair, &FootprintMoments::edge_ripple, x_px, y_px)));
-    else if (tabulated)
-        footprint.amplitude = shrink * (wanted / found);
+    const bool linear = table.linear_in_distance;
+    const float tabulated_px = std::max(radius_px, shared::SMALLEST_RADIUS_PX);
+    const shared::ProfileRange range =
+        shared::profile_range(table.core, table.reach, 4.0f * table.pixel_filter_px, tabulated_px);
+    const float mass = shared::profile_mass(linear, range, moment(pair, &Moments::mean),
+                                            moment(pair, &Moments::first_moment));
+    const float edge = shared::edge_mass(linear, range, moment(pair, &Moments::edge_mean),
+                                         moment(pair, &Moments::edge_first_moment));
+    const shared::FootprintGains gains = shared::footprint_gains(
+        table.flat_core, shared::is_tabulated(shared::node_of_radius(radius_px)),
+        shared::shrink_of_radius(radius_px), table.integral * tabulated_px * tabulated_px,
+        mass * (1.0f + ripple(pair, &Moments::ripple, x_px, y_px)),
+        edge * (1.0f + ripple(pair, &Moments::edge_ripple, x_px, y_px)));
+    footprint = {pair.a,
+                 pair.b,
+                 pair.t,
+                 shared::profile_begin(linear, range),
+                 static_cast<float>(segments) / shared::profile_width(linear, range),
+                 gains.amplitude,
+                 gains.edge_gain,
+                 table.support_px(tabulated_px)};
 }
 
 float footprint_weight(const FootprintTable& table, const Footprint& footprint, float distance_px) {

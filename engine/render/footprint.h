@@ -15,12 +15,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <vector>
 
 #include "core/progress.h"
 #include "render/layer_render.h"
+#include "render/shared_render.h"
 
 namespace astrosplat {
 
@@ -43,11 +43,6 @@ struct alignas(64) FootprintNode {
 };
 
 struct FootprintTable {
-    static constexpr int first_exponent = -6;
-    static constexpr float smallest_radius_px = 1.0f / 64.0f;  // 2^first_exponent
-    // A node's radius, as bits of a float: 32 nodes an octave, told apart by the mantissa's five top bits.
-    static constexpr int node_bits = 23 - 5;
-    static constexpr std::int64_t first_node = std::int64_t{127 + first_exponent} << 5;
     std::vector<FootprintNode> nodes;          // 0 until they are made
     std::size_t first_made = 0, end_made = 0;  // the nodes that exist
     Falloff falloff;
@@ -62,7 +57,7 @@ struct FootprintTable {
     float support_px(float radius_px) const { return radius_px * reach + 4.0f * pixel_filter_px; }
     /// The same for the shape that is drawn: radii below the smallest tabulated one have its shape.
     float drawn_support_px(float radius_px) const {
-        return support_px(std::max(radius_px, smallest_radius_px));
+        return support_px(std::max(radius_px, shared::SMALLEST_RADIUS_PX));
     }
 };
 
@@ -94,16 +89,9 @@ struct FootprintNodes {
     const FootprintNode* b;
     float t;
 };
-inline FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px) {
-    constexpr int step_bits = FootprintTable::node_bits;
-    const auto bits = std::bit_cast<std::uint32_t>(radius_px);
-    const std::int64_t index = (bits >> step_bits) - FootprintTable::first_node;
-    if (index < 0) return {table.nodes.data(), table.nodes.data(), 0.0f};
-    const FootprintNode* node = table.nodes.data() + index;
-    if (node >= &table.nodes.back()) return {&table.nodes.back(), &table.nodes.back(), 0.0f};
-    const float t = static_cast<float>(bits & ((1u << step_bits) - 1u)) * (1.0f / (1u << step_bits));
-    return {node, node + 1, t};
-}
+FootprintNodes footprint_nodes(const FootprintTable& table, float radius_px);
+/// The radius of a node, px.
+float node_radius_px(std::size_t node);
 
 /// -cos(2 pi i / 256): splat centres are snapped to 1/256 px.
 extern const std::array<float, 256> pixel_cosines;

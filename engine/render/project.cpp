@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "camera/projection.h"
 #include "render/project_vector.h"
 #include "render/shared_render.h"
 
@@ -11,10 +12,8 @@ namespace astrosplat {
 
 std::uint16_t hybrid_of(const LayerProjection& layer, const glm::vec3& p) {
     if (layer.render.blend != Blend::hybrid) return 0;
-    const float along = std::fabs(shared::dot(layer.axis_in_camera, p));
-    const float cosine =
-        layer.orthographic ? std::fabs(layer.axis_in_camera.z) : along / std::sqrt(shared::dot(p, p));
-    const float h = shared::hybrid_amount(cosine, layer.render.hybrid_from_deg, layer.render.hybrid_to_deg);
+    const float h = shared::hybrid_amount(shared::axis_cosine(layer.lens, layer.axis_in_camera, p),
+                                          layer.render.hybrid_from_deg, layer.render.hybrid_to_deg);
     return static_cast<std::uint16_t>(h * 65535.0f + 0.5f);
 }
 
@@ -32,36 +31,25 @@ glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
     return glm::vec3(layer.camera_from_layer * glm::dvec3(p) + layer.origin_in_camera);
 }
 
-/// Rises from 0 at the near plane to 1 where the splat is a radius (or near_fade) behind it.
-float near_fade(const LayerProjection& layer, float z, float radius) {
-    const float t = std::min(1.0f, (z - layer.near) / std::max(layer.near_fade, radius));
-    return t * t * (3.0f - 2.0f * t);
-}
-
-float snap(float px) { return std::floor(px * 256.0f + 0.5f) * (1.0f / 256.0f); }
-
 /// Projects one splat; false when it does not show.
 bool project_one(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
                  const ScreenRect& rect, ScreenSplat& out) {
-    const glm::vec3& p = splat.position;
-    const float z = -p.z;
-    if (!(z > layer.near) || (layer.far > 0.0f && z > layer.far) || !(splat.alpha > 0.0f)) return false;
-    const float px_per_unit = layer.orthographic ? layer.focal_px : layer.focal_px / z;
-    out.radius_px = splat.radius * px_per_unit;
-    out.x_px = snap(layer.center_x_px + p.x * px_per_unit);
-    out.y_px = snap(layer.center_y_px - p.y * px_per_unit);
+    const shared::Instance at = shared::instance_of(layer.lens, splat.position);
+    if (!shared::is_in_range(layer.lens, at.depth) || !(splat.alpha > 0.0f)) return false;
+    out.radius_px = splat.radius * at.px_per_unit;
+    out.x_px = shared::snap_px(at.x_px);
+    out.y_px = shared::snap_px(at.y_px);
     const float support_px = out.radius_px * layer.reach + layer.margin_px;
-    if (!(out.x_px + support_px > rect.x0 && out.x_px - support_px < rect.x1 &&
-          out.y_px + support_px > rect.y0 && out.y_px - support_px < rect.y1))
+    if (!shared::touches_rect(out.x_px, out.y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1))
         return false;
-    out.opacity = splat.alpha * layer.opacity * near_fade(layer, z, splat.radius);
+    out.opacity = splat.alpha * layer.opacity * shared::near_fade(layer.lens, at.depth, splat.radius);
     out.color[0] = splat.color.x;
     out.color[1] = splat.color.y;
     out.color[2] = splat.color.z;
-    out.depth = std::bit_cast<std::uint32_t>(layer.orthographic ? z : shared::dot(p, p));
+    out.depth = std::bit_cast<std::uint32_t>(shared::sort_key(layer.lens, splat.position));
     out.index = static_cast<std::uint32_t>(index);
     out.layer = layer.layer;
-    out.hybrid = hybrid_of(layer, p);
+    out.hybrid = hybrid_of(layer, splat.position);
     return out.opacity > 0.0f;
 }
 
@@ -116,30 +104,28 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
     }
 }
 
+/// Whether no child of a splat in front of the camera can touch `rect`: they reach `reach` scene units from
+/// its centre.
+bool children_miss(const LayerProjection& layer, const glm::vec3& p, float reach, const ScreenRect& rect) {
+    const shared::Instance at = shared::instance_of(layer.lens, p);
+    const shared::Instance nearest = shared::instance_of(layer.lens, {p.x, p.y, p.z + reach});
+    const float moved_px = std::fabs(nearest.x_px - at.x_px) + std::fabs(nearest.y_px - at.y_px);
+    const float support_px = reach * nearest.px_per_unit + layer.margin_px + moved_px;
+    return !shared::touches_rect(at.x_px, at.y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1);
+}
+
 /// True when the splat was replaced by children (of which none may show). A splat whose centre has passed the
 /// camera may still have children in front of it, so the size is taken no nearer than the near plane.
 bool project_as_children(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
                          const ScreenRect& rect, Buffer<ScreenSplat>& out) {
-    const float z = std::max(-splat.position.z, layer.near), reach = splat.radius * 1.25f;
-    const float px_per_unit = layer.orthographic ? layer.focal_px : layer.focal_px / z;
+    const glm::vec3& p = splat.position;
+    const float near = layer.lens.near, reach = splat.radius * 1.25f;
+    const float px_per_unit = shared::instance_of(layer.lens, {p.x, p.y, std::min(p.z, -near)}).px_per_unit;
     const LevelChoice choice =
         choose_levels(2.0f * splat.radius * px_per_unit, layer.lod_limit_px, layer.render.lod.max_children);
     if (choice.fine == 0) return false;
-    if (-splat.position.z + reach < layer.near) return true;
-    if (-splat.position.z - reach >
-        layer.near) {  // wholly in front: its children may all lie outside the picture
-        const float nearest =
-            layer.orthographic ? layer.focal_px : layer.focal_px / (-splat.position.z - reach);
-        const float x_px = splat.position.x * px_per_unit, y_px = -splat.position.y * px_per_unit;
-        const float grow = layer.orthographic ? 1.0f : nearest / px_per_unit;
-        const float support_px =
-            reach * nearest + layer.margin_px + (grow - 1.0f) * (std::fabs(x_px) + std::fabs(y_px));
-        if (layer.center_x_px + x_px + support_px < rect.x0 ||
-            layer.center_x_px + x_px - support_px > rect.x1 ||
-            layer.center_y_px + y_px + support_px < rect.y0 ||
-            layer.center_y_px + y_px - support_px > rect.y1)
-            return true;
-    }
+    if (-p.z + reach < near) return true;
+    if (-p.z - reach > near && children_miss(layer, p, reach, rect)) return true;
     if (layer.render.falloff.shape == Falloff::Shape::constant && splat.alpha > 0.5f) return false;
     const LevelShades shades = shade_levels(layer, choice, splat);
     project_level(layer, splat, index, choice.coarse, shades.coarse, rect, out);
@@ -160,13 +146,7 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
     p.axis_in_camera = glm::vec3(axis / std::sqrt(glm::dot(axis, axis)));
     p.radius_scale = static_cast<float>(layer.scale);
     p.opacity = layer.render.opacity;
-    p.focal_px = static_cast<float>(camera.focal_px);
-    p.center_x_px = static_cast<float>(camera.center_x_px);
-    p.center_y_px = static_cast<float>(camera.center_y_px);
-    p.near = static_cast<float>(camera.near);
-    p.far = static_cast<float>(camera.far);
-    p.near_fade = static_cast<float>(camera.near_fade);
-    p.orthographic = camera.projection == Projection::orthographic;
+    p.lens = make_lens(camera);
     p.margin_px = 4.0f * settings.pixel_filter;
     p.render = layer.render;
     // Lighten keeps the brightest splat of a pixel: no number of children has the parent's light, so it is

@@ -1,5 +1,5 @@
 // Projection: shaded splats of one layer -> 0..n screen splats each, through the camera, with near fade,
-// hybrid angle and level of detail.
+// hybrid angle and level of detail. The mathematics of the projections is shaders/shared/projection.glsl.
 #pragma once
 
 #include <cstdint>
@@ -25,11 +25,9 @@ struct LayerProjection {
     glm::vec3 axis_in_camera{0.0f, 1.0f, 0.0f};
     float radius_scale = 1.0f;
     float opacity = 1.0f;
-    float focal_px = 1.0f, center_x_px = 0.0f, center_y_px = 0.0f;
-    float near = 0.0f, far = 0.0f, near_fade = 0.0f;
+    Lens lens;
     float reach = 1.0f, margin_px = 2.0f;  // support = radius * reach + margin
     float lod_limit_px = 0.0f;
-    bool orthographic = false;
     LayerRender render;
     std::uint32_t seed = 1;
     std::uint16_t layer = 0;

@@ -181,10 +181,7 @@ void prepare(Job& job, RenderCache::State& cache) {
     float largest = largest_light(layers, job.progress);
     if (job.environment) largest = std::max(largest, job.environment->largest);
     job.fold.stop = stop_threshold(largest, settings.exposure);
-    job.fold.focal_px = static_cast<float>(camera.focal_px);
-    job.fold.center_x_px = static_cast<float>(camera.center_x_px);
-    job.fold.center_y_px = static_cast<float>(camera.center_y_px);
-    job.fold.orthographic = camera.projection == Projection::orthographic;
+    job.fold.lens = make_lens(camera);
 }
 
 /// Scratch of one worker.

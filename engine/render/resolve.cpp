@@ -81,7 +81,7 @@ void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Env
     if (settings_.aov_layers) light_.assign(size * layer_count_ * 4, 0.0f);
     if (settings_.backdrop) return begin_with_backdrop(tile);
     if (!environment) return;
-    const double spread = camera.projection == Projection::orthographic ? 0.0 : 1.0 / camera.focal_px;
+    const double spread = pixel_spread(camera);
     for (int y = 0; y < tile.height; ++y) {
         for (int x = 0; x < tile.width; ++x) {
             PixelState& pixel = pixels_[static_cast<std::size_t>(y * tile.width + x)];

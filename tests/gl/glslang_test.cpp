@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "gl/draw_pass.h"
+#include "gl/environment_pass.h"
 #include "gl/shader_text.h"
 #include "support/temp_folder.h"
 
@@ -32,9 +34,8 @@ class ReferenceCompiler : public ::testing::Test {
 
 TEST_F(ReferenceCompiler, TakesTheSplats) {
     for (const char* kind : {"KIND 0", "KIND 1", "KIND 2", "KIND 3"}) {
-        EXPECT_TRUE(takes("vert", {kind}, {"maths.glsl", "blend.glsl", "splat_vertex.glsl"})) << kind;
-        EXPECT_TRUE(takes("vert", {kind, "QUADS"}, {"maths.glsl", "blend.glsl", "splat_vertex.glsl"}))
-            << kind;
+        EXPECT_TRUE(takes("vert", {kind}, splat_vertex_files)) << kind;
+        EXPECT_TRUE(takes("vert", {kind, "QUADS"}, splat_vertex_files)) << kind;
         EXPECT_TRUE(takes("frag", {kind}, {"splat_fragment.glsl"})) << kind;
     }
     EXPECT_FALSE(takes("frag", {}, {"splat_fragment.glsl"}));  // the test can fail
@@ -48,7 +49,7 @@ TEST_F(ReferenceCompiler, TakesTheLook) {
 
 TEST_F(ReferenceCompiler, TakesThePassesOverThePicture) {
     EXPECT_TRUE(takes("vert", {}, {"screen_vertex.glsl"}));
-    EXPECT_TRUE(takes("frag", {}, {"environment_fragment.glsl"}));
+    EXPECT_TRUE(takes("frag", {}, environment_fragment_files));
     EXPECT_TRUE(takes("frag", {"LAYS 0"}, {"lay_fragment.glsl"}));
     EXPECT_TRUE(takes("frag", {"LAYS 2"}, {"lay_fragment.glsl"}));
     EXPECT_TRUE(takes("frag", {"VIEW 2", "TAPS_A 1", "DITHER"}, {"display_fragment.glsl"}));

@@ -39,7 +39,8 @@ TEST(PreviewOrder, FarthestFirst) { EXPECT_EQ(order_of(job_at({-2, -5, -3, -1}))
 TEST(PreviewOrder, BehindTheEyeCountsByDistanceToo) {
     EXPECT_EQ(order_of(job_at({-2, 5, -3})), (Indices{1, 2, 0}));
     OrderJob job = job_at({-2, 5, -3});
-    job.orthographic = true;  // by depth: what lies behind comes last
+    job.lens.projection =
+        static_cast<int>(Projection::orthographic);  // by depth: what lies behind comes last
     EXPECT_EQ(order_of(job), (Indices{2, 0, 1}));
 }
 

@@ -136,6 +136,22 @@ TEST(Positions, EaseStartsAndEndsAtRest) {
     EXPECT_GT(moved(9.99, 10), 1e-3);
 }
 
+// A slow stretch before a fast one: the chord over both is far steeper than the slow stretch may take.
+TEST(Positions, NeverRunBackwardsBetweenSlowAndFastStretches) {
+    Positions keys = {{0, {0, 0, 0}, smooth}, {10, {0.01, 0, 0}, smooth}, {11, {100, 0, 0}, smooth}};
+    for (Ends ends : {Ends::ease, Ends::through}) {
+        double before = 0.0;
+        for (int i = 0; i <= 1100; ++i) {
+            const double x = evaluate_position(keys, i * 0.01, ends, false).x;
+            ASSERT_GE(x, before) << "frame " << i * 0.01;
+            before = x;
+        }
+    }
+    Rotations turn = {{0, about_y(0), smooth}, {10, about_y(0.1), smooth}, {11, about_y(120), smooth}};
+    for (int i = 0; i <= 1000; ++i)
+        ASSERT_GE(degrees_about_y(evaluate_rotation(turn, i * 0.01, Ends::through)), -1e-9) << i * 0.01;
+}
+
 TEST(Positions, CoincidentKeysRest) {
     Positions keys = {
         {0, {0, 0, 0}, smooth}, {10, {1, 1, 0}, smooth}, {20, {1, 1, 0}, smooth}, {30, {4, 0, 0}, smooth}};
@@ -173,6 +189,8 @@ TEST(Positions, ConstantSpeedEasesOverATenthAtEachEnd) {
     EXPECT_NEAR(x(60) - x(50), 10.0, 1e-9);
     EXPECT_NEAR(x(90), 85.0, 1e-9);
     EXPECT_LT(x(0.01), 1e-6);
+    EXPECT_NEAR(90.0 - x(95), x(5), 1e-9);  // the end mirrors the start
+    EXPECT_LT(90.0 - x(99.99), 1e-6);
 }
 
 TEST(Rotations, LinearTurnsEvenlyTheShorterWay) {

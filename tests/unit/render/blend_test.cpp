@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/real.h"
+#include "render/shared_render.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -132,6 +133,18 @@ TEST(Blend, HybridInBetweenFollowsTheFormula) {
     }
 }
 
+// h rises as smoothstep does, not straight: a fifth of the way it is 0.104.
+TEST(Blend, HybridRisesSmoothly) {
+    const auto at = [](double deg) {
+        return shared::hybrid_amount(static_cast<float>(real::cos(real::radians(deg))), 30.0f, 80.0f);
+    };
+    EXPECT_NEAR(at(40.0), 0.104, 1e-4);
+    EXPECT_NEAR(at(55.0), 0.5, 1e-4);
+    EXPECT_NEAR(at(70.0), 0.896, 1e-4);
+    EXPECT_EQ(at(29.0), 0.0f);
+    EXPECT_EQ(at(81.0), 1.0f);
+}
+
 TEST(Blend, HoldoutTakesLightAndAlphaOfWhatIsBehind) {
     const Pair pair;
     const ShadedSplats near_set = make_splats({pair.near_splat}), far_set = make_splats({pair.far_splat});
@@ -161,6 +174,40 @@ TEST(Blend, AnOpaqueStackHasAlphaExactlyOne) {
     const RenderedFrame frame = render_layers({layer_of("stack", splats)});
     EXPECT_EQ(middle(frame.beauty)[3], 1.0f);
     EXPECT_NEAR(middle(frame.beauty)[0], 0.5f, 0.5f * 0x1p-15);
+}
+
+Environment grey_environment(float value) {
+    Environment environment;
+    environment.faces =
+        std::make_shared<const EnvironmentFaces>(EnvironmentFaces{{make_image(4, 2, 3, value)}});
+    environment.largest = value;
+    return environment;
+}
+
+/// Nine black splats of alpha 3/4 in front of a white one, or of the environment: 2^-18 of its light arrives.
+RenderedFrame light_behind_a_dark_stack(float exposure, const Environment* environment) {
+    std::vector<OneSplat> stack;
+    for (int i = 0; i < 9; ++i)
+        stack.push_back({{0.0f, 0.0f, static_cast<float>(-i)}, 14.0f, 0.75f, glm::vec3(0.0f)});
+    if (!environment) stack.push_back({{0.0f, 0.0f, -20.0f}, 14.0f, 1.0f, glm::vec3(1.0f)});
+    const ShadedSplats splats = make_splats(stack);
+    const RenderLayer layer = layer_of("stack", splats);
+    RenderSettings settings = settings_of(size_px, size_px);
+    settings.exposure = exposure;
+    return render({&layer, 1}, pixel_camera(size_px, size_px), environment, settings);
+}
+
+// What exposure makes visible is not cut off by the stop rule; below it the pixel is closed exactly.
+TEST(StopRule, KnowsOfTheExposure) {
+    EXPECT_EQ(middle(light_behind_a_dark_stack(0.0f, nullptr).beauty)[0], 0.0f);
+    EXPECT_EQ(middle(light_behind_a_dark_stack(-8.0f, nullptr).beauty)[0], 0.0f);
+    EXPECT_FLOAT_EQ(middle(light_behind_a_dark_stack(4.0f, nullptr).beauty)[0], 0x1p-18f);
+}
+
+TEST(StopRule, KnowsOfABrightSky) {
+    const Environment dim = grey_environment(1.0f), bright = grey_environment(4096.0f);
+    EXPECT_EQ(middle(light_behind_a_dark_stack(0.0f, &dim).beauty)[0], 0.0f);
+    EXPECT_FLOAT_EQ(middle(light_behind_a_dark_stack(0.0f, &bright).beauty)[0], 4096.0f * 0x1p-18f);
 }
 
 TEST(Blend, AlphaOfAFaintStackFollowsTheProduct) {
@@ -230,14 +277,6 @@ RenderSettings with_aovs() {
     RenderSettings settings = settings_of(size_px, size_px);
     settings.aov_depth = settings.aov_coverage = settings.aov_count = settings.aov_layers = true;
     return settings;
-}
-
-Environment grey_environment(float value) {
-    Environment environment;
-    environment.faces =
-        std::make_shared<const EnvironmentFaces>(EnvironmentFaces{{make_image(4, 2, 3, value)}});
-    environment.largest = value;
-    return environment;
 }
 
 TEST(Aov, LayersAndEnvironmentSumToTheBeauty) {

@@ -79,7 +79,7 @@ std::vector<ScreenSplat> splats_of(std::span<const float> radii_px) {
 
 /// Radii around the ends of the table of footprints, on its nodes and between them.
 std::vector<float> telling_radii() {
-    constexpr float least = FootprintTable::smallest_radius_px, most = 1024.0f;
+    const float least = shared::SMALLEST_RADIUS_PX, most = 1024.0f;
     return {0.0f,
             1e-30f,
             0.001f,

@@ -64,6 +64,15 @@ TEST(Animate, PositionsAndRotations) {
     EXPECT_NEAR(still.camera.rotation->w, half, 1e-12);
 }
 
+// Keys at uneven frames: only at constant speed is half of the time half of the way.
+TEST(Animate, ConstantSpeedIsOfTheTrack) {
+    const std::string keys = "keys = [[0, [0, 0, 0]], [9, [1, 0, 0]], [10, [10, 0, 0]]]";
+    const Scene even = animated("\"camera.position\" = { " + keys + ", constant_speed = true }\n");
+    const Scene uneven = animated("\"camera.position\" = { " + keys + " }\n");
+    EXPECT_NEAR(scene_at(even, 5).camera.position->x, 5.0, 1e-9);
+    EXPECT_NEAR(scene_at(uneven, 4.5).camera.position->x, 0.5, 1e-9);
+}
+
 TEST(Animate, CurvesAndListElements) {
     const Scene scene = animated(
         "\"layer.stars.look.pdf.points\" = { keys = [[0, [[0, 1], [1, 0]]], [10, [[0, 0], [0.5, 1]]]] }\n"

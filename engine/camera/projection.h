@@ -1,0 +1,51 @@
+// The projections of shaders/shared as C++: astrosplat::shared with floats, astrosplat::exact with doubles.
+// Each translation unit gets its own copy with internal linkage.
+#pragma once
+
+#include <cmath>
+
+#include "camera/lens.h"
+#include "core/shared_maths.h"
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+
+namespace astrosplat::shared {
+using namespace astrosplat::shared_types;
+namespace {
+#include "instance.glsl"
+// before the projections
+#include "orthographic.glsl"
+#include "perspective.glsl"
+// before their table
+#include "projection.glsl"
+}  // namespace
+}  // namespace astrosplat::shared
+
+namespace astrosplat::exact {
+using exact_types::Lens, exact_types::Real;
+using exact_types::PROJECTION_ORTHOGRAPHIC;
+using Float = double;
+using Bool = bool;
+using Vec3 = glm::dvec3;
+namespace {
+double sqrt(double x) { return std::sqrt(x); }
+double abs(double x) { return std::fabs(x); }
+double floor(double x) { return std::floor(x); }
+double min(double a, double b) { return b < a ? b : a; }
+double max(double a, double b) { return a < b ? b : a; }
+double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+#include "instance.glsl"
+// before the projections
+#include "orthographic.glsl"
+#include "perspective.glsl"
+// before their table
+#include "projection.glsl"
+}  // namespace
+}  // namespace astrosplat::exact
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif

@@ -1,0 +1,17 @@
+// What projection makes of a splat. Compiled as GLSL and as C++, one by one and by lanes: there Float, Int, Bool and
+// Vec3 are vectors of lanes.
+
+#ifndef __cplusplus
+#define Float float
+#define Int int
+#define Bool bool
+#define Vec3 vec3
+#endif
+
+// One appearance of a splat in the picture. A ball's footprint is a circle.
+struct Instance {
+    Float x_px;         // centre, y down
+    Float y_px;
+    Float px_per_unit;  // px per scene unit of the splat's radius
+    Float depth;        // what near, far and near fade mean, scene units
+};

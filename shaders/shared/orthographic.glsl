@@ -1,0 +1,14 @@
+// Orthographic: px from the optical axis = focal_px * x; all rays are parallel to the axis.
+
+Instance orthographic_instance(Lens lens, Vec3 p) {
+    return Instance(lens.center_x_px + p.x * lens.focal_px, lens.center_y_px - p.y * lens.focal_px, lens.focal_px, -p.z);
+}
+
+Vec3 orthographic_point(Lens lens, Float x_px, Float y_px, Float depth) {
+    return Vec3((x_px - lens.center_x_px) / lens.focal_px, (lens.center_y_px - y_px) / lens.focal_px, -depth);
+}
+
+// Not from the eye, but from the plane through it.
+Real orthographic_small_from(Lens lens, Real radius, Real radius_px) {
+    return radius * lens.focal_px < radius_px ? -1.0f : 1e30f;
+}

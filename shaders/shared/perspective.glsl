@@ -1,0 +1,31 @@
+// Perspective: px from the optical axis = focal_px * x / z. Camera space: x right, y up, in front is -z.
+
+Instance perspective_instance(Lens lens, Vec3 p) {
+    Float depth = -p.z;
+    Float px_per_unit = lens.focal_px / depth;
+    return Instance(lens.center_x_px + p.x * px_per_unit, lens.center_y_px - p.y * px_per_unit, px_per_unit, depth);
+}
+
+Vec3 perspective_ray(Lens lens, Float x_px, Float y_px) {
+    return Vec3((x_px - lens.center_x_px) / lens.focal_px, (lens.center_y_px - y_px) / lens.focal_px, -1.0f);
+}
+
+Vec3 perspective_point(Lens lens, Float x_px, Float y_px, Float depth) {
+    Vec3 ray = perspective_ray(lens, x_px, y_px);
+    return Vec3(ray.x * depth, ray.y * depth, -depth);
+}
+
+Float perspective_axis_depth(Lens lens, Float x_px, Float y_px, Float key) {
+    Float x = (x_px - lens.center_x_px) / lens.focal_px;
+    Float y = (y_px - lens.center_y_px) / lens.focal_px;
+    return sqrt(key / (1.0f + x * x + y * y));
+}
+
+Real perspective_spread(Lens lens) { return 1.0f / lens.focal_px; }
+
+// Nearer than z a splat may be too wide; from its distance on, one that reaches the picture lies beyond z.
+Real perspective_small_from(Lens lens, Real radius, Real radius_px, Real picture_px) {
+    Real z = radius * lens.focal_px / radius_px;
+    Real aside = radius + z * picture_px / lens.focal_px;
+    return sqrt(aside * aside + z * z);
+}

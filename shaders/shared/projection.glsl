@@ -1,0 +1,76 @@
+// Projection: camera space (x right, y up, in front is -z) to the picture. To the renderer and the preview all
+// projections are alike: each is a file of functions with its name in front, and lines in the table below. Needs
+// lens.glsl, instance.glsl and the files of the projections.
+
+// Rays do not come from the eye but are parallel to the view axis.
+bool has_parallel_rays(Lens lens) { return lens.projection == PROJECTION_ORTHOGRAPHIC; }
+
+// The table: what is different from projection to projection.
+
+// Where a splat at p appears.
+Instance instance_of(Lens lens, Vec3 p) {
+    if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_instance(lens, p);
+    return perspective_instance(lens, p);
+}
+
+// Direction through a point of the picture, of any length.
+Vec3 ray_through(Lens lens, Float x_px, Float y_px) {
+    if (has_parallel_rays(lens)) return Vec3(0.0f, 0.0f, -1.0f);
+    return perspective_ray(lens, x_px, y_px);
+}
+
+// The point that appears there at a depth.
+Vec3 point_at_depth(Lens lens, Float x_px, Float y_px, Float depth) {
+    if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_point(lens, x_px, y_px, depth);
+    return perspective_point(lens, x_px, y_px, depth);
+}
+
+// Angle between the rays of neighbouring pixels, radians.
+Real pixel_spread(Lens lens) { return has_parallel_rays(lens) ? 0.0f : perspective_spread(lens); }
+
+// Depth of a splat along the view axis from its place in the picture and its sort key.
+Float axis_depth(Lens lens, Float x_px, Float y_px, Float key) {
+    if (has_parallel_rays(lens)) return key;
+    return perspective_axis_depth(lens, x_px, y_px, key);
+}
+
+// Distance as sort_key measures it beyond which no ball of `radius` that touches the picture is wider than radius_px;
+// picture_px: no less than the picture's diagonal with the footprint's margin.
+Real small_from(Lens lens, Real radius, Real radius_px, Real picture_px) {
+    if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_small_from(lens, radius, radius_px);
+    return perspective_small_from(lens, radius, radius_px, picture_px);
+}
+
+// What is the same for all of them.
+
+// Sorts as the distance from the eye (parallel rays: from the plane through it) does.
+Float key_of_distance(Lens lens, Float distance) { return has_parallel_rays(lens) ? distance : distance * distance; }
+Float sort_key(Lens lens, Vec3 p) {
+    if (has_parallel_rays(lens)) return -p.z;
+    return dot(p, p);
+}
+
+// |cos| of the angle between a layer's axis and the ray to p.
+Float axis_cosine(Lens lens, Vec3 axis, Vec3 p) {
+    if (has_parallel_rays(lens)) return abs(axis.z);
+    return abs(dot(axis, p)) / sqrt(dot(p, p));
+}
+
+// To the raster that footprints are normalised for.
+Float snap_px(Float px) { return floor(px * 256.0f + 0.5f) * (1.0f / 256.0f); }
+
+Bool is_in_range(Lens lens, Float depth) {
+    Real far = lens.far > 0.0f ? lens.far : 3.4e38f;
+    return depth > lens.near && depth <= far;
+}
+
+// Rises from 0 at the near plane to 1 where the splat is a radius (or near_fade) behind it.
+Float near_fade(Lens lens, Float depth, Float radius) {
+    Float t = min(1.0f, (depth - lens.near) / max(lens.near_fade, radius));
+    return t * t * (3.0f - 2.0f * t);
+}
+
+// Whether a square around a splat touches a rectangle from (x0, y0) to (x1, y1).
+Bool touches_rect(Float x_px, Float y_px, Float reach_px, float x0, float y0, float x1, float y1) {
+    return x_px + reach_px > x0 && x_px - reach_px < x1 && y_px + reach_px > y0 && y_px - reach_px < y1;
+}

@@ -1,0 +1,86 @@
+// Projection: place, size, near fade and sort key of single splats and of whole vectors of them.
+#include "render/project.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+
+#include "unit/render/scenes.h"
+
+namespace astrosplat {
+namespace {
+
+using namespace astrosplat::test;
+
+constexpr ScreenRect everywhere{-1e6f, -1e6f, 1e6f, 1e6f};
+
+Buffer<ScreenSplat> project_all(const ShadedSplats& splats, const Camera& camera) {
+    const RenderLayer layer = layer_of("one", splats);
+    Buffer<ScreenSplat> out;
+    project(make_projection(layer, 0, camera, settings_of(64, 64)), 0, splats.size(), everywhere, out);
+    return out;
+}
+
+/// Enough copies for whole vectors and for what is left over.
+ShadedSplats copies(const OneSplat& splat) { return make_splats(std::vector<OneSplat>(19, splat)); }
+
+Camera perspective_camera() {
+    Camera camera;
+    camera.focal_px = 100.0;
+    camera.center_x_px = camera.center_y_px = 32.0;
+    camera.near = 1.0;
+    return camera;
+}
+
+TEST(Project, PerspectiveDividesByDepth) {
+    const Buffer<ScreenSplat> found = project_all(copies({{1.0f, 2.0f, -10.0f}, 0.5f}), perspective_camera());
+    ASSERT_EQ(found.size(), 19u);
+    for (const ScreenSplat& splat : found) {
+        EXPECT_EQ(splat.x_px, 42.0f);
+        EXPECT_EQ(splat.y_px, 12.0f);  // y down
+        EXPECT_EQ(splat.radius_px, 5.0f);
+        EXPECT_EQ(std::bit_cast<float>(splat.depth), 1.0f + 4.0f + 100.0f);  // distance squared
+    }
+}
+
+TEST(Project, OrthographicKeepsSizesAndSortsByDepth) {
+    const Buffer<ScreenSplat> found = project_all(copies({{1.0f, 2.0f, -10.0f}, 0.5f}), pixel_camera(64, 64));
+    ASSERT_EQ(found.size(), 19u);
+    for (const ScreenSplat& splat : found) {
+        EXPECT_EQ(splat.x_px, 33.0f);
+        EXPECT_EQ(splat.y_px, 30.0f);
+        EXPECT_EQ(splat.radius_px, 0.5f);
+        EXPECT_EQ(std::bit_cast<float>(splat.depth), 1010.0f);
+    }
+}
+
+TEST(Project, NearFadeIsTheCamerasOrOneRadius) {
+    Camera camera = perspective_camera();
+    const ShadedSplats splats = copies({{0.0f, 0.0f, -2.0f}, 0.5f});  // one unit behind the near plane
+    const auto opacity = [&](double near_fade) {
+        camera.near_fade = near_fade;
+        const Buffer<ScreenSplat> found = project_all(splats, camera);
+        EXPECT_EQ(found.size(), 19u);
+        for (const ScreenSplat& splat : found) EXPECT_EQ(splat.opacity, found.front().opacity);
+        return found.front().opacity;
+    };
+    EXPECT_EQ(opacity(0.0), 1.0f);      // farther than its radius
+    EXPECT_EQ(opacity(2.0), 0.5f);      // half way
+    EXPECT_EQ(opacity(4.0), 0.15625f);  // smoothstep of a quarter
+    const ShadedSplats wide = copies({{0.0f, 0.0f, -2.0f}, 2.0f});
+    camera.near_fade = 0.25;
+    EXPECT_EQ(project_all(wide, camera).front().opacity, 0.5f);  // its radius, which is larger
+}
+
+TEST(Project, NothingOutsideNearAndFar) {
+    Camera camera = perspective_camera();
+    EXPECT_EQ(project_all(copies({{0.0f, 0.0f, -1.0f}, 0.5f}), camera).size(), 0u);
+    EXPECT_EQ(project_all(copies({{0.0f, 0.0f, -1e6f}, 0.5f}), camera).size(), 19u);
+    camera.far = 20.0;
+    EXPECT_EQ(project_all(copies({{0.0f, 0.0f, -20.0f}, 0.5f}), camera).size(), 19u);
+    EXPECT_EQ(project_all(copies({{0.0f, 0.0f, -20.5f}, 0.5f}), camera).size(), 0u);
+}
+
+}  // namespace
+}  // namespace astrosplat
