@@ -61,21 +61,15 @@ std::int64_t machine_available_bytes() {
     return kib < 0 ? unlimited : kib * 1024;
 }
 
-// The least room in this group and those above it. Cached file pages count as used there, but are given up on
-// demand.
-std::int64_t group_available_bytes(const char* limit_file, const char* usage_file, const char* cache_key) {
+// The least room in this group and those above it.
+std::int64_t least_group_room(const char* limit_file, const char* usage_file, const char* cache_key) {
     const auto limits = cgroup_values("memory", limit_file);
     const auto usages = cgroup_values("memory", usage_file);
     const auto stats = cgroup_values("memory", "memory.stat");
     std::int64_t least = unlimited;
-    for (std::size_t i = 0; i < std::min(limits.size(), usages.size()); ++i) {
-        const std::optional<std::int64_t> limit = parse_int64(trim(limits[i]));  // "max" when there is none
-        const std::optional<std::int64_t> usage = parse_int64(trim(usages[i]));
-        if (!limit || !usage) continue;
-        const std::int64_t cache =
-            i < stats.size() ? std::max<std::int64_t>(0, field(stats[i], cache_key)) : 0;
-        least = std::min(least, std::max<std::int64_t>(0, *limit - *usage + cache));
-    }
+    for (std::size_t i = 0; i < std::min(limits.size(), usages.size()); ++i)
+        least =
+            std::min(least, group_room(limits[i], usages[i], i < stats.size() ? stats[i] : "", cache_key));
     return least;
 }
 
@@ -84,10 +78,21 @@ std::int64_t group_available_bytes(const char* limit_file, const char* usage_fil
 std::string human_bytes(double bytes) { return human(bytes, 1024.0, {"B", "KiB", "MiB", "GiB", "TiB"}); }
 std::string human_count(double count) { return human(count, 1000.0, {"", "k", "M", "G", "T"}); }
 
+std::int64_t group_room(const std::string& limit_text, const std::string& usage_text, const std::string& stat,
+                        const std::string& cache_key) {
+    const std::optional<std::int64_t> limit = parse_int64(trim(limit_text));
+    const std::optional<std::int64_t> usage = parse_int64(trim(usage_text));
+    if (!limit || !usage) return unlimited;
+    const std::int64_t cache = std::max<std::int64_t>(0, field(stat, cache_key));
+    // memory.stat lags behind the usage, so the cache may be the larger one; and the limit of v1 without a
+    // limit is so large that nothing can be added to it.
+    return std::max<std::int64_t>(0, *limit - std::max<std::int64_t>(0, *usage - cache));
+}
+
 std::int64_t available_memory_bytes() {
-    const std::int64_t v2 = group_available_bytes("memory.max", "memory.current", "inactive_file");
+    const std::int64_t v2 = least_group_room("memory.max", "memory.current", "inactive_file");
     const std::int64_t v1 =
-        group_available_bytes("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file");
+        least_group_room("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file");
     return std::min({machine_available_bytes(), v2, v1});
 }
 

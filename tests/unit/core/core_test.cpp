@@ -99,6 +99,25 @@ TEST(Memory, ClaimOfTooMuchNamesBothFigures) {
     EXPECT_EQ(message.find("a test needs 1048576 TiB of memory, but only "), 0u) << message;
 }
 
+TEST(Memory, GroupsLeaveTheirLimitLessWhatCannotBeGivenUp) {
+    EXPECT_EQ(group_room("1000\n", "400\n", "anon 100\ninactive_file 300\n", "inactive_file"), 900);
+    EXPECT_EQ(group_room("1000\n", "400\n", "", "inactive_file"), 600);
+    EXPECT_EQ(group_room("1000\n", "1200\n", "inactive_file 100\n", "inactive_file"), 0);
+}
+
+TEST(Memory, GroupsWithoutALimitLeaveAll) {
+    constexpr std::int64_t all = std::numeric_limits<std::int64_t>::max();
+    EXPECT_EQ(group_room("max\n", "400\n", "inactive_file 300\n", "inactive_file"), all);
+    // The first version of control groups has no word for it. Its memory.stat may tell of more cached pages
+    // than the usage has.
+    const std::string no_limit = "9223372036854771712\n";
+    EXPECT_EQ(group_room(no_limit, "8192\n", "total_inactive_file 4096\n", "total_inactive_file"),
+              9223372036854771712 - 4096);
+    EXPECT_EQ(group_room(no_limit, "8192\n", "total_inactive_file 1000000\n", "total_inactive_file"),
+              9223372036854771712);
+    EXPECT_EQ(group_room("1000\n", "400\n", "inactive_file 500\n", "inactive_file"), 1000);
+}
+
 TEST(Buffer, BigBlocksAreAlignedAndKeepTheirContents) {
     for (const std::size_t size : {std::size_t{10}, std::size_t{1} << 20, (std::size_t{5} << 20) + 3}) {
         Buffer<std::uint8_t> bytes;
