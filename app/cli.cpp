@@ -14,6 +14,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "core/vector_target.h"
 #include "interrupt.h"
 #include "places.h"
 #include "viewer/viewer.h"
@@ -238,6 +239,7 @@ int run_window(Invocation& call) {
 
 int run(Invocation& call) {
     apply_common(call.common);
+    log_detail(fmt::format("threads {}, vector target {}", thread_count(), vector_target()));
     call.batch_options.cache = call.generate.cache = cache_of(call.common);
     if (call.common.quiet) silence_progress(call);
     if (call.action) {

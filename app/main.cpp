@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/vector_target.h"
 #include "interrupt.h"
 
 using namespace astrosplat;
@@ -14,6 +15,7 @@ using namespace astrosplat;
 int main(int argc, char** argv) {
     install_interrupt_handlers();
     try {
+        use_vector_target_of_environment();
         const int code = run_command_line(argc, argv);
         flush_warning_counts();
         return code;

@@ -5,6 +5,7 @@
 #include "core/atomic_file.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/vector_target.h"
 
 namespace astrosplat {
 namespace {
@@ -43,13 +44,10 @@ Json to_json(const std::vector<T>& items) {
 }  // namespace
 
 void write_stats(const std::filesystem::path& file, const RunFigures& figures) {
-    const Json json = {{"frames", to_json(figures.frames)},
-                       {"failed", to_json(figures.failed)},
-                       {"layers", to_json(figures.layers)},
-                       {"seconds", figures.seconds},
-                       {"peak_memory_bytes", peak_memory_bytes()},
-                       {"threads", thread_count()},
-                       {"version", ASTROSPLAT_VERSION}};
+    const Json json = {{"frames", to_json(figures.frames)},        {"failed", to_json(figures.failed)},
+                       {"layers", to_json(figures.layers)},        {"seconds", figures.seconds},
+                       {"peak_memory_bytes", peak_memory_bytes()}, {"threads", thread_count()},
+                       {"vector_target", vector_target()},         {"version", ASTROSPLAT_VERSION}};
     write_file_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -50,14 +50,19 @@ void set_vector_target(const std::string& name) {
         not_above |= target->bits & supported;
         if (name == target->name && compiled_and_supported(*target)) return enable(not_above);
     }
-    throw InputError(
-        fmt::format("vector target '{}' is unknown or not offered by this processor; it has best {}", name,
-                    fmt::join(vector_targets(), " ")));
+    bad_input("vector target", "",
+              fmt::format("one that this processor has (best, {})", fmt::join(vector_targets(), ", ")),
+              "'" + name + "'");
 }
 
 void use_vector_target_of_environment() {
     const char* name = std::getenv("ASTROSPLAT_VECTOR_TARGET");
-    if (name && *name) set_vector_target(name);
+    if (!name || !*name) return;
+    try {
+        set_vector_target(name);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("ASTROSPLAT_VECTOR_TARGET: {}", error.what()));
+    }
 }
 
 std::vector<std::string> vector_targets() {

@@ -11,7 +11,8 @@ namespace astrosplat {
 /// this processor lacks. Not while a loop runs.
 void set_vector_target(const std::string& name);
 
-/// Obeys the environment variable ASTROSPLAT_VECTOR_TARGET, if set; main calls this first. Throws as above.
+/// Chooses what the environment variable ASTROSPLAT_VECTOR_TARGET names, if set; main calls this first.
+/// Throws as above.
 void use_vector_target_of_environment();
 
 /// The compiled targets this processor can run, best first, from "avx512" "avx2" "sse4" "ssse3" "sse2".

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/vector_target.h"
 #include "scene_fixture.h"
 #include "source/texture.h"
 
@@ -64,15 +65,34 @@ TEST_F(SameBits, WhateverVariantsTheCLibraryPicks) {
 
 TEST_F(SameBits, AnyInstructionSet) {
     const std::vector<std::string> expected = hashes({});
-    int tried = 0;
-    for (const char* target : {"avx512", "avx2", "sse4", "ssse3", "sse2"}) {
+    std::set<std::string> tried = {json("stats.json").at("vector_target")};
+    for (const std::string& target : vector_targets()) {
         RunOptions options;
-        options.environment = {std::string("ASTROSPLAT_VECTOR_TARGET=") + target};
-        if (batch({"--dry-run", "--overwrite"}, options).code != 0) continue;  // this processor lacks it
-        EXPECT_EQ(hashes({}, options), expected) << target;
-        ++tried;
+        options.environment = {"ASTROSPLAT_VECTOR_TARGET=" + target};
+        EXPECT_EQ(hashes({"-v"}, options), expected) << target;
+        EXPECT_EQ(json("stats.json").at("vector_target"), target) << "the target must really change";
+        tried.insert(target);
     }
-    EXPECT_GE(tried, 1);
+    EXPECT_EQ(tried.size(), vector_targets().size());
+    EXPECT_GE(tried.size(), 2u) << "SSE2 and SSSE3 at least, on any processor of this century";
+}
+
+TEST_F(SameBits, TheInstructionSetInUseIsNamed) {
+    RunOptions options;
+    options.environment = {"ASTROSPLAT_VECTOR_TARGET=sse2"};
+    const std::string said = batch({"-f", "1", "-v"}, options).err;
+    EXPECT_NE(said.find("vector target sse2\n"), std::string::npos) << said;
+}
+
+TEST_F(SameBits, UnknownInstructionSetsAreRefusedWithTheChoices) {
+    RunOptions options;
+    options.environment = {"ASTROSPLAT_VECTOR_TARGET=mmx"};
+    const RunResult result = batch({}, options);
+    expect_one_line(result, 2, "ASTROSPLAT_VECTOR_TARGET: ");
+    EXPECT_NE(result.err.find("'mmx'"), std::string::npos) << result.err;
+    for (const std::string& target : vector_targets())
+        EXPECT_NE(result.err.find(target), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(folder / "frames"));
 }
 
 TEST_F(SameBits, AFrameAloneIsTheFrameInASequence) {
