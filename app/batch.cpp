@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <new>
+#include <set>
 
 #include "batch_plan.h"
 #include "commands.h"
@@ -11,6 +12,7 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "generate/generate.h"
 #include "interrupt.h"
 #include "output/write.h"
@@ -39,7 +41,7 @@ void print_plan(const BatchPlan& plan) {
     const OutputParams& output = plan.scene.output;
     const JobEstimate job = estimate(plan);
     const auto count = static_cast<std::int64_t>(plan.frames.size());
-    fmt::print("scene {}\n", plan.scene.file.string());
+    fmt::print("scene {}\n", printable(plan.scene.file.string()));
     fmt::print("picture {}x{} px", output.width, output.height);
     if (plan.region.width > 0) {
         fmt::print(", region {},{},{},{}", plan.region.x, plan.region.y, plan.region.width,
@@ -48,11 +50,12 @@ void print_plan(const BatchPlan& plan) {
     fmt::print("\nframes {}: {} to render, {} there already\n", count, frames_to_render(plan),
                count - frames_to_render(plan));
     for (const JobEstimate::Layer& layer : job.layers) {
-        fmt::print("layer {}: about {} splats\n", layer.name, human_count(static_cast<double>(layer.splats)));
+        fmt::print("layer {}: about {}\n", layer.name, human_count(layer.splats, "splat"));
     }
     fmt::print("memory about {}, threads {}\n", human_bytes(static_cast<double>(job.bytes)), thread_count());
     for (const FramePlan& frame : plan.frames) {
-        fmt::print("{} {} {}\n", frame.render ? "render" : "keep", frame.frame, frame.file.string());
+        fmt::print("{} {} {}\n", frame.render ? "render" : "keep", frame.frame,
+                   printable(frame.file.string()));
     }
 }
 
@@ -78,7 +81,10 @@ class BatchRun {
     const std::vector<FailedFrame>& failed() const { return figures_.failed; }
 
   private:
+    void try_frame(const FramePlan& frame, std::int64_t index, std::int64_t count);
     FrameFigures render_frame(const FramePlan& frame, const Progress& progress);
+    void fail(const FramePlan& frame, const std::string& error);
+    void find_lost_frames();
     FrameMetadata metadata(const FramePlan& frame, const Scene& now, const RenderSettings& settings) const;
     RenderSettings settings(const FramePlan& frame) const;
 
@@ -92,10 +98,9 @@ class BatchRun {
 void BatchRun::prepare() {
     const JobEstimate job = estimate(plan_);
     const auto frames = frames_to_render(plan_);
-    log_info(fmt::format("{} {} of {}x{} px, about {} splats, about {} of memory", frames,
-                         frames == 1 ? "frame" : "frames", plan_.scene.output.width,
-                         plan_.scene.output.height, human_count(static_cast<double>(job.splats)),
-                         human_bytes(static_cast<double>(job.bytes))));
+    log_info(fmt::format("{} of {}x{} px, about {}, about {} of memory", counted(frames, "frame"),
+                         plan_.scene.output.width, plan_.scene.output.height,
+                         human_count(job.splats, "splat"), human_bytes(static_cast<double>(job.bytes))));
     pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache);
 }
 
@@ -127,12 +132,14 @@ FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& prog
     const auto time = static_cast<double>(frame.frame);
     const Scene now = scene_at(plan_.scene, time);
     const RenderSettings settings = this->settings(frame);
+    if (frame.existing == Existing::keep) refuse_existing(frame.file);
     const RenderedFrame picture = pipeline_->frame(time, settings, progress);
     FrameMetadata metadata = this->metadata(frame, now, settings);
     metadata.pixel_hash = pixel_hash(picture.beauty);
     progress.check();
-    write_frame(frame.file, picture, pipeline_->layer_names(time), now.output, settings.width,
-                settings.height, settings.region, metadata);
+    write_frame({frame.file, now.output, settings.width, settings.height, settings.region,
+                 pipeline_->layer_names(time), frame.existing},
+                picture, metadata);
     FrameFigures figures;
     figures.frame = frame.frame;
     figures.file = frame.file;
@@ -141,35 +148,56 @@ FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& prog
     figures.splats_in = picture.statistics.splats_in;
     figures.splats_drawn = picture.statistics.splats_drawn;
     figures.sha256 = metadata.pixel_hash;
-    log_detail(fmt::format("frame {}: {} splats drawn, mean overlap {:.2f}", frame.frame,
-                           human_count(static_cast<double>(figures.splats_drawn)),
-                           picture.statistics.mean_overlap));
+    log_detail(fmt::format("frame {}: {} drawn, mean overlap {:.2f}", frame.frame,
+                           human_count(figures.splats_drawn, "splat"), picture.statistics.mean_overlap));
     return figures;
 }
 
-/// Bad input that shows in the first frame ends the run (nothing was started); later failures spare the other
-/// frames.
+void BatchRun::fail(const FramePlan& frame, const std::string& error) {
+    log_error(fmt::format("frame {}: {}", frame.frame, error));
+    figures_.failed.push_back({frame.frame, frame.file, error});
+}
+
+/// A frame that cannot be rendered or written spares the others, except that bad input which shows in the
+/// first frame ends the run: nothing was started.
+void BatchRun::try_frame(const FramePlan& frame, std::int64_t index, std::int64_t count) {
+    const Progress progress = report_.begin_frame(frame.frame, index, count);
+    try {
+        figures_.frames.push_back(render_frame(frame, progress));
+        report_.saved(frame.file, figures_.frames.back().seconds);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const InputError& error) {
+        if (index == 1) throw;
+        fail(frame, error.what());
+    } catch (const AlreadyExists& error) {
+        if (!plan_.resume || !is_there(frame)) return fail(frame, error.what());
+        log_info(fmt::format("frame {}: another program has written it meanwhile", frame.frame));
+    } catch (const OutputError& error) {
+        fail(frame, error.what());
+    } catch (const std::bad_alloc&) {
+        fail(frame, "not enough memory");
+    } catch (const std::exception& error) {
+        fail(frame, fmt::format("internal error: {}", error.what()));
+    }
+}
+
 void BatchRun::render_frames() {
     const std::int64_t count = frames_to_render(plan_);
     std::int64_t index = 0;
-    const auto fail = [this](const FramePlan& frame, const std::string& error) {
-        log_error(fmt::format("frame {}: {}", frame.frame, error));
-        figures_.failed.push_back({frame.frame, frame.file, error});
-    };
+    for (const FramePlan& frame : plan_.frames)
+        if (frame.render) try_frame(frame, ++index, count);
+    find_lost_frames();
+}
+
+/// Frames that were written or found, and removed before the run's end.
+void BatchRun::find_lost_frames() {
+    std::set<std::int64_t> failed;
+    for (const FailedFrame& frame : figures_.failed) failed.insert(frame.frame);
     for (const FramePlan& frame : plan_.frames) {
-        if (!frame.render) continue;
-        const Progress progress = report_.begin_frame(frame.frame, ++index, count);
-        try {
-            figures_.frames.push_back(render_frame(frame, progress));
-            report_.saved(frame.file, figures_.frames.back().seconds);
-        } catch (const InputError& error) {
-            if (index == 1) throw;
-            fail(frame, error.what());
-        } catch (const OutputError& error) {
-            fail(frame, error.what());
-        } catch (const std::bad_alloc&) {
-            fail(frame, "not enough memory");
-        }
+        std::error_code ignored;
+        if (!failed.count(frame.frame) && !std::filesystem::exists(frame.file, ignored))
+            fail(frame, frame.file.string() + ": removed during the run");
     }
 }
 
@@ -183,9 +211,7 @@ RunFigures BatchRun::figures() const {
 void report_failures(const std::vector<FailedFrame>& failed) {
     std::vector<std::int64_t> numbers;
     for (const FailedFrame& frame : failed) numbers.push_back(frame.frame);
-    log_error(fmt::format("{} failed: {}",
-                          numbers.size() == 1 ? "1 frame" : fmt::format("{} frames", numbers.size()),
-                          fmt::join(numbers, ",")));
+    log_error(fmt::format("{} failed: {}", counted(std::ssize(numbers), "frame"), fmt::join(numbers, ",")));
 }
 
 }  // namespace
@@ -196,6 +222,7 @@ int run_batch(const BatchOptions& options) {
         print_plan(plan);
         return exit_done;
     }
+    defer_interrupts();
     check_writable(plan, options);
     std::vector<FailedFrame> failed;
     {

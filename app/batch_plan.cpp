@@ -150,31 +150,32 @@ std::vector<std::int64_t> frame_numbers(const Scene& scene, bool from_command_li
     return frames;
 }
 
-enum class Existing { nothing, same, damaged, other };
+enum class Found { nothing, same, damaged, other };
 
-Existing existing_frame(const FramePlan& plan) {
+Found found_at(const FramePlan& plan) {
     std::error_code ignored;
-    if (!fs::exists(fs::symlink_status(plan.file, ignored))) return Existing::nothing;
-    if (fs::is_directory(plan.file, ignored))
-        bad_input(plan.file.string(), "", "a place for a frame", "a folder");
-    if (!frame_is_whole(plan.file)) return Existing::damaged;
-    return read_frame_hashes(plan.file).first == plan.hash ? Existing::same : Existing::other;
+    if (!fs::exists(fs::symlink_status(plan.file, ignored))) return Found::nothing;
+    if (!frame_is_whole(plan.file)) return Found::damaged;
+    return read_frame_hashes(plan.file).first == plan.hash ? Found::same : Found::other;
 }
 
 /// Decides what becomes of files that lie where frames go (DESIGN 8).
 void decide(std::vector<FramePlan>& frames, const BatchOptions& options) {
+    for (const FramePlan& frame : frames) refuse_other_than_file(frame.file);
     if (options.overwrite && !options.resume) return;
     std::vector<const FramePlan*> in_the_way;
     for (FramePlan& frame : frames) {
         std::error_code ignored;
+        frame.existing = Existing::keep;
         if (!options.resume) {
             if (fs::exists(fs::symlink_status(frame.file, ignored))) in_the_way.push_back(&frame);
             continue;
         }
-        const Existing existing = existing_frame(frame);
-        frame.render = existing != Existing::same;
-        if (existing == Existing::damaged) log_info(frame.file.string() + ": damaged, is rendered again");
-        if (existing == Existing::other && !options.overwrite) in_the_way.push_back(&frame);
+        const Found found = found_at(frame);
+        frame.render = found != Found::same;
+        if (found == Found::damaged) log_info(frame.file.string() + ": damaged, is rendered again");
+        if (found == Found::other && !options.overwrite) in_the_way.push_back(&frame);
+        if (found != Found::nothing) frame.existing = Existing::replace;
     }
     if (in_the_way.empty()) return;
     const std::string more = in_the_way.size() > 1 ? fmt::format(" and {} more", in_the_way.size() - 1) : "";
@@ -186,12 +187,15 @@ void decide(std::vector<FramePlan>& frames, const BatchOptions& options) {
 
 }  // namespace
 
+bool is_there(const FramePlan& frame) { return found_at(frame) == Found::same; }
+
 BatchPlan plan_batch(const BatchOptions& options) {
     BatchPlan plan;
     plan.scene = batch_scene(options);
     if (options.region) plan.region = parse_region(*options.region, plan.scene.output);
     if (options.memory_gib) plan.memory_limit_bytes = parse_memory(*options.memory_gib);
     plan.cache = options.cache;
+    plan.resume = options.resume;
     check_inputs(plan.scene);
     FrameHasher hasher(plan.scene, plan.region);
     for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value())) {

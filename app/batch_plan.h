@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "core/atomic_file.h"
 #include "core/image.h"
 #include "scene/scene.h"
 
@@ -16,8 +17,9 @@ namespace astrosplat {
 struct FramePlan {
     std::int64_t frame = 0;
     std::filesystem::path file;
-    std::string hash;    // frame hash, hex
-    bool render = true;  // false: a whole frame of this hash is there already
+    std::string hash;                       // frame hash, hex
+    bool render = true;                     // false: a whole frame of this hash is there already
+    Existing existing = Existing::replace;  // keep: nothing was there, and what comes is not replaced
 };
 
 struct BatchPlan {
@@ -26,10 +28,14 @@ struct BatchPlan {
     std::int64_t memory_limit_bytes = 0;  // 0: none
     SetCache cache;
     std::vector<FramePlan> frames;  // ascending
+    bool resume = false;            // frames of the right hash are as good as rendered ones
 };
 
+/// A whole frame of the planned hash lies at its place.
+bool is_there(const FramePlan& frame);
+
 /// Throws InputError for bad input, and where files are in the way that neither --resume nor --overwrite
-/// covers.
+/// covers; OutputError where something else than a file lies at a frame's place.
 BatchPlan plan_batch(const BatchOptions& options);
 
 /// About how many splats the layers will have, and how many bytes sets, shaded splats, screen splats and

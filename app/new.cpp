@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "output/image_info.h"
 #include "places.h"
 #include "scene/new_scene.h"
@@ -34,8 +35,8 @@ int run_new(const NewOptions& options) {
     const std::string text = new_scene_text(options.image, options.shape, options.scene);
     refuse_to_overwrite(options.scene, options.overwrite);
     prove_writable(folder_of(options.scene));
-    write_file_atomically(options.scene, text);
-    fmt::print("{}\n", options.scene.string());
+    write_file_atomically(options.scene, text, options.overwrite ? Existing::replace : Existing::keep);
+    fmt::print("{}\n", printable(options.scene.string()));
     return exit_done;
 }
 

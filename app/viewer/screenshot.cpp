@@ -67,8 +67,7 @@ void write_exr(const ScreenshotOptions& options, const Size& size, Session& sess
     metadata.fps = output.fps;
     metadata.pixel_hash = pixel_hash(frame->beauty);
     metadata.provenance = session.document().scene().provenance;
-    write_frame(options.output, *frame, {}, output, size.width, size.height, {0, 0, size.width, size.height},
-                metadata);
+    write_frame({options.output, output, size.width, size.height}, *frame, metadata);
 }
 
 /// The viewport alone.
@@ -129,7 +128,7 @@ int run_screenshot(const ScreenshotOptions& options) {
     } catch (const NoContext& error) {
         log_error(std::string("no OpenGL: ") + error.what() +
                   "; frames render without it: astrosplat --batch SCENE");
-        return exit_own_fault;
+        return exit_not_started;
     }
     take(options, context->info());
     return exit_done;

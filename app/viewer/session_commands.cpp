@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "edit/batch_command.h"
 #include "edit/keys.h"
@@ -192,7 +193,7 @@ void Session::Impl::obey(const Command& command) {
         case Kind::save_look: {
             if (document.scene().layers.empty()) return;
             const LayerParams& layer = document.scene().layers[layer_index(view.layer)];
-            write_text_file(command.path, save_preset_text(layer.look, layer.render, command.path));
+            write_file_atomically(command.path, save_preset_text(layer.look, layer.render, command.path));
             return say("Saved the look of " + layer.name + " in " + command.path.string());
         }
         case Kind::apply_look:

@@ -1,5 +1,6 @@
 // A file appears complete or not at all: it is written under a temporary name in the same folder, flushed to
-// the disk and renamed. Used by everything that writes a file.
+// the disk and renamed. Used by everything that writes a file. What killed programs left of theirs is removed
+// by the next one that writes into the same folder.
 #pragma once
 
 #include <cstddef>
@@ -7,38 +8,63 @@
 #include <filesystem>
 #include <string_view>
 
+#include "core/error.h"
+
 namespace astrosplat {
+
+/// What commit() does where a file has the target's name.
+enum class Existing { replace, keep };
+
+/// Something has the target's name, and stays as it is.
+struct AlreadyExists : OutputError {
+    using OutputError::OutputError;
+};
 
 /// Owns one temporary file. Without commit() the destructor removes it and the old target stays as it was.
 class AtomicFile {
   public:
     /// Creates an empty temporary file beside `target` (symbolic links are followed). Throws OutputError when
     /// the folder cannot be written or the target exists and is no regular file.
-    explicit AtomicFile(const std::filesystem::path& target);
+    explicit AtomicFile(const std::filesystem::path& target, Existing existing = Existing::replace);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// The temporary name, with the target's ending: for libraries that open files themselves. They may
-    /// truncate it.
+    const std::filesystem::path& target() const { return target_; }
     const std::filesystem::path& temporary() const { return temporary_; }
+    /// Bytes from the start to the last one written.
+    std::int64_t size() const { return size_; }
 
-    /// Appends bytes. Throws OutputError (disk full). Not to be mixed with a library's writing.
-    void write(const void* bytes, std::size_t size);
+    /// Appends bytes. Throws OutputError (disk full).
+    void write(const void* bytes, std::size_t size) { write_at(size_, bytes, size); }
     void write(std::string_view text) { write(text.data(), text.size()); }
+    /// The same at `offset` bytes from the start.
+    void write_at(std::int64_t offset, const void* bytes, std::size_t size);
 
-    /// Flushes to the disk and renames to the target. Throws OutputError, and then the target is untouched.
+    /// Flushes to the disk and renames to the target. Throws OutputError (AlreadyExists under
+    /// Existing::keep), and then the target is untouched.
     void commit();
 
   private:
+    bool create_temporary();
+
     std::filesystem::path target_;     // what messages name
     std::filesystem::path resolved_;   // behind symbolic links
     std::filesystem::path temporary_;  // empty once committed
-    int descriptor_ = -1;
-    std::int64_t written_ = 0, handed_over_ = 0;  // bytes of write(); of them on their way to the disk
+    Existing existing_;
+    int descriptor_ = -1;                      // locked, which tells others that the file is in use
+    std::int64_t size_ = 0, handed_over_ = 0;  // bytes; of them on their way to the disk
 };
 
 /// The whole of `text` as file `target`, by the above.
-void write_file_atomically(const std::filesystem::path& target, std::string_view text);
+void write_file_atomically(const std::filesystem::path& target, std::string_view text,
+                           Existing existing = Existing::replace);
+
+/// Throws AlreadyExists when anything has this name.
+void refuse_existing(const std::filesystem::path& target);
+
+/// Throws OutputError when something lies at `target` that is no regular file (symbolic links are followed):
+/// no file can be written there.
+void refuse_other_than_file(const std::filesystem::path& target);
 
 }  // namespace astrosplat

@@ -68,32 +68,16 @@ std::optional<SplatSet> read_entry(const fs::path& file, const Progress& progres
 
 // ---- keeping
 
-/// The key in the name of a temporary or lock file; empty for any other file.
-std::string key_of_leftover(const fs::path& file) {
-    constexpr std::size_t key_length = 64;
-    const std::string name = file.filename().string();
-    const auto is_key = [](std::string_view text) {
-        return text.size() == key_length &&
-               text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-    };
-    if (file.extension() == ".lock" && is_key(file.stem().string())) return file.stem().string();
-    const bool temporary = name.front() == '.' && name.find(".part") != std::string::npos;
-    const std::string key = temporary ? name.substr(1, key_length) : "";
-    return is_key(key) ? key : "";
-}
-
-/// Removes temporary and lock files of processes that ended early: those whose lock nobody holds. `own_key`
-/// is the one held by the caller.
+/// Removes lock files of processes that ended early: those whose lock nobody holds. `own_key` is the one held
+/// by the caller.
 void remove_leftovers(const fs::path& folder, const std::string& own_key) {
+    constexpr std::size_t key_length = 64;
     for (const fs::path& file : files_in(folder)) {
-        const std::string key = key_of_leftover(file);
-        if (key.empty() || file == lock_file(folder, own_key)) continue;
-        FileLock lock(lock_file(folder, key));  // removes the lock file where it can be had
-        const FileLock::State state =
-            key == own_key ? FileLock::State::held : lock.try_lock(FileLock::Missing::leave);
-        const bool dead = state == FileLock::State::held || state == FileLock::State::absent;
-        std::error_code ignored;
-        if (dead && file.extension() != ".lock") fs::remove(file, ignored);
+        const std::string key = file.stem().string();
+        const bool is_key = key.size() == key_length && key.find_first_not_of("0123456789abcdef") == key.npos;
+        if (file.extension() != ".lock" || !is_key || key == own_key) continue;
+        FileLock lock(file);  // removes the file where the lock can be had
+        lock.try_lock(FileLock::Missing::leave);
     }
 }
 
@@ -172,8 +156,7 @@ std::optional<SplatSet> find(const SetCache& cache, const std::string& key, cons
                              const Progress& progress, const OptionalColumns& wanted) {
     std::optional<SplatSet> set = read_entry(entry_file(cache, key), progress, wanted);
     if (set)
-        log_info(fmt::format("layer '{}': {} splats from the cache", layer_name,
-                             human_count(static_cast<double>(set->size()))));
+        log_info(fmt::format("layer '{}': {} from the cache", layer_name, human_count(set->size(), "splat")));
     return set;
 }
 

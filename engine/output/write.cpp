@@ -13,13 +13,13 @@
 #include <memory>
 #include <stdexcept>
 
-#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/sha256.h"
 #include "output/encode.h"
 #include "output/format.h"
 #include "output/metadata.h"
+#include "output/picture_file.h"
 
 namespace astrosplat {
 namespace {
@@ -29,23 +29,6 @@ using Depth = OutputParams::Depth;
 
 constexpr float largest_half = 65504.0f;
 constexpr std::int64_t band_rows = 256;  // a multiple of every EXR compression's block height
-
-/// An open file and what it is called in messages.
-struct Writer {
-    std::unique_ptr<OIIO::ImageOutput> out;
-    OIIO::ImageSpec spec;
-    fs::path file;       // what messages name
-    fs::path temporary;  // what is written
-
-    [[noreturn]] void fail() const {
-        std::string reason = out ? out->geterror() : OIIO::geterror();
-        std::replace(reason.begin(), reason.end(), '\n', ' ');
-        std::size_t at = reason.find(temporary.string());
-        if (at != std::string::npos) reason.replace(at, temporary.string().size(), file.string());
-        throw OutputError(fmt::format("{}: cannot be written: {}", file.string(),
-                                      reason.empty() ? std::string("unknown reason") : reason));
-    }
-};
 
 /// One channel of an EXR file: where its floats lie and how they are stored.
 struct Channel {
@@ -113,10 +96,9 @@ void set_exr_attributes(OIIO::ImageSpec& spec, const FrameMetadata& metadata) {
     spec.attribute("worldToNDC", OIIO::TypeMatrix44, metadata.matrices->world_to_ndc);
 }
 
-OIIO::ImageSpec make_spec(const FrameFormat& format, int channels, const Region& region,
-                          const FrameMetadata& metadata) {
-    OIIO::ImageSpec spec(static_cast<int>(region.width), static_cast<int>(region.height), channels,
-                         type_of(format.depth));
+OIIO::ImageSpec make_spec(const FrameFormat& format, const Image& beauty, const FrameMetadata& metadata) {
+    OIIO::ImageSpec spec(static_cast<int>(beauty.width), static_cast<int>(beauty.height),
+                         stored_channels(format), type_of(format.depth));
     spec.channelnames = {"R", "G", "B"};
     if (stored_channels(format) == 4) spec.channelnames.push_back("A");
     spec.alpha_channel = stored_channels(format) == 4 ? 3 : -1;
@@ -125,16 +107,12 @@ OIIO::ImageSpec make_spec(const FrameFormat& format, int channels, const Region&
     // PNG's.
     bool as_is = format.kind == FileKind::png || format.alpha == OutputParams::Alpha::straight;
     if (as_is && format.kind != FileKind::exr) spec.attribute("oiio:UnassociatedAlpha", 1);
-    bool linear = format.view == OutputParams::View::linear;
-    spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
+    // TIFF would hold it as EXIF, which OpenImageIO 2.4 writes wrongly unless it opens the file itself; 8 and
+    // 16 bit TIFF is taken for sRGB anyway.
+    const bool linear = format.view == OutputParams::View::linear;
+    if (format.kind != FileKind::tif) spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
     set_text(spec, format, metadata);
     return spec;
-}
-
-void open(Writer& writer, const char* plugin) {
-    OIIO::attribute("exr_threads", thread_count());
-    writer.out = OIIO::ImageOutput::create(plugin);
-    if (!writer.out || !writer.out->open(writer.temporary.string(), writer.spec)) writer.fail();
 }
 
 bool asked(const OutputParams& output, const char* aov) {
@@ -142,8 +120,8 @@ bool asked(const OutputParams& output, const char* aov) {
 }
 
 std::vector<Channel> exr_channels(const Image& beauty, const std::vector<Image>& layers,
-                                  const RenderedFrame& frame, const std::vector<std::string>& layer_names,
-                                  const OutputParams& output, bool half) {
+                                  const RenderedFrame& frame, const FrameFile& target, bool half) {
+    const OutputParams& output = target.output;
     static const char* const names[4] = {"R", "G", "B", "A"};
     std::vector<Channel> channels;
     for (int c = 0; c < beauty.channels; ++c) channels.push_back({names[c], &beauty, c, half});
@@ -152,7 +130,7 @@ std::vector<Channel> exr_channels(const Image& beauty, const std::vector<Image>&
     if (asked(output, "count")) channels.push_back({"count", &frame.count, 0, false});
     for (std::size_t i = 0; i < layers.size(); ++i)
         for (int c = 0; c < layers[i].channels; ++c)
-            channels.push_back({fmt::format("{}.{}", layer_names[i], names[c]), &layers[i], c, half});
+            channels.push_back({fmt::format("{}.{}", target.layer_names[i], names[c]), &layers[i], c, half});
     return channels;
 }
 
@@ -175,56 +153,56 @@ void interleave(const std::vector<Channel>& channels, std::int64_t y0, std::int6
     });
 }
 
-void write_exr(Writer& writer, const std::vector<Channel>& channels) {
-    writer.spec.nchannels = static_cast<int>(channels.size());
-    writer.spec.channelnames.clear();
-    writer.spec.channelformats.clear();
+void name_channels(OIIO::ImageSpec& spec, const std::vector<Channel>& channels) {
+    spec.nchannels = static_cast<int>(channels.size());
+    spec.channelnames.clear();
     for (const Channel& channel : channels) {
-        writer.spec.channelnames.push_back(channel.name);
-        writer.spec.channelformats.push_back(channel.half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
-    }
-    open(writer, "openexr");
-    std::int64_t height = channels[0].image->height;
-    std::vector<float> band;
-    for (std::int64_t y = 0; y < height; y += band_rows) {
-        std::int64_t end = std::min(y + band_rows, height);
-        interleave(channels, y, end, band);
-        int top = writer.spec.y;
-        if (!writer.out->write_scanlines(static_cast<int>(y) + top, static_cast<int>(end) + top, 0,
-                                         OIIO::TypeDesc::FLOAT, band.data()))
-            writer.fail();
+        spec.channelnames.push_back(channel.name);
+        spec.channelformats.push_back(channel.half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
     }
 }
 
-void write_exr_frame(Writer& writer, const FrameFormat& format, const RenderedFrame& frame,
-                     const std::vector<std::string>& layer_names, const OutputParams& output,
-                     std::int64_t whole_width, std::int64_t whole_height, const Region& region,
-                     const FrameMetadata& metadata) {
-    Image beauty = encode_float(format, frame.beauty);
+void set_windows(OIIO::ImageSpec& spec, const FrameFile& target) {
+    spec.x = static_cast<int>(target.region.x);
+    spec.y = static_cast<int>(target.region.y);
+    spec.full_width = static_cast<int>(target.whole_width);
+    spec.full_height = static_cast<int>(target.whole_height);
+}
+
+void write_exr(const FrameFile& target, const FrameFormat& format, const RenderedFrame& frame,
+               OIIO::ImageSpec spec, const FrameMetadata& metadata) {
+    const Image beauty = encode_float(format, frame.beauty);
     std::vector<Image> layers;
-    if (asked(output, "layers"))
+    if (asked(target.output, "layers"))
         for (const Image& layer : frame.layers) layers.push_back(encode_float(format, layer));
-    if (layers.size() > layer_names.size()) throw std::logic_error("a frame has more layers than names");
-    writer.spec.x = static_cast<int>(region.x);
-    writer.spec.y = static_cast<int>(region.y);
-    writer.spec.full_width = static_cast<int>(whole_width);
-    writer.spec.full_height = static_cast<int>(whole_height);
-    set_exr_attributes(writer.spec, metadata);
-    write_exr(writer,
-              exr_channels(beauty, layers, frame, layer_names, output, format.depth == Depth::half_float));
+    assert(layers.size() <= target.layer_names.size());
+    const std::vector<Channel> channels =
+        exr_channels(beauty, layers, frame, target, format.depth == Depth::half_float);
+    name_channels(spec, channels);
+    set_windows(spec, target);
+    set_exr_attributes(spec, metadata);
+    OIIO::attribute("exr_threads", thread_count());
+    PictureFile file(target.file, "openexr", spec, target.existing);
+    std::vector<float> band;
+    for (std::int64_t y = 0; y < beauty.height; y += band_rows) {
+        const std::int64_t end = std::min(y + band_rows, beauty.height);
+        interleave(channels, y, end, band);
+        file.write_rows(y + target.region.y, end + target.region.y, OIIO::TypeDesc::FLOAT, band.data());
+    }
+    file.commit();
 }
 
-void write_flat_frame(Writer& writer, const FrameFormat& format, const Image& beauty, const Region& region) {
-    open(writer, format.kind == FileKind::png ? "png" : "tiff");
-    bool written = false;
+void write_flat(const FrameFile& target, const FrameFormat& format, const Image& beauty,
+                const OIIO::ImageSpec& spec) {
+    PictureFile file(target.file, format.kind == FileKind::png ? "png" : "tiff", spec, target.existing);
     if (format.depth == Depth::uint8)
-        written = writer.out->write_image(OIIO::TypeDesc::UINT8,
-                                          encode_8bit(format, beauty, region.x, region.y).data());
+        file.write_all(OIIO::TypeDesc::UINT8,
+                       encode_8bit(format, beauty, target.region.x, target.region.y).data());
     else if (format.depth == Depth::uint16)
-        written = writer.out->write_image(OIIO::TypeDesc::UINT16, encode_16bit(format, beauty).data());
+        file.write_all(OIIO::TypeDesc::UINT16, encode_16bit(format, beauty).data());
     else
-        written = writer.out->write_image(OIIO::TypeDesc::FLOAT, encode_float(format, beauty).pixels.data());
-    if (!written) writer.fail();
+        file.write_all(OIIO::TypeDesc::FLOAT, encode_float(format, beauty).pixels.data());
+    file.commit();
 }
 
 void check_frame(const RenderedFrame& frame, const OutputParams& output) {
@@ -245,24 +223,15 @@ void make_folder(const fs::path& file) {
 
 }  // namespace
 
-void write_frame(const fs::path& file, const RenderedFrame& frame,
-                 const std::vector<std::string>& layer_names, const OutputParams& output,
-                 std::int64_t whole_width, std::int64_t whole_height, const Region& region,
-                 const FrameMetadata& metadata) {
-    FrameFormat format = resolve_format(output, file);
-    check_frame(frame, output);
-    Region part{region.x, region.y, frame.beauty.width, frame.beauty.height};
-    make_folder(file);
-    AtomicFile target(file);
-    Writer writer{nullptr, make_spec(format, stored_channels(format), part, metadata), file,
-                  target.temporary()};
+void write_frame(const FrameFile& target, const RenderedFrame& frame, const FrameMetadata& metadata) {
+    const FrameFormat format = resolve_format(target.output, target.file);
+    check_frame(frame, target.output);
+    make_folder(target.file);
+    const OIIO::ImageSpec spec = make_spec(format, frame.beauty, metadata);
     if (format.kind == FileKind::exr)
-        write_exr_frame(writer, format, frame, layer_names, output, whole_width, whole_height, part,
-                        metadata);
+        write_exr(target, format, frame, spec, metadata);
     else
-        write_flat_frame(writer, format, frame.beauty, part);
-    if (!writer.out->close()) writer.fail();
-    target.commit();
+        write_flat(target, format, frame.beauty, spec);
 }
 
 std::string pixel_hash(const Image& image) {

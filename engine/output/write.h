@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "core/atomic_file.h"
 #include "core/image.h"
 #include "render/frame.h"
 #include "scene/scene.h"
@@ -27,13 +28,18 @@ struct FrameMetadata {
     std::optional<ExrMatrices> matrices;
 };
 
-/// Writes one frame; the ending of `file` chooses the format. `layer_names` name frame.layers. `whole` is the
-/// size of the whole picture and `region` the part rendered (EXR: display and data window). Throws
-/// OutputError.
-void write_frame(const std::filesystem::path& file, const RenderedFrame& frame,
-                 const std::vector<std::string>& layer_names, const OutputParams& output,
-                 std::int64_t whole_width, std::int64_t whole_height, const Region& region,
-                 const FrameMetadata& metadata);
+/// Where a frame goes, and as what.
+struct FrameFile {
+    std::filesystem::path file;  // its ending chooses the format
+    OutputParams output;
+    std::int64_t whole_width = 0, whole_height = 0;  // px, of the whole picture
+    Region region{};                                 // where the frame lies in it (EXR: the data window)
+    std::vector<std::string> layer_names{};          // of RenderedFrame::layers
+    Existing existing = Existing::replace;
+};
+
+/// Writes one frame. Throws OutputError; AlreadyExists as AtomicFile does.
+void write_frame(const FrameFile& target, const RenderedFrame& frame, const FrameMetadata& metadata);
 
 /// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits").
 void check_output(const OutputParams& output);

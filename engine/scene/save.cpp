@@ -8,6 +8,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/atomic_file.h"
 #include "core/file.h"
 #include "scene/describe.h"
 #include "scene/load.h"
@@ -247,7 +248,7 @@ std::string save_text(const Scene& scene, const std::string& original, const fs:
 void save_scene(const Scene& scene, const fs::path& file) {
     std::error_code ignored;
     const bool exists = !scene.file.empty() && fs::exists(scene.file, ignored);
-    write_text_file(file, save_text(scene, exists ? read_file(scene.file) : "", file));
+    write_file_atomically(file, save_text(scene, exists ? read_file(scene.file) : "", file));
 }
 
 std::string save_preset_text(const Look& look, const LayerRender& render, const fs::path& file) {

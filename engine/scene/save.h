@@ -19,7 +19,4 @@ void save_scene(const Scene& scene, const std::filesystem::path& file);
 /// A preset file that gives this look and render to any layer; paths relative to `file`'s folder.
 std::string save_preset_text(const Look& look, const LayerRender& render, const std::filesystem::path& file);
 
-/// Writes `text` under a temporary name, then renames it over `file`. Throws OutputError.
-void write_text_file(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace astrosplat

@@ -81,8 +81,8 @@ std::filesystem::path write_text(const TempFolder& folder, const std::string& to
     Pipeline pipeline(scene);
     const RenderedFrame frame = render_frame(pipeline);
     const std::filesystem::path file = folder / frame_file(scene.output.path, 1);
-    write_frame(file, frame, pipeline.layer_names(1.0), scene.output, scene.output.width, scene.output.height,
-                {}, {});
+    const OutputParams& output = scene.output;
+    write_frame({file, output, output.width, output.height, {}, pipeline.layer_names(1.0)}, frame, {});
     return file;
 }
 

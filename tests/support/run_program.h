@@ -27,7 +27,7 @@ struct RunResult {
 
 struct RunOptions {
     std::filesystem::path folder = ".";    // working directory
-    std::vector<std::string> environment;  // NAME=VALUE, over those of the test
+    std::vector<std::string> environment;  // NAME=VALUE, over those of the test; DISPLAY only from here
     std::vector<std::string> without;      // names taken out of the environment
 };
 
@@ -78,6 +78,17 @@ class RunningProgram {
         return waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
                ended.si_pid == 0;
     }
+    /// It has opened a file of this name.
+    bool has_open(const std::string& name) const {
+        const std::string descriptors = "/proc/" + std::to_string(process_) + "/fd";
+        std::error_code error;
+        for (std::filesystem::directory_iterator entry(descriptors, error), end; !error && entry != end;
+             entry.increment(error)) {
+            if (std::filesystem::read_symlink(entry->path(), error).filename() == name) return true;
+            error.clear();
+        }
+        return false;
+    }
     RunResult wait() const {
         int status = 0;
         waitpid(process_, &status, 0);
@@ -94,7 +105,9 @@ class RunningProgram {
     }
     static std::vector<std::string> environment(const RunOptions& options) {
         std::vector<std::string> variables = options.environment;
-        std::vector<std::string> hidden = options.without;
+        // A display in the developer's session would open windows, and let them wait for their user.
+        std::vector<std::string> hidden = {"DISPLAY", "WAYLAND_DISPLAY"};
+        hidden.insert(hidden.end(), options.without.begin(), options.without.end());
         for (const std::string& variable : options.environment)
             hidden.push_back(variable.substr(0, variable.find('=')));
         for (char** entry = environ; *entry; ++entry) {

@@ -2,9 +2,10 @@
 #include "core/atomic_file.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -41,15 +42,6 @@ TEST(AtomicFile, FailureLeavesTheOldFileAndNothingElse) {
     EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(AtomicFile, LibrariesMayReplaceTheTemporary) {
-    const TempFolder folder;
-    AtomicFile file(folder / "x.bin");
-    fs::remove(file.temporary());
-    std::ofstream(file.temporary()) << "library";
-    file.commit();
-    EXPECT_EQ(read_file(folder / "x.bin"), "library");
-}
-
 TEST(AtomicFile, WritesThroughSymbolicLinks) {
     const TempFolder folder;
     const fs::path real = folder.file("real.txt", "old");
@@ -59,13 +51,87 @@ TEST(AtomicFile, WritesThroughSymbolicLinks) {
     EXPECT_EQ(read_file(real), "new");
 }
 
+TEST(AtomicFile, WritesBehindLinksThatLeadNowhereYet) {
+    const TempFolder folder;
+    fs::create_symlink("second", folder / "first");
+    fs::create_symlink("real.txt", folder / "second");
+    write_file_atomically(folder / "first", "new");
+    EXPECT_TRUE(fs::is_symlink(folder / "first") && fs::is_symlink(folder / "second"));
+    EXPECT_FALSE(fs::is_symlink(folder / "real.txt"));
+    EXPECT_EQ(read_file(folder / "real.txt"), "new");
+    fs::create_symlink("loop", folder / "loop");
+    EXPECT_EQ(message_of<OutputError>([&] { write_file_atomically(folder / "loop", "new"); }),
+              (folder / "loop").string() + ": cannot be written: Too many levels of symbolic links");
+    EXPECT_TRUE(fs::is_symlink(folder / "loop"));
+}
+
+TEST(AtomicFile, BytesMayBeReplacedBeforeTheEnd) {
+    const TempFolder folder;
+    AtomicFile file(folder / "x");
+    file.write("header....");
+    file.write_at(6, "1234", 4);
+    file.write(" end");
+    EXPECT_EQ(file.size(), 14);
+    file.commit();
+    EXPECT_EQ(read_file(folder / "x"), "header1234 end");
+}
+
+TEST(AtomicFile, KeepsWhatAppearedMeanwhile) {
+    const TempFolder folder;
+    AtomicFile first(folder / "x", Existing::keep), second(folder / "x", Existing::keep);
+    first.write("first");
+    second.write("second");
+    second.commit();
+    EXPECT_THROW(first.commit(), AlreadyExists);
+    EXPECT_EQ(read_file(folder / "x"), "second");
+    write_file_atomically(folder / "x", "third");
+    EXPECT_EQ(read_file(folder / "x"), "third");
+    EXPECT_THROW(refuse_existing(folder / "x"), AlreadyExists);
+    EXPECT_NO_THROW(refuse_existing(folder / "y"));
+}
+
+TEST(AtomicFile, KeptFilesLeaveNoTemporary) {
+    const TempFolder folder;
+    folder.file("x", "old");
+    EXPECT_THROW(write_file_atomically(folder / "x", "new", Existing::keep), AlreadyExists);
+    EXPECT_EQ(entries(folder.path()), 1);
+}
+
+TEST(AtomicFile, WhatKilledProgramsLeftIsRemovedAndNothingElse) {
+    const TempFolder folder, other;
+    const std::vector<fs::path> gone = {folder.file(".shot.0001.1a2b-3c4d5e-0.part.exr", "half"),
+                                        folder.file(".scene.1-2-3.part", "")};
+    // Another AtomicFile's, made before its folder is looked at for the first time.
+    AtomicFile alive(other / "y.exr");
+    alive.write("alive");
+    const fs::path moved = folder / alive.temporary().filename().string();
+    fs::create_hard_link(alive.temporary(), moved);
+    const std::vector<fs::path> stay = {moved,
+                                        folder.file(".mine.part.exr", ""),
+                                        folder.file("a.1-2-3.part", ""),
+                                        folder.file(".a.1-2.part", ""),
+                                        folder.file(".a.1-2-x.part", ""),
+                                        folder.file(".a.1-2-3.party", ""),
+                                        folder.file(".part", "")};
+    write_file_atomically(folder / "x.exr", "new");
+    for (const fs::path& file : gone) EXPECT_FALSE(fs::exists(file)) << file;
+    for (const fs::path& file : stay) EXPECT_TRUE(fs::exists(file)) << file;
+    EXPECT_EQ(entries(folder.path()), 1 + static_cast<std::ptrdiff_t>(stay.size()));
+    alive.commit();
+    EXPECT_EQ(read_file(other / "y.exr"), "alive");
+}
+
 TEST(AtomicFile, MissingFolderAndWrongKindAreOneLine) {
     const TempFolder folder;
     const fs::path inside = folder / "no" / fs::path("x.exr");
     EXPECT_EQ(message_of<OutputError>([&] { AtomicFile file(inside); }),
               inside.string() + ": cannot be written: No such file or directory");
     EXPECT_EQ(message_of<OutputError>([&] { AtomicFile file(folder.path()); }),
-              folder.path().string() + ": cannot be written: it is no regular file");
+              folder.path().string() + ": cannot be written: it is a folder");
+    const fs::path pipe = folder / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(message_of<OutputError>([&] { AtomicFile file(pipe); }),
+              pipe.string() + ": cannot be written: it is no regular file");
 }
 
 }  // namespace

@@ -331,10 +331,13 @@ TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
                                         leave(temporary(own))};
     const std::vector<fs::path> stay = {leave(temporary(alive)), leave(alive + ".lock"), leave("mine.lock"),
                                         leave(".mine.part.splats"), leave("notes.txt")};
-    const int lock = open(stay[1].c_str(), O_RDWR | O_CLOEXEC);
-    ASSERT_EQ(flock(lock, LOCK_EX), 0);
+    std::array<int, 2> locks{};
+    for (std::size_t i = 0; i < locks.size(); ++i) {
+        locks[i] = open(stay[i].c_str(), O_RDWR | O_CLOEXEC);
+        ASSERT_EQ(flock(locks[i], LOCK_EX), 0);
+    }
     load();
-    close(lock);
+    for (const int lock : locks) close(lock);
     for (const fs::path& file : gone) EXPECT_FALSE(fs::exists(file)) << file;
     for (const fs::path& file : stay) EXPECT_TRUE(fs::exists(file)) << file;
 }

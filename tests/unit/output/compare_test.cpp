@@ -69,9 +69,9 @@ TEST(Compare, FilesOfDifferentSizesAreAnError) {
     large.beauty = make_image(5, 4, 4, 0.25f);
     OutputParams output;
     output.depth = OutputParams::Depth::float32;
-    write_frame(folder / "a.exr", small, {}, output, 4, 4, {}, {});
-    write_frame(folder / "b.exr", large, {}, output, 5, 4, {}, {});
-    write_frame(folder / "c.tif", small, {}, output, 4, 4, {}, {});
+    write_frame({folder / "a.exr", output, 4, 4}, small, {});
+    write_frame({folder / "b.exr", output, 5, 4}, large, {});
+    write_frame({folder / "c.tif", output, 4, 4}, small, {});
     EXPECT_TRUE(compare_files(folder / "a.exr", folder / "c.tif").identical());
     try {
         compare_files(folder / "a.exr", folder / "b.exr");

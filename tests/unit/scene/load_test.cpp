@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/atomic_file.h"
 #include "scene/save.h"
 #include "scene/toml_text.h"
 #include "scene_texts.h"
@@ -26,7 +27,7 @@ class Folder {
     ~Folder() { fs::remove_all(path_); }
     fs::path write(const std::string& name, const std::string& text) const {
         fs::create_directories((path_ / name).parent_path());
-        write_text_file(path_ / name, text);
+        write_file_atomically(path_ / name, text);
         return path_ / name;
     }
     const fs::path& path() const { return path_; }

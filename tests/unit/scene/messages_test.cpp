@@ -1,6 +1,7 @@
 // One test for each message that a scene, a preset or --set can cause.
 #include <filesystem>
 
+#include "core/atomic_file.h"
 #include "scene/save.h"
 #include "scene_texts.h"
 
@@ -235,17 +236,17 @@ TEST(Messages, FilesThatCannotBeRead) {
 
 TEST(Messages, PresetsNameTheirOwnFileAndLine) {
     const fs::path preset = fs::temp_directory_path() / "astrosplat preset messages.toml";
-    write_text_file(preset, "[look]\nalpha.powr = 2\n");
+    write_file_atomically(preset, "[look]\nalpha.powr = 2\n");
     const std::string text = head + "preset = \"" + preset.string() + "\"\n";
     EXPECT_EQ(message(text),
               preset.string() + ":2: unknown key 'alpha.powr'; did you mean 'look.alpha.power'?");
-    write_text_file(preset, "[look]\nalpha.power = -2\n");
+    write_file_atomically(preset, "[look]\nalpha.power = -2\n");
     EXPECT_EQ(message(text),
               preset.string() + ":2: look.alpha.power: expected a number of at least 0, found -2");
-    write_text_file(preset, "[output]\nfps = 2\n");
+    write_file_atomically(preset, "[output]\nfps = 2\n");
     EXPECT_EQ(message(text),
               preset.string() + ":2: unknown key 'fps'; 'astrosplat parameters' lists all keys");
-    write_text_file(preset, "[look]\nradius = { min = 2.0 }\n");
+    write_file_atomically(preset, "[look]\nradius = { min = 2.0 }\n");
     EXPECT_EQ(message(text),
               preset.string() + ":2: layer.stars.look.radius.min: expected min not above max, found 2 and 0");
     fs::remove(preset);

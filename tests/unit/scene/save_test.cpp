@@ -1,6 +1,7 @@
 // Saving: what is loaded again is what was saved, and the text keeps everything that did not change.
 #include <filesystem>
 
+#include "core/atomic_file.h"
 #include "scene/check.h"
 #include "scene/new_scene.h"
 #include "scene/save.h"
@@ -278,7 +279,8 @@ TEST(Save, PresetsGiveBackLookAndRender) {
     const fs::path folder = fs::temp_directory_path() / "astrosplat save preset";
     fs::create_directories(folder);
     look.thickness.map = folder / "m.png";
-    write_text_file(folder / "p.toml", save_preset_text(look, scene.layers[1].render, folder / "p.toml"));
+    write_file_atomically(folder / "p.toml",
+                          save_preset_text(look, scene.layers[1].render, folder / "p.toml"));
     const Scene loaded = parse_scene(small_scene("preset = \"p.toml\""), folder / "s.toml");
     EXPECT_EQ(loaded.layers[0].look, look);
     EXPECT_EQ(loaded.layers[0].render, scene.layers[1].render);
@@ -288,7 +290,8 @@ TEST(Save, PresetsGiveBackLookAndRender) {
 TEST(Save, OverAPresetOnlyDifferencesAreWritten) {
     const fs::path folder = fs::temp_directory_path() / "astrosplat over preset";
     fs::create_directories(folder);
-    write_text_file(folder / "p.toml", "[look]\ndensity = 0.5\nnoise = [{ cull = 0.5 }, { cull = 0.25 }]\n");
+    write_file_atomically(folder / "p.toml",
+                          "[look]\ndensity = 0.5\nnoise = [{ cull = 0.5 }, { cull = 0.25 }]\n");
     const std::string original = small_scene("preset = \"p.toml\"");
     Scene scene = parse_scene(original, folder / "s.toml");
     EXPECT_EQ(save_text(scene, original, folder / "s.toml"), original);
