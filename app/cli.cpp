@@ -230,6 +230,7 @@ int run_window(Invocation& call) {
     ScreenshotOptions& shot = call.screenshot;
     if (shot.output.empty()) {
         refuse_without_screenshot(shot);
+        defer_interrupts();
         return run_viewer(viewer, interrupted());
     }
     prove_writable(folder_of(shot.output));

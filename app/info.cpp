@@ -9,7 +9,6 @@
 
 #include "commands.h"
 #include "core/error.h"
-#include "interrupt.h"
 #include "output/image_info.h"
 #include "output/write.h"
 #include "report.h"
@@ -36,7 +35,7 @@ Report smallest_and_largest(const Buffer<float>& values) {
 }
 
 Report describe_splats(const fs::path& file) {
-    const SplatSet set = read_splats(file, Progress{{}, &interrupted()});
+    const SplatSet set = read_splats(file);
     Report attributes = {"position", "color", "alpha", "distance", "id"};
     if (!set.radius.empty()) attributes.push_back("radius");
     if (!set.uv.empty()) attributes.push_back("uv");

@@ -1,14 +1,21 @@
-// Ctrl-C and termination: a flag that long work looks at, so that it stops between two pixels and leaves
-// nothing half. And a limit on the size of files, which is to be an error of writing like a full disk.
+// Ctrl-C and termination. Until something is written they end the process at once; from then on they are a
+// flag that long work looks at, so that it stops between two pixels and leaves nothing half. And a limit on
+// the size of files, which is to be an error of writing like a full disk.
 #pragma once
 
 #include <atomic>
 
 namespace astrosplat {
 
-/// SIGINT and SIGTERM set interrupted() from now on; the second one ends the process at once. SIGXFSZ is
-/// ignored.
+/// SIGINT and SIGTERM end the process with one line and their exit code. SIGXFSZ is ignored.
 void install_interrupt_handlers();
+
+/// From now on the first SIGINT or SIGTERM sets interrupted(), and only the second one ends the process. To
+/// be called before the first file is made, by what looks at the flag.
+void defer_interrupts();
+
+/// What a stopped program says last.
+inline constexpr const char* stopped_message = "stopped; nothing half-done was left behind";
 
 /// For Progress::cancelled.
 const std::atomic<bool>& interrupted();

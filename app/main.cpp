@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
         log_error(error.what());
         return exit_not_writable;
     } catch (const Cancelled&) {
-        log_error("stopped; nothing half-done was left behind");
+        log_error(stopped_message);
         return interrupt_exit_code();
     } catch (const std::bad_alloc&) {
         log_error("not enough memory");

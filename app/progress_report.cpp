@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "core/log.h"
+#include "core/text.h"
 #include "interrupt.h"
 
 namespace astrosplat {
@@ -67,10 +68,10 @@ Progress ProgressReport::begin_frame(std::int64_t number, std::int64_t index, st
     return begin(fmt::format("frame {} ({}/{})", number, index, count), index, count);
 }
 
-Progress ProgressReport::begin(std::string label, std::int64_t index, std::int64_t count) {
+Progress ProgressReport::begin(const std::string& label, std::int64_t index, std::int64_t count) {
     const std::lock_guard lock(mutex_);
     if (index == 1) start_ = Clock::now();
-    label_ = std::move(label);
+    label_ = printable(label);
     index_ = index;
     count_ = count;
     fraction_ = 0.0;
@@ -84,7 +85,7 @@ void ProgressReport::saved(const std::filesystem::path& file, double seconds) {
     label_.clear();
     if (style_ == Style::none) return;
     clear_bar();
-    fmt::print(stderr, "saved {} {:.2f}s\n", file.string(), seconds);
+    fmt::print(stderr, "saved {} {:.2f}s\n", printable(file.string()), seconds);
 }
 
 /// From the pace of all frames so far; negative while nothing is done yet.

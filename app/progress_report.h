@@ -37,7 +37,7 @@ class ProgressReport {
 
   private:
     enum class Style { bar, plain, none };
-    Progress begin(std::string label, std::int64_t index, std::int64_t count);
+    Progress begin(const std::string& label, std::int64_t index, std::int64_t count);
     void print_loop();
     void print_status();  // these two with mutex_ held
     void clear_bar();

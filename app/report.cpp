@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/text.h"
+
 namespace astrosplat {
 namespace {
 
@@ -18,7 +20,7 @@ bool is_plain_list(const Report& value) {
 }
 
 std::string plain_text(const Report& value) {
-    if (value.is_string()) return value.get<std::string>();
+    if (value.is_string()) return printable(value.get<std::string>());
     if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
     if (value.is_number_float()) return fmt::format("{:.7g}", value.get<double>());
     if (!value.is_array()) return value.dump();
@@ -29,7 +31,7 @@ std::string plain_text(const Report& value) {
 
 void print_lines(const Report& report, int indent) {
     for (const auto& entry : report.items()) {
-        const std::string name = report.is_array() ? "-" : entry.key() + ":";
+        const std::string name = report.is_array() ? "-" : printable(entry.key()) + ":";
         if (!entry.value().is_structured() || is_plain_list(entry.value())) {
             fmt::print("{:{}}{} {}\n", "", indent, name, plain_text(entry.value()));
         } else {

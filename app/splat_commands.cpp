@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "interrupt.h"
 #include "places.h"
 #include "progress_report.h"
@@ -32,12 +33,13 @@ void check_splat_output(const std::filesystem::path& file, bool overwrite) {
                   "'" + file.extension().string() + "'");
     }
     refuse_to_overwrite(file, overwrite);
+    defer_interrupts();
     prove_writable(folder_of(file));
 }
 
 void write_and_report(const std::filesystem::path& file, const SplatSet& set, ProgressReport& report) {
     write_splats(file, set, report.begin_step("writing"));
-    fmt::print("{}: {} splats\n", file.string(), set.size());
+    fmt::print("{}: {}\n", printable(file.string()), counted(set.size(), "splat"));
 }
 
 }  // namespace

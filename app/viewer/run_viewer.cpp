@@ -112,9 +112,11 @@ int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupte
     try {
         loop = std::make_unique<Loop>(options, load_preferences(), interrupted);
     } catch (const NoContext& error) {
-        log_error(std::string("no window: ") + error.what() +
-                  "; frames render without one: astrosplat --batch SCENE");
-        return exit_own_fault;
+        log_error(
+            std::string("no window: ") + error.what() +
+            "; frames render without one: astrosplat --batch SCENE, and so does a picture of the window: "
+            "astrosplat --screenshot OUT.png SCENE");
+        return exit_not_started;
     }
     loop->run();
     return exit_done;

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <utility>
 
+#include "core/text.h"
+
 namespace astrosplat {
 namespace {
 
@@ -27,11 +29,10 @@ Log& the_log() {
 // Called with the mutex held, so that lines of several threads never mix.
 void emit(Log& log, LogLevel level, const std::string& line) {
     if (level > log.level) return;
-    if (log.sink) {
-        log.sink(level, line);
-        return;
-    }
-    fmt::print(stderr, "{}\n", terminal_line(level, line));
+    if (log.sink)
+        log.sink(level, printable(line));
+    else
+        fmt::print(stderr, "{}\n", terminal_line(level, printable(line)));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ void set_log_sink(std::function<void(LogLevel, const std::string&)> sink);
 /// "astrosplat: warning: LINE": what a terminal shows of a message.
 std::string terminal_line(LogLevel level, const std::string& line);
 
-/// One line, without a newline. Thread-safe.
+/// One line, without a newline; what is not printable (of a file's name) is escaped. Thread-safe.
 void log_line(LogLevel level, const std::string& line);
 void log_error(const std::string& line);
 void log_info(const std::string& line);

@@ -78,6 +78,10 @@ std::int64_t least_group_room(const char* limit_file, const char* usage_file, co
 std::string human_bytes(double bytes) { return human(bytes, 1024.0, {"B", "KiB", "MiB", "GiB", "TiB"}); }
 std::string human_count(double count) { return human(count, 1000.0, {"", "k", "M", "G", "T"}); }
 
+std::string human_count(std::int64_t count, const std::string& noun) {
+    return human_count(static_cast<double>(count)) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::int64_t group_room(const std::string& limit_text, const std::string& usage_text, const std::string& stat,
                         const std::string& cache_key) {
     const std::optional<std::int64_t> limit = parse_int64(trim(limit_text));

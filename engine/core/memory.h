@@ -10,6 +10,8 @@ namespace astrosplat {
 std::string human_bytes(double bytes);
 /// "12.4 M", "3.1 k", "812".
 std::string human_count(double count);
+/// "12.4 M splats", "1 splat".
+std::string human_count(std::int64_t count, const std::string& noun);
 
 /// Bytes that one memory control group leaves its processes, from the text of its files: the limit ("max", or
 /// a very large number, without one), the usage, and memory.stat, whose `cache_key` tells how many of the

@@ -1,6 +1,8 @@
 // Locale-free numbers by <charconv>.
 #include "core/text.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 
@@ -31,6 +33,28 @@ std::string_view trim(std::string_view text) {
     const std::size_t first = text.find_first_not_of(blanks);
     if (first == std::string_view::npos) return {};
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string printable(std::string_view text) {
+    std::string shown;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto c = static_cast<unsigned char>(text[i]);
+        // In UTF-8 the control characters 0x80 to 0x9f, some of which terminals act on, follow a byte 0xc2.
+        const bool wide = c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+        if (c == '\n')
+            shown += "\\n";
+        else if (wide)
+            shown += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[++i]));
+        else if (c < 0x20 || c == 0x7f)
+            shown += fmt::format("\\x{:02x}", c);
+        else
+            shown += text[i];
+    }
+    return shown;
+}
+
+std::string counted(std::int64_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 std::optional<double> parse_double(std::string_view text) { return parse<double>(text); }

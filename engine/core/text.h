@@ -11,6 +11,13 @@ namespace astrosplat {
 /// `text` without spaces, tabs and line ends at both ends.
 std::string_view trim(std::string_view text);
 
+/// `text` fit for a terminal and for one line: control characters, which file names may hold, as "\\n",
+/// "\\x1b".
+std::string printable(std::string_view text);
+
+/// "1 frame", "12 frames", of a noun that takes an s.
+std::string counted(std::int64_t count, std::string_view noun);
+
 /// The whole of `text` as a number, with '.' as the decimal point; a leading '+' is allowed. Empty for
 /// anything else, and for values too large for a double. "inf" and "nan" are numbers here: callers that need
 /// finite ones check.

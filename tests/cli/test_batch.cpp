@@ -1,12 +1,48 @@
 // --batch: which files appear, what is said where, and what the figures hold.
+#include <sys/stat.h>
+
+#include <chrono>
 #include <regex>
+#include <thread>
 
 #include "scene_fixture.h"
+#include "support/file_limit.h"
 
 namespace astrosplat::test {
 namespace {
 
-class Batch : public SceneTest {};
+class Batch : public SceneTest {
+  protected:
+    /// A run that goes on beside the test.
+    class Job {
+      public:
+        Job(const Batch& test, std::vector<std::string> more) : program_(words(std::move(more)), in(test)) {}
+        void wait_for(const std::string& text) const {
+            while (program_.running() && program_.err_so_far().find(text) == std::string::npos)
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        void signal(int number) const { program_.signal(number); }
+        RunResult wait() const { return program_.wait(); }
+
+      private:
+        static std::vector<std::string> words(std::vector<std::string> more) {
+            more.insert(more.begin(), {ASTROSPLAT_PROGRAM, "--batch", "scene.toml", "--no-cache"});
+            return more;
+        }
+        static RunOptions in(const Batch& test) {
+            RunOptions options;
+            options.folder = test.folder;
+            return options;
+        }
+        RunningProgram program_;
+    };
+};
+
+int count_of(const std::string& text, const std::string& part) {
+    int count = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
+    return count;
+}
 
 const std::set<std::string> three_frames = {"shot.0001.exr", "shot.0002.exr", "shot.0003.exr"};
 
@@ -131,14 +167,143 @@ TEST_F(Batch, RefusesToOverwrite) {
 }
 
 TEST_F(Batch, AFrameThatFailsSparesTheOthers) {
-    write_text(folder / "frames/shot.0002.exr/in-the-way", "");
+    // Only the second frame shows anything, and takes more than the disk has left.
+    write_scene(
+        "\"layer.stars.visible\" = { keys = [[1, false], [2, true], [3, false]] }\n"
+        "\"layer.dust.visible\" = { keys = [[1, false]] }\n");
+    const RunResult result = [&] {
+        const FileLimit full(3000);
+        return batch();
+    }();
+    EXPECT_EQ(result.code, 3) << result.err;
+    EXPECT_NE(result.err.find("shot.0002.exr: cannot be written: File too large"), std::string::npos);
+    EXPECT_TRUE(std::regex_search(last_line(result.err), std::regex("1 frame failed: 2$"))) << result.err;
+    EXPECT_EQ(names_in("frames"), (std::set<std::string>{"shot.0001.exr", "shot.0003.exr"}));
+    EXPECT_EQ(batch({"--resume", "--stats", "stats.json"}).code, 0);
+    EXPECT_EQ(json("stats.json").at("frames").size(), 1u) << "the others are whole";
+}
+
+TEST_F(Batch, AFullDiskKeepsTheOldFrames) {
+    for (const char* output : {"f.####.png", "f.####.tif", "f.####.exr"}) {
+        ASSERT_EQ(batch({"-f", "1", "-o", output}).code, 0);
+        const std::string name = std::string("f.0001") + fs::path(output).extension().string();
+        const std::string before = text_of(folder / name);
+        const RunResult result = [&] {
+            const FileLimit full(before.size() / 2);
+            return batch({"-f", "1", "-o", output, "--overwrite"});
+        }();
+        EXPECT_EQ(result.code, 3) << output << result.err;
+        EXPECT_EQ(result.err.find("saved"), std::string::npos) << result.err;
+        EXPECT_TRUE(text_of(folder / name) == before) << output;
+    }
+}
+
+TEST_F(Batch, FailuresAreInTheFigures) {
+    write_text(folder / "frames/keep", "");
+    fs::create_symlink("nowhere/shot.exr", folder / "frames/shot.0002.exr");
     const RunResult result = batch({"--overwrite", "--stats", "stats.json"});
     EXPECT_EQ(result.code, 3) << result.err;
-    EXPECT_TRUE(std::regex_search(last_line(result.err), std::regex("failed: 2$"))) << result.err;
-    EXPECT_EQ(names_in("frames"), three_frames);
-    EXPECT_TRUE(fs::is_regular_file(folder / "frames/shot.0003.exr"));
     EXPECT_EQ(json("stats.json").at("frames").size(), 2u);
     EXPECT_EQ(json("stats.json").at("failed")[0].at("frame"), 2);
+    EXPECT_TRUE(std::regex_search(last_line(result.err), std::regex("1 frame failed: 2$"))) << result.err;
+}
+
+TEST_F(Batch, BadInputThatShowsInTheFirstFrameEndsTheRun) {
+    write_text(folder / "map.png", "no picture");
+    write_scene(
+        "[[layer]]\nname = \"gas\"\n[layer.source]\nmeshes = [ { mesh = \"plane\", texture = "
+        "\"picture.ppm\" } ]\ncount = 1000\n"
+        "[layer.look]\nthickness = { map = \"map.png\", keys = [{ color = [1.0, 1.0, 1.0], scale = "
+        "1.0 }] }\n");
+    write_text(folder / "picture.ppm", small_picture());
+    const RunResult result = batch({"--stats", "stats.json"});
+    EXPECT_EQ(result.code, 2) << result.err;
+    EXPECT_NE(last_line(result.err).find("map.png"), std::string::npos) << result.err;
+    EXPECT_EQ(result.err.find("failed"), std::string::npos) << result.err;
+    EXPECT_EQ(names_in("frames").size(), 0u);
+}
+
+TEST_F(Batch, FoldersAndDevicesInAFramesPlaceAreSeenBeforeAnyWork) {
+    fs::create_directories(folder / "frames/shot.0003.exr");
+    ASSERT_EQ(mkfifo((folder / "pipe.exr").c_str(), 0600), 0);
+    for (const std::vector<std::string>& options :
+         {std::vector<std::string>{}, {"--overwrite"}, {"--resume"}, {"--dry-run", "--overwrite"}}) {
+        expect_one_line(batch(options), 4, "shot.0003.exr: cannot be written: it is a folder");
+        std::vector<std::string> pipe = options;
+        pipe.insert(pipe.end(), {"-f", "1", "-o", "pipe.exr"});
+        expect_one_line(batch(pipe), 4, "pipe.exr: cannot be written: it is no regular file");
+    }
+    EXPECT_EQ(names_in("frames"), std::set<std::string>{"shot.0003.exr"});
+}
+
+TEST_F(Batch, FramesRemovedDuringTheRunAreMissed) {
+    const Job job(*this, {"-f", "1-40", "--resolution", "400x300"});
+    job.wait_for("saved ");
+    fs::remove_all(folder / "frames");
+    const RunResult result = job.wait();
+    EXPECT_EQ(result.code, 3) << result.err;
+    EXPECT_NE(result.err.find("shot.0001.exr: removed during the run"), std::string::npos) << result.err;
+    EXPECT_TRUE(std::regex_search(last_line(result.err), std::regex("failed: 1[,\n]?"))) << result.err;
+}
+
+TEST_F(Batch, OfTwoRunsOnOnePatternTheSecondLoses) {
+    const Job first(*this, {"-f", "1-3"}), second(*this, {"-f", "1-3"});
+    const RunResult a = first.wait(), b = second.wait();
+    EXPECT_EQ(names_in("frames"), three_frames);
+    const auto saved = [](const RunResult& run) { return count_of(run.err, "saved "); };
+    EXPECT_EQ(saved(a) + saved(b), 3) << "each frame is written once:\n" << a.err << b.err;
+    EXPECT_NE(a.code == 0 && b.code == 0, true) << a.err << b.err;
+}
+
+TEST_F(Batch, FramesThatAppearDuringTheRunAreKept) {
+    const auto run_into = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> all = {"-f", "1-12", "--resolution", "400x300"};
+        all.insert(all.end(), options.begin(), options.end());
+        const Job job(*this, all);
+        job.wait_for("saved ");
+        fs::copy(folder / "other.exr", folder / "frames/shot.0012.exr", fs::copy_options::skip_existing);
+        return job.wait();
+    };
+    ASSERT_EQ(batch({"-f", "12", "--resolution", "400x300", "-o", "other.exr"}).code, 0);
+    const std::string other = text_of(folder / "other.exr");
+    const RunResult result = run_into({});
+    EXPECT_EQ(result.code, 3) << result.err;
+    EXPECT_TRUE(std::regex_search(last_line(result.err), std::regex("1 frame failed: 12$"))) << result.err;
+    EXPECT_TRUE(text_of(folder / "frames/shot.0012.exr") == other);
+    fs::remove_all(folder / "frames");
+    EXPECT_EQ(run_into({"--resume"}).code, 0) << "a frame of the right hash is as good as one's own";
+}
+
+TEST_F(Batch, LeftoversOfKilledRunsAreRemoved) {
+    const Job job(*this, {"-f", "1-2000", "--resolution", "640x480"});
+    job.wait_for("saved ");
+    write_text(folder / "frames/.shot.0001.1-2-3.part.exr", "half");
+    job.signal(SIGKILL);
+    EXPECT_EQ(job.wait().code, -SIGKILL);
+    EXPECT_EQ(batch({"-f", "1", "--overwrite"}).code, 0);
+    for (const std::string& name : names_in("frames")) EXPECT_EQ(name.substr(0, 5), "shot.") << name;
+}
+
+TEST_F(Batch, NamesAreShownWithoutControlCharacters) {
+    const std::string odd = "f\n\x1b[31m.####.png";
+    const RunResult run = batch({"-f", "1", "-o", odd});
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_TRUE(fs::exists(folder / "f\n\x1b[31m.0001.png"));
+    EXPECT_NE(run.err.find("f\\n\\x1b[31m.0001.png"), std::string::npos) << run.err;
+    const RunResult again = batch({"-f", "1", "-o", odd}),
+                    dry = batch({"--dry-run", "--overwrite", "-f", "1", "-o", odd});
+    expect_one_line(again, 2, "f\\n\\x1b[31m.0001.png");
+    for (const std::string& text : {run.err, again.err, dry.out})
+        EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
+    EXPECT_NE(dry.out.find("f\\n\\x1b[31m.0001.png\n"), std::string::npos) << dry.out;
+}
+
+TEST_F(Batch, OneIsSingular) {
+    write_text(folder / "stars.pda", cube_of_splats(1));
+    const RunResult run =
+        batch({"-f", "1", "--layers", "stars", "-v", "--set", "layer.stars.source.kind=splats"});
+    EXPECT_NE(run.err.find(" 1 frame of 64x48 px, about "), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("frame 1: 1 splat drawn"), std::string::npos) << run.err;
 }
 
 TEST_F(Batch, OutputThatCannotBeWrittenIsCode4BeforeAnyWork) {

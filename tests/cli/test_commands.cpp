@@ -1,7 +1,6 @@
 // new, generate, convert, info, compare and parameters.
-#include <sys/resource.h>
-
 #include "scene_fixture.h"
+#include "support/file_limit.h"
 
 namespace astrosplat::test {
 namespace {
@@ -33,15 +32,30 @@ TEST_F(Commands, QuietMeansNoProgressEither) {
 }
 
 TEST_F(Commands, AFileLargerThanAllowedIsOneErrorAndLeavesNothing) {
-    rlimit before;
-    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
     const std::set<std::string> names = names_in(".");
-    const rlimit small{4096, before.rlim_max};
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-    const RunResult result = run({"-q", "convert", "stars.pda", "a.splats"});
-    setrlimit(RLIMIT_FSIZE, &before);
+    const RunResult result = [&] {
+        const FileLimit full(4096);
+        return run({"-q", "convert", "stars.pda", "a.splats"});
+    }();
     expect_one_line(result, 4, "a.splats");
     EXPECT_EQ(names_in("."), names);
+}
+
+TEST_F(Commands, OneSplatIsSingular) {
+    write_text(folder / "one.pda", cube_of_splats(1));
+    EXPECT_EQ(run({"convert", "one.pda", "one.ply"}).out, "one.ply: 1 splat\n");
+    EXPECT_EQ(run({"convert", "stars.pda", "stars.ply"}).out, "stars.ply: 300 splats\n");
+}
+
+TEST_F(Commands, NamesAreShownWithoutControlCharacters) {
+    fs::rename(folder / "stars.pda", folder / "st\x1b[2Jars.pda");
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"info", "st\x1b[2Jars.pda"},
+                                                  {"convert", "st\x1b[2Jars.pda", "o\x1b[2J.ply"},
+                                                  {"info", "no\x1b[2J.pda"}}) {
+        const RunResult result = run(words);
+        EXPECT_EQ((result.out + result.err).find('\x1b'), std::string::npos) << result.out << result.err;
+        EXPECT_NE((result.out + result.err).find("\\x1b[2J"), std::string::npos) << result.out << result.err;
+    }
 }
 
 TEST_F(Commands, ConvertRefusesWhatItShould) {

@@ -1,5 +1,10 @@
 // Ctrl-C and termination: the exit code says so, and every file that is there is whole.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "scene_fixture.h"
@@ -43,6 +48,53 @@ TEST_F(Interrupt, SigtermIsCode143) {
     const RunResult result = interrupted_run(SIGTERM);
     EXPECT_EQ(result.code, 143) << result.err;
     expect_whole_frames_only();
+}
+
+// A file that holds nothing but takes long to read.
+void make_hollow(const fs::path& file, off_t bytes) {
+    const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    EXPECT_EQ(ftruncate(descriptor, bytes), 0);
+    close(descriptor);
+}
+
+/// Runs the program, and sends the signal while it reads the file of this name. Without an answer where the
+/// program was too fast to be caught.
+std::optional<RunResult> signalled_while_reading(const std::string& name, std::vector<std::string> words,
+                                                 const RunOptions& options, int signal) {
+    words.insert(words.begin(), ASTROSPLAT_PROGRAM);
+    const RunningProgram program(words, options);
+    while (program.running() && !program.has_open(name))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    program.signal(SIGSTOP);
+    siginfo_t ignored = {};
+    waitid(P_PID, static_cast<id_t>(program.id()), &ignored, WSTOPPED | WEXITED | WNOWAIT);
+    const bool caught = program.running() && program.has_open(name);
+    program.signal(signal);
+    program.signal(SIGCONT);
+    const RunResult result = program.wait();
+    return caught ? std::optional(result) : std::nullopt;
+}
+
+TEST_F(Interrupt, HeardWhileFilesAreRead) {
+    constexpr off_t large = off_t{64} << 20;
+    make_hollow(folder / "map.exr", large);
+    make_hollow(folder / "big.obj", large);
+    write_scene("[environment]\nimage = \"map.exr\"\n");
+    RunOptions options;
+    options.folder = folder;
+    struct Case {
+        std::string file;
+        std::vector<std::string> words;
+        int signal;
+    };
+    for (const Case& c : {Case{"map.exr", {"--batch", "scene.toml"}, SIGINT},  // which hashes it
+                          Case{"map.exr", {"--batch", "scene.toml", "--dry-run"}, SIGTERM},
+                          Case{"big.obj", {"info", "big.obj"}, SIGINT}}) {
+        std::optional<RunResult> result;
+        while (!result) result = signalled_while_reading(c.file, c.words, options, c.signal);
+        expect_one_line(*result, 128 + c.signal, "stopped");
+        EXPECT_FALSE(fs::exists(folder / "frames"));
+    }
 }
 
 TEST_F(Interrupt, ResumeCompletesAnInterruptedRun) {

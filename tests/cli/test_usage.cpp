@@ -35,9 +35,20 @@ TEST_F(Usage, HelpNamesEveryOptionOfTheDesign) {
     }
 }
 
-TEST_F(Usage, TheViewerIsNamedAsMissing) {
-    expect_one_line(run({}), 1, "--batch");
-    expect_one_line(run({"scene.toml"}), 1, "--batch");
+TEST_F(Usage, WithoutADisplayTheWaysOutAreNamed) {
+    for (const std::vector<std::string>& words : {std::vector<std::string>{}, {"scene.toml"}}) {
+        const RunResult result = run(words);
+        expect_one_line(result, 2, "no window: ");
+        for (const char* way : {"--batch", "--screenshot"})
+            EXPECT_NE(result.err.find(way), std::string::npos) << result.err;
+    }
+}
+
+TEST_F(Usage, TestsNeverOpenAWindow) {
+    setenv("DISPLAY", ":4711", 1);
+    const RunResult result = run_program({"/bin/sh", "-c", "echo $DISPLAY$WAYLAND_DISPLAY"});
+    unsetenv("DISPLAY");
+    EXPECT_EQ(result.out, "\n");
 }
 
 TEST_F(Usage, MistakesAreOneLineAndCode2) {

@@ -79,6 +79,31 @@ TEST(Text, ShortestNumbersReadBack) {
         EXPECT_EQ(parse_double(shortest(value)), value);
 }
 
+TEST(Text, ControlCharactersAreShownAsText) {
+    EXPECT_EQ(printable("Große Nebel ☆"), "Große Nebel ☆");
+    EXPECT_EQ(printable("a\nb\tc\x1b[31m\x7f"), "a\\nb\\x09c\\x1b[31m\\x7f");
+    EXPECT_EQ(printable("\xc2\x9b"
+                        "2J \xc2\xa0"),
+              "\\x9b2J \xc2\xa0");  // CSI as one character; a hard space stays
+    EXPECT_EQ(printable("\xc2"), "\xc2");
+}
+
+TEST(Text, NounsAreCounted) {
+    EXPECT_EQ(counted(1, "frame"), "1 frame");
+    EXPECT_EQ(counted(0, "frame"), "0 frames");
+    EXPECT_EQ(counted(12, "frame"), "12 frames");
+    EXPECT_EQ(human_count(1, "splat"), "1 splat");
+    EXPECT_EQ(human_count(12400000, "splat"), "12.4 M splats");
+}
+
+TEST(Log, LinesStayOneLine) {
+    std::string shown;
+    set_log_sink([&](LogLevel, const std::string& line) { shown = line; });
+    log_info("a\nb\x1b[2J: not found");
+    set_log_sink(nullptr);
+    EXPECT_EQ(shown, "a\\nb\\x1b[2J: not found");
+}
+
 TEST(Memory, HumanNumbers) {
     EXPECT_EQ(human_bytes(1.25 * 1024 * 1024 * 1024), "1.25 GiB");
     EXPECT_EQ(human_bytes(312.0 * 1024 * 1024), "312 MiB");
