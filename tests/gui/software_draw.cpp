@@ -50,7 +50,21 @@ void blend(Rgba8& under, const std::array<float, 4>& over) {
 // Edges belong to a triangle when they are its upper or left ones, so that shared edges are drawn once.
 bool owns_edge(const ImVec2& a, const ImVec2& b) { return b.y < a.y || (b.y == a.y && b.x > a.x); }
 
-void draw_triangle(Picture8& target, const Clip& clip, const Picture8& texture,
+/// A texture, or what stands for it in a schematic picture.
+struct Surface {
+    enum class Kind { texture, glyphs, coordinates } kind;
+    const Picture8* texture;
+
+    std::array<float, 4> texel(const std::array<const ImDrawVert*, 3>& v, float u, float t) const {
+        if (kind == Kind::texture) return sample(*texture, u, t);
+        if (kind == Kind::coordinates)
+            return {std::floor(u * 16.0f) / 16.0f, std::floor(t * 16.0f) / 16.0f, 0.5f, 1.0f};
+        const auto same = [&](const ImVec2& uv) { return uv.x == v[0]->uv.x && uv.y == v[0]->uv.y; };
+        return {1.0f, 1.0f, 1.0f, same(v[1]->uv) && same(v[2]->uv) ? 1.0f : 0.5f};
+    }
+};
+
+void draw_triangle(Picture8& target, const Clip& clip, const Surface& surface,
                    std::array<const ImDrawVert*, 3> v) {
     float area = edge(v[0]->pos, v[1]->pos, v[2]->pos.x, v[2]->pos.y);
     if (area == 0.0f) return;
@@ -84,7 +98,7 @@ void draw_triangle(Picture8& target, const Clip& clip, const Picture8& texture,
                 for (std::size_t c = 0; c < 4; ++c)
                     color[c] += w[i] * static_cast<float>((v[i]->col >> (8 * c)) & 0xFF) / 255.0f;
             }
-            const std::array<float, 4> texel = sample(texture, u, t);
+            const std::array<float, 4> texel = surface.texel(v, u, t);
             for (std::size_t c = 0; c < 4; ++c) color[c] *= texel[c];
             blend(target.at(x, y), color);
         }
@@ -92,20 +106,25 @@ void draw_triangle(Picture8& target, const Clip& clip, const Picture8& texture,
 
 }  // namespace
 
-void software_draw(const ImDrawData& data, Picture8& target) {
+void software_draw(const ImDrawData& data, Picture8& target, Style style) {
     for (int n = 0; n < data.CmdListsCount; ++n) {
         const ImDrawList& list = *data.CmdLists[n];
         for (const ImDrawCmd& command : list.CmdBuffer) {
-            if (command.UserCallback || !command.GetTexID()) continue;
+            const bool schematic = style == Style::schematic;
+            if (command.UserCallback || !(command.GetTexID() || schematic)) continue;
             const Clip clip{std::max(0, static_cast<int>(command.ClipRect.x)),
                             std::max(0, static_cast<int>(command.ClipRect.y)),
                             std::min(target.width, static_cast<int>(command.ClipRect.z)),
                             std::min(target.height, static_cast<int>(command.ClipRect.w))};
-            const auto& texture = *static_cast<const Picture8*>(command.GetTexID());
+            const bool font = command.GetTexID() == ImGui::GetIO().Fonts->TexID;
+            const Surface surface{!schematic ? Surface::Kind::texture
+                                  : font     ? Surface::Kind::glyphs
+                                             : Surface::Kind::coordinates,
+                                  static_cast<const Picture8*>(command.GetTexID())};
             const ImDrawIdx* index = list.IdxBuffer.Data + command.IdxOffset;
             const ImDrawVert* vertex = list.VtxBuffer.Data + command.VtxOffset;
             for (unsigned i = 0; i + 2 < command.ElemCount; i += 3)
-                draw_triangle(target, clip, texture,
+                draw_triangle(target, clip, surface,
                               {vertex + index[i], vertex + index[i + 1], vertex + index[i + 2]});
         }
     }

@@ -29,8 +29,12 @@ struct Picture8 {
     const Rgba8& at(int x, int y) const { return const_cast<Picture8*>(this)->at(x, y); }
 };
 
+/// Schematic: glyphs are boxes and other textures show their coordinates, so that the picture depends
+/// neither on how fonts are rasterised nor on what a renderer made.
+enum class Style { as_seen, schematic };
+
 /// Draws over `target`. ImTextureIDs are `const Picture8*`.
-void software_draw(const ImDrawData& data, Picture8& target);
+void software_draw(const ImDrawData& data, Picture8& target, Style style = Style::as_seen);
 
 /// Binary PPM, colours only.
 void write_ppm(const std::filesystem::path& file, const Picture8& picture);

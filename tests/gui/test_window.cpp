@@ -158,9 +158,9 @@ Commands TestWindow::take_commands() {
     return taken;
 }
 
-Picture8 TestWindow::picture() {
+Picture8 TestWindow::picture(Style style) {
     Picture8 target(width_, height_);
-    software_draw(*ImGui::GetDrawData(), target);
+    software_draw(*ImGui::GetDrawData(), target, style);
     return target;
 }
 

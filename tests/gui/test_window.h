@@ -42,7 +42,7 @@ class TestWindow {
     /// Commands since the last call.
     Commands take_commands();
     /// The last frame as it looks.
-    Picture8 picture();
+    Picture8 picture(Style style = Style::as_seen);
     /// Into the folder that $ASTROSPLAT_GUI_PICTURES names, when it names one.
     void keep_picture(const std::string& name);
 

@@ -1,0 +1,71 @@
+// Three numbers judge: a difference that makes a pixel bad, how many bad pixels there may be, and a
+// difference that none may exceed. Rounding of edges is what they leave room for.
+#include "gui/reference_pictures.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace astrosplat {
+namespace {
+
+constexpr int bad_difference = 6, most_bad = 8, most_difference = 24;  // of 255; pixels; of 255
+
+std::optional<Picture8> read_reference(const std::filesystem::path& file) {
+    const auto in = OIIO::ImageInput::open(file.string());
+    if (!in) return std::nullopt;
+    Picture8 picture(in->spec().width, in->spec().height);
+    std::vector<std::uint8_t> rgb(picture.pixels.size() * 3);
+    if (in->spec().nchannels != 3 || !in->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, rgb.data()))
+        return std::nullopt;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        picture.pixels[i] = {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], 255};
+    return picture;
+}
+
+void write_png(const std::filesystem::path& file, const Picture8& picture) {
+    std::filesystem::create_directories(file.parent_path());
+    std::vector<std::uint8_t> rgb;
+    for (const Rgba8& p : picture.pixels) rgb.insert(rgb.end(), {p.r, p.g, p.b});
+    OIIO::ImageSpec spec(picture.width, picture.height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("png:compressionLevel", 9);
+    const auto out = OIIO::ImageOutput::create(file.string());
+    const bool written =
+        out && out->open(file.string(), spec) && out->write_image(spec.format, rgb.data()) && out->close();
+    EXPECT_TRUE(written) << file;
+}
+
+int difference(const Rgba8& a, const Rgba8& b) {
+    return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
+}
+
+}  // namespace
+
+void expect_like_reference(const std::string& name, const Picture8& drawn) {
+    const auto output = std::filesystem::path(ASTROSPLAT_BINARY_DIR) / "test-output" / "gui-references";
+    const auto file = std::filesystem::path(ASTROSPLAT_SOURCE_DIR) / "tests/gui/references" / (name + ".png");
+    const std::optional<Picture8> wanted = read_reference(file);
+    if (!wanted || wanted->width != drawn.width || wanted->height != drawn.height) {
+        write_png(output / (name + ".png"), drawn);
+        ADD_FAILURE() << file << " is missing or of another size; see " << output / (name + ".png");
+        return;
+    }
+    Picture8 differences(drawn.width, drawn.height);
+    int bad = 0, most = 0, first = -1;
+    for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
+        const int d = difference(drawn.pixels[i], wanted->pixels[i]);
+        const auto shown = static_cast<std::uint8_t>(std::min(255, 4 * d));
+        differences.pixels[i] = {shown, shown, shown, 255};
+        most = std::max(most, d);
+        if (d > bad_difference && bad++ == 0) first = static_cast<int>(i);
+    }
+    if (bad <= most_bad && most <= most_difference) return;
+    write_png(output / (name + ".png"), drawn);
+    write_png(output / (name + ".difference.png"), differences);
+    ADD_FAILURE() << name << ": " << bad << " pixels differ, by up to " << most << " of 255, the first at x "
+                  << first % drawn.width << ", y " << first / drawn.width << "; see " << output;
+}
+
+}  // namespace astrosplat
