@@ -3,6 +3,7 @@
 #   tests/run.sh                           the lane ci of the Release build
 #   tests/run.sh PRESET [PROGRAM...]       the lane ci of a preset of CMakePresets.json; only these test programs: `asan render`
 #   tests/run.sh nightly                   everything: both lanes, all sanitizers, every file compiled alone
+#   tests/run.sh mutation [OPTION...]      which small faults no test notices; see tests/mutation
 # With CI=true, warnings are errors.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -33,6 +34,9 @@ nightly)
     python3 tests/each_file_alone.py build/dev
     test_with '^(ci|nightly)$' asan
     test_with '^(ci|nightly)$' tsan core generate look render pipeline viewer ;;
+mutation)
+    shift
+    python3 tests/mutation/mutate.py "$@" ;;
 *)
     test_with '^ci$' "${@:-release}" ;;
 esac
