@@ -106,6 +106,7 @@ TEST_F(CameraMoves, FramesReachToTheEndOfTheMove) {
     EXPECT_EQ(frames_after("1-100", 101.0), "1-340");
     EXPECT_EQ(frames_after("1-300", 10.0), "1-300");
     EXPECT_EQ(frames_after("1-9x2", 20.0), "1-9x2,20-259");
+    EXPECT_EQ(frames_after("1-9x2,20-259", 20.0), "1-9x2,20-259");  // the same move again
 }
 
 TEST_F(CameraMoves, KeysOutsideTheMoveStay) {
