@@ -36,11 +36,10 @@ Report smallest_and_largest(const Buffer<float>& values) {
 
 Report describe_splats(const fs::path& file) {
     const SplatSet set = read_splats(file);
-    Report attributes = {"position", "color", "alpha", "distance", "id"};
-    if (!set.radius.empty()) attributes.push_back("radius");
-    if (!set.uv.empty()) attributes.push_back("uv");
-    if (!set.normal.empty()) attributes.push_back("normal");
-    if (!set.mesh.empty()) attributes.push_back("mesh");
+    Report attributes = Report::array();
+    for_each_column([&](auto column, SplatColumn which) {
+        if (!is_optional(which) || !(set.*column).empty()) attributes.push_back(name_of(which));
+    });
     Report report = {{"kind", "splats"},
                      {"splats", set.size()},
                      {"bounds", to_report(bounds(set))},

@@ -62,21 +62,6 @@ void GrowingSet::take(const std::vector<Ranked>& found) {
     }
 }
 
-namespace {
-
-void append(const KeptSplat& splat, SplatSet& set) {
-    set.position.push_back(splat.position);
-    set.color.push_back(splat.color);
-    set.alpha.push_back(splat.alpha);
-    set.distance.push_back(splat.distance);
-    set.id.push_back(splat.id);
-    set.uv.push_back(splat.uv);
-    set.normal.push_back(splat.normal);
-    set.mesh.push_back(splat.mesh);
-}
-
-}  // namespace
-
 GrowingSet::Sample GrowingSet::sample() const {
     Sample sample;
     SplatSet set;
@@ -93,8 +78,8 @@ GrowingSet::Sample GrowingSet::sample() const {
     for (const auto& [rank, splat] : splats)
         order.emplace_back(std::uint64_t{rank} << 32 | (splat.id & 0xffffffffu), &splat);
     std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    reserve(set, order.size());
-    for (const auto& entry : order) append(*entry.second, set);
+    resize(set, order.size());
+    for (std::size_t row = 0; row < order.size(); ++row) put(*order[row].second, set, row);
     sample.set = std::make_shared<const SplatSet>(std::move(set));
     return sample;
 }

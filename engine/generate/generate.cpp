@@ -169,7 +169,8 @@ std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const L
                                    double max_distance) {
     double triangles = 0.0;
     for (const TexturedMesh& m : meshes) triangles += static_cast<double>(m.mesh.triangles.size());
-    const double per_splat = 1.02 * static_cast<double>(kept_splat_bytes);  // and a batch that exists twice
+    const double per_splat =
+        1.02 * static_cast<double>(bytes_per_splat(is_generated));  // and a batch that exists twice
     const double per_triangle =
         sizeof(ClusteredTriangle) + sizeof(SurfaceTriangle) + 150.0;  // and Embree's tree
     const double bytes = expected_kept(lattice, meshes, max_distance) * per_splat + triangles * per_triangle;

@@ -9,15 +9,10 @@ namespace astrosplat {
 namespace {
 
 template <class Visit>
-void for_each_array(SplatSet& set, Visit visit) {
-    visit(set.position);
-    visit(set.color);
-    visit(set.alpha);
-    visit(set.distance);
-    visit(set.id);
-    visit(set.uv);
-    visit(set.normal);
-    visit(set.mesh);
+void for_each_generated(Visit visit) {
+    for_each_column([&](auto column, SplatColumn which) {
+        if (is_generated(which)) visit(column);
+    });
 }
 
 struct Move {
@@ -26,24 +21,28 @@ struct Move {
 };
 
 void unpack(const Move& move, SplatSet& set) {
-    for (std::size_t i = 0; i < move.count; ++i) {
-        const KeptSplat& splat = move.from[i];
-        const std::size_t to = move.to + i;
-        set.position[to] = splat.position;
-        set.color[to] = splat.color;
-        set.alpha[to] = splat.alpha;
-        set.distance[to] = splat.distance;
-        set.id[to] = splat.id;
-        set.uv[to] = splat.uv;
-        set.normal[to] = splat.normal;
-        set.mesh[to] = splat.mesh;
-    }
+    for (std::size_t i = 0; i < move.count; ++i) put(move.from[i], set, move.to + i);
 }
 
 }  // namespace
 
+void put(const KeptSplat& splat, SplatSet& set, std::size_t row) {
+    set.position[row] = splat.position;
+    set.color[row] = splat.color;
+    set.alpha[row] = splat.alpha;
+    set.distance[row] = splat.distance;
+    set.id[row] = splat.id;
+    set.uv[row] = splat.uv;
+    set.normal[row] = splat.normal;
+    set.mesh[row] = splat.mesh;
+}
+
+void resize(SplatSet& set, std::size_t size) {
+    for_each_generated([&](auto column) { (set.*column).resize(size); });
+}
+
 void reserve(SplatSet& set, std::size_t count) {
-    for_each_array(set, [&](auto& values) { values.reserve(count); });
+    for_each_generated([&](auto column) { (set.*column).reserve(count); });
 }
 
 void append_sorted(std::span<const KeptStore::Run> runs, SplatSet& set) {
@@ -57,7 +56,7 @@ void append_sorted(std::span<const KeptStore::Run> runs, SplatSet& set) {
         move.to = size;
         size += move.count;
     }
-    for_each_array(set, [&](auto& values) { values.resize(size); });
+    resize(set, size);
     parallel_chunks(static_cast<std::int64_t>(moves.size()), 256,
                     [&](std::int64_t begin, std::int64_t end, int) {
                         for (std::int64_t i = begin; i < end; ++i)

@@ -22,7 +22,8 @@ struct KeptSplat {
     glm::vec3 normal;
     std::uint32_t mesh;
 };
-constexpr std::int64_t kept_splat_bytes = 3 * 12 + 8 + 8 + 2 * 4 + 4;  // in a SplatSet's arrays
+/// The columns of a generated set: all but the files' own radius.
+constexpr bool is_generated(SplatColumn column) { return column != SplatColumn::radius; }
 
 /// What one thread keeps, splats or what may become one, in blocks that stay where they are and serve again
 /// after clear(). A run has ascending ids, and no other run has ids in between.
@@ -76,6 +77,10 @@ class RunStore {
 };
 using KeptStore = RunStore<KeptSplat, std::size_t{4} << 20>;  // whole huge pages
 
+/// Those columns, for `size` splats; what is new in them has no values yet.
+void resize(SplatSet& set, std::size_t size);
+/// Fills in a row of them.
+void put(const KeptSplat& splat, SplatSet& set, std::size_t row);
 /// Address space for `count` splats; memory is taken only where it is written.
 void reserve(SplatSet& set, std::size_t count);
 

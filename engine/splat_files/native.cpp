@@ -1,4 +1,4 @@
-// See native.h for the format. One list of arrays (visit_arrays) serves sizes, packing and unpacking.
+// See native.h for the format. One list of columns (for_each_column) serves sizes, packing and unpacking.
 #include "splat_files/native.h"
 
 #include <fmt/format.h>
@@ -62,28 +62,26 @@ struct BlockEntry {
 };
 static_assert(sizeof(BlockEntry) == 32);
 
-/// Calls visit(array, flag) for every array in the file's order, also for empty ones; the flag says whether a
-/// file has it, 0: always.
-template <class Set, class Visit>
-void visit_arrays(Set& set, Visit&& visit) {
-    visit(set.position, 0u);
-    visit(set.color, 0u);
-    visit(set.alpha, 0u);
-    visit(set.distance, 0u);
-    visit(set.id, 0u);
-    visit(set.uv, std::uint32_t{has_uv});
-    visit(set.normal, std::uint32_t{has_normal});
-    visit(set.mesh, std::uint32_t{has_mesh});
-    visit(set.radius, std::uint32_t{has_radius});
+/// What says in the flags that a file has a column; 0: every file has it.
+std::uint32_t flag_of(SplatColumn column) {
+    switch (column) {
+        case SplatColumn::uv:
+            return has_uv;
+        case SplatColumn::normal:
+            return has_normal;
+        case SplatColumn::mesh:
+            return has_mesh;
+        case SplatColumn::radius:
+            return has_radius;
+        default:
+            return 0;
+    }
 }
 
-std::size_t bytes_per_splat(std::uint32_t flags) {
-    std::size_t bytes = 2 * sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(std::uint64_t);
-    if (flags & has_uv) bytes += sizeof(glm::vec2);
-    if (flags & has_normal) bytes += sizeof(glm::vec3);
-    if (flags & has_mesh) bytes += sizeof(std::uint32_t);
-    if (flags & has_radius) bytes += sizeof(float);
-    return bytes;
+bool has(std::uint32_t flags, SplatColumn column) { return (flags & flag_of(column)) == flag_of(column); }
+
+std::size_t row_bytes(std::uint32_t flags) {
+    return bytes_per_splat([&](SplatColumn column) { return has(flags, column); });
 }
 
 /// Where the blocks begin, behind header, credit, padding and checksum.
@@ -110,9 +108,12 @@ BlockEntry describe_block(std::string_view bytes, std::size_t rows) {
 // ---- writing
 
 std::uint32_t flags_of(const SplatSet& set, RowOrder order) {
-    return (set.generated ? generated : 0u) | (set.divided ? divided : 0u) | (set.uv.empty() ? 0u : has_uv) |
-           (set.normal.empty() ? 0u : has_normal) | (set.mesh.empty() ? 0u : has_mesh) |
-           (set.radius.empty() ? 0u : has_radius) | (order == RowOrder::id ? by_id : 0u);
+    std::uint32_t flags = (set.generated ? generated : 0u) | (set.divided ? divided : 0u) |
+                          (order == RowOrder::id ? by_id : 0u);
+    for_each_column([&](auto column, SplatColumn which) {
+        if (!(set.*column).empty()) flags |= flag_of(which);
+    });
+    return flags;
 }
 
 std::string header_bytes(const SplatSet& set, RowOrder order) {
@@ -136,7 +137,8 @@ std::string header_bytes(const SplatSet& set, RowOrder order) {
 
 /// Rows [begin, end) of every array.
 char* pack(const SplatSet& set, std::int64_t begin, std::int64_t end, char* out) {
-    visit_arrays(set, [&](const auto& array, std::uint32_t) {
+    for_each_column([&](auto column, SplatColumn) {
+        const auto& array = set.*column;
         if (array.empty()) return;
         const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
         std::memcpy(out, &array[static_cast<std::size_t>(begin)], bytes);
@@ -148,8 +150,8 @@ char* pack(const SplatSet& set, std::int64_t begin, std::int64_t end, char* out)
 /// Those rows of every array.
 template <class Row>
 char* pack(const SplatSet& set, std::span<const Row> rows, char* out) {
-    visit_arrays(set, [&](const auto& array, std::uint32_t) {
-        if (!array.empty()) out = gather(array.data(), rows, out);
+    for_each_column([&](auto column, SplatColumn) {
+        if (!(set.*column).empty()) out = gather((set.*column).data(), rows, out);
     });
     return out;
 }
@@ -165,7 +167,7 @@ void write_blocks(const std::filesystem::path& file, const SplatSet& set, RowOrd
                   const Progress& progress, const FormatRows& pack_rows) {
     std::vector<BlockEntry> table(block_count(static_cast<std::uint64_t>(set.size()), splats_per_block));
     write_ordered(
-        file, header_bytes(set, order), set.size(), splats_per_block, bytes_per_splat(flags_of(set, order)),
+        file, header_bytes(set, order), set.size(), splats_per_block, row_bytes(flags_of(set, order)),
         progress,
         [&](std::int64_t begin, std::int64_t end, char* out) {
             char* const stop = pack_rows(begin, end, out);
@@ -235,7 +237,7 @@ Header read_header(const Checker& checker, std::string_view bytes) {
 Layout read_layout(const Checker& checker, std::string_view bytes) {
     Layout layout{read_header(checker, bytes), {}, {}, {}};
     const Header& header = layout.header;
-    const std::size_t per_splat = bytes_per_splat(header.flags), begin = data_offset(header.credit_bytes);
+    const std::size_t per_splat = row_bytes(header.flags), begin = data_offset(header.credit_bytes);
     const std::size_t blocks = block_count(header.splats, header.block);
     const bool fits = header.splats <= bytes.size() / per_splat;
     const std::size_t data = fits ? static_cast<std::size_t>(header.splats) * per_splat : 0;
@@ -266,17 +268,11 @@ SplatSet empty_set(const Layout& layout, const OptionalColumns& wanted, const st
     const Header& header = layout.header;
     const auto rows = static_cast<std::size_t>(header.splats);
     const std::uint32_t flags = flags_to_read(header, wanted);
-    if (rows > 0) claim_memory(static_cast<std::int64_t>(rows * bytes_per_splat(flags)), "splats of " + file);
+    if (rows > 0) claim_memory(static_cast<std::int64_t>(rows * row_bytes(flags)), "splats of " + file);
     SplatSet set;
-    set.position.resize(rows);
-    set.color.resize(rows);
-    set.alpha.resize(rows);
-    set.distance.resize(rows);
-    set.id.resize(rows);
-    if (flags & has_uv) set.uv.resize(rows);
-    if (flags & has_normal) set.normal.resize(rows);
-    if (flags & has_mesh) set.mesh.resize(rows);
-    if (flags & has_radius) set.radius.resize(rows);
+    for_each_column([&](auto column, SplatColumn which) {
+        if (has(flags, which)) (set.*column).resize(rows);
+    });
     set.spacing = header.spacing;
     set.max_distance = header.max_distance;
     set.generated = header.flags & generated;
@@ -296,8 +292,9 @@ bool is_finite(std::uint64_t) { return true; }
 /// Copies a block's arrays to the set's rows from `first` on; false when a number is not finite.
 bool unpack(SplatSet& set, std::uint32_t flags, std::size_t first, std::size_t rows, const char* p) {
     bool finite = true;
-    visit_arrays(set, [&](auto& array, std::uint32_t flag) {
-        if ((flags & flag) != flag) return;
+    for_each_column([&](auto column, SplatColumn which) {
+        if (!has(flags, which)) return;
+        auto& array = set.*column;
         const char* const from = p;
         p += rows * sizeof array[0];
         if (array.empty()) return;  // not wanted
@@ -310,7 +307,7 @@ bool unpack(SplatSet& set, std::uint32_t flags, std::size_t first, std::size_t r
 void read_block(const Checker& checker, const Layout& layout, std::size_t block, SplatSet& set) {
     const std::size_t first = block * layout.header.block;
     const std::size_t rows = std::min<std::size_t>(layout.header.block, set.position.size() - first);
-    const std::size_t per_splat = bytes_per_splat(layout.header.flags);
+    const std::size_t per_splat = row_bytes(layout.header.flags);
     const std::string_view bytes = layout.blocks.substr(first * per_splat, rows * per_splat);
     const std::string place = fmt::format("block {}", block);
     const BlockEntry& stored = layout.table[block];
@@ -387,7 +384,7 @@ std::int64_t native_file_bytes(const SplatSet& set) {
     const auto rows = static_cast<std::uint64_t>(set.size());
     const std::size_t table = block_count(rows, splats_per_block) * sizeof(BlockEntry);
     return static_cast<std::int64_t>(data_offset(set.credit.size()) +
-                                     rows * bytes_per_splat(flags_of(set, RowOrder::id)) + table +
+                                     rows * row_bytes(flags_of(set, RowOrder::id)) + table +
                                      sizeof(std::uint64_t));
 }
 

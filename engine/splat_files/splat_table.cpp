@@ -26,10 +26,11 @@ void fill(Buffer<T>& array, std::size_t rows, const T& value) {
 }
 
 std::int64_t bytes_per_row(const SplatTable& table) {
-    std::size_t bytes = 2 * sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(std::uint64_t);
-    if (table.has(Field::radius)) bytes += sizeof(float);
-    if (table.has(Field::s)) bytes += sizeof(glm::vec2);
-    if (table.has(Field::mesh)) bytes += sizeof(std::uint32_t);
+    std::size_t bytes = bytes_per_splat([&](SplatColumn column) {
+        return !is_optional(column) || (column == SplatColumn::radius && table.has(Field::radius)) ||
+               (column == SplatColumn::uv && table.has(Field::s)) ||
+               (column == SplatColumn::mesh && table.has(Field::mesh));
+    });
     if (table.has(Field::id_high)) bytes += sizeof(std::uint32_t);
     return static_cast<std::int64_t>(bytes);
 }

@@ -49,19 +49,6 @@ void give_back(Buffer<T>& values) {
     values = Buffer<T>();  // clear() would keep the memory
 }
 
-template <class Visit>
-void for_each_array(SplatSet& set, Visit visit) {
-    visit(set.position);
-    visit(set.color);
-    visit(set.alpha);
-    visit(set.distance);
-    visit(set.id);
-    visit(set.uv);
-    visit(set.normal);
-    visit(set.mesh);
-    visit(set.radius);
-}
-
 template <class Row>
 void sort_rows(SplatSet& set) {
     const IdSteps steps = steps_of(set.id);
@@ -71,13 +58,13 @@ void sort_rows(SplatSet& set) {
             keys[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
     });
     const Buffer<Row> order = rows_by_key<Row>(keys, steps.count, set.id);
-    for_each_array(set, [&](auto& values) { permute(values, order); });
+    for_each_column([&](auto column, SplatColumn) { permute(set.*column, order); });
 }
 
 }  // namespace
 
 void drop_splats(SplatSet& set) {
-    for_each_array(set, [](auto& values) { give_back(values); });
+    for_each_column([&](auto column, SplatColumn) { give_back(set.*column); });
 }
 
 void drop_columns(SplatSet& set, const OptionalColumns& wanted) {
@@ -114,12 +101,9 @@ void sort_by_id(SplatSet& set) {
 }
 
 void check_consistent([[maybe_unused]] const SplatSet& set) {
-    [[maybe_unused]] const std::size_t size = set.position.size();
-    [[maybe_unused]] const auto known_or_empty = [&](std::size_t n) { return n == size || n == 0; };
-    assert(set.color.size() == size && set.alpha.size() == size);
-    assert(set.distance.size() == size && set.id.size() == size);
-    assert(known_or_empty(set.uv.size()) && known_or_empty(set.normal.size()));
-    assert(known_or_empty(set.mesh.size()) && known_or_empty(set.radius.size()));
+    for_each_column([&]([[maybe_unused]] auto column, [[maybe_unused]] SplatColumn which) {
+        assert((set.*column).size() == set.position.size() || (is_optional(which) && (set.*column).empty()));
+    });
 }
 
 }  // namespace astrosplat

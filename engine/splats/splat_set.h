@@ -1,6 +1,7 @@
 // A layer's splats before any look: what generation or a splat file gives. Structure of arrays, layer space.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -11,9 +12,20 @@
 
 namespace astrosplat {
 
+/// What is known of a set as a whole.
+struct SplatSetFacts {
+    glm::dvec3 spacing{0.0};    // scene units between lattice neighbours per axis; 0: unknown
+    double max_distance = 0.0;  // scene units; x = 1 by default: the source's, or a file's largest distance
+    bool generated = false;     // from meshes; else from a file
+    bool divided = false;       // colours were divided by alpha by the source
+    std::int64_t test_positions = 0;  // lattice positions looked at, 0 for files
+    std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
+    std::string credit;               // from the inputs' metadata
+};
+
 /// Arrays either have size() entries or are empty ("not known"); position, color, alpha, distance and id are
 /// always there. Splats are in ascending order of id (see sort_by_id), so an index stands for an id in ties.
-struct SplatSet {
+struct SplatSet : SplatSetFacts {
     Buffer<glm::vec3> position;  // scene units, layer space
     Buffer<glm::vec3> color;     // linear light, straight
     Buffer<float> alpha;         // 0..1
@@ -24,17 +36,42 @@ struct SplatSet {
     Buffer<std::uint32_t> mesh;  // index of the closest mesh
     Buffer<float> radius;        // scene units; only from files (radiusPP)
 
-    glm::dvec3 spacing{0.0};  // scene units between lattice neighbours per axis; 0: unknown
-    double max_distance =
-        0.0;                 // scene units; x = 1 by default: the source's, or the largest distance in a file
-    bool generated = false;  // from meshes; else from a file
-    bool divided = false;    // colours were divided by alpha by the source
-    std::int64_t test_positions = 0;  // lattice positions looked at, 0 for files
-    std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
-    std::string credit;               // from the inputs' metadata
-
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
+
+/// The columns by number, in the order of for_each_column. Those from uv on are optional.
+enum class SplatColumn : std::uint8_t { position, color, alpha, distance, id, uv, normal, mesh, radius };
+constexpr const char* name_of(SplatColumn column) {
+    constexpr const char* names[] = {"position", "color",  "alpha", "distance", "id",
+                                     "uv",       "normal", "mesh",  "radius"};
+    return names[static_cast<std::size_t>(column)];
+}
+constexpr bool is_optional(SplatColumn column) { return column >= SplatColumn::uv; }
+
+/// Calls visit(pointer to member, SplatColumn) for every column: the one list of them. Native files store
+/// them in this order.
+template <class Visit>
+void for_each_column(Visit visit) {
+    visit(&SplatSet::position, SplatColumn::position);
+    visit(&SplatSet::color, SplatColumn::color);
+    visit(&SplatSet::alpha, SplatColumn::alpha);
+    visit(&SplatSet::distance, SplatColumn::distance);
+    visit(&SplatSet::id, SplatColumn::id);
+    visit(&SplatSet::uv, SplatColumn::uv);
+    visit(&SplatSet::normal, SplatColumn::normal);
+    visit(&SplatSet::mesh, SplatColumn::mesh);
+    visit(&SplatSet::radius, SplatColumn::radius);
+}
+
+/// Bytes of one splat in the columns for which `wanted` says so.
+template <class Wanted>
+std::size_t bytes_per_splat(Wanted wanted) {
+    std::size_t bytes = 0;
+    for_each_column([&]<class T>(Buffer<T> SplatSet::*, SplatColumn column) {
+        if (wanted(column)) bytes += sizeof(T);
+    });
+    return bytes;
+}
 
 /// Which of the columns that a set can do without are wanted: pages that nobody reads cost as much as others.
 struct OptionalColumns {

@@ -211,22 +211,8 @@ void copy_array(const Buffer<T>& from, std::int64_t count, const RowAt& row_at, 
 template <class RowAt>
 SplatSet copy_arrays(const SplatSet& set, std::int64_t count, const RowAt& row_at) {
     SplatSet taken;
-    copy_array(set.position, count, row_at, taken.position);
-    copy_array(set.color, count, row_at, taken.color);
-    copy_array(set.alpha, count, row_at, taken.alpha);
-    copy_array(set.distance, count, row_at, taken.distance);
-    copy_array(set.id, count, row_at, taken.id);
-    copy_array(set.uv, count, row_at, taken.uv);
-    copy_array(set.normal, count, row_at, taken.normal);
-    copy_array(set.mesh, count, row_at, taken.mesh);
-    copy_array(set.radius, count, row_at, taken.radius);
-    taken.spacing = set.spacing;
-    taken.max_distance = set.max_distance;
-    taken.generated = set.generated;
-    taken.divided = set.divided;
-    taken.test_positions = set.test_positions;
-    taken.zero_alpha = set.zero_alpha;
-    taken.credit = set.credit;
+    static_cast<SplatSetFacts&>(taken) = set;
+    for_each_column([&](auto column, SplatColumn) { copy_array(set.*column, count, row_at, taken.*column); });
     return taken;
 }
 
