@@ -2,12 +2,12 @@
 // does not stop the others; an interrupt stops between two pixels.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <new>
 #include <set>
 
 #include "batch_plan.h"
 #include "commands.h"
+#include "core/clock.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
@@ -24,12 +24,6 @@
 
 namespace astrosplat {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::int64_t frames_to_render(const BatchPlan& plan) {
     std::int64_t count = 0;

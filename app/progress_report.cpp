@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/clock.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "interrupt.h"
@@ -13,13 +14,8 @@
 namespace astrosplat {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr auto bar_interval = std::chrono::milliseconds(100);
 constexpr auto line_interval = std::chrono::seconds(5);  // at least every 10 s is promised
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::string bar_text(double fraction) {
     constexpr int width = 30;

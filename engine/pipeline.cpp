@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <optional>
 #include <utility>
 
+#include "core/clock.h"
 #include "core/log.h"
 #include "look/apply.h"
 #include "scene/animate.h"
@@ -35,10 +35,6 @@ struct LayerState {
     std::optional<ShadingKey> key;  // what `shaded` was made with
     ShadedSplats shaded;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void count_set(const SplatSet& set, LayerStatistics& counts) {
     counts.test_positions = set.test_positions;
@@ -94,7 +90,7 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     LayerStatistics& counts = statistics[index];
     counts.name = params.name;
     if (!ever_visible(scene, params)) return;
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     OptionalColumns wanted{false, false, false};  // what no look reads
     wanted.uv = !params.look.thickness.map.empty();
     LoadedSet loaded = load_source(cache, params.source, params.name, progress, nullptr, wanted);

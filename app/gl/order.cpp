@@ -2,17 +2,14 @@
 #include "gl/order.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
 #include "camera/projection.h"
+#include "core/radix_sort.h"
 
 namespace astrosplat {
 namespace {
-
-constexpr int digit_bits = 11;
-constexpr std::uint32_t digits = 1u << digit_bits;
 
 /// ~depth in the upper half, so that ascending is far to near; the splat's index below.
 using Key = std::uint64_t;
@@ -32,18 +29,6 @@ void make_keys(const OrderJob& job, Buffer<Key>& keys) {
             if (place.w < 0.0f) continue;
             keys.push_back(Key{~depth_bits(layer, place, job.lens)} << 32 | Key(i));
         }
-    }
-}
-
-void radix_sort(Buffer<Key>& keys, Buffer<Key>& other) {
-    other.resize(keys.size());
-    for (int shift = 32; shift < 64; shift += digit_bits) {
-        std::vector<std::size_t> start(digits + 1, 0);
-        for (Key key : keys) ++start[(key >> shift & (digits - 1u)) + 1];
-        if (std::find(start.begin(), start.end(), keys.size()) != start.end()) continue;  // one digit for all
-        for (std::uint32_t d = 0; d < digits; ++d) start[d + 1] += start[d];
-        for (Key key : keys) other[start[key >> shift & (digits - 1u)]++] = key;
-        keys.swap(other);
     }
 }
 
@@ -74,7 +59,10 @@ void break_ties(const OrderJob& job, Buffer<Key>& keys) {
 Order sort_far_to_near(const OrderJob& job, OrderScratch& scratch) {
     Buffer<Key>& keys = scratch.keys;
     make_keys(job, keys);
-    radix_sort(keys, scratch.other);
+    scratch.other.resize(keys.size());
+    const Key* const sorted = radix_sort<11>(
+        keys.data(), scratch.other.data(), keys.size(), 32, 64, [](Key key) { return key; }, [] {});
+    if (sorted != keys.data()) keys.swap(scratch.other);
     break_ties(job, keys);
     Order order;
     order.version = job.version;

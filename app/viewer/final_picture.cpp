@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <exception>
@@ -15,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/clock.h"
 #include "core/error.h"
 #include "pipeline.h"
 
@@ -54,7 +54,7 @@ void copy_tile(const Image& from, const Region& tile, Image& to) {
 }
 
 void render_run(Pipeline& pipeline, Run& run) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const FinalRequest& request = run.request;
     pipeline.set_scene(request.scene, request.sets, request.environment.get());
     RenderSettings settings = pipeline.settings(request.frame);
@@ -77,7 +77,7 @@ void render_run(Pipeline& pipeline, Run& run) {
         std::make_shared<RenderedFrame>(pipeline.frame(request.frame, settings, progress, tile_done));
     const std::lock_guard lock(run.mutex);
     run.frame = std::move(frame);
-    run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    run.seconds = seconds_since(start);
     run.state = FinalPicture::State::done;
     run.progress = 1.0f;
 }

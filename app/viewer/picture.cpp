@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "core/clock.h"
 #include "core/error.h"
 #include "look/apply.h"
 #include "scene/layer_setup.h"
@@ -118,9 +119,7 @@ namespace {
 constexpr std::int64_t small_layer = 15'000;  // splats that a preview shows of any layer
 constexpr double rest_s = 0.3;                // without a change, before the final picture begins
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
+double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
 
 Region whole(const PictureRequest& request) {
     if (request.region.width > 0) return request.region;
@@ -223,7 +222,7 @@ bool ViewPicture::Impl::previews_arrived(const PictureRequest& now) const {
 }
 
 void ViewPicture::Impl::draw_preview(double now) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const double target_ms = pace.target_ms(now, choice.target_ms);
     ++version;
     Camera camera = camera_of(*request);

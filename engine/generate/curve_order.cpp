@@ -6,19 +6,9 @@
 #include <glm/common.hpp>
 #include <numeric>
 
+#include "core/morton.h"
+
 namespace astrosplat {
-namespace {
-
-// Bits 0..9 of v to every third bit.
-std::uint32_t spread_bits(std::uint32_t v) {
-    v = (v | v << 16) & 0x030000ffu;
-    v = (v | v << 8) & 0x0300f00fu;
-    v = (v | v << 4) & 0x030c30c3u;
-    return (v | v << 2) & 0x09249249u;
-}
-
-}  // namespace
-
 void CurvePlaces::add(const glm::dvec3& p, double reach) {
     const double scale = reach > 0.0 ? 1023.0 / (2.0 * reach) : 0.0;
     const glm::uvec3 cell(glm::clamp((p + reach) * scale, 0.0, 1023.0));
@@ -46,8 +36,7 @@ const CurvePlaces::Numbers& CurvePlaces::finish() {
         z_[i] ^= y_[i];
         std::uint32_t turned = 0;
         for (std::uint32_t bit = 512; bit > 1; bit >>= 1) turned ^= z_[i] & bit ? bit - 1 : 0;
-        x_[i] =
-            spread_bits(x_[i] ^ turned) << 2 | spread_bits(y_[i] ^ turned) << 1 | spread_bits(z_[i] ^ turned);
+        x_[i] = static_cast<std::uint32_t>(morton_place(z_[i] ^ turned, y_[i] ^ turned, x_[i] ^ turned));
     }
     count_ = 0;
     return x_;

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <utility>
 #include <vector>
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "look/kernel.h"
@@ -97,18 +97,17 @@ void shade_all(const LookRun& run, std::int64_t count, const Progress& progress)
 }
 
 // Fills the statistics, if any, of a look that began at `start`.
-void finish(const ShadedSplats& shaded, std::chrono::steady_clock::time_point start,
-            LookStatistics* statistics) {
+void finish(const ShadedSplats& shaded, Clock::time_point start, LookStatistics* statistics) {
     if (!statistics) return;
     statistics->kept = shaded.size();
-    statistics->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    statistics->seconds = seconds_since(start);
 }
 
 }  // namespace
 
 void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs, ShadedSplats& shaded,
                 const Progress& progress, LookStatistics* statistics) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     make_room(shaded, set.size());
     shade_all({LookColumns(set), uniforms, inputs.thickness_map, shaded}, set.size(), progress);
@@ -117,7 +116,7 @@ void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
 
 ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInputs& inputs,
                                  const Progress& progress, LookStatistics* statistics) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     progress.check();
     const std::int64_t count = set.size();

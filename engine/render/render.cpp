@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <map>
 #include <numeric>
 #include <tuple>
 
+#include "core/clock.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -338,7 +338,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                      RenderCache* cache, const TileDone& tile_done) {
     assert(settings.tile_px == 0 || (settings.tile_px >= 16 && settings.tile_px <= TilePlanes::widest_px &&
                                      settings.tile_px % 8 == 0));
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     for (const RenderLayer& layer : layers)
         if (layer.splats->size() > 0xffffffffLL)
             throw InputError("layer " + layer.name + ": " +
@@ -362,8 +362,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     if (settings.memory_limit_bytes > 0) state.store.shrink(settings.memory_limit_bytes);
     const double covered = static_cast<double>(covered_pixels(frame.beauty));
     frame.statistics.mean_overlap = covered > 0.0 ? frame.statistics.mean_overlap / covered : 0.0;
-    frame.statistics.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    frame.statistics.seconds = seconds_since(start);
     return frame;
 }
 

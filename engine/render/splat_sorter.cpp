@@ -3,31 +3,18 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/radix_sort.h"
+
 namespace astrosplat {
 namespace {
 
 constexpr int digit_bits = 11;
-constexpr std::uint32_t digits = 1u << digit_bits;
 constexpr std::size_t check_every = 65536;  // splats between looks at whether to stop
-
-using Keys = Buffer<std::uint64_t>;  // depth less the least one, above the place in the order of arrival
 
 /// The records of runs lie all over memory: asks for those of one that is soon to be read.
 void prefetch(std::span<const ScreenSplat> run) {
     const auto* bytes = reinterpret_cast<const char*>(run.data());
     for (std::size_t i = 0; i < run.size_bytes(); i += 64) __builtin_prefetch(bytes + i);
-}
-
-/// One stable pass by the digit of the key that begins at bit `shift`.
-void sort_by_digit(const Keys& from, Keys& to, int shift, const Progress& progress) {
-    std::uint32_t start[digits + 1] = {};
-    const auto digit = [shift](std::uint64_t key) { return key >> shift & (digits - 1u); };
-    for (const std::uint64_t key : from) ++start[digit(key) + 1];
-    for (std::uint32_t d = 0; d < digits; ++d) start[d + 1] += start[d];
-    for (std::size_t i = 0; i < from.size(); ++i) {
-        if (i % check_every == 0) progress.check();
-        to[start[digit(from[i])]++] = from[i];
-    }
 }
 
 }  // namespace
@@ -81,10 +68,10 @@ std::span<const ScreenSplat* const> SplatSorter::sort(std::span<const std::span<
     const int bits = read(runs, progress);
     // Two digits tell nearly all depths of a tile apart.
     const int open_bits = std::max(0, bits - 2 * digit_bits);
-    for (int shift = open_bits; shift < bits; shift += digit_bits) {
-        sort_by_digit(keys_, other_, 32 + shift, progress);
-        keys_.swap(other_);
-    }
+    const auto* const sorted = radix_sort<digit_bits>(
+        keys_.data(), other_.data(), keys_.size(), unsigned(32 + open_bits), unsigned(32 + bits),
+        [](std::uint64_t key) { return key; }, [&] { progress.check(); });
+    if (sorted != keys_.data()) keys_.swap(other_);
     put_in_order(open_bits, progress);
     return order_;
 }

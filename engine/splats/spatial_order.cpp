@@ -2,9 +2,9 @@
 #include "splats/spatial_order.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/memory.h"
+#include "core/morton.h"
 #include "core/parallel.h"
 #include "splats/row_order.h"
 
@@ -15,15 +15,6 @@ namespace {
 constexpr std::uint32_t cells_per_axis = 64;
 constexpr std::size_t cells = std::size_t{cells_per_axis} * cells_per_axis * cells_per_axis;
 
-/// spread_cell[v]: bit i of the 6-bit number v as bit 3 i.
-constexpr std::array<std::uint32_t, cells_per_axis> make_spread() {
-    std::array<std::uint32_t, cells_per_axis> table{};
-    for (std::uint32_t v = 0; v < cells_per_axis; ++v)
-        for (unsigned bit = 0; bit < 6; ++bit) table[v] |= (v >> bit & 1u) << (3 * bit);
-    return table;
-}
-constexpr std::array<std::uint32_t, cells_per_axis> spread_cell = make_spread();
-
 std::uint32_t cell_along(double offset, double edge) {
     const double cell = edge > 0.0 ? offset / edge : 0.0;
     if (!(cell > 0.0)) return 0;
@@ -31,8 +22,8 @@ std::uint32_t cell_along(double offset, double edge) {
 }
 
 std::uint32_t morton_cell(const glm::dvec3& offset, double edge) {
-    return spread_cell[cell_along(offset.x, edge)] | spread_cell[cell_along(offset.y, edge)] << 1 |
-           spread_cell[cell_along(offset.z, edge)] << 2;
+    return static_cast<std::uint32_t>(
+        morton_place(cell_along(offset.x, edge), cell_along(offset.y, edge), cell_along(offset.z, edge)));
 }
 
 Buffer<std::uint32_t> cells_of(const SplatSet& set) {

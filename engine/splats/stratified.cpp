@@ -6,19 +6,21 @@
 #include <array>
 #include <bit>
 #include <cassert>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "core/memory.h"
+#include "core/morton.h"
 #include "core/parallel.h"
+#include "core/radix_sort.h"
 #include "core/shared_maths.h"
 #include "splats/row_order.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr unsigned axis_bits = 21;
-constexpr unsigned key_bits = 3 * axis_bits;
+constexpr unsigned key_bits = 3 * morton_axis_bits;
 constexpr unsigned part_bits = 12;  // of the key, highest first: four levels of halving the box
 constexpr std::size_t parts = std::size_t{1} << part_bits;
 constexpr std::int64_t rows_at_once = 1 << 16;
@@ -27,15 +29,6 @@ struct KeyedRow {
     std::uint64_t key;
     std::int64_t row;
 };
-
-/// Moves bit i of a 21-bit number to bit 3 i.
-std::uint64_t spread(std::uint64_t v) {
-    v = (v | v << 32) & 0x001f00000000ffffu;
-    v = (v | v << 16) & 0x001f0000ff0000ffu;
-    v = (v | v << 8) & 0x100f00f00f00f00fu;
-    v = (v | v << 4) & 0x10c30c30c30c30c3u;
-    return (v | v << 2) & 0x1249249249249249u;
-}
 
 /// Cells are cubes, so that a thin disk is sampled evenly over its face before its thickness matters.
 class MortonKeys {
@@ -51,11 +44,11 @@ class MortonKeys {
     KeyedRow operator()(std::int64_t row) const {
         const glm::dvec3 p =
             (glm::dvec3(set_.position[static_cast<std::size_t>(row)]) - lo_) * cells_per_unit_;
-        return {spread(cell(p.x)) | spread(cell(p.y)) << 1 | spread(cell(p.z)) << 2, row};
+        return {morton_place(cell(p.x), cell(p.y), cell(p.z)), row};
     }
 
   private:
-    static constexpr std::uint64_t last_cell = (std::uint64_t{1} << axis_bits) - 1;
+    static constexpr std::uint64_t last_cell = (std::uint64_t{1} << morton_axis_bits) - 1;
     static std::uint64_t cell(double x) {
         return x > 0.0 ? std::min(static_cast<std::uint64_t>(x), last_cell) : 0;
     }
@@ -100,32 +93,16 @@ Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
     return sorted;
 }
 
-/// Least significant digit first over the bits in which keys of one part differ; stable.
-void radix_sort(KeyedRow* rows, std::size_t count, std::vector<KeyedRow>& scratch) {
-    constexpr unsigned digit_bits = 8;
-    std::uint64_t differing = 0;
-    for (std::size_t i = 1; i < count; ++i) differing |= rows[i].key ^ rows[0].key;
-    scratch.resize(count);
-    KeyedRow *from = rows, *to = scratch.data();
-    for (unsigned shift = 0; shift < key_bits; shift += digit_bits) {
-        constexpr std::uint64_t mask = (1u << digit_bits) - 1;
-        if ((differing >> shift & mask) == 0) continue;
-        std::array<std::size_t, mask + 1> next{};
-        for (std::size_t i = 0; i < count; ++i) ++next[from[i].key >> shift & mask];
-        std::size_t sum = 0;
-        for (std::size_t& n : next) sum += std::exchange(n, sum);
-        for (std::size_t i = 0; i < count; ++i) to[next[from[i].key >> shift & mask]++] = from[i];
-        std::swap(from, to);
-    }
-    if (from != rows) std::copy_n(from, count, rows);
-}
-
 void sort_part(KeyedRow* rows, std::size_t count, std::vector<KeyedRow>& scratch) {
     constexpr std::size_t few = 512;  // below, counting digits costs more than comparing
-    if (count >= few) return radix_sort(rows, count, scratch);
-    std::sort(rows, rows + count, [](const KeyedRow& a, const KeyedRow& b) {
-        return a.key != b.key ? a.key < b.key : a.row < b.row;
-    });
+    if (count < few || count > std::numeric_limits<std::uint32_t>::max())
+        return std::sort(rows, rows + count, [](const KeyedRow& a, const KeyedRow& b) {
+            return a.key != b.key ? a.key < b.key : a.row < b.row;
+        });
+    scratch.resize(count);
+    const KeyedRow* const sorted = radix_sort<8>(
+        rows, scratch.data(), count, 0, key_bits - part_bits, [](const KeyedRow& r) { return r.key; }, [] {});
+    if (sorted != rows) std::copy_n(sorted, count, rows);
 }
 
 /// Rows of equal keys by id, for sets that are not in that order.
