@@ -1,98 +1,274 @@
-// Block queries. The block's positions are measured together against the triangles of the clusters that the
-// cull found for it, or that are looked for now (block_kernel). Blocks with too many triangles ask Embree for
-// each position instead.
+// Eight positions at a time walk down the tree of triangles: eight boxes at once are asked whether they may
+// hold a closest point, then each triangle that is left by its disc, then what is left of those exactly.
 #include "generate/block_query.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "generate/block_query.cpp"
+#include <hwy/foreach_target.h>
+// after foreach_target.h
+#include <hwy/highway.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
 
+#include "core/append-inl.h"
+#include "generate/closest_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
 namespace astrosplat {
+namespace HWY_NAMESPACE {
 namespace {
 
-// What a kind of positions has along an axis beyond the number of cells.
-std::int64_t beyond(Positions kind) { return kind == Positions::corners ? 1 : 0; }
+namespace hn = hwy::HWY_NAMESPACE;
 
-// Coordinates of positions along one axis, before jitter, from cell `first` on.
-std::array<double, block_cells> axis_places(const Lattice& lattice, int axis, std::int64_t first,
-                                            Positions kind) {
-    const double offset = kind == Positions::centres ? 0.5 : 0.0;
-    std::array<double, block_cells> at;
-    for (std::int64_t i = 0; i < block_cells; ++i)
-        at[static_cast<std::size_t>(i)] =
-            lattice_coordinate(lattice, axis, static_cast<double>(first + i) + offset);
-    return at;
+using Floats = hn::CappedTag<float, group>;  // of eight positions or of eight boxes, in one vector or two
+using Lanes = hn::Vec<Floats>;
+static_assert(group == TriangleTree::fan);
+
+// Along one axis: the least of y^2 - 2 p y over p in low .. high and y in from .. to.
+HWY_INLINE Lanes least_power(float low, float high, Lanes from, Lanes to) {
+    const Floats d;
+    const auto end = [&](float p) HWY_ATTR {
+        const Lanes y = hn::Min(hn::Max(hn::Set(d, p), from), to);
+        return hn::Mul(y, hn::Sub(y, hn::Set(d, 2.0f * p)));
+    };
+    return hn::Min(end(low), end(high));
 }
 
-KindPlaces kind_places(const Lattice& lattice, const glm::i64vec3& first, Positions kind) {
-    const glm::i64vec3 count = lattice.n + beyond(kind);
-    return {axis_places(lattice, 0, first.x, kind),
-            axis_places(lattice, 1, first.y, kind),
-            axis_places(lattice, 2, first.z, kind),
-            kind == Positions::centres ? centre_id(lattice, first) : corner_id(lattice, first),
-            static_cast<std::uint64_t>(count.x),
-            static_cast<std::uint64_t>(count.x * count.y)};
-}
+class GroupQuery {
+  public:
+    GroupQuery(const TriangleTree& tree, double max_distance, const BestAnswers& answers,
+               std::vector<std::uint32_t>& found)
+        : tree_(tree), g_(answers), found_(found) {
+        std::fill_n(g_.squared, group, max_distance * max_distance);
+        std::fill_n(g_.triangle, group, static_cast<double>(ClosestPoint::none));
+        std::fill_n(g_.v, group, 0.0), std::fill_n(g_.w, group, 0.0);
+        to_local();
+    }
 
-// Places beyond the lattice's end were measured with the rest.
-void drop_outside(const Lattice& lattice, const glm::i64vec3& first, Positions kind, BlockAnswers& answers) {
-    const glm::i64vec3 inside = glm::clamp(lattice.n + beyond(kind) - first, std::int64_t{0}, block_cells);
-    if (inside == glm::i64vec3(block_cells)) return;
-    for (std::int64_t k = 0; k < block_cells; ++k)
-        for (std::int64_t j = 0; j < block_cells; ++j)
-            for (std::int64_t i = 0; i < block_cells; ++i)
-                if (i >= inside.x || j >= inside.y || k >= inside.z)
-                    answers.triangle[block_slot(kind, static_cast<std::size_t>(i),
-                                                static_cast<std::size_t>(j), static_cast<std::size_t>(k))] =
-                        ClosestPoint::none;
-}
+    // `near`: a triangle that is close to all of the positions, and a point of it.
+    void run(std::uint32_t near, const glm::dvec3& on_it) {
+        measure(near, ~0u);
+        set_reference(near, on_it);
+        walk();
+        expect_middles();
+        for (const std::uint32_t slot : found_) {
+            const unsigned positions = slot == near ? 0u : who_asks_for(tree_.triangles[slot].disc);
+            if (positions != 0) measure(slot, positions);
+        }
+    }
 
-// Clusters with all triangles that may be closest to a position of the block; there may be none.
-std::span<const std::uint32_t> clusters_of(const ClosestPointIndex& index, const CullSettings& settings,
-                                           const LatticeBlock& block, const BlockBall& ball,
-                                           std::vector<std::uint32_t>& found) {
-    if (block.cluster_count > 0) return {block.clusters, block.cluster_count};
-    index.collect(ball.center, candidate_radius(settings, ball, block.distance), found);
-    return found;
-}
+  private:
+    void to_local() {
+        glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+        for (std::size_t i = 0; i < group; ++i) {
+            const glm::dvec3 p = glm::dvec3(g_.x[i], g_.y[i], g_.z[i]) - tree_.origin;
+            low = glm::min(low, p), high = glm::max(high, p);
+            x_[i] = static_cast<float>(p.x), y_[i] = static_cast<float>(p.y), z_[i] = static_cast<float>(p.z);
+            limit_[i] = std::numeric_limits<float>::max();
+        }
+        low_ = glm::vec3(low), high_ = glm::vec3(high);
+        slack_ = static_cast<float>(tree_.slack(glm::max(glm::abs(low), glm::abs(high))));
+    }
 
-void ask_embree(const ClosestPointIndex& index, double max_distance, std::uint32_t hint,
-                BlockAnswers& answers) {
-    for (std::size_t s = 0; s < block_positions; ++s) {
-        const ClosestPoint found =
-            index.closest({answers.x[s], answers.y[s], answers.z[s]}, max_distance, hint);
-        answers.distance_squared[s] = found.distance_squared;
-        answers.triangle[s] = found.triangle;
-        answers.v[s] = found.barycentric.x;
-        answers.w[s] = found.barycentric.y;
-        if (found.triangle != ClosestPoint::none) hint = found.triangle;
+    // Exactly, for the positions in `asking`; what they have then limits what may still matter.
+    void measure(std::uint32_t slot, unsigned asking) {
+        const TriangleShape shape = tree_.shape(slot);
+        const double number = tree_.triangles[slot].number;
+        if (has_no_inside(shape)) {
+            for (std::size_t i = 0; i < group; ++i) offer_thin(shape, number, g_, i);
+            return update_limits();
+        }
+        constexpr std::size_t lanes = hn::MaxLanes(Doubles());
+        bool improved = false;
+        for (std::size_t i = 0; i < group; i += lanes)
+            if (asking >> i & ((1u << lanes) - 1u)) improved |= offer(shape, number, g_, i);
+        if (improved) update_limits();
+    }
+
+    // As widened().
+    void update_limits() {
+        const Doubles d;
+        const hn::Rebind<float, Doubles> df;
+        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
+            const auto distance = hn::Sqrt(hn::Load(d, g_.squared + i));
+            const auto limit = hn::Add(hn::Mul(distance, hn::Set(d, 1.00001)), hn::Set(d, double{slack_}));
+            hn::Store(hn::Min(hn::DemoteTo(df, limit), hn::Load(df, limit_ + i)), df, limit_ + i);
+        }
+    }
+
+    // A point y can only be closer to a position p than the meshes' point c if it is on p's side of the plane
+    // midway between them: with y and p relative to c, if y^2 - 2 p y <= 0. The rounding is more than float
+    // can make of such a sum; nothing is concluded from triangles too narrow for a reliable point.
+    void set_reference(std::uint32_t near, const glm::dvec3& on_it) {
+        const glm::dvec3 local = on_it - tree_.origin;
+        const glm::dvec3 low = glm::dvec3(low_) - local, high = glm::dvec3(high_) - local;
+        const double reach = glm::length(glm::max(glm::abs(low), glm::abs(high))), slack = slack_;
+        reference_ = glm::vec3(local), from_reference_low_ = glm::vec3(low),
+        from_reference_high_ = glm::vec3(high);
+        widest_ = *std::max_element(limit_, limit_ + group);
+        rounding_ = tree_.triangles[near].disc.has_plane()
+                        ? static_cast<float>(32.0 * (reach + slack) * (slack + 1e-6 * reach))
+                        : std::numeric_limits<float>::infinity();
+    }
+
+    // As bits: which of the eight boxes from `first` on may hold a point that is closest to a position.
+    HWY_INLINE unsigned may_hold_closest(const TreeLevel& boxes, std::size_t first) const {
+        const Floats d;
+        unsigned bits = 0;
+        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
+            Lanes gap = hn::Zero(d), power = hn::Zero(d);
+            const auto add = [&](const Buffer<float>& los, const Buffer<float>& his, int axis) HWY_ATTR {
+                const Lanes lo = hn::LoadU(d, &los[first + i]), hi = hn::LoadU(d, &his[first + i]);
+                const Lanes beside = hn::Max(
+                    hn::Max(hn::Sub(lo, hn::Set(d, high_[axis])), hn::Sub(hn::Set(d, low_[axis]), hi)),
+                    hn::Zero(d));
+                gap = hn::Add(gap, hn::Mul(beside, beside));
+                const Lanes c = hn::Set(d, reference_[axis]);
+                power = hn::Add(power, least_power(from_reference_low_[axis], from_reference_high_[axis],
+                                                   hn::Sub(lo, c), hn::Sub(hi, c)));
+            };
+            add(boxes.lo_x, boxes.hi_x, 0), add(boxes.lo_y, boxes.hi_y, 1), add(boxes.lo_z, boxes.hi_z, 2);
+            const auto far =
+                hn::Or(hn::Gt(gap, hn::Set(d, widest_ * widest_)), hn::Gt(power, hn::Set(d, rounding_)));
+            bits |= (~bits_of(d, far) & ((1u << hn::MaxLanes(d)) - 1u)) << i;
+        }
+        return bits;
+    }
+
+    // To `found_`: the slots of the triangles whose boxes may hold a closest point.
+    void walk() {
+        struct Siblings {
+            std::size_t level, first;
+        };
+        std::array<Siblings, 12 * group> open;  // more levels than 32 bits of triangles have
+        std::size_t count = 0;
+        open[count++] = {tree_.levels.size() - 1, 0};
+        found_.clear();
+        while (count > 0) {
+            const auto [level, first] = open[--count];
+            const TreeLevel& boxes = tree_.levels[level];
+            unsigned near = may_hold_closest(boxes, first);
+            if (boxes.count - first < group) near &= (1u << (boxes.count - first)) - 1u;
+            for (; near != 0; near &= near - 1) {
+                const std::size_t box = first + static_cast<std::size_t>(std::countr_zero(near));
+                if (level == 0)
+                    found_.push_back(static_cast<std::uint32_t>(box));
+                else
+                    open[count++] = {level - 1, box * group};
+            }
+        }
+    }
+
+    struct FromDisc {
+        Lanes middle_squared, height;
+    };
+    HWY_INLINE FromDisc from_disc(const TriangleDisc& disc, std::size_t i) const {
+        const Floats d;
+        const Lanes x = hn::Sub(hn::Load(d, x_ + i), hn::Set(d, disc.center.x));
+        const Lanes y = hn::Sub(hn::Load(d, y_ + i), hn::Set(d, disc.center.y));
+        const Lanes z = hn::Sub(hn::Load(d, z_ + i), hn::Set(d, disc.center.z));
+        const auto sum = [](Lanes a, Lanes b, Lanes c) HWY_ATTR { return hn::Add(hn::Add(a, b), c); };
+        return {sum(hn::Mul(x, x), hn::Mul(y, y), hn::Mul(z, z)),
+                sum(hn::Mul(x, hn::Set(d, disc.normal.x)), hn::Mul(y, hn::Set(d, disc.normal.y)),
+                    hn::Mul(z, hn::Set(d, disc.normal.z)))};
+    }
+
+    // The middle of a disc is on its triangle: no position needs to look farther than the nearest of them.
+    void expect_middles() {
+        const Floats d;
+        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
+            Lanes nearest = hn::Set(d, std::numeric_limits<float>::infinity());
+            for (const std::uint32_t slot : found_) {
+                const TriangleDisc& disc = tree_.triangles[slot].disc;
+                if (disc.has_plane()) nearest = hn::Min(nearest, from_disc(disc, i).middle_squared);
+            }
+            const Lanes limit =
+                hn::Add(hn::Mul(hn::Sqrt(nearest), hn::Set(d, 1.00002f)), hn::Set(d, 2.0f * slack_));
+            hn::Store(hn::Min(limit, hn::Load(d, limit_ + i)), d, limit_ + i);
+        }
+    }
+
+    // As bits: the positions that a triangle may be closest to, as far as its disc tells.
+    HWY_INLINE unsigned who_asks_for(const TriangleDisc& disc) const {
+        const Floats d;
+        unsigned bits = 0;
+        for (std::size_t i = 0; i < group; i += hn::Lanes(d)) {
+            const auto [squared, height] = from_disc(disc, i);
+            const Lanes limit = hn::Load(d, limit_ + i), radius = hn::Set(d, disc.radius);
+            const Lanes off = hn::Add(hn::Set(d, slack_), hn::Mul(hn::Add(limit, radius), hn::Set(d, 2e-6f)));
+            const Lanes flat = hn::Sub(hn::Mul(squared, hn::Set(d, 1.0f - 4e-6f)), hn::Mul(height, height));
+            const Lanes across = hn::Sqrt(hn::Max(flat, hn::Zero(d)));
+            const Lanes outside = hn::Max(hn::Sub(across, hn::Add(radius, off)), hn::Zero(d));
+            const Lanes above = hn::Max(hn::Sub(hn::Abs(height), off), hn::Zero(d));
+            const Lanes least = hn::Add(hn::Mul(outside, outside), hn::Mul(above, above));
+            const auto far = hn::Gt(least, hn::Mul(limit, limit));
+            bits |= (~bits_of(d, far) & ((1u << hn::MaxLanes(d)) - 1u)) << i;
+        }
+        return bits;
+    }
+
+    const TriangleTree& tree_;
+    BestAnswers g_;
+    std::vector<std::uint32_t>& found_;
+    // Relative to the tree's origin, and that to the reference point; float, scene units.
+    alignas(64) float x_[group], y_[group], z_[group];
+    alignas(64) float limit_[group];  // how near a triangle's bound must come to matter to the position
+    glm::vec3 low_, high_, reference_, from_reference_low_, from_reference_high_;
+    float slack_, widest_, rounding_;
+};
+
+void measure_block(const TriangleTree& tree, double max_distance, std::uint32_t near, const glm::dvec3& on_it,
+                   std::vector<std::uint32_t>& scratch, BlockAnswers& a) {
+    alignas(64) double triangle[group];
+    for (std::size_t i = 0; i < block_positions; i += group) {
+        const BestAnswers eight{&a.x[i],  &a.y[i], &a.z[i], &a.distance_squared[i],
+                                triangle, &a.v[i], &a.w[i]};
+        GroupQuery(tree, max_distance, eight, scratch).run(near, on_it);
+        for (std::size_t k = 0; k < group; ++k) a.triangle[i + k] = static_cast<std::uint32_t>(triangle[k]);
     }
 }
 
 }  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace astrosplat
+HWY_AFTER_NAMESPACE();
 
-void query_block(const ClosestPointIndex& index, const Lattice& lattice, const CullSettings& settings,
-                 const LatticeBlock& block, BlockScratch& scratch, BlockAnswers& answers) {
-    const glm::i64vec3 first = block.at * block_cells;
-    place_block(
-        {kind_places(lattice, first, Positions::corners), kind_places(lattice, first, Positions::centres),
-         lattice.spacing() * (0.5 * settings.jitter), settings.seed},
-        answers);
+#if HWY_ONCE
+namespace astrosplat {
 
-    const BlockBall ball = block_ball(lattice, settings.jitter, first, block_cells);
-    const std::span<const std::uint32_t> clusters =
-        clusters_of(index, settings, block, ball, scratch.clusters);
-    if (clusters.empty()) {
-        answers.triangle.fill(ClosestPoint::none);
-        return;
+HWY_EXPORT(measure_block);
+
+// Places beyond the lattice's end were measured with the rest.
+static void drop_outside(const Lattice& lattice, const LatticeBlock& block, Positions kind,
+                         BlockAnswers& answers) {
+    const glm::i64vec3 count = lattice.n + std::int64_t{kind == Positions::corners};
+    const glm::i64vec3 inside = glm::min(count - block.at * block_cells, block_cells);
+    if (inside == glm::i64vec3(block_cells)) return;
+    for (std::size_t s = 0; s < block_positions; ++s) {
+        const auto bit = [&](unsigned n) { return static_cast<std::int64_t>(s >> n & 1u); };
+        const glm::i64vec3 at(bit(3) * 2 + bit(0), bit(4) * 2 + bit(1), bit(5) * 2 + bit(2));
+        if (at.x >= inside.x || at.y >= inside.y || at.z >= inside.z)
+            answers.triangle[s] = ClosestPoint::none;
     }
-    const auto slack = static_cast<float>(index.slack(ball.center, 2.0 * ball.radius));
-    const BlockMeasure measure{index.triangles(), index.clusters(), index.origin(), slack,
-                               settings.max_distance};
-    if (!measure_block(measure, {clusters, block.near_slot}, scratch, answers))
-        ask_embree(index, settings.max_distance, index.triangles()[block.near_slot].number, answers);
-    drop_outside(lattice, first, Positions::corners, answers);
-    drop_outside(lattice, first, Positions::centres, answers);
+}
+
+void query_block(const TriangleTree& tree, const Lattice& lattice, const CullSettings& settings,
+                 const LatticeBlock& block, Positions kind, std::vector<std::uint32_t>& scratch,
+                 BlockAnswers& answers) {
+    place_block(lattice, settings, block, kind, answers);
+    const BlockBall ball = block_ball(lattice, settings.jitter, block.at * block_cells, block_cells);
+    const TriangleShape shape = tree.shape(block.near_slot);
+    const glm::dvec2 weights = closest_on_triangle(ball.center, shape).barycentric;
+    const glm::dvec3 on_it = shape.a + shape.ab * weights.x + shape.ac * weights.y;
+    HWY_DYNAMIC_DISPATCH(measure_block)
+    (tree, settings.max_distance, block.near_slot, on_it, scratch, answers);
+    drop_outside(lattice, block, kind, answers);
 }
 
 }  // namespace astrosplat
+#endif

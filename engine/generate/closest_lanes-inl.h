@@ -1,19 +1,17 @@
-// Sixteen positions and one triangle, or a triangle for each of them: the exact closest points, as
-// closest_on_triangle gives them. Included once per instruction set.
-#if defined(ASTROSPLAT_SPLATS_CLOSEST_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef ASTROSPLAT_SPLATS_CLOSEST_LANES_INL_H
-#undef ASTROSPLAT_SPLATS_CLOSEST_LANES_INL_H
+// Eight positions and one triangle: the exact closest points, as closest_on_triangle gives them. Included
+// once per instruction set.
+#if defined(ASTROSPLAT_GENERATE_CLOSEST_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef ASTROSPLAT_GENERATE_CLOSEST_LANES_INL_H
+#undef ASTROSPLAT_GENERATE_CLOSEST_LANES_INL_H
 #else
-#define ASTROSPLAT_SPLATS_CLOSEST_LANES_INL_H
+#define ASTROSPLAT_GENERATE_CLOSEST_LANES_INL_H
 #endif
 
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <cstddef>
-#include <cstdint>
 
-#include "generate/closest_point.h"
+#include "generate/closest_triangle.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat {
@@ -22,7 +20,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t group = 16;              // positions
+constexpr std::size_t group = 8;               // positions
 using Doubles = hn::CappedTag<double, group>;  // a group's coordinates, in one vector or several
 
 /// Positions, and the best answer so far for each: arrays of whole groups.
@@ -44,54 +42,17 @@ HWY_INLINE Vector3 set(const glm::dvec3& p) {
     return {hn::Set(d, p.x), hn::Set(d, p.y), hn::Set(d, p.z)};
 }
 
-// One triangle for all lanes, or one for each.
-struct ShapeLanes {
-    Vector3 a, ab, ac;
-    hn::Vec<Doubles> ab_ab, ab_ac, ac_ac, number;
-};
-
-HWY_INLINE ShapeLanes same_shape(const TriangleShape& s, double number) {
-    const Doubles d;
-    return {set(s.a),
-            set(s.ab),
-            set(s.ac),
-            hn::Set(d, s.ab_ab),
-            hn::Set(d, s.ab_ac),
-            hn::Set(d, s.ac_ac),
-            hn::Set(d, number)};
-}
-
-HWY_INLINE ShapeLanes shapes_of(const ClusteredTriangle* triangles, const std::uint32_t* slots) {
-    constexpr std::size_t lanes = hn::MaxLanes(Doubles());
-    const Doubles d;
-    const hn::Rebind<float, Doubles> df;
-    alignas(64) float at[9][lanes];
-    alignas(64) double number[lanes];
-    for (std::size_t i = 0; i < lanes; ++i) {
-        const TriangleCorners& t = triangles[slots[i]].corners;
-        number[i] = triangles[slots[i]].number;
-        at[0][i] = t.a.x, at[1][i] = t.a.y, at[2][i] = t.a.z;
-        at[3][i] = t.b.x, at[4][i] = t.b.y, at[5][i] = t.b.z;
-        at[6][i] = t.c.x, at[7][i] = t.c.y, at[8][i] = t.c.z;
-    }
-    const auto load = [&](std::size_t k) HWY_ATTR { return hn::PromoteTo(d, hn::Load(df, at[k])); };
-    const Vector3 a{load(0), load(1), load(2)};
-    const Vector3 ab{hn::Sub(load(3), a.x), hn::Sub(load(4), a.y), hn::Sub(load(5), a.z)};
-    const Vector3 ac{hn::Sub(load(6), a.x), hn::Sub(load(7), a.y), hn::Sub(load(8), a.z)};
-    return {a, ab, ac, dot(ab, ab), dot(ab, ac), dot(ac, ac), hn::Load(d, number)};
-}
-
 struct ClosestLanes {
     hn::Vec<Doubles> squared, v, w;  // as ClosestPoint
 };
 
 // Ericson's regions as masks: closest_on_triangle without branches, to the same bits.
-HWY_INLINE ClosestLanes closest_lanes(const ShapeLanes& s, const Vector3& p) {
+HWY_INLINE ClosestLanes closest_lanes(const TriangleShape& s, const Vector3& p) {
     const Doubles d;
     const auto zero = hn::Zero(d), one = hn::Set(d, 1.0);
-    const Vector3 &ab = s.ab, &ac = s.ac, &a = s.a;
+    const Vector3 ab = set(s.ab), ac = set(s.ac), a = set(s.a);
     const Vector3 ap{hn::Sub(p.x, a.x), hn::Sub(p.y, a.y), hn::Sub(p.z, a.z)};
-    const auto ab_ab = s.ab_ab, ab_ac = s.ab_ac, ac_ac = s.ac_ac;
+    const auto ab_ab = hn::Set(d, s.ab_ab), ab_ac = hn::Set(d, s.ab_ac), ac_ac = hn::Set(d, s.ac_ac);
     const auto d1 = dot(ab, ap), d2 = dot(ac, ap);
     const auto d3 = hn::Sub(d1, ab_ab), d4 = hn::Sub(d2, ab_ac), d5 = hn::Sub(d1, ab_ac),
                d6 = hn::Sub(d2, ac_ac);
@@ -126,64 +87,30 @@ HWY_INLINE ClosestLanes closest_lanes(const ShapeLanes& s, const Vector3& p) {
     return {dot(r, r), v, w};
 }
 
-// For the vector of positions from place i on. True when its triangle is nearest for one of them.
-HWY_INLINE bool offer(const ShapeLanes& s, const BestAnswers& g, std::size_t i) {
+// For the vector of positions from place i on. True when the triangle is nearest for one of them.
+HWY_INLINE bool offer(const TriangleShape& s, double number, const BestAnswers& g, std::size_t i) {
     const Doubles d;
     const ClosestLanes c =
         closest_lanes(s, {hn::LoadU(d, g.x + i), hn::LoadU(d, g.y + i), hn::LoadU(d, g.z + i)});
     const auto best = hn::Load(d, g.squared + i), triangle = hn::Load(d, g.triangle + i);
-    const auto tie_won = hn::And(hn::Eq(c.squared, best), hn::Lt(s.number, triangle));
+    const auto this_one = hn::Set(d, number);
+    const auto tie_won = hn::And(hn::Eq(c.squared, best), hn::Lt(this_one, triangle));
     const auto nearer = hn::Or(hn::Lt(c.squared, best), tie_won);
     if (hn::AllFalse(d, nearer)) return false;
     hn::Store(hn::IfThenElse(nearer, c.squared, best), d, g.squared + i);
-    hn::Store(hn::IfThenElse(nearer, s.number, triangle), d, g.triangle + i);
+    hn::Store(hn::IfThenElse(nearer, this_one, triangle), d, g.triangle + i);
     hn::Store(hn::IfThenElse(nearer, c.v, hn::Load(d, g.v + i)), d, g.v + i);
     hn::Store(hn::IfThenElse(nearer, c.w, hn::Load(d, g.w + i)), d, g.w + i);
     return true;
 }
 
-HWY_INLINE bool offer_one(const ClosestPoint& c, double number, const BestAnswers& g, std::size_t i) {
+// The same for a triangle without a usable inside, by the scalar code, and for one position.
+inline void offer_thin(const TriangleShape& shape, double number, const BestAnswers& g, std::size_t i) {
+    const ClosestPoint c = closest_on_triangle({g.x[i], g.y[i], g.z[i]}, shape);
     const bool tie_won = c.distance_squared == g.squared[i] && number < g.triangle[i];
-    if (!(c.distance_squared < g.squared[i] || tie_won)) return false;
-    g.squared[i] = c.distance_squared;
-    g.triangle[i] = number;
-    g.v[i] = c.barycentric.x;
-    g.w[i] = c.barycentric.y;
-    return true;
-}
-
-/// Triangles, each with the place of a position.
-struct Pairs {
-    static constexpr std::size_t most = hn::MaxLanes(Doubles());
-    std::size_t count = 0;
-    std::uint32_t slot[most], place[most];
-};
-
-// Empties `pairs`: at least one, of triangles with an inside.
-void offer_pairs(const ClusteredTriangle* triangles, Pairs& pairs, const BestAnswers& g) {
-    const Doubles d;
-    alignas(64) double x[Pairs::most], y[Pairs::most], z[Pairs::most];
-    for (std::size_t i = 0; i < Pairs::most; ++i) {
-        const std::size_t from = std::min(i, pairs.count - 1), p = pairs.place[from];
-        pairs.slot[i] = pairs.slot[from];
-        x[i] = g.x[p], y[i] = g.y[p], z[i] = g.z[p];
-    }
-    const ShapeLanes shapes = shapes_of(triangles, pairs.slot);
-    const ClosestLanes c = closest_lanes(shapes, {hn::Load(d, x), hn::Load(d, y), hn::Load(d, z)});
-    alignas(64) double squared[Pairs::most], v[Pairs::most], w[Pairs::most], number[Pairs::most];
-    hn::Store(c.squared, d, squared), hn::Store(c.v, d, v), hn::Store(c.w, d, w);
-    hn::Store(shapes.number, d, number);
-    for (std::size_t i = 0; i < pairs.count; ++i)
-        offer_one({squared[i], 0, {v[i], w[i]}}, number[i], g, pairs.place[i]);
-    pairs.count = 0;
-}
-
-// Triangles without a usable inside, by the scalar code, for the group of positions from place `first` on.
-bool offer_thin(const TriangleShape& shape, double number, const BestAnswers& g, std::size_t first) {
-    bool any = false;
-    for (std::size_t i = first; i < first + group; ++i)
-        any |= offer_one(closest_on_triangle({g.x[i], g.y[i], g.z[i]}, shape), number, g, i);
-    return any;
+    if (!(c.distance_squared < g.squared[i] || tie_won)) return;
+    g.squared[i] = c.distance_squared, g.triangle[i] = number;
+    g.v[i] = c.barycentric.x, g.w[i] = c.barycentric.y;
 }
 
 }  // namespace

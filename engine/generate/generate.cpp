@@ -5,21 +5,21 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "generate/block_cull.h"
-#include "generate/block_sampler.h"
-#include "generate/closest_point.h"
+#include "generate/block_query.h"
+#include "generate/kept_store.h"
 #include "generate/kept_watcher.h"
 #include "generate/surface.h"
 
 namespace astrosplat {
 namespace {
 
+constexpr std::size_t longest_row = 64;         // blocks: their answers stay in the second-level cache
 constexpr std::size_t batch_blocks = 1u << 13;  // about this many are kept apart before they join the set
 
 /// Blocks begin .. end-1: a row has the same (y, z) and ascending x, a batch is whole layers of the same z.
@@ -27,24 +27,19 @@ struct BlockRange {
     std::size_t begin, end;
 };
 
-// Rows that lie above each other follow each other: they need much the same triangles.
-std::vector<BlockRange> rows_of(const Buffer<LatticeBlock>& blocks, const BlockRange& batch) {
+std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const BlockRange& batch) {
     std::vector<BlockRange> rows;
     for (std::size_t i = batch.begin; i < batch.end; ++i) {
-        const bool joins = !rows.empty() && i - rows.back().begin < BlockSampler::longest_row &&
+        const bool joins = !rows.empty() && i - rows.back().begin < longest_row &&
                            blocks[i - 1].at.y == blocks[i].at.y && blocks[i - 1].at.z == blocks[i].at.z;
         if (!joins) rows.push_back({i, i});
         rows.back().end = i + 1;
     }
-    std::sort(rows.begin(), rows.end(), [&](const BlockRange& a, const BlockRange& b) {
-        const glm::i64vec3 &p = blocks[a.begin].at, &q = blocks[b.begin].at;
-        return std::tie(p.y, p.z, p.x) < std::tie(q.y, q.z, q.x);
-    });
     return rows;
 }
 
 // Ids of one batch come before those of the next, because a batch ends where a layer of blocks does.
-std::vector<BlockRange> batches_of(const Buffer<LatticeBlock>& blocks) {
+std::vector<BlockRange> batches_of(const std::vector<LatticeBlock>& blocks) {
     std::vector<BlockRange> batches;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const bool new_layer = i == 0 || blocks[i - 1].at.z != blocks[i].at.z;
@@ -55,78 +50,92 @@ std::vector<BlockRange> batches_of(const Buffer<LatticeBlock>& blocks) {
     return batches;
 }
 
-struct Worker : SamplerWorker {
-    std::vector<std::size_t> centre_runs{0};  // how many there were before each batch
+/// What one thread works with and what it finds.
+struct Worker {
+    std::vector<BlockAnswers> answers;
+    std::vector<std::uint32_t> scratch;
+    KeptStore kept;
+    std::int64_t zero_alpha = 0;  // positions dropped because their alpha is exactly 0
 };
 
-// Corners and centres of a block are measured together, but the corners have all the lower ids: the centres'
-// hits wait until the corners are in the set, and are freed as they join it. All goes batch by batch, so that
-// little is stored twice.
+// All corners, then all centres, as their ids ask for; each time batch by batch, so that little is stored
+// twice.
 class BlockRun {
   public:
-    BlockRun(const BlockSampler& sampler, const Buffer<LatticeBlock>& blocks, const Progress& progress,
-             KeptWatcher* watcher)
-        : sampler_(sampler),
-          blocks_(blocks),
+    BlockRun(const TriangleTree& tree, const Buffer<SurfaceTriangle>& surface, const Lattice& lattice,
+             const CullSettings& settings, const Progress& progress, KeptWatcher* watcher)
+        : tree_(tree),
+          surface_(surface),
+          lattice_(lattice),
+          settings_(settings),
           progress_(progress),
           watcher_(watcher),
           workers_(static_cast<std::size_t>(thread_count())) {}
 
-    void run(SplatSet& set) {
-        const std::vector<BlockRange> batches = batches_of(blocks_);
-        for (const BlockRange& batch : batches) {
-            measure(batch);
-            append_kept(set);
-        }
-        for (std::size_t batch = 0; batch < batches.size(); ++batch) {
-            keep_centres(batch);
-            append_kept(set);
-            progress_.at(measuring + (1.0 - measuring) * static_cast<double>(batch + 1) /
-                                         static_cast<double>(batches.size()));
+    void run(const std::vector<LatticeBlock>& blocks, SplatSet& set) {
+        const std::vector<BlockRange> batches = batches_of(blocks);
+        for (const Positions kind : {Positions::corners, Positions::centres}) {
+            for (const BlockRange& batch : batches) {
+                run_batch(blocks, batch, kind);
+                append_kept(set);
+            }
         }
         for (const Worker& worker : workers_) set.zero_alpha += worker.zero_alpha;
     }
 
   private:
-    static constexpr double measuring = 0.8;  // of the time
-
-    void measure(const BlockRange& batch) {
-        const std::vector<BlockRange> rows = rows_of(blocks_, batch);
+    void run_batch(const std::vector<LatticeBlock>& blocks, const BlockRange& batch, Positions kind) {
+        const std::vector<BlockRange> rows = rows_of(blocks, batch);
         parallel_for(static_cast<std::int64_t>(rows.size()), [&](std::int64_t row, int number) {
             progress_.check();
             const BlockRange& range = rows[static_cast<std::size_t>(row)];
             const std::size_t count = range.end - range.begin;
-            watched(number, [&](SamplerWorker& worker) {
-                sampler_.measure({&blocks_[range.begin], count}, worker);
-            });
-            progress_.at(measuring * static_cast<double>(done_ += count) /
-                         static_cast<double>(blocks_.size()));
+            Worker& worker = workers_[static_cast<std::size_t>(number)];
+            const std::size_t runs = worker.kept.runs().size();
+            run_row({&blocks[range.begin], count}, kind, worker);
+            if (watcher_) watcher_->keeps(std::span(worker.kept.runs()).subspan(runs));
+            progress_.at(0.5 * static_cast<double>(done_ += count) / static_cast<double>(blocks.size()));
         });
-        for (Worker& worker : workers_) worker.centre_runs.push_back(worker.centres.runs().size());
     }
 
-    void keep_centres(std::size_t batch) {
-        std::vector<HitStore::Run> runs;
-        for (const Worker& worker : workers_) {
-            const HitStore::Run* const all = worker.centres.runs().data();
-            runs.insert(runs.end(), all + worker.centre_runs[batch], all + worker.centre_runs[batch + 1]);
+    // The answers in order of id: each lattice row across all blocks, which is a run of the store.
+    void run_row(std::span<const LatticeBlock> row, Positions kind, Worker& worker) const {
+        worker.answers.resize(longest_row);
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            query_block(tree_, lattice_, settings_, row[i], kind, worker.scratch, worker.answers[i]);
         }
-        parallel_chunks(static_cast<std::int64_t>(runs.size()), 128,
-                        [&](std::int64_t begin, std::int64_t end, int number) {
-                            progress_.check();
-                            const std::span part(runs.data() + begin, runs.data() + end);
-                            watched(number, [&](SamplerWorker& worker) { sampler_.keep(part, worker); });
-                        });
-        for (Worker& worker : workers_) worker.centres.free_before(worker.centre_runs[batch + 1]);
+        for (std::size_t k = 0; k < block_cells; ++k) {
+            for (std::size_t j = 0; j < block_cells; ++j) {
+                worker.kept.begin_run();
+                for (std::size_t b = 0; b < row.size(); ++b)
+                    keep_row_of_block(row[b], kind, j, k, worker.answers[b], worker);
+            }
+        }
     }
 
-    // Shows what the worker's task keeps.
-    template <class Task>
-    void watched(int number, const Task& task) {
-        Worker& worker = workers_[static_cast<std::size_t>(number)];
-        const std::size_t runs = worker.kept.runs().size();
-        task(worker);
-        if (watcher_) watcher_->keeps(std::span(worker.kept.runs()).subspan(runs));
+    void keep_row_of_block(const LatticeBlock& block, Positions kind, std::size_t j, std::size_t k,
+                           const BlockAnswers& answers, Worker& worker) const {
+        const glm::i64vec3 at = block.at * block_cells + glm::i64vec3(0, j, k);
+        const std::uint64_t id =
+            kind == Positions::centres ? centre_id(lattice_, at) : corner_id(lattice_, at);
+        for (std::size_t i = 0; i < block_cells; ++i) {
+            const std::size_t slot = block_slot(i, j, k);
+            if (answers.triangle[slot] != ClosestPoint::none) keep(answers, slot, id + i, worker);
+        }
+    }
+
+    void keep(const BlockAnswers& answers, std::size_t slot, std::uint64_t id, Worker& worker) const {
+        const SurfaceTriangle& surface = surface_[answers.triangle[slot]];
+        const glm::vec2 uv = uv_at(surface, {answers.v[slot], answers.w[slot]});
+        const TextureSample picture = sample(*surface.texture, uv, surface.box_texels);
+        if (picture.alpha == 0.0f) {
+            ++worker.zero_alpha;
+            return;
+        }
+        const glm::vec3 position(glm::dvec3(answers.x[slot], answers.y[slot], answers.z[slot]));
+        const auto distance = static_cast<float>(std::sqrt(answers.distance_squared[slot]));
+        worker.kept.add(
+            {position, picture.color, picture.alpha, distance, id, uv, surface.normal, surface.mesh});
     }
 
     void append_kept(SplatSet& set) {
@@ -137,12 +146,14 @@ class BlockRun {
         for (Worker& worker : workers_) worker.kept.clear();
     }
 
-    const BlockSampler& sampler_;
-    const Buffer<LatticeBlock>& blocks_;
+    const TriangleTree& tree_;
+    const Buffer<SurfaceTriangle>& surface_;
+    const Lattice& lattice_;
+    const CullSettings& settings_;
     const Progress& progress_;
     KeptWatcher* watcher_;
     std::vector<Worker> workers_;
-    std::atomic<std::size_t> done_{0};  // blocks
+    std::atomic<std::size_t> done_{0};  // blocks, each once for either kind
 };
 
 void describe_set(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
@@ -172,7 +183,7 @@ std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const L
     const double per_splat =
         1.02 * static_cast<double>(bytes_per_splat(is_generated));  // and a batch that exists twice
     const double per_triangle =
-        sizeof(ClusteredTriangle) + sizeof(SurfaceTriangle) + 150.0;  // and Embree's tree
+        sizeof(TreeTriangle) + sizeof(SurfaceTriangle) + 6.9 * sizeof(float);  // 8/7 boxes
     const double bytes = expected_kept(lattice, meshes, max_distance) * per_splat + triangles * per_triangle;
     return static_cast<std::int64_t>(std::min(bytes, 9e18));
 }
@@ -182,18 +193,16 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     claim_memory(generate_memory_bytes(meshes, lattice, max_distance), "generating splats");
     std::vector<const Mesh*> shapes;
     for (const TexturedMesh& m : meshes) shapes.push_back(&m.mesh);
-    const ClosestPointIndex index(shapes);
-    const Buffer<SurfaceTriangle> surface = surface_triangles(meshes, index, lattice.spacing());
+    const TriangleTree tree = make_triangle_tree(shapes);
+    const Buffer<SurfaceTriangle> surface = surface_triangles(meshes, lattice.spacing());
     const CullSettings settings{max_distance, jitter, seed};
-    const NearBlocks near = blocks_near(index, lattice, settings, progress);
-    const Buffer<LatticeBlock>& blocks = near.blocks;
+    const std::vector<LatticeBlock> blocks = blocks_near(tree, lattice, settings, progress);
 
     SplatSet set;
     describe_set(meshes, lattice, max_distance, set);
     if (watcher) watcher->begins(set, lattice.box);
-    reserve(set, blocks.size() * block_positions);
-    const BlockSampler sampler(index, surface, lattice, settings);
-    BlockRun(sampler, blocks, progress, watcher).run(set);
+    reserve(set, blocks.size() * 2 * block_positions);
+    BlockRun(tree, surface, lattice, settings, progress, watcher).run(blocks, set);
     check_consistent(set);
     return set;
 }

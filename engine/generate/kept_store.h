@@ -3,7 +3,6 @@
 // SplatSet.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -25,17 +24,16 @@ struct KeptSplat {
 /// The columns of a generated set: all but the files' own radius.
 constexpr bool is_generated(SplatColumn column) { return column != SplatColumn::radius; }
 
-/// What one thread keeps, splats or what may become one, in blocks that stay where they are and serve again
-/// after clear(). A run has ascending ids, and no other run has ids in between.
-template <class T, std::size_t block_bytes>
-class RunStore {
+/// The splats that one thread keeps, in blocks that stay where they are and serve again after clear(). A run
+/// has ascending ids, and no other run has ids in between.
+class KeptStore {
   public:
     struct Run {
-        const T* splats;
+        const KeptSplat* splats;
         std::size_t count;
     };
     void begin_run() { open_ = false; }
-    void add(const T& splat) {
+    void add(const KeptSplat& splat) {
         if (next_ == end_) next_block();
         if (!open_) runs_.push_back({next_, 0});
         open_ = true;
@@ -49,33 +47,23 @@ class RunStore {
         next_ = end_ = nullptr;
         open_ = false;
     }
-    /// Frees the blocks in which no run from number `run` on lies; for a store that nothing is added to any
-    /// more.
-    void free_before(std::size_t run) {
-        const auto holds_run = [&](const Buffer<T>& block) {
-            return run < runs_.size() && block.data() <= runs_[run].splats &&
-                   runs_[run].splats < block.data() + block.size();
-        };
-        blocks_.erase(blocks_.begin(), std::find_if(blocks_.begin(), blocks_.end(), holds_run));
-    }
 
   private:
     // A run that reaches the end of its block goes on as another.
     void next_block() {
-        constexpr std::size_t block_splats = block_bytes / sizeof(T);
+        constexpr std::size_t block_splats = (std::size_t{4} << 20) / sizeof(KeptSplat);  // whole huge pages
         if (used_ == blocks_.size()) blocks_.emplace_back(block_splats);
         next_ = blocks_[used_++].data();
         end_ = next_ + block_splats;
         open_ = false;
     }
 
-    std::vector<Buffer<T>> blocks_;  // filled one after the other
+    std::vector<Buffer<KeptSplat>> blocks_;  // filled one after the other
     std::vector<Run> runs_;
     std::size_t used_ = 0;  // blocks
-    T *next_ = nullptr, *end_ = nullptr;
+    KeptSplat *next_ = nullptr, *end_ = nullptr;
     bool open_ = false;
 };
-using KeptStore = RunStore<KeptSplat, std::size_t{4} << 20>;  // whole huge pages
 
 /// Those columns, for `size` splats; what is new in them has no values yet.
 void resize(SplatSet& set, std::size_t size);

@@ -45,17 +45,17 @@ SurfaceTriangle surface_triangle(const TexturedMesh& m, const Mesh::Triangle& fa
 
 }  // namespace
 
-Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
-                                          const ClosestPointIndex& index, const glm::dvec3& spacing) {
-    Buffer<SurfaceTriangle> triangles(static_cast<std::size_t>(index.triangle_count()));
-    std::size_t first = 0;
+Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, const glm::dvec3& spacing) {
+    std::size_t count = 0, first = 0;
+    for (const TexturedMesh& m : meshes) count += m.mesh.triangles.size();
+    Buffer<SurfaceTriangle> triangles(count);
     for (std::size_t number = 0; number < meshes.size(); ++number) {
         const TexturedMesh& m = meshes[number];
-        const auto count = static_cast<std::int64_t>(m.mesh.triangles.size());
         const auto corner = [&](const Mesh::Triangle& face, std::size_t k) {
             return glm::dvec3(m.mesh.positions[face.position[k]]);
         };
-        parallel_chunks(count, 4096, [&](std::int64_t begin, std::int64_t end, int) {
+        const auto faces = static_cast<std::int64_t>(m.mesh.triangles.size());
+        parallel_chunks(faces, 4096, [&](std::int64_t begin, std::int64_t end, int) {
             for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
                 const Mesh::Triangle& face = m.mesh.triangles[i];
                 const TriangleShape shape = triangle_shape(corner(face, 0), corner(face, 1), corner(face, 2));

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/buffer.h"
-#include "generate/closest_point.h"
+#include "generate/closest_triangle.h"
 #include "generate/textured_mesh.h"
 
 namespace astrosplat {
@@ -21,10 +21,9 @@ struct SurfaceTriangle {
     const Texture* texture;
 };
 
-/// One entry for each triangle of the index, in its order. `spacing` is the voxel's sides in scene units. The
+/// One entry for each triangle of all meshes in order. `spacing` is the voxel's sides in scene units. The
 /// result points into `meshes`.
-Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes,
-                                          const ClosestPointIndex& index, const glm::dvec3& spacing);
+Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, const glm::dvec3& spacing);
 
 inline glm::vec2 uv_at(const SurfaceTriangle& triangle, const glm::dvec2& barycentric) {
     const glm::dvec2 a(triangle.uv_a), ab = glm::dvec2(triangle.uv_b) - a, ac = glm::dvec2(triangle.uv_c) - a;

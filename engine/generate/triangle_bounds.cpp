@@ -38,24 +38,6 @@ glm::dvec3 usable_normal(const TriangleShape& s) {
     return length > 0.0 && !is_narrow(s) ? normal / length : glm::dvec3(0.0);
 }
 
-// `middle` is the disc's, from the first corner.
-TriangleEdges edges_of(const TriangleShape& s, const glm::dvec3& normal, const glm::dvec3& middle) {
-    TriangleEdges edges{};
-    if (normal == glm::dvec3(0.0)) return edges;
-    const glm::dvec3 from[3] = {glm::dvec3(0.0), s.ab, s.ac}, along_edge[3] = {s.ab, s.ac - s.ab, -s.ac};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const glm::dvec3 outward = glm::cross(along_edge[i], normal);
-        const double length = std::sqrt(squared(outward));
-        if (!(length > 0.0)) continue;  // a plane that bounds nothing
-        const glm::dvec3 unit = outward / length;
-        edges.normal_x[i] = static_cast<float>(unit.x);
-        edges.normal_y[i] = static_cast<float>(unit.y);
-        edges.normal_z[i] = static_cast<float>(unit.z);
-        edges.offset[i] = static_cast<float>(glm::dot(unit, from[i] - middle));
-    }
-    return edges;
-}
-
 }  // namespace
 
 TriangleBox triangle_box(const TriangleShape& s, const glm::dvec3& origin) {
@@ -65,13 +47,12 @@ TriangleBox triangle_box(const TriangleShape& s, const glm::dvec3& origin) {
     return {glm::vec3(lo - more), glm::vec3(hi + more)};
 }
 
-TriangleBounds triangle_bounds(const TriangleShape& s, const glm::dvec3& origin) {
-    const glm::dvec3 middle = circle_middle(s), normal = usable_normal(s);
+TriangleDisc triangle_disc(const TriangleShape& s, const glm::dvec3& origin) {
+    const glm::dvec3 middle = circle_middle(s);
     const double radius =
         std::sqrt(std::max({squared(middle), squared(middle - s.ab), squared(middle - s.ac)}));
-    return {{glm::vec3(s.a - origin + middle), glm::vec3(normal),
-             static_cast<float>(radius * (1.0 + overshoot(s)))},
-            edges_of(s, normal, middle)};
+    return {glm::vec3(s.a - origin + middle), glm::vec3(usable_normal(s)),
+            static_cast<float>(radius * (1.0 + overshoot(s)))};
 }
 
 }  // namespace astrosplat

@@ -1,24 +1,26 @@
-// What encloses a triangle, for closest-point searches. In: a triangle in double. Out: its disc or ball, the
-// planes through its edges and its box, in float, wide enough for what closest_on_triangle may answer.
+// What encloses a triangle, for closest-point searches. In: a triangle in double. Out: its disc and its box
+// in float, relative to an origin, wide enough for what closest_on_triangle may answer.
 #pragma once
 
-#include "generate/candidates.h"
+#include <glm/vec3.hpp>
+
 #include "generate/closest_triangle.h"
 
 namespace astrosplat {
 
-struct TriangleBounds {
-    TriangleBound disc;
-    TriangleEdges edges;
+/// A disc around a triangle in its plane; where the normal is 0, as for triangles that are too narrow to have
+/// a plane worth a bound, a ball. The middle of a disc lies on its triangle.
+struct TriangleDisc {
+    glm::vec3 center, normal;
+    float radius;
+    bool has_plane() const { return normal != glm::vec3(0.0f); }
 };
 
-/// A triangle's box along the axes.
 struct TriangleBox {
     glm::vec3 lo, hi;
 };
 
-/// Both relative to `origin`.
+TriangleDisc triangle_disc(const TriangleShape& shape, const glm::dvec3& origin);
 TriangleBox triangle_box(const TriangleShape& shape, const glm::dvec3& origin);
-TriangleBounds triangle_bounds(const TriangleShape& shape, const glm::dvec3& origin);
 
 }  // namespace astrosplat

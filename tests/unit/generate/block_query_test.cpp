@@ -1,10 +1,10 @@
 // Block queries against every triangle, for meshes that bounds could get wrong: needles, points, huge beside
-// tiny triangles, few triangles, more than lists hold, far from the origin; on every instruction set.
+// tiny triangles, few triangles, very many, far from the origin; on every instruction set.
 #include "generate/block_query.h"
 
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <vector>
 
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
@@ -44,21 +44,24 @@ Mesh soup(std::uint32_t count) {
 std::int64_t expect_brute_force(const Mesh& mesh, const Lattice& lattice, double max_distance,
                                 double jitter = 1.0) {
     const Mesh* const shape = &mesh;
-    const ClosestPointIndex index({&shape, 1});
+    const TriangleTree tree = make_triangle_tree({&shape, 1});
     const test::Oracle oracle(mesh);
     const CullSettings settings{max_distance, jitter, 3};
-    const auto scratch = std::make_unique<BlockScratch>();
+    std::vector<std::uint32_t> scratch;
     std::int64_t kept = 0, wrong = 0;
-    const NearBlocks near = blocks_near(index, lattice, settings, {});
-    for (const LatticeBlock& block : near.blocks) {
-        BlockAnswers answers;
-        query_block(index, lattice, settings, block, *scratch, answers);
-        for (std::size_t s = 0; s < block_positions; ++s) {
-            if (answers.triangle[s] == ClosestPoint::none) continue;
-            const ClosestPoint c = oracle.closest({answers.x[s], answers.y[s], answers.z[s]}, max_distance);
-            ++kept;
-            wrong += c.triangle != answers.triangle[s] || c.distance_squared != answers.distance_squared[s] ||
-                     c.barycentric != glm::dvec2(answers.v[s], answers.w[s]);
+    for (const LatticeBlock& block : blocks_near(tree, lattice, settings, {})) {
+        for (const Positions kind : {Positions::corners, Positions::centres}) {
+            BlockAnswers answers;
+            query_block(tree, lattice, settings, block, kind, scratch, answers);
+            for (std::size_t s = 0; s < block_positions; ++s) {
+                if (answers.triangle[s] == ClosestPoint::none) continue;
+                const ClosestPoint c =
+                    oracle.closest({answers.x[s], answers.y[s], answers.z[s]}, max_distance);
+                ++kept;
+                wrong += c.triangle != answers.triangle[s] ||
+                         c.distance_squared != answers.distance_squared[s] ||
+                         c.barycentric != glm::dvec2(answers.v[s], answers.w[s]);
+            }
         }
     }
     std::int64_t near_enough = 0;
@@ -123,14 +126,14 @@ TEST_F(BlockQuery, FarFromTheOriginAndForAnyDistance) {
         expect_brute_force(soup(200), lattice_around(glm::dvec3(0), reach), 2.0 * reach);
 }
 
-// A disc may come within reach of a block where its triangle does not, nor its cluster's box.
+// A disc may come within reach of a block where its triangle does not, nor its box.
 TEST_F(BlockQuery, BlocksThatOnlyDiscsComeNearTo) {
     Mesh mesh;
     for (const glm::vec3 middle : {glm::vec3(0), glm::vec3(39.84f, 0.5f, 0.5f)}) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (const glm::vec3 corner : {glm::vec3(0.3f, 0, 0), {0, -0.3f, 0}, {0, 0.3f, 0}})
             mesh.positions.push_back(middle + corner);
-        for (std::size_t copy = 0; copy < TriangleCluster::size; ++copy)
+        for (std::size_t copy = 0; copy < TriangleTree::fan; ++copy)
             mesh.triangles.push_back({{first, first + 1, first + 2}, {}});
     }
     SourceParams source;
@@ -142,28 +145,23 @@ TEST_F(BlockQuery, BlocksThatOnlyDiscsComeNearTo) {
     EXPECT_EQ(expect_brute_force(mesh, lattice, 1.0, 0.0), 28);
 }
 
-TEST_F(BlockQuery, NothingIsNearWhereNoClusterIs) {
+// A block far from everything is not among those near; asked for all the same, it finds nothing.
+TEST_F(BlockQuery, NothingIsNearAFarBlock) {
     const Mesh mesh = soup(9);
     const Mesh* const shape = &mesh;
-    const ClosestPointIndex index({&shape, 1});
-    const Lattice lattice = lattice_around(glm::dvec3(0), 50.0);
-    const LatticeBlock block{{0, 0, 0}, 1e3, 0, 0, nullptr};
-    const auto scratch = std::make_unique<BlockScratch>();
+    const TriangleTree tree = make_triangle_tree({&shape, 1});
+    std::vector<std::uint32_t> scratch;
     BlockAnswers answers;
-    query_block(index, lattice, {1.0, 1.0, 3}, block, *scratch, answers);
+    query_block(tree, lattice_around(glm::dvec3(0), 50.0), {1.0, 1.0, 3}, {{0, 0, 0}, 0}, Positions::corners,
+                scratch, answers);
     for (const std::uint32_t triangle : answers.triangle) EXPECT_EQ(triangle, ClosestPoint::none);
 }
 
-// More clusters than a tile keeps, more triangles than a block chooses: each position is asked for alone.
-TEST_F(BlockQuery, MoreTrianglesThanListsHold) {
+// Far more triangles within one voxel than a group usually finds.
+TEST_F(BlockQuery, ManyTrianglesInOneVoxel) {
     Mesh mesh = soup(40000);
     for (glm::vec3& p : mesh.positions) p *= 0.01f;
-    const Lattice lattice = lattice_around(glm::dvec3(0.1), 1.3);
-    const Mesh* const shape = &mesh;
-    const ClosestPointIndex index({&shape, 1});
-    const auto list = std::make_unique<ClusterList>();
-    ASSERT_FALSE(index.collect(glm::dvec3(0.0), 0.1, *list));
-    expect_brute_force(mesh, lattice, 0.4);
+    expect_brute_force(mesh, lattice_around(glm::dvec3(0.1), 1.3), 0.4);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/real.h"
-#include "generate/closest_point.h"
+#include "generate/closest_triangle.h"
 #include "generate/generate.h"
 #include "unit/splats/same_bits.h"
 

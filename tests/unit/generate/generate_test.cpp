@@ -94,7 +94,7 @@ TEST_F(GenerateTest, LongAndThinLatticesToo) {
     }
 }
 
-// More triangles near every block than a candidate list holds, so that Embree answers each position.
+// Thousands of triangles near every block, many of them equal.
 TEST_F(GenerateTest, DenseMeshes) {
     Mesh mesh = builtin_mesh("sphere", 1.0);
     const std::size_t once = mesh.triangles.size();

@@ -1,4 +1,4 @@
-// Runs of splats from several stores join a set in order of id, and leave the blocks of the rest alone.
+// Runs of splats from several stores join a set in order of id.
 #include "generate/kept_store.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,6 @@ TEST(KeptStore, PartAfterPartJoinsASetInOrder) {
             begin[n] = end;
         }
         append_sorted(runs, set);
-        for (std::size_t n = 0; n < 2; ++n) stores[n].free_before(begin[n]);
         ASSERT_EQ(set.size(), static_cast<std::int64_t>(end_id));
     }
     for (std::size_t i = 0; i < set.id.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "generate/triangle_tree.h"
 #include "support/test_data.h"
 #include "unit/generate/generate_support.h"
 
@@ -35,7 +36,8 @@ TEST_P(RealMeshes, EqualBruteForceBitForBit) {
     ASSERT_GE(static_cast<double>(lattice.positions()), positions);
 
     const SplatSet set = generate(meshes, lattice, max_distance, 1.0, 11);
-    const ClosestPointIndex index(std::vector<Mesh>{meshes[0].mesh});
+    const Mesh* const shape = &meshes[0].mesh;
+    const TriangleTree tree = make_triangle_tree({&shape, 1});
     const test::Oracle oracle(meshes[0].mesh);
     std::atomic<std::int64_t> kept{0}, different{0};
     parallel_chunks(lattice.positions(), 256, [&](std::int64_t begin, std::int64_t end, int) {
@@ -44,7 +46,8 @@ TEST_P(RealMeshes, EqualBruteForceBitForBit) {
             set.id.begin());
         for (auto id = static_cast<std::uint64_t>(begin); id < static_cast<std::uint64_t>(end); ++id) {
             const glm::dvec3 p = jittered_position(lattice, id, 1.0, 11);
-            const ClosestPoint slow = oracle.closest(p, max_distance), fast = index.closest(p, max_distance);
+            const ClosestPoint slow = oracle.closest(p, max_distance),
+                               fast = closest_point(tree, p, max_distance).closest;
             bool same = fast.triangle == slow.triangle && fast.distance_squared == slow.distance_squared;
             const bool in_set = at < set.id.size() && set.id[at] == id;
             same = same && in_set == (slow.triangle != ClosestPoint::none);

@@ -136,7 +136,6 @@ TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
         {std::regex("^OpenImageIO/"), std::regex("^engine/(source|output)/[^/]*\\.cpp$")},
         {std::regex("^fitsio"), std::regex("^engine/source/[^/]*\\.cpp$")},
         {std::regex("^openssl/"), std::regex("^engine/core/sha256\\.cpp$")},
-        {std::regex("^embree"), std::regex("^engine/generate/[^/]*\\.cpp$")},
         {std::regex("^toml"), std::regex("^engine/scene/")},
         {std::regex("^tiny_obj"), std::regex("^engine/source/[^/]*\\.cpp$")},
         {std::regex("^CLI/"), std::regex("^app/cli\\.cpp$")},

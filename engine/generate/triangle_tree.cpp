@@ -1,0 +1,216 @@
+// The tree: triangles sorted so that neighbours lie together, eight to a box, eight boxes to the next; and
+// the search of one position, nearest boxes first.
+#include "generate/triangle_tree.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/bounds.h"
+#include "core/error.h"
+#include "core/parallel.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::size_t fan = TriangleTree::fan;
+constexpr std::size_t most_triangles = ClosestPoint::none;  // so that it is no triangle's number or slot
+
+template <class Body>
+void parallel_each(std::size_t count, const Body& body) {
+    parallel_chunks(static_cast<std::int64_t>(count), 4096, [&](std::int64_t begin, std::int64_t end, int) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) body(i);
+    });
+}
+
+// Of all triangles, by number.
+Buffer<TriangleCorners> corners_of(std::span<const Mesh* const> meshes) {
+    std::size_t count = 0;
+    for (const Mesh* mesh : meshes) count += mesh->triangles.size();
+    if (count > most_triangles) {
+        bad_input("meshes", "", fmt::format("at most {} triangles", most_triangles),
+                  fmt::format("{}", count));
+    }
+    Buffer<TriangleCorners> corners(count);
+    std::size_t first = 0;
+    for (const Mesh* mesh : meshes) {
+        parallel_each(mesh->triangles.size(), [&](std::size_t t) {
+            const auto& [a, b, c] = mesh->triangles[t].position;
+            corners[first + t] = {mesh->positions[a], mesh->positions[b], mesh->positions[c]};
+        });
+        first += mesh->triangles.size();
+    }
+    return corners;
+}
+
+void place_origin(std::span<const Mesh* const> meshes, TriangleTree& tree) {
+    Bounds box;
+    for (const Mesh* mesh : meshes) box.add(bounds(*mesh));
+    if (box.empty()) return;
+    tree.origin = box.center();
+    const glm::dvec3 half = box.extent() * 0.5;
+    tree.reach = std::max({half.x, half.y, half.z});
+}
+
+struct Middle {
+    glm::vec3 at;
+    std::uint32_t number;
+};
+
+// Brings neighbours together: cuts across the longest side of the middles' box, at whole boxes of the highest
+// level there is, and both parts again. visit() gets the parts of at most `most` middles that are left.
+template <class Visit>
+void cut(std::span<Middle> middles, std::size_t most, const Visit& visit) {
+    if (middles.size() <= most) return visit(middles);
+    glm::vec3 lo = middles[0].at, hi = lo;
+    for (const Middle& middle : middles) lo = glm::min(lo, middle.at), hi = glm::max(hi, middle.at);
+    const glm::vec3 side = hi - lo;
+    const int axis = side.x >= side.y && side.x >= side.z ? 0 : side.y >= side.z ? 1 : 2;
+    std::size_t box = 1;
+    while (box * fan < middles.size()) box *= fan;
+    const std::size_t half = (middles.size() + box - 1) / box / 2 * box;
+    std::nth_element(middles.begin(), middles.begin() + static_cast<std::ptrdiff_t>(half), middles.end(),
+                     [&](const Middle& a, const Middle& b) { return a.at[axis] < b.at[axis]; });
+    cut(middles.first(half), most, visit);
+    cut(middles.subspan(half), most, visit);
+}
+
+Buffer<Middle> place_order(const Buffer<TriangleCorners>& corners, const TriangleTree& tree) {
+    Buffer<Middle> order(corners.size());
+    parallel_each(corners.size(), [&](std::size_t i) {
+        const auto& [a, b, c] = corners[i];
+        const glm::dvec3 middle = (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0 - tree.origin;
+        order[i] = {glm::vec3(middle), static_cast<std::uint32_t>(i)};
+    });
+    std::vector<std::span<Middle>> parts;  // one task each
+    cut(order, std::size_t{1} << 15, [&](std::span<Middle> part) { parts.push_back(part); });
+    parallel_for(static_cast<std::int64_t>(parts.size()), [&](std::int64_t part, int) {
+        cut(parts[static_cast<std::size_t>(part)], fan, [](std::span<Middle>) {});
+    });
+    return order;
+}
+
+// Boxes to be set, and behind them zeros, for groups are read whole.
+TreeLevel level_of(std::size_t count) {
+    TreeLevel level{count, {}, {}, {}, {}, {}, {}};
+    for (auto* side : {&level.lo_x, &level.lo_y, &level.lo_z, &level.hi_x, &level.hi_y, &level.hi_z}) {
+        side->resize(count + fan);
+        std::fill_n(side->end() - fan, fan, 0.0f);
+    }
+    return level;
+}
+
+TreeLevel level_above(const TreeLevel& below) {
+    TreeLevel level = level_of((below.count + fan - 1) / fan);
+    parallel_each(level.count, [&](std::size_t i) {
+        const auto first = static_cast<std::ptrdiff_t>(i * fan);
+        const auto last = static_cast<std::ptrdiff_t>(std::min((i + 1) * fan, below.count));
+        const auto least = [&](const Buffer<float>& side) {
+            return *std::min_element(side.begin() + first, side.begin() + last);
+        };
+        const auto most = [&](const Buffer<float>& side) {
+            return *std::max_element(side.begin() + first, side.begin() + last);
+        };
+        level.lo_x[i] = least(below.lo_x), level.hi_x[i] = most(below.hi_x);
+        level.lo_y[i] = least(below.lo_y), level.hi_y[i] = most(below.hi_y);
+        level.lo_z[i] = least(below.lo_z), level.hi_z[i] = most(below.hi_z);
+    });
+    return level;
+}
+
+// Squared distances of a point from the eight boxes from `first` on.
+std::array<float, fan> box_distances(const TreeLevel& level, std::size_t first, const glm::vec3& p) {
+    std::array<float, fan> squared;
+    for (std::size_t i = 0; i < fan; ++i) {
+        const float x = std::max(std::max(level.lo_x[first + i] - p.x, p.x - level.hi_x[first + i]), 0.0f);
+        const float y = std::max(std::max(level.lo_y[first + i] - p.y, p.y - level.hi_y[first + i]), 0.0f);
+        const float z = std::max(std::max(level.lo_z[first + i] - p.z, p.z - level.hi_z[first + i]), 0.0f);
+        squared[i] = x * x + y * y + z * z;
+    }
+    return squared;
+}
+
+// The search of one position. The limit is that of distances that may still matter.
+class PointSearch {
+  public:
+    PointSearch(const TriangleTree& tree, const glm::dvec3& p, double max_distance)
+        : tree_(tree),
+          p_(p),
+          local_(p - tree.origin),
+          slack_(tree.slack(p - tree.origin)),
+          best_{{max_distance * max_distance, ClosestPoint::none, {}}, ClosestPoint::none} {
+        update_limit();
+    }
+
+    void offer(std::uint32_t slot) {
+        ClosestPoint other = closest_on_triangle(p_, tree_.shape(slot));
+        other.triangle = tree_.triangles[slot].number;
+        if (!nearer(other, best_.closest)) return;
+        best_ = {other, slot};
+        update_limit();
+    }
+
+    // The children of a box, or what a level begins with, nearest first.
+    void visit(std::size_t level, std::size_t group) {
+        const TreeLevel& boxes = tree_.levels[level];
+        const std::size_t first = group * fan, count = std::min(fan, boxes.count - first);
+        const std::array<float, fan> squared = box_distances(boxes, first, local_);
+        std::array<std::uint8_t, fan> order;
+        std::size_t found = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (squared[i] > limit_ * limit_) continue;
+            std::size_t at = found++;
+            for (; at > 0 && squared[order[at - 1]] > squared[i]; --at) order[at] = order[at - 1];
+            order[at] = static_cast<std::uint8_t>(i);
+        }
+        for (std::size_t i = 0; i < found && !(squared[order[i]] > limit_ * limit_); ++i) {
+            const std::size_t child = first + order[i];
+            level == 0 ? offer(static_cast<std::uint32_t>(child)) : visit(level - 1, child);
+        }
+    }
+
+    const NearTriangle& best() const { return best_; }
+
+  private:
+    void update_limit() { limit_ = widened(std::sqrt(best_.closest.distance_squared), slack_); }
+
+    const TriangleTree& tree_;
+    glm::dvec3 p_;
+    glm::vec3 local_;
+    double slack_;
+    NearTriangle best_;
+    float limit_ = 0.0f;
+};
+
+}  // namespace
+
+TriangleTree make_triangle_tree(std::span<const Mesh* const> meshes) {
+    const Buffer<TriangleCorners> corners = corners_of(meshes);
+    TriangleTree tree;
+    place_origin(meshes, tree);
+    const Buffer<Middle> order = place_order(corners, tree);
+    tree.triangles.resize(order.size());
+    TreeLevel level = level_of(order.size());
+    parallel_each(order.size(), [&](std::size_t slot) {
+        const std::uint32_t number = order[slot].number;
+        const TriangleShape shape = triangle_shape(corners[number]);
+        tree.triangles[slot] = {corners[number], number, triangle_disc(shape, tree.origin)};
+        const auto [lo, hi] = triangle_box(shape, tree.origin);
+        level.lo_x[slot] = lo.x, level.lo_y[slot] = lo.y, level.lo_z[slot] = lo.z;
+        level.hi_x[slot] = hi.x, level.hi_y[slot] = hi.y, level.hi_z[slot] = hi.z;
+    });
+    tree.levels.push_back(std::move(level));
+    while (tree.levels.back().count > fan) tree.levels.push_back(level_above(tree.levels.back()));
+    return tree;
+}
+
+NearTriangle closest_point(const TriangleTree& tree, const glm::dvec3& p, double max_distance,
+                           std::uint32_t hint) {
+    PointSearch search(tree, p, max_distance);
+    if (hint != ClosestPoint::none) search.offer(hint);
+    search.visit(tree.levels.size() - 1, 0);
+    return search.best();
+}
+
+}  // namespace astrosplat
