@@ -59,12 +59,16 @@ class TestProgram:
 
     def run(self, mutant, names, seconds):
         """The exit code of these tests up to the first failure, negative for a signal (-9: took far too long)."""
-        self.process.stdin.write(f"{mutant} {30 + 15 * seconds} {self.log} {':'.join(names)}\n")
-        self.process.stdin.flush()
-        return int(self.process.stdout.readline())
+        self.log.write_text("")
+        try:
+            self.process.stdin.write(f"{mutant} {30 + 15 * seconds} {self.log} {':'.join(names)}\n")
+            self.process.stdin.flush()
+        except BrokenPipeError:
+            return -6
+        return int(self.process.stdout.readline() or -6)  # -6: it did not even start
 
     def close(self):
-        self.process.stdin.close()
+        self.process.kill()
         self.process.wait()
 
 
