@@ -14,6 +14,22 @@ namespace {
 
 using Kind = Command::Kind;
 
+TEST(Keys, CodesOfLettersAndDigitsAreTheirCharacters) {
+    const auto expect_named = [](int code, char character) {
+        EXPECT_EQ(code, character);
+        EXPECT_EQ(key_name(code), std::string(1, character));
+    };
+    expect_named(key_code::n0, '0');
+    expect_named(key_code::n1, '1');
+    expect_named(key_code::n3, '3');
+    expect_named(key_code::n7, '7');
+    expect_named(key_code::n9, '9');
+    expect_named('Z', 'Z');
+    EXPECT_EQ(key_code::space, ' ');
+    EXPECT_STREQ(key_name(0), "");
+    EXPECT_STREQ(key_name(128), "");
+}
+
 TEST(Keys, UndoAndRedoNameTheirStep) {
     TestWindow window(example_document());
     make_edited(window);

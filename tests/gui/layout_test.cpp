@@ -64,6 +64,8 @@ TEST(Tools, ChooseViewSizeAndComparison) {
     TestWindow window(example_document());
     window.click("view/Side");
     EXPECT_EQ(window.view.view, ViewKind::side);
+    window.click("view/Camera");
+    EXPECT_EQ(window.view.view, ViewKind::camera);
     window.click("size/1:1");
     EXPECT_EQ(window.view.size, SizeMode::one_to_one);
     window.click("compare/A|B");

@@ -116,6 +116,10 @@ TEST(PanelLayers, TheMenuDuplicatesAndDeletes) {
 
 TEST(PanelLayers, LooksAreCopiedAndGivenToAll) {
     PanelDriver d(layers_scene);
+    choose(d, 0, "Export look...");
+    const std::optional<FileRequest> request = d.panel.take_request();
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->kind, FileRequest::Kind::save_look);
     choose(d, 0, "Copy look");
     choose(d, 2, "Paste look");
     EXPECT_FLOAT_EQ(d.document.scene().layers[2].render.opacity, 0.5f);

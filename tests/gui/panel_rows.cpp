@@ -32,6 +32,30 @@ TEST(PanelRows, DraggingAValueIsOneUndoStep) {
     EXPECT_FALSE(d.document.can_undo());
 }
 
+TEST(PanelRows, AFocalLengthTakesThePlaceOfTheAngle) {
+    PanelDriver angle(rows_scene);
+    angle.show(PanelTab::camera);
+    EXPECT_TRUE(angle.has_row("camera.fov"));
+    EXPECT_FALSE(angle.has_row("camera.film_width"));
+    PanelDriver length(std::string(rows_scene) + "[camera]\nfocal_length = 50.0\n");
+    length.show(PanelTab::camera);
+    EXPECT_FALSE(length.has_row("camera.fov"));
+    EXPECT_TRUE(length.has_row("camera.film_width"));
+}
+
+TEST(PanelRows, EverySourceHasItsOwnFiles) {
+    const std::string splats =
+        "astrosplat = 1\n[[layer]]\nname = \"dust\"\n[layer.source]\nkind = \"splats\"\n"
+        "file = \"a.pda\"\n";
+    PanelDriver mesh(rows_scene), file(splats);
+    mesh.show(PanelTab::source);
+    file.show(PanelTab::source);
+    EXPECT_TRUE(mesh.has_row("layer.dust.source.uv"));
+    EXPECT_FALSE(mesh.has_row("layer.dust.source.file"));
+    EXPECT_FALSE(file.has_row("layer.dust.source.uv"));
+    EXPECT_TRUE(file.has_row("layer.dust.source.file"));
+}
+
 TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
     PanelDriver d(rows_scene);
     d.show(PanelTab::render);

@@ -45,6 +45,11 @@ TEST(PanelWords, DraggingRoundsToCleanNumbers) {
     magnitude.above(0).slider(0.01, 100).logarithmic();
     EXPECT_DOUBLE_EQ(drag_step(magnitude, 50.0), 0.5);  // of itself
     EXPECT_EQ(rounded_to_step(1234.5, 20.0), 1230.0);
+    ParameterSpec open;  // on both sides of 0, and farther than the slider
+    open.slider(-10, 10);
+    EXPECT_DOUBLE_EQ(drag_step(open, 0.0), 0.02);
+    EXPECT_DOUBLE_EQ(drag_step(open, -2.0), 0.04);
+    EXPECT_DOUBLE_EQ(drag_step(open, 1000.0), 0.08);
 }
 
 }  // namespace

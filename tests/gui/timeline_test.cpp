@@ -43,6 +43,16 @@ TEST(Timeline, AKeyMovesWithTheMouse) {
     EXPECT_FALSE(window.document.can_undo());
 }
 
+TEST(Timeline, KeysOfTheFirstAndTheLastRowMoveToo) {
+    TestWindow window(example_document());
+    const auto at = [&](const char* key) { return window.at(std::string("key ") + key); };
+    const float per_frame = (at("camera.position 240").x - at("camera.position 90").x) / 150.0f;
+    window.drag(at("camera.position 90"), {20 * per_frame, 0});
+    window.drag(at("layer.stars.render.opacity 24"), {20 * per_frame, 0});
+    EXPECT_TRUE(has_key_at(window.document.scene(), "camera.position", 110));
+    EXPECT_TRUE(has_key_at(window.document.scene(), "layer.stars.render.opacity", 44));
+}
+
 TEST(Timeline, CtrlDragCopiesAndDeleteRemoves) {
     TestWindow window(example_document());
     const std::string opacity = "layer.stars.render.opacity";
