@@ -194,6 +194,13 @@ TEST(Framing, LooksFrom35DegreesAboveZ) {
     expect_near(frame_box(box, 45.0, 1.0).position, camera.eye, 1e-12);
 }
 
+TEST(Framing, ScalesWithTheBox) {
+    const Bounds box{{-1, -0.5, -2}, {1, 0.5, 2}};
+    const glm::dvec3 back = frame_box(box, 40.0, 1.5).position;
+    for (const double scale : {1e-9, 1e9})
+        expect_near(frame_box({box.lo * scale, box.hi * scale}, 40.0, 1.5).position / scale, back, 1e-9);
+}
+
 TEST(Framing, EmptyBoxesAndPointsAreSeenToo) {
     Bounds point;
     point.add(glm::dvec3(1, 2, 3));

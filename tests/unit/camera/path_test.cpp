@@ -29,6 +29,25 @@ void expect_at(const glm::dvec3& got, const glm::dvec3& expected, double toleran
         << expected.z;
 }
 
+/// Only ratios of intervals and of distances matter, not whether they are far above 1 or below.
+TEST(Positions, DoNotDependOnTheUnitsOfTimeAndSpace) {
+    const Positions keys = {
+        {0, {0, 0, 0}, smooth}, {2, {1, 3, 0}, smooth}, {3, {4, 3, 1}, smooth}, {7, {5, 0, 2}, smooth}};
+    for (const bool constant_speed : {false, true})
+        for (const double scale : {1.0 / 1024.0, 1024.0}) {
+            Positions longer = keys, larger = keys;
+            for (auto& key : longer) key.frame *= scale;
+            for (auto& key : larger) key.value *= scale;
+            for (double frame = 0.25; frame < 7.0; frame += 0.25) {
+                const glm::dvec3 wanted = evaluate_position(keys, frame, Ends::through, constant_speed);
+                expect_at(evaluate_position(longer, frame * scale, Ends::through, constant_speed), wanted,
+                          1e-9);
+                expect_at(evaluate_position(larger, frame, Ends::through, constant_speed) / scale, wanted,
+                          1e-9);
+            }
+        }
+}
+
 TEST(Scalars, HeldOutsideTheKeys) {
     Scalars keys = {{1, 5.0, smooth}, {3, 7.0, smooth}};
     EXPECT_EQ(evaluate_scalar(keys, -100, Ends::through), 5.0);

@@ -34,6 +34,17 @@ TEST(AtomicFile, AppearsAtCommitOnly) {
     EXPECT_EQ(entries(folder.path()), 1);
 }
 
+TEST(AtomicFile, NewFilesHaveThePermissionsThatTheUserGivesToAllFiles) {
+    const TempFolder folder;
+    AtomicFile file(folder / "x.txt");
+    file.commit();
+    const mode_t mask = umask(0);
+    umask(mask);
+    struct stat status = {};
+    ASSERT_EQ(stat((folder / "x.txt").c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777, 0666 & ~mask);
+}
+
 TEST(AtomicFile, FailureLeavesTheOldFileAndNothingElse) {
     const TempFolder folder;
     const fs::path target = folder.file("x.txt", "old");

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bounds.h"
 #include "core/buffer.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -102,6 +103,16 @@ TEST(Log, LinesStayOneLine) {
     log_info("a\nb\x1b[2J: not found");
     set_log_sink(nullptr);
     EXPECT_EQ(shown, "a\\nb\\x1b[2J: not found");
+}
+
+TEST(Bounds, AreEmptyWhereAnyAxisIs) {
+    EXPECT_TRUE(Bounds{}.empty());
+    EXPECT_FALSE((Bounds{glm::dvec3(2.0), glm::dvec3(2.0)}.empty())) << "a point";
+    for (int axis = 0; axis < 3; ++axis) {
+        Bounds box{glm::dvec3(0.0), glm::dvec3(1.0)};
+        box.lo[axis] = 2.0;
+        EXPECT_TRUE(box.empty()) << axis;
+    }
 }
 
 TEST(Memory, HumanNumbers) {

@@ -34,6 +34,8 @@ TEST_F(NewFromFile, Kinds) {
     EXPECT_EQ(kind_of_file(folder.file("s ä.toml", test::edit_scene)), FileKind::scene);
     EXPECT_EQ(kind_of_file(folder.file("l.toml", "astrosplat = 1\nlayer = [ { name = \"a\" } ]\n")),
               FileKind::scene);
+    EXPECT_EQ(kind_of_file(folder.file("r.toml", "layer = [ { name = \"a\" } ]\n[render]\nthreads = 1\n")),
+              FileKind::scene);
     EXPECT_EQ(kind_of_file(folder.file("p.toml", "[look]\ndensity = 1\n")), FileKind::look);
     EXPECT_EQ(kind_of_file(folder.file("n.toml", "astrosplat = 1\n[output]\nfps = 24.0\n")), FileKind::scene);
     EXPECT_EQ(kind_of_file(folder.file("c.toml", "[package]\n")), FileKind::scene);  // whose loader says more

@@ -439,6 +439,11 @@ TEST_F(WriteTest, ValuesThatAreNotFiniteAreNeverWritten) {
     EXPECT_NO_THROW(write("a.exr", output, frame));  // not asked for
     output.aovs = {"depth"};
     EXPECT_THROW(write("b.exr", output, frame), std::logic_error);
+    frame = soft_frame(4, 4);
+    frame.coverage.pixels[3] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_NO_THROW(write("c.exr", output, frame));
+    output.aovs = {"coverage"};
+    EXPECT_THROW(write("d.exr", output, frame), std::logic_error);
 }
 
 TEST(PixelHash, IsTheHashOfTheFloatsBytes) {
