@@ -28,7 +28,7 @@ SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
                   KeptWatcher* watcher = nullptr);
 
 /// The whole of a source: kind mesh as above, kind splats by reading the file (sorted by id). Prints at info
-/// level what was chosen. Throws InputError; kind stars is answered with one clear line until it exists.
+/// level what was chosen. Throws InputError; kind stars is refused in one clear line until it exists.
 SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress = {},
                      KeptWatcher* watcher = nullptr);
 

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -48,19 +49,22 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 // ---- reading
 
-/// Nothing where there is no entry, or none that can be used. Where the memory left would not hold it the
-/// generator is to say so.
-std::optional<SplatSet> read_entry(const fs::path& file, const Progress& progress,
+/// Nothing where there is no entry, or none that can be used: one that is damaged, or that was made of
+/// something else, whatever its name says. Where the memory left would not hold it the generator is to say
+/// so.
+std::optional<SplatSet> read_entry(const fs::path& file, const SetKey& key, const Progress& progress,
                                    const OptionalColumns& wanted) {
     std::error_code error;
     const std::uintmax_t bytes = fs::file_size(file, error);
     if (error || bytes > static_cast<std::uintmax_t>(available_memory_bytes())) return std::nullopt;
     try {
         SplatSet set = read_native(file, wanted, progress);
+        if (std::exchange(set.key, "") != key.text)
+            bad_input(file.string(), "key", "that of the set asked for", "another");
         fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // refused: it seems older
         return set;
     } catch (const InputError& damage) {
-        log_warning(fmt::format("{}; the set is generated anew", damage.what()));
+        log_warning(fmt::format("{}; the set is generated again", damage.what()));
         fs::remove(file, error);
     }
     return std::nullopt;
@@ -122,8 +126,9 @@ void warn_unwritable(const SetCache& cache, const std::string& why) {
     log_warning(fmt::format("cache {}: {}; the generated set is not kept", cache.folder.string(), why));
 }
 
-/// Called with the key's lock held (or on file systems without locks).
-void keep(const SetCache& cache, const std::string& key, const SplatSet& set, const Progress& progress) {
+/// Where the cache has room for it.
+void write_entry(const SetCache& cache, const std::string& name, const SplatSet& set,
+                 const Progress& progress) {
     const std::int64_t bytes = native_file_bytes(set), limit = limit_of(cache);
     if (bytes > limit) {
         log_info(fmt::format("a set of {} is not kept: the cache may hold {}",
@@ -133,12 +138,18 @@ void keep(const SetCache& cache, const std::string& key, const SplatSet& set, co
     }
     shrink_to(cache.folder, limit - bytes);
     try {
-        write_native(entry_file(cache, key), set, RowOrder::id, Progress{{}, progress.cancelled});
+        write_native(entry_file(cache, name), set, RowOrder::id, Progress{{}, progress.cancelled});
     } catch (const OutputError& error) {
         warn_unwritable(cache, error.what());
     }
 }
 
+/// Called with the key's lock held (or on file systems without locks).
+void keep(const SetCache& cache, const SetKey& key, SplatSet& set, const Progress& progress) {
+    set.key = key.text;
+    write_entry(cache, key.name, set, progress);
+    set.key.clear();
+}
 /// Waits while another process generates the same set.
 FileLock::State wait_for(FileLock& lock, const std::string& layer_name, const Progress& progress) {
     for (int tries = 0;; ++tries) {
@@ -152,9 +163,9 @@ FileLock::State wait_for(FileLock& lock, const std::string& layer_name, const Pr
     }
 }
 
-std::optional<SplatSet> find(const SetCache& cache, const std::string& key, const std::string& layer_name,
+std::optional<SplatSet> find(const SetCache& cache, const SetKey& key, const std::string& layer_name,
                              const Progress& progress, const OptionalColumns& wanted) {
-    std::optional<SplatSet> set = read_entry(entry_file(cache, key), progress, wanted);
+    std::optional<SplatSet> set = read_entry(entry_file(cache, key.name), key, progress, wanted);
     if (set)
         log_info(fmt::format("layer '{}': {} from the cache", layer_name, human_count(set->size(), "splat")));
     return set;
@@ -163,8 +174,8 @@ std::optional<SplatSet> find(const SetCache& cache, const std::string& key, cons
 /// With columns that are not wanted where the set had to be generated.
 LoadedSet find_or_load(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                        const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
-    const std::string key = serves(cache, source) ? set_key(source, layer_name) : "";
-    if (key.empty()) return {load_source(source, layer_name, progress, watcher), false};
+    const SetKey key = serves(cache, source) ? set_key(source, layer_name) : SetKey();
+    if (key.name.empty()) return {load_source(source, layer_name, progress, watcher), false};
     if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
     std::error_code error;
     fs::create_directories(cache.folder, error);
@@ -172,12 +183,13 @@ LoadedSet find_or_load(const SetCache& cache, const SourceParams& source, const 
         warn_unwritable(cache, "cannot be made: " + error.message());
         return {load_source(source, layer_name, progress, watcher), false};
     }
-    FileLock lock(lock_file(cache.folder, key));
+    FileLock lock(lock_file(cache.folder, key.name));
     const bool locked = wait_for(lock, layer_name, progress) == FileLock::State::held;
     if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
-    if (locked) remove_leftovers(cache.folder, key);
+    if (locked) remove_leftovers(cache.folder, key.name);
     LoadedSet loaded{load_source(source, layer_name, progress, watcher), false};
-    if (set_key(source, layer_name) == key) keep(cache, key, loaded.set, progress);  // else a file changed
+    if (set_key_text(source, layer_name) == key.text)
+        keep(cache, key, loaded.set, progress);  // else a file changed
     return loaded;
 }
 
@@ -205,7 +217,7 @@ LoadedSet load_source(const SetCache& cache, const SourceParams& source, const s
 
 std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,
                                           const std::string& layer_name) try {
-    const std::string key = serves(cache, source) ? set_key(source, layer_name) : "";
+    const std::string key = serves(cache, source) ? set_key(source, layer_name).name : "";
     std::error_code error;
     if (key.empty() || !fs::is_regular_file(entry_file(cache, key), error)) return std::nullopt;
     return native_splat_count(entry_file(cache, key));

@@ -1,10 +1,11 @@
 // Generated sets, kept in a folder so that the second run of a scene starts at once. In: what load_source
 // takes, and the folder. Out: the same SplatSet, to the bit. Many processes may share the folder; an entry
-// that is damaged is generated anew, and a folder that cannot be read or written costs a warning, never a
+// that is damaged is generated again, and a folder that cannot be read or written costs a warning, never a
 // run.
 //
-// In the folder: KEY.splats (native.h, rows by id; the key is set_key.h's; its file time says when it was
-// last used), KEY.lock while a process generates that set, .KEY.*.part.splats while it is written.
+// In the folder: KEY.splats (native.h, rows by id; the key is set_key.h's, whose text is in the file; its
+// file time says when it was last used), KEY.lock while a process generates that set, .KEY.*.part.splats
+// while it is written.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <utility>
 
 #include "core/error.h"
 #include "core/sha256.h"
@@ -72,9 +73,10 @@ std::string set_key_text(const SourceParams& source, const std::string& layer_na
     return {};
 }
 
-std::string set_key(const SourceParams& source, const std::string& layer_name) {
-    const std::string text = set_key_text(source, layer_name);
-    return text.empty() ? text : Sha256().add(text).hex();
+SetKey set_key(const SourceParams& source, const std::string& layer_name) {
+    std::string text = set_key_text(source, layer_name);
+    std::string name = text.empty() ? "" : Sha256().add(text).hex();
+    return {std::move(text), std::move(name)};
 }
 
 }  // namespace astrosplat

@@ -17,7 +17,10 @@ inline constexpr int set_version = 1;
 /// loader says why. For kind mesh.
 std::string set_key_text(const SourceParams& source, const std::string& layer_name);
 
-/// The hash of that text, or nothing.
-std::string set_key(const SourceParams& source, const std::string& layer_name);
+/// That text, and its hash, which names the entry; both empty where an input cannot be read.
+struct SetKey {
+    std::string text, name;
+};
+SetKey set_key(const SourceParams& source, const std::string& layer_name);
 
 }  // namespace astrosplat

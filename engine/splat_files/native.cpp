@@ -42,7 +42,8 @@ enum Flag : std::uint32_t {
     has_normal = 8,
     has_mesh = 16,
     has_radius = 32,
-    by_id = 64
+    by_id = 64,
+    has_key = 128
 };
 
 struct Header {
@@ -108,29 +109,35 @@ BlockEntry describe_block(std::string_view bytes, std::size_t rows) {
 // ---- writing
 
 std::uint32_t flags_of(const SplatSet& set, RowOrder order) {
-    std::uint32_t flags = (set.generated ? generated : 0u) | (set.divided ? divided : 0u) |
-                          (order == RowOrder::id ? by_id : 0u);
+    std::uint32_t flags = (set.key.empty() ? 0u : has_key) | (set.generated ? generated : 0u) |
+                          (set.divided ? divided : 0u) | (order == RowOrder::id ? by_id : 0u);
     for_each_column([&](auto column, SplatColumn which) {
         if (!(set.*column).empty()) flags |= flag_of(which);
     });
     return flags;
 }
 
+/// What stands behind the header: the credit, and behind a zero the key.
+std::string text_of(const SplatSet& set) {
+    return set.key.empty() ? set.credit : set.credit + '\0' + set.key;
+}
+
 std::string header_bytes(const SplatSet& set, RowOrder order) {
+    const std::string text = text_of(set);
     Header header{};
     std::memcpy(header.magic, magic.data(), sizeof header.magic);
     header.version = version;
     header.flags = flags_of(set, order);
     header.splats = static_cast<std::uint64_t>(set.size());
     header.block = splats_per_block;
-    header.credit_bytes = static_cast<std::uint32_t>(set.credit.size());
+    header.credit_bytes = static_cast<std::uint32_t>(text.size());
     header.spacing = set.spacing;
     header.max_distance = set.max_distance;
     header.test_positions = set.test_positions;
     header.zero_alpha = set.zero_alpha;
     std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
-    bytes += set.credit;
-    bytes.resize(data_offset(set.credit.size()) - sizeof(std::uint64_t), '\0');
+    bytes += text;
+    bytes.resize(data_offset(text.size()) - sizeof(std::uint64_t), '\0');
     const std::uint64_t checksum = xxh64(bytes);
     return bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
 }
@@ -192,7 +199,7 @@ void write_in_space(const std::filesystem::path& file, const SplatSet& set, cons
 /// A file whose lengths are known to be right.
 struct Layout {
     Header header;
-    std::string credit;
+    std::string credit, key;
     std::string_view blocks;
     std::vector<BlockEntry> table;
 };
@@ -228,14 +235,15 @@ Header read_header(const Checker& checker, std::string_view bytes) {
     std::memcpy(&header, bytes.data(), sizeof header);
     if (header.version != version)
         checker.fail("header", fmt::format("version {}", version), std::to_string(header.version));
-    if (header.flags >= by_id * 2) checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
+    if (header.flags >= has_key * 2)
+        checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
     if (header.block == 0) checker.fail("header", "blocks of at least one splat", "0");
     return header;
 }
 
 /// Checks all lengths against the file's size, then the checksums of header and table.
 Layout read_layout(const Checker& checker, std::string_view bytes) {
-    Layout layout{read_header(checker, bytes), {}, {}, {}};
+    Layout layout{read_header(checker, bytes), {}, {}, {}, {}};
     const Header& header = layout.header;
     const std::size_t per_splat = row_bytes(header.flags), begin = data_offset(header.credit_bytes);
     const std::size_t blocks = block_count(header.splats, header.block);
@@ -249,6 +257,12 @@ Layout read_layout(const Checker& checker, std::string_view bytes) {
     checker.checksum("table", bytes.substr(begin + data, table));
     check_values(checker, header);
     layout.credit = bytes.substr(sizeof(Header), header.credit_bytes);
+    if (header.flags & has_key) {
+        const std::size_t end = layout.credit.rfind('\0');
+        if (end == std::string::npos) checker.fail("header", "a zero between credit and key", "none");
+        layout.key = layout.credit.substr(end + 1);
+        layout.credit.resize(end);
+    }
     layout.blocks = bytes.substr(begin, data);
     layout.table.resize(blocks);
     if (table > 0) std::memcpy(layout.table.data(), bytes.data() + begin + data, table);
@@ -280,6 +294,7 @@ SplatSet empty_set(const Layout& layout, const OptionalColumns& wanted, const st
     set.test_positions = header.test_positions;
     set.zero_alpha = header.zero_alpha;
     set.credit = layout.credit;
+    set.key = layout.key;
     return set;
 }
 
@@ -383,7 +398,7 @@ void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrd
 std::int64_t native_file_bytes(const SplatSet& set) {
     const auto rows = static_cast<std::uint64_t>(set.size());
     const std::size_t table = block_count(rows, splats_per_block) * sizeof(BlockEntry);
-    return static_cast<std::int64_t>(data_offset(set.credit.size()) +
+    return static_cast<std::int64_t>(data_offset(text_of(set).size()) +
                                      rows * row_bytes(flags_of(set, RowOrder::id)) + table +
                                      sizeof(std::uint64_t));
 }

@@ -80,7 +80,7 @@ class SetCacheTest : public testing::Test {
     }
     LoadedSet load() const { return load(source_); }
     fs::path key_file(const std::string& ending) const {
-        return cache_.folder / (set_key(source_, "dust") + ending);
+        return cache_.folder / (set_key(source_, "dust").name + ending);
     }
 
     TempFolder folder_;
@@ -168,11 +168,11 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
         [](SourceParams& s) { s.uv = UvMode::planar_xz; },
         [](SourceParams& s) { s.seed = 5; },
     };
-    std::vector<std::string> keys = {set_key(source_, "dust"), set_key(source_, "stars")};
+    std::vector<std::string> keys = {set_key(source_, "dust").name, set_key(source_, "stars").name};
     for (const auto& change : changes) {
         SourceParams source = source_;
         change(source);
-        keys.push_back(set_key(source, "dust"));
+        keys.push_back(set_key(source, "dust").name);
         EXPECT_EQ(keys.back().size(), 64u);
     }
     std::sort(keys.begin(), keys.end());
@@ -182,35 +182,35 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
 TEST_F(SetCacheTest, WhatDoesNotReachTheSetStaysOutOfTheKey) {
     SourceParams seeded = source_, sized = source_, moved = source_;
     seeded.seed = 5;
-    EXPECT_EQ(set_key(seeded, "dust"), set_key(seeded, "stars"));
+    EXPECT_EQ(set_key(seeded, "dust").name, set_key(seeded, "stars").name);
     sized.voxel_size = 0.1;
-    const std::string key = set_key(sized, "dust");
+    const std::string key = set_key(sized, "dust").name;
     sized.count = 7;
     sized.meshes[0].relief = 0.7;
-    EXPECT_EQ(set_key(sized, "dust"), key);
+    EXPECT_EQ(set_key(sized, "dust").name, key);
     fs::copy_file(folder_ / "p.ppm", folder_ / "other.ppm");
     moved.meshes[0].texture = {folder_ / "other.ppm"};
-    EXPECT_EQ(set_key(moved, "dust"), set_key(source_, "dust"));
+    EXPECT_EQ(set_key(moved, "dust").name, set_key(source_, "dust").name);
 }
 
 TEST_F(SetCacheTest, BytesOfEveryInputChangeTheKey) {
     const SourceParams source = mesh_source();
-    std::vector<std::string> keys = {set_key(source, "dust")};
+    std::vector<std::string> keys = {set_key(source, "dust").name};
     folder_.file("p.ppm", picture(16, 129));
-    keys.push_back(set_key(source, "dust"));
+    keys.push_back(set_key(source, "dust").name);
     folder_.file("a.obj", std::string(triangle) + "#\n");
-    keys.push_back(set_key(source, "dust"));
+    keys.push_back(set_key(source, "dust").name);
     folder_.file("a.mtl", "newmtl m\nmap_Kd q.ppm\n");
-    keys.push_back(set_key(source, "dust"));
+    keys.push_back(set_key(source, "dust").name);
     folder_.file("q.ppm", picture(8));
-    keys.push_back(set_key(source, "dust"));
+    keys.push_back(set_key(source, "dust").name);
     std::sort(keys.begin(), keys.end());
     EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
 }
 
 TEST_F(SetCacheTest, InputsThatCannotBeReadHaveNoKeyAndTheLoaderSaysWhy) {
     source_.meshes[0].texture = {folder_ / "none.ppm"};
-    EXPECT_EQ(set_key(source_, "dust"), "");
+    EXPECT_EQ(set_key(source_, "dust").name, "");
     try {
         load();
         FAIL();
@@ -242,10 +242,13 @@ TEST_F(SetCacheTest, TheLeastRecentlyUsedGoFirst) {
         return source;
     };
     std::int64_t largest = 0;
-    for (const std::uint32_t seed : {1u, 2u, 3u})
-        largest = std::max(largest, native_file_bytes(load(with_seed(seed)).set));
+    for (const std::uint32_t seed : {1u, 2u, 3u}) {
+        LoadedSet loaded = load(with_seed(seed));
+        loaded.set.key = set_key_text(with_seed(seed), "dust");
+        largest = std::max(largest, native_file_bytes(loaded.set));
+    }
     const auto age = [&](std::uint32_t seed, int hours) {
-        fs::last_write_time(cache_.folder / (set_key(with_seed(seed), "dust") + ".splats"),
+        fs::last_write_time(cache_.folder / (set_key(with_seed(seed), "dust").name + ".splats"),
                             fs::file_time_type::clock::now() - std::chrono::hours(hours));
     };
     age(1, 30), age(2, 20), age(3, 10);
@@ -272,7 +275,7 @@ TEST_F(SetCacheTest, ASetLargerThanTheLimitIsNotKeptAndPushesNothingOut) {
 
 // ---- entries and folders that cannot be used
 
-TEST_F(SetCacheTest, DamagedEntriesAreGeneratedAnewWithAWarning) {
+TEST_F(SetCacheTest, DamagedEntriesAreGeneratedAgainWithAWarning) {
     const SplatSet set = load().set;
     const std::string whole = bytes_of(key_file(".splats"));
     std::vector<std::string> damaged = {"", "something else", whole.substr(0, whole.size() / 2), whole};
@@ -285,10 +288,31 @@ TEST_F(SetCacheTest, DamagedEntriesAreGeneratedAnewWithAWarning) {
         EXPECT_FALSE(again.cached);
         expect_same_set(again.set, set);
         ASSERT_EQ(warnings_.size(), 1u);
-        EXPECT_NE(warnings_[0].find("; the set is generated anew"), std::string::npos) << warnings_[0];
+        EXPECT_NE(warnings_[0].find("; the set is generated again"), std::string::npos) << warnings_[0];
         flush_warning_counts();
         EXPECT_TRUE(load().cached);
     }
+}
+
+// As after a collision of hashes, or by a hand that renames files.
+TEST_F(SetCacheTest, AnEntryOfAnotherSetUnderThisNameIsNotTaken) {
+    const SplatSet set = load().set;
+    const fs::path own = entries().at(0);
+    SourceParams other = source_;
+    other.seed = 77;
+    load(other);
+    for (const fs::path& file : entries())
+        if (file != own) fs::rename(file, own);
+    ASSERT_EQ(entries().size(), 1u);
+    const LoadedSet again = load();
+    EXPECT_FALSE(again.cached);
+    expect_same_set(again.set, set);
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("expected that of the set asked for"), std::string::npos) << warnings_[0];
+    EXPECT_TRUE(again.set.key.empty());
+    const LoadedSet repaired = load();
+    EXPECT_TRUE(repaired.cached);
+    EXPECT_TRUE(repaired.set.key.empty());
 }
 
 TEST_F(SetCacheTest, AFolderThatCannotBeMadeIsAWarning) {
@@ -321,7 +345,7 @@ TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
 
 TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
     fs::create_directories(cache_.folder);
-    const std::string dead(64, 'd'), alive(64, 'a'), own = set_key(source_, "dust");
+    const std::string dead(64, 'd'), alive(64, 'a'), own = set_key(source_, "dust").name;
     const auto leave = [&](const std::string& name) {
         std::ofstream(cache_.folder / name) << "x";
         return cache_.folder / name;
@@ -344,7 +368,7 @@ TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
 
 TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
     fs::create_directories(cache_.folder);
-    const SplatSet set = load_source(source_, "dust");
+    SplatSet set = load_source(source_, "dust");
     const int lock = open(key_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     ASSERT_EQ(flock(lock, LOCK_EX), 0);
     std::optional<LoadedSet> loaded;
@@ -352,7 +376,9 @@ TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
     set_log_sink([&](LogLevel, const std::string& line) { waits = waits || line.find("waiting") < 99; });
     std::thread other([&] { loaded = load(); });
     while (!waits) std::this_thread::yield();
+    set.key = set_key_text(source_, "dust");
     write_native(key_file(".splats"), set, RowOrder::id, {});
+    set.key.clear();
     fs::remove(key_file(".lock"));  // as FileLock gives it back
     close(lock);
     other.join();

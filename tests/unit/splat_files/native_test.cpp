@@ -49,6 +49,19 @@ TEST_F(Native, EverythingSurvives) {
     expect_same_set(got, set);
 }
 
+TEST_F(Native, AKeySurvivesBesideTheCredit) {
+    SplatSet set = full_set(10);
+    for (const char* credit : {"", "ESA"}) {
+        set.credit = credit, set.key = "set 1\nseed 3\n";
+        write_native(path("a.splats"), set, RowOrder::id, {});
+        const SplatSet got = read_native(path("a.splats"));
+        EXPECT_EQ(got.credit, credit);
+        EXPECT_EQ(got.key, set.key);
+        EXPECT_EQ(static_cast<std::int64_t>(std::filesystem::file_size(path("a.splats"))),
+                  native_file_bytes(set));
+    }
+}
+
 TEST_F(Native, OptionalArraysStayUnknown) {
     for (int present = 0; present < 16; ++present) {
         SplatSet set = full_set(100);
@@ -178,7 +191,11 @@ TEST_F(Native, Messages) {
     EXPECT_EQ(error("ply" + whole.substr(3)),
               "a.splats: expected an astrosplat .splats file, found another format");
     EXPECT_EQ(error(forged(whole, 8, 2u)), "a.splats:header: expected version 1, found 2");
-    EXPECT_EQ(error(forged(whole, 12, 0x80u)), "a.splats:header: expected known flags, found 0x80");
+    EXPECT_EQ(error(forged(whole, 12, 0x100u)), "a.splats:header: expected known flags, found 0x100");
+    std::uint32_t flags;
+    std::memcpy(&flags, &whole[12], sizeof flags);
+    EXPECT_EQ(error(forged(whole, 12, flags | 0x80u)),
+              "a.splats:header: expected a zero between credit and key, found none");
     EXPECT_EQ(error(forged(whole, 24, 0u)),
               "a.splats:header: expected blocks of at least one splat, found 0");
     for (const std::uint64_t count :
