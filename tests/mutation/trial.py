@@ -14,6 +14,7 @@ from pathlib import Path
 import work_copy
 
 REACHED_BYTES = 1 << 16
+catches = collections.Counter()  # mutants caught by each test, in this run
 STEPS_S = (0.5, 3.0, 10.0)  # after this much time of tests the next, slower ones begin, in another child
 
 
@@ -126,8 +127,11 @@ def measured(work, program):
 
 
 def steps(tests, limit_s):
-    """(program, tests) in the order to run: quick tests that reach few mutants first."""
-    ordered = sorted(tests, key=lambda test: (test.seconds + 0.02) * (len(test.reached) + 5))
+    """(program, tests) in the order to run: quick tests that reach few mutants and caught others first."""
+    def cost(test):
+        return (test.seconds + 0.02) * (len(test.reached) + 5) / (1 + catches[test.name]) ** 2
+
+    ordered = sorted(tests, key=cost)
     groups, spent = collections.OrderedDict(), 0.0
     for test in ordered:
         if spent + test.seconds > limit_s:
@@ -149,5 +153,6 @@ def trial(work, site, tests, limit_s):
             continue
         failed = culprit((work / "test.log").read_text(errors="replace"), group)
         if run_tests(work, program, -1, [failed], False) == 0:
+            catches[failed.name] += 1
             return {**result, "caught": f"{program} {failed.name}" + (" (hangs)" if code == -9 else "")}
     return result
