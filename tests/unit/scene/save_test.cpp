@@ -110,6 +110,16 @@ TEST(Save, LayersAreAddedRemovedMovedAndRenamed) {
     EXPECT_EQ(saved(scene), replaced(commented, "\"stars\"", "\"suns\""));
 }
 
+TEST(Save, TheLastLayerOfAFileIsRemoved) {
+    const std::string first =
+        "astrosplat = 1\n[[layer]]\nname = \"a\"\nsource.meshes = [{ mesh = \"sphere\" }]\n";
+    const std::string both =
+        first + "\n# The second.\n[[layer]]\nname = \"b\"\nsource.meshes = [{ mesh = \"disk\" }]\n";
+    Scene scene = parse_scene(both, "scene.toml");
+    scene.layers.pop_back();
+    EXPECT_EQ(saved(scene, both), first + "\n");
+}
+
 TEST(Save, TracksAreChangedAddedAndRemoved) {
     Scene scene = parse(commented);
     scene.animation[1].keys[1].value = {20.0};

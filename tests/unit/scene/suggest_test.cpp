@@ -13,6 +13,7 @@ TEST(Suggest, EditDistance) {
     EXPECT_EQ(edit_distance("", "abc"), 3);
     EXPECT_EQ(edit_distance("same", "same"), 0);
     EXPECT_EQ(edit_distance("outptu", "output"), 1);
+    EXPECT_EQ(edit_distance("uotput", "output"), 1);
 }
 
 TEST(Suggest, NearestName) {
@@ -20,6 +21,7 @@ TEST(Suggest, NearestName) {
     EXPECT_EQ(nearest_name("camera.fow", keys), "camera.fov");
     EXPECT_EQ(nearest_name("alpha.powr", keys), "layer.look.alpha.power");
     EXPECT_EQ(nearest_name("densty", keys), "layer.look.density");
+    EXPECT_EQ(nearest_name("fow", keys), "camera.fov");
     EXPECT_EQ(nearest_name("something", keys), "");
 }
 

@@ -154,6 +154,8 @@ TEST(ObjErrors, OneLineEach) {
     EXPECT_EQ(obj_error(square + "f 1//x 2//1 3//1"), ":5: expected the number of a normal, found '1//x'");
     EXPECT_EQ(obj_error(square + "f 1 2 5\nf 1 2 3\n"),
               ":5: expected one of the file's 4 vertices, found number 5");
+    EXPECT_EQ(obj_error(square + "f 1 2 5\nf 1 2 5\nf 1 3 5\n"),
+              ":5: expected one of the file's 4 vertices, found number 5");
     EXPECT_EQ(obj_error(square + "f 1 2 0\n"), ":5: expected the number of a vertex, found '0'");
     EXPECT_EQ(obj_error(square + "f 1 2 99999999999999999999\n"),
               ":5: expected the number of a vertex, found '99999999999999999999'");

@@ -104,5 +104,29 @@ TEST(Relief, LiftsTheBrightSideAndKeepsThePlane) {
     }
 }
 
+TEST(Relief, IsAsHighForADarkPicture) {
+    std::vector<float> bright(16 * 16), dark(16 * 16);
+    for (std::size_t i = 0; i < bright.size(); ++i) {
+        bright[i] = static_cast<float>(i % 16) / 16.0f;
+        dark[i] = bright[i] / 1024.0f;
+    }
+    const Mesh a = relief_mesh(gray(16, 16, bright), 0.15), b = relief_mesh(gray(16, 16, dark), 0.15);
+    EXPECT_NEAR(bounds(a).hi.y, 1.5, 1e-6);
+    EXPECT_NEAR(bounds(b).hi.y, 1.5, 1e-6);
+}
+
+TEST(Relief, CoversThePlaneOnceFacingUp) {
+    const Mesh mesh = relief_mesh(gray(8, 4, std::vector<float>(32, 0.5f)), 0.15);
+    double area = 0.0;
+    for (const Mesh::Triangle& t : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[t.position[0]]), b(mesh.positions[t.position[1]]),
+            c(mesh.positions[t.position[2]]);
+        const double up = glm::cross(b - a, c - a).y;
+        ASSERT_GT(up, 0.0);
+        area += up * 0.5;
+    }
+    EXPECT_NEAR(area, 10.0 * 5.0, 1e-4);
+}
+
 }  // namespace
 }  // namespace astrosplat

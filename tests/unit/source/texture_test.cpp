@@ -184,6 +184,28 @@ TEST(Texture, FirstRowOfAPictureIsTheTop) {
     EXPECT_EQ(sample(texture, {0.5f, 0.25f}).alpha, 0.5f);
 }
 
+TEST(Texture, ThreePicturesAreRedGreenAndBlue) {
+    const TempFolder folder;
+    std::vector<fs::path> files;
+    for (const float value : {0.25f, 0.5f, 0.75f})
+        files.push_back(write(folder / fmt::format("{}.exr", value), {2, 1, {"Y"}}, {value, value / 2}));
+    TextureSettings settings;
+    settings.alpha = Alpha::one;
+    const Texture texture = load_texture(files, settings, Wrap::clamp);
+    const Pixels pixels(texture.image.pixels.begin(), texture.image.pixels.end());
+    EXPECT_EQ(pixels, (Pixels{0.25f, 0.5f, 0.75f, 1, 0.125f, 0.25f, 0.375f, 1}));
+}
+
+TEST(Texture, LinearImagesOfEncodedFilesAreLight) {
+    const TempFolder folder;
+    const Pixels codes{188.0f / 255.0f, 0.0f, 1.0f};
+    const Image light = load_linear_image(write(folder / "a.png", {1, 1, rgb, OIIO::TypeUInt8}, codes));
+    EXPECT_NEAR(light.pixels[0], real::srgb_to_linear(188.0 / 255.0), 1e-6);
+    EXPECT_EQ(light.pixels[1], 0.0f);
+    EXPECT_EQ(light.pixels[2], 1.0f);
+    EXPECT_EQ(light.pixels[3], 1.0f);
+}
+
 TEST(Texture, RawImagesKeepStoredValues) {
     const TempFolder folder;
     const fs::path png =
