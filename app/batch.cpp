@@ -1,18 +1,20 @@
 // --batch: plans, checks that the output can be written, then renders frame after frame. A frame that fails
 // does not stop the others; an interrupt stops between two pixels.
+#include "batch.h"
+
 #include <fmt/format.h>
 
 #include <new>
 #include <set>
 
 #include "batch_plan.h"
-#include "commands.h"
 #include "core/clock.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "estimate.h"
 #include "generate/generate.h"
 #include "interrupt.h"
 #include "output/write.h"
@@ -96,6 +98,7 @@ void BatchRun::prepare() {
                          plan_.scene.output.width, plan_.scene.output.height,
                          human_count(job.splats, "splat"), human_bytes(static_cast<double>(job.bytes))));
     pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache);
+    check_unchanged(plan_.inputs);
 }
 
 RenderSettings BatchRun::settings(const FramePlan& frame) const {

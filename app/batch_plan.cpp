@@ -9,12 +9,16 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "output/format.h"
 #include "output/frame_hash.h"
+#include "output/frame_path.h"
+#include "output/read_frame.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "scene/animate.h"
+#include "scene/check.h"
+#include "scene/input_files.h"
 #include "scene/load.h"
-#include "source/mesh.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
@@ -108,34 +112,28 @@ std::int64_t parse_memory(const std::string& text) {
 Scene batch_scene(const BatchOptions& options) {
     std::vector<Assignment> assignments;
     for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
-    Scene scene = load_scene(options.scene, assignments);
+    auto [scene, places] = load_placed(options.scene, assignments);
     if (options.frames) scene.output.frames = *options.frames;
     const fs::path base = options.output ? fs::current_path() : fs::absolute(scene.file).parent_path();
     scene.output.path = (base / options.output.value_or(scene.output.path)).string();
     if (options.resolution) apply_resolution(scene.output, *options.resolution);
     if (options.layers) apply_layers(scene, *options.layers);
+    check_renderable(scene, places);
     check_output(scene.output);
-    return scene;
+    return std::move(scene);
 }
 
 /// A missing input should be told before the first folder is made.
-void check_inputs(const Scene& scene) {
-    const auto check = [](const fs::path& file) {
+void check_inputs(Scene scene) {
+    std::erase_if(scene.layers, [&](const LayerParams& layer) { return !ever_visible(scene, layer); });
+    std::vector<fs::path> files = picture_files(scene);
+    for (const LayerParams& layer : scene.layers)
+        for (const fs::path& file : named_files(layer.source)) files.push_back(file);
+    for (const fs::path& file : files) {
         std::error_code ignored;
         if (!file.empty() && !fs::exists(file, ignored))
             bad_input(file.string(), "", "an input file", "nothing of that name");
-    };
-    for (const LayerParams& layer : scene.layers) {
-        if (!ever_visible(scene, layer)) continue;
-        if (layer.source.kind == SourceKind::splats) check(layer.source.file);
-        for (const MeshInput& input : layer.source.meshes) {
-            if (!is_builtin_mesh(input.mesh)) check(input.mesh);
-            for (const fs::path& texture : input.texture) check(texture);
-        }
-        check(layer.look.thickness.map);
     }
-    check(scene.environment.image);
-    for (const fs::path& face : scene.environment.cube) check(face);
 }
 
 std::vector<std::int64_t> frame_numbers(const Scene& scene, bool from_command_line) {
@@ -201,6 +199,7 @@ BatchPlan plan_batch(const BatchOptions& options) {
     for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value())) {
         plan.frames.push_back({frame, frame_file(plan.scene.output.path, frame), hasher.frame_hash(frame)});
     }
+    plan.inputs = hasher.files();
     decide(plan.frames, options);
     return plan;
 }

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "commands.h"
+#include "batch.h"
 #include "core/atomic_file.h"
 #include "core/image.h"
+#include "output/frame_hash.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -28,6 +29,7 @@ struct BatchPlan {
     std::int64_t memory_limit_bytes = 0;  // 0: none
     SetCache cache;
     std::vector<FramePlan> frames;  // ascending
+    HashedFiles inputs;             // what the frames' hashes were made of
     bool resume = false;            // frames of the right hash are as good as rendered ones
 };
 
@@ -37,19 +39,5 @@ bool is_there(const FramePlan& frame);
 /// Throws InputError for bad input, and where files are in the way that neither --resume nor --overwrite
 /// covers; OutputError where something else than a file lies at a frame's place.
 BatchPlan plan_batch(const BatchOptions& options);
-
-/// About how many splats the layers will have, and how many bytes sets, shaded splats, screen splats and
-/// pictures take.
-struct JobEstimate {
-    struct Layer {
-        std::string name;
-        std::int64_t splats = 0;
-    };
-    std::vector<Layer> layers;
-    std::int64_t splats = 0;
-    std::int64_t bytes = 0;
-};
-/// Loads meshes where voxels are given and the set is not in the cache, nothing else. Throws InputError.
-JobEstimate estimate(const BatchPlan& plan);
 
 }  // namespace astrosplat

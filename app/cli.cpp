@@ -9,14 +9,19 @@
 #include <cstdio>
 #include <functional>
 
-#include "commands.h"
+#include "batch.h"
+#include "compare.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/vector_target.h"
+#include "info.h"
 #include "interrupt.h"
+#include "new.h"
+#include "parameters.h"
 #include "places.h"
+#include "splat_commands.h"
 #include "viewer/viewer.h"
 
 namespace astrosplat {

@@ -1,10 +1,11 @@
 // compare: how far two pictures are apart, in linear premultiplied light.
+#include "compare.h"
+
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-#include "commands.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "output/compare.h"

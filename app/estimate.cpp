@@ -1,11 +1,12 @@
-// What a batch run will take, before it takes it: from the scene and from file sizes, without generating
-// anything.
-#include <algorithm>
-#include <cmath>
+// What a batch run will take, before it takes it: from the scene and from file sizes,
+// without generating anything.
+#include "estimate.h"
 
-#include "batch_plan.h"
+#include <algorithm>
+
 #include "generate/generate.h"
 #include "pipeline.h"
+#include "scene/animate.h"
 
 namespace astrosplat {
 namespace {
@@ -20,16 +21,6 @@ constexpr std::int64_t file_bytes_per_splat =
 // More than any machine holds, few enough that bytes of many layers still fit 63 bits.
 constexpr std::int64_t most_splats = 1'000'000'000'000'000;
 
-/// Lattice positions within max_distance of the surface, both sides: two positions per voxel.
-std::int64_t positions_near(const std::vector<TexturedMesh>& meshes, const Lattice& lattice,
-                            double max_distance) {
-    double area = 0.0;
-    for (const TexturedMesh& textured : meshes) area += surface_area(textured.mesh);
-    const glm::dvec3 voxel = lattice.spacing();
-    const double near = 4.0 * area * max_distance / std::max(1e-300, voxel.x * voxel.y * voxel.z);
-    return static_cast<std::int64_t>(std::min(near, static_cast<double>(lattice.positions())));
-}
-
 std::int64_t splats_of(const SourceParams& source) {
     if (source.kind == SourceKind::splats) {
         std::error_code ignored;
@@ -41,7 +32,8 @@ std::int64_t splats_of(const SourceParams& source) {
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
     const double max_distance = resolved_max_distance(source, box);
-    return positions_near(meshes, make_lattice(source, meshes, max_distance), max_distance);
+    const Lattice lattice = make_lattice(source, meshes, max_distance);
+    return static_cast<std::int64_t>(expected_kept(lattice, meshes, max_distance));
 }
 
 std::int64_t picture_bytes(const BatchPlan& plan) {

@@ -1,4 +1,6 @@
 // info: what any file the program reads holds.
+#include "info.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,11 +9,11 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
-#include "commands.h"
 #include "core/error.h"
 #include "output/image_info.h"
-#include "output/write.h"
+#include "output/read_frame.h"
 #include "report.h"
+#include "scene/check.h"
 #include "scene/load.h"
 #include "source/fits.h"
 #include "source/mesh.h"
@@ -131,7 +133,8 @@ Report describe_layer(const LayerParams& layer) {
 }
 
 Report describe_scene(const fs::path& file) {
-    const Scene scene = load_scene(file);
+    const auto [scene, places] = load_placed(file);
+    check_renderable(scene, places);
     const std::vector<std::int64_t> frames =
         parse_frames(scene.output.frames, file.string() + ": output.frames");
     Report layers = Report::array(), animated = Report::array();

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "cli.h"
-#include "commands.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/vector_target.h"
+#include "exit_code.h"
 #include "interrupt.h"
 
 using namespace astrosplat;

@@ -1,10 +1,11 @@
 // new: a first scene around a picture.
+#include "new.h"
+
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "commands.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text.h"

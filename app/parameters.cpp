@@ -1,5 +1,7 @@
-// parameters: every key of a scene file with default, range and meaning, from the one description in the
-// engine.
+// parameters: every key of a scene file with default, range and meaning, from the one description
+// in the engine.
+#include "parameters.h"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -7,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
-#include "commands.h"
 #include "report.h"
 #include "scene/describe.h"
 

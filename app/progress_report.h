@@ -12,10 +12,11 @@
 #include <string>
 #include <thread>
 
-#include "commands.h"
 #include "core/progress.h"
 
 namespace astrosplat {
+
+enum class ProgressMode { automatic, plain, none };
 
 /// "00:04:10"; "--:--:--" for what is not known (negative) or longer than 99 hours.
 std::string clock_text(double seconds);

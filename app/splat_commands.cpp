@@ -1,9 +1,10 @@
 // generate and convert: splats into files, without rendering.
+#include "splat_commands.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "commands.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "interrupt.h"

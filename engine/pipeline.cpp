@@ -54,17 +54,15 @@ bool shaded_alike(const Scene& scene, const std::string& name) {
     });
 }
 
-}  // namespace
-
-bool ever_visible(const Scene& scene, const LayerParams& layer) {
-    const ParameterKey key = layer_key(layer.name) / "visible";
-    for (const Track& track : scene.animation) {
-        if (track.key != key) continue;
-        return std::any_of(track.keys.begin(), track.keys.end(),
-                           [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
-    }
-    return layer.visible;
+/// Keeps the map that the layer has where it is of this file.
+void load_map(LayerState& layer, const std::filesystem::path& file) {
+    if (layer.thickness_file == file) return;
+    layer.thickness_file.clear();  // should the next line throw
+    layer.thickness_map = file.empty() ? Image{} : load_raw_image(file);
+    layer.thickness_file = file;
 }
+
+}  // namespace
 
 struct Pipeline::State {
     Scene scene;
@@ -98,6 +96,7 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     layer.set = set;
     if (shaded_alike(scene, params.name)) layer.to_use_up = set;
     layer.box = bounds(*layer.set);
+    load_map(layer, params.look.thickness.map);
     count_set(*layer.set, counts);
     counts.cached = loaded.cached;
     counts.generate_seconds = seconds_since(start);
@@ -124,12 +123,7 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
     LookInputs inputs = look_inputs(params);
     const ShadingKey key{params.look, inputs.axis, inputs.seed, inputs.falloff_integral, inputs.column};
     if (layer.key == key) return;
-    if (layer.thickness_file != params.look.thickness.map) {
-        layer.thickness_file.clear();  // should the next line throw
-        layer.thickness_map =
-            params.look.thickness.map.empty() ? Image{} : load_raw_image(params.look.thickness.map);
-        layer.thickness_file = params.look.thickness.map;
-    }
+    load_map(layer, params.look.thickness.map);
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
     layer.key.reset();  // an exception below must not leave old splats under a new key
     LookStatistics counts;

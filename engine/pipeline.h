@@ -14,9 +14,6 @@
 
 namespace astrosplat {
 
-/// Whether a layer is drawn in some frame: visible as it stands, or switched on by a key of the animation.
-bool ever_visible(const Scene& scene, const LayerParams& layer);
-
 struct LayerStatistics {
     std::string name;
     std::int64_t test_positions = 0, kept = 0, zero_alpha = 0;
@@ -25,14 +22,15 @@ struct LayerStatistics {
     bool cached = false;  // the set came from the cache; generate_seconds is how long reading it took
 };
 
-/// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats of each
-/// layer.
+/// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats
+/// of each layer.
 class Pipeline {
   public:
     /// Without layers, until set_scene.
     Pipeline();
-    /// Loads or generates the set of every layer that is visible at some frame, through the cache where one
-    /// is given. Throws InputError, Cancelled.
+    /// Loads all that the scene's files hold, once: the set of every layer that is visible at
+    /// some frame, through the cache where one is given, thickness maps and the environment.
+    /// Throws InputError, Cancelled.
     explicit Pipeline(const Scene& scene, const Progress& progress = {}, const SetCache& cache = {});
     ~Pipeline();
 

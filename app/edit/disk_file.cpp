@@ -7,15 +7,6 @@
 namespace astrosplat {
 namespace fs = std::filesystem;
 
-FileStamp stamp_of(const fs::path& file) {
-    std::error_code error;
-    const fs::file_time_type time = fs::last_write_time(file, error);
-    if (error) return {};
-    const std::uintmax_t size = fs::file_size(file, error);
-    if (error) return {};
-    return {time, size};
-}
-
 DiskFile::DiskFile(const fs::path& file, std::string_view content)
     : file_(file), looked_at_(stamp_of(file)), hash_(Sha256().add(content).hex()) {}
 

@@ -1,20 +1,13 @@
 // What is known of a file that others may change: when and how large it was, and a hash of its bytes.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
-namespace astrosplat {
+#include "core/file_stamp.h"
 
-/// What tells a file that was touched; all 0 where there is none, or none that may be looked at.
-struct FileStamp {
-    std::filesystem::file_time_type time{};
-    std::uintmax_t size = 0;
-    bool operator==(const FileStamp&) const = default;
-};
-FileStamp stamp_of(const std::filesystem::path& file);
+namespace astrosplat {
 
 /// A file as it was last seen. Two calls of changed() cost two look-ups in its folder; its bytes are read
 /// only when date or size say that it was touched.

@@ -6,17 +6,9 @@
 #include <map>
 #include <vector>
 
-#include "edit/disk_file.h"
-#include "scene/scene.h"
+#include "core/file_stamp.h"
 
 namespace astrosplat {
-
-/// The files that a source names: meshes, textures, splats. Not what is built in.
-std::vector<std::filesystem::path> named_files(const SourceParams& source);
-/// The same with what an OBJ brings of its own: material libraries and their pictures. Reads it.
-std::vector<std::filesystem::path> all_files(const SourceParams& source);
-/// Those of a scene beside its layers' sources: thickness maps and pictures of the sky.
-std::vector<std::filesystem::path> picture_files(const Scene& scene);
 
 class WatchedFiles {
   public:

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "edit/watched_files.h"
+#include "scene/input_files.h"
 #include "splats/stratified.h"
 #include "viewer/histograms.h"
 

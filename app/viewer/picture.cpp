@@ -347,6 +347,11 @@ const Image* ViewPicture::pixels() const {
     return impl_->drawn;
 }
 
+Image ViewPicture::read() const {
+    const Image* image = pixels();
+    return image ? *image : impl_->gl->read();
+}
+
 double ViewPicture::due(double now) const { return std::max(0.0, impl_->changed_at + rest_s - now); }
 
 bool ViewPicture::exact() const {

@@ -73,6 +73,8 @@ class ViewPicture {
     double due(double now) const;
     /// Linear RGBA as shown, region-sized; null while only the GPU has it.
     const Image* pixels() const;
+    /// The same, read back from the GPU where need be.
+    Image read() const;
     /// The final picture, when status says so.
     std::shared_ptr<const RenderedFrame> final_frame() const;
 

@@ -55,8 +55,14 @@ double parse_frame(const std::string& text) {
 }
 
 void write_exr(const ScreenshotOptions& options, const Size& size, Session& session) {
-    const std::shared_ptr<const RenderedFrame> frame = session.final_frame();
+    RenderedFrame preview;
     OutputParams output = session.document().scene().output;
+    if (!options.settled) {
+        preview.beauty = session.shown_light();
+        output.aovs.clear();
+    }
+    const std::shared_ptr<const RenderedFrame> settled = options.settled ? session.final_frame() : nullptr;
+    const RenderedFrame& frame = settled ? *settled : preview;
     output.path = options.output.string();
     output.depth = OutputParams::Depth::float32;
     output.compression = OutputParams::Compression::automatic;
@@ -65,9 +71,9 @@ void write_exr(const ScreenshotOptions& options, const Size& size, Session& sess
     FrameMetadata metadata;
     metadata.frame = static_cast<std::int64_t>(session.view().frame);
     metadata.fps = output.fps;
-    metadata.pixel_hash = pixel_hash(frame->beauty);
+    metadata.pixel_hash = pixel_hash(frame.beauty);
     metadata.provenance = session.document().scene().provenance;
-    write_frame({options.output, output, size.width, size.height}, *frame, metadata);
+    write_frame({options.output, output, size.width, size.height}, frame, metadata);
 }
 
 /// The viewport alone.
@@ -108,8 +114,9 @@ void take(const ScreenshotOptions& options, const GlInfo& gl) {
     const bool exr = ending == ".exr";
     if (!exr && ending != ".png")
         bad_input("--screenshot", "", "a .png or .exr file", options.output.string());
-    if (exr && (!options.settled || options.ui))
-        bad_input("--screenshot", "", "--settled and no --ui with an .exr file", options.output.string());
+    if (exr && options.ui)
+        bad_input("--screenshot", "", "no --ui with an .exr file, which holds the picture's light",
+                  options.output.string());
     Session session(options.scene, gl);
     if (options.frame) session.view().frame = parse_frame(*options.frame);
     session.view().settle = options.settled;

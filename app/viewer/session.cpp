@@ -227,6 +227,7 @@ void Session::save_screenshot(const std::filesystem::path& file, int width, int 
 
 std::optional<std::string> Session::take_clipboard() { return std::exchange(impl_->clipboard, std::nullopt); }
 std::shared_ptr<const RenderedFrame> Session::final_frame() const { return impl_->a.final_frame(); }
+Image Session::shown_light() const { return impl_->a.read(); }
 std::vector<unsigned char> Session::shown_pixels() const { return impl_->display.read(); }
 
 void Session::interrupt() {

@@ -69,6 +69,8 @@ class Session {
     std::optional<std::string> take_clipboard();
 
     std::shared_ptr<const RenderedFrame> final_frame() const;
+    /// The light of what draw() showed, preview or not, before the view transform; linear, premultiplied.
+    Image shown_light() const;
     /// The viewport as shown, 8-bit RGBA, top row first.
     std::vector<unsigned char> shown_pixels() const;
 

@@ -12,7 +12,6 @@
 #include "edit/layers.h"
 #include "edit/new_from_file.h"
 #include "edit/view_camera.h"
-#include "output/write.h"
 #include "scene/layer_setup.h"
 #include "scene/save.h"
 #include "viewer/programs.h"

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/memory.h"
+#include "scene/input_files.h"
 #include "viewer/session_impl.h"
 
 namespace astrosplat {

@@ -8,6 +8,7 @@
 
 #include "generate/lattice.h"
 #include "pipeline.h"
+#include "scene/animate.h"
 
 namespace astrosplat {
 namespace {

@@ -23,7 +23,7 @@ int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupte
 
 struct ScreenshotOptions {
     ViewerOptions scene;
-    std::filesystem::path output;      // .png, or .exr with `settled`
+    std::filesystem::path output;      // .png, or .exr without `ui`
     std::optional<std::string> size;   // "960x540" px: of the picture, with `ui` of the window
     std::optional<std::string> frame;  // default: the first
     bool ui = false;                   // with the panels

@@ -1,5 +1,5 @@
-// What the control groups (v1 or v2) around this process say: limits that `nproc` and /proc/meminfo do not
-// show.
+// What the control groups (v1 or v2) around this process say: limits that `nproc` and /proc/meminfo
+// do not show.
 #pragma once
 
 #include <string>

@@ -8,8 +8,8 @@
 
 namespace astrosplat {
 
-/// Bad input: a file, a key or an argument that cannot be used. `what()` is one line, without a trailing
-/// newline.
+/// Bad input: a file, a key or an argument that cannot be used. `what()` is one line, without
+/// a trailing newline.
 struct InputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

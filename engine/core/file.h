@@ -33,8 +33,8 @@ class InputFile {
 /// Throws InputError like InputFile: for files that a library opens itself.
 void require_readable(const std::filesystem::path& file);
 
-/// All bytes of a file. Throws InputError as InputFile does, and when it is larger than the memory left;
-/// Cancelled.
+/// All bytes of a file. Throws InputError as InputFile does, and when it is larger than the
+/// memory left; Cancelled.
 std::string read_file(const std::filesystem::path& file, const Progress& progress = {});
 
 /// At most the first `size` bytes, such as a format's magic bytes; empty where the file cannot be read.

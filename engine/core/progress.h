@@ -1,5 +1,5 @@
-// How long work reports how far it is and learns that it should stop. Copied by value; an empty one does
-// nothing.
+// How long work reports how far it is and learns that it should stop. Copied by value; an empty
+// one does nothing.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@ struct Progress {
         if (report) report(fraction);
     }
     bool stop() const { return cancelled && cancelled->load(std::memory_order_relaxed); }
-    /// Throws Cancelled when somebody asked to stop.
+    /// Throws Cancelled after a request to stop.
     void check() const;
 };
 

@@ -19,8 +19,8 @@ struct Target {
     std::int64_t bits;  // Highway's; a lower bit is a better target
 };
 
-// Highway 1.0 has no SSE2 target of its own: its portable fallback, compiled for the baseline of x86-64, is
-// that.
+// Highway 1.0 has no SSE2 target of its own: its portable fallback, compiled for the baseline of
+// x86-64, is that.
 constexpr std::array<Target, 5> targets = {{{"avx512", HWY_AVX3 | HWY_AVX3_DL},
                                             {"avx2", HWY_AVX2},
                                             {"sse4", HWY_SSE4},

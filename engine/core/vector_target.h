@@ -1,5 +1,5 @@
-// Which instruction set the vector kernels use. Every target gives the same bits; the switch exists to prove
-// that.
+// Which instruction set the vector kernels use. Every target gives the same bits; the switch exists to
+// prove that.
 #pragma once
 
 #include <string>

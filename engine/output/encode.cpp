@@ -17,8 +17,8 @@ using View = OutputParams::View;
 constexpr int table_steps = 4096;
 
 // The power part of the sRGB curve over s = sqrt(x), where it is so smooth that straight lines between 4097
-// points are within 1e-7 of it; a pow for each of six million channels would take longer than the rest of the
-// encoding.
+// points are within 1e-7 of it; a pow for each of six million channels would take longer than the rest of
+// the encoding.
 std::array<float, table_steps + 2> make_srgb_table() {
     std::array<float, table_steps + 2> table{};
     for (int i = 0; i <= table_steps + 1; ++i) {
@@ -67,8 +67,8 @@ float dither(std::int64_t x, std::int64_t y, int channel) {
     std::uint32_t lattice = static_cast<std::uint32_t>(x) * 0xC13FA9A9u +
                             static_cast<std::uint32_t>(y) * 0x91E10DA5u +
                             static_cast<std::uint32_t>(channel) * 0x9E3779B9u;
-    // 255 levels at -127/256 .. 127/256: a value that is a multiple of 1/255 can never be rounded to another
-    // one.
+    // 255 levels at -127/256 .. 127/256: a value that is a multiple of 1/255 can never be rounded to
+    // another one.
     std::uint64_t level = (std::uint64_t{lattice} * 255u) >> 32;
     return (static_cast<float>(level) - 127.0f) / 256.0f;
 }

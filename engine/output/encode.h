@@ -14,9 +14,9 @@ namespace astrosplat {
 /// 0.59) + 0.14) (Narkowicz' fit of the ACES curve), then srgb. Negative values and NaN give 0.
 float apply_view(OutputParams::View view, float value);
 
-/// Threshold in (-1/2, 1/2) that is added before rounding to 8 bits: a low-discrepancy lattice (Roberts' R2
-/// sequence in 32-bit fixed point), shifted per channel, a function of the pixel's place in the whole
-/// picture.
+/// Threshold in (-1/2, 1/2) that is added before rounding to 8 bits: a low-discrepancy lattice
+/// (Roberts' R2 sequence in 32-bit fixed point), shifted per channel, a function of the pixel's place
+/// in the whole picture.
 float dither(std::int64_t x, std::int64_t y, int channel);
 
 /// Channels a file of this format holds: 3 without alpha, else 4.

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "output/write.h"
+#include "output/frame_path.h"
 
 namespace astrosplat {
 namespace {

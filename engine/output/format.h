@@ -26,4 +26,7 @@ struct FrameFormat {
 /// Throws InputError, one line, when ending, depth, compression, alpha or aovs do not fit together.
 FrameFormat resolve_format(const OutputParams& output, const std::filesystem::path& file);
 
+/// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits").
+void check_output(const OutputParams& output);
+
 }  // namespace astrosplat

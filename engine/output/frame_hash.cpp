@@ -7,9 +7,11 @@
 #include <array>
 #include <string_view>
 
+#include "core/error.h"
 #include "core/sha256.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
+#include "scene/input_files.h"
 #include "source/mesh.h"
 
 namespace astrosplat {
@@ -38,30 +40,42 @@ bool is_hidden(const ParameterSpec& spec, const Scene& now) {
 
 }  // namespace
 
-// The text itself where nothing lies under that name: "plane", "", or a file whose absence the loader will
-// report.
+// The text itself where nothing lies under that name: "plane", "", or a file whose absence the
+// loader will report.
 std::string FrameHasher::file_text(const fs::path& file) {
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored)) return to_toml(file.string());
-    std::string& hash = file_hashes_[file];
-    if (hash.empty()) hash = sha256_of_file(file);
-    return hash;
+    auto [known, added] = files_.try_emplace(file);
+    if (added) {
+        const FileStamp stamp = stamp_of(file);  // before it is read: a change from now on is seen
+        known->second = {sha256_of_file(file), stamp};
+    }
+    return known->second.hash;
 }
 
-// Pictures that no key names: a mesh without a texture takes those of its MTL.
-std::string FrameHasher::own_maps(const LayerParams& layer) {
+// Pictures that no key names.
+std::string FrameHasher::own_pictures(const LayerParams& layer) {
     std::string text;
     std::error_code ignored;
+    if (layer.source.kind != SourceKind::mesh) return text;
     for (const MeshInput& input : layer.source.meshes) {
-        bool own = input.texture.empty() || (input.texture.size() == 1 && input.texture[0].empty());
-        if (layer.source.kind != SourceKind::mesh || !own || !fs::is_regular_file(input.mesh, ignored))
-            continue;
-        auto [known, added] = map_lists_.try_emplace(input.mesh);
+        if (!has_own_pictures(input) || !fs::is_regular_file(input.mesh, ignored)) continue;
+        auto [known, added] = material_lists_.try_emplace(input.mesh);
         if (added)
-            for (const fs::path& map : load_obj(input.mesh).maps) known->second += " " + file_text(map);
-        text += fmt::format("layer.{}.maps ={}\n", layer.name, known->second);
+            for (const fs::path& file : obj_materials(input.mesh)) known->second += " " + file_text(file);
+        text += fmt::format("layer.{}.materials ={}\n", layer.name, known->second);
     }
     return text;
+}
+
+void check_unchanged(const HashedFiles& files) {
+    for (const auto& [file, hashed] : files) {
+        if (stamp_of(file) == hashed.stamp) continue;
+        std::error_code ignored;
+        if (fs::is_regular_file(file, ignored) && sha256_of_file(file) == hashed.hash) continue;
+        bad_input(file.string(), "", "the file that the frames were planned with",
+                  "a change since; start again");
+    }
 }
 
 std::string FrameHasher::canonical_text(std::int64_t frame) {
@@ -84,7 +98,7 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
         text += "\n";
     }
     for (const LayerParams& layer : now.layers)
-        if (layer.visible) text += own_maps(layer);
+        if (layer.visible) text += own_pictures(layer);
     return text;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "core/file_stamp.h"
 #include "core/image.h"
 #include "scene/scene.h"
 
@@ -14,6 +15,17 @@ namespace astrosplat {
 
 /// Raised whenever the program's own arithmetic changes a pixel of any scene.
 inline constexpr int pixel_version = 1;
+
+/// Input files as they were when they were hashed.
+struct HashedFile {
+    std::string hash;
+    FileStamp stamp;
+};
+using HashedFiles = std::map<std::filesystem::path, HashedFile>;
+
+/// To be called once the files are loaded. Throws InputError where one has other bytes now: what was loaded
+/// may not be what was hashed.
+void check_unchanged(const HashedFiles& files);
 
 /// Hashes frames of one scene; input files are hashed by content, once each.
 class FrameHasher {
@@ -30,14 +42,17 @@ class FrameHasher {
     /// animation's keys.
     std::string canonical_text(std::int64_t frame);
 
+    /// All files that the hashes so far depend on.
+    const HashedFiles& files() const { return files_; }
+
   private:
     std::string file_text(const std::filesystem::path& file);
-    std::string own_maps(const LayerParams& layer);
+    std::string own_pictures(const LayerParams& layer);
 
     Scene scene_;
     Region region_;
-    std::map<std::filesystem::path, std::string> file_hashes_;
-    std::map<std::filesystem::path, std::string> map_lists_;  // of meshes: their MTL's pictures
+    HashedFiles files_;
+    std::map<std::filesystem::path, std::string> material_lists_;  // of meshes
 };
 
 }  // namespace astrosplat

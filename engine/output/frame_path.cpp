@@ -1,11 +1,12 @@
 // Frame numbers in file names: "####", "%04d" and "{frame:04}" are replaced by the frame, padded with zeros.
+#include "output/frame_path.h"
+
 #include <fmt/format.h>
 
 #include <optional>
 #include <string>
 
 #include "core/error.h"
-#include "output/write.h"
 
 namespace astrosplat {
 namespace {

@@ -1,6 +1,6 @@
-// One picture file on its way to the disk: OpenImageIO encodes, an AtomicFile takes the bytes, so that every
-// write that fails is an error whatever the format's plug-in makes of it. Included by the writers of pictures
-// alone.
+// One picture file on its way to the disk: OpenImageIO encodes, an AtomicFile takes the bytes, so that
+// every write that fails is an error whatever the format's plug-in makes of it. Included by the writers of
+// pictures alone.
 #pragma once
 
 #include <OpenImageIO/filesystem.h>

@@ -1,4 +1,6 @@
 // What --resume asks of a frame file that lies there already: its hashes, and whether it is whole.
+#include "output/read_frame.h"
+
 #include <fmt/format.h>
 // fmt first: OpenImageIO brings a copy of it with other settings.
 #include <OpenImageIO/imageio.h>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include "output/metadata.h"
-#include "output/write.h"
 
 namespace astrosplat {
 namespace {

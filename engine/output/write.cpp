@@ -1,6 +1,6 @@
-// Writing frames through OpenImageIO: one part, per-channel formats in EXR, the bytes of encode.h elsewhere.
-// What comes out depends on the arguments alone: OpenImageIO would add the time, so its field is written
-// empty.
+// Writing frames through OpenImageIO: one part, per-channel formats in EXR, the bytes of encode.h
+// elsewhere. What comes out depends on the arguments alone: OpenImageIO would add the time, so its field is
+// written empty.
 #include "output/write.h"
 
 #include <fmt/format.h>
@@ -103,8 +103,8 @@ OIIO::ImageSpec make_spec(const FrameFormat& format, const Image& beauty, const 
     if (stored_channels(format) == 4) spec.channelnames.push_back("A");
     spec.alpha_channel = stored_channels(format) == 4 ? 3 : -1;
     spec.attribute("compression", oiio_name(format.compression));
-    // Told that alpha is unassociated, OpenImageIO stores the numbers as they are; else it would divide
-    // PNG's.
+    // Told that alpha is unassociated, OpenImageIO stores the numbers as they are; else it
+    // would divide PNG's.
     bool as_is = format.kind == FileKind::png || format.alpha == OutputParams::Alpha::straight;
     if (as_is && format.kind != FileKind::exr) spec.attribute("oiio:UnassociatedAlpha", 1);
     // TIFF would hold it as EXIF, which OpenImageIO 2.4 writes wrongly unless it opens the file itself; 8 and

@@ -41,21 +41,6 @@ struct FrameFile {
 /// Writes one frame. Throws OutputError; AlreadyExists as AtomicFile does.
 void write_frame(const FrameFile& target, const RenderedFrame& frame, const FrameMetadata& metadata);
 
-/// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits").
-void check_output(const OutputParams& output);
-
-/// frame_hash and pixel_hash stored in a frame file, empty when there are none or the file is damaged.
-std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::path& file);
-
-/// True when the file can be read to its last pixel.
-bool frame_is_whole(const std::filesystem::path& file);
-
-/// "frames/shot.####.exr" with frame 12 gives "frames/shot.0012.exr"; also %04d and {frame:04}. Negative
-/// frames keep the width with a minus sign in front. `has_frame_token` tells whether there is anything to
-/// replace.
-std::string frame_file(const std::string& pattern, std::int64_t frame);
-bool has_frame_token(const std::string& pattern);
-
 /// sha256 of the pixels' float bytes (beauty, row by row, RGBA).
 std::string pixel_hash(const Image& image);
 

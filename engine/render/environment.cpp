@@ -219,8 +219,9 @@ double texels_per_spread(const Environment& environment, double spread) {
 
 Environment load_environment(const EnvironmentParams& params) {
     if (!params.cube.empty() && params.cube.size() != 6)
-        throw InputError(fmt::format("environment.cube: expected six pictures (+x -x +y -y +z -z), found {}",
-                                     params.cube.size()));
+        throw InputError(
+            fmt::format("environment.cube: expected six pictures, in the order +x -x +y -y +z -z, found {}",
+                        params.cube.size()));
     if (!params.cube.empty() && !params.image.empty())
         throw InputError("environment: expected image or cube, found both");
     std::vector<std::filesystem::path> files = params.cube;

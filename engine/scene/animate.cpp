@@ -64,4 +64,14 @@ Scene scene_at(const Scene& scene, double frame) {
     return still;
 }
 
+bool ever_visible(const Scene& scene, const LayerParams& layer) {
+    const ParameterKey key = layer_key(layer.name) / "visible";
+    for (const Track& track : scene.animation) {
+        if (track.key != key) continue;
+        return std::any_of(track.keys.begin(), track.keys.end(),
+                           [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
+    }
+    return layer.visible;
+}
+
 }  // namespace astrosplat

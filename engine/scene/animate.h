@@ -15,4 +15,7 @@ Scene scene_at(const Scene& scene, double frame);
 /// has at least one key and belongs to a parameter of this kind.
 std::vector<double> track_at(const Track& track, const ParameterSpec& spec, double frame);
 
+/// Whether a layer is drawn in some frame: visible as it stands, or switched on by a key of the animation.
+bool ever_visible(const Scene& scene, const LayerParams& layer);
+
 }  // namespace astrosplat

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "camera/camera.h"
 #include "core/error.h"
+#include "scene/animate.h"
 #include "scene/load.h"
+#include "splat_files/splat_file.h"
 
 namespace astrosplat {
 namespace {
@@ -93,6 +96,26 @@ void check_layer(const LayerParams& layer, const Checker& check) {
 
 }  // namespace
 
+void check_renderable(const Scene& scene, const Places& places) {
+    const Checker check{scene.file.string(), places};
+    try {
+        check_supported(scene.camera);
+    } catch (const InputError& error) {  // which names the key, but does not know the line
+        const char* key = scene.camera.file.empty() ? "camera.projection" : "camera.file";
+        throw InputError(fmt::format("{}: {}", check.nearest_place(key), error.what()));
+    }
+    for (const LayerParams& layer : scene.layers) {
+        if (!ever_visible(scene, layer)) continue;
+        const ParameterKey at = layer_key(layer.name) / "source";
+        const SourceParams& source = layer.source;
+        check.require(source.kind != SourceKind::stars, {at / "kind"},
+                      "expected mesh or splats (stars come with a later release), found stars");
+        check.require(
+            source.kind != SourceKind::splats || is_splat_file(source.file), {at / "file"},
+            "expected a file ending in .pda, .ply or .splats, found '" + source.file.string() + "'");
+    }
+}
+
 void check_layer_name(const std::string& name, const std::string& place) {
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
     bool good = !name.empty() && letter(name[0]);
@@ -115,8 +138,9 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
                   fmt::format("expected far beyond near or 0, found {} and {}", short_number(c.near),
                               short_number(c.far)));
     const EnvironmentParams& e = scene.environment;
-    check.require(e.cube.empty() || e.cube.size() == 6, {"environment.cube"},
-                  fmt::format("expected six pictures, found {}", e.cube.size()));
+    check.require(
+        e.cube.empty() || e.cube.size() == 6, {"environment.cube"},
+        fmt::format("expected six pictures, in the order +x -x +y -y +z -z, found {}", e.cube.size()));
     check.require(e.image.empty() || e.cube.empty(), {"environment.image", "environment.cube"},
                   "expected image or cube, found both");
     if (scene.layers.empty())

@@ -1,13 +1,18 @@
 // What one parameter's own range cannot say: rules between parameters.
 #pragma once
 
-#include "scene/entries.h"
+#include "scene/parameter_key.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
 
 /// Throws InputError with the place of the key that was set last, or with `file`.
 void check_scene(const Scene& scene, const std::string& file, const Places& places);
+
+/// Throws InputError, with the place of the key, for what this release reads and keeps but cannot render:
+/// stars, other projections, camera files, splat files of other kinds. Layers that are never visible are left
+/// out.
+void check_renderable(const Scene& scene, const Places& places);
 
 /// Throws InputError unless the name is [A-Za-z][A-Za-z0-9_]*.
 void check_layer_name(const std::string& name, const std::string& place);

@@ -124,7 +124,7 @@ void describe_camera(const Describer& d, CameraParams& c) {
 
 void describe_environment(const Describer& d, EnvironmentParams& e) {
     d(spec("image", "Picture", "", "Equirectangular picture behind everything."), e.image);
-    d(spec("cube", "Cube pictures", "", "Or six pictures: +x -x +y -y +z -z."), e.cube);
+    d(spec("cube", "Cube pictures", "", "Or six pictures, in the order +x -x +y -y +z -z."), e.cube);
     d(spec("gain", "Gain", "", "Multiplies its light.").at_least(0).slider(0.01, 100).logarithmic(), e.gain);
     d(spec("rotation", "Rotation", "degrees", "Turns it about x, then y, then z.").slider(-180, 180),
       e.rotation);

@@ -2,8 +2,8 @@
 // entries into whatever a Description describes. Used for scenes, presets and --set alike.
 #pragma once
 
+#include <filesystem>
 #include <functional>
-#include <map>
 #include <span>
 
 #include "scene/parameter.h"
@@ -33,8 +33,6 @@ struct EntryOrigin {
 /// Adds the node and all below it.
 void flatten(const toml::node& node, const ParameterKey& key, const ParameterKey& generic_key,
              const EntryOrigin& origin, const toml::source_region& source, std::vector<Entry>& entries);
-
-using Places = std::map<ParameterKey, std::string>;  // full key -> place it was last set at
 
 /// Writes the entries in the order they stand in the file; lists get their lengths first. `describe_target`
 /// is called again after lengths changed. Throws InputError naming the entry's place.

@@ -83,7 +83,7 @@ class Loader {
   public:
     Loader(std::string file, fs::path folder) : file_(std::move(file)), folder_(std::move(folder)) {}
 
-    Scene load(const toml::table& root, std::span<const Assignment> assignments, bool checked) {
+    PlacedScene load(const toml::table& root, std::span<const Assignment> assignments, bool checked) {
         check_version(root, file_, true);
         const std::vector<LayerTable> layers = read_layers(root, file_);
         for (const LayerTable& layer : layers) scene_.layers.emplace_back().name = layer.name;
@@ -97,7 +97,7 @@ class Loader {
         }
         for (const Assignment& assignment : assignments) assign(assignment);
         if (checked) check_scene(scene_, file_, places_);
-        return std::move(scene_);
+        return {std::move(scene_), std::move(places_)};
     }
 
   private:
@@ -118,7 +118,14 @@ class Loader {
         }
         apply_entries(
             entries, origin, [this] { return describe(scene_); }, places_);
-        if (!layer.preset.empty()) read_preset(layer);
+        if (layer.preset.empty()) return;
+        std::error_code ignored;
+        if (!fs::exists(layer.preset, ignored))
+            throw InputError(
+                layer.preset.string() +
+                ": cannot be read: No such file or directory; the looks that come with astrosplat are in " +
+                ASTROSPLAT_ASSETS "/looks");
+        read_preset(layer);
     }
 
     void read_preset(LayerParams& layer) {
@@ -242,19 +249,21 @@ Assignment parse_assignment(const std::string& text) {
     return {key, trimmed(text.substr(equals + 1))};
 }
 
-static Scene parse(const std::string& toml, const fs::path& file, std::span<const Assignment> assignments,
-                   bool checked) {
+static PlacedScene parse(const std::string& toml, const fs::path& file,
+                         std::span<const Assignment> assignments, bool checked) {
     const toml::table root = parse_toml(toml, file.string());
-    Scene scene = Loader(file.string(), file.parent_path()).load(root, assignments, checked);
-    scene.file = file;
-    return scene;
+    PlacedScene placed = Loader(file.string(), file.parent_path()).load(root, assignments, checked);
+    placed.scene.file = file;
+    return placed;
 }
 
 Scene parse_scene(const std::string& toml, const fs::path& file, std::span<const Assignment> assignments) {
-    return parse(toml, file, assignments, true);
+    return parse(toml, file, assignments, true).scene;
 }
 
-Scene parse_unchecked(const std::string& toml, const fs::path& file) { return parse(toml, file, {}, false); }
+Scene parse_unchecked(const std::string& toml, const fs::path& file) {
+    return parse(toml, file, {}, false).scene;
+}
 
 Value typed_value(const std::string& text) {
     const toml::table table = parse_raw(text);
@@ -265,8 +274,12 @@ Value typed_value(const std::string& text) {
     }
 }
 
+PlacedScene load_placed(const fs::path& file, std::span<const Assignment> assignments) {
+    return parse(read_file(file), file, assignments, true);
+}
+
 Scene load_scene(const fs::path& file, std::span<const Assignment> assignments) {
-    return parse_scene(read_file(file), file, assignments);
+    return load_placed(file, assignments).scene;
 }
 
 }  // namespace astrosplat

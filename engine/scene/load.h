@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "scene/parameter.h"
 #include "scene/parameter_key.h"
 #include "scene/scene.h"
 #include "scene/value.h"
@@ -26,6 +27,13 @@ Value typed_value(const std::string& text);
 /// Loads a scene and applies the assignments. Paths inside the file are resolved against its folder, those of
 /// assignments against the working directory; ${NAME} is an environment variable. Throws InputError.
 Scene load_scene(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
+
+/// A scene and where its keys were last set, for messages about what is found out later.
+struct PlacedScene {
+    Scene scene;
+    Places places;
+};
+PlacedScene load_placed(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
 
 /// The same from text in memory; `file` names it in messages and resolves its paths.
 Scene parse_scene(const std::string& toml, const std::filesystem::path& file,

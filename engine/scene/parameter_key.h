@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <compare>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -62,6 +63,9 @@ ParameterKey layer_key(std::string_view name);
 
 /// Whether a part of a key is a place in a list: digits only.
 bool is_list_index(std::string_view part);
+
+/// Where keys were last set: "scene.toml:12", "--set".
+using Places = std::map<ParameterKey, std::string>;
 
 }  // namespace astrosplat
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "output/frame_path.h"
 #include "output/write.h"
 #include "scene/load.h"
 

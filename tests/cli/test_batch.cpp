@@ -1,5 +1,8 @@
 // --batch: which files appear, what is said where, and what the figures hold.
+#include <fcntl.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <regex>
@@ -147,6 +150,15 @@ TEST_F(Batch, LayersChooseWhatIsDrawn) {
     EXPECT_EQ(json("stats.json").at("layers")[0].at("kept"), 0) << "a layer that is not drawn is not loaded";
 }
 
+TEST_F(Batch, LayersHideWhatATrackShows) {
+    write_scene("\"layer.stars.visible\" = { keys = [[1, true], [2, false]] }\n");
+    ASSERT_EQ(batch({"-f", "1", "--layers", "dust", "--stats", "stats.json"}).code, 0);
+    EXPECT_EQ(json("stats.json").at("frames")[0].at("splats_in"), 100);
+    ASSERT_EQ(batch({"-f", "1-2", "--layers", "dust,stars", "--overwrite", "--stats", "stats.json"}).code, 0);
+    EXPECT_EQ(json("stats.json").at("frames")[0].at("splats_in"), 400);
+    EXPECT_EQ(json("stats.json").at("frames")[1].at("splats_in"), 100) << "what is asked for keeps its track";
+}
+
 TEST_F(Batch, ResolutionIsASizeOrAShare) {
     for (const auto& [text, size] : {std::pair{"50%", "32"}, std::pair{"40x30", "40"}}) {
         ASSERT_EQ(batch({"-f", "1", "--resolution", text, "-o", "p.png", "--overwrite"}).code, 0);
@@ -209,18 +221,109 @@ TEST_F(Batch, FailuresAreInTheFigures) {
 }
 
 TEST_F(Batch, BadInputThatShowsInTheFirstFrameEndsTheRun) {
+    // At frame 1 the camera looks at where it is.
+    const RunResult first = batch({"--set", "camera.target=[0, 0, 9]"});
+    EXPECT_EQ(first.code, 2) << first.err;
+    EXPECT_NE(last_line(first.err).find("camera.target: expected"), std::string::npos) << first.err;
+    EXPECT_EQ(names_in("frames").size(), 0u);
+    const RunResult last = batch({"--set", "camera.target=[2, 1, 8]"});
+    EXPECT_EQ(last.code, 3) << last.err;
+    EXPECT_TRUE(std::regex_search(last_line(last.err), std::regex("1 frame failed: 3$"))) << last.err;
+    EXPECT_EQ(names_in("frames").size(), 2u);
+}
+
+TEST_F(Batch, MapsAreReadBeforeTheFirstFrame) {
     write_text(folder / "map.png", "no picture");
+    write_text(folder / "picture.ppm", small_picture());
     write_scene(
         "[[layer]]\nname = \"gas\"\n[layer.source]\nmeshes = [ { mesh = \"plane\", texture = "
         "\"picture.ppm\" } ]\ncount = 1000\n"
         "[layer.look]\nthickness = { map = \"map.png\", keys = [{ color = [1.0, 1.0, 1.0], scale = "
         "1.0 }] }\n");
-    write_text(folder / "picture.ppm", small_picture());
-    const RunResult result = batch({"--stats", "stats.json"});
+    const RunResult result = batch();
     EXPECT_EQ(result.code, 2) << result.err;
     EXPECT_NE(last_line(result.err).find("map.png"), std::string::npos) << result.err;
-    EXPECT_EQ(result.err.find("failed"), std::string::npos) << result.err;
-    EXPECT_EQ(names_in("frames").size(), 0u);
+    EXPECT_EQ(result.err.find("frame 1 (1/3)"), std::string::npos) << result.err;
+}
+
+TEST_F(Batch, WhatCannotBeRenderedIsSaidWithItsLine) {
+    const auto expect_refused = [&](const std::string& place, const std::string& part) {
+        for (const std::vector<std::string>& words : {std::vector<std::string>{"--batch", "scene.toml"},
+                                                      {"--batch", "scene.toml", "--dry-run"},
+                                                      {"info", "scene.toml"}}) {
+            const RunResult result = run(words);
+            expect_one_line(result, 2, place);
+            EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
+        }
+        EXPECT_FALSE(fs::exists(folder / "frames"));
+    };
+    const std::string plain = text_of(folder / "scene.toml");
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = plain;
+        text.replace(text.find(from), from.size(), to);
+        write_text(folder / "scene.toml", text);
+    };
+    with("[camera]\n", "[camera]\nprojection = \"fisheye\"\n");
+    expect_refused("scene.toml:7: camera.projection: ", "found fisheye");
+    with("[camera]\n", "[camera]\nprojection = \"equirectangular\"\n");
+    expect_refused("scene.toml:7: camera.projection: ", "found equirectangular");
+    with("[camera]\n", "[camera]\nfile = \"path.txt\"\n");
+    expect_refused("scene.toml:7: camera.file: ", "path.txt");
+    with("file = \"stars.pda\"", "file = \"stars.bgeo\"");
+    expect_refused("scene.toml:12: layer.stars.source.file: ", "stars.bgeo");
+    with("kind = \"splats\"\nfile = \"stars.pda\"", "kind = \"stars\"\ncatalogue = \"stars.pda\"");
+    expect_refused("scene.toml:11: layer.stars.source.kind: ", "stars");
+    EXPECT_EQ(batch({"-f", "1", "--layers", "dust"}).code, 0) << "a layer that is not asked for does no harm";
+}
+
+TEST_F(Batch, InputsThatChangeBeforeTheyAreLoadedAreRefused) {
+    write_text(folder / "frames/shot.0001.exr", "damaged");
+    ASSERT_EQ(mkfifo((folder / "err").c_str(), 0600), 0);
+    const int pipe = open((folder / "err").c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    ASSERT_GE(fcntl(pipe, F_SETPIPE_SZ, 4096), 4096);
+    // Room for the message that the plan ends with, not for the next one, at which the program then waits.
+    const std::string planned =
+        "astrosplat: " + (folder / "frames/shot.0001.exr").string() + ": damaged, is rendered again\n";
+    const std::string filling(4096 - planned.size() - 20, '.');
+    ASSERT_EQ(write(pipe, filling.data(), filling.size()), static_cast<ssize_t>(filling.size()));
+    RunOptions options;
+    options.folder = folder;
+    const RunningProgram program({"/bin/sh", "-c", "exec \"$0\" \"$@\" 2>err", ASTROSPLAT_PROGRAM, "--batch",
+                                  "scene.toml", "-f", "1", "--resume", "--no-cache"},
+                                 options);
+    const auto waiting = [&] {
+        int bytes = 0;
+        return ioctl(pipe, FIONREAD, &bytes) == 0 &&
+               static_cast<std::size_t>(bytes) >= filling.size() + planned.size();
+    };
+    while (program.running() && !waiting()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    write_text(folder / "stars.pda", cube_of_splats(299));
+    std::string said;
+    char block[4096];
+    for (bool running = true; running;) {
+        running = program.running();
+        for (ssize_t size = 0; (size = read(pipe, block, sizeof block)) > 0;)
+            said.append(block, static_cast<std::size_t>(size));
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    close(pipe);
+    EXPECT_EQ(program.wait().code, 2) << said;
+    EXPECT_NE(last_line(said).find("stars.pda: expected the file that the frames were planned with"),
+              std::string::npos)
+        << said;
+    EXPECT_EQ(text_of(folder / "frames/shot.0001.exr"), "damaged");
+}
+
+TEST_F(Batch, MemoryLimitsTheRenderer) {
+    const auto records = [&](std::vector<std::string> more) {
+        more.insert(more.end(), {"-f", "1", "-v", "--overwrite", "--resolution", "256x192"});
+        const std::string said = batch(more).err;
+        std::smatch found;
+        EXPECT_TRUE(std::regex_search(said, found, std::regex("projected splats takes ([0-9.]+) KiB")))
+            << said;
+        return std::stod(found[1]);
+    };
+    EXPECT_LT(records({"--memory", "0.00001"}), 0.75 * records({}));
 }
 
 TEST_F(Batch, FoldersAndDevicesInAFramesPlaceAreSeenBeforeAnyWork) {

@@ -70,5 +70,30 @@ TEST_F(Settled, EqualsBatchBitForBit) {
     EXPECT_NE(hashes[0], hashes[1]) << "the frames must differ for this test to say anything";
 }
 
+TEST_F(Settled, APreviewsLightCanBeSavedToo) {
+    const RunResult result = run({"--batch", scene_file.string(), "-f", "1", "--resolution", "200x120", "-o",
+                                  "batch.exr", "--no-cache", "--set", "output.depth=float"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Image batch = load_linear_image(folder / "batch.exr");
+    double largest = 0.0, sum = 0.0;
+    for (const float value : batch.pixels) largest = std::max(largest, double(value)), sum += value;
+    for (const std::string engine : {"", "--opengl"}) {
+        std::vector<std::string> words = {"--screenshot",      "preview.exr", "--size",
+                                          "200x120",           "--frame",     "1",
+                                          scene_file.string(), "--no-cache"};
+        if (!engine.empty()) words.push_back(engine);
+        const RunResult shot = run(words);
+        ASSERT_EQ(shot.code, 0) << shot.err;
+        const Image preview = load_linear_image(folder / "preview.exr");
+        ASSERT_EQ(preview.width, 200);
+        ASSERT_EQ(preview.height, 120);
+        double difference = 0.0;
+        ASSERT_EQ(preview.pixels.size(), batch.pixels.size());
+        for (std::size_t i = 0; i < preview.pixels.size(); ++i)
+            difference += std::abs(double(preview.pixels[i]) - double(batch.pixels[i]));
+        EXPECT_LT(difference, 0.05 * sum) << "the same way up, in linear light " << engine;
+    }
+}
+
 }  // namespace
 }  // namespace astrosplat::test

@@ -222,7 +222,9 @@ TEST_F(AutosaveTest, APresetThatIsGoneLosesNothing) {
     fs::remove(preset);
     document.set(opacity, 0.25, 1.0);
     EXPECT_EQ(message_of<InputError>([&] { document.save(); }),
-              preset.string() + ": cannot be read: No such file or directory");
+              preset.string() +
+                  ": cannot be read: No such file or directory; the looks that come with astrosplat are "
+                  "in " ASTROSPLAT_SOURCE_DIR "/assets/looks");
     Autosave autosave(folder);
     ASSERT_TRUE(autosave.write(document));
     Scene loaded = load_scene(autosave.file());

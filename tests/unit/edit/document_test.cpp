@@ -119,7 +119,9 @@ TEST(Document, RefusedEditsChangeNothing) {
     EXPECT_EQ(message([&] { document.set("layer.dust.look.radius.min", 0.5, 1.0); }),
               "szene ä.toml: layer.dust.look.radius.min: expected min not above max, found 0.5 and 0");
     EXPECT_EQ(message([&] { document.set("layer.dust.preset", "fehlt.toml", 1.0); }),
-              (f.folder / "fehlt.toml").string() + ": cannot be read: No such file or directory");
+              (f.folder / "fehlt.toml").string() +
+                  ": cannot be read: No such file or directory; the looks that come with astrosplat are "
+                  "in " ASTROSPLAT_SOURCE_DIR "/assets/looks");
     EXPECT_EQ(message([&] { document.set("layer.dust.look.thickness.map", "latin-1 \xe4.png", 1.0); }),
               "layer.dust.look.thickness.map: expected text in UTF-8, found another encoding");
     EXPECT_EQ(message([&] { document.set("layer.dust.look.noise.3.cull", 0.5, 1.0); }),

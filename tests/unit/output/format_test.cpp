@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "output/write.h"
 
 namespace astrosplat {
 namespace {

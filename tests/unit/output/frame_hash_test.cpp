@@ -10,6 +10,7 @@
 
 #include "scene/describe.h"
 #include "scene/load.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -66,6 +67,33 @@ file = "dust.pda"
 
     fs::path folder_;
 };
+
+TEST_F(FrameHashTest, FilesThatChangedSinceAreRefused) {
+    FrameHasher hasher(scene());
+    hasher.frame_hash(1);
+    EXPECT_EQ(hasher.files().size(), 3u);
+    EXPECT_NO_THROW(check_unchanged(hasher.files()));
+    put("dust.pda", "two");
+    EXPECT_NO_THROW(check_unchanged(hasher.files())) << "the same bytes";
+    put("dust.pda", "2!!");
+    EXPECT_EQ(message_of<InputError>([&] { check_unchanged(hasher.files()); }),
+              (folder_ / "dust.pda").string() +
+                  ": expected the file that the frames were planned with, found a change since; start again");
+    fs::remove(folder_ / "dust.pda");
+    EXPECT_THROW(check_unchanged(hasher.files()), InputError);
+}
+
+TEST_F(FrameHashTest, MaterialsAndTheirPicturesCount) {
+    Scene own = scene();
+    own.layers[0].source.meshes = {{folder_ / "disk.obj", {}, 0.15}};
+    FrameHasher hasher(own);
+    const std::string before = hasher.frame_hash(1);
+    for (const char* name : {"disk.obj", "disk.mtl", "own.png"})
+        EXPECT_TRUE(hasher.files().count(folder_ / name)) << name;
+    put("own.png", "five");
+    EXPECT_NE(hash(own), before);
+    EXPECT_THROW(check_unchanged(hasher.files()), InputError);
+}
 
 TEST_F(FrameHashTest, IsSixtyFourHexDigitsAndStable) {
     EXPECT_EQ(hash(scene()).size(), 64u);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "output/frame_path.h"
 #include "output/write.h"
 
 namespace astrosplat {

@@ -1,5 +1,6 @@
 // Frame files written and read back: pixels, channels, windows, header, errors.
 #include "output/write.h"
+#include "output/read_frame.h"
 
 #include <fmt/format.h>
 // fmt first: OpenImageIO brings a copy of it with other settings.

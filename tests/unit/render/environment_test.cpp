@@ -297,7 +297,8 @@ std::string error_of(const EnvironmentParams& params) {
 TEST_F(EnvironmentTest, ErrorsNameWhatIsWrong) {
     EnvironmentParams params;
     params.cube = {"a.tif", "b.tif"};
-    EXPECT_EQ(error_of(params), "environment.cube: expected six pictures (+x -x +y -y +z -z), found 2");
+    EXPECT_EQ(error_of(params),
+              "environment.cube: expected six pictures, in the order +x -x +y -y +z -z, found 2");
     const fs::path small = write("small.tif", 4, 4, [](int, int) { return glm::vec3(0.0f); });
     const fs::path wide = write("wide.tif", 8, 4, [](int, int) { return glm::vec3(0.0f); });
     params.cube = {small, small, small, wide, small, small};

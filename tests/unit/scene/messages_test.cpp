@@ -136,7 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
              "6: camera.rotation: expected a quaternion that is not zero, found 0, 0, 0, 0"},
         Case{"[camera]\nfov = 180\n", "6: camera.fov: expected a number above 0 and below 180, found 180"},
         Case{"[camera]\nnear = 5\nfar = 2\n", "7: camera.far: expected far beyond near or 0, found 5 and 2"},
-        Case{"[environment]\ncube = [\"a\", \"b\"]\n", "6: environment.cube: expected six pictures, found 2"},
+        Case{"[environment]\ncube = [\"a\", \"b\"]\n",
+             "6: environment.cube: expected six pictures, in the order +x -x +y -y +z -z, found 2"},
         Case{"[environment]\nimage = \"a\"\ncube = [\"a\", \"b\", \"c\", \"d\", \"e\", \"f\"]\n",
              "7: environment.cube: expected image or cube, found both"},
         Case{"[environment]\ncube = [\"a\", \"\"]\n",
@@ -246,11 +247,15 @@ TEST(Messages, PresetsNameTheirOwnFileAndLine) {
     write_file_atomically(preset, "[output]\nfps = 2\n");
     EXPECT_EQ(message(text),
               preset.string() + ":2: unknown key 'fps'; 'astrosplat parameters' lists all keys");
+    write_file_atomically(preset, "astrosplat = 2\n[look]\nalpha.power = 2\n");
+    EXPECT_EQ(message(text), preset.string() + ":1: astrosplat: expected the format version 1, found 2");
     write_file_atomically(preset, "[look]\nradius = { min = 2.0 }\n");
     EXPECT_EQ(message(text),
               preset.string() + ":2: layer.stars.look.radius.min: expected min not above max, found 2 and 0");
     fs::remove(preset);
-    EXPECT_EQ(message(text), preset.string() + ": cannot be read: No such file or directory");
+    EXPECT_EQ(message(text), preset.string() +
+                                 ": cannot be read: No such file or directory; the looks that come with "
+                                 "astrosplat are in " ASTROSPLAT_SOURCE_DIR "/assets/looks");
 }
 
 TEST(Messages, Assignments) {

@@ -1,0 +1,26 @@
+// What a batch run will take, before it takes it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "batch_plan.h"
+
+namespace astrosplat {
+
+/// About how many splats the layers will have, and how many bytes sets, shaded splats, screen splats and
+/// pictures take.
+struct JobEstimate {
+    struct Layer {
+        std::string name;
+        std::int64_t splats = 0;
+    };
+    std::vector<Layer> layers;
+    std::int64_t splats = 0;
+    std::int64_t bytes = 0;
+};
+/// Loads meshes where voxels are given and the set is not in the cache, nothing else. Throws InputError.
+JobEstimate estimate(const BatchPlan& plan);
+
+}  // namespace astrosplat

@@ -1,0 +1,44 @@
+#include "scene/input_files.h"
+
+#include <algorithm>
+
+#include "source/mesh.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+
+std::vector<fs::path> named_files(const SourceParams& source) {
+    if (source.kind != SourceKind::mesh) return {source.file};
+    std::vector<fs::path> files;
+    for (const MeshInput& input : source.meshes) {
+        if (!is_builtin_mesh(input.mesh)) files.push_back(input.mesh);
+        files.insert(files.end(), input.texture.begin(), input.texture.end());
+    }
+    return files;
+}
+
+std::vector<fs::path> all_files(const SourceParams& source) {
+    std::vector<fs::path> files = named_files(source);
+    if (source.kind != SourceKind::mesh) return files;
+    for (const MeshInput& input : source.meshes) {
+        if (!has_own_pictures(input)) continue;
+        const std::vector<fs::path> materials = obj_materials(input.mesh);
+        files.insert(files.end(), materials.begin(), materials.end());
+    }
+    return files;
+}
+
+bool has_own_pictures(const MeshInput& input) {
+    const auto is_empty = [](const fs::path& file) { return file.empty(); };
+    return !is_builtin_mesh(input.mesh) && std::all_of(input.texture.begin(), input.texture.end(), is_empty);
+}
+
+std::vector<fs::path> picture_files(const Scene& scene) {
+    std::vector<fs::path> files = scene.environment.cube;
+    files.push_back(scene.environment.image);
+    for (const LayerParams& layer : scene.layers) files.push_back(layer.look.thickness.map);
+    std::erase(files, fs::path());
+    return files;
+}
+
+}  // namespace astrosplat
