@@ -126,6 +126,25 @@ grade = { gain = 2.0, tint = [1.0, 0.8, 0.6] }
     }
 }
 
+TEST(PanelReferences, AnglesOfAHybridLayer) {
+    PanelDriver driver(R"(astrosplat = 1
+[[layer]]
+name = "dust"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "dust.png" } ]
+[layer.render]
+blend = "hybrid"
+hybrid = { from_deg = 20.0, to_deg = 65.0 }
+)",
+                       360.0f, 900.0f);
+    driver.status = example_status();
+    driver.show(PanelTab::render);
+    driver.frames(3);
+    Picture8 picture(360, 900);
+    software_draw(*ImGui::GetDrawData(), picture, Style::schematic);
+    expect_like_reference("panel_hybrid", picture);
+}
+
 TEST(IconReferences, Sheet) {
     TestWindow window(example_document(), 480, 320);
     ImGui::NewFrame();

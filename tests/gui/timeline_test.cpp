@@ -53,6 +53,28 @@ TEST(Timeline, KeysOfTheFirstAndTheLastRowMoveToo) {
     EXPECT_TRUE(has_key_at(window.document.scene(), "layer.stars.render.opacity", 44));
 }
 
+/// The same scene looks the same, whether it was opened so or edited while it was shown.
+TEST(Timeline, ShowsTheSceneAsItIsNow) {
+    const auto picture = [](bool shown_before) {
+        TestWindow window(example_document());
+        const auto edit = [&] {
+            window.document.edit("Key", [](Scene& scene) {
+                set_key(scene, "layer.stars.render.opacity", 120, 0.4);
+                set_key(scene, "layer.nebulae.render.opacity", 60, 0.5);
+            });
+            window.frame(2);
+        };
+        if (!shown_before) edit();
+        window.click("graph");
+        window.click("track layer.stars.render.opacity");
+        if (shown_before) edit();
+        window.move({-100, -100});
+        window.frame(3);
+        return window.picture(Style::schematic);
+    };
+    EXPECT_TRUE(picture(true).pixels == picture(false).pixels);
+}
+
 TEST(Timeline, CtrlDragCopiesAndDeleteRemoves) {
     TestWindow window(example_document());
     const std::string opacity = "layer.stars.render.opacity";
