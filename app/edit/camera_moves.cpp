@@ -1,6 +1,7 @@
-// Camera keys made of a camera, and whole moves as rows of keys. A move is sampled so densely that the smooth
-// curve through its keys is round to 0.1 % of its radius; the easing is in the samples, so keys outside the
-// move keep their own timing.
+// A move is sampled so densely that the smooth curve through its keys is round to 0.1 % of its radius; the
+// easing is in the samples, so keys outside the move keep their own timing.
+#include "edit/camera_moves.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "core/real.h"
 #include "edit/keys.h"
+#include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
 #include "scene/load.h"
@@ -50,7 +52,15 @@ glm::dvec4 quaternion_of(const glm::dmat3& m) {
     return q;
 }
 
-/// Every animated parameter of the camera gets its key; position and direction always do.
+void set_lens_and_up(CameraParams& params, const CameraParams& camera) {
+    params.projection = camera.projection;
+    params.fov = camera.fov;
+    params.focal_length = camera.focal_length;
+    params.height = camera.height;
+    params.up = camera.up;
+    params.roll = camera.roll;
+}
+
 void key_orientation(Scene& scene, const CameraParams& camera, double frame) {
     const bool turns = scene.camera.rotation || camera.rotation || is_keyed(scene, rotation_key);
     if (!turns) {
@@ -158,6 +168,9 @@ Path face_on_path(const Scene& scene, const Bounds& box, const glm::dvec3& start
 }  // namespace
 
 void key_camera(Scene& scene, const CameraParams& camera, double frame) {
+    const bool moves = std::any_of(scene.animation.begin(), scene.animation.end(),
+                                   [](const Track& track) { return track.key.is_below("camera"); });
+    if (!moves) set_lens_and_up(scene.camera, camera);
     if (camera.position) set_key(scene, position_key, frame, vector_value(*camera.position));
     key_orientation(scene, camera, frame);
     Scene source = scene;
@@ -168,6 +181,10 @@ void key_camera(Scene& scene, const CameraParams& camera, double frame) {
             continue;
         if (is_keyed(scene, key)) set_key(scene, key, frame, parameter.get());
     }
+}
+
+void key_seen_camera(Scene& scene, const ViewState& view, const Status& status) {
+    key_camera(scene, seen_camera(scene, view, status), std::round(view.frame));
 }
 
 void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame) {

@@ -32,12 +32,4 @@ std::vector<double> key_frames(const Scene& scene);
 double next_key_frame(const Scene& scene, double frame);
 double previous_key_frame(const Scene& scene, double frame);
 
-/// Keys position, target and whatever else of the camera is animated at `frame` to those of `camera`.
-void key_camera(Scene& scene, const CameraParams& camera, double frame);
-
-enum class CameraMove { orbit, fly_in, face_on_to_edge_on };
-/// Ten seconds of an eased move around `box` (the visible layers' bounds in world space), beginning at
-/// `frame`; replaces the camera's tracks over that time, and lets [output] frames reach to its end.
-void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame);
-
 }  // namespace astrosplat

@@ -1,4 +1,5 @@
-// Navigation: every function takes a camera and a gesture and returns the camera after it.
+#include "edit/navigate.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -55,11 +56,6 @@ FreeCamera scaled_about(const FreeCamera& camera, const glm::dvec3& fixed, doubl
 }
 
 }  // namespace
-
-ViewAxes view_axes(const FreeCamera& camera) {
-    const Camera resolved = make_camera(camera_params(camera), 1.0, 1.0, {});
-    return {resolved.world_from_camera[0], resolved.world_from_camera[1], -resolved.world_from_camera[2]};
-}
 
 double scene_units_per_px(const FreeCamera& camera, double viewport_height_px) {
     if (camera.orthographic) return camera.height / viewport_height_px;

@@ -107,6 +107,7 @@ struct Status {
     bool has_ffmpeg = false;
     std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
 
+    double viewport_aspect = 0.0;     // width / height; 0: not known
     void* picture_texture = nullptr;  // the viewport with the picture in its place, bottom row first
     std::vector<std::vector<glm::vec2>> overlay_lines;  // camera path, frustum; px of the viewport
 };

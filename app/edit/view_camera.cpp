@@ -1,29 +1,16 @@
-// What each view looks through, and the ways between FreeCamera and CameraParams.
 #include "edit/view_camera.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "core/error.h"
 #include "core/real.h"
 #include "scene/animate.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr double framing_fill = 0.9;  // share of the picture that a framed box fills, as frame_box has it
-
-Bounds framed_box(const Bounds& box) {
-    Bounds framed = box;
-    if (framed.empty()) framed.add(glm::dvec3(0.0));
-    if (glm::length(framed.extent()) == 0.0) {
-        framed.lo -= 0.5;
-        framed.hi += 0.5;
-    }
-    return framed;
-}
-
-/// From far enough outside that the near plane cuts nothing.
 CameraParams axis_view(const glm::dvec3& back, const glm::dvec3& up, const Bounds& box, double aspect) {
     FreeCamera camera;
     camera.position = back;
@@ -47,14 +34,33 @@ FreeCamera lens_of(const Camera& camera, const CameraParams& params) {
     return free;
 }
 
-}  // namespace
-
-CameraParams camera_params(const FreeCamera& camera) {
-    CameraParams params;
+/// Where the camera is and which way it looks; a free camera has no roll and no rotation.
+void set_place(CameraParams& params, const FreeCamera& camera) {
     params.projection = camera.orthographic ? Projection::orthographic : Projection::perspective;
     params.position = camera.position;
     params.target = camera.pivot;
     params.up = camera.up;
+    params.roll = 0.0;
+    params.rotation.reset();
+}
+
+/// The middle part of what a camera shows, `share` of its height.
+FreeCamera cropped(FreeCamera camera, double share) {
+    camera.height *= share;
+    camera.fov_deg = 2.0 * real::degrees(real::atan(share * real::tan(0.5 * real::radians(camera.fov_deg))));
+    return camera;
+}
+
+}  // namespace
+
+ViewAxes view_axes(const FreeCamera& camera) {
+    const Camera resolved = make_camera(camera_params(camera), 1.0, 1.0, {});
+    return {resolved.world_from_camera[0], resolved.world_from_camera[1], -resolved.world_from_camera[2]};
+}
+
+CameraParams camera_params(const FreeCamera& camera) {
+    CameraParams params;
+    set_place(params, camera);
     params.fov = camera.fov_deg;
     params.height = camera.height;
     params.near = camera.near;
@@ -85,8 +91,8 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
     const glm::dvec3 forward = -camera.world_from_camera[2];
     FreeCamera free = lens_of(camera, params);
     free.position = camera.eye;
-    const glm::dvec3 middle = framed_box(box).center();
-    const double least = 1e-3 * std::fmax(1e-6, glm::length(framed_box(box).extent()));
+    const glm::dvec3 middle = box_to_frame(box).center();
+    const double least = 1e-3 * std::fmax(1e-6, glm::length(box_to_frame(box).extent()));
     const double distance = std::fmax(least, glm::dot(middle - camera.eye, forward));
     free.pivot = params.position && !params.rotation ? params.target : camera.eye + forward * distance;
     free.up = params.up;
@@ -102,12 +108,7 @@ CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, do
         return std::fabs(now - before) > 1e-9 * std::fabs(now) ? now : before;
     };
     CameraParams params = base;
-    params.position = camera.position;
-    params.target = camera.pivot;
-    params.up = camera.up;
-    params.roll = 0.0;
-    params.rotation.reset();
-    params.projection = camera.orthographic ? Projection::orthographic : Projection::perspective;
+    set_place(params, camera);
     const double tan_y = real::tan(real::radians(camera.fov_deg) * 0.5);
     if (camera.orthographic)
         params.height = keep_or(base.height, camera.height);
@@ -118,40 +119,45 @@ CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, do
     return params;
 }
 
-FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect) {
-    const Bounds whole = framed_box(box);
-    const ViewAxes axes = view_axes(camera);
-    const double tan_y = real::tan(real::radians(camera.fov_deg) * 0.5);
-    double distance = 0.0, height = 0.0, behind = 0.0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p =
-            glm::dvec3(corner & 1 ? whole.hi.x : whole.lo.x, corner & 2 ? whole.hi.y : whole.lo.y,
-                       corner & 4 ? whole.hi.z : whole.lo.z) -
-            whole.center();
-        const double needed =
-            2.0 / framing_fill *
-            std::fmax(std::fabs(glm::dot(axes.right, p)) / aspect, std::fabs(glm::dot(axes.up, p)));
-        height = std::fmax(height, needed);
-        behind = std::fmax(behind, -glm::dot(axes.forward, p));
-        distance = std::fmax(distance, 0.5 * needed / tan_y - glm::dot(axes.forward, p));
+CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status& status) {
+    const Scene now = scene_at(scene, view.frame);
+    const double aspect = static_cast<double>(now.output.width) / static_cast<double>(now.output.height);
+    CameraParams camera = now.camera;
+    if (view.view != ViewKind::camera) {
+        const double shape = status.viewport_aspect > 0.0 ? status.viewport_aspect : aspect;
+        const FreeCamera free = free_camera(view_camera(scene, view, status.box, shape), status.box, shape);
+        return moved_camera(camera, cropped(free, std::fmin(1.0, shape / aspect)), aspect);
     }
+    if (camera.position) return camera;
+    if (status.box.empty())
+        throw InputError("camera.position: expected layers to frame, found none loaded yet");
+    const Framing framing = frame_box(status.box, camera.fov, aspect);
+    camera.position = framing.position;
+    camera.target = framing.target;
+    camera.height = framing.height;
+    return camera;
+}
+
+FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect) {
+    const ViewAxes axes = view_axes(camera);
+    const Framing framing =
+        frame_box(box, glm::dmat3(axes.right, axes.up, -axes.forward), camera.fov_deg, aspect);
     FreeCamera result = camera;
-    result.pivot = whole.center();
-    result.height = std::fmax(height, 1e-9);
-    // Orthographic: outside the box by its own size, so that dots beyond the box are not cut.
-    const double outside = 2.0 * behind + glm::length(whole.extent());
-    result.position = result.pivot - axes.forward * (camera.orthographic ? outside : distance);
+    result.pivot = framing.target;
+    result.height = std::fmax(framing.height, 1e-9);
+    result.position = framing.position;
+    // From far enough outside that the near plane cuts nothing, nor dots beyond the box.
+    if (camera.orthographic)
+        result.position = framing.target - axes.forward * (2.0 * glm::length(box_to_frame(box).extent()));
     return result;
 }
 
-FreeCamera three_quarter_view(const Bounds& box, double fov_deg, double aspect) {
-    FreeCamera camera;
-    camera.fov_deg = fov_deg;
-    const Framing framing = frame_box(box, fov_deg, aspect);
-    camera.position = framing.position;
-    camera.pivot = framing.target;
-    camera.height = framing.height;
-    return camera;
+FreeCamera three_quarter_view(const FreeCamera& camera, const Bounds& box, double aspect) {
+    FreeCamera result = camera;
+    result.pivot = glm::dvec3(0.0);
+    result.position = glm::dvec3(1.0, 0.8, 1.0);
+    result.up = glm::dvec3(0.0, 1.0, 0.0);
+    return framed(result, box, aspect);
 }
 
 }  // namespace astrosplat

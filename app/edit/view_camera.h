@@ -1,12 +1,11 @@
-// The window's camera: what a view looks through, and navigation as pure functions on FreeCamera. Pixels are
-// the viewport's, y down; angles are so that what is under the mouse follows it.
+// The window's camera: what a view looks through, and the ways between FreeCamera and CameraParams.
 #pragma once
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "camera/camera.h"
 #include "core/bounds.h"
+#include "edit/status.h"
 #include "edit/view_state.h"
 #include "scene/scene.h"
 
@@ -17,6 +16,11 @@ namespace astrosplat {
 /// Front looks along -z, side along -x, top along -y with -z up, all orthographic.
 CameraParams view_camera(const Scene& scene, const ViewState& view, const Bounds& box, double aspect);
 
+/// What is seen in the window as the scene's camera would show it, with a place of its own. A view beside the
+/// camera is as high as the viewport, or as the output's shape within it where that is the lower of the two.
+/// Throws InputError where a camera without a position has nothing to frame yet.
+CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status& status);
+
 CameraParams camera_params(const FreeCamera& camera);
 /// The free camera that shows what `params` shows; its pivot is the target, or for a camera given by a
 /// rotation the point of its line of sight nearest to the box's middle. Throws InputError as make_camera
@@ -26,38 +30,15 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
 /// else of `base` stays; a focal length above 0 is changed instead of the field of view.
 CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, double aspect);
 
+/// The whole box in the picture, seen from the same direction; the pivot is its middle.
+FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect);
+/// The whole box seen diagonally from above, with the lens of `camera`.
+FreeCamera three_quarter_view(const FreeCamera& camera, const Bounds& box, double aspect);
+
 /// Unit vectors of the picture in world space.
 struct ViewAxes {
     glm::dvec3 right, up, forward;
 };
 ViewAxes view_axes(const FreeCamera& camera);
-/// Scene units a pixel covers in the plane through the pivot.
-double scene_units_per_px(const FreeCamera& camera, double viewport_height_px);
-/// The point of the plane through the pivot that lies under a pixel.
-glm::dvec3 point_under(const FreeCamera& camera, const glm::dvec2& px, const glm::dvec2& viewport_px);
-/// The point under a pixel at a depth along the line of sight (RenderedFrame's Z).
-glm::dvec3 point_at_depth(const FreeCamera& camera, const glm::dvec2& px, const glm::dvec2& viewport_px,
-                          double depth);
-
-/// Around the pivot like a turntable: half a turn per viewport height, never over the poles.
-FreeCamera orbit(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px);
-/// Sideways, so that the plane through the pivot moves with the mouse.
-FreeCamera pan(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px);
-/// Towards the pivot (dragging up or right): a viewport height is a factor of 16 in distance.
-FreeCamera dolly(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px);
-/// Nearer by a factor of 1.15 a step; the point of the pivot's plane under the mouse stays there.
-FreeCamera zoom_to(const FreeCamera& camera, double steps, const glm::dvec2& px,
-                   const glm::dvec2& viewport_px);
-/// Turns the camera where it stands, one field of view per viewport height.
-FreeCamera look_around(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px);
-/// Moves camera and pivot by scene units to the right, up and forward.
-FreeCamera fly(const FreeCamera& camera, const glm::dvec3& distance);
-/// The whole box in the picture, seen from the same direction; the pivot is its middle.
-FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect);
-/// Moves sideways until `point` is in the middle; it is the pivot then. A point behind the camera is not
-/// taken.
-FreeCamera with_pivot(const FreeCamera& camera, const glm::dvec3& point);
-/// From 35 degrees above +z, as a scene's camera without a position.
-FreeCamera three_quarter_view(const Bounds& box, double fov_deg, double aspect);
 
 }  // namespace astrosplat

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 
+#include "edit/camera_moves.h"
 #include "edit/keys.h"
 #include "edit/layers.h"
+#include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
 
@@ -26,32 +27,6 @@ void go_to(GuiFrame& f, double frame) {
 
 double aspect_of(const OutputParams& output) {
     return static_cast<double>(output.width) / static_cast<double>(output.height);
-}
-
-// The camera that the view looks through, as a scene's camera. Views along an axis have none of their own.
-CameraParams camera_of_view(const GuiFrame& f) {
-    const Scene scene = scene_at(f.document.scene(), f.view.frame);
-    CameraParams camera = scene.camera;
-    if (!in_free_view(f)) {
-        if (camera.position) return camera;
-        // One that frames the layers: its place becomes explicit.
-        const Framing framing = frame_box(f.status.box, camera.fov, aspect_of(scene.output));
-        camera.position = framing.position;
-        camera.target = framing.target;
-        camera.height = framing.height;
-        return camera;
-    }
-    const FreeCamera& free = f.view.free;
-    camera.position = free.position;
-    camera.target = free.pivot;
-    camera.up = free.up;
-    camera.rotation.reset();
-    camera.roll = 0.0;
-    camera.projection = free.orthographic ? Projection::orthographic : Projection::perspective;
-    camera.fov = free.fov_deg;
-    camera.focal_length = 0.0;
-    camera.height = free.height;
-    return camera;
 }
 
 Value value_now(const GuiFrame& f, const std::string& key) {
@@ -87,13 +62,9 @@ std::string range_label(const GuiFrame& f) { return "Range " + f.document.scene(
 std::string movie_label(const GuiFrame& f) { return has_ffmpeg(f) ? "Movie..." : "Movie... (needs ffmpeg)"; }
 
 void three_quarter(GuiFrame& f) {
-    const double aspect = aspect_of(f.document.scene().output);
-    const Framing framing = frame_box(f.status.box, f.view.free.fov_deg, aspect);
-    const glm::dvec3 direction = glm::normalize(glm::dvec3(1.0, 0.8, 1.0));
-    f.view.free.pivot = framing.target;
-    f.view.free.position = framing.target + direction * glm::length(framing.position - framing.target);
-    f.view.free.up = {0.0, 1.0, 0.0};
-    f.view.free.height = framing.height;
+    const double aspect =
+        f.status.viewport_aspect > 0.0 ? f.status.viewport_aspect : aspect_of(f.document.scene().output);
+    f.view.free = three_quarter_view(f.view.free, f.status.box, aspect);
     f.view.view = ViewKind::free;
 }
 void toggle_one_to_one(GuiFrame& f) {
@@ -152,19 +123,14 @@ bool layer_stale(const GuiFrame& f) {
 
 bool in_free_view(const GuiFrame& f) { return f.view.view == ViewKind::free; }
 void key_camera_here(GuiFrame& f) {
-    const CameraParams camera = camera_of_view(f);
-    edit(f, "Key camera", [&](Scene& scene) {
-        scene.camera = camera;  // what is not animated holds the same view
-        key_camera(scene, camera, f.view.frame);
-    });
+    edit(f, "Key camera", [&](Scene& scene) { key_seen_camera(scene, f.view, f.status); });
 }
 void camera_from_view(GuiFrame& f) {
-    const CameraParams camera = camera_of_view(f);
-    const bool animated =
-        std::any_of(f.document.scene().animation.begin(), f.document.scene().animation.end(),
-                    [](const Track& track) { return track.key.is_below("camera"); });
+    const std::vector<Track>& tracks = f.document.scene().animation;
+    const bool animated = std::any_of(tracks.begin(), tracks.end(),
+                                      [](const Track& track) { return track.key.is_below("camera"); });
     if (animated) return key_camera_here(f);
-    edit(f, "Camera from view", [&](Scene& scene) { scene.camera = camera; });
+    edit(f, "Camera from view", [&](Scene& scene) { scene.camera = seen_camera(scene, f.view, f.status); });
 }
 
 void next_frame(GuiFrame& f) { go_to(f, std::floor(f.view.frame) + 1.0); }

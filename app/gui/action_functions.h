@@ -42,7 +42,7 @@ bool can_move_down(const GuiFrame& f);
 bool layer_stale(const GuiFrame& f);
 
 bool in_free_view(const GuiFrame& f);
-void key_camera_here(GuiFrame& f);
+void key_camera_here(GuiFrame& f);  // what is seen, as the panel's button does
 void camera_from_view(GuiFrame& f);
 
 void next_frame(GuiFrame& f);

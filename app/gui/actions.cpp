@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "edit/keys.h"
+#include "edit/camera_moves.h"
 #include "edit/layers.h"
 #include "gui/action_functions.h"
 #include "gui/key_codes.h"
@@ -154,17 +154,18 @@ void add_layer_menu(List& list) {
         {"Layer", "Generate anew", {}, ask_for_layer<Kind::regenerate>, layer_stale, nullptr, nullptr, true});
 }
 
+template <CameraMove move>
+void add_move(List& list) {
+    constexpr auto index = static_cast<std::size_t>(move);
+    list.push_back({"Camera/Add move", camera_move_names[index], {}, ask<Kind::add_move, index>, has_box});
+}
+
 void add_camera(List& list) {
     list.push_back({"Camera", "Key camera here", {}, key_camera_here});
     list.push_back({"Camera", "Camera from this view", {}, camera_from_view, in_free_view});
-    constexpr auto move = [](CameraMove m) { return static_cast<std::size_t>(m); };
-    list.push_back({"Camera/Add move", "Orbit", {}, ask<Kind::add_move, move(CameraMove::orbit)>, has_box});
-    list.push_back({"Camera/Add move", "Fly in", {}, ask<Kind::add_move, move(CameraMove::fly_in)>, has_box});
-    list.push_back({"Camera/Add move",
-                    "Face-on to edge-on",
-                    {},
-                    ask<Kind::add_move, move(CameraMove::face_on_to_edge_on)>,
-                    has_box});
+    add_move<CameraMove::orbit>(list);
+    add_move<CameraMove::fly_in>(list);
+    add_move<CameraMove::face_on_to_edge_on>(list);
     list.push_back({"Camera",
                     "Lock to camera",
                     {},

@@ -8,7 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "edit/batch_command.h"
-#include "edit/keys.h"
+#include "edit/camera_moves.h"
 #include "edit/layers.h"
 #include "edit/new_from_file.h"
 #include "edit/view_camera.h"

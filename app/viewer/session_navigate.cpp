@@ -7,6 +7,7 @@
 
 #include "core/real.h"
 #include "edit/keys.h"
+#include "edit/navigate.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"

@@ -135,8 +135,8 @@ void Session::Impl::draw_overlay(const Scene& now, const Rect& place) {
     }
 }
 
-/// Front, top and side make their camera anew from the layers' bounds: the free one follows, so that a key of
-/// the camera, or a turn, begins where the person is.
+/// Front, top and side make their camera from the layers' bounds in every frame: the free one follows, so
+/// that the free view begins where the person is.
 void Session::Impl::keep_free_camera() {
     if (view.view != ViewKind::front && view.view != ViewKind::top && view.view != ViewKind::side) return;
     view.free = viewport_camera();
@@ -146,6 +146,7 @@ void Session::draw(int viewport_width, int viewport_height, double now, bool hur
     Impl& self = *impl_;
     self.viewport_width = std::max(1, viewport_width);
     self.viewport_height = std::max(1, viewport_height);
+    self.status.viewport_aspect = static_cast<double>(self.viewport_width) / self.viewport_height;
     const Scene scene = self.evaluated(self.document.scene());
     const std::uint64_t sets = self.loader.revision();
     const bool new_sets = std::exchange(self.drawn_sets, sets) != sets;

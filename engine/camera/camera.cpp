@@ -74,16 +74,11 @@ double half_height(const CameraParams& params, double aspect) {
     return real::tan(real::radians(params.fov) * 0.5);
 }
 
-Framing frame_box_within(const Bounds& box, double tan_y, double aspect) {
-    Bounds framed = box;
-    if (framed.empty()) framed.add(glm::dvec3(0.0));
-    if (glm::length(framed.extent()) == 0.0) {
-        framed.lo -= 0.5;
-        framed.hi += 0.5;
-    }
-    double elevation = real::radians(framing_elevation_deg);
-    glm::dvec3 back(0.0, real::sin(elevation), real::cos(elevation));
-    glm::dvec3 above(0.0, back.z, -back.y);
+Framing frame_box_within(const Bounds& box, const glm::dmat3& world_from_camera, double tan_y,
+                         double aspect) {
+    const Bounds framed = box_to_frame(box);
+    const glm::dvec3 &right = world_from_camera[0], &above = world_from_camera[1],
+                     &back = world_from_camera[2];
     Framing framing{{}, framed.center(), 0.0};
     double distance = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -91,13 +86,21 @@ Framing frame_box_within(const Bounds& box, double tan_y, double aspect) {
                      corner & 4 ? framed.hi.z : framed.lo.z);
         p -= framing.target;
         // The frame's height that just holds this corner, at the corner's own depth.
-        double height =
-            2.0 * std::fmax(std::fabs(p.x) / aspect, std::fabs(glm::dot(above, p))) / framing_fill;
+        double height = 2.0 *
+                        std::fmax(std::fabs(glm::dot(right, p)) / aspect, std::fabs(glm::dot(above, p))) /
+                        framing_fill;
         framing.height = std::fmax(framing.height, height);
         distance = std::fmax(distance, glm::dot(back, p) + 0.5 * height / tan_y);
     }
     framing.position = framing.target + back * distance;
     return framing;
+}
+
+/// Where a camera without a position looks from.
+glm::dmat3 framing_direction() {
+    const double elevation = real::radians(framing_elevation_deg);
+    const glm::dvec3 back(0.0, real::sin(elevation), real::cos(elevation));
+    return {glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, back.z, -back.y), back};
 }
 
 glm::dmat3 orientation(const CameraParams& params, const glm::dvec3& position, const glm::dvec3& target) {
@@ -140,7 +143,7 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
     if (params.position) {
         camera.eye = *params.position;
     } else {
-        Framing framing = frame_box_within(scene_box, tan_y, camera.aspect);
+        Framing framing = frame_box_within(scene_box, framing_direction(), tan_y, camera.aspect);
         camera.eye = framing.position;
         target = framing.target;
         height = framing.height;
@@ -188,7 +191,23 @@ glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px) {
 double pixel_spread(const Camera& camera) { return exact::pixel_spread(make_exact_lens(camera)); }
 
 Framing frame_box(const Bounds& box, double vertical_fov_deg, double aspect) {
-    return frame_box_within(box, real::tan(real::radians(vertical_fov_deg) * 0.5), aspect);
+    return frame_box(box, framing_direction(), vertical_fov_deg, aspect);
+}
+
+Framing frame_box(const Bounds& box, const glm::dmat3& world_from_camera, double vertical_fov_deg,
+                  double aspect) {
+    const double tan_y = real::tan(real::radians(vertical_fov_deg) * 0.5);
+    return frame_box_within(box, world_from_camera, tan_y, aspect);
+}
+
+Bounds box_to_frame(const Bounds& box) {
+    Bounds framed = box;
+    if (framed.empty()) framed.add(glm::dvec3(0.0));
+    if (glm::length(framed.extent()) == 0.0) {
+        framed.lo -= 0.5;
+        framed.hi += 0.5;
+    }
+    return framed;
 }
 
 // OpenEXR's camera space is left-handed, z forward; its NDC has (0, 0) at the display window's upper left

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "edit/camera_moves.h"
 #include "edit/keys.h"
 #include "gui/actions.h"
 #include "gui/key_codes.h"
@@ -75,6 +76,38 @@ TEST(Keys, KeysTheCameraOrTheRowUnderTheMouse) {
     window.key('K');
     EXPECT_TRUE(has_key_at(window.document.scene(), gain, 50));
     EXPECT_FALSE(has_key_at(window.document.scene(), "camera.position", 50));
+}
+
+/// The menu, the key and the panel's button mean one thing: what is seen is keyed.
+TEST(Keys, KeyCameraHereIsOneAct) {
+    for (const ViewKind kind : {ViewKind::camera, ViewKind::free, ViewKind::front}) {
+        const auto scene_after = [&](const auto& act) {
+            TestWindow window(example_document());
+            window.view.view = kind;
+            window.view.free.position = {3.0, 2.0, 20.0};
+            window.view.tab = PanelTab::camera;
+            window.view.frame = 50;
+            window.frame(2);
+            act(window);
+            window.frame();
+            return window.document.scene();
+        };
+        const Scene by_key = scene_after([](TestWindow& window) { window.key('K'); });
+        const Scene by_menu =
+            scene_after([](TestWindow& window) { window.choose("Camera/Key camera here"); });
+        const Scene by_button = scene_after([](TestWindow& window) {
+            window.click(window.gui.panel().rows().at(0).label - glm::vec2(0.0f, 58.0f));
+        });
+        Scene wanted = example_document().scene();
+        ViewState view;
+        view.view = kind;
+        view.free.position = {3.0, 2.0, 20.0};
+        view.frame = 50;
+        key_seen_camera(wanted, view, example_status());
+        EXPECT_EQ(by_key, wanted);
+        EXPECT_EQ(by_menu, wanted);
+        EXPECT_EQ(by_button, wanted);
+    }
 }
 
 TEST(Keys, ViewsAndSwitches) {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "edit/keys.h"
+#include "edit/camera_moves.h"
 #include "gui/actions.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"

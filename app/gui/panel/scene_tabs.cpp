@@ -1,6 +1,5 @@
 // Camera and Output: what belongs to the scene and not to a layer.
-#include <cmath>
-
+#include "edit/camera_moves.h"
 #include "edit/keys.h"
 #include "gui/panel/row.h"
 #include "gui/panel/section.h"
@@ -15,45 +14,16 @@ void rows(Context& context, std::initializer_list<const char*> keys) {
     for (const char* key : keys) parameter_row(context, key);
 }
 
-// The camera one looks through, as [camera] would have it. Nothing where it cannot be told.
-std::optional<CameraParams> camera_in_view(const Context& context) {
-    CameraParams camera = context.scene().camera;
-    const ViewState& view = context.view;
-    if (view.view == ViewKind::camera) {
-        if (camera.position) return camera;
-        if (context.status.box.empty()) return std::nullopt;
-        const OutputParams& output = context.scene().output;
-        const Framing framing =
-            frame_box(context.status.box, camera.fov, double(output.width) / double(output.height));
-        camera.position = framing.position;
-        camera.target = framing.target;
-        camera.height = framing.height;
-        return camera;
-    }
-    camera.projection = view.free.orthographic ? Projection::orthographic : Projection::perspective;
-    camera.position = view.free.position;
-    camera.target = view.free.pivot;
-    camera.up = view.free.up;
-    camera.rotation.reset();
-    camera.roll = 0.0;
-    camera.fov = view.free.fov_deg;
-    camera.focal_length = 0.0;
-    camera.height = view.free.height;
-    return camera;
-}
-
 void camera_buttons(Context& context) {
-    const std::optional<CameraParams> camera = camera_in_view(context);
-    const double frame = std::round(context.view.frame);
     const int clicked = button_line({"Key camera here", "Add move"});
-    if (clicked == 0 && camera)
+    if (clicked == 0)
         edit(context, "camera.position", "Key camera",
-             [&](Scene& scene) { key_camera(scene, *camera, frame); });
+             [&](Scene& scene) { key_seen_camera(scene, context.view, context.status); });
     if (clicked == 1) ImGui::OpenPopup("moves");
     if (begin_popup("moves")) {
-        const char* const moves[] = {"Orbit", "Fly in", "Face-on to edge-on"};  // as CameraMove
-        for (std::size_t i = 0; i < 3; ++i)
-            if (ImGui::MenuItem(moves[i])) context.commands.push_back({Command::Kind::add_move, {}, "", i});
+        for (std::size_t i = 0; i < camera_move_names.size(); ++i)
+            if (ImGui::MenuItem(camera_move_names[i]))
+                context.commands.push_back({Command::Kind::add_move, {}, "", i});
         end_popup();
     }
     ImGui::Dummy({0.0f, px(4)});

@@ -1,4 +1,6 @@
 // Camera keys and moves: circles are round, ends rest, keys outside the move stay.
+#include "edit/camera_moves.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -7,7 +7,10 @@
 #include <glm/geometric.hpp>
 
 #include "core/real.h"
+#include "edit/camera_moves.h"
 #include "edit/keys.h"
+#include "edit/navigate.h"
+#include "scene/animate.h"
 #include "scenes.h"
 
 namespace astrosplat {
@@ -294,12 +297,89 @@ TEST(Views, AFreeCopyShowsTheSame) {
     EXPECT_EQ(free_camera(all[0], box, aspect).pivot, all[0].target);
 }
 
-TEST(Views, ThreeQuarterIsTheSceneCamerasDefault) {
-    const FreeCamera camera = three_quarter_view(box, 40.0, aspect);
-    CameraParams params;
-    params.fov = 40.0;
-    for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 2, -3)})
-        expect_near(project(camera, p), project(params, p, box), 1e-9);
+/// From in front, the right and above at once, with the lens as it was and the whole box in the picture.
+TEST(Views, ThreeQuarterIsDiagonalAndHoldsTheBox) {
+    for (const bool orthographic : {false, true}) {
+        FreeCamera before = cameras()[3];
+        before.orthographic = orthographic;
+        const FreeCamera camera = three_quarter_view(before, box, aspect);
+        EXPECT_EQ(camera.fov_deg, before.fov_deg);
+        EXPECT_EQ(camera.orthographic, orthographic);
+        expect_near(camera.pivot, box.center(), 1e-12);
+        expect_near(view_axes(camera).forward, -glm::normalize(glm::dvec3(1.0, 0.8, 1.0)), 1e-12);
+        EXPECT_NEAR(view_axes(camera).right.y, 0.0, 1e-12);
+        double fill = 0.0;
+        for (const double x : {box.lo.x, box.hi.x})
+            for (const double y : {box.lo.y, box.hi.y})
+                for (const double z : {box.lo.z, box.hi.z}) {
+                    const glm::dvec2 off = glm::abs(project(camera, {x, y, z}) - viewport * 0.5);
+                    fill = std::fmax(fill, std::fmax(off.x / viewport.x, off.y / viewport.y));
+                }
+        EXPECT_NEAR(fill, 0.45, 1e-9);
+    }
+}
+
+struct SeenCamera : testing::Test {
+    Scene scene = parse_scene(test::edit_scene, "/scene.toml");  // 16:9, camera at (0, 4, 10)
+    ViewState view;
+    Status status;
+    SeenCamera() {
+        status.box = box;
+        status.viewport_aspect = aspect;
+        view.frame = 6.8;
+        view.free = cameras()[3];
+    }
+    CameraParams keyed() const {
+        Scene edited = scene;
+        key_seen_camera(edited, view, status);
+        return scene_at(edited, 7.0).camera;
+    }
+};
+
+/// The scene's camera, keyed, shows every point where the window showed it.
+TEST_F(SeenCamera, IsWhatIsKeyedInEveryView) {
+    for (const bool animated : {false, true}) {
+        if (animated) scene.camera.rotation = glm::dvec4(0.0, 0.6, 0.0, 0.8);
+        for (const ViewKind kind :
+             {ViewKind::camera, ViewKind::free, ViewKind::front, ViewKind::top, ViewKind::side})
+            for (const FreeCamera& free : cameras()) {
+                view.view = kind;
+                view.free = free;
+                const CameraParams shown = view_camera(scene, view, box, aspect), now = keyed();
+                for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 0.2, -1)})
+                    expect_near(project(now, p, box), project(shown, p, box), 1e-6);
+            }
+    }
+}
+
+TEST_F(SeenCamera, KeysNothingButPlaceAndDirectionOfACameraThatMoves) {
+    set_key(scene, "camera.position", 30.0, Value::List{0.0, 1.0, 5.0});
+    view.view = ViewKind::free;
+    Scene edited = scene;
+    key_seen_camera(edited, view, status);
+    EXPECT_TRUE(has_key_at(edited, "camera.position", 7.0));
+    EXPECT_TRUE(has_key_at(edited, "camera.target", 7.0));
+    EXPECT_EQ(edited.animation.size(), scene.animation.size() + 1);
+    EXPECT_EQ(edited.camera, scene.camera);
+}
+
+/// A view that was left a moment ago is as high as the viewport, the picture of the camera lower than that.
+TEST_F(SeenCamera, KeepsTheLensWhereTheViewportIsNarrow) {
+    status.viewport_aspect = 0.5 * aspect;
+    view.view = ViewKind::free;
+    view.free = free_camera(scene.camera, box, aspect);
+    view.free.fov_deg = 2.0 * real::degrees(real::atan(2.0 * real::tan(real::radians(20.0))));
+    EXPECT_EQ(seen_camera(scene, view, status).fov, 40.0);
+    expect_near(project(keyed(), {1, 2, -3}), project(scene.camera, {1, 2, -3}), 1e-6);
+}
+
+TEST_F(SeenCamera, HasAPlaceWhereTheSceneCameraFramesItsLayers) {
+    scene.camera.position.reset();
+    const CameraParams seen = seen_camera(scene, view, status);
+    expect_near(project(seen, {1, 2, -3}), project(scene.camera, {1, 2, -3}, box), 1e-9);
+    status.box = {};
+    EXPECT_EQ(message_of<InputError>([&] { seen_camera(scene, view, status); }),
+              "camera.position: expected layers to frame, found none loaded yet");
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+// Keys of the camera: what is seen, and whole moves, as rows of keys. In: a scene and a camera or a box. Out:
+// the scene's tracks.
+#pragma once
+
+#include <array>
+
+#include "core/bounds.h"
+#include "edit/status.h"
+#include "edit/view_state.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// Keys position, target and whatever else of the camera is animated at `frame` to those of `camera`. The
+/// first key of a camera that did not move takes its lens and its up as well: there is no other time at which
+/// they could be wrong.
+void key_camera(Scene& scene, const CameraParams& camera, double frame);
+
+/// "Key camera here": keys seen_camera (view_camera.h) at the view's frame, rounded. Throws as that does.
+void key_seen_camera(Scene& scene, const ViewState& view, const Status& status);
+
+enum class CameraMove { orbit, fly_in, face_on_to_edge_on };
+inline constexpr std::array<const char*, 3> camera_move_names{"Orbit", "Fly in", "Face-on to edge-on"};
+/// Ten seconds of an eased move around `box` (the visible layers' bounds in world space), beginning at
+/// `frame`; replaces the camera's tracks over that time, and lets [output] frames reach to its end.
+void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame);
+
+}  // namespace astrosplat
