@@ -153,6 +153,34 @@ TEST_F(PreviewPicture, FromInsideWithDotsWiderThanPoints) {
                             camera);
 }
 
+/// Above the flat cloud, looking down on it.
+Camera camera_above(double eye_height) {
+    CameraParams params;
+    params.position = glm::dvec3(0.0, eye_height, 0.0);
+    params.fov = 50.0;
+    return make_camera(params, width, height, {});
+}
+
+/// Dots that the look moves up to the camera are drawn whole, though the set itself lies far enough away for
+/// points.
+TEST_F(PreviewPicture, JitterBringsDotsTooNearForPoints) {
+    PreviewLayer layer = test::cloud_layer(600, 9, 0.2f, render_with(Falloff::Shape::linear, Blend::add));
+    layer.layer.render.lod.max_px = 0.0f;
+    layer.look.alpha.gain = 0.1f;
+    layer.look.noise = {Noise{}};
+    layer.look.noise[0].frequency = 4.0f;
+    layer.look.noise[0].jitter = 8.0f;
+    expect_like_offline({layer}, camera_above(1.15));
+}
+
+/// A small share is drawn by larger dots, which may be too wide for points where the whole set's are not.
+TEST_F(PreviewPicture, DotsOfASmallShareAreTooWideForPoints) {
+    PreviewLayer layer = test::cloud_layer(2000, 9, 0.12f, render_with(Falloff::Shape::linear));
+    layer.layer.render.lod.max_px = 0.0f;
+    layer.share = 0.0625f;
+    expect_like_offline({layer}, camera_above(0.55));
+}
+
 TEST_F(PreviewPicture, NothingAndEmptyLayers) {
     expect_like_offline({}, test::perspective_camera(width, height));
     PreviewLayer empty = test::cloud_layer(0, 9, 0.1f, render_with(Falloff::Shape::gaussian));

@@ -103,6 +103,23 @@ TEST_F(AutosaveTest, ALivingProcessIsNotRecovered) {
     EXPECT_TRUE(recoveries(folder).empty());
 }
 
+/// Of processes that are gone, in an order that neither names nor the folder give.
+TEST_F(AutosaveTest, TheNewestRecoveryComesFirst) {
+    const auto leave = [&](const std::string& name, const std::string& time) {
+        std::filesystem::create_directories(folder);
+        std::ofstream(folder / (name + "-999999999-0.toml"))
+            << R"(# astrosplat autosave {"file":"/scene.toml","titled":true,"time":")" << time << "\"}\n";
+    };
+    leave("b", "2026-05-01 12:30:00");
+    leave("a", "2026-05-01 12:29:59");
+    leave("c", "2025-12-31 23:59:59");
+    leave("d", "2026-05-02 00:00:00");
+    std::vector<std::string> times;
+    for (const Recovery& recovery : recoveries(folder)) times.push_back(recovery.time);
+    EXPECT_EQ(times, (std::vector<std::string>{"2026-05-02 00:00:00", "2026-05-01 12:30:00",
+                                               "2026-05-01 12:29:59", "2025-12-31 23:59:59"}));
+}
+
 TEST_F(AutosaveTest, AFolderThatCannotBeWrittenCostsOneWarning) {
     Document document = Document::open(f.file);
     document.set(opacity, 0.25, 1.0);

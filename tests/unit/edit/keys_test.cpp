@@ -45,6 +45,14 @@ TEST_F(Keys, AreAddedInOrderAndReplaced) {
     EXPECT_EQ(find_track(scene, core)->keys[2].interpolation, Interpolation::smooth);  // the track's
 }
 
+TEST_F(Keys, KeepTheirInterpolationWhenKeyedAgain) {
+    set_interpolation(scene, core, 24.0, Interpolation::step);
+    set_key(scene, core, 24.0, 0.25);
+    EXPECT_EQ(find_track(scene, core)->keys[1].value, Frames{0.25});
+    EXPECT_EQ(find_track(scene, core)->keys[1].interpolation, Interpolation::step);
+    EXPECT_EQ(find_track(scene, core)->interpolation, Interpolation::smooth);
+}
+
 TEST_F(Keys, TheFirstMakesATrack) {
     set_key(scene, opacity, 5.0, 0.25);
     ASSERT_EQ(frames_of(opacity), Frames{5});
