@@ -32,29 +32,31 @@ std::string clock_text(double seconds) {
     return fmt::format("{:02}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-ProgressReport::ProgressReport(ProgressMode mode) {
+ProgressReport::Style ProgressReport::style_for(ProgressMode mode) {
+    if (mode == ProgressMode::none) return Style::none;
     const bool terminal = isatty(STDERR_FILENO) != 0;
-    style_ = mode == ProgressMode::none                    ? Style::none
-             : mode == ProgressMode::automatic && terminal ? Style::bar
-                                                           : Style::plain;
+    return mode == ProgressMode::automatic && terminal ? Style::bar : Style::plain;
+}
+
+ProgressReport::ProgressReport(ProgressMode mode)
+    : style_(style_for(mode)),
+      printer_([this] { return print_when_due(); },
+               style_ == Style::none ? std::chrono::milliseconds(0) : bar_interval) {
     if (style_ == Style::none) return;
     set_log_sink([this](LogLevel level, const std::string& line) {
-        const std::lock_guard lock(mutex_);
+        const auto held = printer_.lock();
         clear_bar();
         fmt::print(stderr, "{}\n", terminal_line(level, line));
     });
-    printer_ = std::thread([this] { print_loop(); });
 }
 
 ProgressReport::~ProgressReport() {
     if (style_ == Style::none) return;
     {
-        const std::lock_guard lock(mutex_);
-        stopping_ = true;
+        const auto held = printer_.lock();
+        label_.clear();
         clear_bar();
     }
-    stop_condition_.notify_all();
-    printer_.join();
     set_log_sink(nullptr);
 }
 
@@ -65,7 +67,7 @@ Progress ProgressReport::begin_frame(std::int64_t number, std::int64_t index, st
 }
 
 Progress ProgressReport::begin(const std::string& label, std::int64_t index, std::int64_t count) {
-    const std::lock_guard lock(mutex_);
+    const auto held = printer_.lock();
     if (index == 1) start_ = Clock::now();
     label_ = printable(label);
     index_ = index;
@@ -77,7 +79,7 @@ Progress ProgressReport::begin(const std::string& label, std::int64_t index, std
 }
 
 void ProgressReport::saved(const std::filesystem::path& file, double seconds) {
-    const std::lock_guard lock(mutex_);
+    const auto held = printer_.lock();
     label_.clear();
     if (style_ == Style::none) return;
     clear_bar();
@@ -111,11 +113,9 @@ void ProgressReport::clear_bar() {
     bar_shown_ = false;
 }
 
-void ProgressReport::print_loop() {
-    std::unique_lock lock(mutex_);
-    while (!stop_condition_.wait_for(lock, bar_interval, [this] { return stopping_; })) {
-        if (style_ == Style::bar || Clock::now() - last_print_ >= line_interval) print_status();
-    }
+Worker::Task ProgressReport::print_when_due() {
+    if (style_ == Style::bar || Clock::now() - last_print_ >= line_interval) print_status();
+    return {};
 }
 
 }  // namespace astrosplat

@@ -5,14 +5,12 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <filesystem>
-#include <mutex>
 #include <string>
-#include <thread>
 
 #include "core/progress.h"
+#include "core/worker.h"
 
 namespace astrosplat {
 
@@ -38,23 +36,21 @@ class ProgressReport {
 
   private:
     enum class Style { bar, plain, none };
+    static Style style_for(ProgressMode mode);
     Progress begin(const std::string& label, std::int64_t index, std::int64_t count);
-    void print_loop();
-    void print_status();  // these two with mutex_ held
+    Worker::Task print_when_due();
+    void print_status();  // these three with the printer's lock
     void clear_bar();
     double seconds_left(double fraction) const;
 
     Style style_;
     std::atomic<double> fraction_{0.0};  // of the step or frame at hand
-    std::mutex mutex_;
-    std::condition_variable stop_condition_;
-    bool stopping_ = false;
     bool bar_shown_ = false;
     std::string label_;  // empty: nothing at hand
     std::int64_t index_ = 1, count_ = 1;
     std::chrono::steady_clock::time_point start_;  // of the first frame, or of the step
     std::chrono::steady_clock::time_point last_print_;
-    std::thread printer_;
+    Worker printer_;
 };
 
 }  // namespace astrosplat

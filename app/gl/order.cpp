@@ -74,27 +74,16 @@ Order sort_far_to_near(const OrderJob& job, OrderScratch& scratch) {
     return order;
 }
 
-OrderThread::OrderThread() : thread_([this] { run(); }) {}
-
-OrderThread::~OrderThread() {
-    {
-        const std::lock_guard lock(mutex_);
-        stop_ = true;
-    }
-    wake_.notify_one();
-    thread_.join();
-}
-
 void OrderThread::submit(std::size_t slot, OrderJob job) {
     {
-        const std::lock_guard lock(mutex_);
+        const auto held = worker_.lock();
         jobs_[slot] = std::move(job);
     }
-    wake_.notify_one();
+    worker_.wake();
 }
 
 std::optional<Order> OrderThread::take(std::size_t slot) {
-    const std::lock_guard lock(mutex_);
+    const auto held = worker_.lock();
     const auto found = orders_.find(slot);
     if (found == orders_.end()) return std::nullopt;
     std::optional<Order> order(std::move(found->second));
@@ -103,30 +92,22 @@ std::optional<Order> OrderThread::take(std::size_t slot) {
 }
 
 bool OrderThread::busy() const {
-    const std::lock_guard lock(mutex_);
-    return working_ || !jobs_.empty();
+    const auto held = worker_.lock();
+    return worker_.working() || !jobs_.empty();
 }
 
 bool OrderThread::wait(std::chrono::microseconds at_most) {
-    std::unique_lock lock(mutex_);
-    return idle_.wait_for(lock, at_most, [this] { return !working_ && jobs_.empty(); });
+    return worker_.wait_for(at_most, [this] { return !worker_.working() && jobs_.empty(); });
 }
 
-void OrderThread::run() {
-    OrderScratch scratch;
-    std::unique_lock lock(mutex_);
-    for (;;) {
-        wake_.wait(lock, [this] { return stop_ || !jobs_.empty(); });
-        if (stop_) return;
-        auto job = jobs_.extract(jobs_.begin());
-        working_ = true;
-        lock.unlock();
-        Order order = sort_far_to_near(job.mapped(), scratch);
-        lock.lock();
-        working_ = false;
-        orders_[job.key()] = std::move(order);
-        if (jobs_.empty()) idle_.notify_all();
-    }
+Worker::Task OrderThread::next_job() {
+    if (jobs_.empty()) return {};
+    const std::size_t slot = jobs_.begin()->first;
+    return [this, slot, job = std::move(jobs_.extract(slot).mapped())] {
+        Order order = sort_far_to_near(job, scratch_);
+        const auto held = worker_.lock();
+        orders_[slot] = std::move(order);
+    };
 }
 
 }  // namespace astrosplat

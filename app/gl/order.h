@@ -3,20 +3,18 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "camera/lens.h"
 #include "core/buffer.h"
+#include "core/worker.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -55,11 +53,6 @@ Order sort_far_to_near(const OrderJob& job, OrderScratch& scratch);
 /// A thread that sorts. Of the jobs for one slot only the newest is done.
 class OrderThread {
   public:
-    OrderThread();
-    ~OrderThread();
-    OrderThread(const OrderThread&) = delete;
-    OrderThread& operator=(const OrderThread&) = delete;
-
     void submit(std::size_t slot, OrderJob job);
     /// The newest order of a slot, once.
     std::optional<Order> take(std::size_t slot);
@@ -70,15 +63,13 @@ class OrderThread {
     std::uint64_t next_version() { return ++last_version_; }
 
   private:
-    void run();
+    Worker::Task next_job();
 
-    mutable std::mutex mutex_;
-    std::condition_variable wake_, idle_;
+    std::uint64_t last_version_ = 0;  // of the caller's thread alone
+    OrderScratch scratch_;            // of the worker's
     std::map<std::size_t, OrderJob> jobs_;
     std::map<std::size_t, Order> orders_;
-    std::uint64_t last_version_ = 0;  // of the caller's thread alone
-    bool working_ = false, stop_ = false;
-    std::thread thread_;
+    Worker worker_{[this] { return next_job(); }};
 };
 
 }  // namespace astrosplat

@@ -6,16 +6,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <cstring>
 #include <exception>
 #include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 
 #include "core/clock.h"
 #include "core/error.h"
+#include "core/worker.h"
 #include "pipeline.h"
 
 namespace astrosplat {
@@ -85,65 +84,51 @@ void render_run(Pipeline& pipeline, Run& run) {
 }  // namespace
 
 struct FinalPicture::Impl {
-    std::mutex mutex;
-    std::condition_variable wake;
+    // With the worker's lock:
     std::shared_ptr<Run> current;  // the latest; null before the first and after cancel()
     std::shared_ptr<Run> next;     // not begun yet
-    bool ending = false;
-    std::thread thread;  // last: it uses all the others
+    // The thread's:
+    std::unique_ptr<Pipeline> pipeline;
+    std::uint64_t files = 0;  // of the request that `pipeline` was made for
+    Worker worker{[this] { return next_run(); }};
 
-    Impl() : thread([this] { work(); }) {}
-    ~Impl() {
-        replace(nullptr);
-        {
-            const std::lock_guard lock(mutex);
-            ending = true;
-        }
-        wake.notify_one();
-        thread.join();
-    }
+    ~Impl() { replace(nullptr); }
 
     void replace(std::shared_ptr<Run> run) {
         {
-            const std::lock_guard lock(mutex);
+            const auto held = worker.lock();
             if (current) current->cancelled = true;
             current = next = std::move(run);
         }
-        wake.notify_one();
+        worker.wake();
     }
 
     std::shared_ptr<Run> latest() {
-        const std::lock_guard lock(mutex);
+        const auto held = worker.lock();
         return current;
     }
 
-    void work();
+    Worker::Task next_run() {
+        if (!next) return {};
+        return [this, run = std::exchange(next, nullptr)] { work(*run); };
+    }
+    void work(Run& run);
 };
 
-void FinalPicture::Impl::work() {
-    auto pipeline = std::make_unique<Pipeline>();
-    std::uint64_t files = 0;
-    for (;;) {
-        std::shared_ptr<Run> run;
-        {
-            std::unique_lock lock(mutex);
-            wake.wait(lock, [&] { return ending || next; });
-            if (ending) return;
-            run = std::exchange(next, nullptr);
-        }
-        try {
-            const Region region = whole_region(run->request);
-            run->canvas = {region.width, region.height, 4, {}};
-            run->canvas.pixels.resize(static_cast<std::size_t>(region.width * region.height * 4));
-            if (std::exchange(files, run->request.files) != files) pipeline = std::make_unique<Pipeline>();
-            render_run(*pipeline, *run);
-        } catch (const Cancelled&) {
-            run->end(State::idle);
-        } catch (const std::bad_alloc&) {
-            run->end(State::failed, "not enough memory for the final picture");
-        } catch (const std::exception& error) {
-            run->end(State::failed, error.what());
-        }
+void FinalPicture::Impl::work(Run& run) {
+    try {
+        const Region region = whole_region(run.request);
+        run.canvas = {region.width, region.height, 4, {}};
+        run.canvas.pixels.resize(static_cast<std::size_t>(region.width * region.height * 4));
+        const bool other_files = std::exchange(files, run.request.files) != files;
+        if (!pipeline || other_files) pipeline = std::make_unique<Pipeline>();
+        render_run(*pipeline, run);
+    } catch (const Cancelled&) {
+        run.end(State::idle);
+    } catch (const std::bad_alloc&) {
+        run.end(State::failed, "not enough memory for the final picture");
+    } catch (const std::exception& error) {
+        run.end(State::failed, error.what());
     }
 }
 

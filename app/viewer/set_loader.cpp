@@ -1,14 +1,12 @@
 // One thread that does what the list says next. The list is used under the lock, the work is done without it.
 #include "viewer/set_loader.h"
 
-#include <condition_variable>
 #include <exception>
-#include <mutex>
 #include <new>
-#include <thread>
 #include <utility>
 
 #include "core/error.h"
+#include "core/worker.h"
 #include "pipeline.h"
 #include "viewer/set_list.h"
 
@@ -26,53 +24,39 @@ std::string reason(const std::exception& error) {
 struct SetLoader::Impl {
     Load load_set;
     std::int64_t preview_limit;
+    SetList list;  // used with the worker's lock
+    Worker worker{[this] { return next_task(); }};
 
-    mutable std::mutex mutex;  // for all below
-    std::condition_variable wake, rest;
-    SetList list;
-    bool ending = false;
-    std::thread thread;  // last: it uses all the others
-
-    Impl(Load load, std::int64_t limit)
-        : load_set(std::move(load)), preview_limit(limit), list(limit), thread([this] { work(); }) {}
+    Impl(Load load, std::int64_t limit) : load_set(std::move(load)), preview_limit(limit), list(limit) {}
     ~Impl() {
-        {
-            const std::lock_guard lock(mutex);
-            ending = true;
-            list.cancel_job();
-        }
-        wake.notify_one();
-        thread.join();
+        const auto held = worker.lock();
+        list.cancel_job();
     }
 
     // The thread's.
-    void work();
+    Worker::Task next_task();
+    void work(SetJob& job);
     void load(SetJob& job);
     void arrange(const SetJob& job);
     void describe(const SetJob& job);
     void replace(const SetJob& job, LoadedLayer layer);
 };
 
-void SetLoader::Impl::work() {
-    for (;;) {
-        std::shared_ptr<SetJob> job;
-        {
-            std::unique_lock lock(mutex);
-            list.end();
-            if (list.resting()) rest.notify_all();
-            wake.wait(lock, [&] { return ending || list.next_task(); });
-            if (ending) return;
-            job = list.begin_next();
-        }
-        try {
-            if (job->task == SetTask::load) load(*job);
-            if (job->task == SetTask::arrange) arrange(*job);
-            if (job->task == SetTask::describe) describe(*job);
-        } catch (const Cancelled&) {  // whoever cancelled has said in the list what comes next
-        } catch (const std::exception& error) {
-            const std::lock_guard lock(mutex);
-            list.fail(*job, reason(error));
-        }
+Worker::Task SetLoader::Impl::next_task() {
+    list.end();
+    if (!list.next_task()) return {};
+    return [this, job = list.begin_next()] { work(*job); };
+}
+
+void SetLoader::Impl::work(SetJob& job) {
+    try {
+        if (job.task == SetTask::load) load(job);
+        if (job.task == SetTask::arrange) arrange(job);
+        if (job.task == SetTask::describe) describe(job);
+    } catch (const Cancelled&) {  // whoever cancelled has said in the list what comes next
+    } catch (const std::exception& error) {
+        const auto held = worker.lock();
+        list.fail(job, reason(error));
     }
 }
 
@@ -86,7 +70,7 @@ void SetLoader::Impl::load(SetJob& job) {
         std::make_shared<const LoadedLayer>(whole_layer(std::move(set), job.source, job.name, preview_limit));
 
     SetList::Layer old;  // let go after the lock
-    const std::lock_guard lock(mutex);
+    const auto held = worker.lock();
     old = list.keep(job, std::move(layer));
 }
 
@@ -102,7 +86,7 @@ void SetLoader::Impl::describe(const SetJob& job) { replace(job, described_layer
 void SetLoader::Impl::replace(const SetJob& job, LoadedLayer layer) {
     auto better = std::make_shared<const LoadedLayer>(std::move(layer));
     SetList::Layer old;  // let go after the lock
-    const std::lock_guard lock(mutex);
+    const auto held = worker.lock();
     old = list.replace(job, std::move(better));
 }
 
@@ -117,78 +101,77 @@ SetLoader::~SetLoader() = default;
 
 void SetLoader::want(const Scene& scene) {
     {
-        const std::lock_guard lock(impl_->mutex);
+        const auto held = impl_->worker.lock();
         impl_->list.want(scene);
     }
-    impl_->wake.notify_one();
+    impl_->worker.wake();
 }
 
 void SetLoader::outdate(const std::string& layer_name) {
-    const std::lock_guard lock(impl_->mutex);
+    const auto held = impl_->worker.lock();
     impl_->list.outdate(layer_name);
 }
 
 void SetLoader::retry(const std::string& layer_name) {
     {
-        const std::lock_guard lock(impl_->mutex);
+        const auto held = impl_->worker.lock();
         impl_->list.retry(layer_name);
     }
-    impl_->wake.notify_one();
+    impl_->worker.wake();
 }
 
 void SetLoader::cancel(const std::string& layer_name) {
-    const std::lock_guard lock(impl_->mutex);
+    const auto held = impl_->worker.lock();
     impl_->list.cancel(layer_name);
 }
 
 bool SetLoader::grow() {
     std::shared_ptr<SetJob> job;
     {
-        const std::lock_guard lock(impl_->mutex);
+        const auto held = impl_->worker.lock();
         job = impl_->list.growing_job();
     }
     if (!job) return false;
     LoadedLayer grown = growing_layer(job->growing.sample(), job->source, job->name);
-    const std::lock_guard lock(impl_->mutex);
+    const auto held = impl_->worker.lock();
     return impl_->list.grow(*job, std::move(grown));
 }
 
 std::uint64_t SetLoader::revision() const {
-    const std::lock_guard lock(impl_->mutex);
+    const auto held = impl_->worker.lock();
     return impl_->list.revision();
 }
 
 std::shared_ptr<const LoadedLayer> SetLoader::layer(const std::string& layer_name) const {
-    const std::lock_guard lock(impl_->mutex);
+    const auto held = impl_->worker.lock();
     return impl_->list.shown(layer_name);
 }
 
 LayerStatus SetLoader::status(const LayerParams& layer) const {
-    const std::lock_guard lock(impl_->mutex);
+    const auto held = impl_->worker.lock();
     return impl_->list.status(layer);
 }
 
 bool SetLoader::sets_there() const {
-    const std::lock_guard lock(impl_->mutex);
+    const auto held = impl_->worker.lock();
     return !impl_->list.loading();
 }
 
-void SetLoader::hold(bool held) {
+void SetLoader::hold(bool rest) {
     {
-        const std::lock_guard lock(impl_->mutex);
-        if (!impl_->list.hold(held)) return;
+        const auto held = impl_->worker.lock();
+        if (!impl_->list.hold(rest)) return;
     }
-    impl_->wake.notify_one();
+    impl_->worker.wake();
 }
 
 bool SetLoader::idle() const {
-    const std::lock_guard lock(impl_->mutex);
+    const auto held = impl_->worker.lock();
     return impl_->list.resting();
 }
 
 void SetLoader::wait() {
-    std::unique_lock lock(impl_->mutex);
-    impl_->rest.wait(lock, [&] { return impl_->list.resting(); });
+    impl_->worker.wait([&] { return impl_->list.resting(); });
 }
 
 }  // namespace astrosplat

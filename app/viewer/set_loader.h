@@ -54,7 +54,7 @@ class SetLoader {
     bool idle() const;
     void wait();
     /// Does not begin what comes later, while something more urgent needs the processor.
-    void hold(bool held);
+    void hold(bool rest);
 
   private:
     struct Impl;
