@@ -44,13 +44,6 @@ void set_place(CameraParams& params, const FreeCamera& camera) {
     params.rotation.reset();
 }
 
-/// The middle part of what a camera shows, `share` of its height.
-FreeCamera cropped(FreeCamera camera, double share) {
-    camera.height *= share;
-    camera.fov_deg = 2.0 * real::degrees(real::atan(share * real::tan(0.5 * real::radians(camera.fov_deg))));
-    return camera;
-}
-
 }  // namespace
 
 ViewAxes view_axes(const FreeCamera& camera) {
@@ -126,7 +119,7 @@ CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status
     if (view.view != ViewKind::camera) {
         const double shape = status.viewport_aspect > 0.0 ? status.viewport_aspect : aspect;
         const FreeCamera free = free_camera(view_camera(scene, view, status.box, shape), status.box, shape);
-        return moved_camera(camera, cropped(free, std::fmin(1.0, shape / aspect)), aspect);
+        return moved_camera(camera, with_height(free, std::fmin(1.0, shape / aspect)), aspect);
     }
     if (camera.position) return camera;
     if (status.box.empty())
@@ -136,6 +129,13 @@ CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status
     camera.target = framing.target;
     camera.height = framing.height;
     return camera;
+}
+
+FreeCamera with_height(const FreeCamera& camera, double factor) {
+    FreeCamera result = camera;
+    result.height *= factor;
+    result.fov_deg = 2.0 * real::degrees(real::atan(factor * real::tan(0.5 * real::radians(camera.fov_deg))));
+    return result;
 }
 
 FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect) {

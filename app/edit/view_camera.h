@@ -30,6 +30,8 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
 /// else of `base` stays; a focal length above 0 is changed instead of the field of view.
 CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, double aspect);
 
+/// What it shows grown upwards and downwards, or cut, to `factor` times the height, at the same scale.
+FreeCamera with_height(const FreeCamera& camera, double factor);
 /// The whole box in the picture, seen from the same direction; the pivot is its middle.
 FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect);
 /// The whole box seen diagonally from above, with the lens of `camera`.

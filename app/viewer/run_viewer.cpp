@@ -75,7 +75,7 @@ class Loop {
         Commands commands = session_.take_dropped();
         gui_.draw(session_.document(), session_.view(), session_.status(), commands);
         session_.navigate(gui_.viewport_input(), now);
-        session_.obey(commands, now);
+        session_.carry_out(commands);
         const ImGuiIO& io = ImGui::GetIO();
         const Layout layout =
             make_layout(session_.view(), io.DisplaySize.x, io.DisplaySize.y, window_.content_scale());

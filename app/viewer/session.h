@@ -20,6 +20,8 @@
 
 namespace astrosplat {
 
+struct SessionState;
+
 class Session {
   public:
     /// Opens options.input, or the demo. Throws InputError.
@@ -34,10 +36,11 @@ class Session {
     void advance(double now);
     /// What mouse and keys did over the viewport, after the widgets drew.
     void navigate(const ViewportInput& input, double now);
-    void obey(Commands& commands, double now);
+    /// Carries them out and empties the list; errors become the message line.
+    void carry_out(Commands& commands);
     /// Files dropped on the window.
     void drop(const std::vector<std::filesystem::path>& files);
-    /// What they ask for, to be shown to the widgets (which ask about unsaved changes) before obey().
+    /// What they ask for, to be shown to the widgets, which ask about unsaved changes.
     Commands take_dropped();
     /// Draws the viewport's content at its size in px; Status::picture_texture shows it. `hurry`: the final
     /// picture at once.
@@ -80,8 +83,7 @@ class Session {
     void close(int window_width, int window_height);
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<SessionState> state_;
 };
 
 }  // namespace astrosplat

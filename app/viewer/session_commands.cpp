@@ -1,261 +1,214 @@
-// Session: what the menus and keys ask for.
-#include <fmt/format.h>
+#include "viewer/session_commands.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
+#include <array>
 
 #include "core/atomic_file.h"
-#include "core/error.h"
 #include "edit/batch_command.h"
 #include "edit/camera_moves.h"
 #include "edit/layers.h"
-#include "edit/new_from_file.h"
-#include "edit/view_camera.h"
+#include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "scene/save.h"
-#include "viewer/programs.h"
-#include "viewer/session_impl.h"
 
 namespace astrosplat {
 namespace {
 
-namespace fs = std::filesystem;
+using Kind = Command::Kind;
+using State = SessionState;
 
-std::string frame_text(double frame) {
-    return fmt::format("{}", static_cast<std::int64_t>(std::lround(frame)));
+/// The layer of an index, or the last; null without layers.
+const LayerParams* layer_at(const State& s, std::size_t index) {
+    const std::vector<LayerParams>& layers = s.document.scene().layers;
+    return layers.empty() ? nullptr : &layers[std::min(index, layers.size() - 1)];
 }
 
-/// The pattern of [output] path as an absolute path.
-std::string absolute_pattern(const Document& document) {
-    const fs::path folder =
-        document.file().empty() ? fs::current_path() : fs::absolute(document.file()).parent_path();
-    return (folder / document.scene().output.path).lexically_normal().string();
+void open_path(State& s, const Command& c) { open_file(s, c.path); }
+
+void open_demo(State& s, const Command&) {
+    take_document(s, demo_document());
+    s.fresh_demo = true;
 }
 
-/// Frames as numbered PNGs in the job's folder, then one movie of them.
-ProcessStep movie_step(const fs::path& folder, double fps, const fs::path& movie) {
-    return {"Writing the movie",
-            {"ffmpeg",
-             "-y",
-             "-loglevel",
-             "error",
-             "-framerate",
-             fmt::format("{}", fps),
-             "-pattern_type",
-             "glob",
-             "-i",
-             (folder / "frame.*.png").string(),
-             "-c:v",
-             "libx264",
-             "-crf",
-             "16",
-             "-preset",
-             "slow",
-             "-pix_fmt",
-             "yuv420p",
-             "-vf",
-             "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-             "-movflags",
-             "+faststart",
-             movie.string()}};
+void note_saved(State& s) {
+    s.autosave.remove();
+    say(s.status, "Saved " + s.document.file().string());
 }
 
-fs::path make_job_folder() {
-    std::string pattern = (fs::temp_directory_path() / "astrosplat-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw OutputError(pattern + ": cannot be made");
-    return pattern;
+void save(State& s, const Command&) {
+    s.document.save();
+    note_saved(s);
 }
+
+void save_as(State& s, const Command& c) {
+    s.document.save_as(c.path);
+    add_recent(s.preferences, s.document.file());
+    s.status.recent = s.preferences.recent;
+    note_saved(s);
+}
+
+void reload(State& s, const Command&) {
+    s.document.reload();
+    say(s.status, "Read again: " + s.document.file().string());
+}
+
+void keep(State& s, const Command&) { s.document.ignore_change_on_disk(); }
+
+void recover_autosave(State& s, const Command& c) {
+    take_document(s, recover(c.path));
+    if (s.autosave.write(s.document)) discard_recovery(c.path);
+    find_recoveries(s.status);
+    say(s.status, "Recovered; save to keep it");
+}
+
+void discard(State& s, const Command& c) {
+    discard_recovery(c.path);
+    find_recoveries(s.status);
+}
+
+void quit(State& s, const Command&) { s.quitting = true; }
+
+void import_file(State& s, const Command& c) {
+    s.document.edit("Add layer", [&](Scene& scene) { s.view.layer = add_layer(scene, c.path); });
+}
+
+void set_reference(State& s, const Command& c) {
+    s.comparison.load_reference(c.path);
+    s.view.reference = c.path;
+    s.view.compare = CompareMode::reference;
+}
+
+void save_look(State& s, const Command& c) {
+    const LayerParams* layer = layer_at(s, s.view.layer);
+    if (!layer) return;
+    write_file_atomically(c.path, save_preset_text(layer->look, layer->render, c.path));
+    say(s.status, "Saved the look of " + layer->name + " in " + c.path.string());
+}
+
+void apply_look_file(State& s, const Command& c) {
+    if (!layer_at(s, s.view.layer)) return;
+    s.document.edit("Apply look", [&](Scene& scene) {
+        apply_preset(scene.layers[std::min(s.view.layer, scene.layers.size() - 1)], c.path);
+    });
+}
+
+void regenerate(State& s, const Command& c) {
+    if (const LayerParams* layer = layer_at(s, c.index)) s.sets.loader().retry(layer->name);
+}
+
+void cancel_load(State& s, const Command& c) {
+    if (const LayerParams* layer = layer_at(s, c.index)) s.sets.loader().cancel(layer->name);
+}
+
+void render_files(State& s, const Command& c) { s.jobs.start(c, s.document, s.view.frame); }
+void cancel_render(State& s, const Command&) { s.jobs.cancel(); }
+void take_screenshot(State& s, const Command& c) { s.screenshot = c.path; }
+
+void snapshot(State& s, const Command&) {
+    s.comparison.take_snapshot(s.document, s.view, s.display, s.viewport_px, s.picture.status());
+}
+
+void store_b(State& s, const Command& c) {
+    snapshot(s, c);
+    s.comparison.set_b_to_last();
+    say(s.status, "B is the look as it is now; Tab shows A or B");
+}
+
+void restore_snapshot(State& s, const Command& c) {
+    if (const StoredLook* look = s.comparison.snapshot(c.index)) restore_look(s.document, *look);
+}
+
+void delete_snapshot(State& s, const Command& c) { s.comparison.delete_snapshot(c.index); }
+void compare_snapshot(State& s, const Command& c) { s.comparison.set_b(c.index); }
+
+/// The command line that renders what the viewport shows.
+void copy_batch_command(State& s, const Command&) {
+    BatchCommandOptions options;
+    options.frame = s.view.frame;
+    options.width = s.request.width;
+    options.height = s.request.height;
+    if (s.request.region.width > 0) options.region = s.request.region;
+    if (s.view.view != ViewKind::camera) options.camera = s.request.scene.camera;
+    const BatchCommand command = batch_command(s.document, options);
+    if (command.text.empty()) return say(s.status, command.reason, true);
+    s.clipboard = command.text;
+    say(s.status, "Copied: " + command.text);
+}
+
+void copy_text(State& s, const Command& c) { s.clipboard = c.text; }
+
+void frame_box_in_view(State& s, const Bounds& box) {
+    if (frame_in_view(s.view, box, s.shown())) say(s.status, left_camera_message);
+}
+
+void frame_layer(State& s, const Command&) {
+    Bounds box = s.status.box;
+    const Scene now = scene_at(s.document.scene(), s.view.frame);
+    if (s.view.layer < now.layers.size()) {
+        const LayerParams& layer = now.layers[s.view.layer];
+        if (const auto loaded = s.sets.loader().layer(layer.name))
+            box = world_bounds(loaded->box, render_layer(layer));
+    }
+    frame_box_in_view(s, box);
+}
+
+void frame_all(State& s, const Command&) { frame_box_in_view(s, s.status.box); }
+
+void add_move(State& s, const Command& c) {
+    s.document.edit("Add camera move", [&](Scene& scene) {
+        add_camera_move(scene, static_cast<CameraMove>(c.index), s.status.box, s.view.frame);
+    });
+}
+
+struct Entry {
+    Kind kind;
+    void (*function)(State&, const Command&);
+};
+
+/// In the order of Command::Kind.
+constexpr std::array entries{Entry{Kind::new_from_file, open_path},
+                             Entry{Kind::open, open_path},
+                             Entry{Kind::open_demo, open_demo},
+                             Entry{Kind::save, save},
+                             Entry{Kind::save_as, save_as},
+                             Entry{Kind::reload, reload},
+                             Entry{Kind::keep, keep},
+                             Entry{Kind::recover, recover_autosave},
+                             Entry{Kind::discard_recovery, discard},
+                             Entry{Kind::quit, quit},
+                             Entry{Kind::import_file, import_file},
+                             Entry{Kind::set_reference, set_reference},
+                             Entry{Kind::save_look, save_look},
+                             Entry{Kind::apply_look, apply_look_file},
+                             Entry{Kind::regenerate, regenerate},
+                             Entry{Kind::cancel_load, cancel_load},
+                             Entry{Kind::render_frame, render_files},
+                             Entry{Kind::render_range, render_files},
+                             Entry{Kind::render_movie, render_files},
+                             Entry{Kind::cancel_render, cancel_render},
+                             Entry{Kind::screenshot, take_screenshot},
+                             Entry{Kind::store_b, store_b},
+                             Entry{Kind::take_snapshot, snapshot},
+                             Entry{Kind::restore_snapshot, restore_snapshot},
+                             Entry{Kind::delete_snapshot, delete_snapshot},
+                             Entry{Kind::compare_snapshot, compare_snapshot},
+                             Entry{Kind::copy_batch_command, copy_batch_command},
+                             Entry{Kind::copy_text, copy_text},
+                             Entry{Kind::frame_layer, frame_layer},
+                             Entry{Kind::frame_all, frame_all},
+                             Entry{Kind::add_move, add_move}};
+
+constexpr bool in_order() {
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        if (entries[i].kind != static_cast<Kind>(i)) return false;
+    return entries.size() == static_cast<std::size_t>(Kind::add_move) + 1;
+}
+static_assert(in_order());
 
 }  // namespace
 
-/// Renders files with --batch on a copy of the scene as it stands.
-void Session::Impl::render_files(const Command& command) {
-    using Kind = Command::Kind;
-    std::vector<std::string> arguments = {"--overwrite"};
-    if (!cache.folder.empty()) arguments.insert(arguments.end(), {"--cache", cache.folder.string()});
-    const fs::path folder = make_job_folder();
-    std::vector<ProcessStep> afterwards;
-    std::int64_t frames =
-        static_cast<std::int64_t>(parse_frames(document.scene().output.frames, "output.frames").size());
-    if (command.kind == Kind::render_movie) {
-        arguments.insert(arguments.end(), {"-o", (folder / "frame.######.png").string()});
-        afterwards.push_back(movie_step(folder, document.scene().output.fps, command.path));
-    } else if (command.kind == Kind::render_frame) {
-        frames = 1;
-        arguments.insert(arguments.end(),
-                         {"-f", frame_text(view.frame), "-o", fs::absolute(command.path).string()});
-    } else {
-        arguments.insert(arguments.end(), {"-o", absolute_pattern(document)});
-    }
-    job.start(folder, document.text_for(folder / "scene.toml"), frames, arguments, std::move(afterwards));
-    job_target = command.kind == Kind::render_range ? fs::path(absolute_pattern(document)) : command.path;
-}
-
-/// The command line that renders what the viewport shows.
-void Session::Impl::copy_batch_command() {
-    BatchCommandOptions options;
-    options.frame = view.frame;
-    options.width = request.width;
-    options.height = request.height;
-    if (request.region.width > 0) options.region = request.region;
-    if (view.view != ViewKind::camera) options.camera = request.scene.camera;
-    const BatchCommand command = batch_command(document, options);
-    if (command.text.empty()) return say(command.reason, true);
-    clipboard = command.text;
-    say("Copied: " + command.text);
-}
-
-void Session::Impl::find_recoveries() {
-    status.recoveries.clear();
-    for (const Recovery& recovery : recoveries())
-        status.recoveries.push_back({recovery.autosave,
-                                     recovery.titled ? recovery.original.filename().string() : "Untitled",
-                                     recovery.time + " UTC"});
-}
-
-void Session::Impl::poll_job() {
-    job.poll();
-    status.job = {};
-    if (job.state() == RenderJob::State::running) status.job = {job.text(), job.progress()};
-    const std::string last = job.text();
-    switch (job.take_result()) {
-        case RenderJob::State::done:
-            say("Saved " + job_target.string());
-            break;
-        case RenderJob::State::failed:
-            say(last, true);
-            break;
-        case RenderJob::State::cancelled:
-            say("Rendering cancelled; finished frames are kept");
-            break;
-        default:
-            break;
-    }
-}
-
-void Session::Impl::say(const std::string& text, bool error) {
-    status.message = {text, error, status.message.number + 1};
-    status.log.push_back(status.message);
-    constexpr std::size_t most = 500;
-    if (status.log.size() > most) status.log.erase(status.log.begin());
-}
-
-/// One command; errors become the message line.
-void Session::Impl::obey(const Command& command) {
-    using Kind = Command::Kind;
-    const auto layer_index = [&](std::size_t index) {
-        return std::min(index, document.scene().layers.size() - 1);
-    };
-    switch (command.kind) {
-        case Kind::new_from_file:
-        case Kind::open:
-            return open(command.path);
-        case Kind::open_demo:
-            take_document(demo_document());
-            fresh_demo = true;
-            return;
-        case Kind::save:
-            document.save();
-            autosave.remove();
-            return say("Saved " + document.file().string());
-        case Kind::save_as:
-            document.save_as(command.path);
-            autosave.remove();
-            add_recent(preferences, document.file());
-            status.recent = preferences.recent;
-            return say("Saved " + document.file().string());
-        case Kind::reload:
-            document.reload();
-            return say("Read again: " + document.file().string());
-        case Kind::keep:
-            return document.ignore_change_on_disk();
-        case Kind::recover:
-            take_document(recover(command.path));
-            if (autosave.write(document)) discard_recovery(command.path);
-            find_recoveries();
-            return say("Recovered; save to keep it");
-        case Kind::discard_recovery:
-            discard_recovery(command.path);
-            find_recoveries();
-            return;
-        case Kind::quit:
-            quitting = true;
-            return;
-        case Kind::import_file:
-            document.edit("Add layer", [&](Scene& scene) { view.layer = add_layer(scene, command.path); });
-            return;
-        case Kind::set_reference:
-            view.reference = command.path;
-            view.compare = CompareMode::reference;
-            return load_reference();
-        case Kind::save_look: {
-            if (document.scene().layers.empty()) return;
-            const LayerParams& layer = document.scene().layers[layer_index(view.layer)];
-            write_file_atomically(command.path, save_preset_text(layer.look, layer.render, command.path));
-            return say("Saved the look of " + layer.name + " in " + command.path.string());
-        }
-        case Kind::apply_look:
-            if (document.scene().layers.empty()) return;
-            document.edit("Apply look", [&](Scene& scene) {
-                apply_preset(scene.layers[layer_index(view.layer)], command.path);
-            });
-            return;
-        case Kind::regenerate:
-            return loader.retry(document.scene().layers[layer_index(command.index)].name);
-        case Kind::cancel_load:
-            return loader.cancel(document.scene().layers[layer_index(command.index)].name);
-        case Kind::render_frame:
-        case Kind::render_range:
-        case Kind::render_movie:
-            return render_files(command);
-        case Kind::cancel_render:
-            return job.cancel();
-        case Kind::screenshot:
-            screenshot = command.path;
-            return;
-        case Kind::store_b:
-            take_snapshot();
-            b_snapshot = static_cast<int>(snapshots.size()) - 1;
-            return say("B is the look as it is now; Tab shows A or B");
-        case Kind::take_snapshot:
-            return take_snapshot();
-        case Kind::restore_snapshot:
-            if (command.index < snapshots.size()) restore_look(document, snapshots[command.index].look);
-            return;
-        case Kind::delete_snapshot:
-            return delete_snapshot(command.index);
-        case Kind::compare_snapshot:
-            if (command.index < snapshots.size()) b_snapshot = static_cast<int>(command.index);
-            return;
-        case Kind::copy_batch_command:
-            return copy_batch_command();
-        case Kind::copy_text:
-            clipboard = command.text;
-            return;
-        case Kind::frame_layer:
-            return frame_box_in_view(layer_box(view.layer));
-        case Kind::frame_all:
-            return frame_box_in_view(status.box);
-        case Kind::add_move:
-            document.edit("Add camera move", [&](Scene& scene) {
-                add_camera_move(scene, static_cast<CameraMove>(command.index), status.box, view.frame);
-            });
-            return;
-    }
-}
-
-void Session::obey(Commands& commands, double) {
-    for (const Command& command : commands) {
-        try {
-            impl_->obey(command);
-        } catch (const InputError& error) {
-            impl_->say(error.what(), true);
-        } catch (const OutputError& error) {
-            impl_->say(error.what(), true);
-        }
-    }
-    commands.clear();
+void carry_out(SessionState& state, const Command& command) {
+    entries[static_cast<std::size_t>(command.kind)].function(state, command);
 }
 
 }  // namespace astrosplat

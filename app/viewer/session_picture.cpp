@@ -1,16 +1,12 @@
-// Session: what the viewport shows. The view becomes a request for a picture; the picture and what it is
-// compared with are placed in the viewport; lines of the camera are laid over it.
+#include "viewer/session_picture.h"
+
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <utility>
 
-#include "core/error.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "viewer/overlay.h"
-#include "viewer/session_impl.h"
 
 namespace astrosplat {
 namespace {
@@ -47,46 +43,6 @@ DisplaySettings::View display_view(DisplayView chosen, OutputParams::View of_sce
     return of_scene == OutputParams::View::soft ? DisplaySettings::View::soft : DisplaySettings::View::srgb;
 }
 
-}  // namespace
-
-Scene Session::Impl::evaluated(const Scene& scene) const {
-    Scene now = scene_at(scene, view.frame);
-    if (!view.solo.empty())
-        for (LayerParams& layer : now.layers) layer.visible = view.solo.count(layer.name) > 0;
-    return now;
-}
-
-PictureRequest Session::Impl::make_request(Scene now) const {
-    PictureRequest made;
-    made.files = files_read_again;
-    for (const LayerParams& layer : now.layers) {
-        made.layers.push_back(loader.layer(layer.name));
-        if (layer.visible && made.layers.back())
-            made.box.add(world_bounds(made.layers.back()->box, render_layer(layer)));
-    }
-    const double output_aspect =
-        static_cast<double>(now.output.width) / static_cast<double>(now.output.height);
-    made.width = viewport_width;
-    made.height = viewport_height;
-    if (view.size == SizeMode::one_to_one) {
-        made.width = static_cast<int>(now.output.width);
-        made.height = static_cast<int>(now.output.height);
-    } else if (view.view == ViewKind::camera && !viewport_is_picture) {
-        const double height = std::min<double>(viewport_height, viewport_width / output_aspect);
-        made.width = std::max(1, static_cast<int>(std::lround(height * output_aspect)));
-        made.height = std::max(1, static_cast<int>(std::lround(height)));
-    }
-    const double aspect = static_cast<double>(made.width) / static_cast<double>(made.height);
-    now.camera = view_camera(now, view, made.box, aspect);
-    forget_what_is_not_seen(now);
-    now.output.width = made.width;
-    now.output.height = made.height;
-    made.scene = std::move(now);
-    return made;
-}
-
-namespace {
-
 /// The part of a 1:1 picture that the viewport shows; empty: all of it.
 Region visible_part(const Rect& place, int width, int height, int viewport_width, int viewport_height) {
     const double scale = static_cast<double>(place.width) / width;
@@ -105,89 +61,123 @@ Region visible_part(const Rect& place, int width, int height, int viewport_width
     return part;
 }
 
-}  // namespace
-
-/// The scene's camera and its path, seen from outside.
-void Session::Impl::draw_overlay(const Scene& now, const Rect& place) {
-    status.overlay_lines.clear();
-    if (view.view == ViewKind::camera || !view.camera_path) return;
-    try {
-        const bool same_box = path_box.lo == status.box.lo && path_box.hi == status.box.hi;
-        if (Scene part = camera_part(document.scene()); !same_box || part != path_of) {
-            path = camera_path(part, status.box);
-            path_of = std::move(part);
-            path_box = status.box;
-        }
-        const Camera seen_through = camera_of(request);
-        const double width = static_cast<double>(now.output.width),
-                     height = static_cast<double>(now.output.height);
-        const Camera camera = make_camera(now.camera, width, height, status.box);
-        const double size = status.box.empty() ? 10.0 : glm::length(status.box.extent());
-        std::vector<std::vector<glm::dvec3>> lines = frustum(camera, width, height, 0.08 * size);
-        lines.push_back(path);
-        const float scale = place.width / static_cast<float>(request.width);
-        for (const std::vector<glm::dvec3>& line : lines)
-            for (std::vector<glm::vec2>& part : project_line(seen_through, line)) {
-                for (glm::vec2& p : part) p = glm::vec2(place.x, place.y) + scale * p;
-                status.overlay_lines.push_back(std::move(part));
-            }
-    } catch (const InputError&) {  // a camera that cannot be made says so in the picture's badge
-    }
+/// Size in px of the whole picture.
+glm::ivec2 picture_size(const SessionState& state, const OutputParams& output) {
+    const glm::dvec2 output_px(static_cast<double>(output.width), static_cast<double>(output.height));
+    if (state.view.size == SizeMode::one_to_one) return output_px;
+    if (state.view.view != ViewKind::camera || state.viewport_is_picture) return state.viewport_px;
+    const double aspect = output_px.x / output_px.y;
+    const double height = std::min<double>(state.viewport_px.y, state.viewport_px.x / aspect);
+    return {std::max(1, static_cast<int>(std::lround(height * aspect))),
+            std::max(1, static_cast<int>(std::lround(height)))};
 }
 
-/// Front, top and side make their camera from the layers' bounds in every frame: the free one follows, so
-/// that the free view begins where the person is.
-void Session::Impl::keep_free_camera() {
-    if (view.view != ViewKind::front && view.view != ViewKind::top && view.view != ViewKind::side) return;
-    view.free = viewport_camera();
+PictureRequest make_request(const SessionState& state, Scene now) {
+    PictureRequest made;
+    made.files = state.disk.changes();
+    for (const LayerParams& layer : now.layers) {
+        made.layers.push_back(state.sets.loader().layer(layer.name));
+        if (layer.visible && made.layers.back())
+            made.box.add(world_bounds(made.layers.back()->box, render_layer(layer)));
+    }
+    const glm::ivec2 size = picture_size(state, now.output);
+    made.width = size.x;
+    made.height = size.y;
+    const double aspect = static_cast<double>(made.width) / static_cast<double>(made.height);
+    now.camera = view_camera(now, state.view, made.box, aspect);
+    forget_what_is_not_seen(now);
+    now.output.width = made.width;
+    now.output.height = made.height;
+    made.scene = std::move(now);
+    return made;
 }
 
-void Session::draw(int viewport_width, int viewport_height, double now, bool hurry) {
-    Impl& self = *impl_;
-    self.viewport_width = std::max(1, viewport_width);
-    self.viewport_height = std::max(1, viewport_height);
-    self.status.viewport_aspect = static_cast<double>(self.viewport_width) / self.viewport_height;
-    const Scene scene = self.evaluated(self.document.scene());
-    const std::uint64_t sets = self.loader.revision();
-    const bool new_sets = std::exchange(self.drawn_sets, sets) != sets;
-    self.request = self.make_request(scene);
-    self.keep_free_camera();
-    const Rect port{0, 0, static_cast<float>(self.viewport_width), static_cast<float>(self.viewport_height)};
-    Rect place = place_picture(self.view, port, self.request.width, self.request.height);
-    const Rect whole = place;
-    self.draw_overlay(scene, whole);
-    if (self.view.size == SizeMode::one_to_one) {
-        const float scale = place.width / static_cast<float>(self.request.width);
-        self.request.region = visible_part(place, self.request.width, self.request.height,
-                                           self.viewport_width, self.viewport_height);
-        const Region& part = self.request.region;
-        if (part.width > 0)
-            place = {place.x + scale * static_cast<float>(part.x),
-                     place.y + scale * static_cast<float>(part.y), scale * static_cast<float>(part.width),
-                     scale * static_cast<float>(part.height)};
-    }
-    const PreviewChoice choice{self.view.engine == PreviewEngine::opengl ||
-                                   (self.view.engine == PreviewEngine::automatic && !self.gl.software),
-                               self.view.preview_share, self.fixed_splats};
-    const bool may_settle = self.view.settle && !self.view.playing && self.loader.sets_there();
-    const double start = thread_seconds();
-    self.a.show(self.request, choice, may_settle, now, hurry);
-    if (new_sets) self.new_set_draw_s = thread_seconds() - start;
-    self.loader.hold(self.a.status().state == PictureState::refining);
+/// Limits a 1:1 picture to what the viewport shows of it; returns where that part lies.
+Rect crop_to_viewport(PictureRequest& request, const Rect& whole, glm::ivec2 viewport_px) {
+    request.region = visible_part(whole, request.width, request.height, viewport_px.x, viewport_px.y);
+    const Region& part = request.region;
+    if (part.width <= 0) return whole;
+    const float scale = whole.width / static_cast<float>(request.width);
+    return {whole.x + scale * static_cast<float>(part.x), whole.y + scale * static_cast<float>(part.y),
+            scale * static_cast<float>(part.width), scale * static_cast<float>(part.height)};
+}
 
+PreviewChoice preview_choice(const SessionState& state) {
+    PreviewChoice choice;
+    choice.opengl = draws_by_opengl(state);
+    choice.share = state.view.preview_share;
+    choice.splats = state.fixed_splats;
+    return choice;
+}
+
+/// Where A and what it is compared with are shown: `place` holds the picture's part, `whole` all of it.
+DisplaySettings display_settings(const SessionState& state, const OutputParams& output, const Rect& place,
+                                 const Rect& whole) {
     DisplaySettings shown;
-    shown.view = display_view(self.view.display, scene.output.view);
-    shown.exposure = static_cast<float>(scene.output.exposure) + self.view.inspect_exposure;
-    shown.a = self.a.texture();
+    shown.view = display_view(state.view.display, output.view);
+    shown.exposure = static_cast<float>(output.exposure) + state.view.inspect_exposure;
+    shown.a = state.picture.texture();
     shown.x = place.x;
     shown.y = place.y;
     shown.width = place.width;
     shown.height = place.height;
-    self.show_comparison(shown, choice, may_settle, now);
-    shown.content = 1 + self.a.version() + self.b.version() + self.references_loaded;
-    shown.wipe = (whole.x + whole.width * self.view.wipe - place.x) / place.width;
-    self.status.picture_texture =
-        to_handle(self.display.draw(shown, self.viewport_width, self.viewport_height));
+    shown.wipe = (whole.x + whole.width * state.view.wipe - place.x) / place.width;
+    return shown;
+}
+
+}  // namespace
+
+Scene evaluated(const Scene& scene, const ViewState& view) {
+    Scene now = scene_at(scene, view.frame);
+    if (!view.solo.empty())
+        for (LayerParams& layer : now.layers) layer.visible = view.solo.count(layer.name) > 0;
+    return now;
+}
+
+bool draws_by_opengl(const SessionState& state) {
+    return state.view.engine == PreviewEngine::opengl ||
+           (state.view.engine == PreviewEngine::automatic && !state.gl.software);
+}
+
+void draw_viewport(SessionState& state, glm::ivec2 viewport_px, double now, bool hurry) {
+    state.viewport_px = glm::max(viewport_px, glm::ivec2(1));
+    const glm::vec2 port_px(state.viewport_px);
+    state.status.viewport_aspect = static_cast<double>(port_px.x) / static_cast<double>(port_px.y);
+    const Scene scene = evaluated(state.document.scene(), state.view);
+    const bool new_sets = state.sets.new_sets();
+    state.request = make_request(state, scene);
+    keep_free_camera(state.view, state.shown());
+    const Rect whole =
+        place_picture(state.view, {0, 0, port_px.x, port_px.y}, state.request.width, state.request.height);
+    const bool from_outside = state.view.view != ViewKind::camera && state.view.camera_path;
+    state.status.overlay_lines.clear();
+    if (from_outside)
+        state.status.overlay_lines =
+            state.overlay.lines(state.document.scene(), scene, state.status.box, state.request, whole);
+    const bool one_to_one = state.view.size == SizeMode::one_to_one;
+    const Rect place = one_to_one ? crop_to_viewport(state.request, whole, state.viewport_px) : whole;
+
+    const PreviewChoice choice = preview_choice(state);
+    const bool may_settle = state.view.settle && !state.view.playing && state.sets.loader().sets_there();
+    const double start = thread_seconds();
+    state.picture.show(state.request, choice, may_settle, now, hurry);
+    if (new_sets) state.sets.drew_new_sets(thread_seconds() - start);
+    const PictureState reached = state.picture.status().state;
+    state.sets.loader().hold(reached == PictureState::refining);
+
+    DisplaySettings shown = display_settings(state, scene.output, place, whole);
+    // A's final picture comes first; B's follows it.
+    const bool a_is_done = reached == PictureState::final || reached == PictureState::failed;
+    const auto request_for = [&](const Scene& other) {
+        PictureRequest wanted = make_request(state, evaluated(other, state.view));
+        wanted.region = state.request.region;
+        return wanted;
+    };
+    state.comparison.show(state.document.scene(), state.view,
+                          {request_for, choice, may_settle && a_is_done, now}, shown);
+    shown.content = 1 + state.picture.version() + state.comparison.version();
+    state.status.picture_texture =
+        to_handle(state.display.draw(shown, state.viewport_px.x, state.viewport_px.y));
 }
 
 }  // namespace astrosplat

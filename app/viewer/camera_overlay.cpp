@@ -1,10 +1,11 @@
-#include "viewer/overlay.h"
+#include "viewer/camera_overlay.h"
 
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
 #include "camera/projection.h"
+#include "core/error.h"
 #include "scene/animate.h"
 #include "scene/load.h"
 
@@ -16,8 +17,7 @@ glm::vec2 to_px(const Camera& camera, const glm::dvec3& p) {
     return {static_cast<float>(at.x_px), static_cast<float>(at.y_px)};
 }
 
-}  // namespace
-
+/// Of a scene all that its camera's path depends on, to notice when that changes; the rest at its defaults.
 Scene camera_part(const Scene& scene) {
     Scene part;
     part.camera = scene.camera;
@@ -29,6 +29,7 @@ Scene camera_part(const Scene& scene) {
     return part;
 }
 
+/// Places of the scene's camera over the frames of [output], at most 256 of them; one where it does not move.
 std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
     constexpr double most = 256.0;
     const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
@@ -45,6 +46,8 @@ std::vector<glm::dvec3> camera_path(const Scene& scene, const Bounds& box) {
     return path;
 }
 
+/// Edges of the pyramid that `camera` sees, out to `length` scene units: lines of the four corners, then the
+/// frame with a mark above its upper side.
 std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_px, double height_px,
                                              double length) {
     const auto corner = [&](double x_px, double y_px) {
@@ -61,6 +64,7 @@ std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_
     return lines;
 }
 
+/// A line in the world as lines in px of the picture, cut where it passes behind the eye.
 std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std::vector<glm::dvec3>& line) {
     const glm::dmat3 camera_from_world = glm::transpose(camera.world_from_camera);
     const double front =
@@ -85,6 +89,37 @@ std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std
         before = p;
     }
     return parts;
+}
+
+}  // namespace
+
+std::vector<CameraOverlay::Line> CameraOverlay::lines(const Scene& scene, const Scene& now, const Bounds& box,
+                                                      const PictureRequest& request, const Rect& place) {
+    std::vector<Line> result;
+    try {
+        const bool same_box = path_box_.lo == box.lo && path_box_.hi == box.hi;
+        if (Scene part = camera_part(scene); !same_box || part != path_of_) {
+            path_ = camera_path(part, box);
+            path_of_ = std::move(part);
+            path_box_ = box;
+        }
+        const Camera seen_through = camera_of(request);
+        const double width = static_cast<double>(now.output.width),
+                     height = static_cast<double>(now.output.height);
+        const Camera camera = make_camera(now.camera, width, height, box);
+        const double size = box.empty() ? 10.0 : glm::length(box.extent());
+        std::vector<std::vector<glm::dvec3>> in_world = frustum(camera, width, height, 0.08 * size);
+        in_world.push_back(path_);
+        const float scale = place.width / static_cast<float>(request.width);
+        for (const std::vector<glm::dvec3>& line : in_world)
+            for (Line& part : project_line(seen_through, line)) {
+                for (glm::vec2& p : part) p = glm::vec2(place.x, place.y) + scale * p;
+                result.push_back(std::move(part));
+            }
+    } catch (const InputError&) {
+        result.clear();
+    }
+    return result;
 }
 
 }  // namespace astrosplat

@@ -1,18 +1,15 @@
-// Session: mouse and keys over the viewport become a camera (VIEWER.md). Moving in the scene's camera goes to
-// a free copy of it, unless the camera is locked to the view: then the scene's camera is edited, one undo
-// step a gesture.
+#include "viewer/navigator.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "core/real.h"
 #include "edit/keys.h"
 #include "edit/navigate.h"
 #include "edit/view_camera.h"
-#include "scene/animate.h"
 #include "scene/describe.h"
-#include "scene/layer_setup.h"
-#include "viewer/session_impl.h"
 
 namespace astrosplat {
 namespace {
@@ -56,36 +53,33 @@ void edit_camera(Document& document, const CameraParams& before, const CameraPar
         gesture);
 }
 
-}  // namespace
-
 /// What the picture looks through now, as a free camera.
-FreeCamera Session::Impl::picture_camera() const {
+FreeCamera picture_camera(const PictureRequest& request) {
     return free_camera(request.scene.camera, request.box,
                        static_cast<double>(request.width) / request.height);
 }
 
 /// The same for the whole viewport, so that leaving a picture narrower than the viewport changes no scale.
-FreeCamera Session::Impl::viewport_camera() const {
-    FreeCamera camera = picture_camera();
+FreeCamera viewport_camera(const ViewState& view, const ShownPicture& shown) {
+    const FreeCamera camera = picture_camera(shown.request);
     if (view.size == SizeMode::one_to_one) return camera;
-    const double taller = static_cast<double>(viewport_height) / request.height;
-    camera.height *= taller;
-    camera.fov_deg = 2.0 * real::degrees(real::atan(taller * real::tan(0.5 * real::radians(camera.fov_deg))));
-    return camera;
+    return with_height(camera, shown.viewport_px.y / shown.request.height);
 }
 
-void Session::Impl::leave_scene_camera(bool turning) {
+/// True: it was the scene's camera.
+bool go_to_free_view(ViewState& view, const ShownPicture& shown, bool turning) {
     const bool from_camera = view.view == ViewKind::camera;
-    view.free = viewport_camera();
+    view.free = viewport_camera(view, shown);
     // Front, top and side are flat; turned, a thing looks solid only in perspective.
     if (!from_camera && turning) view.free = in_perspective(view.free);
     view.view = ViewKind::free;
-    if (from_camera) say("Free view, a copy of the camera; 0 returns to it");
+    return from_camera;
 }
 
-/// One frame of mouse and keys on a camera.
-FreeCamera Session::Impl::moved(FreeCamera camera, const ViewportInput& input, const glm::dvec2& viewport_px,
-                                double elapsed_s) {
+}  // namespace
+
+FreeCamera Navigator::moved(FreeCamera camera, const ViewportInput& input, const glm::dvec2& viewport_px,
+                            const Bounds& box, double elapsed_s) {
     switch (input.drag) {
         case ViewportInput::Drag::orbit:
             camera = orbit(camera, input.delta_px, viewport_px.y);
@@ -98,9 +92,9 @@ FreeCamera Session::Impl::moved(FreeCamera camera, const ViewportInput& input, c
             break;
         case ViewportInput::Drag::look: {
             camera = look_around(camera, input.delta_px, viewport_px.y);
-            if (input.wheel != 0.0f) fly_speed *= std::pow(1.25, input.wheel);
-            const double size = status.box.empty() ? 10.0 : glm::length(status.box.hi - status.box.lo);
-            return fly(camera, input.fly * (input.speed * fly_speed * size * elapsed_s));
+            if (input.wheel != 0.0f) fly_speed_ *= std::pow(1.25, input.wheel);
+            const double size = box.empty() ? 10.0 : glm::length(box.extent());
+            return fly(camera, input.fly * (input.speed * fly_speed_ * size * elapsed_s));
         }
         default:
             break;
@@ -111,46 +105,38 @@ FreeCamera Session::Impl::moved(FreeCamera camera, const ViewportInput& input, c
     return camera;
 }
 
-void Session::Impl::navigate(const ViewportInput& input, double elapsed_s) {
-    if (input.drag_begins) ++gesture;
-    if (!moves(input)) return;
-    const glm::dvec2 viewport_px(viewport_width, viewport_height);
+bool Navigator::navigate(const ViewportInput& input, const ShownPicture& shown, double now,
+                         Document& document, ViewState& view) {
+    const double before = std::exchange(navigated_at_, now);
+    const double elapsed_s = before < 0.0 ? 0.0 : std::min(0.1, now - before);
+    if (input.drag_begins) ++gesture_;
+    if (!moves(input)) return false;
     if (view.view == ViewKind::camera && view.lock_to_camera) {
-        const glm::dvec2 picture_px(request.width, request.height);
-        const FreeCamera camera = moved(picture_camera(), input, picture_px, elapsed_s);
-        const CameraParams& now = request.scene.camera;
-        edit_camera(document, now, moved_camera(now, camera, picture_px.x / picture_px.y), view.frame,
-                    gesture);
-        return;
+        const glm::dvec2 picture_px(shown.request.width, shown.request.height);
+        const FreeCamera camera =
+            moved(picture_camera(shown.request), input, picture_px, shown.box, elapsed_s);
+        const CameraParams& old = shown.request.scene.camera;
+        edit_camera(document, old, moved_camera(old, camera, picture_px.x / picture_px.y), view.frame,
+                    gesture_);
+        return false;
     }
     using Drag = ViewportInput::Drag;
     const bool turning = input.drag == Drag::orbit || input.drag == Drag::look;
-    if (view.view != ViewKind::free) leave_scene_camera(turning);
-    view.free = moved(view.free, input, viewport_px, elapsed_s);
+    const bool left = view.view != ViewKind::free && go_to_free_view(view, shown, turning);
+    view.free = moved(view.free, input, shown.viewport_px, shown.box, elapsed_s);
+    return left;
 }
 
-Bounds Session::Impl::layer_box(std::size_t index) const {
-    const Scene now = scene_at(document.scene(), view.frame);
-    if (index >= now.layers.size()) return status.box;
-    const auto loaded = loader.layer(now.layers[index].name);
-    return loaded ? world_bounds(loaded->box, render_layer(now.layers[index])) : status.box;
+void keep_free_camera(ViewState& view, const ShownPicture& shown) {
+    if (view.view == ViewKind::front || view.view == ViewKind::top || view.view == ViewKind::side)
+        view.free = viewport_camera(view, shown);
 }
 
-void Session::Impl::frame_box_in_view(const Bounds& box) {
-    if (box.empty()) return;
-    if (view.view != ViewKind::free) leave_scene_camera(false);
-    const double aspect = static_cast<double>(viewport_width) / viewport_height;
-    view.free = framed(view.free, box, aspect);
-}
-
-void Session::navigate(const ViewportInput& input, double now) {
-    Impl& self = *impl_;
-    const double elapsed = self.navigated_at < 0.0 ? 0.0 : std::min(0.1, now - self.navigated_at);
-    self.navigated_at = now;
-    if (self.request.width <= 0) return;
-    self.probe(input.hovered ? input.mouse_px : glm::dvec2(-1.0));
-    if (self.view.size == SizeMode::one_to_one) return;  // the widgets move and zoom the picture
-    self.navigate(input, elapsed);
+bool frame_in_view(ViewState& view, const Bounds& box, const ShownPicture& shown) {
+    if (box.empty()) return false;
+    const bool left = view.view != ViewKind::free && go_to_free_view(view, shown, false);
+    view.free = framed(view.free, box, shown.viewport_px.x / shown.viewport_px.y);
+    return left;
 }
 
 }  // namespace astrosplat

@@ -1,0 +1,19 @@
+// What the viewport shows: the view becomes a request for a picture; the picture and what it is compared with
+// are placed in the viewport, with lines of the camera over them.
+#pragma once
+
+#include "viewer/session_state.h"
+
+namespace astrosplat {
+
+/// Any scene as it stands at the view's frame, with solo.
+Scene evaluated(const Scene& scene, const ViewState& view);
+
+/// The preview is drawn by OpenGL rather than by the processor.
+bool draws_by_opengl(const SessionState& state);
+
+/// Draws the viewport's content at its size in px into Status::picture_texture. `now` in seconds; `hurry`:
+/// the final picture at once.
+void draw_viewport(SessionState& state, glm::ivec2 viewport_px, double now, bool hurry);
+
+}  // namespace astrosplat

@@ -1,0 +1,49 @@
+// Which sets the scene wants of the loader, and when: a source that is being edited waits until the hand has
+// rested, and a set that grows is shown as often as takes it a few percent of its time. In: the document,
+// once a frame. Out: the loader's sets.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "edit/document.h"
+#include "viewer/set_loader.h"
+
+namespace astrosplat {
+
+class SetWishes {
+  public:
+    SetWishes(const SetCache& cache, std::int64_t preview_limit) : loader_(cache, preview_limit) {}
+
+    /// The document's sources should be wanted now; `now` in seconds.
+    bool due(const Document& document, double now);
+    void want(const Document& document);
+    /// The sets are those of the document as it is, or have failed.
+    bool loaded(const Document& document) const;
+
+    /// What there is of a set that is being generated.
+    void show_growth(double now);
+    /// There are other sets than at the last call.
+    bool new_sets();
+    /// Whether they are those that new_sets() saw last.
+    bool same_sets() const { return seen_sets_ == loader_.revision(); }
+    /// Drawing new sets took so much of this thread.
+    void drew_new_sets(double seconds) { new_set_draw_s_ = seconds; }
+
+    SetLoader& loader() { return loader_; }
+    const SetLoader& loader() const { return loader_; }
+
+  private:
+    SetLoader loader_;
+    std::uint64_t wanted_revision_ = 0;  // of the document
+    std::vector<SourceParams> wanted_sources_;
+    double source_edited_at_ = -1.0;  // below 0: no source waits to be generated again
+    double grows_at_ = 0.0;           // when a set that is generated may be shown again
+    double new_set_draw_s_ = 0.0;
+    std::uint64_t seen_sets_ = 0;  // revision of the loader
+};
+
+/// Processor time of this thread: what work costs the others, however busy the machine is.
+double thread_seconds();
+
+}  // namespace astrosplat
