@@ -11,4 +11,7 @@ double falloff_value(const Falloff& falloff, double t);
 /// Integral of w(|p|) over the unit disc: the flux of a splat of radius 1 px and alpha 1, square px.
 double falloff_integral(const Falloff& falloff);
 
+/// Its variance along an axis, square radii.
+double falloff_variance(const Falloff& falloff);
+
 }  // namespace astrosplat

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "render/fold_batch.h"
+#include "render/shape.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/fold.cpp"
@@ -86,16 +87,16 @@ HWY_INLINE bool any_open(const PartPixels<Pixels>& pixels, V stop) {
 
 /// Folds the splats `bits` of a batch into a part of a block. Unless kMayClose, all its pixels have to be
 /// open to the end, and the batch faint.
-template <bool kFlat, bool kMayClose, class Pixels>
+template <Outline kOutline, bool kMayClose, class Pixels>
 HWY_INLINE void fold_splats(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
                             TilePlanes& planes, PartPixels<Pixels>& pixels) {
-    auto next = begin_splats<kFlat>(batch, bits, part);
+    auto next = begin_splats<kOutline>(batch, bits, part);
     for (bool more = true; more;) {
         const auto now = next;
         more = bits.any();
-        if (more) next = begin_splats<kFlat>(batch, bits, part);
+        if (more) next = begin_splats<kOutline>(batch, bits, part);
         V w[sides];
-        end_splats<kFlat>(batch, now, w);
+        end_splats<kOutline>(batch, now, w);
         for (int n = 0; n < sides; ++n) {
             const int i = now.i[n];
             FoldStep step{batch, i, {}};
@@ -117,7 +118,7 @@ HWY_INLINE bool fold_open(const SplatBatch& batch, SplatBits bits, const BlockPa
                           TilePlanes& planes) {
     auto pixels = load_pixels<Pixels>(planes, part.at);
     if (!all_open(pixels, stop)) return false;
-    fold_splats<false, false>(batch, bits, part, stop, planes, pixels);
+    fold_splats<Outline::soft, false>(batch, bits, part, stop, planes, pixels);
     // Transmittances never grow: if all pixels are open at the end they were all the time, and nobody needed
     // to ask.
     if (!all_open(pixels, stop)) return false;
@@ -126,17 +127,17 @@ HWY_INLINE bool fold_open(const SplatBatch& batch, SplatBits bits, const BlockPa
 }
 
 /// Folds them asking of every splat which pixels are open; false if they close, and none is open at the end.
-template <class Pixels, bool kFlat>
+template <class Pixels, Outline kOutline>
 HWY_NOINLINE bool fold_closing(const SplatBatch& batch, SplatBits bits, const BlockPart& part, V stop,
                                TilePlanes& planes) {
     auto pixels = load_pixels<Pixels>(planes, part.at);
-    fold_splats<kFlat, true>(batch, bits, part, stop, planes, pixels);
+    fold_splats<kOutline, true>(batch, bits, part, stop, planes, pixels);
     store_pixels(pixels, planes, part.at);
     return !Pixels::closes || any_open(pixels, stop);
 }
 
 /// Folds the splats `bits` of a batch into one block; false when all of its pixels are closed.
-template <class Pixels, bool kFlat>
+template <class Pixels, Outline kOutline>
 HWY_INLINE bool fold_block(const SplatBatch& batch, SplatBits bits, const Cell& cell, int block,
                            float stop_at, TilePlanes& planes) {
     const V stop = all(stop_at);
@@ -144,9 +145,9 @@ HWY_INLINE bool fold_block(const SplatBatch& batch, SplatBits bits, const Cell& 
     for (int first = 0; first < TilePlanes::block_pixels; first += lanes * parts) {
         const BlockPart part = block_part(cell, block, first);
         bool is_done = false;
-        if constexpr (!kFlat && !Pixels::aovs)  // AOVs write the layers' light at once
+        if constexpr (kOutline == Outline::soft && !Pixels::aovs)  // AOVs write the layers' light at once
             is_done = batch.is_faint && fold_open<Pixels>(batch, bits, part, stop, planes);
-        open |= is_done || fold_closing<Pixels, kFlat>(batch, bits, part, stop, planes);
+        open |= is_done || fold_closing<Pixels, kOutline>(batch, bits, part, stop, planes);
     }
     return open;
 }
@@ -158,7 +159,7 @@ HWY_INLINE void prefetch(const ScreenSplat& splat) {
 }
 
 /// Prepares those splats of the batch that touch an open block, and folds the batch.
-template <class Pixels, bool kFlat>
+template <class Pixels, Outline kOutline>
 void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch, Cell& cell,
                 TilePlanes& planes) {
     for (int i = 0; i < batch.count; ++i) prefetch(*job.splats[batch.index[i]]);
@@ -170,9 +171,18 @@ void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch,
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1) {
         const int block = std::countr_zero(rest);
         if (!batch.touches[block].any()) continue;
-        if (!fold_block<Pixels, kFlat>(batch, batch.touches[block], cell, block, job.settings.stop, planes))
+        if (!fold_block<Pixels, kOutline>(batch, batch.touches[block], cell, block, job.settings.stop,
+                                          planes))
             cell.open &= ~(std::uint64_t{1} << block);
     }
+}
+
+/// Distance from the centre beyond which a splat's weights are 0. Radii below the smallest tabulated one have
+/// its support.
+float drawn_support_px(const FootprintTable& table, const ScreenSplat& splat, std::span<const Shape> shapes) {
+    if (shapes.empty() || is_round(splat)) return table.drawn_support_px(splat.radius_px);
+    return shape_support_px(shapes[shape_number(splat)],
+                            {table.reach, 4.0f * table.pixel_filter_px, table.variance});
 }
 
 /// Sets the discs of all splats.
@@ -184,9 +194,9 @@ void find_discs(const FoldJob& job, Discs& discs) {
         if (i % check_every == 0) job.progress.check();
         if (i + fetch_ahead < count) prefetch(*job.splats[i + fetch_ahead]);
         const ScreenSplat& splat = *job.splats[i];
-        // Radii below the smallest tabulated one have its support; rounding must not lose a pixel.
+        // Rounding must not lose a pixel.
         const float reach_px =
-            job.layers[splat.layer].footprints->drawn_support_px(splat.radius_px) * 1.0001f;
+            drawn_support_px(*job.layers[splat.layer].footprints, splat, job.shapes) * 1.0001f;
         discs.set(i, splat.x_px, splat.y_px, reach_px);
     }
     for (std::size_t i = count; i < count + lanes; ++i) discs.set_nowhere(i);
@@ -236,18 +246,19 @@ void close_cell(const Cell& cell, float stop, TilePlanes& planes) {
     }
 }
 
-FoldCommon common_of(std::span<const FoldLayer> layers) {
+FoldCommon common_of(const FoldJob& job) {
+    const std::span<const FoldLayer> layers = job.layers;
     const auto all_like = [&](auto&& test) { return std::all_of(layers.begin(), layers.end(), test); };
     const bool one_table =
         all_like([&](const FoldLayer& layer) { return layer.footprints == layers[0].footprints; });
     const bool screen =
         all_like([](const FoldLayer& layer) { return layer.blend == Blend::screen && !layer.holdout; });
-    return {one_table ? layers[0].footprints : nullptr, screen};
+    return {one_table && job.shapes.empty() ? layers[0].footprints : nullptr, screen};
 }
 
 /// Folds the splats found, as far as they make whole batches; the others move to the front. `last`: also
 /// those.
-template <class Pixels, bool kFlat>
+template <class Pixels, Outline kOutline>
 void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSplats& found, SplatBatch& batch,
                 Cell& cell, TilePlanes& planes) {
     constexpr std::size_t size = SplatBatch::size;
@@ -260,19 +271,19 @@ void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSpl
         batch.reach_px = &found.discs.reach_px[begin];
         batch.index = &found.index[begin];
         for (std::size_t i = begin + batch.count; i % lanes != 0; ++i) found.discs.set_nowhere(i);
-        fold_batch<Pixels, kFlat>(job, common, batch, cell, planes);
+        fold_batch<Pixels, kOutline>(job, common, batch, cell, planes);
         if (cell.open == 0) return;
     }
     found.keep_from(std::min(begin, found.count));
 }
 
-template <class Pixels, bool kFlat>
+template <class Pixels, Outline kOutline>
 void fold_cells(const FoldJob& job, TilePlanes& planes) {
     constexpr std::size_t step = 1024;  // splats looked at before some are folded, while in cache
     static_assert(step % lanes == 0);
     constexpr std::size_t most_kept = 1 << 20;  // discs that a thread keeps for its next tile
     static thread_local const std::unique_ptr<FoldScratch> scratch = std::make_unique<FoldScratch>();
-    const FoldCommon common = common_of(job.layers);
+    const FoldCommon common = common_of(job);
     std::fill_n(scratch->batch.linear_in_distance, SplatBatch::size,
                 common.footprints && common.footprints->linear_in_distance);
     find_discs(job, scratch->discs);
@@ -288,8 +299,8 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
         for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; i += step) {
             const std::size_t end = std::min(i + step, job.splats.size());
             find_in_cell(scratch->discs, i, end, cell, found);
-            fold_found<Pixels, kFlat>(job, common, end == job.splats.size(), found, scratch->batch, cell,
-                                      planes);
+            fold_found<Pixels, kOutline>(job, common, end == job.splats.size(), found, scratch->batch, cell,
+                                         planes);
         }
         if constexpr (Pixels::closes) close_cell<Pixels>(cell, job.settings.stop, planes);
     }
@@ -300,7 +311,7 @@ template <class Pixels>
 void fold_pixels(const FoldJob& job, TilePlanes& planes) {
     const bool flat = std::any_of(job.layers.begin(), job.layers.end(),
                                   [](const FoldLayer& layer) { return layer.footprints->flat_core; });
-    flat ? fold_cells<Pixels, true>(job, planes) : fold_cells<Pixels, false>(job, planes);
+    flat ? fold_cells<Pixels, Outline::flat>(job, planes) : fold_cells<Pixels, Outline::soft>(job, planes);
 }
 
 template <bool kAovs>
@@ -315,15 +326,25 @@ void fold_kind(const FoldJob& job, TilePlanes& planes) {
         fold_pixels<GeneralPixels<kAovs, false>>(job, planes);
 }
 
+/// With splats that are not round: the general folds alone, which give the bits of the others.
+template <bool kAovs>
+void fold_shaped(const FoldJob& job, TilePlanes& planes) {
+    if (job.settings.kind == FoldKind::lighten)
+        fold_cells<LightenPixels<kAovs>, Outline::shaped>(job, planes);
+    else
+        fold_cells<GeneralPixels<kAovs, true>, Outline::shaped>(job, planes);
+}
+
 void fold_here(const FoldJob& job, TilePlanes& planes) {
-    if (job.settings.kind == FoldKind::over)
+    const bool aovs = job.settings.aovs;
+    if (!job.shapes.empty())
+        aovs ? fold_shaped<true>(job, planes) : fold_shaped<false>(job, planes);
+    else if (job.settings.kind == FoldKind::over)
         fold_pixels<OverPixels>(job, planes);
     else if (job.settings.kind == FoldKind::add)
         fold_pixels<AddPixels>(job, planes);
-    else if (job.settings.aovs)
-        fold_kind<true>(job, planes);
     else
-        fold_kind<false>(job, planes);
+        aovs ? fold_kind<true>(job, planes) : fold_kind<false>(job, planes);
 }
 
 }  // namespace astrosplat::HWY_NAMESPACE

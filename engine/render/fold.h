@@ -78,6 +78,7 @@ struct FoldJob {
     std::span<const FoldLayer> layers;
     const FoldSettings& settings;
     const Progress& progress;
+    std::span<const Shape> shapes = {};  // of splats that are not round; empty: all are
 };
 
 /// Folds the splats into the planes. Throws Cancelled.

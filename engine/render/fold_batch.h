@@ -57,6 +57,8 @@ struct SplatBatch {
     alignas(64) float scale[places];
     alignas(64) float edge_gain[places];
     alignas(64) float weight_gain[places];  // amplitude alone, for coverage
+    // Outline::shaped: what offsets are mapped by, as in ShapedFootprint.
+    alignas(64) float map_xx[places], map_xy[places], map_yy[places];
 
     alignas(64) float opacity[places];       // times the footprint's amplitude
     alignas(64) float color[3][places];      // 0 for holdouts
@@ -70,6 +72,13 @@ struct SplatBatch {
     alignas(64) float node_share[places];     // of the next one
     alignas(64) float alpha[places];          // opacity as the splat has it
     alignas(64) float moments[3][places][4];  // of FootprintMoments, four by four
+};
+
+/// The footprints of a tile's splats; each kind takes those before it, with the same bits.
+enum class Outline {
+    soft,    // round
+    flat,    // round, some flat inside
+    shaped,  // some not round
 };
 
 /// What all layers have in common, if anything.

@@ -76,8 +76,20 @@ struct SplatsUnderway {
 
 constexpr float to_whole = 12582912.0f;  // 1.5 * 2^23: a number added to it is rounded to a whole one
 
+/// Squared distance in the plane of the round footprint.
+template <Outline kOutline>
+HWY_INLINE V squared_length(const SplatBatch& batch, int i, V dx, V dy) {
+    if constexpr (kOutline == Outline::shaped) {
+        const V xy = all(batch.map_xy[i]);
+        const V x = hn::Add(hn::Mul(all(batch.map_xx[i]), dx), hn::Mul(xy, dy));
+        dy = hn::Add(hn::Mul(xy, dx), hn::Mul(all(batch.map_yy[i]), dy));
+        dx = x;
+    }
+    return hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+}
+
 /// Takes the next splats out of `bits` (with none left, SplatBatch::none).
-template <bool kFlat>
+template <Outline kOutline>
 HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits, const BlockPart& part) {
     SplatsUnderway to;
     V u[sides];
@@ -86,11 +98,11 @@ HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits,
         const int i = to.i[n];
         const V dx = hn::Sub(part.x_px[part_of(n)], all(batch.x_px[i])),
                 dy = hn::Sub(part.y_px[part_of(n)], all(batch.y_px[i]));
-        u[n] = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+        u[n] = squared_length<kOutline>(batch, i, dx, dy);
         if (batch.linear_in_distance[i]) u[n] = hn::Sqrt(u[n]);
-        if (kFlat) u[n] = hn::Sub(u[n], all(batch.lo[i]));
+        if (kOutline != Outline::soft) u[n] = hn::Sub(u[n], all(batch.lo[i]));
         u[n] = hn::Mul(u[n], all(batch.scale[i]));
-        if (kFlat) u[n] = clamp_zero(u[n]);
+        if (kOutline != Outline::soft) u[n] = clamp_zero(u[n]);
     }
     // On a segment's end either side will do. Far outside, both are nonsense that end_splats takes away.
     for (int n = 0; n < sides; ++n) to.segment[n] = hn::Sub(u[n], all(0.5f));
@@ -100,8 +112,8 @@ HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits,
 }
 
 /// Their weights at the pixels, without the amplitudes. Not clamped: the cubics may leave [0, 1] by a few
-/// 1e-5. kFlat: the footprint may have a flat inside.
-template <bool kFlat>
+/// 1e-5.
+template <Outline kOutline>
 HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway& from, V (&w)[sides]) {
     const auto coefficient = [&](int n, int power) {
         return look_up(batch.cubic[from.i[n]][power], hn::BitCast(DI(), from.segment[n]));
@@ -114,7 +126,7 @@ HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway& from, 
     const V outside = all(to_whole + static_cast<float>(segments));
     for (int n = 0; n < sides; ++n) {
         w[n] = hn::IfThenElseZero(hn::Lt(from.segment[n], outside), w[n]);
-        if (kFlat)
+        if (kOutline != Outline::soft)
             w[n] = hn::Add(w[n],
                            hn::Mul(all(batch.edge_gain[from.i[n]]), hn::Mul(w[n], hn::Sub(all(1.0f), w[n]))));
     }

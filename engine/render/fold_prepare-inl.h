@@ -13,6 +13,7 @@
 
 #include "render/fold_blend-inl.h"
 #include "render/lanes-inl.h"
+#include "render/shape.h"
 #include "render/shared_render.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -153,16 +154,24 @@ HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& ba
     store(gains.amplitude.v, batch.weight_gain + n);
 }
 
-/// Weights of a splat whose layer is not the only one.
-HWY_INLINE void prepare_weight(const FootprintTable& table, SplatBatch& batch, int i) {
-    Footprint f;
+/// Weights of a splat whose layer is not the only one, or that is beside splats that are not round.
+HWY_INLINE void prepare_weight(const FoldJob& job, const ScreenSplat& splat, SplatBatch& batch, int i) {
+    const FootprintTable& table = *job.layers[splat.layer].footprints;
+    ShapedFootprint shaped;
+    if (job.shapes.empty() || is_round(splat))
+        footprint_at(table, splat.radius_px, splat.x_px, splat.y_px, shaped.round);
+    else
+        shaped = shaped_footprint_at(table, job.shapes[shape_number(splat)], splat.x_px, splat.y_px);
+    const Footprint& f = shaped.round;
     batch.linear_in_distance[i] = table.linear_in_distance;
-    footprint_at(table, batch.radius_px[i], batch.x_px[i], batch.y_px[i], f);
     interpolate_cubics(*f.node_a, *f.node_b, f.t, batch, i);
     batch.lo[i] = f.lo;
     batch.scale[i] = f.scale;
     batch.edge_gain[i] = f.edge_gain;
     batch.weight_gain[i] = f.amplitude;
+    batch.map_xx[i] = shaped.xx;
+    batch.map_xy[i] = shaped.xy;
+    batch.map_yy[i] = shaped.yy;
 }
 
 /// Occlusion colours: what the general fold alone asks for.
@@ -214,7 +223,7 @@ void prepare_splats(const FoldJob& job, const FoldCommon& common, SplatBits whic
         batch.radius_px[i] = splat.radius_px;
         batch.alpha[i] = splat.opacity;
         for (int k = 0; k < 3; ++k) batch.color[k][i] = splat.color[k];
-        if (!common.footprints) prepare_weight(*job.layers[splat.layer].footprints, batch, i);
+        if (!common.footprints) prepare_weight(job, splat, batch, i);
         if constexpr (Pixels::general)
             if (!common.screen) prepare_occlusion(splat, job.layers[splat.layer], batch, i);
         if constexpr (Pixels::aovs) {

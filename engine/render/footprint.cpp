@@ -215,6 +215,12 @@ std::array<float, 256> make_cosines() {
     return table;
 }
 
+/// The range of a splat's profile; below the smallest radius it is that radius's.
+shared::ProfileRange range_in_px(const FootprintTable& table, float radius_px) {
+    return shared::profile_range(table.core, table.reach, 4.0f * table.pixel_filter_px,
+                                 std::max(radius_px, shared::SMALLEST_RADIUS_PX));
+}
+
 /// A moment between the nodes of a radius.
 float moment(const FootprintNodes& nodes, float FootprintMoments::*field) {
     const float a = nodes.a->moments.*field, b = nodes.b->moments.*field;
@@ -243,6 +249,7 @@ FootprintTable begin_footprint_table(const Falloff& falloff, float pixel_filter_
                  : falloff.shape == Shape::trapezoid ? falloff.core
                                                      : 0.0f;
     table.integral = static_cast<float>(falloff_integral(falloff));
+    table.variance = static_cast<float>(falloff_variance(falloff));
     const double exponent = 11.5;  // e^-11.5 = 1e-5
     if (falloff.shape == Shape::gaussian && falloff.sharpness > exponent)
         table.reach = static_cast<float>(std::sqrt(exponent / falloff.sharpness));
@@ -291,28 +298,33 @@ float node_radius_px(std::size_t node) {
     return std::bit_cast<float>(bits << shared::NODE_BITS);
 }
 
+FootprintMass footprint_mass(const FootprintTable& table, float radius_px) {
+    using Moments = FootprintMoments;
+    const FootprintNodes nodes = footprint_nodes(table, radius_px);
+    const shared::ProfileRange range = range_in_px(table, radius_px);
+    const bool linear = table.linear_in_distance;
+    return {shared::profile_mass(linear, range, moment(nodes, &Moments::mean),
+                                 moment(nodes, &Moments::first_moment)),
+            shared::edge_mass(linear, range, moment(nodes, &Moments::edge_mean),
+                              moment(nodes, &Moments::edge_first_moment))};
+}
+
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px,
                   Footprint& footprint) {
-    using Moments = FootprintMoments;
     const FootprintNodes pair = footprint_nodes(table, radius_px);
-    const bool linear = table.linear_in_distance;
+    const FootprintMass mass = footprint_mass(table, radius_px);
+    const shared::ProfileRange range = range_in_px(table, radius_px);
     const float tabulated_px = std::max(radius_px, shared::SMALLEST_RADIUS_PX);
-    const shared::ProfileRange range =
-        shared::profile_range(table.core, table.reach, 4.0f * table.pixel_filter_px, tabulated_px);
-    const float mass = shared::profile_mass(linear, range, moment(pair, &Moments::mean),
-                                            moment(pair, &Moments::first_moment));
-    const float edge = shared::edge_mass(linear, range, moment(pair, &Moments::edge_mean),
-                                         moment(pair, &Moments::edge_first_moment));
     const shared::FootprintGains gains = shared::footprint_gains(
         table.flat_core, shared::is_tabulated(shared::node_of_radius(radius_px)),
         shared::shrink_of_radius(radius_px), table.integral * tabulated_px * tabulated_px,
-        mass * (1.0f + ripple(pair, &Moments::ripple, x_px, y_px)),
-        edge * (1.0f + ripple(pair, &Moments::edge_ripple, x_px, y_px)));
+        mass.profile * (1.0f + ripple(pair, &FootprintMoments::ripple, x_px, y_px)),
+        mass.edge * (1.0f + ripple(pair, &FootprintMoments::edge_ripple, x_px, y_px)));
     footprint = {pair.a,
                  pair.b,
                  pair.t,
-                 shared::profile_begin(linear, range),
-                 static_cast<float>(segments) / shared::profile_width(linear, range),
+                 shared::profile_begin(table.linear_in_distance, range),
+                 static_cast<float>(segments) / shared::profile_width(table.linear_in_distance, range),
                  gains.amplitude,
                  gains.edge_gain,
                  table.support_px(tabulated_px)};

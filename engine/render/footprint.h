@@ -49,9 +49,10 @@ struct FootprintTable {
     bool linear_in_distance = false;  // u linear in d, not in d^2
     bool flat_core = false;           // constant and trapezoid: exactly 1 inside, so only the edge is scaled
     float pixel_filter_px = 0.5f;
-    float reach = 1.0f;     // share of the radius that carries more than 1e-5 of the peak
-    float core = 0.0f;      // share of the radius that is flat
-    float integral = 1.0f;  // of the falloff over the unit disc
+    float reach = 1.0f;      // share of the radius that carries more than 1e-5 of the peak
+    float core = 0.0f;       // share of the radius that is flat
+    float integral = 1.0f;   // of the falloff over the unit disc
+    float variance = 0.25f;  // of the falloff along an axis, square radii
 
     /// Distance from the centre beyond which all weights are 0.
     float support_px(float radius_px) const { return radius_px * reach + 4.0f * pixel_filter_px; }
@@ -101,6 +102,12 @@ inline float pixel_cosine(float coordinate_px) {
     const float inside = std::min(std::max(coordinate_px, -pixel_cosine_far_px), pixel_cosine_far_px);
     return pixel_cosines[static_cast<std::size_t>(static_cast<int>(inside * 256.0f) & 255)];
 }
+
+/// Integrals over the plane of the profile of a radius, and of its P (1 - P), square px.
+struct FootprintMass {
+    float profile, edge;
+};
+FootprintMass footprint_mass(const FootprintTable& table, float radius_px);
 
 /// The footprint of one splat; x_px, y_px are its centre, snapped to 1/256 px by the caller.
 void footprint_at(const FootprintTable& table, float radius_px, float x_px, float y_px, Footprint& footprint);

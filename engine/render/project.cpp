@@ -6,6 +6,7 @@
 
 #include "camera/projection.h"
 #include "render/project_vector.h"
+#include "render/shape.h"
 #include "render/shared_render.h"
 
 namespace astrosplat {
@@ -31,15 +32,13 @@ glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
     return glm::vec3(layer.camera_from_layer * glm::dvec3(p) + layer.origin_in_camera);
 }
 
-/// Projects one splat; false when it does not show.
-bool project_one(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
-                 const ScreenRect& rect, ScreenSplat& out) {
-    const shared::Instance at = shared::instance_of(layer.lens, splat.position);
+/// Where a splat is and what it looks like there, if `support_px` around it touches `rect` and it shows at
+/// all.
+bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const shared::Instance& at,
+                 std::int64_t index, float support_px, const ScreenRect& rect, ScreenSplat& out) {
     if (!shared::is_in_range(layer.lens, at.depth) || !(splat.alpha > 0.0f)) return false;
-    out.radius_px = splat.radius * at.px_per_unit;
     out.x_px = shared::snap_px(at.x_px);
     out.y_px = shared::snap_px(at.y_px);
-    const float support_px = out.radius_px * layer.reach + layer.margin_px;
     if (!shared::touches_rect(out.x_px, out.y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1))
         return false;
     out.opacity = splat.alpha * layer.opacity * shared::near_fade(layer.lens, at.depth, splat.radius);
@@ -51,6 +50,31 @@ bool project_one(const LayerProjection& layer, const CameraSplat& splat, std::in
     out.layer = layer.layer;
     out.hybrid = hybrid_of(layer, splat.position);
     return out.opacity > 0.0f;
+}
+
+/// Projects one ball; false when it does not show.
+bool project_one(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
+                 const ScreenRect& rect, ScreenSplat& out) {
+    const shared::Instance at = shared::instance_of(layer.lens, splat.position);
+    out.radius_px = splat.radius * at.px_per_unit;
+    return place_splat(layer, splat, at, index, out.radius_px * layer.reach + layer.margin_px, rect, out);
+}
+
+/// Projects one ellipsoid, which fades at the near plane as the ball around its outline.
+void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int64_t index,
+                       const ScreenRect& rect, Buffer<ScreenSplat>& out, Buffer<Shape>& shapes) {
+    const shared::Instance at = shared::instance_of(layer.lens, splat.position);
+    if (!shared::is_in_range(layer.lens, at.depth)) return;
+    const glm::mat3 ellipsoid = splat.radius / layer.radius_scale * glm::mat3(layer.camera_from_layer) *
+                                layer.splats->stretch[static_cast<std::size_t>(index)];
+    const Shape shape = project_ellipsoid(layer.lens, splat.position, ellipsoid, at.px_per_unit);
+    splat.radius = shape_radii(shape).larger / at.px_per_unit;
+    ScreenSplat screen;
+    const float support = shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance});
+    if (!place_splat(layer, splat, at, index, support, rect, screen)) return;
+    set_shape_number(screen, static_cast<std::uint32_t>(shapes.size()));
+    out.push_back(screen);
+    shapes.push_back(shape);
 }
 
 /// Alpha and colour of the two levels for the layer's blend. Under screen and hybrid the light of a channel
@@ -158,13 +182,23 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
     return p;
 }
 
+float support_px(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes) {
+    if (shapes.empty() || is_round(splat)) return splat.radius_px * layer.reach + layer.margin_px;
+    return shape_support_px(shapes[shape_number(splat)], {layer.reach, layer.margin_px, layer.variance});
+}
+
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
-             Buffer<ScreenSplat>& out) {
+             Buffer<ScreenSplat>& out, Buffer<Shape>& shapes) {
     const ShadedSplats& splats = *layer.splats;
-    if (!layer.lod) begin = project_whole_blocks(layer, begin, end, rect, out);
+    const bool balls = splats.stretch.empty();
+    if (!layer.lod && balls) begin = project_whole_blocks(layer, begin, end, rect, out);
     for (std::int64_t i = begin; i < end; ++i) {
         const CameraSplat splat{to_camera(layer, splats.position[i]), splats.radius[i] * layer.radius_scale,
                                 splats.alpha[i], splats.color[i]};
+        if (!balls) {
+            project_stretched(layer, splat, i, rect, out, shapes);
+            continue;
+        }
         if (layer.lod && project_as_children(layer, splat, i, rect, out)) continue;
         ScreenSplat screen;
         if (project_one(layer, splat, i, rect, screen)) out.push_back(screen);

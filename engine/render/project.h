@@ -27,6 +27,7 @@ struct LayerProjection {
     float opacity = 1.0f;
     Lens lens;
     float reach = 1.0f, margin_px = 2.0f;  // support = radius * reach + margin
+    float variance = 0.25f;                // of the falloff, as in FootprintTable
     float lod_limit_px = 0.0f;
     LayerRender render;
     std::uint32_t seed = 1;
@@ -37,8 +38,12 @@ struct LayerProjection {
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,
                                 const RenderSettings& settings);
 
-/// Appends the screen splats of shaded splats [begin, end) whose support touches `rect`.
+/// Distance from a splat's centre beyond which all its weights are 0.
+float support_px(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes);
+
+/// Appends the screen splats of shaded splats [begin, end) whose support touches `rect`, and the shapes of
+/// those that are not round.
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
-             Buffer<ScreenSplat>& out);
+             Buffer<ScreenSplat>& out, Buffer<Shape>& shapes);
 
 }  // namespace astrosplat

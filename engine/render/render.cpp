@@ -173,6 +173,7 @@ void prepare(Job& job, RenderCache::State& cache) {
         LayerProjection projection =
             make_projection(layers[l], static_cast<std::uint16_t>(l), camera, settings);
         projection.reach = footprints.reach;
+        projection.variance = footprints.variance;
         if (projection.lod_limit_px > 0.0f)
             projection.lod = &cache.lod(render.falloff, finest_level(render.lod), job.progress);
         job.projections.push_back(projection);
@@ -221,7 +222,7 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
         begun = true;
         if (g == job.groups.size()) break;  // nothing but the environment
         const std::span<const ScreenSplat* const> order = worker.sorter.sort(worker.runs, job.progress);
-        fold({order, job.fold_layers, fold_settings, job.progress}, worker.planes);
+        fold({order, job.fold_layers, fold_settings, job.progress, bins.shapes()}, worker.planes);
         if (!alone) worker.resolver.lay(job.groups[g], worker.planes);
     }
     if (begun && alone)

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "render/shape.h"
 
 namespace astrosplat {
 namespace {
@@ -15,10 +16,6 @@ constexpr std::int64_t step_splats = 512;    // projected before they are writte
 ScreenRect rect_of(const TileGrid& grid) {
     return {static_cast<float>(grid.x0), static_cast<float>(grid.y0),
             static_cast<float>(grid.x0 + grid.width), static_cast<float>(grid.y0 + grid.height)};
-}
-
-float support_of(const LayerProjection& layer, const ScreenSplat& splat) {
-    return splat.radius_px * layer.reach + layer.margin_px;
 }
 
 /// Whether a splat that touches a band is to be counted in it: by its centre, so that it counts once.
@@ -76,9 +73,14 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
 }
 
 /// Adds the splats just projected to the sums over their chunk.
-void TileBins::sum_up(std::span<const ScreenSplat> splats, Sums& sums) const {
+void TileBins::sum_up(const Writer& writer, Sums& sums) const {
     Sums sum = sums;  // in registers
-    for (const ScreenSplat& splat : splats) {
+    const bool all_round = writer.shapes.empty();
+    for (const ScreenSplat& splat : writer.splats) {
+        if (!all_round && !is_round(splat)) {
+            add_shape(writer.shapes[shape_number(splat)], splat.y_px, sum);
+            continue;
+        }
         sum.least_px = std::min(sum.least_px, splat.radius_px);
         sum.largest_px = std::max(sum.largest_px, splat.radius_px);
         if (!counts_here(grid_, splat.y_px)) continue;
@@ -86,6 +88,17 @@ void TileBins::sum_up(std::span<const ScreenSplat> splats, Sums& sums) const {
         sum.footprint_px += real::pi * splat.radius_px * splat.radius_px;
     }
     sums = sum;
+}
+
+/// The same for one that is not round.
+void TileBins::add_shape(const Shape& shape, float y_px, Sums& sum) const {
+    const NodeRange nodes = node_range(shape);
+    const ShapeRadii radii = shape_radii(shape);
+    sum.least_px = std::min(sum.least_px, nodes.least_px);
+    sum.largest_px = std::max(sum.largest_px, nodes.largest_px);
+    if (!counts_here(grid_, y_px)) return;
+    ++sum.instances;
+    sum.footprint_px += real::pi * radii.larger * radii.smaller;
 }
 
 /// The bins of the splats just projected.
@@ -97,7 +110,7 @@ std::span<const TileBins::Entry> TileBins::list_entries(const LayerProjection& l
     writer.entries.resize(count * most_bins);
     for (std::size_t i = 0; i < count; ++i) {
         const ScreenSplat& splat = writer.splats[i];
-        writer.discs.set(i, splat.x_px, splat.y_px, support_of(layer, splat));
+        writer.discs.set(i, splat.x_px, splat.y_px, support_px(layer, splat, writer.shapes));
     }
     find_bins({static_cast<float>(grid_.x0), static_cast<float>(grid_.y0), static_cast<float>(grid_.tile_px),
                levels_},
@@ -143,6 +156,26 @@ void TileBins::write(std::span<const Entry> entries, SplatStore& store, Writer& 
     }
 }
 
+/// Sets shapes_: each writer's after those of the writers before, with their numbers in its records.
+void TileBins::join_shapes(std::span<const Writer> writers) {
+    shapes_.clear();
+    for (const Writer& writer : writers) {
+        const auto first = static_cast<std::uint32_t>(shapes_.size());
+        for (const Shape& shape : writer.shapes) shapes_.push_back(shape);
+        if (first == 0 || writer.shapes.empty()) continue;
+        for (const Block& block : writer.blocks)
+            for (ScreenSplat& splat : records_of(writer, block))
+                if (!is_round(splat)) set_shape_number(splat, shape_number(splat) + first);
+    }
+}
+
+/// The records written into a block.
+std::span<ScreenSplat> TileBins::records_of(const Writer& writer, const Block& block) const {
+    const Writer::Cursor& last = writer.cursors[block.bin];
+    ScreenSplat* const end = block.records + block_records_;
+    return {block.records, last.end == end ? last.next : end};
+}
+
 /// Sets blocks_ and first_block_.
 void TileBins::sort_blocks(std::span<const Writer> writers) {
     first_block_.assign(static_cast<std::size_t>(bins()) + 1, 0);
@@ -152,11 +185,7 @@ void TileBins::sort_blocks(std::span<const Writer> writers) {
     blocks_.resize(first_block_.back());
     std::vector<std::size_t> next = first_block_;
     for (const Writer& writer : writers)
-        for (const Block& block : writer.blocks) {
-            const Writer::Cursor& last = writer.cursors[block.bin];
-            ScreenSplat* const end = block.records + block_records_;
-            blocks_[next[block.bin]++] = {block.records, last.end == end ? last.next : end};
-        }
+        for (const Block& block : writer.blocks) blocks_[next[block.bin]++] = records_of(writer, block);
 }
 
 void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
@@ -183,11 +212,12 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
         for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
             progress.check();
             writer.splats.clear();
-            project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats);
-            sum_up(writer.splats, sums_[static_cast<std::size_t>(c)]);
+            project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats, writer.shapes);
+            sum_up(writer, sums_[static_cast<std::size_t>(c)]);
             write(list_entries(layer, group, writer), store, writer);
         }
     });
+    join_shapes(writers);
     sort_blocks(writers);
 }
 
@@ -232,6 +262,7 @@ std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> laye
     const ScreenRect rect = rect_of(grid);
     std::vector<double> sums(tile_sizes_px.size(), 0.0);
     Buffer<ScreenSplat> splats;
+    Buffer<Shape> shapes;
     for (const LayerProjection& layer : layers) {
         const std::int64_t count = layer.splats->size();
         std::vector<double> found(tile_sizes_px.size(), 0.0);
@@ -240,12 +271,13 @@ std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> laye
             progress.check();
             const std::int64_t end = std::min(begin + block, count);
             splats.clear();
-            project(layer, begin, end, rect, splats);
+            shapes.clear();
+            project(layer, begin, end, rect, splats, shapes);
             sampled += end - begin;
             for (const ScreenSplat& splat : splats)
                 for (std::size_t t = 0; t < found.size(); ++t) {
                     const float tiles =
-                        1.0f + 2.0f * support_of(layer, splat) / static_cast<float>(tile_sizes_px[t]);
+                        1.0f + 2.0f * support_px(layer, splat, shapes) / static_cast<float>(tile_sizes_px[t]);
                     found[t] += std::min(9.0f, tiles * tiles);
                 }
         }

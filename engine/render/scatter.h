@@ -70,10 +70,14 @@ class TileBins {
     /// it), in no meaningful order.
     void collect(std::int64_t tile, int group, std::vector<std::span<const ScreenSplat>>& out) const;
 
+    /// Of the records that are not round.
+    std::span<const Shape> shapes() const { return shapes_; }
+
     const TileGrid& grid() const { return grid_; }
     std::int64_t instances() const;  // splats (children counted one by one), each in one band only
     double footprint_px() const;     // sum of their footprints' areas, square px
-    /// The least and the largest radius in px; empty (least > largest) without records.
+    /// The least and the largest radius in px whose footprint nodes are needed; empty (least > largest)
+    /// without records.
     std::pair<float, float> radii_px() const;
 
   private:
@@ -99,15 +103,19 @@ class TileBins {
         ScreenSplat* unused = nullptr;
         ScreenSplat* unused_end = nullptr;
         Buffer<ScreenSplat> splats;  // just projected
+        Buffer<Shape> shapes;        // of all it projected
         Discs discs;                 // their supports
         Buffer<BinRect> rects;
         Buffer<Entry> entries;
     };
     std::int64_t bins() const { return bins_per_group_ * groups_; }
-    void sum_up(std::span<const ScreenSplat> splats, Sums& sums) const;
+    void sum_up(const Writer& writer, Sums& sums) const;
+    void add_shape(const Shape& shape, float y_px, Sums& sum) const;
     std::span<const Entry> list_entries(const LayerProjection& layer, int group, Writer& writer) const;
     void begin_block(std::uint32_t bin, SplatStore& store, Writer& writer) const;
     void write(std::span<const Entry> entries, SplatStore& store, Writer& writer) const;
+    void join_shapes(std::span<const Writer> writers);
+    std::span<ScreenSplat> records_of(const Writer& writer, const Block& block) const;
     void sort_blocks(std::span<const Writer> writers);
 
     TileGrid grid_;
@@ -115,6 +123,7 @@ class TileBins {
     std::int64_t bins_per_group_ = 0;
     std::int64_t block_records_ = 0;
     std::vector<BinLevel> levels_;
+    Buffer<Shape> shapes_;
     std::vector<Sums> sums_;                            // by chunk
     std::vector<std::span<const ScreenSplat>> blocks_;  // bin by bin
     std::vector<std::size_t> first_block_;              // of each bin; one more at the end

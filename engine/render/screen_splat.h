@@ -2,13 +2,14 @@
 // because tens of millions of them stream through memory.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 namespace astrosplat {
 
 struct ScreenSplat {
     float x_px, y_px;      // centre, y down, snapped to 1/256 px
-    float radius_px;       // where the falloff reaches zero
+    float radius_px;       // where the falloff reaches zero; not round: the number of a shape
     float opacity;         // alpha * layer opacity * near fade; times the footprint's weight it is s
     float color[3];        // linear, straight
     std::uint32_t depth;   // bits of the projection's sort key: sorts as the distance from the eye does
@@ -18,8 +19,26 @@ struct ScreenSplat {
 };
 static_assert(sizeof(ScreenSplat) == 40);
 
+/// The outline of a splat that is not round: the unit disc under this matrix, offsets from the centre in px,
+/// y down.
+struct Shape {
+    float xx, xy, yx, yy;  // (xx, yx) is where (1, 0) goes
+};
+
+// Numbers of shapes are floats with the sign bit set, from just beyond -0 on; radii never have it set but for
+// -0.
+inline bool is_round(const ScreenSplat& splat) {
+    return std::bit_cast<std::uint32_t>(splat.radius_px) <= 0x80000000u;
+}
+inline std::uint32_t shape_number(const ScreenSplat& splat) {
+    return std::bit_cast<std::uint32_t>(splat.radius_px) - 0x80000001u;
+}
+inline void set_shape_number(ScreenSplat& splat, std::uint32_t number) {
+    splat.radius_px = std::bit_cast<float>(0x80000001u + number);
+}
+
 /// Total order of DESIGN 7, near to far: by distance; ties by (layer, id) ascending, those between children
-/// of one splat by their place on the picture.
+/// of one splat by their place on the picture. (Splats that are not round have no children.)
 inline bool in_front_of(const ScreenSplat& a, const ScreenSplat& b) {
     if (a.depth != b.depth) return a.depth < b.depth;
     if (a.layer != b.layer) return a.layer < b.layer;

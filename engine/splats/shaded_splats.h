@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "core/buffer.h"
@@ -14,6 +15,8 @@ struct ShadedSplats {
     Buffer<float> alpha;         // 0..1
     Buffer<float> radius;        // scene units, where the falloff reaches zero
     Buffer<std::uint64_t> id;
+    /// Empty: all are balls. Else of each splat: what the ball becomes, around its centre, layer space.
+    Buffer<glm::mat3> stretch;
 
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };

@@ -18,7 +18,10 @@ constexpr ScreenRect everywhere{-1e6f, -1e6f, 1e6f, 1e6f};
 Buffer<ScreenSplat> project_all(const ShadedSplats& splats, const Camera& camera) {
     const RenderLayer layer = layer_of("one", splats);
     Buffer<ScreenSplat> out;
-    project(make_projection(layer, 0, camera, settings_of(64, 64)), 0, splats.size(), everywhere, out);
+    Buffer<Shape> shapes;
+    project(make_projection(layer, 0, camera, settings_of(64, 64)), 0, splats.size(), everywhere, out,
+            shapes);
+    EXPECT_TRUE(shapes.empty());
     return out;
 }
 

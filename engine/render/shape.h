@@ -1,0 +1,52 @@
+// Footprints that are not round: an ellipsoid seen through a camera is an ellipse, drawn with the profile of
+// a round footprint. In: the ellipse in px. Out: the round footprint, and how its plane is reached from the
+// picture's.
+//
+// The profile is that of the ellipse's smaller radius, stretched along the larger one so that its variance is
+// the falloff's and the pixel filter's together: exact for a gaussian, as EWA (Zwicker et al. 2001). Of other
+// falloffs the edge is softer at the tips, and a needle thinner than the filter is a gaussian along its
+// length. The light over all pixels is right by the closed form that round footprints have.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "camera/lens.h"
+#include "render/footprint.h"
+#include "render/screen_splat.h"
+
+namespace astrosplat {
+
+/// The footprint of an ellipsoid: the unit ball under `ellipsoid` (columns in camera space, scene units) at
+/// p. What px_per_unit makes of a ball's radius it makes of the ellipsoid's outline as seen along the ray.
+Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& ellipsoid, float px_per_unit);
+
+/// The two radii of a shape, px.
+struct ShapeRadii {
+    float larger, smaller;
+};
+ShapeRadii shape_radii(const Shape& shape);
+
+/// What the reach of a footprint depends on beside its shape: as in FootprintTable.
+struct FootprintExtent {
+    float reach, margin_px, variance;
+};
+/// Distance from the centre beyond which all weights are 0.
+float shape_support_px(const Shape& shape, const FootprintExtent& extent);
+
+/// A footprint over offsets from the centre that are mapped by a symmetric matrix first; `xx` and `yy` are 1
+/// and `xy` 0 where it is round.
+struct ShapedFootprint {
+    Footprint round;
+    float xx = 1.0f, xy = 0.0f, yy = 1.0f;
+};
+/// x_px, y_px: the centre, snapped to 1/256 px. The table needs the nodes for the radii of node_range.
+ShapedFootprint shaped_footprint_at(const FootprintTable& table, const Shape& shape, float x_px, float y_px);
+
+/// Least and largest radius whose nodes a shape's footprint asks for, px.
+struct NodeRange {
+    float least_px, largest_px;
+};
+NodeRange node_range(const Shape& shape);
+
+}  // namespace astrosplat
