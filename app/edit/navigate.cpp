@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "camera/projection.h"
 #include "core/real.h"
 #include "edit/view_camera.h"
 
@@ -58,8 +59,9 @@ FreeCamera scaled_about(const FreeCamera& camera, const glm::dvec3& fixed, doubl
 }  // namespace
 
 double scene_units_per_px(const FreeCamera& camera, double viewport_height_px) {
-    if (camera.orthographic) return camera.height / viewport_height_px;
-    return 2.0 * distance_of(camera) * real::tan(real::radians(camera.fov_deg) * 0.5) / viewport_height_px;
+    const Camera resolved = make_camera(camera_params(camera), viewport_height_px, viewport_height_px, {});
+    const glm::dvec3 pivot(0.0, 0.0, -distance_of(camera));
+    return 1.0 / exact::instance_of(make_exact_lens(resolved), pivot).px_per_unit;
 }
 
 glm::dvec3 point_under(const FreeCamera& camera, const glm::dvec2& px, const glm::dvec2& viewport_px) {
@@ -68,12 +70,9 @@ glm::dvec3 point_under(const FreeCamera& camera, const glm::dvec2& px, const glm
 
 glm::dvec3 point_at_depth(const FreeCamera& camera, const glm::dvec2& px, const glm::dvec2& viewport_px,
                           double depth) {
-    const ViewAxes axes = view_axes(camera);
-    const double scale =
-        scene_units_per_px(camera, viewport_px.y) * (camera.orthographic ? 1.0 : depth / distance_of(camera));
-    const glm::dvec2 from_middle = px - viewport_px * 0.5;
-    return camera.position + axes.forward * depth + axes.right * (from_middle.x * scale) -
-           axes.up * (from_middle.y * scale);
+    const Camera resolved = make_camera(camera_params(camera), viewport_px.x, viewport_px.y, {});
+    return resolved.eye +
+           resolved.world_from_camera * exact::point_at_depth(make_exact_lens(resolved), px.x, px.y, depth);
 }
 
 FreeCamera orbit(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px) {

@@ -1,5 +1,5 @@
-// From linear pictures to what the screen shows: exposure, view transform over black, A/B wipe, difference,
-// letterbox.
+// From linear pictures to what the screen shows: exposure, view transform over black, A/B wipe,
+// difference, letterbox.
 #pragma once
 
 #include <cstdint>

@@ -15,9 +15,8 @@
 namespace astrosplat {
 
 /// The vertex stage of what draws splats.
-inline const std::vector<std::string> splat_vertex_files = {
-    "maths.glsl",        "blend.glsl",      "lens.glsl",      "instance.glsl",    "perspective.glsl",
-    "orthographic.glsl", "projection.glsl", "footprint.glsl", "splat_vertex.glsl"};
+inline const std::vector<std::string> splat_vertex_files =
+    after_projections({"maths.glsl", "blend.glsl", "footprint.glsl", "splat_vertex.glsl"});
 
 /// One layer of a group: its constants for this picture, its footprints, and where its splats begin.
 struct DrawLayer {

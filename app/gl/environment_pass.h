@@ -10,9 +10,8 @@
 namespace astrosplat {
 
 /// The fragment stage of what draws the environment.
-inline const std::vector<std::string> environment_fragment_files = {
-    "lens.glsl",         "instance.glsl",   "perspective.glsl",
-    "orthographic.glsl", "projection.glsl", "environment_fragment.glsl"};
+inline const std::vector<std::string> environment_fragment_files =
+    after_projections({"environment_fragment.glsl"});
 
 class EnvironmentPass {
   public:

@@ -19,7 +19,7 @@ namespace astrosplat {
 class RawSplatStore {
   public:
     RawSplats& of(const std::shared_ptr<const SplatSet>& set);
-    /// Drops the sets that nobody asked for since the last call.
+    /// Drops the sets not asked for since the last call.
     void drop_unused();
 
   private:

@@ -9,8 +9,8 @@
 
 namespace astrosplat {
 
-/// Sizes of the arrays in a shader that is made for the look at hand; as the shared files have them by
-/// default.
+/// Sizes of the arrays in a shader that is made for the look at hand; as the shared files have them
+/// by default.
 struct LookLimits {
     int keys = shared_types::LOOK_MAX_KEYS;
     int noises = shared_types::LOOK_MAX_NOISES;

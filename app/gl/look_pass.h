@@ -1,5 +1,5 @@
-// The look on the GPU: raw splats through look_splat of shaders/shared into shaded buffers, by transform
-// feedback.
+// The look on the GPU: raw splats through look_splat of shaders/shared into shaded buffers, by
+// transform feedback.
 #pragma once
 
 #include <cstdint>

@@ -87,8 +87,8 @@ struct GlPreview::State {
     std::map<std::size_t, GroupSplats> groups;  // by place in the frame
     OrderThread orders;
     GlTarget picture, own_picture;
-    GlProgram lay_covering{{{"LAYS 0"}, {"screen_vertex.glsl"}, {"lay_fragment.glsl"}, {}}};
-    GlProgram lay_screen{{{"LAYS 2"}, {"screen_vertex.glsl"}, {"lay_fragment.glsl"}, {}}};
+    GlProgram composite_covering{{{"BLEND 0"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}, {}}};
+    GlProgram composite_screen{{{"BLEND 2"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}, {}}};
     GlVertexArray nothing;
     std::map<const SplatSet*, std::pair<std::weak_ptr<const SplatSet>, Bounds>> boxes;
     std::int64_t shown = 0;
@@ -106,7 +106,7 @@ struct GlPreview::State {
     void update(std::vector<FrameGroup>& frame, int width, int height);
     void wait_for_orders(std::vector<FrameGroup>& frame);
     void draw_group(const FrameGroup& group, GroupSplats& splats);
-    void lay(const BlendGroup& group);
+    void composite(const BlendGroup& group);
     void begin_picture(const Camera& camera, const Environment* sky);
 };
 
@@ -192,9 +192,9 @@ void GlPreview::State::draw_group(const FrameGroup& group, GroupSplats& splats) 
     draw.draw(input, splats.buffers(), footprints);
 }
 
-void GlPreview::State::lay(const BlendGroup& group) {
+void GlPreview::State::composite(const BlendGroup& group) {
     picture.bind();
-    (group.blend == Blend::screen ? lay_screen : lay_covering).use();
+    (group.blend == Blend::screen ? composite_screen : composite_covering).use();
     bind_texture(0, GL_TEXTURE_2D, own_picture.texture());
     begin_blending(group.blend == Blend::lighten ? FoldKind::lighten : FoldKind::general);
     glBindVertexArray(nothing.get());
@@ -230,7 +230,7 @@ unsigned GlPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& 
             state.picture.bind();
         }
         state.draw_group(frame[g], state.groups[g]);
-        if (own) state.lay(frame[g].blend);
+        if (own) state.composite(frame[g].blend);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return state.picture.texture();

@@ -105,6 +105,13 @@ std::string readable_log(const std::string& log, const std::vector<FileStart>& f
     return result;
 }
 
+std::vector<std::string> after_projections(const std::vector<std::string>& more) {
+    std::vector<std::string> files = {"lens.glsl", "instance.glsl", "perspective.glsl", "orthographic.glsl",
+                                      "projection.glsl"};
+    files.insert(files.end(), more.begin(), more.end());
+    return files;
+}
+
 GlProgram::GlProgram(const ProgramSource& source) {
     const Stage vertex(GL_VERTEX_SHADER, source, source.vertex);
     program_ = glCreateProgram();

@@ -10,8 +10,8 @@
 
 namespace astrosplat {
 
-/// What a program is made of. Each stage is "#version 410 core", the defines and its files one after the
-/// other.
+/// What a program is made of. Each stage is "#version 410 core", the defines and its files one after
+/// the other.
 struct ProgramSource {
     std::vector<std::string> defines;   // "QUADS" or "KIND 2"
     std::vector<std::string> vertex;    // names for shader_text()
@@ -20,6 +20,9 @@ struct ProgramSource {
     /// Values instead of those in the texts, for lines "const int NAME = 8;".
     std::vector<std::pair<std::string, int>> constants = {};
 };
+
+/// The files of projection.glsl and what it needs, followed by `more`.
+std::vector<std::string> after_projections(const std::vector<std::string>& more);
 
 class GlProgram {
   public:
@@ -47,8 +50,8 @@ struct FileStart {
     std::string name;
     int line = 1;
 };
-/// The driver's compile log as one line, with "0:117" or "0(117)" at the start of its lines written as
-/// "look.glsl:17".
+/// The driver's compile log as one line, with "0:117" or "0(117)" at the start of its lines written
+/// as "look.glsl:17".
 std::string readable_log(const std::string& log, const std::vector<FileStart>& files);
 
 }  // namespace astrosplat

@@ -21,8 +21,8 @@ struct CameraParams {
     std::optional<glm::dvec3> position;  // empty: frame all visible layers from 35 degrees above +z
     glm::dvec3 target{0.0};
     glm::dvec3 up{0.0, 1.0, 0.0};
-    std::optional<glm::dvec4>
-        rotation;                // quaternion x y z w, world from camera; replaces target, up and roll
+    /// Quaternion x y z w, world from camera; replaces target, up and roll.
+    std::optional<glm::dvec4> rotation;
     double roll = 0.0;           // degrees; > 0 turns the camera clockwise as seen from behind it
     double fov = 45.0;           // degrees, vertical
     double focal_length = 0.0;   // mm; > 0 replaces fov, with film_width

@@ -1,6 +1,6 @@
 // shaders/shared/lens.glsl as C++: a camera's projection with floats (Lens), as splats are projected, and
-// with doubles (ExactLens), as rays are. External linkage, so that kernels for several instruction sets share
-// them.
+// with doubles (ExactLens), as rays are. External linkage, so that kernels for several instruction sets
+// share them.
 #pragma once
 
 #include "core/glsl.h"

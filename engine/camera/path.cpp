@@ -80,8 +80,8 @@ double smooth_fraction(std::span<const Key<T>> keys, const Travelled& travelled,
     return hermite(0.0, limited(i), 1.0, limited(i + 1), fraction_in(keys, i, frame));
 }
 
-// Positions as a curve: key i lies at knot[i]; centripetal, so a knot interval is the square root of the
-// distance.
+// Positions as a curve: key i lies at knot[i]; centripetal, so a knot interval is the square root of
+// the distance.
 struct Curve {
     std::span<const Key<glm::dvec3>> keys;
     std::vector<double> knot;
@@ -151,8 +151,8 @@ double distance_share(double u, bool ease_in, bool ease_out) {
     return (u - (ease_in ? 0.5 * ramp : 0.0)) / whole;
 }
 
-// u in [u0, u1] of segment i at which `length` has been covered since u0: bisection, then the bracket is
-// exact.
+// u in [u0, u1] of segment i at which `length` has been covered since u0: bisection, then the bracket
+// is exact.
 double solve_length(const Curve& curve, std::size_t i, double u0, double u1, double length) {
     double lo = u0, hi = u1;
     for (int k = 0; k < 50; ++k) {

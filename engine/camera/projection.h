@@ -15,12 +15,7 @@
 namespace astrosplat::shared {
 using namespace astrosplat::shared_types;
 namespace {
-#include "instance.glsl"
-// before the projections
-#include "orthographic.glsl"
-#include "perspective.glsl"
-// before their table
-#include "projection.glsl"
+#include "camera/projections.inc"
 }  // namespace
 }  // namespace astrosplat::shared
 
@@ -37,12 +32,7 @@ double floor(double x) { return std::floor(x); }
 double min(double a, double b) { return b < a ? b : a; }
 double max(double a, double b) { return a < b ? b : a; }
 double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-#include "instance.glsl"
-// before the projections
-#include "orthographic.glsl"
-#include "perspective.glsl"
-// before their table
-#include "projection.glsl"
+#include "camera/projections.inc"
 }  // namespace
 }  // namespace astrosplat::exact
 

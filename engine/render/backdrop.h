@@ -1,4 +1,4 @@
-// The environment as one camera sees it, for pictures in motion: a ready picture that render() lays behind
+// The environment as one camera sees it, for pictures in motion: a ready picture that render() puts behind
 // the splats instead of asking the environment at every pixel, where exact directions cost more than all
 // splats of a preview.
 #pragma once

@@ -40,9 +40,9 @@ struct Environment {
 Environment load_environment(const EnvironmentParams& params);
 void set_environment_params(Environment& environment, const EnvironmentParams& params);
 
-/// Where an equirectangular picture shows a unit direction (environment space), from its upper left corner, 0
-/// to 1: OpenEXR's latlong, latitude +90 degrees on top, longitude +180 on the left, 0 towards +z, 90 towards
-/// +x.
+/// Where an equirectangular picture shows a unit direction (environment space), from its upper left corner,
+/// 0 to 1: OpenEXR's latlong, latitude +90 degrees on top, longitude +180 on the left, 0 towards +z, 90
+/// towards +x.
 glm::dvec2 latlong_place(const glm::dvec3& direction);
 
 /// Colour seen along a unit direction in world space; `spread` is the angle in radians between neighbouring

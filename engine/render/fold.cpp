@@ -119,8 +119,8 @@ HWY_INLINE bool fold_open(const SplatBatch& batch, SplatBits bits, const BlockPa
     auto pixels = load_pixels<Pixels>(planes, part.at);
     if (!all_open(pixels, stop)) return false;
     fold_splats<Outline::soft, false>(batch, bits, part, stop, planes, pixels);
-    // Transmittances never grow: if all pixels are open at the end they were all the time, and nobody needed
-    // to ask.
+    // Transmittances never grow: if all pixels are open at the end they were all the time, and no splat
+    // needed to be asked about.
     if (!all_open(pixels, stop)) return false;
     store_pixels(pixels, planes, part.at);
     return true;
@@ -256,8 +256,8 @@ FoldCommon common_of(const FoldJob& job) {
     return {one_table && job.shapes.empty() ? layers[0].footprints : nullptr, screen};
 }
 
-/// Folds the splats found, as far as they make whole batches; the others move to the front. `last`: also
-/// those.
+/// Folds the splats found, as far as they make whole batches; the others move to the front. `last`:
+/// also those.
 template <class Pixels, Outline kOutline>
 void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSplats& found, SplatBatch& batch,
                 Cell& cell, TilePlanes& planes) {

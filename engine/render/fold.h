@@ -1,6 +1,6 @@
-// The fold: a tile's splats, near to far, into its pixels (DESIGN 7). Each pixel is one left fold in total
-// order with a transmittance per channel; vector code through Highway, the same bits on every instruction
-// set.
+// The fold: a tile's splats, near to far, into its pixels (DESIGN 7). Each pixel is one left fold in
+// total order with a transmittance per channel; vector code through Highway, the same bits on every
+// instruction set.
 //
 // A tile is made of cells of 32 x 32 px, a cell of 8 x 8 blocks of 4 x 4 px. Splats are prepared 128 at a
 // time; then each block folds those of them that touch it, with its pixels in registers.
@@ -20,8 +20,8 @@
 
 namespace astrosplat {
 
-/// How the splats of a blend group go together; the simpler folds give the bits of the general one with less
-/// work.
+/// How the splats of a blend group go together; the simpler folds give the bits of the general one with
+/// less work.
 enum class FoldKind {
     over,     // all layers over: one transmittance for all channels
     add,      // all layers add: nothing hides anything

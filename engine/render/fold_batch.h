@@ -23,7 +23,7 @@ struct SplatBits {
         high |= other.high;
         return *this;
     }
-    /// Takes out the first; `size` when there is none. Without branches, which could not be foretold.
+    /// Takes out the first; `size` when there is none. Without branches, which would be unpredictable.
     int take_first() {
         const std::uint64_t in_high = std::uint64_t{0} - std::uint64_t{low == 0};  // all bits or none
         const std::uint64_t word = low | (high & in_high), rest = word & (word - 1);
@@ -48,8 +48,8 @@ struct SplatBatch {
     alignas(64) SplatBits touches[blocks];  // splats that may have weight in the block
     std::uint16_t layer[places];
     std::uint8_t linear_in_distance[places];  // as in FootprintTable
-    std::uint8_t
-        bright[places];  // a screen splat with a channel above 1: alpha is the mean of the clamped ones
+    // A screen splat with a channel above 1: alpha is the mean of the clamped ones.
+    std::uint8_t bright[places];
 
     // The weight, as in Footprint.
     alignas(64) float cubic[places][4][FootprintNode::segments];  // [splat][power][segment]

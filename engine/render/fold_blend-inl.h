@@ -35,8 +35,8 @@ HWY_INLINE V saturate(V v) { return clamp_one(clamp_zero(v)); }
 
 /// One of sixteen coefficients per lane, by the lowest four bits of `segment`.
 HWY_INLINE V look_up(const float* c, VI segment) {
-    // Permutes across a whole vector ignore higher bits by themselves; only Highway's own debug checks do
-    // not.
+    // Permutes across a whole vector ignore higher bits by themselves; only Highway's own debug checks
+    // do not.
     constexpr bool ignores_high_bits = lanes >= 8 && !HWY_IS_DEBUG_BUILD;
     const VI low = ignores_high_bits ? segment : hn::And(segment, hn::Set(DI(), lanes - 1));
     const auto index = hn::IndicesFromVec(D(), low);
@@ -111,8 +111,8 @@ HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits,
     return to;
 }
 
-/// Their weights at the pixels, without the amplitudes. Not clamped: the cubics may leave [0, 1] by a few
-/// 1e-5.
+/// Their weights at the pixels, without the amplitudes. Not clamped: the cubics may leave [0, 1] by a
+/// few 1e-5.
 template <Outline kOutline>
 HWY_INLINE void end_splats(const SplatBatch& batch, const SplatsUnderway& from, V (&w)[sides]) {
     const auto coefficient = [&](int n, int power) {

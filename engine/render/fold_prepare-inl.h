@@ -1,6 +1,6 @@
 // Vector code that prepares a batch of splats for the fold: which blocks they touch, their weights' cubics
-// and normalisation, and their blending. Gives the footprints of footprint_at. Included once per instruction
-// set.
+// and normalisation, and their blending. Gives the footprints of footprint_at. Included once per
+// instruction set.
 #if defined(ASTROSPLAT_FOLD_PREPARE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef ASTROSPLAT_FOLD_PREPARE_INL_H
 #undef ASTROSPLAT_FOLD_PREPARE_INL_H
@@ -33,8 +33,8 @@ using namespace astrosplat::shared_types;
 }  // namespace
 #pragma GCC diagnostic pop
 
-/// Squared distance along one axis from `lanes` splats to the nearest pixel centre of a row or column of
-/// blocks.
+/// Squared distance along one axis from `lanes` splats to the nearest pixel centre of a row or column
+/// of blocks.
 HWY_INLINE V distance_to_block(V center, float first_px) {
     const float half = 0.5f * static_cast<float>(TilePlanes::block_px - 1);
     const V middle = all(first_px + 0.5f * static_cast<float>(TilePlanes::block_px));

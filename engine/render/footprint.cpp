@@ -137,8 +137,8 @@ std::array<double, samples> sample_profile(const FootprintTable& table, const Fa
     std::array<double, samples> p;
     for (int i = 0; i < samples; ++i) p[i] = profile.at(distance_at(table, range, double(i) / (samples - 1)));
     const double excess = p[samples - 1];
-    // Also for the node just below the radius where a flat inside begins: it is interpolated with the next
-    // one.
+    // Also for the node just below the radius where a flat inside begins: it is interpolated with the
+    // next one.
     const bool flat_inside = radius_px * (1.0 + 1.0 / 32.0) * table.core > 4.0 * table.pixel_filter_px;
     const double lack = flat_inside ? 1.0 - p[0] : 0.0;
     for (int i = 0; i < samples; ++i) {

@@ -1,16 +1,16 @@
-// Footprints: a falloff convolved with the pixel filter, as a radial profile that the fold evaluates per
-// pixel.
+// Footprints: a falloff convolved with the pixel filter, as a radial profile that the fold evaluates
+// per pixel.
 //
-// For a splat of radius R px the weight of a pixel at distance d from its centre is P(u), a piecewise cubic
-// of 16 segments over u in [0, 1], where u runs linearly over [lo, hi] in d^2 (constant, gaussian) or in d
-// (the others). hi is the edge of the support; below lo the profile is flat and exactly 1. Tables exist for
-// 32 radii per octave and are interpolated linearly in between; sixteen segments because that is one vector
-// permute.
+// For a splat of radius R px the weight of a pixel at distance d from its centre is P(u), a piecewise
+// cubic of 16 segments over u in [0, 1], where u runs linearly over [lo, hi] in d^2 (constant, gaussian)
+// or in d (the others). hi is the edge of the support; below lo the profile is flat and exactly 1. Tables
+// exist for 32 radii per octave and are interpolated linearly in between; sixteen segments because that is
+// one vector permute.
 //
 // Sampling P at pixel centres does not conserve light: by Poisson's formula the sum over all pixels is the
-// integral times 1 + ripple(sub-pixel offset), where ripple is the profile's spectrum at whole frequencies.
-// It is divided out, in closed form, so the flux is right at every radius and offset without summing pixels
-// first.
+// integral times 1 + ripple(sub-pixel offset), where ripple is the profile's spectrum at whole
+// frequencies. It is divided out, in closed form, so the flux is right at every radius and offset without
+// summing pixels first.
 #pragma once
 
 #include <algorithm>

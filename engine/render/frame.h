@@ -46,11 +46,10 @@ struct RenderStatistics {
 };
 
 struct RenderedFrame {
-    Image beauty;  // RGBA, linear, premultiplied; region-sized
-    Image depth;   // 1 channel: opacity-weighted mean distance along the view axis, 0 where alpha is 0
-    Image
-        coverage;  // 1 channel: 1 - product of (1 - weight): covered share of the pixel, whatever the opacity
-    Image count;   // 1 channel: splats that reached the pixel
+    Image beauty;    // RGBA, linear, premultiplied; region-sized
+    Image depth;     // 1 channel: opacity-weighted mean distance along the view axis, 0 where alpha is 0
+    Image coverage;  // 1 channel: 1 - product of (1 - weight), whatever the opacity
+    Image count;     // 1 channel: splats that reached the pixel
     std::vector<Image> layers;  // RGBA each, in the order given: the layer's light as it arrives
     RenderStatistics statistics;
 };

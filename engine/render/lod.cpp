@@ -124,8 +124,8 @@ std::vector<double> LodTable::mean_footprint(int level) const {
     return q;
 }
 
-/// The child alpha for which the light beside `rest` (the share the coarser level lets through) reaches
-/// `target`.
+/// The child alpha for which the light beside `rest` (the share the coarser level lets through)
+/// reaches `target`.
 double LodTable::solve(double target, const std::vector<double>& rest, int number, const Level& level) const {
     const auto light = [&](double alpha) {
         double sum = 0.0;

@@ -32,8 +32,8 @@ inline float child_radius_scale(int level) {
     return level == 0 ? 1.0f : 2.0f / static_cast<float>(1 << level);
 }
 
-/// Child alphas and positions for one falloff. Building is lazy and not thread-safe; lookups after prepare()
-/// are.
+/// Child alphas and positions for one falloff. Building is lazy and not thread-safe; lookups after
+/// prepare() are.
 class LodTable {
   public:
     explicit LodTable(const Falloff& falloff);

@@ -32,8 +32,8 @@ glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
     return glm::vec3(layer.camera_from_layer * glm::dvec3(p) + layer.origin_in_camera);
 }
 
-/// Where a splat is and what it looks like there, if `support_px` around it touches `rect` and it shows at
-/// all.
+/// Where a splat is and what it looks like there, if `support_px` around it touches `rect` and it shows
+/// at all.
 bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const shared::Instance& at,
                  std::int64_t index, float support_px, const ScreenRect& rect, ScreenSplat& out) {
     if (!shared::is_in_range(layer.lens, at.depth) || !(splat.alpha > 0.0f)) return false;

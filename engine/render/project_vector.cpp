@@ -27,12 +27,7 @@ using Vec3 = LaneVectors<D>;
 namespace {
 using namespace astrosplat::glsl;
 using namespace astrosplat::shared_types;
-#include "instance.glsl"
-// before the projections
-#include "orthographic.glsl"
-#include "perspective.glsl"
-// before their table
-#include "projection.glsl"
+#include "camera/projections.inc"
 }  // namespace
 #pragma GCC diagnostic pop
 

@@ -1,5 +1,5 @@
-// The projection's usual case, no level of detail, in vectors of splats: the bits of project(), which it
-// serves.
+// The projection's usual case, no level of detail, in vectors of splats: the bits of project(), which
+// it serves.
 #pragma once
 
 #include "render/project.h"

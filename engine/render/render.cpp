@@ -223,7 +223,7 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
         if (g == job.groups.size()) break;  // nothing but the environment
         const std::span<const ScreenSplat* const> order = worker.sorter.sort(worker.runs, job.progress);
         fold({order, job.fold_layers, fold_settings, job.progress, bins.shapes()}, worker.planes);
-        if (!alone) worker.resolver.lay(job.groups[g], worker.planes);
+        if (!alone) worker.resolver.composite(job.groups[g], worker.planes);
     }
     if (begun && alone)
         worker.resolver.write_alone(job.groups[0], worker.planes, job.region.x, job.region.y, frame);
@@ -232,8 +232,8 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
     if (job.tile_done) job.tile_done(region, frame);
 }
 
-/// The tiles in the order in which they are rendered: when somebody watches, from the middle of the picture
-/// outwards.
+/// The tiles in the order in which they are rendered: with tile_done from the middle of the
+/// picture outwards.
 std::vector<std::int64_t> tile_order(const Job& job, const TileGrid& grid) {
     std::vector<std::int64_t> order(static_cast<std::size_t>(grid.tiles()));
     std::iota(order.begin(), order.end(), std::int64_t{0});
@@ -311,8 +311,7 @@ Tiles choose_tiles(const Job& job) {
     return {grid, records[0]};
 }
 
-/// The picture in bands of `band_rows` rows of tiles, those nearest to the middle first when somebody
-/// watches.
+/// The picture in bands of `band_rows` rows of tiles, with tile_done those nearest to the middle first.
 std::vector<TileGrid> make_bands(const Job& job, const TileGrid& grid, std::int64_t band_rows) {
     std::vector<TileGrid> bands;
     for (std::int64_t row = 0; row < grid.rows(); row += band_rows) {

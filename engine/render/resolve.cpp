@@ -105,7 +105,7 @@ void TileResolver::begin_with_backdrop(const TilePlanes& tile) {
     }
 }
 
-void TileResolver::lay(const BlendGroup& group, const TilePlanes& planes) {
+void TileResolver::composite(const BlendGroup& group, const TilePlanes& planes) {
     for (int y = 0; y < planes.height; ++y) {
         for (int x = 0; x < planes.width; ++x) {
             const std::size_t i = planes.at(x, y), n = static_cast<std::size_t>(y * planes.width + x);

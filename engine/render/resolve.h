@@ -17,7 +17,7 @@ struct BlendGroup {
     std::vector<std::size_t> layers;  // indices into the layers given to render()
     FoldKind kind = FoldKind::general;
     bool isolated = false;
-    Blend blend = Blend::over;  // of an isolated layer: how it is laid on what is behind it
+    Blend blend = Blend::over;  // of an isolated layer: how it is composited
     bool holdout = false;       // of an isolated layer
 };
 
@@ -25,7 +25,7 @@ struct BlendGroup {
 /// it. `aovs`: more than the beauty is asked for, so every group needs the general fold.
 std::vector<BlendGroup> make_groups(std::span<const RenderLayer> layers, bool aovs);
 
-/// One pixel while groups are laid on each other.
+/// One pixel while groups are composited.
 struct PixelState {
     float color[3] = {0.0f, 0.0f, 0.0f};
     float alpha = 0.0f;
@@ -41,12 +41,12 @@ class TileResolver {
 
     /// Begins a tile with the environment behind it (null: black, transparent).
     void begin(const TilePlanes& tile, const Camera& camera, const Environment* environment);
-    /// Lays a group's planes on what is there.
-    void lay(const BlendGroup& group, const TilePlanes& planes);
-    /// Writes the pixels to their place in the frame's images, whose corner is (x0, y0) px of the whole
-    /// picture.
+    /// Composites a group over what is there.
+    void composite(const BlendGroup& group, const TilePlanes& planes);
+    /// Writes the pixels to their place in the frame's images, whose corner is (x0, y0) px of the
+    /// whole picture.
     void write(const TilePlanes& tile, std::int64_t x0, std::int64_t y0, RenderedFrame& frame) const;
-    /// begin, lay and write in one for the only group of a picture without AOVs, if it is not isolated,
+    /// begin, composite and write in one for the only group of a picture without AOVs, if it is not isolated,
     /// before nothing or a backdrop.
     void write_alone(const BlendGroup& group, const TilePlanes& tile, std::int64_t x0, std::int64_t y0,
                      RenderedFrame& frame) const;

@@ -121,7 +121,7 @@ std::span<const TileBins::Entry> TileBins::list_entries(const LayerProjection& l
     for (std::uint32_t i = 0; i < count; ++i) {
         const BinRect r = rects[i];
         const std::uint32_t first = group_bin + r.first_bin;
-        if (r.wide <= 2 && r.high <= 2) {  // nearly always: without branches that cannot be foretold
+        if (r.wide <= 2 && r.high <= 2) {  // nearly always: without unpredictable branches
             const std::uint32_t two_wide = r.wide - 1, two_high = r.high - 1;
             *end++ = {first, i};
             *end = {first + 1, i}, end += two_wide;

@@ -1,5 +1,5 @@
-// Scatter: screen splats into the picture's tiles, in one pass over the shaded splats and one write of each
-// record.
+// Scatter: screen splats into the picture's tiles, in one pass over the shaded splats and one write of
+// each record.
 //
 // Splats are projected a few hundred at a time and appended to bins, where each worker fills blocks of its
 // own. A bin is a square of tiles of one blend group: small splats go to bins of one tile, larger ones to
@@ -129,8 +129,8 @@ class TileBins {
     std::vector<std::size_t> first_block_;              // of each bin; one more at the end
 };
 
-/// Records that the layers will take in tiles of each of the sizes, estimated from every 64th block of
-/// splats.
+/// Records that the layers will take in tiles of each of the sizes, estimated from every 64th block
+/// of splats.
 std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
                                            std::span<const int> tile_sizes_px, const Progress& progress);
 

@@ -25,8 +25,8 @@ struct Shape {
     float xx, xy, yx, yy;  // (xx, yx) is where (1, 0) goes
 };
 
-// Numbers of shapes are floats with the sign bit set, from just beyond -0 on; radii never have it set but for
-// -0.
+// Numbers of shapes are floats with the sign bit set, from just beyond -0 on; radii never have it set but
+// for -0.
 inline bool is_round(const ScreenSplat& splat) {
     return std::bit_cast<std::uint32_t>(splat.radius_px) <= 0x80000000u;
 }

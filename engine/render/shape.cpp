@@ -62,8 +62,8 @@ class Spectrum {
     }
 
   private:
-    /// At (kx, ky) cycles per px. That of the edge is not the same shape at all radii: only the filter's part
-    /// is.
+    /// At (kx, ky) cycles per px. That of the edge is not the same shape at all radii: only the filter's
+    /// part is.
     double value(bool of_edge, double kx, double ky) const {
         const double along = kx * x_ + ky * y_, squared = kx * kx + ky * ky + gain_ * along * along;
         const double radius = of_edge ? radius_ : radius_ * std::sqrt(squared);

@@ -1,6 +1,8 @@
 // Projection: camera space (x right, y up, in front is -z) to the picture. To the renderer and the preview all
-// projections are alike: each is a file of functions with its name in front, and lines in the table below. Needs
-// lens.glsl, instance.glsl and the files of the projections.
+// projections are alike. Each is a file of functions with its name in front, a constant in lens.glsl, lines in the table
+// below, a place in the lists of camera/projections.inc and app/gl/program.cpp, and what make_camera makes of its
+// parameters. One under which a ball is no circle draws all splats as ellipsoids: render/shape.h.
+// Needs lens.glsl, instance.glsl and the files of the projections.
 
 // Rays do not come from the eye but are parallel to the view axis.
 bool has_parallel_rays(Lens lens) { return lens.projection == PROJECTION_ORTHOGRAPHIC; }

@@ -50,11 +50,11 @@ TEST_F(ReferenceCompiler, TakesTheLook) {
 TEST_F(ReferenceCompiler, TakesThePassesOverThePicture) {
     EXPECT_TRUE(takes("vert", {}, {"screen_vertex.glsl"}));
     EXPECT_TRUE(takes("frag", {}, environment_fragment_files));
-    EXPECT_TRUE(takes("frag", {"LAYS 0"}, {"lay_fragment.glsl"}));
-    EXPECT_TRUE(takes("frag", {"LAYS 2"}, {"lay_fragment.glsl"}));
-    EXPECT_TRUE(takes("frag", {"VIEW 2", "TAPS_A 1", "DITHER"}, {"display_fragment.glsl"}));
+    EXPECT_TRUE(takes("frag", {"BLEND 0"}, {"composite_fragment.glsl"}));
+    EXPECT_TRUE(takes("frag", {"BLEND 2"}, {"composite_fragment.glsl"}));
+    EXPECT_TRUE(takes("frag", {"VIEW 2", "TAPS_A 1", "DITHER"}, {"dispcomposite_fragment.glsl"}));
     EXPECT_TRUE(takes("frag", {"VIEW 1", "TAPS_A 2", "VIEW_B 3", "TAPS_B 1", "DIFFERENCE"},
-                      {"display_fragment.glsl"}));
+                      {"dispcomposite_fragment.glsl"}));
 }
 
 }  // namespace
