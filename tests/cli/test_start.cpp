@@ -1,0 +1,36 @@
+// What the program loads when it starts.
+#include "cli/scene_fixture.h"
+
+namespace astrosplat::test {
+namespace {
+
+class Start : public SceneTest {
+  protected:
+    /// What the dynamic linker says it loaded during a run.
+    std::string libraries_of(const std::vector<std::string>& arguments) const {
+        const fs::path report = folder / ("libraries of " + arguments[0]);
+        fs::create_directories(report);
+        const std::string output = "LD_DEBUG_OUTPUT=" + (report / "report").string();
+        EXPECT_EQ(run(arguments, {.environment = {"LD_DEBUG=files", output}}).code, 0);
+        std::string text;
+        for (const auto& entry : fs::directory_iterator(report)) text += text_of(entry.path());
+        return text;
+    }
+};
+
+// With all that it needs OpenImageIO is 250 libraries, a fifth of a second and 100 MB.
+TEST_F(Start, ThePictureLibraryWaitsForTheFirstPicture) {
+#if !defined(__x86_64__)
+    GTEST_SKIP() << "only x86-64 has the lazy loader";
+#endif
+    write_text(folder / "picture.ppm", small_picture());
+    const std::string library = "libOpenImageIO.so";
+    EXPECT_NE(libraries_of({"info", "picture.ppm"}).find(library), std::string::npos);
+    const std::string without = libraries_of({"parameters"});
+    EXPECT_NE(without.find("libc.so"), std::string::npos);
+    EXPECT_EQ(without.find(library), std::string::npos);
+    EXPECT_EQ(libraries_of({"info", "stars.pda"}).find(library), std::string::npos);
+}
+
+}  // namespace
+}  // namespace astrosplat::test
