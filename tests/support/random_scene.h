@@ -1,0 +1,80 @@
+// Small scenes drawn at random from everything that the renderer can mix: for comparisons of two ways to a
+// picture.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "camera/camera.h"
+#include "render/frame.h"
+
+namespace astrosplat::test {
+
+struct RandomScene {
+    std::vector<ShadedSplats> sets;  // one a layer
+    std::vector<RenderLayer> layers;
+    Camera camera;
+    RenderSettings settings;
+
+    RandomScene(const RandomScene&) = delete;  // layers point to sets
+    RandomScene& operator=(const RandomScene&) = delete;
+
+    /// The same scene for the same seed on every machine: 1 to 4 layers of `splats` splats, 48x36 px.
+    RandomScene(std::uint32_t seed, int splats) : random_(seed) {
+        const std::size_t count = 1 + random_() % 4;
+        sets.resize(count);
+        for (std::size_t l = 0; l < count; ++l) add_layer(l, splats);
+        settings.width = 48;
+        settings.height = 36;
+        settings.pixel_filter = pick({0.3f, 0.5f, 1.0f});
+        camera.projection = random_() % 3 == 0 ? Projection::orthographic : Projection::perspective;
+        camera.eye = {between(-1, 1), between(-1, 1), 9.0};
+        const glm::dvec3 back = glm::normalize(camera.eye),
+                         right = glm::normalize(glm::cross({0.1, 1.0, 0.0}, back));
+        camera.world_from_camera = {right, glm::cross(back, right), back};
+        camera.focal_px = camera.projection == Projection::orthographic ? 6.0 : 50.0;
+        camera.center_x_px = 24.0;
+        camera.center_y_px = 18.0;
+        camera.near = pick({0.01f, 0.01f, 8.0f});
+        camera.far = pick({0.0f, 0.0f, 10.0f});
+        camera.near_fade = pick({0.0f, 1.5f});
+        camera.aspect = 48.0 / 36.0;
+    }
+
+  private:
+    double between(double lo, double hi) {
+        return lo + (hi - lo) * static_cast<double>(random_() >> 8) / 16777216.0;
+    }
+    float pick(const std::vector<float>& values) { return values[random_() % values.size()]; }
+
+    void add_layer(std::size_t number, int splats) {
+        ShadedSplats& set = sets[number];
+        for (int i = 0; i < splats; ++i) {
+            set.id.push_back(random_());
+            set.position.push_back({between(-3, 3), between(-2, 2), between(-2, 2)});
+            set.radius.push_back(static_cast<float>(std::exp2(between(-5, 1))));
+            set.alpha.push_back(static_cast<float>(between(0.05, 1)));
+            set.color.push_back({between(0, 1.5), between(0, 1.5), between(0, 1.5)});
+        }
+        RenderLayer& layer = layers.emplace_back();
+        layer.name = "layer " + std::to_string(number);
+        layer.splats = &set;
+        layer.render.falloff = {static_cast<Falloff::Shape>(random_() % 5), pick({0.2f, 0.5f, 0.9f}),
+                                pick({2.0f, 4.5f, 12.0f})};
+        layer.render.blend = static_cast<Blend>(random_() % 5);
+        layer.render.opacity = pick({1.0f, 0.6f});
+        layer.render.holdout = random_() % 6 == 0;
+        layer.render.isolate = random_() % 4 == 0;
+        layer.scale = between(0.6, 1.2);
+        const double c = std::cos(between(0, 6)), s = std::sqrt(1.0 - c * c);
+        layer.world_from_layer = {glm::dvec3(c, 0, -s), glm::dvec3(0, 1, 0), glm::dvec3(s, 0, c)};
+        layer.translate = {between(-0.5, 0.5), between(-0.5, 0.5), between(-0.5, 0.5)};
+        layer.axis = glm::normalize(glm::dvec3(between(-1, 1), 1.0, between(-1, 1)));
+    }
+
+    std::mt19937 random_;
+};
+
+}  // namespace astrosplat::test
