@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs all benchmarks on two cores, some again on one, and prints the README's table of speed in Markdown.
+# Runs all benchmarks on two cores, some again on one, and prints the table of README.md here in Markdown.
 # Usage: table.sh FOLDER, where the programs were built; `ninja bench` does that. ASTROSPLAT_BENCH_CPUS=0,1 chooses the
 # two cores, ASTROSPLAT_BENCH_RUNS=3 how many runs the medians are of, TMPDIR the disk. Needs about 8 GiB of memory, 4 GiB
 # of disk and 2 to 7 minutes.

@@ -53,7 +53,7 @@ struct Disc {
     glm::dvec3 color;
     double h;                                      // of the hybrid blend
     std::tuple<double, int, std::uint64_t> order;  // distance, layer, id: a total order
-    double gain = 1.0;                             // of the weights, so that their sum is the disc's light
+    double gain = 0.0;                             // see corrected()
 };
 
 /// What a pixel whose centre lies (dx, dy) from the disc's sees of it: the profile convolved with a Gaussian
@@ -74,17 +74,30 @@ double filtered_profile(const Falloff& falloff, double radius_px, double filter_
                               [&](double x, double y) { return filter(x, y) * disc(dx - x, dy - y); });
 }
 
-/// The weights at all pixel centres, also outside the frame, sum to the disc's integral at any size and
-/// place.
+/// A profile's weight at a pixel, corrected so that all weights together are the disc's light at any size and
+/// place: all of them by a factor, but where the profile has a flat middle, which stays exactly 1, only those
+/// of its rim.
+double corrected(const Falloff& falloff, double weight, double gain) {
+    const bool flat = falloff.shape == Falloff::Shape::constant || falloff.shape == Falloff::Shape::trapezoid;
+    return flat ? weight + gain * weight * (1.0 - weight) : weight + gain * weight;
+}
+
+/// The gain that makes the sum over all pixels, also those outside the frame, the integral of the disc.
 double gain_of(const Falloff& falloff, const Disc& disc, double filter_px) {
     const double reach = disc.radius_px + 4.0 * filter_px;
-    double sum = 0.0;
+    double sum = 0.0, change = 0.0;  // of the weights; and by a gain of 1
     for (double y = std::floor(disc.y - reach) + 0.5; y < disc.y + reach; ++y)
-        for (double x = std::floor(disc.x - reach) + 0.5; x < disc.x + reach; ++x)
-            sum += filtered_profile(falloff, disc.radius_px, filter_px, x - disc.x, y - disc.y);
-    const double light = integral_over_disc(
-        1.0, 2000, 1, [&](double x, double y) { return profile(falloff, std::hypot(x, y)); });
-    return sum > 0.0 ? light * disc.radius_px * disc.radius_px / sum : 0.0;
+        for (double x = std::floor(disc.x - reach) + 0.5; x < disc.x + reach; ++x) {
+            const double weight =
+                filtered_profile(falloff, disc.radius_px, filter_px, x - disc.x, y - disc.y);
+            sum += weight;
+            change += corrected(falloff, weight, 1.0) - weight;
+        }
+    const double light =
+        disc.radius_px * disc.radius_px * integral_over_disc(1.0, 2000, 1, [&](double x, double y) {
+            return profile(falloff, std::hypot(x, y));
+        });
+    return change > 0.0 ? (light - sum) / change : 0.0;
 }
 
 double smoothstep(double t) { return t * t * (3.0 - 2.0 * t); }
@@ -204,9 +217,9 @@ Image reference_render(std::span<const RenderLayer> layers, const Camera& camera
                 for (const Disc& disc : crowd) {
                     const LayerRender& render =
                         layers[static_cast<std::size_t>(std::get<1>(disc.order))].render;
-                    const double weight =
-                        filtered_profile(render.falloff, disc.radius_px, filter_px, x - disc.x, y - disc.y) *
-                        disc.gain;
+                    const double seen =
+                        filtered_profile(render.falloff, disc.radius_px, filter_px, x - disc.x, y - disc.y);
+                    const double weight = corrected(render.falloff, seen, disc.gain);
                     composite(render, disc, std::clamp(disc.opacity * weight, 0.0, 1.0), under);
                 }
                 if (alone)
