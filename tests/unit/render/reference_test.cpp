@@ -67,7 +67,7 @@ bool has_rims(const RandomScene& scene) {
 
 TEST(Reference, RandomScenesAreThoseOfTheTileRenderer) {
     const Environment environment = sky();
-    for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    for (std::uint32_t seed = 1; seed <= 30; ++seed) {
         const RandomScene scene(seed, 10);
         const Environment* const behind = seed % 3 == 0 ? &environment : nullptr;
         const Image reference = reference_render(scene.layers, scene.camera, behind, scene.settings);
