@@ -153,6 +153,22 @@ TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
     }
 }
 
+// Who reads a call finds its code beside the header that declares it. Mains, and parts of one declared whole,
+// have no header of their own name; their number may only fall.
+TEST(Structure, SourcesHaveTheHeaderOfTheirName) {
+    constexpr std::size_t without_header = 44;
+    std::string missing;
+    std::size_t count = 0;
+    for (const char* folder : {"engine", "app"})
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+            fs::path header = entry.path();
+            if (header.extension() != ".cpp" || fs::exists(header.replace_extension(".h"))) continue;
+            missing += "\n" + fs::relative(entry.path(), root).generic_string();
+            ++count;
+        }
+    EXPECT_LE(count, without_header) << "give the newest of these a header:" << missing;
+}
+
 TEST(Structure, TopLevelHoldsOnlyWhatWasAgreed) {
     const std::set<std::string> agreed = {
         ".ci",     ".clang-format", ".gitignore", "CMakeLists.txt", "CMakePresets.json",
