@@ -31,6 +31,7 @@ case "${1:-release}" in
 nightly)
     test_with '^(ci|nightly)$' release
     configure dev
+    cmake --build --preset dev --target glad  # its header is generated
     python3 tests/each_file_alone.py build/dev
     test_with '^(ci|nightly)$' asan
     test_with '^(ci|nightly)$' tsan core generate look render pipeline viewer ;;
