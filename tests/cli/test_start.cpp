@@ -9,9 +9,12 @@ class Start : public SceneTest {
     /// What the dynamic linker says it loaded during a run.
     std::string libraries_of(const std::vector<std::string>& arguments) const {
         const fs::path report = folder / ("libraries of " + arguments[0]);
+        fs::remove_all(report);
         fs::create_directories(report);
         const std::string output = "LD_DEBUG_OUTPUT=" + (report / "report").string();
-        EXPECT_EQ(run(arguments, {.environment = {"LD_DEBUG=files", output}}).code, 0);
+        RunOptions options;
+        options.environment = {"LD_DEBUG=files", output};
+        EXPECT_EQ(run(arguments, options).code, 0);
         std::string text;
         for (const auto& entry : fs::directory_iterator(report)) text += text_of(entry.path());
         return text;
