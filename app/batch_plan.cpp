@@ -17,6 +17,7 @@
 #include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/check.h"
+#include "scene/frames.h"
 #include "scene/input_files.h"
 #include "scene/load.h"
 

@@ -14,6 +14,7 @@
 #include "output/read_frame.h"
 #include "report.h"
 #include "scene/check.h"
+#include "scene/frames.h"
 #include "scene/load.h"
 #include "source/fits.h"
 #include "source/mesh.h"

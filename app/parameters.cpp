@@ -15,18 +15,6 @@
 namespace astrosplat {
 namespace {
 
-const char* type_name(ParameterType type) {
-    static constexpr std::array names = {"boolean",  "integer", "number",   "text",    "choice",
-                                         "words",    "file",    "files",    "pattern", "vector",
-                                         "position", "color",   "rotation", "curve"};
-    static_assert(names.size() == static_cast<std::size_t>(ParameterType::curve) + 1);
-    return names[static_cast<std::size_t>(type)];
-}
-
-const char* animation_name(Animation animation) {
-    return animation == Animation::no ? "no" : animation == Animation::steps ? "steps" : "yes";
-}
-
 Report to_report(const Value& value) {
     if (const Value::List* list = value.list()) {
         Report items = Report::array();
@@ -42,12 +30,14 @@ Report to_report(const Value& value) {
 Report to_report(const ParameterRow& row) {
     const ParameterSpec& spec = row.spec;
     Report report = {
-        {"key", spec.key.text()}, {"type", type_name(spec.type)}, {"default", to_report(row.standard)},
-        {"unit", spec.unit},      {"label", spec.label},          {"help", spec.help}};
-    if (std::isfinite(spec.min)) report["min"] = spec.min;
-    if (std::isfinite(spec.max)) report["max"] = spec.max;
+        {"key", spec.key.text()}, {"type", name_of(spec.type)}, {"default", to_report(row.standard)},
+        {"unit", spec.unit},      {"label", spec.label},        {"help", spec.help}};
+    if (is_numeric(spec.type)) {
+        report["min"] = spec.min;
+        report["max"] = spec.max;
+    }
     if (!spec.choices.empty()) report["choices"] = spec.choices;
-    report["animated"] = animation_name(spec.animation);
+    report["animated"] = name_of(spec.animation);
     return report;
 }
 

@@ -14,7 +14,7 @@
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
-#include "scene/load.h"
+#include "scene/frames.h"
 
 namespace astrosplat {
 namespace {

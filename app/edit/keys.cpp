@@ -12,7 +12,7 @@
 namespace astrosplat {
 namespace {
 
-using TrackKey = Key<std::vector<double>>;
+using TrackKey = Keyframe<std::vector<double>>;
 
 Track* track_of(Scene& scene, const std::string& key) {
     const Track* found = find_track(scene, key);

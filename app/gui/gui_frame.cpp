@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
-#include "scene/load.h"
+#include "scene/frames.h"
 
 namespace astrosplat {
 

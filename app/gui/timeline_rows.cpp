@@ -18,12 +18,6 @@ namespace {
 
 constexpr float row_height = 26, key_reach = 7;
 
-const char* name_of(Interpolation interpolation) {
-    return interpolation == Interpolation::linear   ? "linear"
-           : interpolation == Interpolation::smooth ? "smooth"
-                                                    : "step";
-}
-
 // Diamond: linear; disc: smooth; square: step.
 void draw_key_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation, bool selected) {
     const float half = px(5);

@@ -7,7 +7,7 @@
 #include "camera/projection.h"
 #include "core/error.h"
 #include "scene/animate.h"
-#include "scene/load.h"
+#include "scene/frames.h"
 
 namespace astrosplat {
 namespace {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "scene/frames.h"
 
 namespace astrosplat {
 namespace {

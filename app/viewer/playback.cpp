@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "scene/frames.h"
 #include "scene/load.h"
 
 namespace astrosplat {

@@ -20,20 +20,6 @@ constexpr double framing_elevation_deg = 35.0;
 constexpr double framing_fill = 0.9;    // share of the picture's width or height a framed box fills
 constexpr double parallel_sine = 1e-9;  // below this sine two directions count as parallel
 
-const char* name_of(Projection projection) {
-    switch (projection) {
-        case Projection::perspective:
-            return "perspective";
-        case Projection::orthographic:
-            return "orthographic";
-        case Projection::fisheye:
-            return "fisheye";
-        case Projection::equirectangular:
-            return "equirectangular";
-    }
-    return "";
-}
-
 void expect(bool good, const char* key, const char* expected, double found) {
     if (!good) throw InputError(fmt::format("{}: expected {}, found {}", key, expected, found));
 }

@@ -11,10 +11,15 @@
 
 #include "camera/lens.h"
 #include "core/bounds.h"
+#include "core/enum_names.h"
 
 namespace astrosplat {
 
 enum class Projection { perspective, orthographic, fisheye, equirectangular };
+constexpr auto names_of(Projection) {
+    return names_up_to<Projection::equirectangular>("perspective", "orthographic", "fisheye",
+                                                    "equirectangular");
+}
 
 struct CameraParams {
     Projection projection = Projection::perspective;

@@ -21,25 +21,25 @@ constexpr int pieces_per_segment = 32;  // of the arc length's quadrature
 
 // The key at or before `frame`, with 0 <= result < size - 1.
 template <class T>
-std::size_t segment_of(std::span<const Key<T>> keys, double frame) {
+std::size_t segment_of(std::span<const Keyframe<T>> keys, double frame) {
     auto after = std::upper_bound(keys.begin(), keys.end(), frame,
-                                  [](double f, const Key<T>& key) { return f < key.frame; });
+                                  [](double f, const Keyframe<T>& key) { return f < key.frame; });
     auto index = static_cast<std::size_t>(after - keys.begin());
     return std::min(index > 0 ? index - 1 : 0, keys.size() - 2);
 }
 
 template <class T>
-double fraction_in(std::span<const Key<T>> keys, std::size_t i, double frame) {
+double fraction_in(std::span<const Keyframe<T>> keys, std::size_t i, double frame) {
     return (frame - keys[i].frame) / (keys[i + 1].frame - keys[i].frame);
 }
 
 template <class T>
-bool outside(std::span<const Key<T>> keys, double frame) {
+bool outside(std::span<const Keyframe<T>> keys, double frame) {
     return frame <= keys.front().frame || frame >= keys.back().frame;
 }
 
 template <class T>
-const T& held(std::span<const Key<T>> keys, double frame) {
+const T& held(std::span<const Keyframe<T>> keys, double frame) {
     return frame <= keys.front().frame ? keys.front().value : keys.back().value;
 }
 
@@ -53,7 +53,7 @@ T hermite(const T& a, const T& tangent_a, const T& b, const T& tangent_b, double
 
 // Tangent per frame at key i of the values value(0), value(1), ...
 template <class T, class Value>
-double tangent(std::span<const Key<T>> keys, const Value& value, std::size_t i, Ends ends) {
+double tangent(std::span<const Keyframe<T>> keys, const Value& value, std::size_t i, Ends ends) {
     bool end = i == 0 || i + 1 == keys.size();
     if (end && ends == Ends::ease) return 0.0;
     std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, keys.size() - 1);
@@ -64,8 +64,8 @@ double tangent(std::span<const Key<T>> keys, const Value& value, std::size_t i, 
 // a cubic with the tangents above, limited to three times the neighbouring slopes so that it stays monotone
 // (Fritsch and Carlson, 1980).
 template <class T, class Travelled>
-double smooth_fraction(std::span<const Key<T>> keys, const Travelled& travelled, std::size_t i, double frame,
-                       Ends ends) {
+double smooth_fraction(std::span<const Keyframe<T>> keys, const Travelled& travelled, std::size_t i,
+                       double frame, Ends ends) {
     double length = travelled(i + 1) - travelled(i);
     if (!(length > 0.0)) return fraction_in(keys, i, frame);
     auto slope = [&](std::size_t k) {
@@ -83,14 +83,14 @@ double smooth_fraction(std::span<const Key<T>> keys, const Travelled& travelled,
 // Positions as a curve: key i lies at knot[i]; centripetal, so a knot interval is the square root of
 // the distance.
 struct Curve {
-    std::span<const Key<glm::dvec3>> keys;
+    std::span<const Keyframe<glm::dvec3>> keys;
     std::vector<double> knot;
 
     double interval(std::size_t i) const { return knot[i + 1] - knot[i]; }
     const glm::dvec3& point(std::size_t i) const { return keys[i].value; }
 };
 
-Curve make_curve(std::span<const Key<glm::dvec3>> keys) {
+Curve make_curve(std::span<const Keyframe<glm::dvec3>> keys) {
     Curve curve{keys, std::vector<double>(keys.size(), 0.0)};
     for (std::size_t i = 0; i + 1 < keys.size(); ++i)
         curve.knot[i + 1] = curve.knot[i] + std::sqrt(glm::distance(keys[i].value, keys[i + 1].value));
@@ -163,7 +163,7 @@ double solve_length(const Curve& curve, std::size_t i, double u0, double u1, dou
 }
 
 glm::dvec3 at_constant_speed(const Curve& curve, double frame, Ends ends) {
-    std::span<const Key<glm::dvec3>> keys = curve.keys;
+    std::span<const Keyframe<glm::dvec3>> keys = curve.keys;
     std::size_t segments = keys.size() - 1;
     auto eased = [&](std::size_t i) {
         return ends == Ends::ease && keys[i].interpolation == Interpolation::smooth;
@@ -198,8 +198,8 @@ glm::dvec4 slerp(const glm::dvec4& a, const glm::dvec4& b, double u) {
 }
 
 // Unit quaternions, each on the side of the one before, so that every turn takes the shorter way.
-std::vector<Key<glm::dvec4>> aligned(std::span<const Key<glm::dvec4>> keys) {
-    std::vector<Key<glm::dvec4>> result(keys.begin(), keys.end());
+std::vector<Keyframe<glm::dvec4>> aligned(std::span<const Keyframe<glm::dvec4>> keys) {
+    std::vector<Keyframe<glm::dvec4>> result(keys.begin(), keys.end());
     for (std::size_t i = 0; i < result.size(); ++i) {
         result[i].value = glm::normalize(result[i].value);
         if (i > 0 && glm::dot(result[i - 1].value, result[i].value) < 0.0) result[i].value = -result[i].value;
@@ -209,7 +209,7 @@ std::vector<Key<glm::dvec4>> aligned(std::span<const Key<glm::dvec4>> keys) {
 
 }  // namespace
 
-double evaluate_scalar(std::span<const Key<double>> keys, double frame, Ends ends) {
+double evaluate_scalar(std::span<const Keyframe<double>> keys, double frame, Ends ends) {
     assert(!keys.empty());
     if (outside(keys, frame)) return held(keys, frame);
     std::size_t i = segment_of(keys, frame);
@@ -223,7 +223,7 @@ double evaluate_scalar(std::span<const Key<double>> keys, double frame, Ends end
     return std::clamp(smooth, std::fmin(a, b), std::fmax(a, b));
 }
 
-glm::dvec3 evaluate_position(std::span<const Key<glm::dvec3>> keys, double frame, Ends ends,
+glm::dvec3 evaluate_position(std::span<const Keyframe<glm::dvec3>> keys, double frame, Ends ends,
                              bool constant_speed) {
     assert(!keys.empty());
     if (outside(keys, frame)) return held(keys, frame);
@@ -238,10 +238,10 @@ glm::dvec3 evaluate_position(std::span<const Key<glm::dvec3>> keys, double frame
     return curve_point(curve, i, u);
 }
 
-glm::dvec4 evaluate_rotation(std::span<const Key<glm::dvec4>> keys, double frame, Ends ends) {
+glm::dvec4 evaluate_rotation(std::span<const Keyframe<glm::dvec4>> keys, double frame, Ends ends) {
     assert(!keys.empty());
     if (outside(keys, frame)) return glm::normalize(held(keys, frame));
-    std::vector<Key<glm::dvec4>> turn = aligned(keys);
+    std::vector<Keyframe<glm::dvec4>> turn = aligned(keys);
     std::vector<double> angle(turn.size(), 0.0);
     for (std::size_t i = 0; i + 1 < turn.size(); ++i)
         angle[i + 1] = angle[i] + real::acos(glm::dot(turn[i].value, turn[i + 1].value));

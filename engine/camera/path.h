@@ -8,17 +8,23 @@
 #include <span>
 #include <vector>
 
+#include "core/enum_names.h"
+
 namespace astrosplat {
 
 enum class Interpolation { linear, smooth, step };
+constexpr auto names_of(Interpolation) {
+    return names_up_to<Interpolation::step>("linear", "smooth", "step");
+}
 enum class Ends { ease, through };
+constexpr auto names_of(Ends) { return names_up_to<Ends::through>("ease", "through"); }
 
 template <class T>
-struct Key {
+struct Keyframe {
     double frame;
     T value;
     Interpolation interpolation;  // the way to the next key
-    bool operator==(const Key&) const = default;
+    bool operator==(const Keyframe&) const = default;
 };
 
 // Keys are ascending in frame, at least one; before the first and after the last the value is held.
@@ -26,18 +32,18 @@ struct Key {
 
 /// Smooth: cubic Hermite with tangent (v[i+1]-v[i-1])/(t[i+1]-t[i-1]), clamped to the range of the segment's
 /// two keys.
-double evaluate_scalar(std::span<const Key<double>> keys, double frame, Ends ends);
+double evaluate_scalar(std::span<const Keyframe<double>> keys, double frame, Ends ends);
 
 /// Smooth: a centripetal Catmull-Rom curve (one-sided at the ends and where two keys coincide), run through
 /// with a speed that is continuous at the keys. `constant_speed`: the length covered since the first key
 /// grows evenly with the frame, whatever the frames of the keys between; with Ends::ease a smooth path
 /// gathers its speed over the first tenth of the time and loses it over the last. Step segments are jumps
 /// without length then.
-glm::dvec3 evaluate_position(std::span<const Key<glm::dvec3>> keys, double frame, Ends ends,
+glm::dvec3 evaluate_position(std::span<const Keyframe<glm::dvec3>> keys, double frame, Ends ends,
                              bool constant_speed);
 
 /// Quaternions x y z w of any length above 0; the result has length 1. Slerp the shorter way; smooth: with an
 /// angular speed that is continuous at the keys.
-glm::dvec4 evaluate_rotation(std::span<const Key<glm::dvec4>> keys, double frame, Ends ends);
+glm::dvec4 evaluate_rotation(std::span<const Keyframe<glm::dvec4>> keys, double frame, Ends ends);
 
 }  // namespace astrosplat

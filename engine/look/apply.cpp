@@ -84,7 +84,7 @@ ShadedSplats take_arrays(SplatSet& set) {
     return shaded;
 }
 
-// Throws Cancelled where there is somebody who can cancel.
+// Throws Cancelled where the caller can cancel.
 void shade_all(const LookRun& run, std::int64_t count, const Progress& progress) {
     std::vector<std::int64_t> kept(std::size_t((count + chunk_size - 1) / chunk_size));
     std::atomic<std::int64_t> done{0};

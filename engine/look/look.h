@@ -8,11 +8,17 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/enum_names.h"
+
 namespace astrosplat {
 
 /// Probability density over x = distance / reach.
 struct DensityCurve {
     enum class Shape { constant, linear, quadratic, exponential, gaussian, smooth, curve };
+    friend constexpr auto names_of(Shape) {
+        return names_up_to<Shape::curve>("constant", "linear", "quadratic", "exponential", "gaussian",
+                                         "smooth", "curve");
+    }
     Shape shape = Shape::constant;
     float rate = 3.0f;              // exponential: e^(-rate x)
     float sigma = 0.35f;            // gaussian: e^(-x^2 / 2 sigma^2), of reach
@@ -67,7 +73,13 @@ struct HorizontalAlpha {
 /// / step * Integral p f. Both count only where there are splats: up to max_distance, should reach go beyond.
 struct VerticalAlpha {
     enum class Shape { none, constant, linear, exponential, s106, curve };
+    friend constexpr auto names_of(Shape) {
+        return names_up_to<Shape::curve>("none", "constant", "linear", "exponential", "s106", "curve");
+    }
     enum class Match { automatic, none, sum, coverage };
+    friend constexpr auto names_of(Match) {
+        return names_up_to<Match::coverage>("auto", "none", "sum", "coverage");
+    }
     Shape shape = Shape::none;
     float rate = 3.0f;              // exponential: e^(-rate x)
     std::vector<glm::vec2> points;  // curve: (x, y), ascending x, at most 16; none: constant 1

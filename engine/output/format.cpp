@@ -60,17 +60,6 @@ const std::array<KindRules, 3>& rules() {
     return table;
 }
 
-const char* name_of(Depth depth) {
-    constexpr std::array<const char*, 5> names = {"auto", "half", "float", "16", "8"};
-    return names[static_cast<std::size_t>(depth)];
-}
-
-const char* name_of(Compression compression) {
-    constexpr std::array<const char*, 8> names = {"auto", "zip",     "zips", "piz",
-                                                  "dwaa", "deflate", "lzw",  "none"};
-    return names[static_cast<std::size_t>(compression)];
-}
-
 const KindRules& rules_for(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
     for (char& c : ending)
@@ -88,11 +77,11 @@ bool contains(const std::vector<T>& list, T value) {
 }
 
 void check_aovs(const OutputParams& output, const KindRules& rule) {
-    static const std::vector<std::string> known = {"depth", "coverage", "count", "layers"};
+    const auto& known = OutputParams::known_aovs;
     for (const std::string& aov : output.aovs)
-        if (!contains(known, aov))
+        if (std::find(known.begin(), known.end(), aov) == known.end())
             throw InputError(
-                fmt::format("output.aovs: expected depth, coverage, count or layers, found '{}'", aov));
+                fmt::format("output.aovs: expected {}, found '{}'", fmt::join(known, ", "), aov));
     if (!output.aovs.empty() && rule.kind != FileKind::exr)
         throw InputError(
             fmt::format("output.aovs: expected none in {} files (extra channels need exr), found '{}'",

@@ -1,11 +1,16 @@
 // What [layer.render] says: dot profile, mixing, level of detail. Plain values; SCENE.md's defaults.
 #pragma once
 
+#include "core/enum_names.h"
+
 namespace astrosplat {
 
 /// Profile of a dot: w(t), t = distance / radius; w(0) = 1, zero from t = 1 on (DESIGN 7).
 struct Falloff {
     enum class Shape { constant, linear, trapezoid, gaussian, exponential };
+    friend constexpr auto names_of(Shape) {
+        return names_up_to<Shape::exponential>("constant", "linear", "trapezoid", "gaussian", "exponential");
+    }
     Shape shape = Shape::gaussian;
     float core = 0.5f;       // trapezoid: fraction of the radius that is flat
     float sharpness = 4.5f;  // gaussian e^(-sharpness t^2), exponential e^(-sharpness t), shifted and scaled
@@ -13,6 +18,9 @@ struct Falloff {
 };
 
 enum class Blend { over, add, screen, lighten, hybrid };
+constexpr auto names_of(Blend) {
+    return names_up_to<Blend::hybrid>("over", "add", "screen", "lighten", "hybrid");
+}
 
 struct LevelOfDetail {
     float max_px = 0.0f;      // projected diameter at 1080 lines above which a splat is split; 0: off

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "camera/projection.h"
+#include "render/layer_render.h"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -14,6 +15,16 @@ namespace {
 #include "falloff.glsl"
 #include "footprint.glsl"
 }  // namespace
+static_assert(static_cast<int>(Falloff::Shape::constant) == FALLOFF_CONSTANT);
+static_assert(static_cast<int>(Falloff::Shape::linear) == FALLOFF_LINEAR);
+static_assert(static_cast<int>(Falloff::Shape::trapezoid) == FALLOFF_TRAPEZOID);
+static_assert(static_cast<int>(Falloff::Shape::gaussian) == FALLOFF_GAUSSIAN);
+static_assert(static_cast<int>(Falloff::Shape::exponential) == FALLOFF_EXPONENTIAL);
+static_assert(static_cast<int>(Blend::over) == BLEND_OVER);
+static_assert(static_cast<int>(Blend::add) == BLEND_ADD);
+static_assert(static_cast<int>(Blend::screen) == BLEND_SCREEN);
+static_assert(static_cast<int>(Blend::lighten) == BLEND_LIGHTEN);
+static_assert(static_cast<int>(Blend::hybrid) == BLEND_HYBRID);
 }  // namespace astrosplat::shared
 
 namespace astrosplat::exact {

@@ -10,17 +10,17 @@
 namespace astrosplat {
 namespace {
 
-using Keys = std::vector<Key<std::vector<double>>>;
+using Keyframes = std::vector<Keyframe<std::vector<double>>>;
 
-std::vector<Key<double>> component(const Keys& keys, std::size_t index, bool steps) {
-    std::vector<Key<double>> scalar;
+std::vector<Keyframe<double>> component(const Keyframes& keys, std::size_t index, bool steps) {
+    std::vector<Keyframe<double>> scalar;
     for (const auto& key : keys)
         scalar.push_back({key.frame, key.value.at(index), steps ? Interpolation::step : key.interpolation});
     return scalar;
 }
 
 std::vector<double> evaluate_position_track(const Track& track, double frame) {
-    std::vector<Key<glm::dvec3>> keys;
+    std::vector<Keyframe<glm::dvec3>> keys;
     for (const auto& key : track.keys)
         keys.push_back({key.frame, {key.value.at(0), key.value.at(1), key.value.at(2)}, key.interpolation});
     const glm::dvec3 p = evaluate_position(keys, frame, track.ends, track.constant_speed);
@@ -28,7 +28,7 @@ std::vector<double> evaluate_position_track(const Track& track, double frame) {
 }
 
 std::vector<double> evaluate_rotation_track(const Track& track, double frame) {
-    std::vector<Key<glm::dvec4>> keys;
+    std::vector<Keyframe<glm::dvec4>> keys;
     for (const auto& key : track.keys) {
         const glm::dvec4 q(key.value.at(0), key.value.at(1), key.value.at(2), key.value.at(3));
         const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);

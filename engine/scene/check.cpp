@@ -6,7 +6,7 @@
 #include "camera/camera.h"
 #include "core/error.h"
 #include "scene/animate.h"
-#include "scene/load.h"
+#include "scene/frames.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {

@@ -11,6 +11,11 @@ void Describer::place(ParameterSpec& field_spec, bool animated) const {
     using Type = ParameterType;
     field_spec.key = group_ / field_spec.key;
     field_spec.generic_key = field_spec.key.generic();
+    field_spec.tab = tab_;
+    field_spec.section = section_;
+    if (field_spec.row_label.empty()) field_spec.row_label = field_spec.label;
+    for (Condition& condition : field_spec.conditions) condition.key = group_ / condition.key;
+    field_spec.conditions.insert(field_spec.conditions.end(), conditions_.begin(), conditions_.end());
     const Type type = field_spec.type;
     const bool no = type == Type::text || type == Type::words || type == Type::file || type == Type::files ||
                     type == Type::pattern;
@@ -23,9 +28,11 @@ namespace {
 using Type = ParameterType;
 
 void describe_output(const Describer& d, OutputParams& o) {
+    const Describer picture = d.shown_in("Output", "Picture"), frames = d.shown_in("Output", "Frames"),
+                    format = d.shown_in("Output", "File format");
     ParameterSpec resolution = spec("resolution", "Resolution", "px", "Width and height of the frames.");
     resolution.components = 2;
-    d.custom(
+    picture.custom(
         resolution.as(Type::vector).range(1, 65536).slider(16, 8192),
         [&o](const ParameterSpec& own) {
             return Field<glm::i64vec2>::get({o.width, o.height}, own);
@@ -35,97 +42,111 @@ void describe_output(const Describer& d, OutputParams& o) {
             o.width = size.x;
             o.height = size.y;
         });
-    d(spec("frames", "Frames", "", "Frames to render, such as 1-100,120,200-300x2."), o.frames);
-    d(spec("fps", "Frames per second", "1/s", "Written into the frames; nothing moves by it.")
-          .above(0)
-          .slider(1, 120),
-      o.fps);
-    d(spec("path", "Frame files", "",
-           "Where frames go; #### is the frame, the ending the format: .exr .tif .png.")
-          .as(Type::pattern),
-      o.path);
-    d(spec("depth", "Bit depth", "", "auto: exr half, tif 16, png 8.")
-          .one_of({"auto", "half", "float", "16", "8"}),
-      o.depth);
-    d(spec("compression", "Compression", "", "exr: zip zips piz dwaa none; tif: deflate lzw none.")
-          .one_of({"auto", "zip", "zips", "piz", "dwaa", "deflate", "lzw", "none"}),
-      o.compression);
-    d(spec("alpha", "Alpha", "", "auto: exr and tif premultiplied, png none (opaque over black).")
-          .one_of({"auto", "premultiplied", "straight", "none"}),
-      o.alpha);
-    d(spec("aovs", "Extra channels", "", "Of depth, coverage, count and layers; exr only.")
-          .one_of({"depth", "coverage", "count", "layers"}),
-      o.aovs);
-    d(spec("view", "View", "", "auto: linear in exr and float tif, srgb in 8 and 16 bit.")
-          .one_of({"auto", "linear", "srgb", "soft"}),
-      o.view);
-    d(spec("exposure", "Exposure", "stops",
-           "Acts where a view is written; exr and float tif hold scene light.")
-          .range(-100, 100)
-          .slider(-8, 8),
-      o.exposure, true);
-    d(spec("pixel_filter", "Pixel filter", "px", "Standard deviation of the pixel filter.").range(0.3, 2),
-      o.pixel_filter);
+    frames(spec("frames", "Frames", "", "Frames to render, such as 1-100,120,200-300x2."), o.frames);
+    frames(spec("fps", "Frames per second", "1/s", "Written into the frames; nothing moves by it.")
+               .within(1e-3, 1e6)
+               .slider(1, 120),
+           o.fps);
+    frames(spec("path", "Frame files", "",
+                "Where frames go; #### is the frame, the ending the format: .exr .tif .png.")
+               .as(Type::pattern),
+           o.path);
+    format(spec("depth", "Bit depth", "", "auto: exr half, tif 16, png 8."), o.depth);
+    format(spec("compression", "Compression", "", "exr: zip zips piz dwaa none; tif: deflate lzw none."),
+           o.compression);
+    format(spec("alpha", "Alpha", "", "auto: exr and tif premultiplied, png none (opaque over black)."),
+           o.alpha);
+    format(spec("aovs", "Extra channels", "", "Of depth, coverage, count and layers; exr only.")
+               .one_of({OutputParams::known_aovs.begin(), OutputParams::known_aovs.end()}),
+           o.aovs);
+    picture(spec("view", "View", "", "auto: linear in exr and float tif, srgb in 8 and 16 bit."), o.view);
+    picture(spec("exposure", "Exposure", "stops",
+                 "Acts where a view is written; exr and float tif hold scene light.")
+                .range(-100, 100)
+                .slider(-8, 8),
+            o.exposure, true);
+    picture(
+        spec("pixel_filter", "Pixel filter", "px", "Standard deviation of the pixel filter.").range(0.3, 2),
+        o.pixel_filter);
 }
 
 void describe_camera(const Describer& d, CameraParams& c) {
-    d(spec("projection", "Projection", "", "How space becomes a picture.")
-          .one_of({"perspective", "orthographic", "fisheye", "equirectangular"}),
-      c.projection);
-    d(spec("position", "Position", "scene units", "Where the camera stands; [] frames all visible layers.")
-          .as(Type::position)
-          .slider(-100, 100),
-      c.position);
-    d(spec("target", "Target", "scene units", "The point in the middle of the picture.")
-          .as(Type::position)
-          .slider(-100, 100),
-      c.target);
-    d(spec("up", "Up", "", "The direction that is up in the picture.").slider(-1, 1), c.up);
-    d(spec("rotation", "Rotation", "",
-           "Quaternion x y z w, world from camera; replaces target, up and roll; [] is none.")
-          .as(Type::rotation)
-          .slider(-1, 1),
-      c.rotation);
-    d(spec("roll", "Roll", "degrees", "Turns the camera about its line of sight.").slider(-180, 180), c.roll);
-    d(spec("fov", "Field of view", "degrees", "Vertical field of view.").above(0).below(180).slider(5, 120),
-      c.fov);
-    d(spec("focal_length", "Focal length", "mm", "Above 0 it replaces fov, with film_width.")
-          .at_least(0)
-          .slider(0, 300),
-      c.focal_length);
-    d(spec("film_width", "Film width", "mm", "Width of the film behind focal_length.").above(0).slider(8, 70),
-      c.film_width);
-    d(spec("fisheye_fov", "Fisheye angle", "degrees", "The full cone of a fisheye.")
-          .above(0)
-          .range(0, 360)
-          .slider(90, 360),
-      c.fisheye_fov);
-    d(spec("height", "Height", "scene units", "Scene units from bottom to top, orthographic.")
-          .above(0)
-          .slider(0.1, 1000)
-          .logarithmic(),
-      c.height);
-    d(spec("near", "Near", "scene units", "Nothing nearer is drawn.")
-          .above(0)
-          .slider(0.001, 10)
-          .logarithmic(),
-      c.near);
-    d(spec("far", "Far", "scene units", "Nothing farther is drawn; 0: no limit.")
-          .at_least(0)
-          .slider(0, 10000),
-      c.far);
-    d(spec("near_fade", "Near fade", "scene units",
-           "Splats fade in over this beyond near; 0: one radius of the splat.")
-          .at_least(0)
-          .slider(0, 10),
-      c.near_fade);
-    d(spec("file", "Camera file", "", "Camera path to import instead of these keys."), c.file);
+    const Describer place = d.shown_in("Camera", "Place"), lens = d.shown_in("Camera", "Lens");
+    lens(spec("projection", "Projection", "", "How space becomes a picture."), c.projection);
+    place(
+        spec("position", "Position", "scene units", "Where the camera stands; [] frames all visible layers.")
+            .as(Type::position)
+            .slider(-100, 100),
+        c.position);
+    place(spec("target", "Target", "scene units", "The point in the middle of the picture.")
+              .as(Type::position)
+              .slider(-100, 100)
+              .only_with("rotation", {Value()}),
+          c.target);
+    place(spec("up", "Up", "", "The direction that is up in the picture.")
+              .slider(-1, 1)
+              .only_with("rotation", {Value()}),
+          c.up);
+    place(spec("rotation", "Rotation", "",
+               "Quaternion x y z w, world from camera; replaces target, up and roll; [] is none.")
+              .as(Type::rotation)
+              .slider(-1, 1),
+          c.rotation);
+    place(spec("roll", "Roll", "degrees", "Turns the camera about its line of sight.")
+              .slider(-180, 180)
+              .only_with("rotation", {Value()}),
+          c.roll);
+    lens(spec("fov", "Field of view", "degrees", "Vertical field of view.")
+             .at_least(0.001)
+             .below(180)
+             .slider(5, 120)
+             .only_with("projection", {"perspective"})
+             .only_with("focal_length", {0.0}),
+         c.fov);
+    lens(spec("focal_length", "Focal length", "mm", "Above 0 it replaces fov, with film_width.")
+             .within(0, 1e6)
+             .slider(0, 300)
+             .only_with("projection", {"perspective"}),
+         c.focal_length);
+    lens(spec("film_width", "Film width", "mm", "Width of the film behind focal_length.")
+             .within(0.001, 1e6)
+             .slider(8, 70)
+             .only_with("projection", {"perspective"})
+             .never_with("focal_length", {0.0}),
+         c.film_width);
+    lens(spec("fisheye_fov", "Fisheye angle", "degrees", "The full cone of a fisheye.")
+             .within(0.001, 360)
+             .slider(90, 360)
+             .only_with("projection", {"fisheye"}),
+         c.fisheye_fov);
+    lens(spec("height", "Height", "scene units", "Scene units from bottom to top, orthographic.")
+             .at_least(1e-6)
+             .slider(0.1, 1000)
+             .logarithmic()
+             .only_with("projection", {"orthographic"}),
+         c.height);
+    lens(spec("near", "Near", "scene units", "Nothing nearer is drawn.")
+             .at_least(1e-9)
+             .slider(0.001, 10)
+             .logarithmic(),
+         c.near);
+    lens(spec("far", "Far", "scene units", "Nothing farther is drawn; 0: no limit.")
+             .at_least(0)
+             .slider(0, 10000),
+         c.far);
+    lens(spec("near_fade", "Near fade", "scene units",
+              "Splats fade in over this beyond near; 0: one radius of the splat.")
+             .at_least(0)
+             .slider(0, 10),
+         c.near_fade);
+    place(spec("file", "Camera file", "", "Camera path to import instead of these keys."), c.file);
 }
 
 void describe_environment(const Describer& d, EnvironmentParams& e) {
     d(spec("image", "Picture", "", "Equirectangular picture behind everything."), e.image);
     d(spec("cube", "Cube pictures", "", "Or six pictures, in the order +x -x +y -y +z -z."), e.cube);
-    d(spec("gain", "Gain", "", "Multiplies its light.").at_least(0).slider(0.01, 100).logarithmic(), e.gain);
+    d(spec("gain", "Gain", "", "Multiplies its light.").within(0, 1e6).slider(0.01, 100).logarithmic(),
+      e.gain);
     d(spec("rotation", "Rotation", "degrees", "Turns it about x, then y, then z.").slider(-180, 180),
       e.rotation);
     d(spec("visible", "Visible", "", "Whether it is drawn."), e.visible);
@@ -147,10 +168,12 @@ Description describe(Scene& scene) {
 Description describe(Scene& scene, const std::function<bool(const ParameterKey& group)>& wanted) {
     Description description;
     const Describer d(description, {}, false);
-    if (wanted("output")) describe_output(d.section("output", false), scene.output);
-    if (wanted("camera")) describe_camera(d.section("camera", true), scene.camera);
-    if (wanted("environment")) describe_environment(d.section("environment", true), scene.environment);
-    if (wanted("provenance")) describe_provenance(d.section("provenance", false), scene.provenance);
+    if (wanted("output")) describe_output(d.in("output", false), scene.output);
+    if (wanted("camera")) describe_camera(d.in("camera", true), scene.camera);
+    if (wanted("environment"))
+        describe_environment(d.in("environment", true).shown_in("Camera", "Environment"), scene.environment);
+    if (wanted("provenance"))
+        describe_provenance(d.in("provenance", false).shown_in("Output", "Provenance"), scene.provenance);
     for (LayerParams& layer : scene.layers) {
         const ParameterKey group = layer_key(layer.name);
         if (wanted(group)) describe_layer(Describer(description, group, false), layer);
@@ -161,8 +184,8 @@ Description describe(Scene& scene, const std::function<bool(const ParameterKey& 
 Description describe_preset(Look& look, LayerRender& render) {
     Description description;
     const Describer d(description, {}, false);
-    describe_look(d.section("look", true), look);
-    describe_render(d.section("render", true), render);
+    describe_look(d.in("look", true), look);
+    describe_render(d.in("render", true), render);
     return description;
 }
 

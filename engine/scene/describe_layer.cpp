@@ -1,7 +1,5 @@
 // The description of one layer: [[layer]], transform, source; describe_look.cpp has the rest. One line per
 // parameter.
-#include <algorithm>
-
 #include "scene/describer.h"
 
 namespace astrosplat {
@@ -17,7 +15,7 @@ void describe_transform(const Describer& d, LayerTransform& t) {
     d(spec("rotate", "Rotation", "degrees", "Turns the layer about x, then y, then z.").slider(-180, 180),
       t.rotate);
     d(spec("scale", "Scale", "", "Scales positions and radii about the layer's origin.")
-          .above(0)
+          .within(1e-9, 1e9)
           .slider(0.01, 100)
           .logarithmic(),
       t.scale);
@@ -31,29 +29,29 @@ void describe_mesh(const Describer& d, MeshInput& mesh) {
            "Picture on the mesh: empty for the mesh's own, three for red, green and blue.")
           .or_no_text(),
       mesh.texture);
-    d(spec("relief", "Relief", "of the width", "Height of the built-in relief.").slider(0, 1), mesh.relief);
+    d(spec("relief", "Relief", "of the width", "Height of the built-in relief.")
+          .within(-1e6, 1e6)
+          .slider(0, 1)
+          .only_with("mesh", {"relief"}),
+      mesh.relief);
 }
 
 void describe_texture(const Describer& d, TextureSettings& t) {
     d(spec("colorspace", "Colour space", "",
-           "How the picture's numbers are read; auto: 8 and 16 bit as sRGB, float as linear.")
-          .one_of({"auto", "srgb", "linear"}),
+           "How the picture's numbers are read; auto: 8 and 16 bit as sRGB, float as linear."),
       t.colorspace);
-    d(spec("alpha", "Alpha from", "", "Where opacity comes from; auto: the file's, else the largest channel.")
-          .one_of({"auto", "file", "luminance", "max", "one"}),
+    d(spec("alpha", "Alpha from", "",
+           "Where opacity comes from; auto: the file's, else the largest channel."),
       t.alpha);
     d(spec("unpremultiply", "Divide by alpha", "",
-           "Stored colours are matted on black and are divided by alpha.")
-          .one_of({"auto", "true", "false"}),
+           "Stored colours are matted on black and are divided by alpha."),
       t.unpremultiply);
     d.custom(
         spec("hdu", "FITS HDU", "", "Number or EXTNAME of the HDU; auto: the first with a picture.")
             .as(Type::text),
         [&t](const ParameterSpec&) {
-            const bool digits =
-                std::all_of(t.hdu.begin(), t.hdu.end(), [](char c) { return c >= '0' && c <= '9'; });
             const bool number =
-                digits && !t.hdu.empty() && t.hdu.size() < 10 && (t.hdu[0] != '0' || t.hdu == "0");
+                is_list_index(t.hdu) && t.hdu.size() < 10 && (t.hdu[0] != '0' || t.hdu == "0");
             return number ? Value(static_cast<std::int64_t>(std::stol(t.hdu))) : Value(t.hdu);
         },
         [&t](const Value& value, const ParameterSpec& s) {
@@ -62,28 +60,26 @@ void describe_texture(const Describer& d, TextureSettings& t) {
         });
     d(spec("plane", "FITS plane", "", "Plane of a FITS cube, from 0.").at_least(0).slider(0, 100), t.plane);
     d(spec("stretch", "Stretch", "",
-           "Curve from data values to display values; auto: asinh for FITS, linear else.")
-          .one_of({"auto", "linear", "asinh", "log"}),
+           "Curve from data values to display values; auto: asinh for FITS, linear else."),
       t.stretch);
     d(spec("black", "Black point", "data values", "Data value shown as 0; auto: the 0.25 percentile.")
           .or_auto()
+          .within(-1e30, 1e30)
           .slider(0, 1),
       t.black);
     d(spec("white", "White point", "data values", "Data value shown as 1; auto: the 99.75 percentile.")
           .or_auto()
+          .within(-1e30, 1e30)
           .slider(0, 1),
       t.white);
     d(spec("softening", "Softening", "", "Where the asinh stretch turns from linear to logarithmic.")
-          .above(0)
+          .within(1e-9, 1e9)
           .slider(0.001, 1)
           .logarithmic(),
       t.softening);
-    d(spec("filter", "Filter", "", "How the picture is read between its pixels.")
-          .one_of({"bilinear", "nearest", "area"}),
-      t.filter);
+    d(spec("filter", "Filter", "", "How the picture is read between its pixels."), t.filter);
     d(spec("wrap", "Outside the picture", "",
-           "What lies beyond 0..1; auto: clamp for built-in and planar, repeat for the mesh's own uv.")
-          .one_of({"auto", "repeat", "clamp", "black"}),
+           "What lies beyond 0..1; auto: clamp for built-in and planar, repeat for the mesh's own uv."),
       t.wrap);
 }
 
@@ -107,7 +103,7 @@ void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
 void describe_stars(const Describer& d, StarsParams& stars) {
     d(spec("catalogue", "Catalogue", "", "Star catalogue, .dat or .csv."), stars.catalogue);
     d(spec("unit", "Parsec", "scene units", "Scene units per parsec.")
-          .above(0)
+          .within(1e-9, 1e9)
           .slider(0.001, 1000)
           .logarithmic(),
       stars.unit);
@@ -119,61 +115,70 @@ void describe_stars(const Describer& d, StarsParams& stars) {
           .one_of({"", "camera"}),
       stars.along);
     d(spec("spread", "Spread", "scene units", "How far random stars lie from the path.")
-          .above(0)
+          .at_least(1e-9)
           .slider(0.1, 1000)
           .logarithmic(),
       stars.spread);
-    d(spec("psf", "Star size", "px", "Standard deviation of a star's disc.").above(0).slider(0.3, 5),
+    d(spec("psf", "Star size", "px", "Standard deviation of a star's disc.").within(0.01, 1e6).slider(0.3, 5),
       stars.psf);
 }
 
 void describe_source(const Describer& d, SourceParams& s) {
-    d(spec("kind", "Kind", "", "What the splats are made of.").one_of({"mesh", "splats", "stars"}), s.kind);
-    d.list("meshes", s.meshes, describe_mesh);
-    describe_texture(d, s.texture);
-    describe_buffer(d, s.buffer);
-    d(spec("voxels", "Voxels", "", "Test positions per axis; auto: cubic, from count.")
-          .or_auto()
-          .range(1, 1e6),
-      s.voxels);
-    d(spec("voxel_size", "Voxel size", "scene units", "Edge of a voxel instead of voxels; 0: not used.")
-          .at_least(0)
-          .slider(0, 1),
-      s.voxel_size);
-    d(spec("count", "Count", "", "About how many positions voxels = \"auto\" keeps.")
-          .range(1, 1e15)
-          .slider(1e4, 1e9)
-          .logarithmic(),
-      s.count);
-    d(spec("jitter", "Jitter", "of half a voxel", "How far positions leave the lattice.").range(0, 1),
-      s.jitter);
-    d(spec("max_distance", "Largest distance", "scene units",
-           "Positions farther from the meshes are dropped; 0: 2 % of the longest side.")
-          .at_least(0)
-          .slider(0, 10),
-      s.max_distance);
-    d(spec("uv", "Picture coordinates", "", "The mesh's own, or projected along an axis.")
-          .one_of({"mesh", "planar-xy", "planar-xz", "planar-yz"}),
-      s.uv);
-    d(spec("seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.").slider(0, 1000),
-      s.seed);
-    d(spec("file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats."), s.file);
-    describe_stars(d, s.stars);
+    const Describer files = d.shown_in("Source", "Files"), splats = d.shown_in("Source", "Splats");
+    const Describer lattice = splats.only_with("kind", {"mesh"});
+    files(spec("kind", "Kind", "", "What the splats are made of."), s.kind);
+    files.list("meshes", s.meshes, describe_mesh);
+    describe_texture(d.shown_in("Source", "Picture").only_with("kind", {"mesh"}), s.texture);
+    describe_buffer(lattice, s.buffer);
+    lattice(spec("voxels", "Voxels", "", "Test positions per axis; auto: cubic, from count.")
+                .or_auto()
+                .range(1, 1e6),
+            s.voxels);
+    lattice(spec("voxel_size", "Voxel size", "scene units", "Edge of a voxel instead of voxels; 0: not used.")
+                .at_least(0)
+                .slider(0, 1)
+                .only_with("voxels", {"auto"}),
+            s.voxel_size);
+    splats(spec("count", "Count", "", "About how many positions voxels = \"auto\" keeps.")
+               .range(1, 1e15)
+               .slider(1e4, 1e9)
+               .logarithmic()
+               .never_with("kind", {"splats"})
+               .only_with("voxels", {"auto"})
+               .only_with("voxel_size", {0.0}),
+           s.count);
+    lattice(spec("jitter", "Jitter", "of half a voxel", "How far positions leave the lattice.").range(0, 1),
+            s.jitter);
+    lattice(spec("max_distance", "Largest distance", "scene units",
+                 "Positions farther from the meshes are dropped; 0: 2 % of the longest side.")
+                .at_least(0)
+                .slider(0, 10),
+            s.max_distance);
+    files.only_with("kind", {"mesh"})(
+        spec("uv", "Picture coordinates", "", "The mesh's own, or projected along an axis."), s.uv);
+    splats(
+        spec("seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.").slider(0, 1000),
+        s.seed);
+    files(spec("file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.")
+              .only_with("kind", {"splats"}),
+          s.file);
+    describe_stars(files.only_with("kind", {"stars"}), s.stars);
 }
 
 }  // namespace
 
 void describe_layer(const Describer& d, LayerParams& layer) {
-    d(spec("name", "Name", "", "Letters, digits and _, beginning with a letter."), layer.name);
-    d(spec("visible", "Visible", "", "Whether the layer is rendered."), layer.visible, true);
-    d(spec("axis", "Axis", "", "The layer's thin direction: noise and hybrid use it.").slider(-1, 1),
-      layer.axis);
-    d(spec("preset", "Preset", "", "A file with [look] and [render]; keys of the scene win over it."),
-      layer.preset);
-    describe_transform(d.section("transform", true), layer.transform);
-    describe_source(d.section("source", false), layer.source);
-    describe_look(d.section("look", true), layer.look);
-    describe_render(d.section("render", true), layer.render);
+    const Describer own = d.shown_in("Source", "Layer"), placement = d.shown_in("Source", "Placement");
+    own(spec("name", "Name", "", "Letters, digits and _, beginning with a letter."), layer.name);
+    own(spec("visible", "Visible", "", "Whether the layer is rendered."), layer.visible, true);
+    placement(spec("axis", "Axis", "", "The layer's thin direction: noise and hybrid use it.").slider(-1, 1),
+              layer.axis);
+    own(spec("preset", "Preset", "", "A file with [look] and [render]; keys of the scene win over it."),
+        layer.preset);
+    describe_transform(placement.in("transform", true), layer.transform);
+    describe_source(d.in("source", false), layer.source);
+    describe_look(d.in("look", true), layer.look);
+    describe_render(d.in("render", true), layer.render);
 }
 
 }  // namespace astrosplat

@@ -23,8 +23,27 @@ class Describer {
     Describer(Description& description, ParameterKey group, bool animated)
         : description_(&description), group_(std::move(group)), animated_(animated) {}
 
-    Describer section(const std::string& name, bool animated) const {
-        return {*description_, group_ / name, animated};
+    /// Describes what lies in the group `name` below this one.
+    Describer in(const std::string& name, bool animated) const {
+        Describer inner = *this;
+        inner.group_ = group_ / name;
+        inner.animated_ = animated;
+        return inner;
+    }
+
+    /// The same place, shown in another section of the window.
+    Describer shown_in(std::string_view tab, std::string_view section) const {
+        Describer shown = *this;
+        shown.tab_ = tab;
+        shown.section_ = section;
+        return shown;
+    }
+
+    /// The same place, where nothing has an effect unless the neighbour `name` has one of these values.
+    Describer only_with(std::string name, std::vector<Value> values) const {
+        Describer limited = *this;
+        limited.conditions_.push_back({group_ / name, std::move(values), true});
+        return limited;
     }
 
     /// Describes one field. Its type follows from the field, unless the spec says more (color, position,
@@ -59,7 +78,7 @@ class Describer {
         description_->lists.push_back({place, place.generic(), [list] { return list->size(); },
                                        [list](std::size_t size) { list->resize(size); }});
         for (std::size_t i = 0; i < elements.size(); ++i)
-            describe_element(Describer(*description_, place / i, animated_), elements[i]);
+            describe_element(in(fmt::format("{}.{}", key, i), animated_), elements[i]);
     }
 
   private:
@@ -78,6 +97,8 @@ class Describer {
 
     Description* description_;
     ParameterKey group_;
+    std::string_view tab_, section_;  // literals
+    std::vector<Condition> conditions_;
     bool animated_;
 };
 

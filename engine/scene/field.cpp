@@ -16,7 +16,7 @@ namespace {
 }
 
 bool in_range(double x, const ParameterSpec& spec) {
-    return (spec.above_min ? x > spec.min : x >= spec.min) && (spec.below_max ? x < spec.max : x <= spec.max);
+    return x >= spec.min && (spec.below_max ? x < spec.max : x <= spec.max);
 }
 
 const Value::List& list_of(const Value& value, const ParameterSpec& spec) {
@@ -38,16 +38,19 @@ double number_of(const Value& value, const ParameterSpec& spec) {
     }
     const double x = value.number();
     if (!std::isfinite(x)) refuse("a finite number", std::isnan(x) ? "nan" : "inf");
-    if (!in_range(x, spec)) refuse(expectation(spec), short_number(x));
-    return x;
+    if (in_range(x, spec)) return x;
+    const bool beyond_all = x > largest_number ? spec.max == largest_number : spec.min == -largest_number;
+    refuse(expectation(spec) + (beyond_all && std::fabs(x) > largest_number
+                                    ? fmt::format(" within {:g} of 0", largest_number)
+                                    : ""),
+           short_number(x));
 }
 
 float float_of(const Value& value, const ParameterSpec& spec) {
     const double x = number_of(value, spec);
     const float narrow = static_cast<float>(x);
-    if (!std::isfinite(narrow)) refuse("a number that fits 32 bits", short_number(x));
     if (!in_range(static_cast<double>(narrow), spec) && x != spec.min && x != spec.max)
-        refuse(expectation(spec), short_number(x));  // 1e-60 is above 0 but becomes 0
+        refuse(expectation(spec), short_number(x));  // 1 - 1e-12 is below 1 but becomes 1
     return narrow;
 }
 

@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 #include <optional>
 
+#include "core/enum_names.h"
 #include "scene/parameter.h"
 
 namespace astrosplat {
@@ -69,12 +70,13 @@ struct Field<float> {
 };
 
 template <class T>
-requires std::is_enum_v<T>
+requires NamedEnum<T>
 struct Field<T> {
-    static void describe(ParameterSpec& spec) { spec.type = ParameterType::choice; }
-    static Value get(T field, const ParameterSpec& spec) {
-        return choice_value(spec.choices.at(static_cast<std::size_t>(field)));
+    static void describe(ParameterSpec& spec) {
+        spec.type = ParameterType::choice;
+        spec.choices = all_names<T>();
     }
+    static Value get(T field, const ParameterSpec&) { return choice_value(std::string(name_of(field))); }
     static T set(const Value& value, const ParameterSpec& spec) {
         return static_cast<T>(choice_of(value, spec));
     }

@@ -1,11 +1,12 @@
-// Frame lists: "1-100,120,200-300x2".
+// One item after the other; what is left over is refused.
+#include "scene/frames.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 
 #include "core/error.h"
-#include "scene/load.h"
 
 namespace astrosplat {
 namespace {

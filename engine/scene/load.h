@@ -20,7 +20,7 @@ struct Assignment {
 };
 Assignment parse_assignment(const std::string& text);
 
-/// What somebody typed as a value: TOML where it is TOML, otherwise the text itself, also for dates and
+/// What a person typed as a value: TOML where it is TOML, otherwise the text itself, also for dates and
 /// tables, which no parameter takes.
 Value typed_value(const std::string& text);
 
@@ -41,9 +41,5 @@ Scene parse_scene(const std::string& toml, const std::filesystem::path& file,
 
 /// parse_scene without the rules between parameters (check.h), for texts on their way to becoming a scene.
 Scene parse_unchecked(const std::string& toml, const std::filesystem::path& file);
-
-/// Frames of "1-100,120,200-300x2" (x or : is the step; negative numbers allowed), ascending, each once.
-/// Throws InputError naming `place`.
-std::vector<std::int64_t> parse_frames(const std::string& text, const std::string& place);
 
 }  // namespace astrosplat

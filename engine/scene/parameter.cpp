@@ -8,18 +8,20 @@
 
 namespace astrosplat {
 
-ParameterSpec& ParameterSpec::range(double lo, double hi) {
+bool is_numeric(ParameterType type) {
+    using Type = ParameterType;
+    return type == Type::integer || type == Type::number || type == Type::vector || type == Type::position ||
+           type == Type::color || type == Type::rotation || type == Type::curve;
+}
+
+ParameterSpec& ParameterSpec::range(double lo, double hi) { return within(lo, hi).slider(lo, hi); }
+ParameterSpec& ParameterSpec::within(double lo, double hi) {
     min = lo;
     max = hi;
-    return slider(lo, hi);
+    return *this;
 }
 ParameterSpec& ParameterSpec::at_least(double lo) {
     min = lo;
-    return *this;
-}
-ParameterSpec& ParameterSpec::above(double lo) {
-    min = lo;
-    above_min = true;
     return *this;
 }
 ParameterSpec& ParameterSpec::below(double hi) {
@@ -52,6 +54,28 @@ ParameterSpec& ParameterSpec::or_no_text() {
     nothing = Value("");
     return *this;
 }
+ParameterSpec& ParameterSpec::shown_as(std::string short_label) {
+    row_label = std::move(short_label);
+    return *this;
+}
+ParameterSpec& ParameterSpec::only_with(std::string name, std::vector<Value> values) {
+    conditions.push_back({std::move(name), std::move(values), true});
+    return *this;
+}
+ParameterSpec& ParameterSpec::never_with(std::string name, std::vector<Value> values) {
+    conditions.push_back({std::move(name), std::move(values), false});
+    return *this;
+}
+
+bool has_effect(const ParameterSpec& spec, const std::function<const Parameter*(const ParameterKey&)>& find) {
+    return std::all_of(spec.conditions.begin(), spec.conditions.end(), [&](const Condition& condition) {
+        const Parameter* other = find(condition.key);
+        if (!other) return true;
+        const auto& values = condition.values;
+        const bool met = std::find(values.begin(), values.end(), other->get()) != values.end();
+        return met == condition.wanted;
+    });
+}
 
 namespace {
 
@@ -63,12 +87,12 @@ std::string list_of(const std::vector<std::string>& names) {
 }
 
 std::string range_words(const ParameterSpec& spec) {
-    // The limits of a 64-bit field are no news to anybody.
-    const bool low = spec.min > -9e18, high = spec.max < 9e18;
-    if (low && high && !spec.above_min && !spec.below_max)
+    // The limits of all numbers are not repeated with each.
+    const bool low = spec.min != -largest_number, high = spec.max != largest_number;
+    if (low && high && !spec.below_max)
         return fmt::format(" from {} to {}", short_number(spec.min), short_number(spec.max));
     std::string words;
-    if (low) words += fmt::format(" {} {}", spec.above_min ? "above" : "of at least", short_number(spec.min));
+    if (low) words += fmt::format(" of at least {}", short_number(spec.min));
     if (low && high) words += " and";
     if (high) words += fmt::format(" {} {}", spec.below_max ? "below" : "of at most", short_number(spec.max));
     return words;
@@ -138,9 +162,8 @@ static Value curve_from(const std::vector<double>& numbers) {
 Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers) {
     const double first = numbers.empty() ? 0.0 : numbers[0];
     const auto clamped = [&](double x) {
-        const double lo = spec.above_min ? std::nextafter(spec.min, spec.max) : spec.min;
         const double hi = spec.below_max ? std::nextafter(spec.max, spec.min) : spec.max;
-        return std::clamp(x, lo, hi);
+        return std::clamp(x, spec.min, hi);
     };
     switch (spec.type) {
         case ParameterType::boolean:

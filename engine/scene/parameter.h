@@ -4,10 +4,10 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "core/enum_names.h"
 #include "core/error.h"
 #include "scene/parameter_key.h"
 #include "scene/value.h"
@@ -31,10 +31,31 @@ enum class ParameterType {
     curve      // [[x, y], ...] with x ascending
 };
 
+constexpr auto names_of(ParameterType) {
+    return names_up_to<ParameterType::curve>("boolean", "integer", "number", "text", "choice", "words",
+                                             "file", "files", "pattern", "vector", "position", "color",
+                                             "rotation", "curve");
+}
+
+/// Whether its values are numbers, which have a range.
+bool is_numeric(ParameterType type);
+
 enum class Scale { linear, logarithmic };
 
 /// Whether a parameter may be a key of [animation], and how its values follow each other.
 enum class Animation { no, steps, yes };
+constexpr auto names_of(Animation) { return names_up_to<Animation::yes>("no", "steps", "yes"); }
+
+/// No number of a scene is farther from 0 than this, unless its own range is narrower: squares and products
+/// of a few of them stay finite in 32 bits.
+inline constexpr double largest_number = 1e12;
+
+/// Another parameter on whose value it depends whether this one does anything.
+struct Condition {
+    ParameterKey key;
+    std::vector<Value> values;
+    bool wanted = true;  // false: it must have none of the values
+};
 
 struct ParameterSpec {
     ParameterKey key;          // "layer.stars.look.noise.0.cull"
@@ -44,27 +65,32 @@ struct ParameterSpec {
     std::string help;          // one sentence
     ParameterType type = ParameterType::number;
     int components = 1;
-    double min = -std::numeric_limits<double>::infinity();  // hard range, of every component
-    double max = std::numeric_limits<double>::infinity();
-    bool above_min = false;  // min itself is not allowed
-    bool below_max = false;  // max itself is not allowed
+    double min = -largest_number, max = largest_number;  // hard range, of every component
+    bool below_max = false;                              // max itself is not allowed
     double slider_min = 0.0, slider_max = 1.0;
     Scale scale = Scale::linear;
     Animation animation = Animation::no;
     std::vector<std::string> choices;
-    Value nothing;  // how "not set" is written, where the field may be empty: "auto" or []
+    Value nothing;                  // how "not set" is written, where the field may be empty: "auto" or []
+    std::string_view tab, section;  // where the window shows it: "Look", "Size"
+    std::string row_label;          // the label below that section's title
+    std::vector<Condition> conditions;  // it does something where all of these hold
 
     // For descriptions: each sets one of the above and returns the spec.
     ParameterSpec& range(double lo, double hi);  // slider too
     ParameterSpec& at_least(double lo);
-    ParameterSpec& above(double lo);
     ParameterSpec& below(double hi);
+    ParameterSpec& within(double lo, double hi);  // range without the slider
     ParameterSpec& slider(double lo, double hi);
     ParameterSpec& logarithmic();
     ParameterSpec& as(ParameterType kind);
     ParameterSpec& one_of(std::vector<std::string> names);
     ParameterSpec& or_auto();     // "auto" is how nothing is written
     ParameterSpec& or_no_text();  // "" is
+    ParameterSpec& shown_as(std::string short_label);
+    // It does something only with, or never with, one of these values of its neighbour `name`.
+    ParameterSpec& only_with(std::string name, std::vector<Value> values);
+    ParameterSpec& never_with(std::string name, std::vector<Value> values);
 };
 
 /// A value that a parameter cannot take: what() is "expected ..., found ...".
@@ -95,6 +121,10 @@ struct Description {
     std::vector<Parameter> parameters;
     std::vector<ParameterList> lists;
 };
+
+/// Whether a parameter does anything as the parameters that `find` gives stand; one that it does not know
+/// (nullptr) decides nothing.
+bool has_effect(const ParameterSpec& spec, const std::function<const Parameter*(const ParameterKey&)>& find);
 
 /// "a number from 0 to 1", "3 numbers", "over, add or screen": completes "expected ...".
 std::string expectation(const ParameterSpec& spec);

@@ -3,6 +3,7 @@
 // frame k.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "camera/camera.h"
 #include "camera/path.h"
+#include "core/enum_names.h"
 #include "look/look.h"
 #include "render/environment.h"
 #include "render/layer_render.h"
@@ -20,9 +22,19 @@ namespace astrosplat {
 
 struct OutputParams {
     enum class Depth { automatic, half_float, float32, uint16, uint8 };
+    friend constexpr auto names_of(Depth) {
+        return names_up_to<Depth::uint8>("auto", "half", "float", "16", "8");
+    }
     enum class Compression { automatic, zip, zips, piz, dwaa, deflate, lzw, none };
+    friend constexpr auto names_of(Compression) {
+        return names_up_to<Compression::none>("auto", "zip", "zips", "piz", "dwaa", "deflate", "lzw", "none");
+    }
     enum class Alpha { automatic, premultiplied, straight, none };
+    friend constexpr auto names_of(Alpha) {
+        return names_up_to<Alpha::none>("auto", "premultiplied", "straight", "none");
+    }
     enum class View { automatic, linear, srgb, soft };
+    friend constexpr auto names_of(View) { return names_up_to<View::soft>("auto", "linear", "srgb", "soft"); }
     std::int64_t width = 1920, height = 1080;  // resolution, px
     std::string frames = "1-240";
     double fps = 24.0;
@@ -30,7 +42,8 @@ struct OutputParams {
     Depth depth = Depth::automatic;
     Compression compression = Compression::automatic;
     Alpha alpha = Alpha::automatic;
-    std::vector<std::string> aovs;  // of "depth" "coverage" "count" "layers"
+    static constexpr std::array<const char*, 4> known_aovs{"depth", "coverage", "count", "layers"};
+    std::vector<std::string> aovs;  // of known_aovs
     View view = View::automatic;
     double exposure = 0.0;      // stops
     double pixel_filter = 0.5;  // px
@@ -65,7 +78,7 @@ struct LayerParams {
 /// vectors 3, rotations 4; booleans 0 or 1; choices by their index.
 struct Track {
     ParameterKey key;  // "camera.position", "layer.stars.render.core"
-    std::vector<Key<std::vector<double>>> keys;
+    std::vector<Keyframe<std::vector<double>>> keys;
     Interpolation interpolation = Interpolation::linear;  // the default of keys that do not say
     Ends ends = Ends::ease;
     bool constant_speed = false;

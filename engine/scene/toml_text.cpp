@@ -1,4 +1,5 @@
-// Edits of a TOML text; after each the text is scanned anew, which costs nothing at the size of a scene file.
+// Edits of a TOML text; after each the text is scanned again, which costs nothing at the size of a scene
+// file.
 #include "scene/toml_text.h"
 
 #include <algorithm>

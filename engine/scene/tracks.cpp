@@ -14,9 +14,7 @@
 namespace astrosplat {
 namespace {
 
-const std::vector<std::string> interpolations{"linear", "smooth", "step"};
-const std::vector<std::string> ends_names{"ease", "through"};
-const std::vector<std::string> track_keys{"keys", "interpolation", "ends", "constant_speed"};
+const std::vector<std::string> track_settings{"keys", "interpolation", "ends", "constant_speed"};
 
 struct Place {
     std::string place;
@@ -26,18 +24,19 @@ struct Place {
     }
 };
 
-std::size_t read_name(const toml::node& node, const std::vector<std::string>& names, const std::string& what,
-                      const Place& at) {
+template <NamedEnum E>
+E read_name(const toml::node& node, const std::string& what, const Place& at) {
+    const std::vector<std::string> names = all_names<E>();
     const auto* text = node.as_string();
     const auto found = std::find(names.begin(), names.end(), text ? text->get() : "");
-    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    if (found != names.end()) return static_cast<E>(found - names.begin());
     at.fail(fmt::format("{}: expected {}, found {}{}", what, fmt::join(names, ", "),
                         text ? "'" + text->get() + "'" : kind_of(node),
                         text ? did_you_mean(text->get(), names) : ""));
 }
 
-Key<std::vector<double>> read_key(const toml::node& node, const Parameter& parameter, const Track& track,
-                                  const Place& at) {
+Keyframe<std::vector<double>> read_key(const toml::node& node, const Parameter& parameter, const Track& track,
+                                       const Place& at) {
     const toml::array* parts = node.as_array();
     if (!parts || parts->size() < 2 || parts->size() > 3)
         at.fail(fmt::format("expected keys [frame, value] or [frame, value, \"smooth\"], found {}",
@@ -45,7 +44,7 @@ Key<std::vector<double>> read_key(const toml::node& node, const Parameter& param
     const auto frame = (*parts)[0].value<double>();
     if (!frame || !(*parts)[0].is_number() || !std::isfinite(*frame))
         at.fail(fmt::format("expected a frame number first in a key, found {}", kind_of((*parts)[0])));
-    Key<std::vector<double>> key{*frame, {}, track.interpolation};
+    Keyframe<std::vector<double>> key{*frame, {}, track.interpolation};
     try {
         const Value value = value_of((*parts)[1]);
         parameter.set(value);
@@ -60,8 +59,7 @@ Key<std::vector<double>> read_key(const toml::node& node, const Parameter& param
         at.fail(fmt::format("frame {}: {}", short_number(*frame), error.what()));
     }
     if (parts->size() == 3)
-        key.interpolation =
-            static_cast<Interpolation>(read_name((*parts)[2], interpolations, "the way to the next key", at));
+        key.interpolation = read_name<Interpolation>((*parts)[2], "the way to the next key", at);
     return key;
 }
 
@@ -82,9 +80,9 @@ void read_settings(const toml::table& table, const ParameterSpec& spec, Track& t
     for (const auto& [name, node] : table) {
         const std::string key(name.str());
         if (key == "interpolation")
-            track.interpolation = static_cast<Interpolation>(read_name(node, interpolations, key, at));
+            track.interpolation = read_name<Interpolation>(node, key, at);
         else if (key == "ends")
-            track.ends = static_cast<Ends>(read_name(node, ends_names, key, at));
+            track.ends = read_name<Ends>(node, key, at);
         else if (key == "constant_speed") {
             if (!node.is_boolean())
                 at.fail(fmt::format("constant_speed: expected true or false, found {}", kind_of(node)));
@@ -92,7 +90,7 @@ void read_settings(const toml::table& table, const ParameterSpec& spec, Track& t
             if (track.constant_speed && spec.type != ParameterType::position)
                 at.fail("constant_speed: expected it on a position, found it on another parameter");
         } else if (key != "keys") {
-            at.fail(fmt::format("unknown key '{}'{}", key, did_you_mean(key, track_keys)));
+            at.fail(fmt::format("unknown key '{}'{}", key, did_you_mean(key, track_settings)));
         }
     }
 }
@@ -166,17 +164,15 @@ std::vector<Track> read_tracks(const toml::table& table, Scene& scene, const std
 std::string track_to_toml(const Track& track, const ParameterSpec& spec) {
     std::string keys;
     for (const auto& key : track.keys) {
-        const std::string way =
-            key.interpolation == track.interpolation
-                ? ""
-                : ", " + to_toml(interpolations[static_cast<std::size_t>(key.interpolation)]);
-        keys += fmt::format("{}[{}, {}{}]", keys.empty() ? "" : ", ", short_number(key.frame),
-                            to_toml(from_numbers(spec, key.value)), way);
+        keys += fmt::format("{}[{}, {}", keys.empty() ? "" : ", ", short_number(key.frame),
+                            to_toml(from_numbers(spec, key.value)));
+        const bool usual = key.interpolation == track.interpolation;
+        keys += usual ? "]" : fmt::format(", \"{}\"]", name_of(key.interpolation));
     }
     std::string text = "{ keys = [" + keys + "]";
     if (track.interpolation != Interpolation::linear)
-        text += ", interpolation = " + to_toml(interpolations[static_cast<std::size_t>(track.interpolation)]);
-    if (track.ends != Ends::ease) text += ", ends = \"through\"";
+        text += fmt::format(", interpolation = \"{}\"", name_of(track.interpolation));
+    if (track.ends != Ends::ease) text += fmt::format(", ends = \"{}\"", name_of(track.ends));
     if (track.constant_speed) text += ", constant_speed = true";
     return text + " }";
 }

@@ -8,18 +8,39 @@
 #include <string>
 #include <vector>
 
+#include "core/enum_names.h"
+
 namespace astrosplat {
 
 enum class SourceKind { mesh, splats, stars };
+constexpr auto names_of(SourceKind) { return names_up_to<SourceKind::stars>("mesh", "splats", "stars"); }
 
 /// How a picture file becomes linear, premultiplied colour.
 struct TextureSettings {
     enum class Colorspace { automatic, srgb, linear };
+    friend constexpr auto names_of(Colorspace) {
+        return names_up_to<Colorspace::linear>("auto", "srgb", "linear");
+    }
     enum class Alpha { automatic, file, luminance, max, one };
+    friend constexpr auto names_of(Alpha) {
+        return names_up_to<Alpha::one>("auto", "file", "luminance", "max", "one");
+    }
     enum class Unpremultiply { automatic, yes, no };
+    friend constexpr auto names_of(Unpremultiply) {
+        return names_up_to<Unpremultiply::no>("auto", "true", "false");
+    }
     enum class Stretch { automatic, linear, asinh, log };
+    friend constexpr auto names_of(Stretch) {
+        return names_up_to<Stretch::log>("auto", "linear", "asinh", "log");
+    }
     enum class Wrap { automatic, repeat, clamp, black };
+    friend constexpr auto names_of(Wrap) {
+        return names_up_to<Wrap::black>("auto", "repeat", "clamp", "black");
+    }
     enum class Filter { bilinear, nearest, area };
+    friend constexpr auto names_of(Filter) {
+        return names_up_to<Filter::area>("bilinear", "nearest", "area");
+    }
     Colorspace colorspace = Colorspace::automatic;
     Alpha alpha = Alpha::automatic;
     Unpremultiply unpremultiply = Unpremultiply::automatic;
@@ -56,6 +77,9 @@ struct StarsParams {
 };
 
 enum class UvMode { mesh, planar_xy, planar_xz, planar_yz };
+constexpr auto names_of(UvMode) {
+    return names_up_to<UvMode::planar_yz>("mesh", "planar-xy", "planar-xz", "planar-yz");
+}
 
 struct SourceParams {
     SourceKind kind = SourceKind::mesh;

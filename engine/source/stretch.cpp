@@ -60,18 +60,4 @@ double stretched(double value, const Limits& limits, TextureSettings::Stretch st
     return x;
 }
 
-const char* stretch_name(TextureSettings::Stretch stretch) {
-    switch (stretch) {
-        case TextureSettings::Stretch::automatic:
-            return "auto";
-        case TextureSettings::Stretch::linear:
-            return "linear";
-        case TextureSettings::Stretch::asinh:
-            return "asinh";
-        case TextureSettings::Stretch::log:
-            return "log";
-    }
-    return "";
-}
-
 }  // namespace astrosplat

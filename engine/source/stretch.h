@@ -32,6 +32,4 @@ Limits choose_limits(const ValueRange& range, const TextureSettings& settings, c
 /// softening) or log(1000 x + 1) / log(1001) (ds9's). NaN stays NaN. `stretch` is not automatic.
 double stretched(double value, const Limits& limits, TextureSettings::Stretch stretch, double softening);
 
-const char* stretch_name(TextureSettings::Stretch stretch);
-
 }  // namespace astrosplat

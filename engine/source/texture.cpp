@@ -60,7 +60,7 @@ Stored read_fits_picture(const fs::path& file, const Settings& settings) {
     });
     stored.picture.summary = fmt::format("{}x{} px, HDU {}{}{}, {} stretch, black {:.6g}, white {:.6g}",
                                          plane.width, plane.height, plane.hdu, plane.name.empty() ? "" : " ",
-                                         plane.name, stretch_name(stretch), limits.black, limits.white);
+                                         plane.name, name_of(stretch), limits.black, limits.white);
     return stored;
 }
 

@@ -42,7 +42,7 @@ TEST(PanelWords, DraggingRoundsToCleanNumbers) {
     EXPECT_DOUBLE_EQ(step, 0.004);
     EXPECT_EQ(short_number(rounded_to_step(0.5 + 17 * step, step)), "0.568");
     ParameterSpec magnitude;
-    magnitude.above(0).slider(0.01, 100).logarithmic();
+    magnitude.at_least(1e-6).slider(0.01, 100).logarithmic();
     EXPECT_DOUBLE_EQ(drag_step(magnitude, 50.0), 0.5);  // of itself
     EXPECT_EQ(rounded_to_step(1234.5, 20.0), 1230.0);
     ParameterSpec open;  // on both sides of 0, and farther than the slider

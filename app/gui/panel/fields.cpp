@@ -16,14 +16,8 @@ namespace {
 
 using Type = ParameterType;
 
-double lowest(const ParameterSpec& spec) {
-    if (!spec.above_min) return std::max(spec.min, -1e15);
-    const double gap = spec.slider_min > spec.min ? spec.slider_min - spec.min : spec.slider_max - spec.min;
-    return spec.min + gap * 0.01;
-}
-
 double highest(const ParameterSpec& spec) {
-    if (!spec.below_max) return std::min(spec.max, 1e15);
+    if (!spec.below_max) return spec.max;
     return spec.max - (spec.max - spec.slider_max) * 0.01 - 1e-3;
 }
 
@@ -45,7 +39,7 @@ BoxContent number_content(const ParameterSpec& spec, double value) {
     content.typed = short_number(value);
     content.value = value;
     content.step = drag_step(spec, value);
-    content.min = lowest(spec);
+    content.min = spec.min;
     content.max = highest(spec);
     content.fill = filled(spec, value);
     return content;

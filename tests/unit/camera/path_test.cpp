@@ -13,9 +13,9 @@ namespace {
 
 constexpr Interpolation linear = Interpolation::linear, smooth = Interpolation::smooth,
                         step = Interpolation::step;
-using Scalars = std::vector<Key<double>>;
-using Positions = std::vector<Key<glm::dvec3>>;
-using Rotations = std::vector<Key<glm::dvec4>>;
+using Scalars = std::vector<Keyframe<double>>;
+using Positions = std::vector<Keyframe<glm::dvec3>>;
+using Rotations = std::vector<Keyframe<glm::dvec4>>;
 
 glm::dvec4 about_y(double degrees) {
     double h = real::radians(degrees) * 0.5;

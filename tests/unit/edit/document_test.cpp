@@ -111,7 +111,7 @@ TEST(Document, RefusedEditsChangeNothing) {
     const std::uint64_t revision = document.revision();
     const auto message = [&](const std::function<void()>& edit) { return message_of<InputError>(edit); };
     EXPECT_EQ(message([&] { document.set("camera.fov", 180.0, 1.0); }),
-              "camera.fov: expected a number above 0 and below 180, found 180");
+              "camera.fov: expected a number of at least 0.001 and below 180, found 180");
     EXPECT_EQ(message([&] { document.set("camera.fov", "wide", 1.0); }),
               "camera.fov: expected a number, found a string");
     EXPECT_EQ(message([&] { document.set("layer.dust.look.alpha.powr", 1.0, 1.0); }),
@@ -133,7 +133,7 @@ TEST(Document, RefusedEditsChangeNothing) {
     EXPECT_EQ(message([&] { document.edit("Empty", [](Scene& s) { s.layers.clear(); }); }),
               "szene ä.toml: expected at least one [[layer]], found none");
     EXPECT_EQ(message([&] { document.edit("Fov", [](Scene& s) { s.camera.fov = -1.0; }); }),
-              "camera.fov: expected a number above 0 and below 180, found -1");
+              "camera.fov: expected a number of at least 0.001 and below 180, found -1");
     EXPECT_EQ(message([&] { document.edit("Twin", [](Scene& s) { s.layers[0].name = "stars"; }); }),
               "szene ä.toml: layer.name: expected each name once, found 'stars' twice");
     EXPECT_EQ(

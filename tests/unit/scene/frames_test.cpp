@@ -1,4 +1,5 @@
 // Frame lists.
+#include "scene/frames.h"
 #include "scene_texts.h"
 
 namespace astrosplat::test {

@@ -191,8 +191,8 @@ Value some_value(const ParameterSpec& spec, std::uint32_t seed) {
     const auto unit = [&](std::uint32_t purpose) { return hash_unit(seed, purpose); };
     const auto number = [&](std::uint32_t purpose) {
         const double lo = std::max(spec.min, -1000.0), hi = std::min(spec.max, 1000.0);
-        return spec.above_min || spec.below_max ? lo + (hi - lo) * (0.25 + 0.5 * unit(purpose))
-                                                : lo + (hi - lo) * unit(purpose);
+        return spec.below_max ? lo + (hi - lo) * (0.25 + 0.5 * unit(purpose))
+                              : lo + (hi - lo) * unit(purpose);
     };
     const std::size_t choice =
         spec.choices.empty() ? 0

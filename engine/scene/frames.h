@@ -1,0 +1,14 @@
+// Lists of frames as people write them: "1-100,120,200-300x2".
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace astrosplat {
+
+/// Frames of "1-100,120,200-300x2" (x or : is the step; negative numbers allowed), ascending, each once.
+/// Throws InputError naming `place`.
+std::vector<std::int64_t> parse_frames(const std::string& text, const std::string& place);
+
+}  // namespace astrosplat
