@@ -96,6 +96,7 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     layer.set = set;
     if (shaded_alike(scene, params.name)) layer.to_use_up = set;
     layer.box = bounds(*layer.set);
+    check_extent(layer.box, params.name);
     load_map(layer, params.look.thickness.map);
     count_set(*layer.set, counts);
     counts.cached = loaded.cached;
@@ -114,6 +115,7 @@ LayerState Pipeline::State::take_layer(const std::string& name, const std::share
     if (found < layers.size()) return std::exchange(layers[found], {});
     taken.set = set;
     taken.box = bounds(*set);
+    check_extent(taken.box, name);
     return taken;
 }
 

@@ -1,7 +1,13 @@
 #include "scene/layer_setup.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.h"
 #include "generate/lattice.h"
 #include "render/falloff.h"
+#include "scene/parameter.h"
 
 namespace astrosplat {
 namespace {
@@ -52,6 +58,16 @@ Bounds world_bounds(const Bounds& box, const RenderLayer& layer) {
         result.add(layer.world_from_layer * (layer.scale * p) + layer.translate);
     }
     return result;
+}
+
+void check_extent(const Bounds& box, const std::string& layer) {
+    if (box.empty()) return;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double x : {double(box.lo[axis]), double(box.hi[axis])})
+            if (!(std::fabs(x) <= largest_number))
+                throw InputError(
+                    fmt::format("{}: expected splats within {:g} scene units of 0, found one at {:g}",
+                                layer_key(layer), largest_number, x));
 }
 
 bool has_environment(const EnvironmentParams& params) {

@@ -18,6 +18,9 @@ LookInputs look_inputs(const LayerParams& params);
 /// Bounds in world space of a box in layer space: of its eight corners, so that no splat lies outside.
 Bounds world_bounds(const Bounds& box, const RenderLayer& layer);
 
+/// Throws InputError, naming the layer, where splats lie so far out that their distances leave 32 bits.
+void check_extent(const Bounds& box, const std::string& layer);
+
 bool has_environment(const EnvironmentParams& params);
 
 }  // namespace astrosplat
