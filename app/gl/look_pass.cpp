@@ -1,8 +1,30 @@
 #include "gl/look_pass.h"
 
+#include <algorithm>
 #include <glm/vec4.hpp>
 
 namespace astrosplat {
+namespace {
+
+/// The smallest of a few steps that is large enough.
+int step_up(int value, std::initializer_list<int> steps) {
+    for (int step : steps)
+        if (value <= step) return step;
+    return value;
+}
+
+}  // namespace
+
+LookLimits limits_for(const LookUniforms& look) {
+    using namespace shared_types;
+    bool curve = look.vertical.shape == PROFILE_CURVE;
+    for (int k = 0; k < look.key_count; ++k) curve = curve || look.keys[k].pdf.shape == PROFILE_CURVE;
+    int octaves = 0;
+    for (int k = 0; k < look.noise_count; ++k) octaves = std::max(octaves, look.noises[k].octaves);
+    return {step_up(look.key_count, {1, 3, LOOK_MAX_KEYS}),
+            step_up(look.noise_count, {1, 2, LOOK_MAX_NOISES}), curve ? LOOK_MAX_POINTS : 1,
+            step_up(octaves, {0, 4, 6, 16})};
+}
 
 ProgramSource LookPass::source_for(const LookLimits& limits) {
     return {
@@ -10,9 +32,9 @@ ProgramSource LookPass::source_for(const LookLimits& limits) {
         {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "decimate.glsl", "look_pass.glsl"},
         {},
         {"shaded_place", "shaded_color"},
-        {{"LOOK_MAX_KEYS", limits.keys},
-         {"LOOK_MAX_NOISES", limits.noises},
-         {"LOOK_MAX_POINTS", limits.points},
+        {{"LOOK_KEYS", limits.keys},
+         {"LOOK_NOISES", limits.noises},
+         {"LOOK_POINTS", limits.points},
          {"AS_NOISE_MAX_OCTAVES", limits.octaves}}};
 }
 
@@ -48,12 +70,10 @@ void LookPass::run(const RawSplats& raw, const LookPassInput& input, ShadedBuffe
     if (input.count <= 0) return;
     unused_.resize(1, 1, GL_RGBA8);
     unused_.bind();
-    const LookLimits limits = limits_for(input.look);
-    const GlProgram& program = this->program(limits);
+    const GlProgram& program = this->program(limits_for(input.look));
     program.use();
-    const std::vector<std::byte> block = look_block(input.look, limits);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_.get());
-    glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size()), block.data(), GL_STREAM_DRAW);
+    glBufferData(GL_UNIFORM_BUFFER, sizeof(LookUniforms), &input.look, GL_STREAM_DRAW);
     glUniform1f(program.uniform("share"), input.share);
     glUniform1i(program.uniform("additive"), input.additive ? 1 : 0);
     if (input.map && input.look.key_count > 1) upload_map(*input.map);

@@ -2,18 +2,30 @@
 // transform feedback.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
 
 #include "core/image.h"
-#include "gl/look_block.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/splat_buffers.h"
 #include "look/shared_uniforms.h"
 
 namespace astrosplat {
+
+/// What the loops of a shader run to that is made for the look at hand; by default what any look needs.
+struct LookLimits {
+    int keys = shared_types::LOOK_MAX_KEYS;
+    int noises = shared_types::LOOK_MAX_NOISES;
+    int points = shared_types::LOOK_MAX_POINTS;
+    int octaves = 16;  // of a noise
+    auto operator<=>(const LookLimits&) const = default;
+};
+
+/// Small limits that hold this look, of few different ones, since each is a program to be compiled.
+LookLimits limits_for(const LookUniforms& look);
 
 struct LookPassInput {
     const LookUniforms& look;

@@ -22,31 +22,17 @@ namespace {
 using namespace shared_types;
 using Match = VerticalAlpha::Match;
 
-int profile_shape(DensityCurve::Shape shape) {
-    switch (shape) {
-        case DensityCurve::Shape::constant:
-            return PROFILE_CONSTANT;
-        case DensityCurve::Shape::linear:
-            return PROFILE_LINEAR;
-        case DensityCurve::Shape::quadratic:
-            return PROFILE_QUADRATIC;
-        case DensityCurve::Shape::exponential:
-            return PROFILE_EXPONENTIAL;
-        case DensityCurve::Shape::gaussian:
-            return PROFILE_GAUSSIAN;
-        case DensityCurve::Shape::smooth:
-            return PROFILE_SMOOTH;
-        case DensityCurve::Shape::curve:
-            return PROFILE_CURVE;
-    }
-    return PROFILE_CONSTANT;
-}
+// Shapes of a density are numbered as the shaders number profiles.
+static_assert(static_cast<int>(DensityCurve::Shape::constant) == PROFILE_CONSTANT);
+static_assert(static_cast<int>(DensityCurve::Shape::linear) == PROFILE_LINEAR);
+static_assert(static_cast<int>(DensityCurve::Shape::quadratic) == PROFILE_QUADRATIC);
+static_assert(static_cast<int>(DensityCurve::Shape::exponential) == PROFILE_EXPONENTIAL);
+static_assert(static_cast<int>(DensityCurve::Shape::gaussian) == PROFILE_GAUSSIAN);
+static_assert(static_cast<int>(DensityCurve::Shape::smooth) == PROFILE_SMOOTH);
+static_assert(static_cast<int>(DensityCurve::Shape::curve) == PROFILE_CURVE);
 
 int profile_shape(VerticalAlpha::Shape shape) {
     switch (shape) {
-        case VerticalAlpha::Shape::none:
-        case VerticalAlpha::Shape::constant:
-            return PROFILE_CONSTANT;
         case VerticalAlpha::Shape::linear:
             return PROFILE_LINEAR;
         case VerticalAlpha::Shape::exponential:
@@ -55,8 +41,9 @@ int profile_shape(VerticalAlpha::Shape shape) {
             return PROFILE_S106;
         case VerticalAlpha::Shape::curve:
             return PROFILE_CURVE;
+        default:
+            return PROFILE_CONSTANT;
     }
-    return PROFILE_CONSTANT;
 }
 
 vec3 unit_axis(const glm::vec3& axis) {
@@ -86,7 +73,9 @@ void prepare_keys(const SplatSet& set, const Look& look, const LookInputs& input
     for (std::size_t k = 0; k < keys.size(); ++k) {
         const std::string name =
             thickness.keys.empty() ? "look.pdf" : fmt::format("look.thickness.keys[{}]", k);
-        u.keys[k] = {keys[k].color, keys[k].scale, 0.0f, density_profile(keys[k].pdf, name)};
+        u.keys[k].color = keys[k].color;
+        u.keys[k].scale = keys[k].scale;
+        u.keys[k].pdf = density_profile(keys[k].pdf, name);
     }
 }
 
@@ -200,7 +189,7 @@ void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inpu
     if (!(set.spacing.x > 0.0 && set.spacing.y > 0.0 && set.spacing.z > 0.0))
         bad_input("look.vertical.match", "",
                   "none, since the spacing of the splat file's lattice is not known",
-                  look.vertical.match == Match::sum ? "sum" : "coverage");
+                  std::string(name_of(resolved_match(set, look.vertical))));
     const double factor = column_factor(set, inputs, u);
     const double vertical_scale = u.match == MATCH_PLANES ? 1.0 : double(u.vertical_scale);
     for (int k = 0; k < u.key_count; ++k) {
@@ -217,7 +206,7 @@ void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inpu
 
 LookProfile density_profile(const DensityCurve& pdf, const std::string& key) {
     LookProfile profile{};
-    profile.shape = profile_shape(pdf.shape);
+    profile.shape = static_cast<int>(pdf.shape);
     profile.rate = pdf.rate;
     if (pdf.shape == DensityCurve::Shape::gaussian) {
         const double sigma = std::max(double(pdf.sigma), 1e-6);

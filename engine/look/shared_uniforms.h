@@ -2,11 +2,23 @@
 // that kernels compiled for several instruction sets share them.
 #pragma once
 
+#include <cstddef>
+
 #include "core/glsl.h"
 
 namespace astrosplat::shared_types {
 using namespace astrosplat::glsl;
 #include "look_uniforms.glsl"
+
+// As std140 has them (OpenGL 4.1 specification, 2.11.4): structs and three-component vectors begin a row of
+// 16 bytes.
+template <class T>
+inline constexpr bool has_whole_rows = sizeof(T) % 16 == 0;
+static_assert(has_whole_rows<LookCurve> && has_whole_rows<LookProfile> && has_whole_rows<LookKey> &&
+              has_whole_rows<LookNoise> && has_whole_rows<LookUniforms>);
+static_assert(offsetof(LookKey, pdf) % 16 == 0 && offsetof(LookUniforms, tint) % 16 == 0 &&
+              offsetof(LookUniforms, vertical) % 16 == 0 && offsetof(LookUniforms, keys) % 16 == 0 &&
+              offsetof(LookUniforms, noises) % 16 == 0);
 }  // namespace astrosplat::shared_types
 
 namespace astrosplat {

@@ -2,6 +2,11 @@
 // before it are its steps, which the engine runs over blocks of splats, one step at a time, to the same bits. Needs
 // maths.glsl, noise.glsl and look_uniforms.glsl.
 
+// What loops run to; a program that is made for one look may need less, and software rasterisers run every step.
+const int LOOK_KEYS = LOOK_MAX_KEYS;
+const int LOOK_NOISES = LOOK_MAX_NOISES;
+const int LOOK_POINTS = LOOK_MAX_POINTS;
+
 // --- profiles over x ---
 
 // Published fit of the nebula S106: three straight pieces, 0 from 1 on.
@@ -37,7 +42,7 @@ float look_curve_piece(vec4 a, vec4 b, float x) {
 float look_curve(LookCurve curve, float x) {
     vec4 a = curve.knots[0];
     vec4 b = curve.knots[0];
-    for (int k = 0; k < LOOK_MAX_POINTS - 1; ++k) {
+    for (int k = 0; k < LOOK_POINTS - 1; ++k) {
         bool reached = k + 1 < curve.count && x >= curve.knots[k].x;
         a = reached ? curve.knots[k] : a;
         b = reached ? curve.knots[k + 1] : b;
@@ -178,18 +183,18 @@ float look_noise(LookNoise noise, vec3 p) {
 vec3 look_across(vec3 p, vec3 axis) { return p - axis * dot(p, axis); }
 
 LookOutput look_splat(LookUniforms u, LookInput s) {
-    float n[LOOK_MAX_NOISES];
+    float n[LOOK_NOISES];
     float scale = 0.0f;
     float density = 0.0f;
     float column = 0.0f;
     float weight_sum = 0.0f;
-    float weight[LOOK_MAX_KEYS];
+    float weight[LOOK_KEYS];
     float reach = 1.0f;
     float culled = 1.0f;
     float along = 0.0f;
     float alpha_factor = 1.0f;
     float color_factor = 1.0f;
-    for (int j = 0; j < LOOK_MAX_NOISES; ++j) {
+    for (int j = 0; j < LOOK_NOISES; ++j) {
         if (j < u.noise_count) {
             n[j] = look_noise(u.noises[j], s.position);
             if (u.noises[j].silhouette != 0.0f) {
@@ -203,13 +208,13 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
         }
     }
 
-    for (int k = 0; k < LOOK_MAX_KEYS; ++k) {
+    for (int k = 0; k < LOOK_KEYS; ++k) {
         if (k < u.key_count) {
             weight[k] = look_weight(s.map_value.x, s.map_value.y, s.map_value.z, u.keys[k].color);
             weight_sum = weight_sum + weight[k];
         }
     }
-    for (int k = 0; k < LOOK_MAX_KEYS; ++k) {
+    for (int k = 0; k < LOOK_KEYS; ++k) {
         if (k < u.key_count) {
             weight[k] = u.key_count > 1 ? weight[k] / weight_sum : 1.0f;
             scale = scale + weight[k] * u.keys[k].scale;
@@ -218,7 +223,7 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     }
     reach = u.reach * scale * reach;
     float x = look_x(s.from_surface, reach);
-    for (int k = 0; k < LOOK_MAX_KEYS; ++k) {
+    for (int k = 0; k < LOOK_KEYS; ++k) {
         if (k < u.key_count) density = density + weight[k] * look_profile(u.keys[k].pdf, x);
     }
 

@@ -9,7 +9,6 @@
 #include <unordered_map>
 
 #include "gl/gl_fixture.h"
-#include "gl/look_block.h"
 #include "gl/look_pass.h"
 #include "gl/picture_scenes.h"
 #include "look/prepare.h"
@@ -241,8 +240,7 @@ void put_profile(std::map<std::string, std::vector<std::uint32_t>>& names, const
 }
 
 /// Members by the names OpenGL gives them. Those of arrays of structures, with their index.
-std::map<std::string, std::vector<std::uint32_t>> members_of(const LookUniforms& u,
-                                                             const LookLimits& limits) {
+std::map<std::string, std::vector<std::uint32_t>> members_of(const LookUniforms& u) {
     std::map<std::string, std::vector<std::uint32_t>> names;
     const auto put = [&](const char* name, const auto& member) {
         put_numbers(names, std::string("look.") + name, member);
@@ -257,14 +255,14 @@ std::map<std::string, std::vector<std::uint32_t>> members_of(const LookUniforms&
     put("black", u.black), put("tint", u.tint), put("saturation", u.saturation);
     put("inverse_gamma", u.inverse_gamma);
     put_profile(names, "look.vertical", u.vertical);
-    for (int k = 0; k < limits.keys; ++k) {
+    for (int k = 0; k < shared_types::LOOK_MAX_KEYS; ++k) {
         const std::string key = "keys[" + std::to_string(k) + "]";
         put((key + ".color").c_str(), u.keys[k].color);
         put((key + ".scale").c_str(), u.keys[k].scale);
         put((key + ".column").c_str(), u.keys[k].column);
         put_profile(names, "look." + key + ".pdf", u.keys[k].pdf);
     }
-    for (int k = 0; k < limits.noises; ++k) {
+    for (int k = 0; k < shared_types::LOOK_MAX_NOISES; ++k) {
         const auto& n = u.noises[k];
         const std::string noise = "noises[" + std::to_string(k) + "].";
         const auto put_noise = [&](const char* name, const auto& member) {
@@ -282,20 +280,20 @@ TEST_F(GpuLook, EveryMemberArrivesWhereOpenGlLooksForIt) {
     const LookUniforms look = numbered_look();
     for (const LookLimits& limits : {LookLimits{}, LookLimits{3, 2, 16, 4}, LookLimits{1, 1, 1, 0}}) {
         const GlProgram program(LookPass::source_for(limits));
-        const std::vector<std::byte> block = look_block(look, limits);
+        const auto* const block = reinterpret_cast<const std::byte*>(&look);
         GLint size = 0;
         glGetActiveUniformBlockiv(program.name(), glGetUniformBlockIndex(program.name(), "LookBlock"),
                                   GL_UNIFORM_BLOCK_DATA_SIZE, &size);
-        EXPECT_EQ(block.size(), std::size_t(size));
-        for (const auto& [name, words] : members_of(look, limits)) {
+        EXPECT_EQ(sizeof look, std::size_t(size));
+        for (const auto& [name, words] : members_of(look)) {
             const char* pointer = name.c_str();
             GLuint index = GL_INVALID_INDEX;
             glGetUniformIndices(program.name(), 1, &pointer, &index);
             ASSERT_NE(index, GL_INVALID_INDEX) << name;
             GLint offset = -1;
             glGetActiveUniformsiv(program.name(), 1, &index, GL_UNIFORM_OFFSET, &offset);
-            ASSERT_LE(std::size_t(offset) + 4 * words.size(), block.size()) << name;
-            EXPECT_EQ(std::memcmp(block.data() + offset, words.data(), 4 * words.size()), 0) << name;
+            ASSERT_LE(std::size_t(offset) + 4 * words.size(), sizeof look) << name;
+            EXPECT_EQ(std::memcmp(block + offset, words.data(), 4 * words.size()), 0) << name;
         }
     }
 }
