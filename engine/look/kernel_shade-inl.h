@@ -1,0 +1,156 @@
+// Steps 4 to 7 of the look over a block of splats that are kept: alpha, radius, colour. Included once per
+// instruction set.
+#if defined(ASTROSPLAT_LOOK_KERNEL_SHADE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef ASTROSPLAT_LOOK_KERNEL_SHADE_INL_H
+#undef ASTROSPLAT_LOOK_KERNEL_SHADE_INL_H
+#else
+#define ASTROSPLAT_LOOK_KERNEL_SHADE_INL_H
+#endif
+
+#include "look/kernel_block-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace astrosplat {
+namespace HWY_NAMESPACE {
+namespace {
+
+// --- 4, 5: alpha ---
+
+ASTROSPLAT_LOOP horizontal_power(Block& b, float threshold, float power, float gain) {
+    for (int i = 0; i < b.count; ++i) b.alpha[i] = look_horizontal(b.alpha[i], threshold, power, gain);
+}
+
+ASTROSPLAT_LOOP horizontal_gain(Block& b, float gain) {
+    for (int i = 0; i < b.count; ++i) b.alpha[i] = clamp(b.alpha[i] * gain, 0.0f, 1.0f);
+}
+
+ASTROSPLAT_LOOP horizontal_radius(Block& b, float horizontal_scale) {
+    for (int i = 0; i < b.count; ++i)
+        b.radius_factor[i] = look_horizontal_radius(b.alpha[i], horizontal_scale);
+}
+
+ASTROSPLAT_LOOP own_vertical_x(const Block& b, float reach, float* HWY_RESTRICT x) {
+    for (int i = 0; i < b.count; ++i) x[i] = b.distance[i] / reach;
+}
+
+template <int match>
+ASTROSPLAT_LOOP matched(Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        const float mean = look_column(match, b.column[i], b.reach[i], b.radius_factor[i]);
+        b.alpha[i] = look_matched(match, b.alpha[i], b.f[i], mean);
+    }
+}
+
+ASTROSPLAT_LOOP finish_alpha(const Block& b, float* HWY_RESTRICT out) {
+    for (int i = 0; i < b.count; ++i) out[i] = clamp(b.alpha[i] * b.alpha_factor[i], 0.0f, 1.0f);
+}
+
+void alphas(const LookUniforms& u, Block& b, float* out) {
+    if (u.alpha_power != 1.0f) {
+        horizontal_power(b, u.alpha_threshold, u.alpha_power, u.alpha_gain);
+    } else {
+        horizontal_gain(b, u.alpha_gain);
+    }
+    horizontal_radius(b, u.horizontal_scale);
+    if (u.vertical_reach > 0.0f) {
+        own_vertical_x(b, u.vertical_reach, b.sum);
+        profile(u.vertical, b.sum, b.f, b.count);
+    } else {
+        profile(u.vertical, b.x, b.f, b.count);
+    }
+    if (u.match == MATCH_NONE) matched<MATCH_NONE>(b);
+    if (u.match == MATCH_PLANES) matched<MATCH_PLANES>(b);
+    if (u.match == MATCH_LIGHT) matched<MATCH_LIGHT>(b);
+    if (u.match == MATCH_TRANSMITTANCE) matched<MATCH_TRANSMITTANCE>(b);
+    fill(b.alpha_factor, 1.0f, b.count);
+    for (int j = 0; j < u.noise_count; ++j)
+        if (u.noises[j].alpha != 0.0f) vary(u.noises[j].alpha, b.n[j], b.alpha_factor, b.count);
+    finish_alpha(b, out);
+}
+
+// --- 6: radius ---
+
+ASTROSPLAT_LOOP uniform_radii(Block& b, float radius_min, float radius_max, uint seed) {
+    for (int i = 0; i < b.count; ++i)
+        b.radius[i] = look_uniform_radius(radius_min, radius_max, seed, b.id_low[i], b.id_high[i]);
+}
+
+ASTROSPLAT_LOOP finish_radii(const Block& b, float vertical_scale, float* HWY_RESTRICT out) {
+    for (int i = 0; i < b.count; ++i)
+        out[i] = b.radius[i] * b.radius_factor[i] * look_vertical_radius(b.x[i], vertical_scale);
+}
+
+void radii(const LookRun& run, std::int64_t begin, Block& b, float* out) {
+    const LookUniforms& u = run.uniforms;
+    if (u.own_radius) {
+        for (int i = 0; i < b.count; ++i) b.radius[i] = run.in.radius[begin + b.from[i]];
+    } else if (u.radius_min == u.radius_max) {
+        fill(b.radius, u.radius_min, b.count);
+    } else {
+        uniform_radii(b, u.radius_min, u.radius_max, u.seed);
+    }
+    finish_radii(b, u.vertical_scale, out);
+}
+
+// --- 7: colour ---
+
+ASTROSPLAT_LOOP unpremultiply(Block& b, float threshold) {
+    for (int i = 0; i < b.count; ++i) {
+        const float undo = look_unpremultiply(b.alpha[i], threshold);
+        b.r[i] = b.r[i] * undo;
+        b.g[i] = b.g[i] * undo;
+        b.b[i] = b.b[i] * undo;
+    }
+}
+
+ASTROSPLAT_LOOP levels(Block& b, float black, vec3 tint) {
+    for (int i = 0; i < b.count; ++i) {
+        b.r[i] = look_levels(b.r[i] * b.color_factor[i], black) * tint.x;
+        b.g[i] = look_levels(b.g[i] * b.color_factor[i], black) * tint.y;
+        b.b[i] = look_levels(b.b[i] * b.color_factor[i], black) * tint.z;
+    }
+}
+
+ASTROSPLAT_LOOP saturate_and_bend(Block& b, float saturation, float inverse_gamma) {
+    for (int i = 0; i < b.count; ++i) {
+        const float luminance = look_luminance(b.r[i], b.g[i], b.b[i]);
+        b.r[i] = look_finish(b.r[i], luminance, saturation, inverse_gamma);
+        b.g[i] = look_finish(b.g[i], luminance, saturation, inverse_gamma);
+        b.b[i] = look_finish(b.b[i], luminance, saturation, inverse_gamma);
+    }
+}
+
+ASTROSPLAT_LOOP write_colors(const Block& b, glm::vec3* HWY_RESTRICT out) {
+    for (int i = 0; i < b.count; ++i) {
+        out[i].x = b.r[i];
+        out[i].y = b.g[i];
+        out[i].z = b.b[i];
+    }
+}
+
+void read_colors(const glm::vec3* color, const float* alpha, Block& b) {
+    for (int i = 0; i < b.count; ++i) {
+        const glm::vec3 c = color[b.from[i]];
+        b.r[i] = c.x;
+        b.g[i] = c.y;
+        b.b[i] = c.z;
+        b.alpha[i] = alpha[b.from[i]];
+    }
+}
+
+void colors(const LookUniforms& u, Block& b, glm::vec3* out) {
+    if (u.unpremultiply) unpremultiply(b, u.alpha_threshold);
+    fill(b.color_factor, 1.0f, b.count);
+    for (int j = 0; j < u.noise_count; ++j)
+        if (u.noises[j].brightness != 0.0f) vary(u.noises[j].brightness, b.n[j], b.color_factor, b.count);
+    levels(b, u.black, u.tint);
+    if (u.saturation != 1.0f || u.inverse_gamma != 1.0f) saturate_and_bend(b, u.saturation, u.inverse_gamma);
+    write_colors(b, out);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace astrosplat
+HWY_AFTER_NAMESPACE();
+
+#endif  // toggle
