@@ -6,6 +6,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/assets.h"
+
 namespace astrosplat {
 
 namespace fs = std::filesystem;
@@ -24,14 +26,9 @@ std::optional<fs::path> find_program(const std::string& name) {
 }
 
 fs::path demo_scene_file() {
-    constexpr const char* scene = "scenes/whirlpool.toml";
+    const fs::path file = assets_folder("scenes") / "whirlpool.toml";
     std::error_code ignored;
-    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    for (const fs::path& assets :
-         {program.parent_path().parent_path() / "share/astrosplat/assets", fs::path(ASTROSPLAT_ASSETS)}) {
-        if (fs::exists(assets / scene, ignored)) return assets / scene;
-    }
-    return {};
+    return fs::exists(file, ignored) ? file : fs::path();
 }
 
 }  // namespace astrosplat

@@ -77,10 +77,30 @@ void set_list_length(const Description& description, const Entry& entry, const E
     }
 }
 
+/// A parameter below a group that was given one value, as an example: the one that takes this value, or the
+/// first.
+std::string example_below(const Entry& entry, const EntryOrigin& origin, const Description& description) {
+    const auto* given = entry.node->as_string();
+    std::string first;
+    for (const Parameter& parameter : description.parameters) {
+        const ParameterSpec& spec = parameter.spec;
+        if (!spec.key.is_below(entry.key)) continue;
+        const ParameterKey& key = origin.command_line ? spec.key : spec.generic_key;
+        if (first.empty()) first = fmt::format("; it has keys such as {}", key);
+        if (!given || std::find(spec.choices.begin(), spec.choices.end(), given->get()) == spec.choices.end())
+            continue;
+        const std::string value = origin.command_line ? "=" + given->get() : " = " + to_toml(given->get());
+        return fmt::format("; did you mean {}{}?", key, value);
+    }
+    return first;
+}
+
 [[noreturn]] void fail_unknown(const Entry& entry, const EntryOrigin& origin,
                                const Description& description) {
     if (is_group(description, entry.key) && entry.kind != Entry::Kind::table)
-        fail_value(entry, origin, fmt::format("expected a table, found {}", kind_of(*entry.node)));
+        fail_value(entry, origin,
+                   fmt::format("expected a table, found {}{}", kind_of(*entry.node),
+                               example_below(entry, origin, description)));
     for (ParameterKey key = entry.key.parent(); !key.empty(); key = key.parent()) {
         if (const Parameter* parameter = find_parameter(description, key))
             fail(entry, fmt::format("{}: expected {}, found a table",
@@ -99,6 +119,33 @@ Value entry_value(const Entry& entry, const ParameterSpec& spec) {
     return value_of(*entry.node);
 }
 
+/// "0,0,5" and "[depth]" as the lists they were meant to be: with brackets, and with quotes around words.
+std::string as_list(std::string_view raw) {
+    if (raw.starts_with('[') && raw.ends_with(']')) raw = raw.substr(1, raw.size() - 2);
+    std::string list;
+    while (!raw.empty()) {
+        const std::size_t comma = raw.find(',');
+        std::string part(raw.substr(0, comma));
+        std::erase(part, ' ');
+        const bool is_word = part.find_first_not_of("+-.0123456789eE") != std::string::npos;
+        list += (list.empty() ? "" : ", ") + (is_word && part.front() != '"' ? to_toml(part) : part);
+        raw.remove_prefix(comma == std::string_view::npos ? raw.size() : comma + 1);
+    }
+    return "[" + list + "]";
+}
+
+/// A hint for text typed where a list was expected, if it would do as a list.
+std::string list_hint(const Entry& entry, const Parameter& parameter) {
+    if (!entry.raw || !entry.node->is_string()) return "";
+    const std::string list = as_list(*entry.raw);
+    try {
+        parameter.set(value_of(*parse_toml("value = " + list, "").get("value")));
+    } catch (const InputError&) {
+        return "";
+    }
+    return fmt::format("; did you mean --set '{}={}'?", entry.key, list);
+}
+
 void set_leaf(const Description& description, const Entry& entry, const EntryOrigin& origin) {
     const Parameter* parameter = find_parameter(description, entry.key);
     if (!parameter) fail_unknown(entry, origin, description);
@@ -106,7 +153,7 @@ void set_leaf(const Description& description, const Entry& entry, const EntryOri
         const Value value = entry_value(entry, parameter->spec);
         parameter->set(resolve_paths(value, parameter->spec, origin.folder, origin.command_line));
     } catch (const ValueError& error) {
-        fail_value(entry, origin, error.what());
+        fail_value(entry, origin, error.what() + list_hint(entry, *parameter));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/assets.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
@@ -79,6 +80,16 @@ toml::table parse_raw(const std::string& raw) {
     return toml::table{{"value", raw}};
 }
 
+/// Presets that are missing may be meant to be those that come with the program.
+std::string read_preset_file(const fs::path& file) {
+    std::error_code ignored;
+    const fs::path looks = assets_folder("looks");
+    if (fs::exists(file, ignored) || looks.empty()) return read_file(file);
+    throw InputError(fmt::format(
+        "{}: cannot be read: No such file or directory; the looks that come with astrosplat are in {}",
+        file.string(), looks.string()));
+}
+
 class Loader {
   public:
     Loader(std::string file, fs::path folder) : file_(std::move(file)), folder_(std::move(folder)) {}
@@ -118,18 +129,11 @@ class Loader {
         }
         apply_entries(
             entries, origin, [this] { return describe(scene_); }, places_);
-        if (layer.preset.empty()) return;
-        std::error_code ignored;
-        if (!fs::exists(layer.preset, ignored))
-            throw InputError(
-                layer.preset.string() +
-                ": cannot be read: No such file or directory; the looks that come with astrosplat are in " +
-                ASTROSPLAT_ASSETS "/looks");
-        read_preset(layer);
+        if (!layer.preset.empty()) read_preset(layer);
     }
 
     void read_preset(LayerParams& layer) {
-        const toml::table root = parse_toml(read_file(layer.preset), layer.preset.string());
+        const toml::table root = parse_toml(read_preset_file(layer.preset), layer.preset.string());
         check_version(root, layer.preset.string(), false);
         const EntryOrigin origin{layer.preset.string(), layer.preset.parent_path(), false, {}};
         std::vector<Entry> entries;

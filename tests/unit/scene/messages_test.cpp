@@ -44,16 +44,18 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[layer.look]\ndensity = [1, {}]\n", "6: layer.look.density: expected a value, found a table"},
         Case{"[layer.look]\nnoise = [1, {}]\n",
              "6: layer.look.noise: expected a table or a list of tables, found a list of 2"},
-        Case{"[layer.look]\nalpha = 6\n", "6: layer.look.alpha: expected a table, found a number"},
+        Case{"[layer.look]\nalpha = 6\n",
+             "6: layer.look.alpha: expected a table, found a number; it has keys such as "
+             "layer.look.alpha.power"},
         Case{"[layer.look]\ndensity = { x = 6 }\n",
-             "6: layer.look.density: expected a number of at least 0, found a table"},
+             "6: layer.look.density: expected a number from 0 to 1000000, found a table"},
         Case{"[layer.look]\ndensity = 2020-01-01\n", "6: layer.look.density: expected a value, found a date"},
         Case{"[layer.look]\ndensity = nan\n", "6: layer.look.density: expected a finite number, found nan"},
         Case{"[layer.look]\ndensity = -inf\n", "6: layer.look.density: expected a finite number, found inf"},
         Case{"[layer.look]\ndensity = 1e39\n",
-             "6: layer.look.density: expected a number that fits 32 bits, found 1e+39"},
+             "6: layer.look.density: expected a number from 0 to 1000000, found 1e+39"},
         Case{"[layer.look]\ndensity = -1\n",
-             "6: layer.look.density: expected a number of at least 0, found -1"},
+             "6: layer.look.density: expected a number from 0 to 1000000, found -1"},
         Case{"[layer.look]\nnoise = 3\n",
              "6: layer.look.noise: expected a table or a list of tables, found a number"},
         Case{"[layer.look]\nnoise.octaves = 2.5\n",
@@ -61,9 +63,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[layer.look]\nnoise.octaves = 17\n",
              "6: layer.look.noise.octaves: expected a whole number from 1 to 16, found 17"},
         Case{"[layer.look]\ngrade.tint = [1, 1]\n",
-             "6: layer.look.grade.tint: expected 3 numbers of at least 0, found a list of 2"},
+             "6: layer.look.grade.tint: expected 3 numbers from 0 to 1000000, found a list of 2"},
         Case{"[layer.look]\ngrade.tint = [1, 1, true]\n",
-             "6: layer.look.grade.tint: expected 3 numbers of at least 0, found true among them"},
+             "6: layer.look.grade.tint: expected 3 numbers from 0 to 1000000, found true among them"},
         Case{"[layer.look]\nalpha.unpremultiply = 1\n",
              "6: layer.look.alpha.unpremultiply: expected true or false, found a number"},
         Case{"[layer.look]\npdf.points = [[0, 1]]\n",
@@ -134,7 +136,16 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[camera]\nup = [0, 0, 0]\n", "6: camera.up: expected a direction, found 0, 0, 0"},
         Case{"[camera]\nrotation = [0, 0, 0, 0]\n",
              "6: camera.rotation: expected a quaternion that is not zero, found 0, 0, 0, 0"},
-        Case{"[camera]\nfov = 180\n", "6: camera.fov: expected a number above 0 and below 180, found 180"},
+        Case{"[camera]\nfov = 180\n",
+             "6: camera.fov: expected a number of at least 0.001 and below 180, found 180"},
+        Case{"[camera]\nfov = 1e-30\n",
+             "6: camera.fov: expected a number of at least 0.001 and below 180, found 1e-30"},
+        Case{"[camera]\nfocal_length = 1e30\n",
+             "6: camera.focal_length: expected a number from 0 to 1000000, found 1e+30"},
+        Case{"[camera]\nposition = [1e300, 0, 0]\n",
+             "6: camera.position: expected 3 numbers within 1e+12 of 0, found 1e+300"},
+        Case{"transform.scale = 1e30\n",
+             "5: layer.transform.scale: expected a number from 1e-09 to 1000000000, found 1e+30"},
         Case{"[camera]\nnear = 5\nfar = 2\n", "7: camera.far: expected far beyond near or 0, found 5 and 2"},
         Case{"[environment]\ncube = [\"a\", \"b\"]\n",
              "6: environment.cube: expected six pictures, in the order +x -x +y -y +z -z, found 2"},
@@ -175,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"\"camera.fov\" = { keys = [[nan, 3]] }\n",
              "camera.fov: expected a frame number first in a key, found a number"},
         Case{"\"camera.fov\" = { keys = [[1, 200]] }\n",
-             "camera.fov: frame 1: expected a number above 0 and below 180, found 200"},
+             "camera.fov: frame 1: expected a number of at least 0.001 and below 180, found 200"},
         Case{"\"camera.fov\" = { keys = [[1, nan]] }\n",
              "camera.fov: frame 1: expected a finite number, found nan"},
         Case{"\"camera.position\" = { keys = [[1, []]] }\n",
@@ -243,7 +254,7 @@ TEST(Messages, PresetsNameTheirOwnFileAndLine) {
               preset.string() + ":2: unknown key 'alpha.powr'; did you mean 'look.alpha.power'?");
     write_file_atomically(preset, "[look]\nalpha.power = -2\n");
     EXPECT_EQ(message(text),
-              preset.string() + ":2: look.alpha.power: expected a number of at least 0, found -2");
+              preset.string() + ":2: look.alpha.power: expected a number from 0 to 1000000, found -2");
     write_file_atomically(preset, "[output]\nfps = 2\n");
     EXPECT_EQ(message(text),
               preset.string() + ":2: unknown key 'fps'; 'astrosplat parameters' lists all keys");
@@ -252,6 +263,8 @@ TEST(Messages, PresetsNameTheirOwnFileAndLine) {
     write_file_atomically(preset, "[look]\nradius = { min = 2.0 }\n");
     EXPECT_EQ(message(text),
               preset.string() + ":2: layer.stars.look.radius.min: expected min not above max, found 2 and 0");
+    write_file_atomically(preset, "astrosplat = 2\n[look]\ndensity = 0.5\n");
+    EXPECT_EQ(message(text), preset.string() + ":1: astrosplat: expected the format version 1, found 2");
     fs::remove(preset);
     EXPECT_EQ(message(text), preset.string() +
                                  ": cannot be read: No such file or directory; the looks that come with "
@@ -269,6 +282,19 @@ TEST(Messages, Assignments) {
               "--set: layer.stars.look.alpha.power: expected a number, found a string");
     EXPECT_EQ(set("layer.stars.look.alpha.power="),
               "--set: layer.stars.look.alpha.power: expected a number, found a string");
+    EXPECT_EQ(set("layer.stars.look.pdf=gaussian"),
+              "--set: layer.stars.look.pdf: expected a table, found a string; did you mean "
+              "layer.stars.look.pdf.shape=gaussian?");
+    EXPECT_EQ(set("camera=5"),
+              "--set: camera: expected a table, found a number; it has keys such as camera.projection");
+    EXPECT_EQ(set("camera.position=0,0,5"),
+              "--set: camera.position: expected 3 numbers, found a string; did you mean --set "
+              "'camera.position=[0, 0, 5]'?");
+    EXPECT_EQ(set("output.aovs=[depth]"),
+              "--set: output.aovs: expected a list of depth, coverage, count or layers, found a string; did "
+              "you mean --set 'output.aovs=[\"depth\"]'?");
+    EXPECT_EQ(set("output.aovs=depht"),
+              "--set: output.aovs: expected a list of depth, coverage, count or layers, found a string");
     EXPECT_EQ(
         set("layer.stars.look.noise.3.cull=0.5"),
         "--set: layer.stars.look.noise.3.cull: expected an index of at most 0 in layer.look.noise, found 3");
