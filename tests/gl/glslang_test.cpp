@@ -52,9 +52,9 @@ TEST_F(ReferenceCompiler, TakesThePassesOverThePicture) {
     EXPECT_TRUE(takes("frag", {}, environment_fragment_files));
     EXPECT_TRUE(takes("frag", {"BLEND 0"}, {"composite_fragment.glsl"}));
     EXPECT_TRUE(takes("frag", {"BLEND 2"}, {"composite_fragment.glsl"}));
-    EXPECT_TRUE(takes("frag", {"VIEW 2", "TAPS_A 1", "DITHER"}, {"dispcomposite_fragment.glsl"}));
+    EXPECT_TRUE(takes("frag", {"VIEW 2", "TAPS_A 1", "DITHER"}, {"display_fragment.glsl"}));
     EXPECT_TRUE(takes("frag", {"VIEW 1", "TAPS_A 2", "VIEW_B 3", "TAPS_B 1", "DIFFERENCE"},
-                      {"dispcomposite_fragment.glsl"}));
+                      {"display_fragment.glsl"}));
 }
 
 }  // namespace
