@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "generate/generate.h"
+#include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"
 
@@ -28,7 +29,7 @@ std::int64_t splats_of(const SourceParams& source) {
         return ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat;
     }
     if (!source.voxels && source.voxel_size <= 0.0) return source.count;
-    const std::vector<TexturedMesh> meshes = load_meshes(source);
+    const std::vector<TexturedMesh> meshes = load_meshes(source, Progress{{}, &interrupted()});
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
     const double max_distance = resolved_max_distance(source, box);

@@ -9,7 +9,8 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
+#include "core/file.h"
+#include "core/file_format.h"
 #include "output/image_info.h"
 #include "output/read_frame.h"
 #include "report.h"
@@ -39,17 +40,16 @@ Report smallest_and_largest(const Buffer<float>& values) {
 
 Report describe_splats(const fs::path& file) {
     const SplatSet set = read_splats(file);
-    Report attributes = Report::array();
-    for_each_column([&](auto column, SplatColumn which) {
-        if (!is_optional(which) || !(set.*column).empty()) attributes.push_back(name_of(which));
-    });
+    const std::vector<std::string> attributes = splat_attributes(file);
     Report report = {{"kind", "splats"},
                      {"splats", set.size()},
                      {"bounds", to_report(bounds(set))},
-                     {"attributes", attributes},
-                     {"alpha", smallest_and_largest(set.alpha)},
-                     {"distance", smallest_and_largest(set.distance)}};
-    if (!set.radius.empty()) report["radius"] = smallest_and_largest(set.radius);
+                     {"attributes", attributes}};
+    for (const std::string& name : attributes) {
+        if (name == "alpha") report[name] = smallest_and_largest(set.alpha);
+        if (name == "distance") report[name] = smallest_and_largest(set.distance);
+        if (name == "radius") report[name] = smallest_and_largest(set.radius);
+    }
     report["max_distance"] = set.max_distance;
     report["spacing"] = to_report(set.spacing);
     if (!set.credit.empty()) report["credit"] = set.credit;
@@ -151,23 +151,26 @@ Report describe_scene(const fs::path& file) {
             {"animated", animated}};
 }
 
+Report describe(const fs::path& file) {
+    switch (kind_of(format_of_file(file))) {
+        case FileKind::splats:
+            return describe_splats(file);
+        case FileKind::scene:
+            return describe_scene(file);
+        case FileKind::mesh:
+            return describe_mesh(file);
+        default:
+            return is_fits(file) ? describe_fits_file(file) : describe_image(file);
+    }
+}
+
 }  // namespace
 
 int run_info(const InfoOptions& options) {
     const fs::path& file = options.file;
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) {
-        bad_input(file.string(), "", "a file",
-                  fs::exists(file, ignored) ? "something else" : "nothing of that name");
-    }
-    const std::string ending = file.extension().string();
-    const Report about = is_splat_file(file) ? describe_splats(file)
-                         : ending == ".toml" ? describe_scene(file)
-                         : ending == ".obj"  ? describe_mesh(file)
-                         : is_fits(file)     ? describe_fits_file(file)
-                                             : describe_image(file);
+    require_readable(file);
     Report report = {{"file", file.string()}};
-    report.update(about);
+    report.update(describe(file));
     print_report(report, options.json);
     return exit_done;
 }

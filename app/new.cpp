@@ -4,32 +4,19 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/file_format.h"
 #include "core/text.h"
-#include "output/image_info.h"
 #include "places.h"
 #include "scene/new_scene.h"
-#include "source/fits.h"
+#include "source/picture.h"
 
 namespace astrosplat {
-namespace {
-
-// A scene around something else would fail at its first frame: better said now.
-void check_picture(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) bad_input(file.string(), "", "a picture", "a folder");
-    if (!std::ifstream(file)) bad_input(file.string(), "", "a picture", "nothing that can be read");
-    if (!is_fits(file)) read_image_info(file);
-}
-
-}  // namespace
-
 int run_new(const NewOptions& options) {
-    check_picture(options.image);
-    if (options.scene.extension() != ".toml") {
+    require_picture(options.image);  // a scene around something else would fail at its first frame
+    if (kind_of(format_by_name(options.scene)) != FileKind::scene) {
         bad_input(options.scene.string(), "", "a name ending in .toml",
                   "'" + options.scene.extension().string() + "'");
     }

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/file.h"
+#include "core/file_format.h"
 #include "core/text.h"
 #include "interrupt.h"
 #include "places.h"
@@ -29,10 +31,10 @@ const LayerParams& layer_named(const Scene& scene, const std::string& name) {
 }
 
 void check_splat_output(const std::filesystem::path& file, bool overwrite) {
-    if (!is_splat_file(file)) {
-        bad_input(file.string(), "", "a name ending in .pda, .ply or .splats",
+    if (kind_of(format_by_name(file)) != FileKind::splats)
+        bad_input(file.string(), "",
+                  fmt::format("a name ending in {}", fmt::join(endings_of({FileKind::splats}), " or ")),
                   "'" + file.extension().string() + "'");
-    }
     refuse_to_overwrite(file, overwrite);
     defer_interrupts();
     prove_writable(folder_of(file));
@@ -60,6 +62,7 @@ int run_generate(const GenerateOptions& options) {
 }
 
 int run_convert(const ConvertOptions& options) {
+    require_readable(options.input);
     check_splat_output(options.output, options.overwrite);
     ProgressReport report(options.progress);
     const SplatSet set = read_splats(options.input, report.begin_step("reading"));

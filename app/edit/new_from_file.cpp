@@ -6,42 +6,27 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <functional>
-#include <map>
 #include <sstream>
 
 #include "core/error.h"
 #include "core/file.h"
+#include "core/file_format.h"
 #include "scene/new_scene.h"
 #include "scene/value.h"
 #include "source/mesh.h"
+#include "source/picture.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-const std::map<std::string, FileKind> kinds{
-    {".obj", FileKind::mesh},      {".pda", FileKind::splats},   {".ply", FileKind::splats},
-    {".splats", FileKind::splats}, {".png", FileKind::picture},  {".jpg", FileKind::picture},
-    {".jpeg", FileKind::picture},  {".tif", FileKind::picture},  {".tiff", FileKind::picture},
-    {".exr", FileKind::picture},   {".fits", FileKind::picture}, {".fit", FileKind::picture},
-    {".fts", FileKind::picture},   {".toml", FileKind::scene}};
-
-std::string lower_ending(const fs::path& file) {
-    std::string ending = file.extension().string();
-    if (ending == ".gz") ending = file.stem().extension().string();  // CFITSIO reads x.fits.gz
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return ending;
-}
-
 /// Tables of a preset, and none of a scene.
 bool is_look(const fs::path& file) {
-    std::ifstream in(file);
+    std::istringstream text(read_beginning(file, std::size_t{1} << 20));
     bool found = false;
-    for (std::string line; std::getline(in, line);) {
+    for (std::string line; std::getline(text, line);) {
         line.erase(std::remove_if(line.begin(), line.end(), [](char c) { return c == ' ' || c == '\t'; }),
                    line.end());
         const auto begins = [&](const char* with) { return line.rfind(with, 0) == 0; };
@@ -128,19 +113,6 @@ std::string mesh_scene_text(const fs::path& file, const fs::path& place) {
                           projection_lines(mesh)));
 }
 
-/// Whether the beginning of a splat file promises radii. Native files are read to know.
-bool names_radii(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::string head(65536, '\0');
-    in.read(head.data(), static_cast<std::streamsize>(head.size()));
-    head.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
-    const std::size_t end = std::min(head.find("end_header"), head.find("BEGIN DATA"));
-    std::istringstream words(head.substr(0, end));
-    for (std::string word; words >> word;)
-        if (word == "radius" || word == "radiusPP") return true;
-    return false;
-}
-
 /// Half the mean distance of neighbours, were they spread evenly through the box: in space, or where that
 /// is thinner than the distance, over its area or along its length.
 double typical_radius(const SplatSet& set) {
@@ -156,13 +128,11 @@ double typical_radius(const SplatSet& set) {
 
 std::string splat_scene_text(const fs::path& file, const fs::path& place) {
     std::string look;
-    if (!names_radii(file)) {
-        const SplatSet set = read_splats(file);
-        if (set.radius.empty()) {
-            const std::string radius = fmt::format("{:.3g}", typical_radius(set));
-            look = fmt::format("\n[layer.look]\nradius = {{ min = {0}, max = {0} }}  # the file has none\n",
-                               radius);
-        }
+    const std::vector<std::string> attributes = splat_attributes(file);
+    if (std::find(attributes.begin(), attributes.end(), "radius") == attributes.end()) {
+        const std::string radius = fmt::format("{:.3g}", typical_radius(read_splats(file)));
+        look =
+            fmt::format("\n[layer.look]\nradius = {{ min = {0}, max = {0} }}  # the file has none\n", radius);
     }
     return scene_text(file, fmt::format("\n[layer.source]\nkind = \"splats\"\nfile = {}\n{}",
                                         path_from(file, place), look));
@@ -183,19 +153,15 @@ std::string layer_name_of(const std::string& text) {
 }
 
 FileKind kind_of_file(const fs::path& file) {
-    const auto kind = kinds.find(lower_ending(file));
-    if (kind == kinds.end()) return FileKind::unknown;
-    if (kind->second == FileKind::scene && is_look(file)) return FileKind::look;
-    return kind->second;
+    const FileKind kind = kind_of(format_of_file(file));
+    return kind == FileKind::scene && is_look(file) ? FileKind::look : kind;
 }
 
 std::string scene_text_for(const fs::path& file, const fs::path& place) {
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored))
-        bad_input(file.string(), "", "a picture, mesh or splat file",
-                  fs::exists(file, ignored) ? "a folder" : "nothing of that name");
+    require_readable(file);
     switch (kind_of_file(file)) {
         case FileKind::picture:
+            require_picture(file);
             return new_scene_text(file, "plane", place);
         case FileKind::mesh:
             return mesh_scene_text(file, place);
@@ -205,7 +171,9 @@ std::string scene_text_for(const fs::path& file, const fs::path& place) {
             bad_input(file.string(), "", "a scene with at least one [[layer]]",
                       "a look, which File > Apply look gives to a layer");
         default:
-            bad_input(file.string(), "", "a picture (FITS, PNG, TIFF, JPEG, EXR), OBJ mesh or splat file",
+            bad_input(file.string(), "",
+                      fmt::format("a picture ({}), a mesh ({}) or splats ({})", names_of(FileKind::picture),
+                                  names_of(FileKind::mesh), names_of(FileKind::splats)),
                       "another kind of file");
     }
 }

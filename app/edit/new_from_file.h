@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <string>
 
+#include "core/file_format.h"
+
 namespace astrosplat {
 
-enum class FileKind { unknown, scene, look, picture, mesh, splats };
-
-/// By the ending; a .toml is a look when it has a [look] or [render] and no layers, else a scene. Unreadable
-/// files are what their ending says.
+/// By content or ending (core/file_format.h); a .toml is a look when it has a [look] or [render] and no
+/// layers, else a scene. Unreadable files are what their ending says.
 FileKind kind_of_file(const std::filesystem::path& file);
 
 /// The text of a scene file `place` around a picture (on the built-in plane), an OBJ (with its own pictures,

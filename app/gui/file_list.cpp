@@ -2,22 +2,19 @@
 #include "gui/file_list.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
+
+#include "core/text.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
-
 bool wanted(const FileEntry& entry, const std::vector<std::string>& extensions) {
     if (entry.folder || extensions.empty()) return true;
-    const std::string ending = lower(fs::path(entry.name).extension().string());
-    return std::find(extensions.begin(), extensions.end(), ending) != extensions.end();
+    const std::string name = lower_case(entry.name);
+    return std::any_of(extensions.begin(), extensions.end(),
+                       [&](const std::string& ending) { return name.ends_with(ending); });
 }
 
 std::size_t common_length(const std::string& a, const std::string& b) {
@@ -45,7 +42,7 @@ std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std
     }
     std::sort(entries.begin(), entries.end(), [](const FileEntry& a, const FileEntry& b) {
         if (a.folder != b.folder) return a.folder;
-        const std::string la = lower(a.name), lb = lower(b.name);
+        const std::string la = lower_case(a.name), lb = lower_case(b.name);
         return la != lb ? la < lb : a.name < b.name;
     });
     return entries;

@@ -1,7 +1,5 @@
 // Titles, kinds and folders of the file dialogs.
-#include <algorithm>
-#include <cctype>
-
+#include "core/file_format.h"
 #include "gui/command_flow.h"
 
 namespace astrosplat {
@@ -9,11 +7,10 @@ namespace fs = std::filesystem;
 namespace {
 
 using Extensions = std::vector<std::string>;
-const Extensions pictures{".png",  ".jpg", ".jpeg", ".exr", ".tif", ".tiff",
-                          ".fits", ".fit", ".fts",  ".hdr", ".dpx"};
-const Extensions sources{".png", ".jpg", ".jpeg", ".exr", ".tif", ".tiff",   ".fits", ".fit",
-                         ".fts", ".hdr", ".obj",  ".ply", ".pda", ".splats", ".csv",  ".txt"};
-const Extensions frames{".exr", ".png", ".tif"};
+const Extensions pictures = endings_of({FileKind::picture});
+const Extensions sources = endings_of({FileKind::picture, FileKind::mesh, FileKind::splats});
+const Extensions scenes = endings_of({FileKind::scene});
+const Extensions frames = endings_of({FileKind::picture}, FileUse::written);
 
 fs::path folder_of_document(const Document& document) {
     if (!document.file().empty()) return document.file().parent_path();
@@ -40,17 +37,17 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
         case Kind::new_from_file:
             return reading("New scene from a picture, mesh or splat file", "pictures", sources, document);
         case Kind::open:
-            return reading("Open a scene", "scenes", {".toml"}, document);
+            return reading("Open a scene", "scenes", scenes, document);
         case Kind::import_file:
             return reading("Import as a layer", "pictures, meshes or splats", sources, document);
         case Kind::set_reference:
             return reading("Picture to compare with", "pictures", pictures, document);
         case Kind::apply_look:
-            return reading("Apply a look to the selected layer", "looks", {".toml"}, document);
+            return reading("Apply a look to the selected layer", "looks", scenes, document);
         case Kind::save_as:
-            return writing("Save the scene as", "scenes", {".toml"}, document, stem(document) + ".toml");
+            return writing("Save the scene as", "scenes", scenes, document, stem(document) + ".toml");
         case Kind::save_look:
-            return writing("Export the selected layer's look", "looks", {".toml"}, document, "look.toml");
+            return writing("Export the selected layer's look", "looks", scenes, document, "look.toml");
         case Kind::render_frame:
             return writing("Render this frame to", "pictures", frames, document, stem(document) + ".exr");
         case Kind::render_movie:

@@ -57,6 +57,12 @@ std::string counted(std::int64_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+std::string lower_case(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
 std::optional<double> parse_double(std::string_view text) { return parse<double>(text); }
 std::optional<std::int64_t> parse_int64(std::string_view text) { return parse<std::int64_t>(text); }
 

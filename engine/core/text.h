@@ -18,6 +18,9 @@ std::string printable(std::string_view text);
 /// "1 frame", "12 frames", of a noun that takes an s.
 std::string counted(std::int64_t count, std::string_view noun);
 
+/// With a to z for A to Z; other letters stay as they are.
+std::string lower_case(std::string text);
+
 /// The whole of `text` as a number, with '.' as the decimal point; a leading '+' is allowed. Empty for
 /// anything else, and for values too large for a double. "inf" and "nan" are numbers here: callers that need
 /// finite ones check.

@@ -15,11 +15,11 @@ namespace {
 
 using Wrap = TextureSettings::Wrap;
 
-TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source) {
+TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, const Progress& progress) {
     const std::string name = input.mesh.string();
     if (input.texture.empty()) bad_input(name, "texture", "a picture, which built-in meshes need", "none");
     TexturedMesh loaded;
-    loaded.textures.push_back(load_texture(input.texture, source.texture, Wrap::clamp));
+    loaded.textures.push_back(load_texture(input.texture, source.texture, Wrap::clamp, progress));
     const Texture& texture = loaded.textures.front();
     const double aspect =
         static_cast<double>(texture.image.width) / static_cast<double>(texture.image.height);
@@ -28,7 +28,8 @@ TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source) {
 }
 
 // One picture per material that a face uses; others get an empty one, so that indices stay.
-std::vector<Texture> load_maps(const Mesh& mesh, const TextureSettings& settings, Wrap wrap) {
+std::vector<Texture> load_maps(const Mesh& mesh, const TextureSettings& settings, Wrap wrap,
+                               const Progress& progress) {
     std::vector<bool> used(std::max<std::size_t>(1, mesh.maps.size()), false);
     for (const Mesh::Triangle& face : mesh.triangles) used[mesh.maps.empty() ? 0 : face.material] = true;
     std::vector<Texture> textures(used.size());
@@ -38,19 +39,19 @@ std::vector<Texture> load_maps(const Mesh& mesh, const TextureSettings& settings
             bad_input(mesh.name, "", "a texture in the scene, or a material with map_Kd for every face",
                       "neither");
         }
-        textures[i] = load_texture({mesh.maps[i]}, settings, wrap);
+        textures[i] = load_texture({mesh.maps[i]}, settings, wrap, progress);
     }
     return textures;
 }
 
-TexturedMesh load_file(const MeshInput& input, const SourceParams& source) {
+TexturedMesh load_file(const MeshInput& input, const SourceParams& source, const Progress& progress) {
     const Wrap wrap = source.uv == UvMode::mesh ? Wrap::repeat : Wrap::clamp;
     TexturedMesh loaded;
-    loaded.mesh = load_obj(input.mesh);
+    loaded.mesh = load_obj(input.mesh, progress);
     if (input.texture.empty()) {
-        loaded.textures = load_maps(loaded.mesh, source.texture, wrap);
+        loaded.textures = load_maps(loaded.mesh, source.texture, wrap, progress);
     } else {
-        loaded.textures.push_back(load_texture(input.texture, source.texture, wrap));
+        loaded.textures.push_back(load_texture(input.texture, source.texture, wrap, progress));
     }
     return loaded;
 }
@@ -66,9 +67,12 @@ std::string describe_lattice(const Lattice& lattice, double max_distance, std::i
                        max_distance, human_bytes(static_cast<double>(bytes)));
 }
 
+// Reading inputs is heard by a request to stop, but is no share of the work reported.
+Progress cancel_only(const Progress& progress) { return {{}, progress.cancelled}; }
+
 SplatSet generate_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
                          KeptWatcher* watcher) {
-    const std::vector<TexturedMesh> meshes = load_meshes(source);
+    const std::vector<TexturedMesh> meshes = load_meshes(source, cancel_only(progress));
     for (const TexturedMesh& m : meshes) {
         for (const Texture& texture : m.textures) {
             if (!texture.summary.empty())
@@ -97,12 +101,12 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
 
 }  // namespace
 
-std::vector<TexturedMesh> load_meshes(const SourceParams& source) {
+std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress) {
     if (source.meshes.empty()) bad_input("source.meshes", "", "at least one mesh", "none");
     std::vector<TexturedMesh> meshes;
     for (const MeshInput& input : source.meshes) {
-        meshes.push_back(is_builtin_mesh(input.mesh) ? load_builtin(input, source)
-                                                     : load_file(input, source));
+        meshes.push_back(is_builtin_mesh(input.mesh) ? load_builtin(input, source, progress)
+                                                     : load_file(input, source, progress));
     }
     const Bounds box = bounds(meshes);
     for (TexturedMesh& m : meshes) apply_uv(m.mesh, source.uv, box);

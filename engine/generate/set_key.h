@@ -9,7 +9,7 @@
 namespace astrosplat {
 
 /// Raised whenever generation, or the reading of meshes and pictures, gives other bits than before.
-inline constexpr int set_version = 1;
+inline constexpr int set_version = 2;
 
 /// What is hashed, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
 /// picture also its material libraries and their pictures), and the parameters in use, with the seed

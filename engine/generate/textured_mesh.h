@@ -17,6 +17,6 @@ struct TexturedMesh {
 
 /// Loads the meshes and pictures of a mesh source (paths already resolved). Wrap::automatic is clamp for
 /// built-in meshes and planar uv, repeat for a mesh's own uv. Throws InputError.
-std::vector<TexturedMesh> load_meshes(const SourceParams& source);
+std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
+#include "core/file_format.h"
 #include "output/frame_path.h"
 
 namespace astrosplat {
@@ -20,9 +22,9 @@ using Alpha = OutputParams::Alpha;
 using View = OutputParams::View;
 
 struct KindRules {
-    FileKind kind;
+    FrameKind kind;
     const char* name;
-    std::vector<const char*> endings;
+    std::string_view format;                // of core/file_format.h
     std::vector<Depth> depths;              // the first is "auto"
     std::vector<Compression> compressions;  // the first is "auto"
     Alpha automatic_alpha;
@@ -32,25 +34,25 @@ struct KindRules {
 
 const std::array<KindRules, 3>& rules() {
     static const std::array<KindRules, 3> table = {{
-        {FileKind::exr,
+        {FrameKind::exr,
          "exr",
-         {".exr"},
+         "openexr",
          {Depth::half_float, Depth::float32},
          {Compression::zip, Compression::zips, Compression::piz, Compression::dwaa, Compression::none},
          Alpha::premultiplied,
          "half or float",
          "zip, zips, piz, dwaa or none"},
-        {FileKind::tif,
+        {FrameKind::tif,
          "tif",
-         {".tif", ".tiff"},
+         "tiff",
          {Depth::uint16, Depth::uint8, Depth::float32},
          {Compression::deflate, Compression::lzw, Compression::none},
          Alpha::premultiplied,
          "8, 16 or float",
          "deflate, lzw or none"},
-        {FileKind::png,
+        {FrameKind::png,
          "png",
-         {".png"},
+         "png",
          {Depth::uint8, Depth::uint16},
          {Compression::deflate},
          Alpha::none,
@@ -61,12 +63,9 @@ const std::array<KindRules, 3>& rules() {
 }
 
 const KindRules& rules_for(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const FileFormat* const format = format_by_name(file);
     for (const KindRules& rule : rules())
-        for (const char* known : rule.endings)
-            if (ending == known) return rule;
+        if (format && format->id == rule.format) return rule;
     throw InputError(
         fmt::format("output.path: expected a file ending in .exr, .tif or .png, found '{}'", file.string()));
 }
@@ -82,7 +81,7 @@ void check_aovs(const OutputParams& output, const KindRules& rule) {
         if (std::find(known.begin(), known.end(), aov) == known.end())
             throw InputError(
                 fmt::format("output.aovs: expected {}, found '{}'", fmt::join(known, ", "), aov));
-    if (!output.aovs.empty() && rule.kind != FileKind::exr)
+    if (!output.aovs.empty() && rule.kind != FrameKind::exr)
         throw InputError(
             fmt::format("output.aovs: expected none in {} files (extra channels need exr), found '{}'",
                         rule.name, output.aovs.front()));

@@ -7,10 +7,10 @@
 
 namespace astrosplat {
 
-enum class FileKind { exr, tif, png };
+enum class FrameKind { exr, tif, png };
 
 struct FrameFormat {
-    FileKind kind = FileKind::exr;
+    FrameKind kind = FrameKind::exr;
     OutputParams::Depth depth = OutputParams::Depth::half_float;             // never automatic
     OutputParams::Compression compression = OutputParams::Compression::zip;  // never automatic; unused by png
     OutputParams::Alpha alpha = OutputParams::Alpha::premultiplied;          // never automatic

@@ -14,7 +14,7 @@
 namespace astrosplat {
 
 /// Raised whenever the program's own arithmetic changes a pixel of any scene.
-inline constexpr int pixel_version = 1;
+inline constexpr int pixel_version = 2;
 
 /// Input files as they were when they were hashed.
 struct HashedFile {

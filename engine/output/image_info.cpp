@@ -2,19 +2,12 @@
 
 #include <fmt/format.h>
 // fmt first: OpenImageIO brings a copy of it with other settings.
-#include <OpenImageIO/imageio.h>
-
-#include "core/error.h"
+#include "source/open_picture.h"
 
 namespace astrosplat {
 
 ImageInfo read_image_info(const std::filesystem::path& file) {
-    const auto in = OIIO::ImageInput::open(file.string());
-    if (!in) {
-        const std::string reason = OIIO::geterror();
-        throw InputError(fmt::format("{}: cannot be read as a picture: {}", file.string(),
-                                     reason.substr(0, reason.find('\n'))));
-    }
+    const auto in = open_picture(file);
     const OIIO::ImageSpec& spec = in->spec();
     ImageInfo info{spec.width,       spec.height,       spec.x, spec.y, spec.full_width,
                    spec.full_height, in->format_name(), {},     {}};

@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 // fmt first: OpenImageIO brings a copy of it with other settings.
-#include <OpenImageIO/imageio.h>
+#include "source/open_picture.h"
 
 #include <algorithm>
 #include <vector>
 
+#include "core/error.h"
 #include "output/metadata.h"
 
 namespace astrosplat {
@@ -19,23 +20,26 @@ std::string entry(const OIIO::ImageSpec& spec, const char* key) {
     return find_metadata_line(spec.get_string_attribute("ImageDescription"), key);
 }
 
+std::unique_ptr<OIIO::ImageInput> open_if_picture(const std::filesystem::path& file) {
+    try {
+        return open_picture(file);
+    } catch (const InputError&) {
+        return nullptr;
+    }
+}
+
 }  // namespace
 
 std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::path& file) {
-    auto in = OIIO::ImageInput::open(file.string());
-    if (!in) {
-        (void)OIIO::geterror();  // a message left behind would be printed at exit
-        return {};
-    }
+    const auto in = open_if_picture(file);
+    if (!in) return {};
     return {entry(in->spec(), "astrosplat/frameHash"), entry(in->spec(), "astrosplat/pixelHash")};
 }
 
 bool frame_is_whole(const std::filesystem::path& file) {
-    auto in = OIIO::ImageInput::open(file.string());
-    if (!in) {
-        (void)OIIO::geterror();
-        return false;
-    }
+    const auto in = open_if_picture(file);
+    if (!in) return false;
+    const QuietStderr quiet;
     const OIIO::ImageSpec& spec = in->spec();
     constexpr int rows = 256;
     std::vector<unsigned char> band(spec.scanline_bytes(true) * rows);

@@ -79,8 +79,8 @@ const char* oiio_name(OutputParams::Compression compression) {
 void set_text(OIIO::ImageSpec& spec, const FrameFormat& format, const FrameMetadata& metadata) {
     MetadataEntries entries = metadata_entries(metadata);
     for (const auto& [key, value] : entries)
-        if (format.kind != FileKind::tif) spec.attribute(key, value);
-    if (format.kind == FileKind::tif) spec.attribute("ImageDescription", metadata_lines(entries));
+        if (format.kind != FrameKind::tif) spec.attribute(key, value);
+    if (format.kind == FrameKind::tif) spec.attribute("ImageDescription", metadata_lines(entries));
     if (!metadata.provenance.credit.empty()) spec.attribute("Copyright", metadata.provenance.credit);
     spec.attribute("DateTime", "");
 }
@@ -103,14 +103,14 @@ OIIO::ImageSpec make_spec(const FrameFormat& format, const Image& beauty, const 
     if (stored_channels(format) == 4) spec.channelnames.push_back("A");
     spec.alpha_channel = stored_channels(format) == 4 ? 3 : -1;
     spec.attribute("compression", oiio_name(format.compression));
-    // Told that alpha is unassociated, OpenImageIO stores the numbers as they are; else it
-    // would divide PNG's.
-    bool as_is = format.kind == FileKind::png || format.alpha == OutputParams::Alpha::straight;
-    if (as_is && format.kind != FileKind::exr) spec.attribute("oiio:UnassociatedAlpha", 1);
+    // Told that alpha is unassociated, OpenImageIO stores the numbers as they are; else it would divide
+    // PNG's.
+    bool as_is = format.kind == FrameKind::png || format.alpha == OutputParams::Alpha::straight;
+    if (as_is && format.kind != FrameKind::exr) spec.attribute("oiio:UnassociatedAlpha", 1);
     // TIFF would hold it as EXIF, which OpenImageIO 2.4 writes wrongly unless it opens the file itself; 8 and
     // 16 bit TIFF is taken for sRGB anyway.
     const bool linear = format.view == OutputParams::View::linear;
-    if (format.kind != FileKind::tif) spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
+    if (format.kind != FrameKind::tif) spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
     set_text(spec, format, metadata);
     return spec;
 }
@@ -194,7 +194,7 @@ void write_exr(const FrameFile& target, const FrameFormat& format, const Rendere
 
 void write_flat(const FrameFile& target, const FrameFormat& format, const Image& beauty,
                 const OIIO::ImageSpec& spec) {
-    PictureFile file(target.file, format.kind == FileKind::png ? "png" : "tiff", spec, target.existing);
+    PictureFile file(target.file, format.kind == FrameKind::png ? "png" : "tiff", spec, target.existing);
     if (format.depth == Depth::uint8)
         file.write_all(OIIO::TypeDesc::UINT8,
                        encode_8bit(format, beauty, target.region.x, target.region.y).data());
@@ -228,7 +228,7 @@ void write_frame(const FrameFile& target, const RenderedFrame& frame, const Fram
     check_frame(frame, target.output);
     make_folder(target.file);
     const OIIO::ImageSpec spec = make_spec(format, frame.beauty, metadata);
-    if (format.kind == FileKind::exr)
+    if (format.kind == FrameKind::exr)
         write_exr(target, format, frame, spec, metadata);
     else
         write_flat(target, format, frame.beauty, spec);

@@ -229,10 +229,15 @@ Environment load_environment(const EnvironmentParams& params) {
     Environment environment;
     EnvironmentFaces faces;
     for (const std::filesystem::path& file : files) {
-        Image picture = load_linear_image(file);
-        faces.emplace_back();
-        faces.back().push_back(with_border(picture));
-        environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
+        const std::vector<Image> pictures = load_environment_pictures(file);
+        if (files.size() == 6 && pictures.size() != 1)
+            bad_input(file.string(), "environment.cube", "a picture of one face",
+                      "a cube map, which environment.image takes");
+        for (const Image& picture : pictures) {
+            faces.emplace_back();
+            faces.back().push_back(with_border(picture));
+            environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
+        }
     }
     if (files.size() == 6) check_cube(files, faces);
     if (!files.empty()) build_levels(faces);

@@ -5,9 +5,9 @@
 
 #include "camera/camera.h"
 #include "core/error.h"
+#include "core/file_format.h"
 #include "scene/animate.h"
 #include "scene/frames.h"
-#include "splat_files/splat_file.h"
 
 namespace astrosplat {
 namespace {
@@ -111,7 +111,8 @@ void check_renderable(const Scene& scene, const Places& places) {
         check.require(source.kind != SourceKind::stars, {at / "kind"},
                       "expected mesh or splats (stars come with a later release), found stars");
         check.require(
-            source.kind != SourceKind::splats || is_splat_file(source.file), {at / "file"},
+            source.kind != SourceKind::splats || kind_of(format_of_file(source.file)) == FileKind::splats,
+            {at / "file"},
             "expected a file ending in .pda, .ply or .splats, found '" + source.file.string() + "'");
     }
 }

@@ -7,14 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <optional>
 
 #include "core/error.h"
+#include "core/file.h"
+#include "core/file_format.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "source/fits_headers.h"
 
 namespace astrosplat {
 namespace {
@@ -38,6 +40,8 @@ using Handle = std::unique_ptr<fitsfile, Close>;
 
 // The plain name: brackets and blanks in it mean nothing special.
 Handle open_fits(const fs::path& file) {
+    require_readable(file);
+    check_fits_headers(file);
     fitsfile* handle = nullptr;
     int status = 0;
     fits_open_diskfile(&handle, file.c_str(), READONLY, &status);
@@ -98,7 +102,8 @@ std::int64_t product(const fs::path& file, const std::vector<std::int64_t>& axes
 }
 
 // `count` physical values of the current HDU from element `first` (from 0) on; NaN where undefined.
-Buffer<double> read_values(const fs::path& file, fitsfile* in, std::int64_t first, std::int64_t count) {
+Buffer<double> read_values(const fs::path& file, fitsfile* in, std::int64_t first, std::int64_t count,
+                           const Progress& progress) {
     if (count > std::numeric_limits<std::int64_t>::max() / 64)
         bad_input(file.string(), "", "a picture that fits into memory", fmt::format("{} values", count));
     claim_memory(count * 24,
@@ -106,15 +111,14 @@ Buffer<double> read_values(const fs::path& file, fitsfile* in, std::int64_t firs
     Buffer<double> values(static_cast<std::size_t>(count));
     double undefined = std::numeric_limits<double>::quiet_NaN();
     int any_undefined = 0, status = 0;
-    fits_read_img(in, TDOUBLE, first + 1, count, &undefined, values.data(), &any_undefined, &status);
+    constexpr std::int64_t portion = std::int64_t{1} << 22;
+    for (std::int64_t done = 0; done < count && status == 0; done += portion) {
+        progress.check();
+        fits_read_img(in, TDOUBLE, first + done + 1, std::min(portion, count - done), &undefined,
+                      values.data() + done, &any_undefined, &status);
+    }
     if (status != 0) fail(file, "reading the pixels", status);
     return values;
-}
-
-bool same_name(const std::string& a, const std::string& b) {
-    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [&](char x, char y) { return lower(x) == lower(y); });
 }
 
 FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted) {
@@ -127,7 +131,7 @@ FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted) 
         const FitsHdu hdu = go_to_hdu(file, in, i);
         const bool asked = wanted == "auto" ? hdu.picture
                            : number         ? *number == i
-                                            : same_name(hdu.name, wanted);
+                                            : lower_case(hdu.name) == lower_case(wanted);
         if (!asked) continue;
         if (!hdu.picture)
             bad_input(file.string(), fmt::format("HDU {}", i), "a picture", "none (" + hdu.kind + ")");
@@ -148,24 +152,23 @@ void swap_rows(FitsPlane& plane) {
 }  // namespace
 
 bool is_fits(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::array<char, 10> start{};
-    in.read(start.data(), start.size());
-    const std::string_view text(start.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.substr(0, 9) == "SIMPLE  =") return true;
-    const std::string inner = file.stem().extension().string();
-    return text.substr(0, 2) == "\x1f\x8b" && file.extension() == ".gz" &&
-           (inner == ".fits" || inner == ".fit" || inner == ".fts");
+    const FileFormat* const format = format_of_file(file);
+    return format && format->id == "fits";
 }
 
-std::vector<FitsHdu> describe_fits(const fs::path& file) {
+void require_fits_picture(const fs::path& file) {
+    const Handle in = open_fits(file);
+    find_hdu(file, in.get(), "auto");
+}
+
+std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progress) {
     const Handle in = open_fits(file);
     std::vector<FitsHdu> hdus;
     const int count = hdu_count(file, in.get());
     for (int i = 0; i < count; ++i) {
         FitsHdu hdu = go_to_hdu(file, in.get(), i);
         if (hdu.kind == "image" || hdu.kind == "compressed image") {
-            const Buffer<double> values = read_values(file, in.get(), 0, product(file, hdu.axes));
+            const Buffer<double> values = read_values(file, in.get(), 0, product(file, hdu.axes), progress);
             hdu.range = value_range(values);
             hdu.nan_count =
                 std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); });
@@ -175,7 +178,7 @@ std::vector<FitsHdu> describe_fits(const fs::path& file) {
     return hdus;
 }
 
-FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane) {
+FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
     const Handle in = open_fits(file);
     const FitsHdu found = find_hdu(file, in.get(), hdu);
     const std::vector<std::int64_t> axes = picture_axes(found.axes);
@@ -187,7 +190,7 @@ FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane) {
     FitsPlane result;
     result.width = axes[0];
     result.height = axes[1];
-    result.values = read_values(file, in.get(), pixels * plane, pixels);
+    result.values = read_values(file, in.get(), pixels * plane, pixels, progress);
     result.hdu = found.number;
     result.name = found.name;
     result.credit = text_key(in.get(), "AUTHOR");

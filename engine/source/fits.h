@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/buffer.h"
+#include "core/progress.h"
 #include "source/stretch.h"
 
 namespace astrosplat {
 
-/// Judged by content ("SIMPLE  ="), or a gzip file named .fits.gz, .fit.gz or .fts.gz. False for unreadable
-/// files.
+/// By content, or a gzip file by its name.
 bool is_fits(const std::filesystem::path& file);
 
 struct FitsHdu {
@@ -27,8 +27,11 @@ struct FitsHdu {
     std::int64_t nan_count = 0;      // undefined values: NaN or BLANK; only for images
 };
 
-/// All HDUs with their statistics. Throws InputError.
-std::vector<FitsHdu> describe_fits(const std::filesystem::path& file);
+/// All HDUs with their statistics. Throws InputError, Cancelled.
+std::vector<FitsHdu> describe_fits(const std::filesystem::path& file, const Progress& progress = {});
+
+/// Throws InputError unless one of the HDUs holds a picture.
+void require_fits_picture(const std::filesystem::path& file);
 
 struct FitsPlane {
     std::int64_t width = 0, height = 0;  // px
@@ -39,7 +42,8 @@ struct FitsPlane {
 };
 
 /// `hdu`: "auto" (the first with a picture), a number from 0 (the primary HDU), or an EXTNAME in any case.
-/// `plane` counts from 0 over the axes beyond two. Throws InputError.
-FitsPlane read_fits(const std::filesystem::path& file, const std::string& hdu, int plane);
+/// `plane` counts from 0 over the axes beyond two. Throws InputError, Cancelled.
+FitsPlane read_fits(const std::filesystem::path& file, const std::string& hdu, int plane,
+                    const Progress& progress = {});
 
 }  // namespace astrosplat

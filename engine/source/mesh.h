@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/bounds.h"
+#include "core/progress.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -33,8 +34,9 @@ struct Mesh {
 
 /// Reads an OBJ: several objects, quads and polygons, negative indices, map_Kd. Faces keep the file's order.
 /// A missing MTL is a warning. Throws InputError (file, line where known) for unreadable, truncated or empty
-/// files, indices out of range, coordinates that are not finite.
-Mesh load_obj(const std::filesystem::path& file);
+/// files, indices out of range, coordinates that are not finite;
+/// Cancelled.
+Mesh load_obj(const std::filesystem::path& file, const Progress& progress = {});
 
 /// Bounds of all vertices (also of those no face uses).
 Bounds bounds(const Mesh& mesh);

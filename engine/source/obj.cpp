@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/file.h"
@@ -166,14 +166,16 @@ fs::path native(std::string name) {
     return name;
 }
 
-void load_materials(Reader& r, const std::string& name) {
+// False where there is no such file.
+bool load_materials(Reader& r, const std::string& name) {
     const fs::path file = r.file.parent_path() / native(name);
-    std::error_code error;
-    std::ifstream in(file);
-    if (!in || fs::is_directory(file, error)) {
-        log_warning(fmt::format("{}:{}: material library '{}' not found", r.file.string(), r.line, name));
-        return;
+    std::string content;
+    try {
+        content = read_file(file);
+    } catch (const InputError&) {
+        return false;
     }
+    std::istringstream in(content);
     std::map<std::string, int> ids;
     std::vector<tinyobj::material_t> materials;
     std::string warning, problem;
@@ -183,15 +185,18 @@ void load_materials(Reader& r, const std::string& name) {
         const std::string& map = materials[static_cast<std::size_t>(id)].diffuse_texname;
         r.material_maps[material] = map.empty() ? fs::path() : file.parent_path() / native(map);
     }
+    return true;
 }
 
 // The line may hold several names, or one with blanks in it.
 void read_mtllib(Reader& r, std::string_view text, const Words& words) {
-    const std::string whole = rest_of(text, words);
-    std::error_code error;
-    if (words.size() == 2 || fs::exists(r.file.parent_path() / native(whole), error))
-        return load_materials(r, whole);
-    for (std::size_t i = 1; i < words.size(); ++i) load_materials(r, std::string(words[i]));
+    if (load_materials(r, rest_of(text, words))) return;
+    std::vector<std::string_view> missing;
+    for (std::size_t i = 1; i < words.size(); ++i)
+        if (words.size() == 2 || !load_materials(r, std::string(words[i]))) missing.push_back(words[i]);
+    if (!missing.empty())
+        log_warning(fmt::format("{}:{}: material library '{}' not found", r.file.string(), r.line,
+                                fmt::join(missing, "', '")));
 }
 
 void use_material(Reader& r, const std::string& name) {
@@ -269,7 +274,8 @@ void check_whole(Reader& r) {
 
 // Calls read(line) for every logical line; r.line is the number of its first.
 template <class Read>
-void for_each_line(Reader& r, std::string_view text, Read&& read) {
+void for_each_line(Reader& r, std::string_view text, const Progress& progress, Read&& read) {
+    const auto size = static_cast<double>(text.size());
     if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);  // byte order mark
     for (std::string joined; !text.empty();) {
         std::int64_t lines = 0;
@@ -277,18 +283,21 @@ void for_each_line(Reader& r, std::string_view text, Read&& read) {
         ++r.line;
         read(line);
         r.line += lines - 1;
+        if (r.line % 4096 != 0) continue;
+        progress.check();
+        progress.at(1.0 - static_cast<double>(text.size()) / size);
     }
 }
 
 }  // namespace
 
-Mesh load_obj(const fs::path& file) {
-    const std::string content = read_file(file);
+Mesh load_obj(const fs::path& file, const Progress& progress) {
+    const std::string content = read_file(file, progress);
     Reader r;
     r.file = file;
     r.mesh.name = file.string();
     Words words;
-    for_each_line(r, content, [&](std::string_view line) { read_line(r, line, words); });
+    for_each_line(r, content, progress, [&](std::string_view line) { read_line(r, line, words); });
     check_whole(r);
     triangulate_polygons(r);
     if (r.mesh.maps.size() == 1 && r.mesh.maps[0].empty()) r.mesh.maps.clear();
@@ -300,7 +309,7 @@ std::vector<fs::path> obj_materials(const fs::path& file) {
     Reader r;
     r.file = file;
     Words words;
-    for_each_line(r, content, [&](std::string_view line) {
+    for_each_line(r, content, {}, [&](std::string_view line) {
         if (line.find("mtllib") == std::string_view::npos) return;
         split(line, words);
         if (words[0] == "mtllib") read_mtllib(r, line, words);

@@ -1,8 +1,7 @@
-// The only reader that touches OpenImageIO. <fmt/format.h> comes first: OpenImageIO's own copy of fmt would
-// turn exceptions off.
+// Channels, windows and orientation of what OpenImageIO reads.
 #include <fmt/format.h>
 // (This line keeps clang-format from sorting the two.)
-#include <OpenImageIO/imageio.h>
+#include "source/open_picture.h"
 
 #include <algorithm>
 #include <array>
@@ -11,11 +10,12 @@
 #include <utility>
 
 #include "core/color.h"
-#include "core/error.h"
+#include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "source/credit.h"
+#include "source/fits.h"
 #include "source/jpeg_end.h"
 #include "source/picture.h"
 
@@ -34,31 +34,9 @@ struct Channels {
     bool gray = false;
 };
 
-std::string first_line(const std::string& text) { return std::string(trim(text.substr(0, text.find('\n')))); }
-
-[[noreturn]] void fail(const fs::path& file, const std::string& reason) {
-    throw InputError(fmt::format("{}: cannot be read as a picture: {}", file.string(), first_line(reason)));
-}
-
-std::unique_ptr<ImageInput> open_picture(const fs::path& file) {
-    std::error_code error;
-    if (!fs::exists(file, error)) fail(file, "no such file");
-    if (fs::is_directory(file, error)) fail(file, "it is a folder");
-    ImageSpec wish;
-    wish.attribute("oiio:UnassociatedAlpha", 1);
-    std::unique_ptr<ImageInput> in = ImageInput::open(file.string(), &wish);
-    if (in) return in;
-    const std::string reason = OIIO::geterror();
-    if (reason.find("Subsampled channels") != std::string::npos)
-        fail(file,
-             "its colour is stored at a lower resolution (subsampled luminance/chroma); save it as RGB");
-    fail(file, reason.empty() ? "no picture format that OpenImageIO knows" : reason);
-}
-
 int find_channel(const ImageSpec& spec, const char* name) {
     for (int c = 0; c < spec.nchannels; ++c) {
-        const std::string& have = spec.channelnames[static_cast<std::size_t>(c)];
-        if (OIIO::Strutil::iequals(have, name)) return c;
+        if (OIIO::Strutil::iequals(spec.channel_name(c), name)) return c;
     }
     return -1;
 }
@@ -87,20 +65,30 @@ Channels choose_channels(const ImageSpec& spec) {
 }
 
 void check_spec(const fs::path& file, const ImageSpec& spec) {
-    if (spec.deep) fail(file, "it holds deep samples");
-    if (spec.depth > 1) fail(file, "it is a volume");
-    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) fail(file, "it has no pixels");
+    if (spec.deep) fail_picture(file, "it holds deep samples");
+    if (spec.depth > 1) fail_picture(file, "it is a volume");
+    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) fail_picture(file, "it has no pixels");
     const double bytes = 4.0 * (spec.nchannels + 4) *
                          (static_cast<double>(spec.width) * spec.height +
                           static_cast<double>(spec.full_width) * spec.full_height);
     claim_memory(static_cast<std::int64_t>(std::min(bytes, 9e18)), fmt::format("reading {}", file.string()));
 }
 
-Image read_all(const fs::path& file, ImageInput& in, const ImageSpec& spec) {
+// OpenImageIO asks this between bands of rows; true ends the reading.
+bool report_progress(void* progress, float fraction) {
+    static_cast<const Progress*>(progress)->at(static_cast<double>(fraction));
+    return static_cast<const Progress*>(progress)->stop();
+}
+
+Image read_all(const fs::path& file, ImageInput& in, const ImageSpec& spec, const Progress& progress) {
     Image all{spec.width, spec.height, spec.nchannels, {}};
     all.pixels.resize(static_cast<std::size_t>(all.width * all.height * all.channels));
-    if (!in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, all.pixels.data()))
-        fail(file, in.geterror());
+    const QuietStderr quiet;
+    const bool read =
+        in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, all.pixels.data(), OIIO::AutoStride,
+                      OIIO::AutoStride, OIIO::AutoStride, report_progress, const_cast<Progress*>(&progress));
+    progress.check();
+    if (!read) fail_picture(file, in.geterror());
     return all;
 }
 
@@ -113,9 +101,16 @@ void to_rgb(float* c) {
     c[2] = b;
 }
 
+// OpenEXR's cube maps are six faces one above the other; the display window that they come with is the first.
+bool is_cube_map(const ImageSpec& spec) {
+    return spec.get_string_attribute("textureformat") == "CubeFace Environment" &&
+           spec.height == 6 * spec.width;
+}
+
 // The window the picture shows, in the file's coordinates; the data window where the two do not meet.
 Region display_window(const ImageSpec& spec) {
     const Region data{spec.x, spec.y, spec.width, spec.height};
+    if (is_cube_map(spec)) return data;
     const Region display{spec.full_x, spec.full_y, spec.full_width, spec.full_height};
     const bool meet = display.x < data.x + data.width && data.x < display.x + display.width &&
                       display.y < data.y + data.height && data.y < display.y + display.height;
@@ -144,6 +139,43 @@ Image pick_channels(const Image& all, const ImageSpec& spec, const Channels& cha
     return image;
 }
 
+// The eight values of EXIF's and TIFF's tag Orientation, from 1: what has to be done to see the picture as it
+// was meant.
+constexpr std::array<const char*, 9> orientations = {"",
+                                                     "nothing",
+                                                     "mirrored left to right",
+                                                     "turned by 180 degrees",
+                                                     "mirrored top to bottom",
+                                                     "mirrored along its falling diagonal",
+                                                     "turned by 90 degrees clockwise",
+                                                     "mirrored along its rising diagonal",
+                                                     "turned by 90 degrees anticlockwise"};
+
+int orientation_of(const ImageSpec& spec) {
+    const int orientation = spec.get_int_attribute("Orientation", 1);
+    return orientation >= 1 && orientation <= 8 ? orientation : 1;
+}
+
+Image turned(Image image, int orientation) {
+    if (orientation == 1) return image;
+    const bool swaps = orientation >= 5;  // rows become columns
+    const bool from_right = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
+    const bool from_below = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+    Image result =
+        make_image(swaps ? image.height : image.width, swaps ? image.width : image.height, image.channels);
+    parallel_chunks(result.height, 64, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t y = begin; y < end; ++y) {
+            for (std::int64_t x = 0; x < result.width; ++x) {
+                const std::int64_t column = swaps ? y : x, row = swaps ? x : y;
+                std::copy_n(image.at(from_right ? image.width - 1 - column : column,
+                                     from_below ? image.height - 1 - row : row),
+                            image.channels, result.at(x, y));
+            }
+        }
+    });
+    return result;
+}
+
 double largest_integer(const ImageSpec& spec) {
     if (spec.format.is_floating_point()) return 0.0;
     switch (spec.format.size()) {
@@ -168,23 +200,35 @@ std::string find_credit(const fs::path& file, const ImageSpec& spec) {
 
 }  // namespace
 
-Picture read_picture(const fs::path& file) {
+Picture read_picture(const fs::path& file, const Progress& progress) {
     const std::unique_ptr<ImageInput> in = open_picture(file);
     const ImageSpec spec = in->spec();
     check_spec(file, spec);
     if (std::string_view(in->format_name()) == "jpeg" && !jpeg_is_whole(file))
-        fail(file, "the file ends before the picture does");
+        fail_picture(file, "the file ends before the picture does");
     const Channels channels = choose_channels(spec);
-    const Image all = read_all(file, *in, spec);
+    const Image all = read_all(file, *in, spec, progress);
+    const int orientation = orientation_of(spec);
+    const char* const turn = orientations[static_cast<std::size_t>(orientation)];
     Picture picture;
-    picture.image = pick_channels(all, spec, channels);
+    picture.image = turned(pick_channels(all, spec, channels), orientation);
     picture.max_integer = largest_integer(spec);
     picture.associated = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     picture.gray = channels.gray;
+    picture.cube = is_cube_map(spec);
     picture.credit = find_credit(file, spec);
     picture.summary =
         fmt::format("{}x{} px, {}", picture.image.width, picture.image.height, spec.format.c_str());
+    if (orientation != 1)
+        log_info(fmt::format("{}: {}, as its orientation {} says", file.string(), turn, orientation));
     return picture;
+}
+
+void require_picture(const fs::path& file) {
+    if (is_fits(file))
+        require_fits_picture(file);
+    else
+        open_picture(file);
 }
 
 }  // namespace astrosplat

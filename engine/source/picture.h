@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/image.h"
+#include "core/progress.h"
 
 namespace astrosplat {
 
@@ -13,15 +14,20 @@ struct Picture {
     double max_integer = 0.0;  // largest value of integer files (255, 65535); 0 for float files
     bool associated = false;   // the colours are already multiplied by the file's alpha
     bool gray = false;         // one value per pixel, repeated in r, g, b
+    bool cube = false;         // an environment: six square faces +x -x +y -y +z -z one above the other
     std::string credit;        // may be empty
     std::string summary;       // "1920x1200 px, uint8"
 
     bool has_alpha() const { return image.channels == 4; }
 };
 
-/// Reads any file OpenImageIO knows. Gray and single-channel pictures become r = g = b; luminance/chroma EXR
-/// becomes RGB; where an EXR's data window differs from its display window, the display window is filled with
-/// what lies in it (empty elsewhere). Throws InputError.
-Picture read_picture(const std::filesystem::path& file);
+/// Reads a picture in any format of core/file_format.h but FITS, turned as its orientation tag says. Gray and
+/// single-channel pictures become r = g = b; luminance/chroma EXR becomes RGB; where an EXR's data window
+/// differs from its display window, the display window is filled with what lies in it (empty elsewhere).
+/// Throws InputError, Cancelled.
+Picture read_picture(const std::filesystem::path& file, const Progress& progress = {});
+
+/// Throws InputError unless the file's headers promise a picture, also in FITS.
+void require_picture(const std::filesystem::path& file);
 
 }  // namespace astrosplat

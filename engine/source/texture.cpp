@@ -42,8 +42,8 @@ Settings::Stretch stretch_of(const Settings& settings) {
     return settings.stretch == Settings::Stretch::automatic ? Settings::Stretch::asinh : settings.stretch;
 }
 
-Stored read_fits_picture(const fs::path& file, const Settings& settings) {
-    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane);
+Stored read_fits_picture(const fs::path& file, const Settings& settings, const Progress& progress) {
+    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
     const Limits limits = choose_limits(value_range(plane.values), settings, file.string());
     const Settings::Stretch stretch = stretch_of(settings);
     Stored stored;
@@ -64,21 +64,21 @@ Stored read_fits_picture(const fs::path& file, const Settings& settings) {
     return stored;
 }
 
-Stored read_stored(const fs::path& file, const Settings& settings) {
-    if (is_fits(file)) return read_fits_picture(file, settings);
+Stored read_stored(const fs::path& file, const Settings& settings, const Progress& progress) {
+    if (is_fits(file)) return read_fits_picture(file, settings, progress);
     Stored stored;
-    stored.picture = read_picture(file);
+    stored.picture = read_picture(file, progress);
     stored.display_values = stored.picture.max_integer > 0.0;
     return stored;
 }
 
 // Red of the first, green of the second, blue of the third.
-Stored combine(const std::vector<fs::path>& files, const Settings& settings) {
-    Stored first = read_stored(files[0], settings);
+Stored combine(const std::vector<fs::path>& files, const Settings& settings, const Progress& progress) {
+    Stored first = read_stored(files[0], settings, progress);
     Image rgb = make_image(first.picture.image.width, first.picture.image.height, 3);
     for (int c = 0; c < 3; ++c) {
         const fs::path& file = files[static_cast<std::size_t>(c)];
-        const Stored one = c == 0 ? std::move(first) : read_stored(file, settings);
+        const Stored one = c == 0 ? std::move(first) : read_stored(file, settings, progress);
         const Image& from = one.picture.image;
         if (from.width != rgb.width || from.height != rgb.height)
             bad_input(file.string(), "",
@@ -221,11 +221,12 @@ void make_linear(Stored& stored, Settings::Colorspace colorspace, bool premultip
 }  // namespace
 
 Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& settings,
-                     TextureSettings::Wrap default_wrap) {
+                     TextureSettings::Wrap default_wrap, const Progress& progress) {
     if (files.size() != 1 && files.size() != 3)
         throw InputError(
             fmt::format("expected one texture, or three for red, green and blue, found {}", files.size()));
-    Stored stored = files.size() == 1 ? read_stored(files[0], settings) : combine(files, settings);
+    Stored stored =
+        files.size() == 1 ? read_stored(files[0], settings, progress) : combine(files, settings, progress);
     const Settings::Alpha alpha = choose_alpha(files[0], stored.picture, settings.alpha);
     const bool premultiplied = colors_are_premultiplied(stored.picture, settings, alpha);
     make_linear(stored, settings.colorspace, premultiplied);
@@ -259,9 +260,8 @@ Image load_raw_image(const fs::path& file) {
     return image;
 }
 
-Image load_linear_image(const fs::path& file) {
-    const Settings settings;
-    Stored stored = read_stored(file, settings);
+// Linear light, premultiplied RGBA.
+static Image linear_image(Stored stored) {
     const bool alpha = stored.picture.has_alpha();
     const bool premultiplied = alpha && stored.picture.associated;
     make_linear(stored, Settings::Colorspace::automatic, premultiplied);
@@ -274,6 +274,27 @@ Image load_linear_image(const fs::path& file) {
         for (int c = 0; c < 3; ++c) to[c] = alpha && !premultiplied ? p[c] * p[3] : p[c];
     }
     return image;
+}
+
+Image load_linear_image(const fs::path& file, const Progress& progress) {
+    return linear_image(read_stored(file, Settings{}, progress));
+}
+
+std::vector<Image> load_environment_pictures(const fs::path& file, const Progress& progress) {
+    Stored stored = read_stored(file, Settings{}, progress);
+    const bool cube = stored.picture.cube;
+    Image all = linear_image(std::move(stored));
+    std::vector<Image> pictures;
+    if (!cube) {
+        pictures.push_back(std::move(all));
+        return pictures;
+    }
+    for (std::int64_t face = 0; face < 6; ++face) {
+        pictures.push_back(make_image(all.width, all.width, all.channels));
+        std::copy_n(all.at(0, face * all.width), pictures.back().pixels.size(),
+                    pictures.back().pixels.data());
+    }
+    return pictures;
 }
 
 }  // namespace astrosplat

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/progress.h"
 #include "source/mesh.h"
 #include "source/source.h"
 
@@ -32,16 +33,20 @@ struct TextureSample {
     float alpha;      // 0..1
 };
 
-/// `default_wrap` is what Wrap::automatic means here. Throws InputError.
+/// `default_wrap` is what Wrap::automatic means here. Throws InputError, Cancelled.
 Texture load_texture(const std::vector<std::filesystem::path>& files, const TextureSettings& settings,
-                     TextureSettings::Wrap default_wrap);
+                     TextureSettings::Wrap default_wrap, const Progress& progress = {});
 
 /// Reads a picture without any colour or alpha treatment, for thickness maps: RGB as stored (0..1 for
 /// integers), row 0 on top. Throws InputError.
 Image load_raw_image(const std::filesystem::path& file);
 
-/// Reads a picture as linear light, premultiplied RGBA, for environments and comparisons. Throws InputError.
-Image load_linear_image(const std::filesystem::path& file);
+/// Reads a picture as linear light, premultiplied RGBA, for comparisons. Throws InputError, Cancelled.
+Image load_linear_image(const std::filesystem::path& file, const Progress& progress = {});
+
+/// The same for environments: one picture, or the six faces (+x -x +y -y +z -z) of an OpenEXR cube map.
+std::vector<Image> load_environment_pictures(const std::filesystem::path& file,
+                                             const Progress& progress = {});
 
 /// Filtered lookup at uv (v = 0 is the bottom row). `box_texels` is the side, in texels along u and v, of the
 /// box averaged by Filter::area; the other filters ignore it. Alpha of exactly 0 comes back as exactly 0.

@@ -371,6 +371,19 @@ SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& w
     });
 }
 
+std::vector<std::string> native_attributes(const std::filesystem::path& file) {
+    return read_mapped(file, [&](std::string_view bytes) {
+        const std::uint32_t flags = read_layout(Checker{file.string()}, bytes).header.flags;
+        std::vector<std::string> names = {"position", "color", "alpha", "distance"};
+        if (flags & has_radius) names.emplace_back("radius");
+        if (flags & has_uv) names.emplace_back("uv");
+        if (flags & has_normal) names.emplace_back("normal");
+        if (flags & has_mesh) names.emplace_back("mesh");
+        names.emplace_back("id");
+        return names;
+    });
+}
+
 std::int64_t native_splat_count(const std::filesystem::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         return static_cast<std::int64_t>(read_layout(Checker{file.string()}, bytes).header.splats);

@@ -23,6 +23,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "splats/splat_set.h"
@@ -53,5 +55,8 @@ void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrd
 
 /// Length of the file that write_native makes of a set.
 std::int64_t native_file_bytes(const SplatSet& set);
+
+/// splat_attributes() of a .splats file.
+std::vector<std::string> native_attributes(const std::filesystem::path& file);
 
 }  // namespace astrosplat

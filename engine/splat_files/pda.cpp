@@ -227,6 +227,12 @@ SplatSet read_pda_bytes(const std::filesystem::path& file, std::string_view byte
 
 }  // namespace
 
+std::vector<std::string> pda_attributes(const std::filesystem::path& file) {
+    return read_mapped(file, [&](std::string_view bytes) {
+        return attribute_names(columns_of(read_header(file, bytes).attributes));
+    });
+}
+
 SplatSet read_pda(const std::filesystem::path& file, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) { return read_pda_bytes(file, bytes, progress); });
 }

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "splats/splat_set.h"
@@ -18,5 +20,8 @@ SplatSet read_pda(const std::filesystem::path& file, const Progress& progress = 
 /// Shortest decimal numbers that read back to the same float32, 64-bit ids; the same bytes for any thread
 /// count. What PDA has no attribute for (uv, normal, spacing, credit) is left out. Throws OutputError.
 void write_pda(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {});
+
+/// splat_attributes() of a PDA file.
+std::vector<std::string> pda_attributes(const std::filesystem::path& file);
 
 }  // namespace astrosplat

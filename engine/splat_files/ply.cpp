@@ -41,26 +41,49 @@ constexpr KnownProperty known_properties[] = {
     {"radius", Field::radius}, {"s", Field::s},
     {"t", Field::t},           {"mesh", Field::mesh},
     {"id", Field::id},         {"id_high", Field::id_high},
+    {"r", Field::red},         {"diffuse_red", Field::red},
+    {"g", Field::green},       {"diffuse_green", Field::green},
+    {"b", Field::blue},        {"diffuse_blue", Field::blue},
+    {"a", Field::alpha},       {"diffuse_alpha", Field::alpha},
 };
 
-/// Fields that mean something only together.
-constexpr std::string_view groups[][3] = {{"red", "green", "blue"}, {"s", "t", ""}, {"id", "", ""}};
+/// Properties that mean something only together. Of the colours the first that are complete are read.
+constexpr std::string_view groups[][3] = {{"red", "green", "blue"},
+                                          {"diffuse_red", "diffuse_green", "diffuse_blue"},
+                                          {"r", "g", "b"},
+                                          {"s", "t", ""},
+                                          {"id", "", ""}};
+constexpr std::span color_groups(groups, 3);
+/// The opacity that goes with each of them.
+constexpr std::string_view opacities[] = {"alpha", "diffuse_alpha", "a"};
 
 bool has_scalar(const PlyElement& element, std::string_view name) {
     return std::any_of(element.properties.begin(), element.properties.end(),
                        [&](const Column& c) { return c.name == name && !c.list; });
 }
 
-/// False for a property that lacks its companions: red without green, id_high without id.
-bool is_complete(const PlyElement& vertex, std::string_view name) {
-    for (const auto& group : groups) {
-        const bool member = std::find(std::begin(group), std::end(group), name) != std::end(group) ||
-                            (name == "id_high" && group[0] == "id");
-        if (!member) continue;
-        for (const std::string_view other : group)
-            if (!other.empty() && !has_scalar(vertex, other)) return false;
-    }
-    return true;
+bool has_all(const PlyElement& vertex, std::span<const std::string_view> names) {
+    return std::all_of(names.begin(), names.end(),
+                       [&](std::string_view name) { return name.empty() || has_scalar(vertex, name); });
+}
+
+/// False for a property that lacks its companions (red without green, id_high without id), and for a second
+/// colour or opacity.
+bool is_read(const PlyElement& vertex, std::string_view name) {
+    if (name == "id_high") return has_scalar(vertex, "id");
+    const auto opacity = std::find(std::begin(opacities), std::end(opacities), name);
+    if (opacity != std::end(opacities))
+        return std::none_of(std::begin(opacities), opacity,
+                            [&](std::string_view other) { return has_scalar(vertex, other); });
+    const auto holds = [&](const auto& group) {
+        return std::find(std::begin(group), std::end(group), name) != std::end(group);
+    };
+    const auto group = std::find_if(std::begin(groups), std::end(groups), holds);
+    if (group == std::end(groups)) return true;
+    const auto first_color = std::find_if(color_groups.begin(), color_groups.end(),
+                                          [&](const auto& colors) { return has_all(vertex, colors); });
+    const bool is_color = group - std::begin(groups) < static_cast<std::ptrdiff_t>(color_groups.size());
+    return is_color ? first_color != color_groups.end() && holds(*first_color) : has_all(vertex, *group);
 }
 
 /// Values of integer codes: sRGB light, or fractions of the largest code.
@@ -88,7 +111,7 @@ bool is_float(NumberType type) { return type == NumberType::f32 || type == Numbe
 void assign_field(Column& column, const PlyElement& vertex, const std::filesystem::path& file) {
     const auto* const known = std::find_if(std::begin(known_properties), std::end(known_properties),
                                            [&](const KnownProperty& k) { return k.name == column.name; });
-    if (known == std::end(known_properties) || column.list || !is_complete(vertex, column.name)) return;
+    if (known == std::end(known_properties) || column.list || !is_read(vertex, column.name)) return;
     column.field = known->field;
     const bool light = column.field == Field::red || column.field == Field::green ||
                        column.field == Field::blue || column.field == Field::alpha;
@@ -103,6 +126,9 @@ std::vector<Column> columns_of(const PlyElement& vertex, const std::filesystem::
     for (const std::string_view name : {"x", "y", "z"})
         if (!has_scalar(vertex, name))
             bad_input(file.string(), "", "vertex properties x, y and z", "no " + std::string(name));
+    if (has_scalar(vertex, "f_dc_0") && has_scalar(vertex, "scale_0"))
+        bad_input(file.string(), "", "splats with red, green, blue and alpha",
+                  "3D Gaussians (f_dc_0, scale_0), which cannot be read yet");
     std::vector<Column> columns = vertex.properties;
     for (Column& column : columns) assign_field(column, vertex, file);
     return columns;
@@ -187,6 +213,13 @@ SplatSet read_ply_bytes(const std::filesystem::path& file, std::string_view byte
 }
 
 }  // namespace
+
+std::vector<std::string> ply_attributes(const std::filesystem::path& file) {
+    return read_mapped(file, [&](std::string_view bytes) {
+        const PlyHeader header = read_ply_header(file, bytes);
+        return attribute_names(columns_of(header.elements[find_vertex(header, file)], file));
+    });
+}
 
 SplatSet read_ply(const std::filesystem::path& file, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) { return read_ply_bytes(file, bytes, progress); });

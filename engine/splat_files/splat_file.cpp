@@ -1,14 +1,15 @@
-// The front door: one table of endings, readers and writers.
+// The front door: the readers and writers of each format.
 #include "splat_files/splat_file.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
 
 #include "core/error.h"
+#include "core/file.h"
+#include "core/file_format.h"
 #include "splat_files/native.h"
 #include "splat_files/pda.h"
 #include "splat_files/ply.h"
@@ -17,43 +18,42 @@ namespace astrosplat {
 
 namespace {
 
-struct FileFormat {
-    std::string_view ending;
+struct Functions {
+    std::string_view format;
     SplatSet (*read)(const std::filesystem::path&, const Progress&);
     void (*write)(const std::filesystem::path&, const SplatSet&, const Progress&);
+    std::vector<std::string> (*attributes)(const std::filesystem::path&);
 };
 
-constexpr std::array<FileFormat, 3> formats = {{
-    {".pda", read_pda, write_pda},
-    {".ply", read_ply, write_ply},
-    {".splats", read_native, write_native},
+constexpr std::array<Functions, 3> functions = {{
+    {"pda", read_pda, write_pda, pda_attributes},
+    {"ply", read_ply, write_ply, ply_attributes},
+    {"splats", read_native, write_native, native_attributes},
 }};
 
-const FileFormat* find_format(const std::filesystem::path& file) {
-    std::string ending = file.extension().string();
-    for (char& c : ending)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    const auto* const found =
-        std::find_if(formats.begin(), formats.end(), [&](const FileFormat& f) { return f.ending == ending; });
-    return found == formats.end() ? nullptr : found;
-}
-
-const FileFormat& format_of(const std::filesystem::path& file) {
-    if (const FileFormat* format = find_format(file)) return *format;
+const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file) {
+    for (const Functions& each : functions)
+        if (format && format->id == each.format) return each;
     const std::string ending = file.extension().string();
-    bad_input(file.string(), "", "the ending .pda, .ply or .splats", ending.empty() ? "none" : ending);
+    bad_input(file.string(), "",
+              fmt::format("one of the endings {}", fmt::join(endings_of({FileKind::splats}), " ")),
+              ending.empty() ? "none" : ending);
 }
 
 }  // namespace
 
-bool is_splat_file(const std::filesystem::path& file) { return find_format(file) != nullptr; }
-
 SplatSet read_splats(const std::filesystem::path& file, const Progress& progress) {
-    return format_of(file).read(file, progress);
+    require_readable(file);
+    return functions_of(format_of_file(file), file).read(file, progress);
+}
+
+std::vector<std::string> splat_attributes(const std::filesystem::path& file) {
+    require_readable(file);
+    return functions_of(format_of_file(file), file).attributes(file);
 }
 
 void write_splats(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
-    format_of(file).write(file, set, progress);
+    functions_of(format_by_name(file), file).write(file, set, progress);
 }
 
 }  // namespace astrosplat

@@ -1,20 +1,26 @@
-// Splat files by their ending: .pda (Maya ASCII particles), .ply, .splats (native). One reader/writer a file:
+// Splat files of any format: .pda (Maya ASCII particles), .ply, .splats (native). One reader/writer a file:
 // pda.*, ply.*, native.*; this is the front door.
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
 
-bool is_splat_file(const std::filesystem::path& file);
-
-/// Rows stay in file order (call sort_by_id before rendering). Throws InputError with file and place.
+/// The format is told by the file's first bytes, else by its ending. Rows stay in file order (call sort_by_id
+/// before rendering). Throws InputError with file and place.
 SplatSet read_splats(const std::filesystem::path& file, const Progress& progress = {});
 
-/// Writes to a temporary name, then renames: the file appears whole or not at all. Throws OutputError.
+/// What a file says of its splats, by its header alone: some of position, color, alpha, distance, radius, uv,
+/// normal, mesh, id. Throws InputError.
+std::vector<std::string> splat_attributes(const std::filesystem::path& file);
+
+/// In the format of the ending. Writes to a temporary name, then renames: the file appears whole or not at
+/// all. Throws OutputError.
 void write_splats(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/log.h"
 #include "core/memory.h"
@@ -132,6 +134,23 @@ void finish_ids(SplatTable& table) {
 
 bool SplatTable::has(Field field) const {
     return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.field == field; });
+}
+
+std::vector<std::string> attribute_names(const std::vector<Column>& columns) {
+    constexpr std::array<std::pair<Field, const char*>, 8> names = {{{Field::x, "position"},
+                                                                     {Field::red, "color"},
+                                                                     {Field::alpha, "alpha"},
+                                                                     {Field::distance, "distance"},
+                                                                     {Field::radius, "radius"},
+                                                                     {Field::s, "uv"},
+                                                                     {Field::mesh, "mesh"},
+                                                                     {Field::id, "id"}}};
+    std::vector<std::string> present;
+    for (const auto& [field, name] : names)
+        if (std::any_of(columns.begin(), columns.end(),
+                        [f = field](const Column& c) { return c.field == f; }))
+            present.emplace_back(name);
+    return present;
 }
 
 void open_table(SplatTable& table, std::int64_t rows, const std::filesystem::path& file) {

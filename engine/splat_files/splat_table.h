@@ -61,6 +61,9 @@ struct SplatTable {
     bool has(Field field) const;
 };
 
+/// What columns hold, as splat_attributes() of splat_file.h names it.
+std::vector<std::string> attribute_names(const std::vector<Column>& columns);
+
 /// Allocates the arrays for `rows` rows (memory is claimed first) and points the columns at them.
 void open_table(SplatTable& table, std::int64_t rows, const std::filesystem::path& file);
 

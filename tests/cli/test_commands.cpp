@@ -83,7 +83,7 @@ TEST_F(Commands, NewMakesASceneThatRenders) {
     expect_one_line(run({"new", "picture.ppm", "-o", "plane.toml"}), 2, "--overwrite");
     expect_one_line(run({"new", "picture.ppm", "-o", "cube.toml", "--shape", "cube"}), 2, "cube");
     expect_one_line(run({"new", "missing.png", "-o", "x.toml"}), 2, "missing.png");
-    expect_one_line(run({"new", ".", "-o", "x.toml"}), 2, "a folder");
+    expect_one_line(run({"new", ".", "-o", "x.toml"}), 2, "it is a folder");
     expect_one_line(run({"new", "plane.toml", "-o", "x.toml"}), 2, "cannot be read as a picture");
     EXPECT_FALSE(fs::exists(folder / "x.toml"));
 }

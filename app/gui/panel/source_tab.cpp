@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/file_format.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/section.h"
 #include "gui/panel/tabs.h"
@@ -16,13 +17,8 @@ namespace {
 bool is_fits(const LayerParams& layer) {
     for (const MeshInput& mesh : layer.source.meshes)
         for (const auto& texture : mesh.texture) {
-            std::string ending = texture.extension().string();
-            std::transform(ending.begin(), ending.end(), ending.begin(), [](char c) {
-                return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-            });
-            if (ending == ".fits" || ending == ".fit" || ending == ".fts" || ending == ".gz" ||
-                ending == ".fz")
-                return true;
+            const FileFormat* const format = format_by_name(texture);
+            if (format && format->id == "fits") return true;
         }
     return false;
 }

@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const char* const tiny_picture = "P2\n1 1\n255\n9\n";  // a PNM, whatever its name
 const char* const square = "v 0 0 0\nv 4 0 0\nv 4 0 2\nv 0 0 2\n";
 
 struct NewFromFile : testing::Test {
@@ -25,11 +26,12 @@ struct NewFromFile : testing::Test {
 };
 
 TEST_F(NewFromFile, Kinds) {
-    for (const char* name : {"a.png", "a b.JPG", "ä.fits", "a.fits.gz", "a.TIF", "a.exr", "a.FTS"})
+    for (const char* name :
+         {"a.png", "a b.JPG", "ä.fits", "a.fits.gz", "a.TIF", "a.exr", "a.FTS", "a.hdr", "A.FITS.GZ"})
         EXPECT_EQ(kind_of_file(name), FileKind::picture) << name;
     EXPECT_EQ(kind_of_file("a.OBJ"), FileKind::mesh);
     for (const char* name : {"a.pda", "a.ply", "a.splats"}) EXPECT_EQ(kind_of_file(name), FileKind::splats);
-    for (const char* name : {"a.txt", "a", ".png", "a.gz", "a.mp4"})
+    for (const char* name : {"a.txt", "a.csv", "a", ".png", "a.gz", "a.mp4", "a.null"})
         EXPECT_EQ(kind_of_file(name), FileKind::unknown) << name;
     EXPECT_EQ(kind_of_file(folder.file("s ä.toml", test::edit_scene)), FileKind::scene);
     EXPECT_EQ(kind_of_file(folder.file("l.toml", "astrosplat = 1\nlayer = [ { name = \"a\" } ]\n")),
@@ -42,7 +44,7 @@ TEST_F(NewFromFile, Kinds) {
 }
 
 TEST_F(NewFromFile, APictureBecomesAPlane) {
-    const fs::path picture = folder.file("m 51 ä.png", "x");
+    const fs::path picture = folder.file("m 51 ä.png", tiny_picture);
     const Scene scene = scene_for(picture);
     ASSERT_EQ(scene.layers.size(), 1u);
     EXPECT_EQ(scene.layers[0].name, "m_51");
@@ -131,20 +133,21 @@ TEST_F(NewFromFile, SplatsWithoutRadiiGetSome) {
 
 TEST_F(NewFromFile, OtherFilesAreRefused) {
     const fs::path text = folder.file("a.txt", "x");
-    EXPECT_EQ(message_of<InputError>([&] { scene_text_for(text, place); }),
-              text.string() +
-                  ": expected a picture (FITS, PNG, TIFF, JPEG, EXR), OBJ mesh or splat file, found "
-                  "another kind of file");
+    EXPECT_EQ(
+        message_of<InputError>([&] { scene_text_for(text, place); }),
+        text.string() +
+            ": expected a picture (OpenEXR, TIFF, PNG, JPEG, FITS, Radiance HDR, DPX, WebP, JPEG 2000, "
+            "Photoshop, BMP, GIF, TGA or PNM), a mesh (OBJ) or splats (PDA, PLY or SPLATS), found another "
+            "kind of file");
     EXPECT_EQ(message_of<InputError>([&] { scene_text_for(folder / "gone.png", place); }),
-              (folder / "gone.png").string() +
-                  ": expected a picture, mesh or splat file, found nothing of that name");
+              (folder / "gone.png").string() + ": cannot be read: No such file or directory");
     EXPECT_EQ(message_of<InputError>([&] { scene_text_for(folder.path(), place); }),
-              folder.path().string() + ": expected a picture, mesh or splat file, found a folder");
+              folder.path().string() + ": cannot be read: it is a folder");
 }
 
 TEST_F(NewFromFile, AFileFromElsewhereIsNamedInFull) {
     const TempFolder other;
-    const fs::path picture = other.file("b.png", "x"),
+    const fs::path picture = other.file("b.png", tiny_picture),
                    mesh = other.file("b.obj", std::string(square) + "f 1 2 3\n");
     EXPECT_EQ(scene_for(picture).layers[0].source.meshes[0].texture[0], picture);
     EXPECT_EQ(scene_for(mesh).layers[0].source.meshes[0].mesh, mesh);
@@ -152,7 +155,7 @@ TEST_F(NewFromFile, AFileFromElsewhereIsNamedInFull) {
 
 TEST_F(NewFromFile, AddLayerKeepsNamesApart) {
     Scene scene = parse_scene(test::edit_scene, place);
-    EXPECT_EQ(add_layer(scene, folder.file("dust.png", "x")), 2u);
+    EXPECT_EQ(add_layer(scene, folder.file("dust.png", tiny_picture)), 2u);
     EXPECT_EQ(scene.layers[2].name, "dust_2");
     EXPECT_EQ(scene.layers[2].source.meshes[0].texture[0], folder / "dust.png");
     const Scene before = scene;

@@ -17,7 +17,7 @@ using View = OutputParams::View;
 
 FrameFormat format_of(Depth depth, Alpha alpha, View view = View::srgb) {
     FrameFormat format;
-    format.kind = FileKind::tif;
+    format.kind = FrameKind::tif;
     format.depth = depth;
     format.alpha = alpha;
     format.view = view;

@@ -38,7 +38,7 @@ TEST(Format, AutoFollowsTheEnding) {
     EXPECT_EQ(exr.alpha, Alpha::premultiplied);
     EXPECT_EQ(exr.view, View::linear);
     EXPECT_EQ(exr.exposure, 0.0);
-    EXPECT_EQ(tif.kind, FileKind::tif);
+    EXPECT_EQ(tif.kind, FrameKind::tif);
     EXPECT_EQ(tif.depth, Depth::uint16);
     EXPECT_EQ(tif.compression, Compression::deflate);
     EXPECT_EQ(tif.alpha, Alpha::premultiplied);

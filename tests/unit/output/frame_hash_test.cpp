@@ -197,7 +197,7 @@ TEST_F(FrameHashTest, TheRegionCounts) {
 
 TEST_F(FrameHashTest, CanonicalTextShowsWhatIsHashed) {
     const std::string text = FrameHasher(scene()).canonical_text(1);
-    EXPECT_EQ(text.rfind("pixels = 1\n", 0), 0u);
+    EXPECT_EQ(text.rfind("pixels = 2\n", 0), 0u);
     EXPECT_NE(text.find("\ncamera.position = [0.0, 0.0, 30.0]\n"), std::string::npos) << text;
     EXPECT_NE(text.find("\nlayer.stars.source.meshes.0.mesh = \"plane\"\n"), std::string::npos) << text;
     EXPECT_EQ(text.find(folder_.string()), std::string::npos) << text;

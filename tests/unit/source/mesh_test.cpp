@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <clocale>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -137,6 +138,31 @@ TEST(Obj, MissingMaterialLibraryIsAWarning) {
     EXPECT_NE(lines[0].find("m"), std::string::npos);
     EXPECT_NE(lines[0].find(".obj:1: material library 'gone.mtl' not found"), std::string::npos) << lines[0];
     EXPECT_TRUE(mesh.maps.empty());
+}
+
+TEST(Obj, LibrariesMissingFromOneLineAreOneWarning) {
+    const TempFolder folder;
+    folder.file("b.mtl", "newmtl x\n");
+    std::vector<std::string> lines;
+    set_log_sink([&](LogLevel, const std::string& line) { lines.push_back(line); });
+    const fs::path file = folder.file("m.obj", "mtllib a.mtl b.mtl c.mtl d.mtl\n" + square + "f 1 2 3\n");
+    load_obj(file);
+    set_log_sink(nullptr);
+    flush_warning_counts();
+    EXPECT_EQ(lines, (std::vector<std::string>{file.string() +
+                                               ":1: material library 'a.mtl', 'c.mtl', 'd.mtl' not found"}));
+}
+
+TEST(Obj, ReadingStopsWhenAsked) {
+    std::string text = square;
+    for (int i = 0; i < 10000; ++i) text += "f 1 2 3\n";
+    const TempFolder folder;
+    const fs::path file = folder.file("m.obj", text);
+    std::atomic<bool> stop{false};
+    const Progress progress{[&](double fraction) { stop = fraction > 0.3; }, &stop};
+    EXPECT_THROW(load_obj(file, progress), Cancelled);
+    stop = true;
+    EXPECT_THROW(load_obj(file, Progress{{}, &stop}), Cancelled);
 }
 
 TEST(ObjErrors, OneLineEach) {

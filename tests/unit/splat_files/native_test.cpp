@@ -231,18 +231,45 @@ TEST_F(Native, NumbersThatAreNotFiniteAreRefused) {
 
 using SplatFile = SplatFileTest;
 
-TEST_F(SplatFile, KnownEndings) {
-    for (const char* name : {"a.pda", "a.PDA", "b.ply", "c.splats", "d.Splats"})
-        EXPECT_TRUE(is_splat_file(name));
-    for (const char* name : {"a.obj", "pda", "a.ply.gz", ""}) EXPECT_FALSE(is_splat_file(name));
+TEST_F(SplatFile, UnknownEndingsNameTheKnownOnes) {
+    const std::string expected = "a.xyz: expected one of the endings .pda .ply .splats, found .xyz";
+    EXPECT_EQ(error_of(write("a.xyz", "x"), [](const auto& file) { read_splats(file); }), expected);
+    EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { write_splats(file, SplatSet{}); }), expected);
+    EXPECT_EQ(error_of(write("a", "x"), [](const auto& file) { read_splats(file); }),
+              "a: expected one of the endings .pda .ply .splats, found none");
+    EXPECT_EQ(error_of(path("none.xyz"), [](const auto& file) { read_splats(file); }),
+              "none.xyz: cannot be read: No such file or directory");
 }
 
-TEST_F(SplatFile, UnknownEndingsNameTheKnownOnes) {
-    const std::string expected = "a.xyz: expected the ending .pda, .ply or .splats, found .xyz";
-    EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { read_splats(file); }), expected);
-    EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { write_splats(file, SplatSet{}); }), expected);
-    EXPECT_EQ(error_of(path("a"), [](const auto& file) { read_splats(file); }),
-              "a: expected the ending .pda, .ply or .splats, found none");
+TEST_F(SplatFile, ContentCountsMoreThanTheName) {
+    for (const char* ending : {"pda", "ply", "splats"}) {
+        write_splats(path(std::string("a.") + ending), awkward_set(5));
+        std::filesystem::copy_file(path(std::string("a.") + ending), path(std::string("copy of ") + ending));
+        EXPECT_EQ(read_splats(path(std::string("copy of ") + ending)).size(), 5);
+    }
+}
+
+TEST_F(SplatFile, AttributesAreThoseOfTheFile) {
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(splat_attributes(write("a.ply",
+                                     "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty "
+                                     "float y\nproperty float z\nproperty uchar red\nend_header\n")),
+              (Names{"position"}));
+    EXPECT_EQ(splat_attributes(write(
+                  "a.pda", "ATTRIBUTES position opacityPP TYPES V R NUMBER_OF_PARTICLES: 0 BEGIN DATA\n")),
+              (Names{"position", "alpha"}));
+    SplatSet set = awkward_set(3);
+    for (const char* name : {"b.pda", "b.ply", "b.splats"}) {
+        write_splats(path(name), set);
+        Names expected{"position", "color", "alpha", "distance", "radius", "uv", "normal", "mesh", "id"};
+        if (std::string(name) != "b.splats") std::erase(expected, "normal");
+        if (std::string(name) == "b.pda") std::erase(expected, "uv");
+        EXPECT_EQ(splat_attributes(path(name)), expected) << name;
+    }
+    set.radius.clear();
+    write_splats(path("c.splats"), set);
+    const Names names = splat_attributes(path("c.splats"));
+    EXPECT_EQ(std::count(names.begin(), names.end(), "radius"), 0);
 }
 
 TEST_F(SplatFile, ConversionsKeepEveryBit) {

@@ -56,6 +56,13 @@ TEST_F(Pda, EveryBitSurvives) {
     EXPECT_FALSE(got.generated);
 }
 
+TEST_F(Pda, ParticleIdCountsMoreThanId) {
+    const std::string rows = "\nNUMBER_OF_PARTICLES: 1\nBEGIN DATA\n0 0 0 5 7\n";
+    EXPECT_EQ(read("ATTRIBUTES\n position id particleId\nTYPES\n V I I" + rows).id[0], 7u);
+    EXPECT_EQ(read("ATTRIBUTES\n position particleId id\nTYPES\n V I I" + rows).id[0], 5u);
+    EXPECT_EQ(read("ATTRIBUTES\n position other id\nTYPES\n V I I" + rows).id[0], 7u);
+}
+
 TEST_F(Pda, EmptySetSurvives) {
     write_pda(path("a.pda"), SplatSet{});
     EXPECT_EQ(read_pda(path("a.pda")).size(), 0);

@@ -153,6 +153,35 @@ TEST_F(Ply, WindowsLineEndsAndDefaults) {
     EXPECT_TRUE(set.radius.empty());
 }
 
+/// An ASCII file of one vertex at the origin.
+std::string one_vertex(const std::string& properties, const std::string& values) {
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+    std::istringstream words(properties);
+    for (std::string word; words >> word;) text += "property float " + word + "\n";
+    return text + "end_header\n0 0 0 " + values + "\n";
+}
+
+TEST_F(Ply, OtherNamesOfColours) {
+    const glm::vec3 color(0.25f, 0.5f, 0.75f);
+    EXPECT_EQ(read(one_vertex("diffuse_red diffuse_green diffuse_blue", "0.25 0.5 0.75")).color[0], color);
+    const SplatSet rgba = read(one_vertex("a b g r", "0.125 0.75 0.5 0.25"));
+    EXPECT_EQ(rgba.color[0], color);
+    EXPECT_EQ(rgba.alpha[0], 0.125f);
+    // Of two the usual names count, whatever their order; of an incomplete one nothing.
+    EXPECT_EQ(read(one_vertex("r g b red green blue a alpha", "9 9 9 0.25 0.5 0.75 0 0.5")).color[0], color);
+    EXPECT_EQ(read(one_vertex("r g b red green blue a alpha", "9 9 9 0.25 0.5 0.75 0 0.5")).alpha[0], 0.5f);
+    EXPECT_EQ(read(one_vertex("red green r g b", "9 9 0.25 0.5 0.75")).color[0], color);
+    EXPECT_EQ(read(one_vertex("r g", "0 0")).color[0], glm::vec3(1.0f));
+}
+
+TEST_F(Ply, GaussiansAreRefusedInWords) {
+    EXPECT_EQ(
+        error(one_vertex("f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2", "0 0 0 0 0 0 0")),
+        "a.ply: expected splats with red, green, blue and alpha, found 3D Gaussians (f_dc_0, scale_0), which "
+        "cannot be read yet");
+}
+
 TEST_F(Ply, WrongHeaders) {
     EXPECT_EQ(error(""), "a.ply:1: expected 'ply', found ''");
     EXPECT_EQ(error("plywood\n"), "a.ply:1: expected 'ply', found 'plywood'");

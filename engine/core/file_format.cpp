@@ -1,0 +1,109 @@
+// The table, and its look-up by name and by content.
+#include "core/file_format.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/file.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::string_view_literals;
+
+constexpr std::size_t longest_magic = 16;
+
+// Movies and OpenImageIO's "null" are left out on purpose: they open files that are no pictures.
+const std::vector<FileFormat>& formats() {
+    static const std::vector<FileFormat> table = {
+        {"openexr", "OpenEXR", FileKind::picture, {".exr"}, {"\x76\x2f\x31\x01"}, true},
+        {"tiff",
+         "TIFF",
+         FileKind::picture,
+         {".tif", ".tiff"},
+         {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv},
+         true},
+        {"png", "PNG", FileKind::picture, {".png"}, {"\x89PNG\r\n\x1a\n"}, true},
+        {"jpeg", "JPEG", FileKind::picture, {".jpg", ".jpeg"}, {"\xff\xd8\xff"}},
+        {"fits",
+         "FITS",
+         FileKind::picture,
+         {".fits", ".fit", ".fts", ".fits.gz", ".fit.gz", ".fts.gz", ".fits.fz"},
+         {"SIMPLE  ="}},
+        {"hdr", "Radiance HDR", FileKind::picture, {".hdr"}, {"#?RADIANCE", "#?RGBE"}},
+        {"dpx", "DPX", FileKind::picture, {".dpx"}, {"SDPX", "XPDS"}},
+        {"webp", "WebP", FileKind::picture, {".webp"}, {"RIFF????WEBP"}},
+        {"jpeg2000", "JPEG 2000", FileKind::picture, {".jp2"}, {"\0\0\0\x0cjP  "sv, "\xff\x4f\xff\x51"}},
+        {"psd", "Photoshop", FileKind::picture, {".psd"}, {"8BPS"}},
+        {"bmp", "BMP", FileKind::picture, {".bmp"}, {}},
+        {"gif", "GIF", FileKind::picture, {".gif"}, {"GIF87a", "GIF89a"}},
+        {"targa", "TGA", FileKind::picture, {".tga"}, {}},
+        {"pnm", "PNM", FileKind::picture, {".ppm", ".pgm", ".pnm"}, {"P2\n", "P3\n", "P5\n", "P6\n"}},
+        {"obj", "OBJ", FileKind::mesh, {".obj"}, {}},
+        {"pda", "PDA", FileKind::splats, {".pda"}, {"ATTRIBUTES"}, true},
+        {"ply", "PLY", FileKind::splats, {".ply"}, {"ply\n", "ply\r"}, true},
+        {"splats", "SPLATS", FileKind::splats, {".splats"}, {"\x89SPLAT\r\n"}, true},
+        {"toml", "TOML", FileKind::scene, {".toml"}, {}, true},
+    };
+    return table;
+}
+
+bool begins_with(std::string_view bytes, std::string_view magic) {
+    return bytes.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), bytes.begin(),
+                      [](char wanted, char found) { return wanted == '?' || wanted == found; });
+}
+
+template <class Wanted>
+const FileFormat* find(const Wanted& wanted) {
+    const auto found = std::find_if(formats().begin(), formats().end(), wanted);
+    return found == formats().end() ? nullptr : &*found;
+}
+
+bool is_used(const FileFormat& format, FileUse use) { return use == FileUse::read || format.written; }
+
+}  // namespace
+
+std::span<const FileFormat> file_formats() { return formats(); }
+
+const FileFormat* format_by_name(const fs::path& file) {
+    const std::string name = lower_case(file.filename().string());
+    return find([&](const FileFormat& format) {
+        return std::any_of(format.endings.begin(), format.endings.end(), [&](std::string_view ending) {
+            return name.size() > ending.size() && name.ends_with(ending);
+        });
+    });
+}
+
+const FileFormat* format_of_file(const fs::path& file) {
+    const std::string bytes = read_beginning(file, longest_magic);
+    const FileFormat* by_content = find([&](const FileFormat& format) {
+        return std::any_of(format.magic.begin(), format.magic.end(),
+                           [&](std::string_view magic) { return begins_with(bytes, magic); });
+    });
+    return by_content ? by_content : format_by_name(file);
+}
+
+FileKind kind_of(const FileFormat* format) { return format ? format->kind : FileKind::unknown; }
+
+std::vector<std::string> endings_of(std::initializer_list<FileKind> kinds, FileUse use) {
+    std::vector<std::string> endings;
+    for (const FileFormat& format : formats())
+        if (is_used(format, use) && std::find(kinds.begin(), kinds.end(), format.kind) != kinds.end())
+            endings.insert(endings.end(), format.endings.begin(), format.endings.end());
+    return endings;
+}
+
+std::string names_of(FileKind kind, FileUse use) {
+    std::vector<std::string_view> names;
+    for (const FileFormat& format : formats())
+        if (format.kind == kind && is_used(format, use)) names.push_back(format.name);
+    const std::string_view last = names.back();
+    names.pop_back();
+    return names.empty() ? std::string(last) : fmt::format("{} or {}", fmt::join(names, ", "), last);
+}
+
+}  // namespace astrosplat

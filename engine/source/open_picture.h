@@ -1,0 +1,30 @@
+// The one place where picture files are opened with OpenImageIO: by a list of formats, each with its own
+// plug-in, and without what libraries print of their own. Include in .cpp files only, behind <fmt/format.h>:
+// OpenImageIO's headers are large and bring a copy of fmt with other settings.
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace astrosplat {
+
+/// While it lives, what this thread writes to the C stream stderr is dropped: libpng prints its errors there,
+/// which our own message repeats.
+class QuietStderr {
+  public:
+    QuietStderr();
+    ~QuietStderr();
+    QuietStderr(const QuietStderr&) = delete;
+    QuietStderr& operator=(const QuietStderr&) = delete;
+};
+
+/// Opens a picture in one of the formats of core/file_format.h, with unassociated alpha as it is stored.
+/// Throws InputError: not a readable regular file, another kind of file, a damaged header.
+std::unique_ptr<OIIO::ImageInput> open_picture(const std::filesystem::path& file);
+
+/// Throws InputError "FILE: cannot be read as a picture: REASON", the first line of it.
+[[noreturn]] void fail_picture(const std::filesystem::path& file, const std::string& reason);
+
+}  // namespace astrosplat

@@ -1,0 +1,162 @@
+// FITS headers that cannot be, found before CFITSIO sees them; HDUs by name, credits, files without pictures.
+#include "source/fits.h"
+
+#include <fitsio.h>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <atomic>
+
+#include "core/error.h"
+#include "source/picture.h"
+#include "support/errors.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr long width = 48, height = 20;
+
+/// A tile-compressed picture of 16-bit numbers.
+fs::path write_compressed(const fs::path& file, int compression) {
+    fitsfile* out = nullptr;
+    int status = 0;
+    long axes[] = {width, height};
+    std::vector<short> values;
+    for (int i = 0; i < width * height; ++i) values.push_back(static_cast<short>(i * 7 % 101));
+    fits_create_diskfile(&out, file.c_str(), &status);
+    fits_set_compression_type(out, compression, &status);
+    fits_create_img(out, SHORT_IMG, 2, axes, &status);
+    fits_write_img(out, TSHORT, 1, width * height, values.data(), &status);
+    fits_close_file(out, &status);
+    EXPECT_EQ(status, 0);
+    return file;
+}
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The file with another value in one card: written right-aligned to column 30, as numbers are.
+std::string with_value(std::string bytes, const std::string& keyword, const std::string& value) {
+    const std::size_t card = bytes.find(fmt::format("{:8}= ", keyword));
+    EXPECT_NE(card, std::string::npos) << keyword;
+    return bytes.replace(card + 10, 20, fmt::format("{:>20}", value));
+}
+
+TEST(FitsCompressed, AllKindsAreRead) {
+    const TempFolder folder;
+    for (const int compression : {RICE_1, GZIP_1, GZIP_2, HCOMPRESS_1, PLIO_1}) {
+        const FitsPlane plane =
+            read_fits(write_compressed(folder / fmt::format("{}.fits", compression), compression), "auto", 0);
+        ASSERT_EQ(plane.values.size(), static_cast<std::size_t>(width * height));
+        EXPECT_EQ(plane.values[(height - 1) * width + 9], 63.0) << compression;  // the bottom row comes last
+    }
+}
+
+// Each of these ended the process inside CFITSIO 4.2, by SIGABRT, SIGFPE or SIGSEGV.
+TEST(FitsCompressed, CardsThatCannotBeAreOneLine) {
+    const TempFolder folder;
+    const std::string whole = bytes_of(write_compressed(folder / "whole.fits", RICE_1));
+    const std::pair<const char*, const char*> wrong[] = {
+        {"ZVAL2", "("},        {"ZVAL2", "2("},    {"ZVAL2", "3"},           {"ZVAL1", "0"},
+        {"ZVAL1", "932"},      {"ZTILE1", "0"},    {"ZTILE2", "0"},          {"ZTILE1", "4x"},
+        {"ZTILE2", "."},       {"ZNAXIS", "9"},    {"ZNAXIS1", "-48"},       {"ZBITPIX", "-16"},
+        {"ZCMPTYPE", "'RAR'"}, {"ZNAXIS2", "1e9"}, {"ZTILE1", "99999999999"}};
+    for (const auto& [keyword, value] : wrong) {
+        const fs::path file = folder.file("bad.fits", with_value(whole, keyword, value));
+        const std::string message = message_of<InputError>([&] { read_fits(file, "auto", 0); });
+        EXPECT_EQ(message.rfind(fmt::format("{}:HDU 1: expected {} to be ", file.string(), keyword), 0), 0u)
+            << message;
+        EXPECT_EQ(message.find('\n'), std::string::npos);
+        EXPECT_THROW(describe_fits(file), InputError);
+        EXPECT_THROW(require_picture(file), InputError);
+    }
+    std::string nameless = whole;
+    nameless.replace(whole.find("ZVAL2   ="), 5, "XVAL2");
+    EXPECT_EQ(message_of<InputError>([&] { read_fits(folder.file("bad.fits", nameless), "auto", 0); }),
+              (folder / "bad.fits").string() + ":HDU 1: expected ZVAL2 to be there with ZNAME2, found none");
+}
+
+TEST(FitsCompressed, AnyWrongByteOfTheDescriptionIsReadOrRefused) {
+    const TempFolder folder;
+    const std::string whole = bytes_of(write_compressed(folder / "whole.fits", RICE_1));
+    const std::size_t header = whole.find("ZIMAGE"), end = whole.find("END     ", header);
+    int refused = 0;
+    for (std::size_t card = header; card < end; card += 80) {
+        if (whole[card] != 'Z') continue;
+        for (std::size_t byte = 0; byte < 32; byte += byte < 8 ? 3 : 1) {
+            for (const char value : {'(', '0', '9', ' ', '.'}) {
+                std::string bytes = whole;
+                bytes[card + byte] = value;
+                try {
+                    read_fits(folder.file("bad.fits", bytes), "auto", 0);
+                } catch (const InputError&) {
+                    ++refused;
+                }
+            }
+        }
+    }
+    EXPECT_GT(refused, 100);
+}
+
+TEST(Fits, CreditIsTheAuthorElseTheOrigin) {
+    const TempFolder folder;
+    const auto write = [&](const char* name, const std::vector<std::pair<const char*, const char*>>& keys) {
+        fitsfile* out = nullptr;
+        int status = 0;
+        long axes[] = {2, 1};
+        float values[] = {1.0f, 2.0f};
+        fits_create_diskfile(&out, (folder / name).c_str(), &status);
+        fits_create_img(out, FLOAT_IMG, 2, axes, &status);
+        for (const auto& [key, value] : keys)
+            fits_update_key(out, TSTRING, key, const_cast<char*>(value), nullptr, &status);
+        fits_write_img(out, TFLOAT, 1, 2, values, &status);
+        fits_close_file(out, &status);
+        EXPECT_EQ(status, 0);
+        return folder / name;
+    };
+    EXPECT_EQ(read_fits(write("a.fits", {{"ORIGIN", "KPNO-IRAF"}}), "auto", 0).credit, "KPNO-IRAF");
+    EXPECT_EQ(read_fits(write("b.fits", {{"ORIGIN", "KPNO"}, {"AUTHOR", "A. Nobody"}}), "auto", 0).credit,
+              "A. Nobody");
+    EXPECT_EQ(read_fits(write("c.fits", {}), "auto", 0).credit, "");
+    const fs::path named = write("d.fits", {{"EXTNAME", "Sci Image"}});
+    for (const char* hdu : {"Sci Image", "sci image", "SCI IMAGE"})
+        EXPECT_EQ(read_fits(named, hdu, 0).width, 2) << hdu;
+    EXPECT_THROW(read_fits(named, "sci", 0), InputError);
+}
+
+TEST(Fits, AFileOfTablesIsNoPicture) {
+    const TempFolder folder;
+    const fs::path file = folder / "table.fits";
+    fitsfile* out = nullptr;
+    int status = 0;
+    char name[] = "FLUX", form[] = "E";
+    char *names[] = {name}, *forms[] = {form};
+    fits_create_diskfile(&out, file.c_str(), &status);
+    fits_create_tbl(out, BINARY_TBL, 3, 1, names, forms, nullptr, "EVENTS", &status);
+    fits_close_file(out, &status);
+    ASSERT_EQ(status, 0);
+    EXPECT_EQ(message_of<InputError>([&] { require_picture(file); }),
+              file.string() + ": expected an HDU with a picture, found none in 2 HDUs");
+    EXPECT_EQ(describe_fits(file).size(), 2u);
+}
+
+TEST(Fits, PipesAreRefusedAndReadingStopsWhenAsked) {
+    const TempFolder folder;
+    const fs::path pipe = folder / "pipe.fits";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(message_of<InputError>([&] { describe_fits(pipe); }),
+              pipe.string() + ": cannot be read: it is not a regular file");
+    const fs::path file = write_compressed(folder / "a.fits", RICE_1);
+    const std::atomic<bool> stop{true};
+    EXPECT_THROW(read_fits(file, "auto", 0, Progress{{}, &stop}), Cancelled);
+    EXPECT_THROW(describe_fits(file, Progress{{}, &stop}), Cancelled);
+}
+
+}  // namespace
+}  // namespace astrosplat
