@@ -22,7 +22,8 @@
 #include "parameters.h"
 #include "places.h"
 #include "splat_commands.h"
-#include "viewer/viewer.h"
+#include "viewer/run_viewer.h"
+#include "viewer/screenshot.h"
 
 namespace astrosplat {
 namespace {

@@ -53,7 +53,7 @@ std::chrono::seconds autosave_interval();
 /// An autosave whose process is gone.
 struct Recovery {
     std::filesystem::path autosave;
-    std::filesystem::path original;  // the scene's file, or where an untitled one lay
+    std::filesystem::path original;  // the scene's file, or where an untitled one was
     bool titled = true;
     std::string time;  // UTC, "2026-05-01 12:30:00"
 };

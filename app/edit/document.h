@@ -28,12 +28,12 @@ class Document {
     /// the document begins as edited(), and saving writes it. Their keys are remembered (set_by_command_line)
     /// until they are saved.
     static Document open(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
-    /// A scene without a file: `toml` as if it lay at `place`, whose folder resolves its paths. Saving asks
+    /// A scene without a file: `toml` as if it were at `place`, whose folder resolves its paths. Saving asks
     /// for a file; until the first edit there is nothing to save. Throws InputError.
     static Document untitled(const std::string& toml, const std::filesystem::path& place,
                              std::span<const Assignment> assignments = {});
     /// What an autosave held, `toml` at `place`, as edits of `file`: edited(), and save() writes there. Not
-    /// `titled`: an untitled scene that lay at `file`. Throws InputError.
+    /// `titled`: an untitled scene that was at `file`. Throws InputError.
     static Document recovered(const std::string& toml, const std::filesystem::path& place,
                               const std::filesystem::path& file, bool titled);
 
@@ -83,7 +83,7 @@ class Document {
     /// The text that save_as(file) would write.
     std::string text_for(const std::filesystem::path& file) const;
 
-    /// The file was changed by somebody else since it was read or saved (asked of the disk now).
+    /// The file was changed by another program since it was read or saved (asked of the disk now).
     bool changed_on_disk() const;
     /// Reads the file again as one undo step; `--set` that was not saved wins over it again. Throws
     /// InputError; the scene is then as before.

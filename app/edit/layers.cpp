@@ -9,6 +9,7 @@
 #include "edit/new_from_file.h"
 #include "scene/check.h"
 #include "scene/load.h"
+#include "scene/new_scene.h"
 #include "scene/value.h"
 
 namespace astrosplat {

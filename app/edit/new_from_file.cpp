@@ -140,18 +140,6 @@ std::string splat_scene_text(const fs::path& file, const fs::path& place) {
 
 }  // namespace
 
-std::string layer_name_of(const std::string& text) {
-    std::string name;
-    for (const char c : text) {
-        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-        const bool later = (c >= '0' && c <= '9') || c == '_';
-        if (letter || (later && !name.empty())) name += c;
-        if (!letter && !later && !name.empty() && name.back() != '_') name += '_';
-    }
-    while (!name.empty() && name.back() == '_') name.pop_back();
-    return name.empty() ? "layer" : name;
-}
-
 FileKind kind_of_file(const fs::path& file) {
     const FileKind kind = kind_of(format_of_file(file));
     return kind == FileKind::scene && is_look(file) ? FileKind::look : kind;

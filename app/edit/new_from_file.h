@@ -20,7 +20,4 @@ FileKind kind_of_file(const std::filesystem::path& file);
 /// files, looks among them, and for a mesh without pictures.
 std::string scene_text_for(const std::filesystem::path& file, const std::filesystem::path& place);
 
-/// Letters, digits and _ of a file's or person's name, beginning with a letter; "layer" where none is left.
-std::string layer_name_of(const std::string& text);
-
 }  // namespace astrosplat

@@ -36,7 +36,7 @@ struct LayerStatus {
     bool loading = false;
     float progress = 0.0f;                      // 0..1 while loading
     std::int64_t found = 0;                     // splats so far while loading
-    bool stale = false;                         // the source was changed and not generated anew
+    bool stale = false;                         // the source was changed and not generated again
     std::string error;                          // why it could not be loaded, one line
     double radius_min = 0.0, radius_max = 0.0;  // what radius 0, 0 means for this set, scene units
     double spacing = 0.0;                       // lattice step, scene units; 0: unknown
@@ -74,7 +74,7 @@ struct JobStatus {
     float progress = 0.0f;
 };
 
-/// An autosave that somebody may want.
+/// An autosave that may be wanted.
 struct RecoveryOffer {
     std::filesystem::path autosave;
     std::string scene;  // "whirlpool.toml", "Untitled"

@@ -1,5 +1,5 @@
 // Files that others may write while they are in use here. In: their names, and a look at the disk now and
-// then. Out: those that were changed, once whoever writes them has finished.
+// then. Out: those that were changed, once the program that writes them has finished.
 #pragma once
 
 #include <filesystem>

@@ -8,20 +8,6 @@
 namespace astrosplat {
 namespace {
 
-bool same_inputs(const LookInputs& a, const LookInputs& b) {
-    return a.axis == b.axis && a.seed == b.seed && a.falloff_integral == b.falloff_integral &&
-           a.column == b.column && a.thickness_map == b.thickness_map;
-}
-
-/// A number that another picture at the same address hardly has.
-float probe_of(const Image* image) {
-    if (!image || image->pixels.empty()) return 0.0f;
-    float sum = static_cast<float>(image->width);
-    const std::size_t step = std::max<std::size_t>(1, image->pixels.size() / 97);
-    for (std::size_t i = 0; i < image->pixels.size(); i += step) sum = 0.75f * sum + image->pixels[i];
-    return sum;
-}
-
 /// None of the first `count` splats is larger, whatever its random numbers and alpha are.
 float radius_bound(const SplatSet& set, std::int64_t count, const LookUniforms& u, float share,
                    bool additive) {
@@ -31,10 +17,6 @@ float radius_bound(const SplatSet& set, std::int64_t count, const LookUniforms& 
     radius *= std::max(1.0f, u.horizontal_scale) * std::max(1.0f, u.vertical_scale);
     // radius'^2 = radius^2 alpha / (q alpha'), and alpha' >= alpha where alpha' is not alpha / q.
     return additive ? radius : radius * std::sqrt(1.0f / share);
-}
-
-bool is_additive(const PreviewLayer& layer) {
-    return layer.layer.render.blend == Blend::add && !layer.layer.render.holdout;
 }
 
 }  // namespace
@@ -82,19 +64,13 @@ bool GroupSplats::lay_out(const std::vector<const PreviewLayer*>& layers) {
 
 bool GroupSplats::shade(Part& part, const PreviewLayer& layer, RawSplatStore& raw, LookPass& pass) {
     RawSplats& splats = raw.of(layer.set);
-    const bool additive = is_additive(layer);
-    const float probe = probe_of(layer.inputs.thickness_map);
-    const bool same_look = part.shaded && part.look == layer.look && same_inputs(part.inputs, layer.inputs) &&
-                           part.map_probe == probe;
-    if (same_look && part.additive == additive) return false;
-    if (!same_look) part.uniforms = prepare_look(*layer.set, layer.look, layer.inputs);
-    part.look = layer.look;
-    part.inputs = layer.inputs;
-    part.map_probe = probe;
-    part.additive = additive;
+    Shading now = shading_of(layer);
+    if (part.shading == now) return false;
+    part.uniforms = prepare_look(*layer.set, layer.look, layer.inputs);
+    part.shading = std::move(now);
+    const bool additive = part.shading->additive;
     part.share = float(double(part.count) / double(std::max<std::int64_t>(whole_count(layer), 1)));
     part.largest_radius = radius_bound(*layer.set, part.count, part.uniforms, part.share, additive);
-    part.shaded = true;
     splats.hold(part.count);
     pass.run(splats, {part.uniforms, layer.inputs.thickness_map, part.count, part.share, additive}, buffers_,
              part.first);

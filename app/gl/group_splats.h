@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gl/draw_pass.h"
@@ -62,12 +63,8 @@ class GroupSplats {
         std::shared_ptr<const SplatSet> set;
         std::int64_t first = 0, count = 0;
         float share = 0.0f;
-        bool additive = false;
-        bool shaded = false;
-        Look look;
-        LookInputs inputs;
+        std::optional<Shading> shading;  // none: not shaded yet
         LookUniforms uniforms;
-        float map_probe = 0.0f;
         float largest_radius = 0.0f;
     };
     /// What an order was made from.

@@ -1,9 +1,10 @@
+#include "gl/picture_texture.h"
+
 #include <glad/gl.h>
 
 #include <cassert>
 #include <utility>
 
-#include "gl/display.h"
 #include "gl/objects.h"
 
 namespace astrosplat {

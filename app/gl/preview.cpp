@@ -58,6 +58,15 @@ double distance_to(const LayerProjection& p, const Bounds& box) {
     return std::sqrt(glm::dot(outside, outside)) * double(p.radius_scale);
 }
 
+/// A number that another picture at the same address hardly has.
+float probe_of(const Image* image) {
+    if (!image || image->pixels.empty()) return 0.0f;
+    float sum = static_cast<float>(image->width);
+    const std::size_t step = std::max<std::size_t>(1, image->pixels.size() / 97);
+    for (std::size_t i = 0; i < image->pixels.size(); i += step) sum = 0.75f * sum + image->pixels[i];
+    return sum;
+}
+
 /// Copies with the merged groups cut into pieces that one pass can draw.
 std::vector<BlendGroup> drawable(std::vector<BlendGroup> groups) {
     std::vector<BlendGroup> result;
@@ -77,6 +86,12 @@ std::vector<BlendGroup> drawable(std::vector<BlendGroup> groups) {
 }
 
 }  // namespace
+
+Shading shading_of(const PreviewLayer& layer) {
+    const LayerRender& render = layer.layer.render;
+    return {layer.look, layer.inputs, render.blend == Blend::add && !render.holdout,
+            probe_of(layer.inputs.thickness_map)};
+}
 
 struct GlPreview::State {
     LookPass look;

@@ -33,6 +33,17 @@ inline std::int64_t whole_count(const PreviewLayer& layer) {
     return layer.whole > there ? layer.whole : there;
 }
 
+/// All that a layer's splats are shaded and thinned out with, beside its rows and share: while it stays
+/// equal, they stay.
+struct Shading {
+    Look look;
+    LookInputs inputs;
+    bool additive = false;   // light adds up, so fewer splats need no larger radius
+    float map_probe = 0.0f;  // tells another map at the address of an old one
+    bool operator==(const Shading&) const = default;
+};
+Shading shading_of(const PreviewLayer& layer);
+
 class GlPreview {
   public:
     /// Needs a current context of OpenGL 4.1 core or later. Throws std::runtime_error with the driver's words

@@ -151,7 +151,7 @@ void add_layer_menu(List& list) {
     list.push_back({"Layer", "Move up", {}, move_layer_up, can_move_up, nullptr, nullptr, true});
     list.push_back({"Layer", "Move down", {}, move_layer_down, can_move_down});
     list.push_back(
-        {"Layer", "Generate anew", {}, ask_for_layer<Kind::regenerate>, layer_stale, nullptr, nullptr, true});
+        {"Layer", "Regenerate", {}, ask_for_layer<Kind::regenerate>, layer_stale, nullptr, nullptr, true});
 }
 
 template <CameraMove move>

@@ -1,4 +1,6 @@
 // The badge: a dot in the state's colour, what the state is, and what can be done about it.
+#include "gui/badge.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -7,7 +9,6 @@
 
 #include "gui/icons.h"
 #include "gui/theme.h"
-#include "gui/viewport_overlay.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
@@ -58,9 +59,9 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
     if (const LayerStatus* layer = loading_layer(status, index)) {
         const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";
         return {fmt::format("Generating {} {:.0f} %", name, layer->progress * 100.0f),
-                layer->found > 0 ? short_count(layer->found) + " splats" : "", color::accent};
+                layer->found > 0 ? splat_count(layer->found) : "", color::accent};
     }
-    const std::string total = short_count(picture.total) + " splats";
+    const std::string total = splat_count(picture.total);
     switch (picture.state) {
         case PictureState::loading:
             return {"Loading", "", color::accent};

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "gui/dialog.h"
+#include "gui/file_queries.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
@@ -40,19 +41,13 @@ bool CommandFlow::busy() const {
     return dialog_.is_open() || question_ || conflict_ || after_save_ || !asked_.empty() || answer_.done;
 }
 
-void CommandFlow::file_chosen(const std::optional<std::filesystem::path>& file) { answer_ = {true, file}; }
-
-void CommandFlow::choose_file(const FileQuery& query) {
-    if (!chooser_ || !chooser_(query)) dialog_.open(query);
-}
-
 void CommandFlow::take(GuiFrame& frame, Command command, Commands& out) {
     if (command.kind == Kind::save && !can_save_in_place(frame.document)) command.kind = Kind::save_as;
     const std::optional<FileQuery> query = query_for(command.kind, frame.document);
     if (query && command.path.empty()) {
         needs_file_ = command;
         panel_request_.reset();
-        choose_file(*query);
+        dialog_.open(*query);
     } else if (command.kind == Kind::save && frame.document.changed_on_disk()) {
         conflict_ = true;
     } else if (replaces_scene(command.kind) && frame.document.edited()) {
@@ -171,7 +166,7 @@ void CommandFlow::run(GuiFrame& frame, Panel& panel, Commands& out) {
     if (const std::optional<FileRequest> wish = panel.take_request()) {
         needs_file_.reset();
         panel_request_ = wish;
-        choose_file(*query_for(*wish, frame.document));
+        dialog_.open(*query_for(*wish, frame.document));
     }
     take_answer(frame, panel, out);
     Commands wishes;

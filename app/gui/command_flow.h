@@ -1,5 +1,5 @@
 // Between a wish and a command: asks for the file that is missing, and what to do with unsaved changes, or
-// with somebody else's in the same file, that would be lost. In: what the widgets requested. Out: complete
+// with another program's in the same file, that would be lost. In: what the widgets requested. Out: complete
 // commands for the viewer.
 #pragma once
 
@@ -16,8 +16,6 @@ class CommandFlow {
   public:
     /// A command that the next run() takes up as if a menu had asked for it.
     void ask(const Command& command) { asked_.push_back(command); }
-    void set_chooser(std::function<bool(const FileQuery&)> chooser) { chooser_ = std::move(chooser); }
-    void file_chosen(const std::optional<std::filesystem::path>& file);
 
     /// Takes frame.requested and the panel's wish, draws the dialogs they need, adds to `out`.
     void run(GuiFrame& frame, Panel& panel, Commands& out);
@@ -26,7 +24,6 @@ class CommandFlow {
 
   private:
     void take(GuiFrame& frame, Command command, Commands& out);
-    void choose_file(const FileQuery& query);
     void take_answer(GuiFrame& frame, Panel& panel, Commands& out);
     void draw_question(GuiFrame& frame, Commands& out);
     void draw_conflict(GuiFrame& frame, Commands& out);
@@ -34,12 +31,11 @@ class CommandFlow {
     void finish_save(GuiFrame& frame, Commands& out);
 
     Commands asked_;
-    std::function<bool(const FileQuery&)> chooser_;
     FileDialog dialog_;
 
     std::optional<Command> needs_file_;         // waits for the dialog
     std::optional<FileRequest> panel_request_;  // likewise
-    FileDialog::Answer answer_;                 // of either dialog, until taken
+    FileDialog::Answer answer_;                 // until taken
 
     std::optional<Command> question_;  // would lose unsaved changes
     bool conflict_ = false;            // saving would lose what another program wrote there
@@ -47,9 +43,5 @@ class CommandFlow {
     int frames_since_save_ = 0;
     bool recovery_answered_ = false;
 };
-
-/// What to ask for where `kind` needs a path; nothing where it needs none.
-std::optional<FileQuery> query_for(Command::Kind kind, const Document& document);
-std::optional<FileQuery> query_for(const FileRequest& request, const Document& document);
 
 }  // namespace astrosplat

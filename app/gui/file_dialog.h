@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gui/file_list.h"
+#include "gui/file_queries.h"
 #include "gui/gui_frame.h"
 
 namespace astrosplat {

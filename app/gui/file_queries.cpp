@@ -1,6 +1,7 @@
 // Titles, kinds and folders of the file dialogs.
+#include "gui/file_queries.h"
+
 #include "core/file_format.h"
-#include "gui/command_flow.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

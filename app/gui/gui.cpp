@@ -137,11 +137,6 @@ bool Gui::opening() const {
     return !takes_text && (state_->popup || state_->flow.busy() || state_->panel.busy());
 }
 
-void Gui::set_file_chooser(std::function<bool(const FileQuery&)> chooser) {
-    state_->flow.set_chooser(std::move(chooser));
-}
-void Gui::file_chosen(const std::optional<std::filesystem::path>& file) { state_->flow.file_chosen(file); }
-
 const std::vector<DrawnItem>& Gui::drawn_items() const { return state_->drawn; }
 const Panel& Gui::panel() const { return state_->panel; }
 

@@ -1,8 +1,8 @@
 // Where things lie: sizes of VIEWER.md at content scale 1, hidden parts left out, the viewport gets the rest.
+#include "gui/layout.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "gui/gui.h"
 
 namespace astrosplat {
 namespace {

@@ -14,4 +14,8 @@ std::string short_count(std::int64_t count) {
     return fmt::format("{:.1f} G", n / 1e9);
 }
 
+std::string splat_count(std::int64_t count) {
+    return short_count(count) + (count == 1 ? " splat" : " splats");
+}
+
 }  // namespace astrosplat

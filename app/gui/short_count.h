@@ -9,4 +9,7 @@ namespace astrosplat {
 /// Three digits at most, thousands as k, M, G. `count` >= 0.
 std::string short_count(std::int64_t count);
 
+/// "2.9 M splats", "1 splat".
+std::string splat_count(std::int64_t count);
+
 }  // namespace astrosplat

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/badge.h"
 #include "gui/theme.h"
 #include "gui/viewport_overlay.h"
 

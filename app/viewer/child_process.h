@@ -12,9 +12,9 @@ namespace astrosplat {
 
 class ChildProcess {
   public:
-    /// Starts arguments[0] (found on the PATH) with stdout, and with `errors_too` stderr, read by output().
+    /// Starts arguments[0] (found on the PATH) with stdout and stderr read by output().
     /// Throws OutputError where it cannot be started.
-    ChildProcess(const std::vector<std::string>& arguments, bool errors_too);
+    explicit ChildProcess(const std::vector<std::string>& arguments);
     ~ChildProcess();  // ends it (SIGTERM) and waits
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;

@@ -12,6 +12,7 @@
 #include "edit/snapshots.h"
 #include "edit/status.h"
 #include "gl/display.h"
+#include "gl/picture_texture.h"
 #include "viewer/picture.h"
 
 namespace astrosplat {

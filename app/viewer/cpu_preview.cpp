@@ -17,23 +17,10 @@
 namespace astrosplat {
 namespace {
 
-/// All that reaches apply_look and decimate beside the rows: while it stays equal, the shaded splats stay.
-struct ShadingKey {
-    Look look;
-    LookInputs inputs;
-    bool additive = false;
-    bool operator==(const ShadingKey& o) const {
-        const LookInputs &a = inputs, &b = o.inputs;
-        return additive == o.additive && a.axis == b.axis && a.seed == b.seed &&
-               a.falloff_integral == b.falloff_integral && a.column == b.column &&
-               a.thickness_map == b.thickness_map && look == o.look;
-    }
-};
-
 struct KeptLayer {
     std::shared_ptr<const SplatSet> set;  // what `rows` was cut from
     SplatSet rows;                        // its first ones
-    std::optional<ShadingKey> key;        // what `shaded` was made with
+    std::optional<Shading> shading;       // what `shaded` was made with
     ShadedSplats shaded;
 };
 
@@ -47,19 +34,19 @@ void cut(const PreviewLayer& layer, KeptLayer& kept) {
     if (kept.set == layer.set && kept.rows.size() == rows) return;
     kept.rows = first_rows(*layer.set, rows);
     kept.set = layer.set;
-    kept.key.reset();
+    kept.shading.reset();
 }
 
 void shade(const PreviewLayer& layer, KeptLayer& kept) {
-    ShadingKey key{layer.look, layer.inputs, layer.layer.render.blend == Blend::add};
-    if (kept.key == key) return;
-    kept.key.reset();  // an exception below must not leave old splats under a new key
+    Shading shading = shading_of(layer);
+    if (kept.shading == shading) return;
+    kept.shading.reset();  // an exception below must not leave old splats under a new look
     apply_look(kept.rows, layer.look, layer.inputs, kept.shaded);
     if (kept.rows.size() > 0) {
         const double share = static_cast<double>(kept.rows.size()) / static_cast<double>(whole_count(layer));
-        decimate(kept.shaded, static_cast<float>(share), key.additive);
+        decimate(kept.shaded, static_cast<float>(share), shading.additive);
     }
-    kept.key = std::move(key);
+    kept.shading = std::move(shading);
 }
 
 }  // namespace

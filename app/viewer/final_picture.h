@@ -31,7 +31,7 @@ class FinalPicture {
     FinalPicture();
     ~FinalPicture();  // cancels and waits
 
-    /// Cancels what is under way and begins anew. Returns at once.
+    /// Cancels what is under way and begins again. Returns at once.
     void start(FinalRequest request);
     /// Cancels and returns at once: state() is idle from then on, and the thread stops within 50 ms of work.
     void cancel();

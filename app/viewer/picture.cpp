@@ -10,6 +10,7 @@
 
 #include "core/clock.h"
 #include "core/error.h"
+#include "gl/picture_texture.h"
 #include "look/apply.h"
 #include "scene/layer_setup.h"
 #include "source/texture.h"

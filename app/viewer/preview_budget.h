@@ -12,7 +12,7 @@ namespace astrosplat {
 float share_for_budget(std::span<const std::int64_t> sizes, std::int64_t budget);
 
 /// Follows a target time, damped, and stays where it is within an eighth of the target: a share that moves
-/// means that sets are cut and shaded anew, and that the picture's grain changes under the eye.
+/// means that sets are cut and shaded again, and that the picture's grain changes under the eye.
 struct PreviewBudget {
     std::int64_t least = 30000, most = 4000000;  // splats
     std::int64_t splats = 200000;                // the budget

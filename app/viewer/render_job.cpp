@@ -53,7 +53,7 @@ struct RenderJob::Impl {
 
     void begin_step() {
         partial.clear();
-        process.emplace(steps[step].arguments, true);
+        process.emplace(steps[step].arguments);
     }
     void take_line(const std::string& line) {
         if (trim(line).empty()) return;

@@ -1,18 +1,22 @@
 // The window's loop: wait for events, advance the session, draw widgets and picture, show the frame.
+#include "viewer/run_viewer.h"
+
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
+#include <cstdio>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "core/log.h"
 #include "edit/preferences.h"
 #include "exit_code.h"
 #include "viewer/clock.h"
-#include "viewer/native_chooser.h"
 #include "viewer/session.h"
-#include "viewer/viewer.h"
 #include "viewer/window.h"
 
 namespace astrosplat {
@@ -23,6 +27,29 @@ constexpr int frames_after_event = 4;
 
 constexpr double screen_frame_s = 1.0 / 60.0;
 
+/// What the engine and the widgets log, from any thread: for the terminal at once, and errors and warnings
+/// for the message bar in the next frame.
+class LogLines {
+  public:
+    void push(LogLevel level, const std::string& line) {
+        fmt::print(stderr, "{}\n", terminal_line(level, line));
+        if (level != LogLevel::error && level != LogLevel::warning) return;
+        {
+            const std::lock_guard lock(mutex_);
+            messages_.push_back({line, level == LogLevel::error, 0});
+        }
+        Window::wake();
+    }
+    std::vector<Message> take() {
+        const std::lock_guard lock(mutex_);
+        return std::exchange(messages_, {});
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<Message> messages_;
+};
+
 class Loop {
   public:
     Loop(const ViewerOptions& options, const Preferences& preferences, const std::atomic<bool>& interrupted)
@@ -30,8 +57,12 @@ class Loop {
           window_(preferences.window_width, preferences.window_height, "astrosplat"),
           session_(options, window_.gl()) {
         apply_theme(window_.content_scale());
-        gui_.set_file_chooser([this](const FileQuery& request) { return chooser_.open(request); });
+        set_log_sink([this](LogLevel level, const std::string& line) { log_.push(level, line); });
     }
+
+    ~Loop() { set_log_sink(nullptr); }
+    Loop(const Loop&) = delete;
+    Loop& operator=(const Loop&) = delete;
 
     void run() {
         while (!session_.quitting()) {
@@ -45,8 +76,7 @@ class Loop {
 
   private:
     void wait() {
-        double due = session_.next_due(seconds_now());
-        if (chooser_.is_open()) due = std::min(due, 0.1);
+        const double due = session_.next_due(seconds_now());
         if (window_.has_input()) {
             window_.wait(0.0);
         } else if (frames_left_ > 0 || gui_.busy() || due <= 0.0) {
@@ -65,9 +95,9 @@ class Loop {
         if (window_.close_requested()) gui_.ask_to_quit(session_.document());
         const std::vector<std::filesystem::path> dropped = window_.take_dropped();
         if (!dropped.empty()) session_.drop(dropped);
-        if (const auto answer = chooser_.take_answer()) gui_.file_chosen(*answer);
         const double now = seconds_now();
         session_.advance(now);
+        for (const Message& message : log_.take()) session_.say(message.text, message.error);
         if (session_.title() != title_) window_.set_title(title_ = session_.title());
         if (window_.has_input()) frames_left_ = frames_after_event;
         if (!window_.begin_frame(gui_.opening())) return;
@@ -96,10 +126,10 @@ class Loop {
     }
 
     const std::atomic<bool>& interrupted_;
+    LogLines log_;  // before the session, whose threads write into it
     Window window_;
     Session session_;
     Gui gui_;
-    NativeChooser chooser_;
     std::string title_;
     int frames_left_ = frames_after_event;
     bool still_ = false;  // the last frame looked like the one before

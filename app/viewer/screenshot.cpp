@@ -1,4 +1,6 @@
 // One picture of what the window would show, without a display: the viewport alone, or with the panels.
+#include "viewer/screenshot.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -12,7 +14,6 @@
 #include "output/write_picture.h"
 #include "viewer/clock.h"
 #include "viewer/session.h"
-#include "viewer/viewer.h"
 #include "viewer/widget_target.h"
 
 namespace astrosplat {

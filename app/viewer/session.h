@@ -16,7 +16,7 @@
 #include "gl/context.h"
 #include "gui/gui.h"
 #include "viewer/picture.h"
-#include "viewer/viewer.h"
+#include "viewer/run_viewer.h"
 
 namespace astrosplat {
 

@@ -11,7 +11,7 @@
 namespace astrosplat {
 namespace {
 
-/// What a picture does not depend on, at its default, so that editing it does not make the picture anew.
+/// What a picture does not depend on, at its default, so that editing it does not make the picture again.
 void forget_what_is_not_seen(Scene& scene) {
     const OutputParams standard;
     scene.file.clear();

@@ -24,8 +24,8 @@
 #include "viewer/navigator.h"
 #include "viewer/picture.h"
 #include "viewer/playback.h"
+#include "viewer/run_viewer.h"
 #include "viewer/set_wishes.h"
-#include "viewer/viewer.h"
 
 namespace astrosplat {
 

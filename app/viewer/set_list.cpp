@@ -55,7 +55,7 @@ void SetList::stop(const std::string& name) {
     stop_growing(entries_[name]);
 }
 
-/// Whether the layer's set is to be loaded anew.
+/// Whether the layer's set is to be loaded again.
 bool SetList::want_layer(const LayerParams& layer) {
     const SourceParams identity = identity_of(layer.source, layer.name);
     Entry& entry = entries_[layer.name];

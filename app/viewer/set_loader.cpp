@@ -53,7 +53,7 @@ void SetLoader::Impl::work(SetJob& job) {
         if (job.task == SetTask::load) load(job);
         if (job.task == SetTask::arrange) arrange(job);
         if (job.task == SetTask::describe) describe(job);
-    } catch (const Cancelled&) {  // whoever cancelled has said in the list what comes next
+    } catch (const Cancelled&) {  // the caller that cancelled has said in the list what comes next
     } catch (const std::exception& error) {
         const auto held = worker.lock();
         list.fail(job, reason(error));
@@ -80,7 +80,7 @@ void SetLoader::Impl::arrange(const SetJob& job) {
     replace(job, arranged_layer(*job.loaded, preview_limit, progress));
 }
 
-/// After everything that somebody waits for.
+/// After everything that is waited for.
 void SetLoader::Impl::describe(const SetJob& job) { replace(job, described_layer(*job.loaded)); }
 
 void SetLoader::Impl::replace(const SetJob& job, LoadedLayer layer) {

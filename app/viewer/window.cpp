@@ -245,7 +245,7 @@ float Window::content_scale() const {
 std::vector<unsigned char> Window::read(int& width, int& height) const {
     glfwGetFramebufferSize(window_, &width, &height);
     std::vector<unsigned char> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
-    draw_widgets(width, height);  // anew: not every driver lets what is shown be read
+    draw_widgets(width, height);  // again: not every driver lets what is shown be read
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadBuffer(GL_BACK);
     glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());

@@ -24,6 +24,7 @@ struct LookInputs {
     double falloff_integral = 1.0;     // of the layer's falloff over the unit disc
     ColumnLaw column = ColumnLaw::transmittance;
     const Image* thickness_map = nullptr;  // raw values; must be there when look.thickness.map is set
+    bool operator==(const LookInputs&) const = default;
 };
 
 struct LookStatistics {

@@ -15,19 +15,6 @@ namespace {
 
 const std::vector<std::string> shapes{"plane", "relief", "disk", "sphere"};
 
-/// Letters, digits and _ of the picture's name; "picture" where none begins it.
-std::string layer_name(const fs::path& image) {
-    std::string name;
-    for (const char c : image.stem().string()) {
-        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-        const bool later = (c >= '0' && c <= '9') || c == '_';
-        if (letter || (later && !name.empty())) name += c;
-        if (!letter && !later && !name.empty() && name.back() != '_') name += '_';
-    }
-    while (!name.empty() && name.back() == '_') name.pop_back();
-    return name.empty() ? "picture" : name;
-}
-
 /// The picture as seen from the scene's folder.
 std::string picture_path(const fs::path& image, const fs::path& file) {
     const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
@@ -84,7 +71,7 @@ std::string new_scene_text(const fs::path& image, const std::string& shape, cons
     if (std::find(shapes.begin(), shapes.end(), shape) == shapes.end())
         throw InputError(fmt::format("--shape: expected plane, relief, disk or sphere, found '{}'{}", shape,
                                      did_you_mean(shape, shapes)));
-    const std::string name = layer_name(image);
+    const std::string name = layer_name_of(image.stem().string(), "picture");
     return fmt::format(scene_format, fmt::arg("title", name), fmt::arg("name", to_toml(name)),
                        fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
                        fmt::arg("shape", to_toml(shape)),
@@ -92,6 +79,18 @@ std::string new_scene_text(const fs::path& image, const std::string& shape, cons
                        fmt::arg("relief", shape == "relief" ? ", relief = 0.15" : ""),
                        // Jitter moves along one axis: depth for a flat picture, a smear on a sphere's sides.
                        fmt::arg("jitter", shape == "sphere" ? "0.0" : "0.1"));
+}
+
+std::string layer_name_of(const std::string& text, const char* otherwise) {
+    std::string name;
+    for (const char c : text) {
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+        const bool later = (c >= '0' && c <= '9') || c == '_';
+        if (letter || (later && !name.empty())) name += c;
+        if (!letter && !later && !name.empty() && name.back() != '_') name += '_';
+    }
+    while (!name.empty() && name.back() == '_') name.pop_back();
+    return name.empty() ? otherwise : name;
 }
 
 }  // namespace astrosplat

@@ -11,4 +11,8 @@ namespace astrosplat {
 std::string new_scene_text(const std::filesystem::path& image, const std::string& shape,
                            const std::filesystem::path& file);
 
+/// Letters, digits and _ of a file's or person's name, beginning with a letter; `otherwise` where none is
+/// left.
+std::string layer_name_of(const std::string& text, const char* otherwise = "layer");
+
 }  // namespace astrosplat

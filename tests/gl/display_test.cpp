@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gl/gl_fixture.h"
+#include "gl/picture_texture.h"
 #include "output/encode.h"
 
 namespace astrosplat {

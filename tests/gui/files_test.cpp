@@ -117,22 +117,5 @@ TEST_F(FileDialogTest, TheExtensionIsAdded) {
     EXPECT_EQ(commands[0].path, folder / "new.toml");
 }
 
-TEST_F(FileDialogTest, AnotherChooserTakesItsPlace) {
-    std::string asked;
-    window.gui.set_file_chooser([&](const FileQuery& query) {
-        asked = query.title;
-        return true;
-    });
-    window.choose("File/Open...");
-    window.frame(2);
-    EXPECT_EQ(asked, "Open a scene");
-    EXPECT_FALSE(window.has("file/path"));
-    window.gui.file_chosen(folder / "scenes/old.toml");
-    window.frame();
-    const Commands commands = window.take_commands();
-    ASSERT_EQ(commands.size(), 1U);
-    EXPECT_EQ(commands[0].path, folder / "scenes/old.toml");
-}
-
 }  // namespace
 }  // namespace astrosplat

@@ -1,6 +1,7 @@
 // The viewport: drags, flying, wipe, 1:1, and the badge.
 #include <gtest/gtest.h>
 
+#include "gui/badge.h"
 #include "gui/gui_frame.h"
 #include "gui/test_window.h"
 #include "gui/viewport.h"
@@ -127,6 +128,9 @@ TEST(Picture, TheBadgesButtons) {
 
 TEST(Picture, CountsHaveThreeDigitsAtMost) {
     EXPECT_EQ(short_count(999), "999");
+    EXPECT_EQ(splat_count(0), "0 splats");
+    EXPECT_EQ(splat_count(1), "1 splat");
+    EXPECT_EQ(splat_count(1000), "1.0 k splats");
     EXPECT_EQ(short_count(1000), "1.0 k");
     EXPECT_EQ(short_count(9949), "9.9 k");
     EXPECT_EQ(short_count(240000), "240 k");

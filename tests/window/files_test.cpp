@@ -62,5 +62,20 @@ TEST_F(WindowFiles, WhatWasMissingIsShownWhenItComes) {
     settled_picture();
 }
 
+/// What a key cannot do is a line in the window, not only at the terminal it was started from.
+TEST_F(WindowFiles, WhatCannotBeKeyedIsSaidInTheMessageBar) {
+    fs::remove(folder / "rings.png");  // so that there is nothing to frame
+    std::string text = text_of(scene_file);
+    text.erase(text.find("position"), text.find("target") - text.find("position"));
+    text.erase(text.find("[animation]"));
+    write_text(scene_file, text);
+    start();
+    EXPECT_TRUE(comes_true([&] { return failed(); }));
+    const auto said = [&] { return count_of(pixels_of(&Layout::status), color::error) > 10; };
+    EXPECT_FALSE(said());
+    person->key("k");
+    EXPECT_TRUE(comes_true(said));
+}
+
 }  // namespace
 }  // namespace astrosplat::test

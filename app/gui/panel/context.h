@@ -14,7 +14,7 @@
 
 namespace astrosplat::panel {
 
-/// The scene as it stands at the current frame, described. Made anew when the document or the frame changes.
+/// The scene as it stands at the current frame, described. Made again when the document or the frame changes.
 struct Described {
     const Document* document = nullptr;
     std::uint64_t revision = 0;

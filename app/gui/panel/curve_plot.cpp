@@ -1,4 +1,6 @@
 // The curve a person drags. Its points live in the document; the panel remembers only which one is selected.
+#include "gui/panel/curve_plot.h"
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,6 @@
 // The value of a row, one function per kind of parameter.
+#include "gui/panel/fields.h"
+
 #include <cfloat>
 #include <cmath>
 

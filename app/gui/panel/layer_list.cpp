@@ -13,7 +13,7 @@
 #include "gui/icons.h"
 #include "gui/panel/row.h"
 #include "gui/panel/section.h"
-#include "gui/panel/tabs.h"
+#include "gui/panel/whole_look.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 
@@ -77,7 +77,7 @@ void switches(Context& context, std::size_t i, const Area& row) {
     const LayerParams& layer = context.scene().layers[i];
     float x = row.end().x - px(margin) - px(20) + px(6);
     if (letter("isolate", "I", {x, row.corner.y}, layer.render.isolate,
-               "Isolate: rendered alone, then laid on whole"))
+               "Isolate: rendered alone, then composited as a whole"))
         toggle(context, i, "render.isolate", layer.render.isolate);
     x -= px(20);
     ImGui::SetCursorScreenPos({x, row.corner.y});
@@ -149,7 +149,7 @@ void layer_menu(Context& context, std::size_t i) {
     if (ImGui::MenuItem("Delete", nullptr, false, context.scene().layers.size() > 1)) remove(context, i);
     ImGui::Separator();
     if (ImGui::MenuItem("Frame", "F")) context.commands.push_back({Command::Kind::frame_layer, {}, "", i});
-    if (ImGui::MenuItem("Generate anew")) context.commands.push_back({Command::Kind::regenerate, {}, "", i});
+    if (ImGui::MenuItem("Regenerate")) context.commands.push_back({Command::Kind::regenerate, {}, "", i});
     ImGui::Separator();
     look_menu(context);
     end_popup();

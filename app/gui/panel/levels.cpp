@@ -1,4 +1,6 @@
 // Black and white point, dragged over the spread of the picture's values.
+#include "gui/panel/levels.h"
+
 #include <algorithm>
 #include <cmath>
 

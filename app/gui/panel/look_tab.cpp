@@ -1,13 +1,17 @@
 // Look: how the splats of the selected layer are thinned, faded, sized and coloured (DESIGN 5), in the order
 // in which it happens.
+#include "gui/panel/look_tab.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "gui/panel/curve_plot.h"
+#include "gui/panel/pictures.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/section.h"
-#include "gui/panel/tabs.h"
+#include "gui/panel/whole_look.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 
@@ -75,7 +79,7 @@ void density_section(Context& context) {
         all_densities(context);
     layer_row(context, "look.density", "Density");
     layer_row(context, "look.reach");
-    if (!kept.empty()) note(kept + " of " + short_count(status.splats) + " splats");
+    if (!kept.empty()) note(kept + " of " + splat_count(status.splats));
 }
 
 void alpha_section(Context& context) {

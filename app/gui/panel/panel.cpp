@@ -5,9 +5,12 @@
 
 #include "gui/panel/context.h"
 #include "gui/panel/layer_list.h"
+#include "gui/panel/look_tab.h"
+#include "gui/panel/render_tab.h"
 #include "gui/panel/row.h"
+#include "gui/panel/scene_tabs.h"
 #include "gui/panel/section.h"
-#include "gui/panel/tabs.h"
+#include "gui/panel/source_tab.h"
 #include "gui/theme.h"
 
 namespace astrosplat {

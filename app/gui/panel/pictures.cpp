@@ -1,4 +1,6 @@
 // Small pictures of what numbers mean: a dot, the angles of a hybrid, the field of a noise.
+#include "gui/panel/pictures.h"
+
 #include <algorithm>
 #include <cmath>
 

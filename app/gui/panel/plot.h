@@ -31,17 +31,4 @@ std::vector<float> vertical_samples(const VerticalAlpha& vertical);
 std::vector<float> alpha_samples(const HorizontalAlpha& alpha);
 std::vector<float> falloff_samples(const Falloff& falloff);
 
-/// A plot of the curve whose points the parameter `key` holds: click adds, drag moves, right click deletes,
-/// arrows nudge. `samples` is the curve itself, over x in 0..1. The area takes the mouse.
-void edit_curve(Context& context, const std::string& key, const Area& area, std::span<const float> samples);
-
-/// The dot of a falloff and, beside it, its profile.
-void draw_falloff(const Falloff& falloff);
-/// The angles at which a hybrid changes from over to screen, as sectors between face-on and edge-on.
-void draw_hybrid(float from_deg, float to_deg);
-/// The field of a noise over `span` scene units of the plane across y; computed when it changes.
-void draw_noise(Context& context, std::size_t entry, const Noise& noise, double span);
-/// Spread of the picture's values; black and white are dragged on it.
-void edit_levels(Context& context);
-
 }  // namespace astrosplat::panel

@@ -1,7 +1,9 @@
 // Render: the dot itself and how dots mix (DESIGN 7).
+#include "gui/panel/render_tab.h"
+
+#include "gui/panel/pictures.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/section.h"
-#include "gui/panel/tabs.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 
@@ -36,7 +38,8 @@ void mixing_section(Context& context) {
     layer_row(context, "render.opacity");
     layer_row(context, "render.holdout");
     layer_row(context, "render.isolate");
-    if (render.blend == Blend::lighten) note("Lighten is always laid on whole, in the order of the list.");
+    if (render.blend == Blend::lighten)
+        note("Lighten is always composited as a whole, in the order of the list.");
 }
 
 void detail_section(Context& context) {

@@ -5,6 +5,7 @@
 
 #include "edit/keys.h"
 #include "gui/icons.h"
+#include "gui/panel/fields.h"
 #include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"

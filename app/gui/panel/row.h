@@ -38,10 +38,6 @@ void end_row(Context& context, const Row& row);
 void draw_diamond(Context& context, const Row& row);
 void note_row(Context& context, const Row& row);
 
-/// The value's widget by the parameter's type. True where it took more than one row's height, and the cursor
-/// stands below it already.
-bool value_field(Context& context, const Row& row);
-
 inline constexpr float row_height = 24.0f, row_gap = 2.0f;  // px at scale 1
 
 }  // namespace astrosplat::panel

@@ -1,9 +1,10 @@
 // Camera and Output: what belongs to the scene and not to a layer.
+#include "gui/panel/scene_tabs.h"
+
 #include "edit/camera_moves.h"
 #include "edit/keys.h"
 #include "gui/panel/row.h"
 #include "gui/panel/section.h"
-#include "gui/panel/tabs.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 

@@ -1,13 +1,15 @@
 // Source: what the splats of the selected layer are made of. Everything here but the transform generates
-// them anew, and the tab says so.
+// them again, and the tab says so.
+#include "gui/panel/source_tab.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "core/file_format.h"
+#include "gui/panel/levels.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/section.h"
-#include "gui/panel/tabs.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 
@@ -34,9 +36,8 @@ void state_lines(Context& context) {
     const LayerStatus& status = context.layer_status();
     const float width = ImGui::GetContentRegionAvail().x;
     if (status.loading) {
-        const std::string text = status.found > 0
-                                     ? fmt::format("Generating, {} splats", short_count(status.found))
-                                     : std::string("Generating");
+        const std::string text =
+            status.found > 0 ? "Generating, " + splat_count(status.found) : std::string("Generating");
         if (progress_line(width, std::max(status.progress, 0.001f), text, "Cancel"))
             context.commands.push_back({Command::Kind::cancel_load, {}, "", context.view.layer});
     } else if (status.stale) {

@@ -1,6 +1,7 @@
 // A look as a whole: copied and pasted between layers here, exported and applied through the viewer.
+#include "gui/panel/whole_look.h"
+
 #include "gui/panel/section.h"
-#include "gui/panel/tabs.h"
 
 namespace astrosplat::panel {
 namespace {

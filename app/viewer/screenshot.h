@@ -1,25 +1,14 @@
-// The viewer's two ways in: a window, or one picture of what the window would show. In: what the command line
-// asks for. Out: the exit code. Where no OpenGL context can be had, one line that names --batch.
+// One picture of what the window would show, without a display: the viewport alone, or with the panels. Where
+// no OpenGL context can be had, one line that names --batch.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "generate/set_cache.h"
-#include "scene/load.h"
+#include "viewer/run_viewer.h"
 
 namespace astrosplat {
-
-struct ViewerOptions {
-    std::filesystem::path input;          // scene, picture, mesh or splat file; empty: the demo
-    std::vector<Assignment> assignments;  // --set
-    SetCache cache;
-};
-/// Once `interrupted`, throws Cancelled; an autosave with what was not saved stays.
-int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupted);
 
 struct ScreenshotOptions {
     ViewerOptions scene;

@@ -1,0 +1,27 @@
+// Where the parts of the window and the picture in it lie. In: sizes and the view. Out: rectangles.
+#pragma once
+
+#include "edit/view_state.h"
+
+namespace astrosplat {
+
+/// A rectangle of the window, px from its upper left.
+struct Rect {
+    float x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Where things lie for a window of this size. What is hidden has no height or width.
+struct Layout {
+    Rect menu, tools;
+    Rect notice;  // one line under the tools: the hint, or that the file changed on disk
+    Rect viewport;
+    Rect snapshots;  // strip between viewport and timeline
+    Rect panel, timeline, status;
+};
+Layout make_layout(const ViewState& view, float width_px, float height_px, float content_scale);
+
+/// Where a picture of this size is shown, px of the window. Fit: as large as the viewport allows, in its
+/// middle; 1:1: zoomed and moved as `view` says. It may reach beyond the viewport.
+Rect place_picture(const ViewState& view, const Rect& viewport, int width_px, int height_px);
+
+}  // namespace astrosplat
