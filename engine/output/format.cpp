@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/file_format.h"
 #include "output/frame_path.h"
+#include "scene/suggest.h"
 
 namespace astrosplat {
 namespace {
@@ -79,8 +80,8 @@ void check_aovs(const OutputParams& output, const KindRules& rule) {
     const auto& known = OutputParams::known_aovs;
     for (const std::string& aov : output.aovs)
         if (std::find(known.begin(), known.end(), aov) == known.end())
-            throw InputError(
-                fmt::format("output.aovs: expected {}, found '{}'", fmt::join(known, ", "), aov));
+            throw InputError(fmt::format("output.aovs: expected {}, found '{}'",
+                                         alternatives({known.begin(), known.end()}), aov));
     if (!output.aovs.empty() && rule.kind != FrameKind::exr)
         throw InputError(
             fmt::format("output.aovs: expected none in {} files (extra channels need exr), found '{}'",

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/suggest.h"
+
 namespace astrosplat {
 
 bool is_numeric(ParameterType type) {
@@ -79,13 +81,6 @@ bool has_effect(const ParameterSpec& spec, const std::function<const Parameter*(
 
 namespace {
 
-std::string list_of(const std::vector<std::string>& names) {
-    std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-    return text;
-}
-
 std::string range_words(const ParameterSpec& spec) {
     // The limits of all numbers are not repeated with each.
     const bool low = spec.min != -largest_number, high = spec.max != largest_number;
@@ -110,11 +105,11 @@ std::string expectation(const ParameterSpec& spec) {
         case ParameterType::number:
             return "a number" + range_words(spec) + or_nothing;
         case ParameterType::text:
-            return spec.choices.empty() ? "a string" + or_nothing : list_of(spec.choices);
+            return spec.choices.empty() ? "a string" + or_nothing : alternatives(spec.choices);
         case ParameterType::choice:
-            return list_of(spec.choices);
+            return alternatives(spec.choices);
         case ParameterType::words:
-            return "a list of " + list_of(spec.choices);
+            return "a list of " + alternatives(spec.choices);
         case ParameterType::file:
             return "a file name";
         case ParameterType::files:
