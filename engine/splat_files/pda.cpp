@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "splat_files/float_text.h"
 #include "splat_files/mapped_file.h"
 #include "splat_files/number_scan.h"
 #include "splat_files/ordered_writer.h"
@@ -174,8 +173,11 @@ std::vector<Column> columns_of(const std::vector<Attribute>& attributes) {
     return columns;
 }
 
-char* put_text(char* out, float value) { return put_float(out, value); }
-char* put_text(char* out, std::uint64_t value) { return std::to_chars(out, out + 20, value).ptr; }
+/// The shortest text that reads back as the same bits has at most 16 characters, a whole number 20.
+constexpr std::size_t longest_number = 20;
+
+char* put_text(char* out, float value) { return std::to_chars(out, out + longest_number, value).ptr; }
+char* put_text(char* out, std::uint64_t value) { return std::to_chars(out, out + longest_number, value).ptr; }
 char* put_text(char* out, const glm::vec3& v) {
     out = put_text(out, v.x);
     *out++ = ' ';
@@ -190,7 +192,7 @@ char* put_next(char* out, const T& value) {
 }
 
 /// The longest row: nine floats, a mesh, an id, blanks and the newline.
-constexpr std::size_t longest_row = 9 * (float_text_room + 1) + 11 + 21 + 1;
+constexpr std::size_t longest_row = 11 * (longest_number + 1);
 
 char* put_row(char* out, const SplatSet& set, std::size_t i) {
     out = put_text(out, set.position[i]);

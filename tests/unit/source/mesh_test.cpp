@@ -2,11 +2,13 @@
 #include "source/mesh.h"
 
 #include <gtest/gtest.h>
+#include <tiny_obj_loader.h>
 
 #include <atomic>
 #include <clocale>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -188,6 +190,29 @@ TEST(ObjErrors, OneLineEach) {
     EXPECT_EQ(obj_error(square + "f 1 2 -5\n"), ":5: expected one of the 4 vertices so far, found -5");
     EXPECT_EQ(obj_error(""), ": expected an OBJ mesh with vertices ('v x y z'), found none");
     EXPECT_EQ(obj_error(square), ": expected an OBJ mesh with faces ('f'), found none");
+}
+
+// Why tinyobjloader reads our materials only. Where this fails with a newer version, it may read the faces
+// too.
+TEST(Obj, TinyobjloaderDoesNotReadOrRefuseAsWeDo) {
+    const auto triangles = [](const std::string& text) {
+        std::istringstream in(text);
+        tinyobj::attrib_t attributes;
+        std::vector<tinyobj::shape_t> shapes;
+        std::vector<tinyobj::material_t> materials;
+        std::string warning, error;
+        if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &in)) return -1;
+        int count = 0;
+        for (const tinyobj::shape_t& shape : shapes)
+            count += static_cast<int>(shape.mesh.num_face_vertices.size());
+        return count;
+    };
+    EXPECT_EQ(triangles(square + "f 1// 2// 3//\n"), -1);  // as in trimesh's polygonfaces.obj
+    EXPECT_EQ(from_text(square + "f 1// 2// 3//\n").triangles.size(), 1u);
+    EXPECT_EQ(triangles(square + "f 1 2 9\n"), 1);
+    EXPECT_NE(obj_error(square + "f 1 2 9\n"), "no error");
+    EXPECT_EQ(triangles(square + "f 1 2\nf 1 2 3\n"), 1);
+    EXPECT_NE(obj_error(square + "f 1 2\nf 1 2 3\n"), "no error");
 }
 
 TEST(ObjErrors, FolderAndMissingFile) {
