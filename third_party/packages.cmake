@@ -20,8 +20,8 @@ pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
 
 # oiio: OpenImageIO as the engine links it. Loading it with the 250 libraries it needs takes a fifth of a second and 100
 # MB, so it waits for the first picture: functions of these classes are bound when one is called. Its small companion,
-# libOpenImageIO_Util, is linked as usual.
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+# libOpenImageIO_Util, is linked as usual. Sanitizers look at the classes' type information, so there it is linked too.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND NOT ASTROSPLAT_SANITIZE)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
   find_library(OIIO_LIBRARY OpenImageIO HINTS ${OIIO_LIBRARY_DIRS} REQUIRED)
   find_library(OIIO_UTIL_LIBRARY OpenImageIO_Util HINTS ${OIIO_LIBRARY_DIRS} REQUIRED)

@@ -43,7 +43,9 @@ int find_channel(const ImageSpec& spec, const char* name) {
 
 Channels choose_channels(const ImageSpec& spec) {
     Channels c;
-    c.alpha = spec.alpha_channel >= 0 ? spec.alpha_channel : find_channel(spec, "A");
+    // OpenImageIO's GIF reader names a channel beyond the last one.
+    const bool named = spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels;
+    c.alpha = named ? spec.alpha_channel : find_channel(spec, "A");
     const std::array<int, 3> rgb{find_channel(spec, "R"), find_channel(spec, "G"), find_channel(spec, "B")};
     const std::array<int, 3> yc{find_channel(spec, "Y"), find_channel(spec, "RY"), find_channel(spec, "BY")};
     const auto complete = [](const std::array<int, 3>& set) {

@@ -69,6 +69,9 @@ TEST(PictureFile, EveryFormatOfTheListIsReadAlsoUnderAnotherName) {
         const Picture picture = read_picture(file);
         EXPECT_EQ(picture.image.width, 24) << ending;
         EXPECT_EQ(picture.image.height, 16) << ending;
+        if (picture.has_alpha()) {
+            EXPECT_EQ(picture.image.at(23, 15)[3], 1.0f) << ending;
+        }
         EXPECT_NO_THROW(require_picture(file)) << ending;
     }
     fs::copy_file(folder / "a.exr", folder / "b.png");
