@@ -1,7 +1,7 @@
 // The main of every test program. Tests share their process, so each must leave it as it found it: the one
 // that changes the environment, the locale, the working directory or a resource limit fails. A crash or a
 // test that takes longer than the limit names the test; skipped tests are named too; a program without tests
-// fails.
+// fails. Temporary files lie in a folder of the process, so that none stay, not even of one that was killed.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <clocale>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
@@ -23,9 +25,42 @@
 
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr unsigned time_limit_s = 900;  // of one test; only a hang comes near it
 
 std::array<char, 512> current_test;  // "Suite.Name\n", for the signal handler
+
+/// For the temporary files of this process and of the programs it starts: $TMPDIR leads there. What is left
+/// of processes that ended without removing theirs goes first.
+class OwnTemporaryFolder {
+  public:
+    OwnTemporaryFolder() {
+        const fs::path place = fs::temp_directory_path();
+        for (const fs::directory_entry& entry : fs::directory_iterator(place))
+            if (is_left_behind(entry.path().filename().string())) remove(entry.path());
+        folder_ = place / (begin + std::to_string(getpid()));
+        fs::create_directories(folder_);
+        setenv("TMPDIR", folder_.c_str(), 1);
+    }
+    ~OwnTemporaryFolder() { remove(folder_); }
+    OwnTemporaryFolder(const OwnTemporaryFolder&) = delete;
+    OwnTemporaryFolder& operator=(const OwnTemporaryFolder&) = delete;
+
+  private:
+    static bool is_left_behind(const std::string& name) {
+        if (!name.starts_with(begin)) return false;
+        const pid_t process = std::atoi(name.c_str() + begin.size());
+        return process > 0 && kill(process, 0) != 0 && errno == ESRCH;
+    }
+    static void remove(const fs::path& folder) {
+        std::error_code ignored;  // another user's stays
+        fs::remove_all(folder, ignored);
+    }
+
+    inline static const std::string begin = "astrosplat-tests-";
+    fs::path folder_;
+};
 
 /// What a process holds for all of its tests, by name.
 std::map<std::string, std::string> process_state() {
@@ -38,7 +73,7 @@ std::map<std::string, std::string> process_state() {
     state["C locale"] = std::setlocale(LC_ALL, nullptr);
     state["C++ locale"] = std::locale().name();
     std::error_code gone;
-    state["working directory"] = std::filesystem::current_path(gone).string();
+    state["working directory"] = fs::current_path(gone).string();
     for (const auto& [name, which] : {std::pair("file size limit", RLIMIT_FSIZE),
                                       {"memory limit", RLIMIT_AS},
                                       {"open files limit", RLIMIT_NOFILE}}) {
@@ -117,6 +152,7 @@ int main(int argc, char** argv) {
         return 1;
     }
     if (!parameters_are_printable()) return 1;
+    const OwnTemporaryFolder temporary;
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) watch(signal);
     testing::UnitTest::GetInstance()->listeners().Append(new SharedProcess);
     return RUN_ALL_TESTS();
