@@ -1,6 +1,7 @@
 // Seeds and checks of the fuzzed readers.
 #include "fuzz/targets.h"
 
+#include <fitsio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -35,6 +36,11 @@ struct TemporaryFile {
     }
     ~TemporaryFile() { fs::remove(path); }
 };
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
 
 bool finite(float v) { return std::isfinite(v); }
 bool finite(const glm::vec2& v) { return finite(v.x) && finite(v.y); }
@@ -137,8 +143,7 @@ std::string written(void (*write)(const fs::path&, const SplatSet&, const Progre
                     const std::string& ending) {
     const TemporaryFile file("", ending);
     write(file.path, small_set(), {});
-    std::ifstream in(file.path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+    return bytes_of(file.path);
 }
 
 const char* const ascii_ply =
@@ -184,11 +189,31 @@ std::string fits(const std::vector<std::string>& cards) {
     return bytes;
 }
 
+/// A tile-compressed one of 8 x 6 numbers.
+std::string compressed_fits(int compression) {
+    const TemporaryFile file("", "fits");
+    fs::remove(file.path);
+    fitsfile* out = nullptr;
+    int status = 0;
+    long axes[] = {8, 6};
+    short values[8 * 6];
+    for (int i = 0; i < 8 * 6; ++i) values[i] = static_cast<short>(i * 7 % 31);
+    fits_create_diskfile(&out, file.path.c_str(), &status);
+    fits_set_compression_type(out, compression, &status);
+    fits_create_img(out, SHORT_IMG, 2, axes, &status);
+    fits_write_img(out, TSHORT, 1, 8 * 6, values, &status);
+    fits_close_file(out, &status);
+    demand(status == 0, "a compressed FITS file");
+    return bytes_of(file.path);
+}
+
 std::vector<std::string> fits_seeds() {
-    return {fits(
-        {"SIMPLE  =                    T", "BITPIX  =                   16", "NAXIS   =                    2",
-         "NAXIS1  =                    4", "NAXIS2  =                    3", "BZERO   =                 10.0",
-         "BSCALE  =                  0.5", "BLANK   =                    7", "ORIGIN  = 'hand    '", "END"})};
+    return {compressed_fits(RICE_1), compressed_fits(HCOMPRESS_1),
+            fits({"SIMPLE  =                    T", "BITPIX  =                   16",
+                  "NAXIS   =                    2", "NAXIS1  =                    4",
+                  "NAXIS2  =                    3", "BZERO   =                 10.0",
+                  "BSCALE  =                  0.5", "BLANK   =                    7", "ORIGIN  = 'hand    '",
+                  "END"})};
 }
 
 }  // namespace
