@@ -75,8 +75,10 @@ TEST_F(Commands, NewMakesASceneThatRenders) {
     for (const char* shape : {"plane", "relief", "disk", "sphere"}) {
         const std::string scene = std::string(shape) + ".toml";
         ASSERT_EQ(run({"new", "picture.ppm", "-o", scene, "--shape", shape}).code, 0) << shape;
-        const std::vector<std::string> arguments = {
-            "--batch", scene, "-f", "1", "-o", std::string(shape) + ".png", "--resolution", "48x32"};
+        const std::vector<std::string> arguments = {"--batch", scene, "-f", "1", "-o",
+                                                    std::string(shape) + ".png", "--resolution", "48x32",
+                                                    // Millions of splats show nothing that some do not.
+                                                    "--set", "layer.picture.source.count=20000"};
         const RunResult result = run(arguments);
         EXPECT_EQ(result.code, 0) << result.err;
     }
