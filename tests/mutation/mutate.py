@@ -2,7 +2,7 @@
 """Asks of the tests: which change to the program would make one fail? Plants a few hundred small faults, one at a time,
 in engine/, app/ and shaders/shared, runs the tests that execute the place, and lists the faults that none noticed.
 
-  tests/mutation/mutate.py [--count 500] [--limit 60] [--only PATH] [--tests A,B] [--again]
+  tests/mutation/mutate.py [--count 500] [--limit 60] [--only PATH] [--tests A,B] [--without TESTS] [--again]
 
 All faults are compiled into one copy of the program (build/mutation), switched on by an environment variable. The
 choice depends on the seed and the text of the lines alone. Results go to build/mutation/report.txt and results.json;
@@ -29,9 +29,10 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=2, help="compilers at a time")
     parser.add_argument("--only", default="*", help="mutants of these files, such as 'engine/camera/*'")
     parser.add_argument("--again", action="store_true", help="try the survivors of the last run again")
-    parser.add_argument("--fresh", action="store_true", help="forget the results of earlier runs")
+    parser.add_argument("--fresh", action="store_true", help="try all again, first with the tests that caught them")
     parser.add_argument("--tests", type=lambda names: names.split(","),
                         help="test programs, such as core,camera (default: all but window, which is slow)")
+    parser.add_argument("--without", default="", help="slow tests to leave out, as in GoogleTest's filters: 'A.*:B.*'")
     parser.add_argument("--list", action="store_true", help="build, print the mutants and stop")
     parser.add_argument("--floor", type=float, default=0.9, help="share that must be caught")
     return parser.parse_args()
@@ -72,9 +73,9 @@ def earlier_results(work):
     return {entry["key"]: entry for entry in json.loads(file.read_text())} if file.exists() else {}
 
 
-def tests_of(work, wanted):
+def tests_of(work, wanted, without):
     programs = [name for name in work_copy.programs_of(work, wanted) if name != "astrosplat"]
-    return [test for name in programs for test in trial.measured(work, name)]
+    return [test for name in programs for test in trial.measured(work, name, without)]
 
 
 def main():
@@ -85,13 +86,15 @@ def main():
     if options.list:
         print("\n".join(describe(site) for site in chosen))
         return 0
-    results = {} if options.fresh else earlier_results(work)
-    tests = tests_of(work, options.tests)
+    earlier = earlier_results(work)
+    results = {} if options.fresh else earlier
+    tests = tests_of(work, options.tests, options.without)
     for number, site in enumerate(chosen, 1):
         known = results.get(site.key)
         if not fnmatch.fnmatch(site.path, options.only) or known and (known["caught"] or not options.again):
             continue
-        results[site.key] = trial.trial(work, site, tests, options.limit)
+        before = earlier.get(site.key, {"caught": ""})
+        results[site.key] = trial.trial(work, site, tests, options.limit, before["caught"])
         print(f"{number}/{len(chosen)} {describe(site)}: {results[site.key]['caught'] or 'SURVIVES'}", flush=True)
         report(work, chosen, results, equivalent_mutants())
     lines, share = report(work, chosen, results, equivalent_mutants())

@@ -67,7 +67,7 @@ class ReachListener : public testing::EmptyTestEventListener {
 };
 
 [[noreturn]] void run_as_child(const std::string& mutant, const std::string& log, const std::string& filter) {
-    setsid();
+    setpgid(0, 0);
     if (!std::freopen(log.c_str(), "w", stdout) || dup2(1, 2) < 0 || !std::freopen("/dev/null", "r", stdin))
         _exit(99);
     setenv("ASTROSPLAT_MUTANT", mutant.c_str(), 1);  // for the programs that tests start

@@ -40,7 +40,7 @@ def environment(work, **more):
 
 def limit_process():
     os.nice(10)
-    os.setsid()
+    os.setpgrp()  # not a session of its own: a group of processes has one priority
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_FSIZE, (4 << 30, 4 << 30))
     resource.setrlimit(resource.RLIMIT_AS, (24 << 30, 24 << 30))
@@ -98,9 +98,9 @@ def culprit(output, tests):
     return next((test for test in tests if test.name == last), tests[0])
 
 
-def measured(work, program):
+def measured(work, program, without):
     """Runs a test program without a mutant; returns the tests that pass, with what they reach. Measured once for
-    each state of the program."""
+    each state of the program. `without`: tests to leave out."""
     executables = work_copy.programs_of(work, [program[5:]])
     kept = work / "reach" / f"{program}.json"
     newest = max(path.stat().st_mtime for path in executables.values())
@@ -108,7 +108,8 @@ def measured(work, program):
         reached, notes = work / "reached.bin", work / "tests.jsonl"
         reached.write_bytes(bytes(REACHED_BYTES))
         notes.write_text("")
-        variables = environment(work, ASTROSPLAT_MUTANT_REACHED=reached, ASTROSPLAT_MUTANT_TESTS=notes)
+        variables = environment(work, ASTROSPLAT_MUTANT_REACHED=reached, ASTROSPLAT_MUTANT_TESTS=notes,
+                                GTEST_FILTER=f"-{without}")
         subprocess.run([executables[program]], cwd=work / "build" / "tests", env=variables,
                        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                        preexec_fn=limit_process)
@@ -126,9 +127,12 @@ def measured(work, program):
     return tests
 
 
-def steps(tests, limit_s):
-    """(program, tests) in the order to run: quick tests that reach few mutants and caught others first."""
+def steps(tests, limit_s, known):
+    """(program, tests) in the order to run: the one that is known to catch it, then quick ones that reach few
+    mutants and caught others."""
     def cost(test):
+        if f"{test.program} {test.name}" == known:
+            return -1.0
         return (test.seconds + 0.02) * (len(test.reached) + 5) / (1 + catches[test.name]) ** 2
 
     ordered = sorted(tests, key=cost)
@@ -141,11 +145,12 @@ def steps(tests, limit_s):
     return [(program, group) for (_, program), group in sorted(groups.items(), key=lambda item: item[0][0])]
 
 
-def trial(work, site, tests, limit_s):
-    """{"caught": name of the test or "", "reached": how many tests execute the place, "run": how many were run}."""
+def trial(work, site, tests, limit_s, known=""):
+    """{"caught": name of the test or "", "reached": how many tests execute the place, "run": how many were run}.
+    `known`: what caught it in an earlier run."""
     reaching = [test for test in tests if site.id in test.reached]
     result = {"caught": "", "reached": len(reaching), "run": 0}
-    for program, group in steps(reaching, limit_s):
+    for program, group in steps(reaching, limit_s, known.removesuffix(" (hangs)")):
         at_start = site.id in group[0].at_start
         code = run_tests(work, program, site.id, group, at_start)
         result["run"] += len(group)
