@@ -44,6 +44,20 @@ class CpuPreviewTest : public testing::Test {
     std::string draw(CpuPreview& preview) const {
         return pixel_hash(preview.draw(layers, camera(), nullptr, width, height, 0.5f));
     }
+    std::string rendered(float pixel_filter) const {
+        std::vector<ShadedSplats> shaded;
+        std::vector<RenderLayer> wanted;
+        for (const PreviewLayer& layer : layers) {
+            shaded.push_back(apply_look(*layer.set, layer.look, layer.inputs));
+            wanted.push_back(layer.layer);
+        }
+        for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i].splats = &shaded[i];
+        RenderSettings settings;
+        settings.width = width;
+        settings.height = height;
+        settings.pixel_filter = pixel_filter;
+        return pixel_hash(render(wanted, camera(), nullptr, settings).beauty);
+    }
     std::string drawn_anew() const {
         CpuPreview preview;
         return draw(preview);
@@ -55,18 +69,10 @@ class CpuPreviewTest : public testing::Test {
 
 TEST_F(CpuPreviewTest, AllSplatsGiveTheRenderersPicture) {
     CpuPreview preview;
-    const Image& picture = preview.draw(layers, camera(), nullptr, width, height, 0.5f);
-    std::vector<ShadedSplats> shaded;
-    std::vector<RenderLayer> wanted;
-    for (const PreviewLayer& layer : layers) {
-        shaded.push_back(apply_look(*layer.set, layer.look, layer.inputs));
-        wanted.push_back(layer.layer);
+    for (const float pixel_filter : {0.5f, 0.8f}) {
+        const Image& picture = preview.draw(layers, camera(), nullptr, width, height, pixel_filter);
+        EXPECT_EQ(pixel_hash(picture), rendered(pixel_filter));
     }
-    for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i].splats = &shaded[i];
-    RenderSettings settings;
-    settings.width = width;
-    settings.height = height;
-    EXPECT_EQ(pixel_hash(picture), pixel_hash(render(wanted, camera(), nullptr, settings).beauty));
     EXPECT_EQ(preview.shown(), layers[0].set->size() + layers[1].set->size());
 }
 
