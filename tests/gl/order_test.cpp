@@ -5,6 +5,8 @@
 
 #include <chrono>
 
+#include "camera/camera.h"
+
 namespace astrosplat {
 namespace {
 
@@ -42,6 +44,8 @@ TEST(PreviewOrder, BehindTheEyeCountsByDistanceToo) {
     job.lens.projection =
         static_cast<int>(Projection::orthographic);  // by depth: what lies behind comes last
     EXPECT_EQ(order_of(job), (Indices{2, 0, 1}));
+    job.places = job_at({0, -2, -1}).places;  // one beside the eye
+    EXPECT_EQ(order_of(job), (Indices{1, 2, 0}));
 }
 
 TEST(PreviewOrder, TheSmallerIdIsInFrontAtEqualDistance) {

@@ -3,6 +3,7 @@
 
 #include "gui/file_list.h"
 #include "gui/key_codes.h"
+#include "gui/reference_pictures.h"
 #include "gui/test_window.h"
 #include "support/temp_folder.h"
 
@@ -82,6 +83,36 @@ TEST_F(FileDialogTest, TabCompletesAndEnterGoesIntoAFolder) {
     ASSERT_EQ(commands.size(), 1U);
     EXPECT_EQ(commands[0].kind, Command::Kind::open);
     EXPECT_EQ(commands[0].path, folder / "scenes/old.toml");
+}
+
+TEST_F(FileDialogTest, OtherFilesAreListedWhereAllAreAskedFor) {
+    folder.file("scenes/notes.txt", "");
+    window.choose("File/Open...");
+    window.frame(2);
+    type_path((folder / "scenes").string());
+    window.key(key_code::enter);
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/old.toml"));
+    EXPECT_FALSE(window.has("file/notes.txt"));
+}
+
+TEST_F(FileDialogTest, SizesHaveTheUnitThatKeepsThemShort) {
+    const std::pair<const char*, std::uintmax_t> files[] = {{"a.toml", 999},
+                                                            {"b.toml", 45000},
+                                                            {"c.toml", 1200000},
+                                                            {"d.toml", 1200000000},
+                                                            {"e.toml", 2000000000}};
+    for (const auto& [name, size] : files)
+        fs::resize_file(folder.file(std::string("scenes/") + name, ""), size);
+    window.choose("File/Open...");
+    window.frame(2);
+    type_path((folder / "scenes").string());
+    window.key(key_code::enter);
+    window.frame(2);
+    const glm::vec2 first = window.at("file/a.toml"), last = window.at("file/e.toml");
+    const int top = static_cast<int>(first.y) - 12, bottom = static_cast<int>(last.y) + 12;
+    expect_like_reference("file_sizes", cropped(window.picture(Style::schematic), static_cast<int>(first.x),
+                                                top, 270, bottom - top));
 }
 
 TEST_F(FileDialogTest, AMissingFileIsSaid) {

@@ -5,6 +5,7 @@
 
 #include "edit/camera_moves.h"
 #include "edit/keys.h"
+#include "edit/view_camera.h"
 #include "gui/actions.h"
 #include "gui/key_codes.h"
 #include "gui/panel/panel.h"
@@ -107,6 +108,20 @@ TEST(Keys, KeyCameraHereIsOneAct) {
         EXPECT_EQ(by_key, wanted);
         EXPECT_EQ(by_menu, wanted);
         EXPECT_EQ(by_button, wanted);
+    }
+}
+
+/// Before the viewport's shape is known, it is the output's.
+TEST(Keys, ThreeQuarterFitsThePicture) {
+    TestWindow window(example_document());
+    const OutputParams& output = window.document.scene().output;
+    for (const double aspect : {0.0, 0.5}) {
+        window.status.viewport_aspect = aspect;
+        const double shape = aspect > 0.0 ? aspect : double(output.width) / double(output.height);
+        const FreeCamera wanted = three_quarter_view(window.view.free, window.status.box, shape);
+        window.key(key_code::n9);
+        EXPECT_EQ(window.view.free.height, wanted.height);
+        EXPECT_EQ(window.view.free.position, wanted.position);
     }
 }
 

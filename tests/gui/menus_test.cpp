@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "edit/camera_moves.h"
 #include "gui/actions.h"
@@ -73,6 +74,28 @@ TEST(Menus, RecentFilesOpen) {
     const Commands commands = window.take_commands();
     ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::open});
     EXPECT_EQ(commands[0].path, "/scenes/nebula.toml");
+}
+
+TEST(Menus, LayersMoveAsFarAsTheListGoes) {
+    TestWindow window(example_document());
+    const auto names = [&] {
+        std::vector<std::string> list;
+        for (const LayerParams& layer : window.document.scene().layers) list.push_back(layer.name);
+        return list;
+    };
+    const std::vector<std::string> before = names();
+    ASSERT_EQ(before.size(), 3U);
+    for (const auto& [item, layer, after, order] :
+         {std::tuple("Layer/Move up", 0U, 0U, before), std::tuple("Layer/Move down", 2U, 2U, before),
+          std::tuple("Layer/Move up", 1U, 0U, std::vector{before[1], before[0], before[2]}),
+          std::tuple("Layer/Move down", 1U, 2U, std::vector{before[1], before[2], before[0]})}) {
+        window.view.layer = layer;
+        window.choose(item);
+        window.key(key_code::escape);
+        window.frame(2);
+        EXPECT_EQ(names(), order) << item << " of " << layer;
+        EXPECT_EQ(window.view.layer, after);
+    }
 }
 
 TEST(Menus, CameraMoves) {

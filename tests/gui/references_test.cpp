@@ -68,6 +68,18 @@ TEST_F(References, Failed) {
     window.status.job = {"Rendering 12 of 240", 0.05f};
     expect_reference("failed");
 }
+TEST_F(References, WhatTheButtonsOfANoticeDo) {
+    window.status.changed_on_disk = true;
+    window.frame(2);
+    for (const std::string button : {"Reload", "Keep"}) {
+        const glm::vec2 place = window.at("notice/" + button);
+        window.move(place);
+        window.frame(60);
+        expect_like_reference("notice_" + button,
+                              cropped(window.picture(Style::schematic), static_cast<int>(place.x) - 60,
+                                      static_cast<int>(place.y) - 10, 420, 80));
+    }
+}
 TEST_F(References, FirstStart) {
     window.view.hint_open = true;
     window.status.layers[1].loading = true;

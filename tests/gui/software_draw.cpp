@@ -130,6 +130,13 @@ void software_draw(const ImDrawData& data, Picture8& target, Style style) {
     }
 }
 
+Picture8 cropped(const Picture8& picture, int x, int y, int width, int height) {
+    Picture8 part(width, height);
+    for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column) part.at(column, row) = picture.at(x + column, y + row);
+    return part;
+}
+
 void write_ppm(const std::filesystem::path& file, const Picture8& picture) {
     std::ofstream out(file, std::ios::binary);
     out << "P6\n" << picture.width << ' ' << picture.height << "\n255\n";

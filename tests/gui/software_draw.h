@@ -29,6 +29,9 @@ struct Picture8 {
     const Rgba8& at(int x, int y) const { return const_cast<Picture8*>(this)->at(x, y); }
 };
 
+/// The part of `width` x `height` px whose upper left corner is (x, y); it lies in the picture.
+Picture8 cropped(const Picture8& picture, int x, int y, int width, int height);
+
 /// Schematic: glyphs are boxes and other textures show their coordinates, so that the picture depends
 /// neither on how fonts are rasterised nor on what a renderer made.
 enum class Style { as_seen, schematic };

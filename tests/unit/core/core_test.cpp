@@ -1,5 +1,6 @@
 // Errors, log, text, memory, buffers, hashes, vector targets.
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -214,6 +215,14 @@ TEST(Sha256, KnownDigests) {  // FIPS 180-4 examples
     EXPECT_EQ(Sha256().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
     EXPECT_EQ(Sha256().add("a").add("bc").hex(),
               "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Sha256, ManyLeaveNoMemoryBehind) {
+    const auto in_use = [] { return static_cast<std::int64_t>(mallinfo2().uordblks); };
+    EXPECT_EQ(Sha256().add("a").hex().size(), 64u);
+    const std::int64_t before = in_use();
+    for (int i = 0; i < 1000; ++i) Sha256().add("a").hex();
+    EXPECT_LT(in_use() - before, 10000);
 }
 
 TEST(Sha256, OfFiles) {

@@ -1,12 +1,14 @@
 // Every message a person can meet in the look, word for word.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/log.h"
+#include "core/parallel.h"
 #include "unit/look/sets.h"
 
 namespace astrosplat {
@@ -111,6 +113,18 @@ TEST(LookErrors, StopsWhenAsked) {
     Progress progress;
     progress.cancelled = &stop;
     EXPECT_THROW(apply_look(test::file_set(10), {}, {}, progress), Cancelled);
+}
+
+TEST(LookProgress, RisesToTheWhole) {
+    set_thread_count(1);
+    std::vector<double> reported;
+    Progress progress;
+    progress.report = [&](double fraction) { reported.push_back(fraction); };
+    apply_look(test::file_set(200000), {}, {}, progress);
+    ASSERT_GT(reported.size(), 2u);
+    EXPECT_TRUE(std::is_sorted(reported.begin(), reported.end()));
+    EXPECT_GT(reported.front(), 0.0);
+    EXPECT_EQ(reported.back(), 1.0);
 }
 
 TEST(LookErrors, AnEmptySetIsNoError) { EXPECT_EQ(apply_look(test::file_set(0), {}, {}).size(), 0); }

@@ -327,6 +327,17 @@ TEST(Aov, DepthCoverageAndCount) {
     EXPECT_EQ(*frame.count.at(0, 0), 0.0f);
 }
 
+TEST(Statistics, MeanOverlapIsOfCoveredPixels) {
+    const ShadedSplats splats = make_splats({{{0.0f, 0.0f, 0.0f}, 6.0f}, {{1.0f, 0.0f, 0.0f}, 3.0f}});
+    const RenderLayer layer = layer_of("one", splats);
+    const RenderedFrame frame = render({&layer, 1}, pixel_camera(32, 32), nullptr, settings_of(32, 32));
+    int covered = 0;
+    for (std::int64_t i = 0; i < 32 * 32; ++i) covered += frame.beauty.pixels[std::size_t(4 * i)] > 0.0f;
+    EXPECT_NEAR(frame.statistics.mean_overlap, real::pi * (36.0 + 9.0) / covered, 1e-9);
+    const RenderedFrame empty = render({}, pixel_camera(32, 32), nullptr, settings_of(32, 32));
+    EXPECT_EQ(empty.statistics.mean_overlap, 0.0);
+}
+
 TEST(Environment, IsTheBottomAndMakesAlphaOne) {
     const ShadedSplats splats = make_splats({{{0.0f, 0.0f, 0.0f}, 14.0f, 0.25f, {1.0f, 0.5f, 0.0f}}});
     const Environment environment = grey_environment(0.5f);

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "core/real.h"
 #include "core/shared_maths.h"
 #include "support/printing.h"
 #include "unit/render/scenes.h"
@@ -45,6 +48,39 @@ TEST(Children, LieInTheBallAndStayWhereTheyAre) {
         mean += p / 4000.0f;
     }
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 0.0f, 0.025f);
+}
+
+/// The defining equation with centres drawn by chance in place of their density: where N children of alpha
+/// alone cover a point with weight q on average, the light is Integral[1 - (1 - alpha q)^N].
+TEST(Children, AloneHaveTheLightOfTheirParent) {
+    constexpr int level = 2, places = 500, steps = 60;
+    const auto children = static_cast<double>(children_of_level(level));
+    for (const Falloff::Shape shape : {Falloff::Shape::linear, Falloff::Shape::gaussian}) {
+        const Falloff falloff{shape, 0.5f, 4.5f};
+        LodTable table(falloff);
+        table.prepare(level);
+        std::vector<double> weight(steps, 0.0);
+        for (std::uint64_t id = 0; id < places; ++id)
+            for (std::int64_t child = 0; child < children_of_level(level); ++child) {
+                const glm::vec3 p = table.child_offset(level, child, 3, id);
+                for (int i = 0; i < steps; ++i) {
+                    const double t = 1.5 * (i + 0.5) / steps, r = child_radius_scale(level);
+                    weight[std::size_t(i)] +=
+                        falloff_value(falloff, std::hypot(p.x - t, double(p.y)) / r) / (places * children);
+                }
+            }
+        for (const float alpha : {0.1f, 0.6f, 1.0f}) {
+            const LodTable::Alphas found = table.alphas({level - 1, level, 1.0f}, alpha);
+            EXPECT_EQ(found.coarse, 0.0f);
+            double light = 0.0;
+            for (int i = 0; i < steps; ++i) {
+                const double t = 1.5 * (i + 0.5) / steps;
+                light += 2.0 * real::pi * t * (1.5 / steps) *
+                         (1.0 - std::pow(1.0 - found.fine * weight[std::size_t(i)], children));
+            }
+            EXPECT_NEAR(light / (alpha * falloff_integral(falloff)), 1.0, 0.02) << alpha;
+        }
+    }
 }
 
 struct LodCase {

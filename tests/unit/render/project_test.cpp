@@ -76,6 +76,19 @@ TEST(Project, NearFadeIsTheCamerasOrOneRadius) {
     EXPECT_EQ(project_all(wide, camera).front().opacity, 0.5f);  // its radius, which is larger
 }
 
+TEST(Project, TheLimitOfLevelsIsForTheLinesOfThePicture) {
+    const ShadedSplats splats = copies({{0.0f, 0.0f, -2.0f}, 0.5f});
+    RenderLayer layer = layer_of("one", splats);
+    layer.render.lod.max_px = 90.0f;
+    const auto limit = [&](std::int64_t height) {
+        return make_projection(layer, 0, perspective_camera(), settings_of(64, height)).lod_limit_px;
+    };
+    EXPECT_EQ(limit(1080), 90.0f);
+    EXPECT_EQ(limit(540), 45.0f);
+    layer.render.blend = Blend::lighten;  // never split
+    EXPECT_EQ(limit(1080), 0.0f);
+}
+
 TEST(Project, NothingOutsideNearAndFar) {
     Camera camera = perspective_camera();
     EXPECT_EQ(project_all(copies({{0.0f, 0.0f, -1.0f}, 0.5f}), camera).size(), 0u);

@@ -60,6 +60,16 @@ TEST(NumberScan, WhatIsNoNumber) {
     EXPECT_EQ(scan::scan_float(text.data(), text.data() + text.size(), value), text.data() + 1);
 }
 
+/// What follows a field of a file belongs to the next one.
+TEST(NumberScan, StopsAtTheEndOfItsText) {
+    const char* const text = "12.5e3";
+    for (const auto& [length, wanted] : {std::pair(1, 1.0f), {2, 12.0f}, {3, 12.0f}, {4, 12.5f}}) {
+        float value = 0.0f;
+        EXPECT_EQ(scan::scan_float(text, text + length, value), text + length);
+        EXPECT_EQ(value, wanted);
+    }
+}
+
 TEST(NumberScan, WholeNumbers) {
     const auto whole = [](const std::string& text) {
         std::uint64_t value = 77;

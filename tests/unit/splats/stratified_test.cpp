@@ -64,6 +64,14 @@ TEST(Stratified, OfEqualPlacesTheLowestIdComesFirst) {
     EXPECT_EQ(order_of(set), (std::vector<std::int64_t>{3, 2, 1, 0}));
 }
 
+/// Files may hold an id twice: then the rows stay as they are in the file.
+TEST(Stratified, OfEqualIdsTheFirstRowComesFirst) {
+    SplatSet set = set_of({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}});
+    set.id = {5, 3, 3, 3};
+    // In order: rows 1, 2, 3 (id 3), then 0; taken by reversed rank.
+    EXPECT_EQ(order_of(set), (std::vector<std::int64_t>{1, 3, 2, 0}));
+}
+
 TEST(Stratified, EmptyAndSingleSets) {
     EXPECT_TRUE(stratified_order(set_of({})).empty());
     EXPECT_EQ(order_of(set_of({{3, 4, 5}})), (std::vector<std::int64_t>{0}));
@@ -149,6 +157,22 @@ TEST(Stratified, StopsWhenAsked) {
     Progress progress;
     progress.cancelled = &stop;
     EXPECT_THROW(stratified_order(cloud(1000), progress), Cancelled);
+}
+
+TEST(Stratified, StopsBetweenItsSteps) {
+    const SplatSet set = cloud(1000);
+    for (const double when : {0.4, 0.8}) {
+        std::atomic<bool> stop{false};
+        double last = 0.0;
+        Progress progress;
+        progress.cancelled = &stop;
+        progress.report = [&](double fraction) {
+            last = fraction;
+            stop = fraction >= when;
+        };
+        EXPECT_THROW(stratified_order(set, progress), Cancelled);
+        EXPECT_EQ(last, when);
+    }
 }
 
 TEST(SampleRows, AnyPrefixHasOneRowOfEachStretch) {

@@ -46,10 +46,10 @@ TEST_F(PlaybackTest, APauseIsNotCaughtUp) {
     EXPECT_EQ(frame_at(102.25), 11.0);
 }
 
-TEST(FirstFrame, IsThatOfTheList) {
+TEST(FirstFrame, IsTheEarliest) {
     Scene scene;
     scene.output.frames = "7-9,3";
-    EXPECT_EQ(first_frame(scene), 7.0);
+    EXPECT_EQ(first_frame(scene), 3.0);
 }
 
 }  // namespace
