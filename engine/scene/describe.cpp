@@ -7,7 +7,8 @@
 
 namespace astrosplat {
 
-void Describer::place(ParameterSpec& field_spec, bool animated) const {
+void Describer::custom(ParameterSpec field_spec, std::function<Value(const ParameterSpec&)> get,
+                       std::function<void(const Value&, const ParameterSpec&)> set) const {
     using Type = ParameterType;
     field_spec.key = group_ / field_spec.key;
     field_spec.generic_key = field_spec.key.generic();
@@ -20,20 +21,21 @@ void Describer::place(ParameterSpec& field_spec, bool animated) const {
     const bool no = type == Type::text || type == Type::words || type == Type::file || type == Type::files ||
                     type == Type::pattern;
     const bool steps = type == Type::boolean || type == Type::integer || type == Type::choice;
-    field_spec.animation = no || !animated ? Animation::no : steps ? Animation::steps : Animation::yes;
+    field_spec.animation = no || !animated_ ? Animation::no : steps ? Animation::steps : Animation::yes;
+    description_->parameters.push_back({std::move(field_spec), std::move(get), std::move(set)});
 }
 
 namespace {
 
 using Type = ParameterType;
+using namespace traits;
 
 void describe_output(const Describer& d, OutputParams& o) {
     const Describer picture = d.shown_in("Output", "Picture"), frames = d.shown_in("Output", "Frames"),
                     format = d.shown_in("Output", "File format");
-    ParameterSpec resolution = spec("resolution", "Resolution", "px", "Width and height of the frames.");
-    resolution.components = 2;
     picture.custom(
-        resolution.as(Type::vector).range(1, 65536).slider(16, 8192),
+        spec("resolution", "Resolution", "px", "Width and height of the frames.", as(Type::vector),
+             components(2), range(1, 65536), slider(16, 8192)),
         [&o](const ParameterSpec& own) {
             return Field<glm::i64vec2>::get({o.width, o.height}, own);
         },
@@ -42,121 +44,71 @@ void describe_output(const Describer& d, OutputParams& o) {
             o.width = size.x;
             o.height = size.y;
         });
-    frames(spec("frames", "Frames", "", "Frames to render, such as 1-100,120,200-300x2."), o.frames);
-    frames(spec("fps", "Frames per second", "1/s", "Written into the frames; nothing moves by it.")
-               .within(1e-3, 1e6)
-               .slider(1, 120),
-           o.fps);
-    frames(spec("path", "Frame files", "",
-                "Where frames go; #### is the frame, the ending the format: .exr .tif .png.")
-               .as(Type::pattern),
-           o.path);
-    format(spec("depth", "Bit depth", "", "auto: exr half, tif 16, png 8."), o.depth);
-    format(spec("compression", "Compression", "", "exr: zip zips piz dwaa none; tif: deflate lzw none."),
-           o.compression);
-    format(spec("alpha", "Alpha", "", "auto: exr and tif premultiplied, png none (opaque over black)."),
-           o.alpha);
-    format(spec("aovs", "Extra channels", "", "Of depth, coverage, count and layers; exr only.")
-               .one_of({OutputParams::known_aovs.begin(), OutputParams::known_aovs.end()}),
-           o.aovs);
-    picture(spec("view", "View", "", "auto: linear in exr and float tif, srgb in 8 and 16 bit."), o.view);
-    picture(spec("exposure", "Exposure", "stops",
-                 "Acts where a view is written; exr and float tif hold scene light.")
-                .range(-100, 100)
-                .slider(-8, 8),
-            o.exposure, true);
-    picture(
-        spec("pixel_filter", "Pixel filter", "px", "Standard deviation of the pixel filter.").range(0.3, 2),
-        o.pixel_filter);
+    frames(o.frames, "frames", "Frames", "", "Frames to render, such as 1-100,120,200-300x2.");
+    frames(o.fps, "fps", "Frames per second", "1/s", "Written into the frames; nothing moves by it.",
+           within(1e-3, 1e6), slider(1, 120));
+    frames(o.path, "path", "Frame files", "",
+           "Where frames go; #### is the frame, the ending the format: .exr .tif .png.", as(Type::pattern));
+    format(o.depth, "depth", "Bit depth", "", "auto: exr half, tif 16, png 8.");
+    format(o.compression, "compression", "Compression", "",
+           "exr: zip zips piz dwaa none; tif: deflate lzw none.");
+    format(o.alpha, "alpha", "Alpha", "", "auto: exr and tif premultiplied, png none (opaque over black).");
+    format(o.aovs, "aovs", "Extra channels", "", "Of depth, coverage, count and layers; exr only.",
+           one_of({OutputParams::known_aovs.begin(), OutputParams::known_aovs.end()}));
+    picture(o.view, "view", "View", "", "auto: linear in exr and float tif, srgb in 8 and 16 bit.");
+    picture.animated()(o.exposure, "exposure", "Exposure", "stops",
+                       "Acts where a view is written; exr and float tif hold scene light.", range(-100, 100),
+                       slider(-8, 8));
+    picture(o.pixel_filter, "pixel_filter", "Pixel filter", "px", "Standard deviation of the pixel filter.",
+            range(0.3, 2));
 }
 
 void describe_camera(const Describer& d, CameraParams& c) {
     const Describer place = d.shown_in("Camera", "Place"), lens = d.shown_in("Camera", "Lens");
-    lens(spec("projection", "Projection", "", "How space becomes a picture."), c.projection);
-    place(
-        spec("position", "Position", "scene units", "Where the camera stands; [] frames all visible layers.")
-            .as(Type::position)
-            .slider(-100, 100),
-        c.position);
-    place(spec("target", "Target", "scene units", "The point in the middle of the picture.")
-              .as(Type::position)
-              .slider(-100, 100)
-              .only_with("rotation", {Value()}),
-          c.target);
-    place(spec("up", "Up", "", "The direction that is up in the picture.")
-              .slider(-1, 1)
-              .only_with("rotation", {Value()}),
-          c.up);
-    place(spec("rotation", "Rotation", "",
-               "Quaternion x y z w, world from camera; replaces target, up and roll; [] is none.")
-              .as(Type::rotation)
-              .slider(-1, 1),
-          c.rotation);
-    place(spec("roll", "Roll", "degrees", "Turns the camera about its line of sight.")
-              .slider(-180, 180)
-              .only_with("rotation", {Value()}),
-          c.roll);
-    lens(spec("fov", "Field of view", "degrees", "Vertical field of view.")
-             .at_least(0.001)
-             .below(180)
-             .slider(5, 120)
-             .only_with("projection", {"perspective"})
-             .only_with("focal_length", {0.0}),
-         c.fov);
-    lens(spec("focal_length", "Focal length", "mm", "Above 0 it replaces fov, with film_width.")
-             .within(0, 1e6)
-             .slider(0, 300)
-             .only_with("projection", {"perspective"}),
-         c.focal_length);
-    lens(spec("film_width", "Film width", "mm", "Width of the film behind focal_length.")
-             .within(0.001, 1e6)
-             .slider(8, 70)
-             .only_with("projection", {"perspective"})
-             .never_with("focal_length", {0.0}),
-         c.film_width);
-    lens(spec("fisheye_fov", "Fisheye angle", "degrees", "The full cone of a fisheye.")
-             .within(0.001, 360)
-             .slider(90, 360)
-             .only_with("projection", {"fisheye"}),
-         c.fisheye_fov);
-    lens(spec("height", "Height", "scene units", "Scene units from bottom to top, orthographic.")
-             .at_least(1e-6)
-             .slider(0.1, 1000)
-             .logarithmic()
-             .only_with("projection", {"orthographic"}),
-         c.height);
-    lens(spec("near", "Near", "scene units", "Nothing nearer is drawn.")
-             .at_least(1e-9)
-             .slider(0.001, 10)
-             .logarithmic(),
-         c.near);
-    lens(spec("far", "Far", "scene units", "Nothing farther is drawn; 0: no limit.")
-             .at_least(0)
-             .slider(0, 10000),
-         c.far);
-    lens(spec("near_fade", "Near fade", "scene units",
-              "Splats fade in over this beyond near; 0: one radius of the splat.")
-             .at_least(0)
-             .slider(0, 10),
-         c.near_fade);
-    place(spec("file", "Camera file", "", "Camera path to import instead of these keys."), c.file);
+    lens(c.projection, "projection", "Projection", "", "How space becomes a picture.");
+    place(c.position, "position", "Position", "scene units",
+          "Where the camera stands; [] frames all visible layers.", as(Type::position), slider(-100, 100));
+    place(c.target, "target", "Target", "scene units", "The point in the middle of the picture.",
+          as(Type::position), slider(-100, 100), only_with("rotation", {Value()}));
+    place(c.up, "up", "Up", "", "The direction that is up in the picture.", slider(-1, 1),
+          only_with("rotation", {Value()}));
+    place(c.rotation, "rotation", "Rotation", "",
+          "Quaternion x y z w, world from camera; replaces target, up and roll; [] is none.",
+          as(Type::rotation), slider(-1, 1));
+    place(c.roll, "roll", "Roll", "degrees", "Turns the camera about its line of sight.", slider(-180, 180),
+          only_with("rotation", {Value()}));
+    lens(c.fov, "fov", "Field of view", "degrees", "Vertical field of view.", at_least(0.001), below(180),
+         slider(5, 120), only_with("projection", {"perspective"}), only_with("focal_length", {0.0}));
+    lens(c.focal_length, "focal_length", "Focal length", "mm", "Above 0 it replaces fov, with film_width.",
+         within(0, 1e6), slider(0, 300), only_with("projection", {"perspective"}));
+    lens(c.film_width, "film_width", "Film width", "mm", "Width of the film behind focal_length.",
+         within(0.001, 1e6), slider(8, 70), only_with("projection", {"perspective"}),
+         never_with("focal_length", {0.0}));
+    lens(c.fisheye_fov, "fisheye_fov", "Fisheye angle", "degrees", "The full cone of a fisheye.",
+         within(0.001, 360), slider(90, 360), only_with("projection", {"fisheye"}));
+    lens(c.height, "height", "Height", "scene units", "Scene units from bottom to top, orthographic.",
+         at_least(1e-6), slider(0.1, 1000), logarithmic(), only_with("projection", {"orthographic"}));
+    lens(c.near, "near", "Near", "scene units", "Nothing nearer is drawn.", at_least(1e-9), slider(0.001, 10),
+         logarithmic());
+    lens(c.far, "far", "Far", "scene units", "Nothing farther is drawn; 0: no limit.", at_least(0),
+         slider(0, 10000));
+    lens(c.near_fade, "near_fade", "Near fade", "scene units",
+         "Splats fade in over this beyond near; 0: one radius of the splat.", at_least(0), slider(0, 10));
+    place(c.file, "file", "Camera file", "", "Camera path to import instead of these keys.");
 }
 
 void describe_environment(const Describer& d, EnvironmentParams& e) {
-    d(spec("image", "Picture", "", "Equirectangular picture behind everything."), e.image);
-    d(spec("cube", "Cube pictures", "", "Or six pictures, in the order +x -x +y -y +z -z."), e.cube);
-    d(spec("gain", "Gain", "", "Multiplies its light.").within(0, 1e6).slider(0.01, 100).logarithmic(),
-      e.gain);
-    d(spec("rotation", "Rotation", "degrees", "Turns it about x, then y, then z.").slider(-180, 180),
-      e.rotation);
-    d(spec("visible", "Visible", "", "Whether it is drawn."), e.visible);
+    d(e.image, "image", "Picture", "", "Equirectangular picture behind everything.");
+    d(e.cube, "cube", "Cube pictures", "", "Or six pictures, in the order +x -x +y -y +z -z.");
+    d(e.gain, "gain", "Gain", "", "Multiplies its light.", within(0, 1e6), slider(0.01, 100), logarithmic());
+    d(e.rotation, "rotation", "Rotation", "degrees", "Turns it about x, then y, then z.", slider(-180, 180));
+    d(e.visible, "visible", "Visible", "", "Whether it is drawn.");
 }
 
 void describe_provenance(const Describer& d, ProvenanceParams& p) {
-    d(spec("title", "Title", "", "Written into every frame."), p.title);
-    d(spec("credit", "Credit", "", "Written into every frame; empty: from the inputs' own metadata."),
-      p.credit);
-    d(spec("type", "Type", "", "What the pictures are.").one_of({"Artwork", "Simulation"}), p.type);
+    d(p.title, "title", "Title", "", "Written into every frame.");
+    d(p.credit, "credit", "Credit", "", "Written into every frame; empty: from the inputs' own metadata.");
+    d(p.type, "type", "Type", "", "What the pictures are.", one_of({"Artwork", "Simulation"}));
 }
 
 }  // namespace
@@ -187,6 +139,12 @@ Description describe_preset(Look& look, LayerRender& render) {
     describe_look(d.in("look", true), look);
     describe_render(d.in("render", true), render);
     return description;
+}
+
+std::vector<std::string> layer_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
+    return names;
 }
 
 ParameterKey full_key(const Description& description, const ParameterKey& key) {

@@ -23,6 +23,9 @@ Description describe(Scene& scene, const std::function<bool(const ParameterKey& 
 /// Those of a preset file: "look.density" ... "render.isolate".
 Description describe_preset(Look& look, LayerRender& render);
 
+/// In file order.
+std::vector<std::string> layer_names(const Scene& scene);
+
 /// The key with "0" put in where a list's index is left out: layer.a.look.noise.cull is noise.0.cull.
 ParameterKey full_key(const Description& description, const ParameterKey& key);
 

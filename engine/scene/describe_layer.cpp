@@ -6,49 +6,36 @@ namespace astrosplat {
 namespace {
 
 using Type = ParameterType;
+using namespace traits;
 
 void describe_transform(const Describer& d, LayerTransform& t) {
-    d(spec("translate", "Position", "scene units", "Moves the layer after generation.")
-          .as(Type::position)
-          .slider(-100, 100),
-      t.translate);
-    d(spec("rotate", "Rotation", "degrees", "Turns the layer about x, then y, then z.").slider(-180, 180),
-      t.rotate);
-    d(spec("scale", "Scale", "", "Scales positions and radii about the layer's origin.")
-          .within(1e-9, 1e9)
-          .slider(0.01, 100)
-          .logarithmic(),
-      t.scale);
+    d(t.translate, "translate", "Position", "scene units", "Moves the layer after generation.",
+      as(Type::position), slider(-100, 100));
+    d(t.rotate, "rotate", "Rotation", "degrees", "Turns the layer about x, then y, then z.",
+      slider(-180, 180));
+    d(t.scale, "scale", "Scale", "", "Scales positions and radii about the layer's origin.",
+      within(1e-9, 1e9), slider(0.01, 100), logarithmic());
 }
 
 void describe_mesh(const Describer& d, MeshInput& mesh) {
-    d(spec("mesh", "Mesh", "", "Mesh file, or a built-in shape.")
-          .one_of({"plane", "relief", "disk", "sphere"}),
-      mesh.mesh);
-    d(spec("texture", "Picture", "",
-           "Picture on the mesh: empty for the mesh's own, three for red, green and blue.")
-          .or_no_text(),
-      mesh.texture);
-    d(spec("relief", "Relief", "of the width", "Height of the built-in relief.")
-          .within(-1e6, 1e6)
-          .slider(0, 1)
-          .only_with("mesh", {"relief"}),
-      mesh.relief);
+    d(mesh.mesh, "mesh", "Mesh", "", "Mesh file, or a built-in shape.",
+      one_of({"plane", "relief", "disk", "sphere"}));
+    d(mesh.texture, "texture", "Picture", "",
+      "Picture on the mesh: empty for the mesh's own, three for red, green and blue.", or_no_text());
+    d(mesh.relief, "relief", "Relief", "of the width", "Height of the built-in relief.", within(-1e6, 1e6),
+      slider(0, 1), only_with("mesh", {"relief"}));
 }
 
 void describe_texture(const Describer& d, TextureSettings& t) {
-    d(spec("colorspace", "Colour space", "",
-           "How the picture's numbers are read; auto: 8 and 16 bit as sRGB, float as linear."),
-      t.colorspace);
-    d(spec("alpha", "Alpha from", "",
-           "Where opacity comes from; auto: the file's, else the largest channel."),
-      t.alpha);
-    d(spec("unpremultiply", "Divide by alpha", "",
-           "Stored colours are matted on black and are divided by alpha."),
-      t.unpremultiply);
+    d(t.colorspace, "colorspace", "Colour space", "",
+      "How the picture's numbers are read; auto: 8 and 16 bit as sRGB, float as linear.");
+    d(t.alpha, "alpha", "Alpha from", "",
+      "Where opacity comes from; auto: the file's, else the largest channel.");
+    d(t.unpremultiply, "unpremultiply", "Divide by alpha", "",
+      "Stored colours are matted on black and are divided by alpha.");
     d.custom(
-        spec("hdu", "FITS HDU", "", "Number or EXTNAME of the HDU; auto: the first with a picture.")
-            .as(Type::text),
+        spec("hdu", "FITS HDU", "", "Number or EXTNAME of the HDU; auto: the first with a picture.",
+             as(Type::text)),
         [&t](const ParameterSpec&) {
             const bool number =
                 is_list_index(t.hdu) && t.hdu.size() < 10 && (t.hdu[0] != '0' || t.hdu == "0");
@@ -58,38 +45,26 @@ void describe_texture(const Describer& d, TextureSettings& t) {
             const bool number = std::holds_alternative<std::int64_t>(value.data);
             t.hdu = number ? to_toml(value) : text_of(value, s);
         });
-    d(spec("plane", "FITS plane", "", "Plane of a FITS cube, from 0.").at_least(0).slider(0, 100), t.plane);
-    d(spec("stretch", "Stretch", "",
-           "Curve from data values to display values; auto: asinh for FITS, linear else."),
-      t.stretch);
-    d(spec("black", "Black point", "data values", "Data value shown as 0; auto: the 0.25 percentile.")
-          .or_auto()
-          .within(-1e30, 1e30)
-          .slider(0, 1),
-      t.black);
-    d(spec("white", "White point", "data values", "Data value shown as 1; auto: the 99.75 percentile.")
-          .or_auto()
-          .within(-1e30, 1e30)
-          .slider(0, 1),
-      t.white);
-    d(spec("softening", "Softening", "", "Where the asinh stretch turns from linear to logarithmic.")
-          .within(1e-9, 1e9)
-          .slider(0.001, 1)
-          .logarithmic(),
-      t.softening);
-    d(spec("filter", "Filter", "", "How the picture is read between its pixels."), t.filter);
-    d(spec("wrap", "Outside the picture", "",
-           "What lies beyond 0..1; auto: clamp for built-in and planar, repeat for the mesh's own uv."),
-      t.wrap);
+    d(t.plane, "plane", "FITS plane", "", "Plane of a FITS cube, from 0.", at_least(0), slider(0, 100));
+    d(t.stretch, "stretch", "Stretch", "",
+      "Curve from data values to display values; auto: asinh for FITS, linear else.");
+    d(t.black, "black", "Black point", "data values", "Data value shown as 0; auto: the 0.25 percentile.",
+      or_auto(), within(-1e30, 1e30), slider(0, 1));
+    d(t.white, "white", "White point", "data values", "Data value shown as 1; auto: the 99.75 percentile.",
+      or_auto(), within(-1e30, 1e30), slider(0, 1));
+    d(t.softening, "softening", "Softening", "", "Where the asinh stretch turns from linear to logarithmic.",
+      within(1e-9, 1e9), slider(0.001, 1), logarithmic());
+    d(t.filter, "filter", "Filter", "", "How the picture is read between its pixels.");
+    d(t.wrap, "wrap", "Outside the picture", "",
+      "What lies beyond 0..1; auto: clamp for built-in and planar, repeat for the mesh's own uv.");
 }
 
 /// One number stands for the same on every axis.
 void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
-    ParameterSpec s = spec("buffer", "Margin", "scene units",
-                           "Room around the meshes' box: one number or x, y, z; auto: max_distance.");
-    s.components = 3;
     d.custom(
-        s.as(Type::vector).or_auto().at_least(0).slider(0, 10),
+        spec("buffer", "Margin", "scene units",
+             "Room around the meshes' box: one number or x, y, z; auto: max_distance.", as(Type::vector),
+             components(3), or_auto(), at_least(0), slider(0, 10)),
         [&buffer](const ParameterSpec& own) {
             const bool uniform = buffer && buffer->x == buffer->y && buffer->y == buffer->z;
             return uniform ? Value(buffer->x) : Field<std::optional<glm::dvec3>>::get(buffer, own);
@@ -101,67 +76,47 @@ void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
 }
 
 void describe_stars(const Describer& d, StarsParams& stars) {
-    d(spec("catalogue", "Catalogue", "", "Star catalogue, .dat or .csv."), stars.catalogue);
-    d(spec("unit", "Parsec", "scene units", "Scene units per parsec.")
-          .within(1e-9, 1e9)
-          .slider(0.001, 1000)
-          .logarithmic(),
-      stars.unit);
-    d(spec("limit", "Faintest star", "magnitude", "Stars fainter than this are left out.").slider(-2, 20),
-      stars.limit);
-    d(spec("zero_point", "Zero point", "magnitude", "Magnitude of a star of flux 1.").slider(-2, 20),
-      stars.zero_point);
-    d(spec("along", "Along", "", "Random stars along this instead of a catalogue: camera.")
-          .one_of({"", "camera"}),
-      stars.along);
-    d(spec("spread", "Spread", "scene units", "How far random stars lie from the path.")
-          .at_least(1e-9)
-          .slider(0.1, 1000)
-          .logarithmic(),
-      stars.spread);
-    d(spec("psf", "Star size", "px", "Standard deviation of a star's disc.").within(0.01, 1e6).slider(0.3, 5),
-      stars.psf);
+    d(stars.catalogue, "catalogue", "Catalogue", "", "Star catalogue, .dat or .csv.");
+    d(stars.unit, "unit", "Parsec", "scene units", "Scene units per parsec.", within(1e-9, 1e9),
+      slider(0.001, 1000), logarithmic());
+    d(stars.limit, "limit", "Faintest star", "magnitude", "Stars fainter than this are left out.",
+      slider(-2, 20));
+    d(stars.zero_point, "zero_point", "Zero point", "magnitude", "Magnitude of a star of flux 1.",
+      slider(-2, 20));
+    d(stars.along, "along", "Along", "", "Random stars along this instead of a catalogue: camera.",
+      one_of({"", "camera"}));
+    d(stars.spread, "spread", "Spread", "scene units", "How far random stars lie from the path.",
+      at_least(1e-9), slider(0.1, 1000), logarithmic());
+    d(stars.psf, "psf", "Star size", "px", "Standard deviation of a star's disc.", within(0.01, 1e6),
+      slider(0.3, 5));
 }
 
 void describe_source(const Describer& d, SourceParams& s) {
     const Describer files = d.shown_in("Source", "Files"), splats = d.shown_in("Source", "Splats");
     const Describer lattice = splats.only_with("kind", {"mesh"});
-    files(spec("kind", "Kind", "", "What the splats are made of."), s.kind);
+    files(s.kind, "kind", "Kind", "", "What the splats are made of.");
     files.list("meshes", s.meshes, describe_mesh);
     describe_texture(d.shown_in("Source", "Picture").only_with("kind", {"mesh"}), s.texture);
     describe_buffer(lattice, s.buffer);
-    lattice(spec("voxels", "Voxels", "", "Test positions per axis; auto: cubic, from count.")
-                .or_auto()
-                .range(1, 1e6),
-            s.voxels);
-    lattice(spec("voxel_size", "Voxel size", "scene units", "Edge of a voxel instead of voxels; 0: not used.")
-                .at_least(0)
-                .slider(0, 1)
-                .only_with("voxels", {"auto"}),
-            s.voxel_size);
-    splats(spec("count", "Count", "", "About how many positions voxels = \"auto\" keeps.")
-               .range(1, 1e15)
-               .slider(1e4, 1e9)
-               .logarithmic()
-               .never_with("kind", {"splats"})
-               .only_with("voxels", {"auto"})
-               .only_with("voxel_size", {0.0}),
-           s.count);
-    lattice(spec("jitter", "Jitter", "of half a voxel", "How far positions leave the lattice.").range(0, 1),
-            s.jitter);
-    lattice(spec("max_distance", "Largest distance", "scene units",
-                 "Positions farther from the meshes are dropped; 0: 2 % of the longest side.")
-                .at_least(0)
-                .slider(0, 10),
-            s.max_distance);
-    files.only_with("kind", {"mesh"})(
-        spec("uv", "Picture coordinates", "", "The mesh's own, or projected along an axis."), s.uv);
-    splats(
-        spec("seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.").slider(0, 1000),
-        s.seed);
-    files(spec("file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.")
-              .only_with("kind", {"splats"}),
-          s.file);
+    lattice(s.voxels, "voxels", "Voxels", "", "Test positions per axis; auto: cubic, from count.", or_auto(),
+            range(1, 1e6));
+    lattice(s.voxel_size, "voxel_size", "Voxel size", "scene units",
+            "Edge of a voxel instead of voxels; 0: not used.", at_least(0), slider(0, 1),
+            only_with("voxels", {"auto"}));
+    splats(s.count, "count", "Count", "", "About how many positions voxels = \"auto\" keeps.", range(1, 1e15),
+           slider(1e4, 1e9), logarithmic(), never_with("kind", {"splats"}), only_with("voxels", {"auto"}),
+           only_with("voxel_size", {0.0}));
+    lattice(s.jitter, "jitter", "Jitter", "of half a voxel", "How far positions leave the lattice.",
+            range(0, 1));
+    lattice(s.max_distance, "max_distance", "Largest distance", "scene units",
+            "Positions farther from the meshes are dropped; 0: 2 % of the longest side.", at_least(0),
+            slider(0, 10));
+    files.only_with("kind", {"mesh"})(s.uv, "uv", "Picture coordinates", "",
+                                      "The mesh's own, or projected along an axis.");
+    splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",
+           slider(0, 1000));
+    files(s.file, "file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.",
+          only_with("kind", {"splats"}));
     describe_stars(files.only_with("kind", {"stars"}), s.stars);
 }
 
@@ -169,12 +124,12 @@ void describe_source(const Describer& d, SourceParams& s) {
 
 void describe_layer(const Describer& d, LayerParams& layer) {
     const Describer own = d.shown_in("Source", "Layer"), placement = d.shown_in("Source", "Placement");
-    own(spec("name", "Name", "", "Letters, digits and _, beginning with a letter."), layer.name);
-    own(spec("visible", "Visible", "", "Whether the layer is rendered."), layer.visible, true);
-    placement(spec("axis", "Axis", "", "The layer's thin direction: noise and hybrid use it.").slider(-1, 1),
-              layer.axis);
-    own(spec("preset", "Preset", "", "A file with [look] and [render]; keys of the scene win over it."),
-        layer.preset);
+    own(layer.name, "name", "Name", "", "Letters, digits and _, beginning with a letter.");
+    own.animated()(layer.visible, "visible", "Visible", "", "Whether the layer is rendered.");
+    placement(layer.axis, "axis", "Axis", "", "The layer's thin direction: noise and hybrid use it.",
+              slider(-1, 1));
+    own(layer.preset, "preset", "Preset", "",
+        "A file with [look] and [render]; keys of the scene win over it.");
     describe_transform(placement.in("transform", true), layer.transform);
     describe_source(d.in("source", false), layer.source);
     describe_look(d.in("look", true), layer.look);

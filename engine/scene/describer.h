@@ -8,13 +8,61 @@
 
 namespace astrosplat {
 
+/// What a description says of a parameter beside its words; each writes itself into the spec.
+namespace traits {
+
+template <class T>
+auto sets(T ParameterSpec::*member, T value) {
+    return [member, value](ParameterSpec& s) { s.*member = value; };
+}
+/// The numbers allowed.
+inline auto at_least(double lo) { return sets(&ParameterSpec::min, lo); }
+inline auto within(double lo, double hi) {
+    return [lo, hi](ParameterSpec& s) { s.min = lo, s.max = hi; };
+}
+inline auto below(double hi) {
+    return [hi](ParameterSpec& s) { s.max = hi, s.below_max = true; };
+}
+inline auto slider(double lo, double hi) {
+    return [lo, hi](ParameterSpec& s) { s.slider_min = lo, s.slider_max = hi; };
+}
+/// Both of them.
+inline auto range(double lo, double hi) {
+    return [lo, hi](ParameterSpec& s) { within(lo, hi)(s), slider(lo, hi)(s); };
+}
+inline auto logarithmic() { return sets(&ParameterSpec::scale, Scale::logarithmic); }
+inline auto as(ParameterType type) { return sets(&ParameterSpec::type, type); }
+inline auto components(int count) { return sets(&ParameterSpec::components, count); }
+inline auto one_of(std::vector<std::string> names) { return sets(&ParameterSpec::choices, std::move(names)); }
+/// How nothing is written.
+inline auto or_auto() { return sets(&ParameterSpec::nothing, Value("auto")); }
+inline auto or_no_text() { return sets(&ParameterSpec::nothing, Value("")); }
+inline auto shown_as(std::string short_label) {
+    return sets(&ParameterSpec::row_label, std::move(short_label));
+}
+/// It does something only with, or never with, one of these values of its neighbour `name`.
+inline auto condition(const char* name, std::vector<Value> values, bool wanted) {
+    return [=](ParameterSpec& s) { s.conditions.push_back({name, values, wanted}); };
+}
+inline auto only_with(const char* name, std::vector<Value> values) {
+    return condition(name, std::move(values), true);
+}
+inline auto never_with(const char* name, std::vector<Value> values) {
+    return condition(name, std::move(values), false);
+}
+
+}  // namespace traits
+
 /// A spec with its words; the describer puts the section before the key.
-inline ParameterSpec spec(std::string key, std::string label, std::string unit, std::string help) {
+template <class... Traits>
+ParameterSpec spec(const char* key, const char* label, const char* unit, const char* help,
+                   const Traits&... traits) {
     ParameterSpec result;
-    result.key = std::move(key);
-    result.label = std::move(label);
-    result.unit = std::move(unit);
-    result.help = std::move(help);
+    result.key = key;
+    result.label = label;
+    result.unit = unit;
+    result.help = help;
+    (traits(result), ...);
     return result;
 }
 
@@ -46,29 +94,28 @@ class Describer {
         return limited;
     }
 
-    /// Describes one field. Its type follows from the field, unless the spec says more (color, position,
-    /// ...).
-    template <class T>
-    void operator()(ParameterSpec field_spec, T& field) const {
-        Field<T>::describe(field_spec);
-        place(field_spec, animated_);
-        add(std::move(field_spec), field);
+    /// The same place, where parameters are animated whatever the group says.
+    Describer animated() const {
+        Describer moving = *this;
+        moving.animated_ = true;
+        return moving;
     }
 
-    /// The same, but never (false) or always (true) animated, whatever the section says.
-    template <class T>
-    void operator()(ParameterSpec field_spec, T& field, bool animated) const {
+    /// Describes one field, by its words and traits as in spec(). Its type follows from the field, unless a
+    /// trait says more (color, position, ...).
+    template <class T, class... Words>
+    void operator()(T& field, const Words&... words) const {
+        ParameterSpec field_spec = spec(words...);
         Field<T>::describe(field_spec);
-        place(field_spec, animated);
-        add(std::move(field_spec), field);
+        T* const target = &field;
+        custom(
+            std::move(field_spec), [target](const ParameterSpec& own) { return Field<T>::get(*target, own); },
+            [target](const Value& value, const ParameterSpec& own) { *target = Field<T>::set(value, own); });
     }
 
     /// A parameter that is not one field: with its own way in and out; the spec names its type.
     void custom(ParameterSpec field_spec, std::function<Value(const ParameterSpec&)> get,
-                std::function<void(const Value&, const ParameterSpec&)> set) const {
-        place(field_spec, animated_);
-        description_->parameters.push_back({std::move(field_spec), std::move(get), std::move(set)});
-    }
+                std::function<void(const Value&, const ParameterSpec&)> set) const;
 
     /// A list of tables, each element described by `describe_element(describer, element)`.
     template <class T, class DescribeElement>
@@ -82,19 +129,6 @@ class Describer {
     }
 
   private:
-    void place(ParameterSpec& field_spec, bool animated) const;
-
-    template <class T>
-    void add(ParameterSpec field_spec, T& field) const {
-        T* const target = &field;
-        description_->parameters.push_back(
-            {std::move(field_spec),
-             [target](const ParameterSpec& own) { return Field<T>::get(*target, own); },
-             [target](const Value& value, const ParameterSpec& own) {
-                 *target = Field<T>::set(value, own);
-             }});
-    }
-
     Description* description_;
     ParameterKey group_;
     std::string_view tab_, section_;  // literals

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/suggest.h"
+#include "core/text.h"
 
 namespace astrosplat {
 
@@ -16,65 +16,12 @@ bool is_numeric(ParameterType type) {
            type == Type::color || type == Type::rotation || type == Type::curve;
 }
 
-ParameterSpec& ParameterSpec::range(double lo, double hi) { return within(lo, hi).slider(lo, hi); }
-ParameterSpec& ParameterSpec::within(double lo, double hi) {
-    min = lo;
-    max = hi;
-    return *this;
-}
-ParameterSpec& ParameterSpec::at_least(double lo) {
-    min = lo;
-    return *this;
-}
-ParameterSpec& ParameterSpec::below(double hi) {
-    max = hi;
-    below_max = true;
-    return *this;
-}
-ParameterSpec& ParameterSpec::slider(double lo, double hi) {
-    slider_min = lo;
-    slider_max = hi;
-    return *this;
-}
-ParameterSpec& ParameterSpec::logarithmic() {
-    scale = Scale::logarithmic;
-    return *this;
-}
-ParameterSpec& ParameterSpec::as(ParameterType kind) {
-    type = kind;
-    return *this;
-}
-ParameterSpec& ParameterSpec::one_of(std::vector<std::string> names) {
-    choices = std::move(names);
-    return *this;
-}
-ParameterSpec& ParameterSpec::or_auto() {
-    nothing = Value("auto");
-    return *this;
-}
-ParameterSpec& ParameterSpec::or_no_text() {
-    nothing = Value("");
-    return *this;
-}
-ParameterSpec& ParameterSpec::shown_as(std::string short_label) {
-    row_label = std::move(short_label);
-    return *this;
-}
-ParameterSpec& ParameterSpec::only_with(std::string name, std::vector<Value> values) {
-    conditions.push_back({std::move(name), std::move(values), true});
-    return *this;
-}
-ParameterSpec& ParameterSpec::never_with(std::string name, std::vector<Value> values) {
-    conditions.push_back({std::move(name), std::move(values), false});
-    return *this;
-}
-
 bool has_effect(const ParameterSpec& spec, const std::function<const Parameter*(const ParameterKey&)>& find) {
-    return std::all_of(spec.conditions.begin(), spec.conditions.end(), [&](const Condition& condition) {
+    return std::ranges::all_of(spec.conditions, [&](const Condition& condition) {
         const Parameter* other = find(condition.key);
         if (!other) return true;
         const auto& values = condition.values;
-        const bool met = std::find(values.begin(), values.end(), other->get()) != values.end();
+        const bool met = std::ranges::find(values, other->get()) != values.end();
         return met == condition.wanted;
     });
 }
@@ -126,7 +73,7 @@ std::string expectation(const ParameterSpec& spec) {
 std::vector<double> to_numbers(const ParameterSpec& spec, const Value& value) {
     if (spec.type == ParameterType::choice) {
         const std::string name = value.text() ? *value.text() : to_toml(value);
-        const auto found = std::find(spec.choices.begin(), spec.choices.end(), name);
+        const auto found = std::ranges::find(spec.choices, name);
         return {static_cast<double>(found - spec.choices.begin())};
     }
     if (const auto* b = std::get_if<bool>(&value.data)) return {*b ? 1.0 : 0.0};

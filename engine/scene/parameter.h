@@ -75,22 +75,6 @@ struct ParameterSpec {
     std::string_view tab, section;  // where the window shows it: "Look", "Size"
     std::string row_label;          // the label below that section's title
     std::vector<Condition> conditions;  // it does something where all of these hold
-
-    // For descriptions: each sets one of the above and returns the spec.
-    ParameterSpec& range(double lo, double hi);  // slider too
-    ParameterSpec& at_least(double lo);
-    ParameterSpec& below(double hi);
-    ParameterSpec& within(double lo, double hi);  // range without the slider
-    ParameterSpec& slider(double lo, double hi);
-    ParameterSpec& logarithmic();
-    ParameterSpec& as(ParameterType kind);
-    ParameterSpec& one_of(std::vector<std::string> names);
-    ParameterSpec& or_auto();     // "auto" is how nothing is written
-    ParameterSpec& or_no_text();  // "" is
-    ParameterSpec& shown_as(std::string short_label);
-    // It does something only with, or never with, one of these values of its neighbour `name`.
-    ParameterSpec& only_with(std::string name, std::vector<Value> values);
-    ParameterSpec& never_with(std::string name, std::vector<Value> values);
 };
 
 /// A value that a parameter cannot take: what() is "expected ..., found ...".

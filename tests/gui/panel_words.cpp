@@ -37,16 +37,17 @@ TEST(PanelWords, SetOptionsAreOneWordOfAShell) {
 
 TEST(PanelWords, DraggingRoundsToCleanNumbers) {
     ParameterSpec spec;
-    spec.range(0, 1);
+    spec.min = 0.0, spec.max = 1.0;
     const double step = drag_step(spec, 0.5);
     EXPECT_DOUBLE_EQ(step, 0.004);
     EXPECT_EQ(short_number(rounded_to_step(0.5 + 17 * step, step)), "0.568");
     ParameterSpec magnitude;
-    magnitude.at_least(1e-6).slider(0.01, 100).logarithmic();
+    magnitude.min = 1e-6, magnitude.slider_min = 0.01, magnitude.slider_max = 100.0;
+    magnitude.scale = Scale::logarithmic;
     EXPECT_DOUBLE_EQ(drag_step(magnitude, 50.0), 0.5);  // of itself
     EXPECT_EQ(rounded_to_step(1234.5, 20.0), 1230.0);
     ParameterSpec open;  // on both sides of 0, and farther than the slider
-    open.slider(-10, 10);
+    open.slider_min = -10.0, open.slider_max = 10.0;
     EXPECT_DOUBLE_EQ(drag_step(open, 0.0), 0.02);
     EXPECT_DOUBLE_EQ(drag_step(open, -2.0), 0.04);
     EXPECT_DOUBLE_EQ(drag_step(open, 1000.0), 0.08);
