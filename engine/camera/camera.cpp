@@ -68,9 +68,7 @@ Framing frame_box_within(const Bounds& box, const glm::dmat3& world_from_camera,
     Framing framing{{}, framed.center(), 0.0};
     double distance = 0.0;
     for (int corner = 0; corner < 8; ++corner) {
-        glm::dvec3 p(corner & 1 ? framed.hi.x : framed.lo.x, corner & 2 ? framed.hi.y : framed.lo.y,
-                     corner & 4 ? framed.hi.z : framed.lo.z);
-        p -= framing.target;
+        const glm::dvec3 p = framed.corner(corner) - framing.target;
         // The frame's height that just holds this corner, at the corner's own depth.
         double height = 2.0 *
                         std::fmax(std::fabs(glm::dot(right, p)) / aspect, std::fabs(glm::dot(above, p))) /
@@ -104,18 +102,17 @@ glm::dmat3 orientation(const CameraParams& params, const glm::dvec3& position, c
 
 void check_supported(const CameraParams& params) {
     if (!params.file.empty())
-        throw InputError(
-            fmt::format("camera.file: expected no file (camera paths can be imported from a later release "
-                        "on), found '{}'",
-                        params.file.string()));
+        throw InputError(fmt::format(
+            "camera.file: expected no file (camera paths can be imported from a later release on), "
+            "found '{}'",
+            params.file.string()));
     const bool flat =
         params.projection == Projection::perspective || params.projection == Projection::orthographic;
     if (!flat)
-        throw InputError(
-            fmt::format("camera.projection: expected perspective or orthographic (other projections come "
-                        "with a later release), "
-                        "found {}",
-                        name_of(params.projection)));
+        throw InputError(fmt::format(
+            "camera.projection: expected perspective or orthographic (other projections come with a "
+            "later release), found {}",
+            name_of(params.projection)));
 }
 
 Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box) {
@@ -135,8 +132,8 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
         height = framing.height;
     }
     camera.world_from_camera = orientation(params, camera.eye, target);
-    bool orthographic = params.projection == Projection::orthographic;
-    camera.focal_px = orthographic ? height_px / height : 0.5 * height_px / tan_y;
+    camera.focal_px =
+        params.projection == Projection::orthographic ? height_px / height : 0.5 * height_px / tan_y;
     camera.center_x_px = 0.5 * width_px;
     camera.center_y_px = 0.5 * height_px;
     camera.near = params.near;
@@ -145,28 +142,23 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
     return camera;
 }
 
-Lens make_lens(const Camera& camera) {
-    const ExactLens lens = make_exact_lens(camera);
-    return {lens.projection,
-            static_cast<float>(lens.focal_px),
-            static_cast<float>(lens.center_x_px),
-            static_cast<float>(lens.center_y_px),
-            static_cast<float>(lens.near),
-            static_cast<float>(lens.far),
-            static_cast<float>(lens.near_fade)};
-}
+namespace {
 
-ExactLens make_exact_lens(const Camera& camera) {
+template <class AnyLens>
+AnyLens lens_of(const Camera& camera) {
     static_assert(static_cast<int>(Projection::perspective) == shared::PROJECTION_PERSPECTIVE &&
                   static_cast<int>(Projection::orthographic) == shared::PROJECTION_ORTHOGRAPHIC);
-    return {static_cast<int>(camera.projection),
-            camera.focal_px,
-            camera.center_x_px,
-            camera.center_y_px,
-            camera.near,
-            camera.far,
-            camera.near_fade};
+    using Number = decltype(AnyLens::near);
+    return {static_cast<int>(camera.projection),     static_cast<Number>(camera.focal_px),
+            static_cast<Number>(camera.center_x_px), static_cast<Number>(camera.center_y_px),
+            static_cast<Number>(camera.near),        static_cast<Number>(camera.far),
+            static_cast<Number>(camera.near_fade)};
 }
+
+}  // namespace
+
+Lens make_lens(const Camera& camera) { return lens_of<Lens>(camera); }
+ExactLens make_exact_lens(const Camera& camera) { return lens_of<ExactLens>(camera); }
 
 glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px) {
     const ExactLens lens = make_exact_lens(camera);
@@ -205,10 +197,10 @@ ExrMatrices exr_matrices(const Camera& camera, double width_px, double height_px
     for (std::size_t i = 0; i < 3; ++i) column[i] = glm::dvec4(axes[i], -glm::dot(axes[i], camera.eye));
     column[3] = glm::dvec4(0.0, 0.0, 0.0, 1.0);
 
-    bool orthographic = camera.projection == Projection::orthographic;
+    const bool parallel_rays = exact::has_parallel_rays(make_exact_lens(camera));
     double depth_scale = camera.far > 0.0 ? 1.0 / (camera.far - camera.near) : 1.0;
-    if (!orthographic && camera.far > 0.0) depth_scale *= camera.far;
-    const glm::dvec4& w = orthographic ? column[3] : column[2];
+    if (!parallel_rays && camera.far > 0.0) depth_scale *= camera.far;
+    const glm::dvec4& w = parallel_rays ? column[3] : column[2];
     std::array<glm::dvec4, 4> ndc = {
         (column[0] * camera.focal_px + w * camera.center_x_px) / width_px,
         (column[1] * -camera.focal_px + w * camera.center_y_px) / height_px,

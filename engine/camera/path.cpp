@@ -22,8 +22,7 @@ constexpr int pieces_per_segment = 32;  // of the arc length's quadrature
 // The key at or before `frame`, with 0 <= result < size - 1.
 template <class T>
 std::size_t segment_of(std::span<const Keyframe<T>> keys, double frame) {
-    auto after = std::upper_bound(keys.begin(), keys.end(), frame,
-                                  [](double f, const Keyframe<T>& key) { return f < key.frame; });
+    auto after = std::ranges::upper_bound(keys, frame, {}, &Keyframe<T>::frame);
     auto index = static_cast<std::size_t>(after - keys.begin());
     return std::min(index > 0 ? index - 1 : 0, keys.size() - 2);
 }

@@ -7,10 +7,8 @@
 #include "camera/lens.h"
 #include "core/shared_maths.h"
 
-#if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#endif
 
 namespace astrosplat::shared {
 using namespace astrosplat::shared_types;
@@ -36,6 +34,4 @@ double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * 
 }  // namespace
 }  // namespace astrosplat::exact
 
-#if defined(__GNUC__)
 #pragma GCC diagnostic pop
-#endif

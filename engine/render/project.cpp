@@ -128,28 +128,23 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
     }
 }
 
-/// Whether no child of a splat in front of the camera can touch `rect`: they reach `reach` scene units from
-/// its centre.
-bool children_miss(const LayerProjection& layer, const glm::vec3& p, float reach, const ScreenRect& rect) {
-    const shared::Instance at = shared::instance_of(layer.lens, p);
-    const shared::Instance nearest = shared::instance_of(layer.lens, {p.x, p.y, p.z + reach});
-    const float moved_px = std::fabs(nearest.x_px - at.x_px) + std::fabs(nearest.y_px - at.y_px);
-    const float support_px = reach * nearest.px_per_unit + layer.margin_px + moved_px;
-    return !shared::touches_rect(at.x_px, at.y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1);
-}
-
 /// True when the splat was replaced by children (of which none may show). A splat whose centre has passed the
 /// camera may still have children in front of it, so the size is taken no nearer than the near plane.
 bool project_as_children(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
                          const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     const glm::vec3& p = splat.position;
-    const float near = layer.lens.near, reach = splat.radius * 1.25f;
-    const float px_per_unit = shared::instance_of(layer.lens, {p.x, p.y, std::min(p.z, -near)}).px_per_unit;
+    const float near = layer.lens.near, reach = splat.radius * 1.25f;  // what children may touch
+    const float px_per_unit = shared::instance_of(layer.lens, shared::beyond_near(layer.lens, p)).px_per_unit;
     const LevelChoice choice =
         choose_levels(2.0f * splat.radius * px_per_unit, layer.lod_limit_px, layer.render.lod.max_children);
     if (choice.fine == 0) return false;
-    if (-p.z + reach < near) return true;
-    if (-p.z - reach > near && children_miss(layer, p, reach, rect)) return true;
+    const shared::Instance at = shared::instance_of(layer.lens, p);
+    if (at.depth + reach < near) return true;
+    if (at.depth - reach > near) {
+        const float support_px = shared::reach_px(layer.lens, p, reach, layer.margin_px);
+        if (!shared::touches_rect(at.x_px, at.y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1))
+            return true;
+    }
     if (layer.render.falloff.shape == Falloff::Shape::constant && splat.alpha > 0.5f) return false;
     const LevelShades shades = shade_levels(layer, choice, splat);
     project_level(layer, splat, index, choice.coarse, shades.coarse, rect, out);

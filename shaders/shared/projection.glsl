@@ -72,6 +72,17 @@ Float near_fade(Lens lens, Float depth, Float radius) {
     return t * t * (3.0f - 2.0f * t);
 }
 
+// p, or where it would be were it no nearer than near.
+Vec3 beyond_near(Lens lens, Vec3 p) { return Vec3(p.x, p.y, min(p.z, -lens.near)); }
+
+// How far from where p appears anything within `reach` scene units of it can, with a margin; all of it lies beyond near.
+Float reach_px(Lens lens, Vec3 p, Float reach, Float margin_px) {
+    Instance at = instance_of(lens, p);
+    Instance nearest = instance_of(lens, Vec3(p.x, p.y, p.z + reach));
+    Float moved_px = abs(nearest.x_px - at.x_px) + abs(nearest.y_px - at.y_px);
+    return reach * nearest.px_per_unit + margin_px + moved_px;
+}
+
 // Whether a square around a splat touches a rectangle from (x0, y0) to (x1, y1).
 Bool touches_rect(Float x_px, Float y_px, Float reach_px, float x0, float y0, float x1, float y1) {
     return x_px + reach_px > x0 && x_px - reach_px < x1 && y_px + reach_px > y0 && y_px - reach_px < y1;
