@@ -11,7 +11,6 @@
 
 #include "core/file.h"
 #include "core/file_format.h"
-#include "output/image_info.h"
 #include "output/read_frame.h"
 #include "report.h"
 #include "scene/check.h"

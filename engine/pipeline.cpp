@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/clock.h"
-#include "core/log.h"
+#include "core/text.h"
 #include "look/apply.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
@@ -49,7 +49,7 @@ bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
 /// Whether the layer's splats are shaded alike in all frames, as far as the tracks' keys tell.
 bool shaded_alike(const Scene& scene, const std::string& name) {
     const ParameterKey harmless = layer_key(name) / "visible";
-    return std::none_of(scene.animation.begin(), scene.animation.end(), [&](const Track& track) {
+    return std::ranges::none_of(scene.animation, [&](const Track& track) {
         return track.key.layer() == name && track.key != harmless;
     });
 }
@@ -229,18 +229,15 @@ RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, cons
 
 RenderSettings Pipeline::settings(double frame) const {
     const OutputParams output = scene_at(state_->scene, frame).output;
-    const auto has = [&](const char* aov) {
-        return std::find(output.aovs.begin(), output.aovs.end(), aov) != output.aovs.end();
-    };
     RenderSettings settings;
     settings.width = output.width;
     settings.height = output.height;
     settings.pixel_filter = static_cast<float>(output.pixel_filter);
     settings.exposure = static_cast<float>(output.exposure);
-    settings.aov_depth = has("depth");
-    settings.aov_coverage = has("coverage");
-    settings.aov_count = has("count");
-    settings.aov_layers = has("layers");
+    settings.aov_depth = output.holds("depth");
+    settings.aov_coverage = output.holds("coverage");
+    settings.aov_count = output.holds("count");
+    settings.aov_layers = output.holds("layers");
     return settings;
 }
 
@@ -261,14 +258,9 @@ std::vector<std::string> Pipeline::layer_names(double frame) const {
 
 std::string Pipeline::input_credit() const {
     std::vector<std::string> credits;
-    std::string joined;
-    for (const LayerState& layer : state_->layers) {
-        const std::string credit = layer.set ? layer.set->credit : "";
-        if (credit.empty() || std::find(credits.begin(), credits.end(), credit) != credits.end()) continue;
-        credits.push_back(credit);
-        joined += (joined.empty() ? "" : "; ") + credit;
-    }
-    return joined;
+    for (const LayerState& layer : state_->layers)
+        if (layer.set) credits.push_back(layer.set->credit);
+    return joined_once(credits);
 }
 
 }  // namespace astrosplat

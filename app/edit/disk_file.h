@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/file_stamp.h"
+#include "core/file.h"
 
 namespace astrosplat {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "core/file_stamp.h"
+#include "core/file.h"
 
 namespace astrosplat {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "generate/kept_watcher.h"
+#include "generate/kept_store.h"
 
 namespace astrosplat {
 

@@ -33,6 +33,13 @@ constexpr std::string_view name_of(E value) {
     return names_of(value)[static_cast<std::size_t>(value)];
 }
 
+/// Whether the values are numbered as the constants of a shader, all of them.
+template <NamedEnum E, class... Numbers>
+constexpr bool numbered_as(Numbers... numbers) {
+    int value = 0;
+    return ((numbers == value++) && ...) && sizeof...(Numbers) == names_of(E{}).size();
+}
+
 /// All names, in order.
 template <NamedEnum E>
 std::vector<std::string> all_names() {

@@ -65,6 +65,12 @@ std::string read_file(const fs::path& file, const Progress& progress) {
     return text;
 }
 
+FileStamp stamp_of(const fs::path& file) {
+    struct stat status {};
+    if (::stat(file.c_str(), &status) != 0) return {};
+    return {status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_size, status.st_dev, status.st_ino};
+}
+
 std::string read_beginning(const fs::path& file, std::size_t size) {
     std::string text(size, '\0');
     std::size_t have = 0;

@@ -1,8 +1,6 @@
 // The table, and its look-up by name and by content.
 #include "core/file_format.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/file.h"
@@ -59,7 +57,7 @@ bool begins_with(std::string_view bytes, std::string_view magic) {
 
 template <class Wanted>
 const FileFormat* find(const Wanted& wanted) {
-    const auto found = std::find_if(formats().begin(), formats().end(), wanted);
+    const auto found = std::ranges::find_if(formats(), wanted);
     return found == formats().end() ? nullptr : &*found;
 }
 
@@ -72,7 +70,7 @@ std::span<const FileFormat> file_formats() { return formats(); }
 const FileFormat* format_by_name(const fs::path& file) {
     const std::string name = lower_case(file.filename().string());
     return find([&](const FileFormat& format) {
-        return std::any_of(format.endings.begin(), format.endings.end(), [&](std::string_view ending) {
+        return std::ranges::any_of(format.endings, [&](std::string_view ending) {
             return name.size() > ending.size() && name.ends_with(ending);
         });
     });
@@ -81,8 +79,8 @@ const FileFormat* format_by_name(const fs::path& file) {
 const FileFormat* format_of_file(const fs::path& file) {
     const std::string bytes = read_beginning(file, longest_magic);
     const FileFormat* by_content = find([&](const FileFormat& format) {
-        return std::any_of(format.magic.begin(), format.magic.end(),
-                           [&](std::string_view magic) { return begins_with(bytes, magic); });
+        return std::ranges::any_of(format.magic,
+                                   [&](std::string_view magic) { return begins_with(bytes, magic); });
     });
     return by_content ? by_content : format_by_name(file);
 }
@@ -92,18 +90,16 @@ FileKind kind_of(const FileFormat* format) { return format ? format->kind : File
 std::vector<std::string> endings_of(std::initializer_list<FileKind> kinds, FileUse use) {
     std::vector<std::string> endings;
     for (const FileFormat& format : formats())
-        if (is_used(format, use) && std::find(kinds.begin(), kinds.end(), format.kind) != kinds.end())
+        if (is_used(format, use) && std::ranges::find(kinds, format.kind) != kinds.end())
             endings.insert(endings.end(), format.endings.begin(), format.endings.end());
     return endings;
 }
 
 std::string names_of(FileKind kind, FileUse use) {
-    std::vector<std::string_view> names;
+    std::vector<std::string> names;
     for (const FileFormat& format : formats())
-        if (format.kind == kind && is_used(format, use)) names.push_back(format.name);
-    const std::string_view last = names.back();
-    names.pop_back();
-    return names.empty() ? std::string(last) : fmt::format("{} or {}", fmt::join(names, ", "), last);
+        if (format.kind == kind && is_used(format, use)) names.emplace_back(format.name);
+    return alternatives(names);
 }
 
 }  // namespace astrosplat

@@ -61,7 +61,7 @@ class Pool {
         wake_.notify_all();
         work(job, 0);
         std::unique_lock lock(mutex_);
-        jobs_.erase(std::find(jobs_.begin(), jobs_.end(), &job));
+        jobs_.erase(std::ranges::find(jobs_, &job));
         idle_.wait(lock, [&] { return job.helpers == 0; });
         if (job.error) std::rethrow_exception(job.error);
     }
@@ -196,6 +196,23 @@ void parallel_chunks(std::int64_t count, std::int64_t chunk, const Body& body) {
 
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t, int)>& body) {
     parallel_chunks(count, 1, [&](std::int64_t begin, std::int64_t, int worker) { body(begin, worker); });
+}
+
+void parallel_parts(std::size_t count, const Progress& progress,
+                    const std::function<void(std::size_t part)>& body) {
+    std::vector<std::string> errors(count);
+    std::atomic<std::size_t> done{0};
+    parallel_each(count, 1, [&](std::size_t part) {
+        progress.check();
+        try {
+            body(part);
+        } catch (const InputError& error) {
+            errors[part] = error.what();
+        }
+        progress.at(static_cast<double>(++done) / static_cast<double>(count));
+    });
+    for (const std::string& error : errors)
+        if (!error.empty()) throw InputError(error);
 }
 
 }  // namespace astrosplat

@@ -2,8 +2,11 @@
 // depend on which thread does what: every loop body writes only what its own index names.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+
+#include "core/progress.h"
 
 namespace astrosplat {
 
@@ -23,5 +26,18 @@ void parallel_chunks(std::int64_t count, std::int64_t chunk,
 
 /// parallel_chunks with chunks of one.
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t index, int worker)>& body);
+
+/// parallel_chunks that calls body(index) for every item.
+template <class Index, class Body>
+void parallel_each(Index count, std::int64_t chunk, const Body& body) {
+    parallel_chunks(static_cast<std::int64_t>(count), chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        for (auto i = static_cast<Index>(begin); i < static_cast<Index>(end); ++i) body(i);
+    });
+}
+
+/// parallel_for over the parts of a file. The InputError of the lowest part that throws one is thrown here,
+/// whatever the threads do; Cancelled.
+void parallel_parts(std::size_t count, const Progress& progress,
+                    const std::function<void(std::size_t part)>& body);
 
 }  // namespace astrosplat

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <functional>
 
+#include "core/error.h"
+
 namespace astrosplat {
 
 struct Progress {
@@ -16,7 +18,9 @@ struct Progress {
     }
     bool stop() const { return cancelled && cancelled->load(std::memory_order_relaxed); }
     /// Throws Cancelled after a request to stop.
-    void check() const;
+    void check() const {
+        if (stop()) throw Cancelled();
+    }
 };
 
 }  // namespace astrosplat

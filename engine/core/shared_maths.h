@@ -4,10 +4,8 @@
 
 #include "core/glsl.h"
 
-#if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#endif
 
 namespace astrosplat::shared {
 using namespace astrosplat::glsl;
@@ -16,6 +14,4 @@ namespace {
 }
 }  // namespace astrosplat::shared
 
-#if defined(__GNUC__)
 #pragma GCC diagnostic pop
-#endif

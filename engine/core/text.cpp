@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -55,6 +56,20 @@ std::string printable(std::string_view text) {
 
 std::string counted(std::int64_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string joined_once(const std::vector<std::string>& texts) {
+    std::vector<std::string> known;
+    for (const std::string& text : texts)
+        if (!text.empty() && std::ranges::find(known, text) == known.end()) known.push_back(text);
+    return fmt::format("{}", fmt::join(known, "; "));
+}
+
+std::string alternatives(const std::vector<std::string>& names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
+    return text;
 }
 
 std::string lower_case(std::string text) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace astrosplat {
 
@@ -17,6 +18,12 @@ std::string printable(std::string_view text);
 
 /// "1 frame", "12 frames", of a noun that takes an s.
 std::string counted(std::int64_t count, std::string_view noun);
+
+/// The texts that are not empty, each once, joined with "; ".
+std::string joined_once(const std::vector<std::string>& texts);
+
+/// "over, add or screen".
+std::string alternatives(const std::vector<std::string>& names);
 
 /// With a to z for A to Z; other letters stay as they are.
 std::string lower_case(std::string text);

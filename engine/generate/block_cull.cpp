@@ -30,14 +30,11 @@ std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const 
 
 void drop_far(std::vector<LatticeBlock>& blocks, std::int64_t cells, const TriangleTree& tree,
               const Lattice& lattice, const CullSettings& settings) {
-    const auto count = static_cast<std::int64_t>(blocks.size());
-    parallel_chunks(count, 256, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) {
-            LatticeBlock& block = blocks[static_cast<std::size_t>(i)];
-            const BlockBall ball = block_ball(lattice, settings.jitter, block.at * cells, cells);
-            block.near_slot =
-                closest_point(tree, ball.center, settings.max_distance + ball.radius, block.near_slot).slot;
-        }
+    parallel_each(blocks.size(), 256, [&](std::size_t i) {
+        LatticeBlock& block = blocks[i];
+        const BlockBall ball = block_ball(lattice, settings.jitter, block.at * cells, cells);
+        block.near_slot =
+            closest_point(tree, ball.center, settings.max_distance + ball.radius, block.near_slot).slot;
     });
     std::erase_if(blocks, [](const LatticeBlock& block) { return block.near_slot == ClosestPoint::none; });
 }
@@ -69,7 +66,7 @@ std::vector<LatticeBlock> blocks_near(const TriangleTree& tree, const Lattice& l
         cells /= 2;
         blocks = split(blocks, lattice, cells);
     }
-    std::sort(blocks.begin(), blocks.end(), [](const LatticeBlock& a, const LatticeBlock& b) {
+    std::ranges::sort(blocks, [](const LatticeBlock& a, const LatticeBlock& b) {
         return std::tie(a.at.z, a.at.y, a.at.x) < std::tie(b.at.z, b.at.y, b.at.x);
     });
     return blocks;

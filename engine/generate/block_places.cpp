@@ -21,7 +21,7 @@ using namespace astrosplat::glsl;
 #include "maths.glsl"
 #pragma GCC diagnostic pop
 
-// As jitter_offset: half_range * (2 uniform - 1), added to the lattice position.
+// half_range * (2 uniform - 1), added to the lattice position.
 HWY_FLATTEN void add_jitter(const uint* HWY_RESTRICT id_low, const uint* HWY_RESTRICT id_high,
                             std::uint32_t seed, std::uint32_t purpose, double half_range,
                             double* HWY_RESTRICT at) {

@@ -32,7 +32,8 @@ struct BlockAnswers {
     Array<std::uint32_t> triangle;
 };
 
-/// Fills in the positions, to the bits of jittered_position, also those beyond the lattice's end.
+/// Fills in the positions, each moved by jitter * half a voxel * uniform[-1, 1) per axis, hashed from (seed,
+/// id); also those beyond the lattice's end.
 void place_block(const Lattice& lattice, const CullSettings& settings, const LatticeBlock& block,
                  Positions kind, BlockAnswers& answers);
 

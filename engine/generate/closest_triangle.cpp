@@ -54,9 +54,4 @@ ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& s) {
     return at(ap, s, vb * scale, vc * scale);
 }
 
-ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
-                                 const glm::dvec3& c) {
-    return closest_on_triangle(p, triangle_shape(a, b, c));
-}
-
 }  // namespace astrosplat

@@ -54,8 +54,6 @@ inline bool is_narrow(const TriangleShape& s) {
 /// Closest point of one triangle (Ericson, Real-Time Collision Detection 5.1.5, with the dot products of the
 /// other two corners derived from the first corner's), in double; `triangle` comes back as 0.
 ClosestPoint closest_on_triangle(const glm::dvec3& p, const TriangleShape& shape);
-ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
-                                 const glm::dvec3& c);
 
 /// The order that decides: smaller distance, then lower triangle index.
 inline bool nearer(const ClosestPoint& a, const ClosestPoint& b) {

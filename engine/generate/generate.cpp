@@ -11,9 +11,9 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "generate/block_query.h"
 #include "generate/kept_store.h"
-#include "generate/kept_watcher.h"
 #include "generate/surface.h"
 
 namespace astrosplat {
@@ -166,12 +166,10 @@ void describe_set(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     for (const TexturedMesh& m : meshes) {
         for (const Texture& texture : m.textures) {
             set.divided = set.divided || texture.divided;
-            const bool known = std::find(credits.begin(), credits.end(), texture.credit) != credits.end();
-            if (texture.credit.empty() || known) continue;
-            set.credit += (credits.empty() ? "" : "; ") + texture.credit;
             credits.push_back(texture.credit);
         }
     }
+    set.credit = joined_once(credits);
 }
 
 }  // namespace

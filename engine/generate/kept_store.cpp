@@ -20,10 +20,6 @@ struct Move {
     std::size_t count, to;
 };
 
-void unpack(const Move& move, SplatSet& set) {
-    for (std::size_t i = 0; i < move.count; ++i) put(move.from[i], set, move.to + i);
-}
-
 }  // namespace
 
 void put(const KeptSplat& splat, SplatSet& set, std::size_t row) {
@@ -49,19 +45,17 @@ void append_sorted(std::span<const KeptStore::Run> runs, SplatSet& set) {
     std::vector<Move> moves;
     moves.reserve(runs.size());
     for (const KeptStore::Run& run : runs) moves.push_back({run.splats, run.count, 0});
-    std::sort(moves.begin(), moves.end(),
-              [](const Move& a, const Move& b) { return a.from->id < b.from->id; });
+    std::ranges::sort(moves, [](const Move& a, const Move& b) { return a.from->id < b.from->id; });
     std::size_t size = set.position.size();
     for (Move& move : moves) {
         move.to = size;
         size += move.count;
     }
     resize(set, size);
-    parallel_chunks(static_cast<std::int64_t>(moves.size()), 256,
-                    [&](std::int64_t begin, std::int64_t end, int) {
-                        for (std::int64_t i = begin; i < end; ++i)
-                            unpack(moves[static_cast<std::size_t>(i)], set);
-                    });
+    parallel_each(moves.size(), 256, [&](std::size_t n) {
+        const Move& move = moves[n];
+        for (std::size_t i = 0; i < move.count; ++i) put(move.from[i], set, move.to + i);
+    });
 }
 
 }  // namespace astrosplat

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/bounds.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -63,6 +64,18 @@ class KeptStore {
     std::size_t used_ = 0;  // blocks
     KeptSplat *next_ = nullptr, *end_ = nullptr;
     bool open_ = false;
+};
+
+/// Who wants to see a set while it is generated. What is made of the splats never reaches the set.
+class KeptWatcher {
+  public:
+    virtual ~KeptWatcher() = default;
+    /// Once, before the first splat. `empty` is the set as it will be but without splats; `box` holds the
+    /// lattice, layer space.
+    virtual void begins(const SplatSet& empty, const Bounds& box) = 0;
+    /// Each kept splat once, in runs of ascending ids that come in any order; from any thread, several at a
+    /// time. The runs are gone after the call, which keeps the thread from its work: it is to be short.
+    virtual void keeps(std::span<const KeptStore::Run> runs) = 0;
 };
 
 /// Those columns, for `size` splats; what is new in them has no values yet.

@@ -37,15 +37,6 @@ inline double lattice_coordinate(const Lattice& lattice, int axis, double cells)
            (lattice.box.hi[axis] - lattice.box.lo[axis]) * cells / static_cast<double>(lattice.n[axis]);
 }
 
-/// Position of lattice id before jitter; corners come first, then centres.
-glm::dvec3 lattice_position(const Lattice& lattice, std::uint64_t id);
-
-/// What jitter adds to a position: half_voxel * jitter * uniform[-1, 1) per axis, hashed from (seed, id).
-glm::dvec3 jitter_offset(std::uint64_t id, std::uint32_t seed, const glm::dvec3& half_range);
-
-/// lattice_position moved by jitter * half a voxel * uniform(-1, 1) per axis, hashed from (seed, id).
-glm::dvec3 jittered_position(const Lattice& lattice, std::uint64_t id, double jitter, std::uint32_t seed);
-
 /// Bounds of all vertices of all meshes.
 Bounds bounds(std::span<const TexturedMesh> meshes);
 

@@ -94,7 +94,7 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
     SplatSet set = read_splats(source.file, progress);
     sort_by_id(set);
     if (set.max_distance <= 0.0 && !set.distance.empty()) {
-        set.max_distance = *std::max_element(set.distance.begin(), set.distance.end());
+        set.max_distance = *std::ranges::max_element(set.distance);
     }
     return set;
 }

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <string_view>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -58,7 +59,7 @@ std::optional<SplatSet> read_entry(const fs::path& file, const SetKey& key, cons
     const std::uintmax_t bytes = fs::file_size(file, error);
     if (error || bytes > static_cast<std::uintmax_t>(available_memory_bytes())) return std::nullopt;
     try {
-        SplatSet set = read_native(file, wanted, progress);
+        SplatSet set = read_native(file, progress, wanted);
         if (std::exchange(set.key, "") != key.text)
             bad_input(file.string(), "key", "that of the set asked for", "another");
         fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // refused: it seems older
@@ -99,9 +100,6 @@ void shrink_to(const fs::path& folder, std::int64_t bytes) {
         fs::file_time_type used;
         fs::path file;
         std::int64_t bytes;
-        bool operator<(const Entry& other) const {
-            return used != other.used ? used < other.used : file < other.file;
-        }
     };
     std::vector<Entry> entries;
     std::int64_t total = 0;
@@ -114,7 +112,7 @@ void shrink_to(const fs::path& folder, std::int64_t bytes) {
             entries.back().bytes = static_cast<std::int64_t>(size);  // else another process removed it
         total += entries.back().bytes;
     }
-    std::sort(entries.begin(), entries.end());
+    std::ranges::sort(entries, {}, [](const Entry& entry) { return std::tie(entry.used, entry.file); });
     for (const Entry& entry : entries) {
         if (total <= bytes) return;
         if (fs::remove(entry.file, error)) log_detail(entry.file.string() + ": removed from the cache");
@@ -138,7 +136,7 @@ void write_entry(const SetCache& cache, const std::string& name, const SplatSet&
     }
     shrink_to(cache.folder, limit - bytes);
     try {
-        write_native(entry_file(cache, name), set, RowOrder::id, Progress{{}, progress.cancelled});
+        write_native(entry_file(cache, name), set, Progress{{}, progress.cancelled}, RowOrder::id);
     } catch (const OutputError& error) {
         warn_unwritable(cache, error.what());
     }

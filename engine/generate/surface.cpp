@@ -54,14 +54,11 @@ Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, 
         const auto corner = [&](const Mesh::Triangle& face, std::size_t k) {
             return glm::dvec3(m.mesh.positions[face.position[k]]);
         };
-        const auto faces = static_cast<std::int64_t>(m.mesh.triangles.size());
-        parallel_chunks(faces, 4096, [&](std::int64_t begin, std::int64_t end, int) {
-            for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-                const Mesh::Triangle& face = m.mesh.triangles[i];
-                const TriangleShape shape = triangle_shape(corner(face, 0), corner(face, 1), corner(face, 2));
-                triangles[first + i] = surface_triangle(m, face, shape, spacing);
-                triangles[first + i].mesh = static_cast<std::uint32_t>(number);
-            }
+        parallel_each(m.mesh.triangles.size(), 4096, [&](std::size_t i) {
+            const Mesh::Triangle& face = m.mesh.triangles[i];
+            const TriangleShape shape = triangle_shape(corner(face, 0), corner(face, 1), corner(face, 2));
+            triangles[first + i] = surface_triangle(m, face, shape, spacing);
+            triangles[first + i].mesh = static_cast<std::uint32_t>(number);
         });
         first += m.mesh.triangles.size();
     }

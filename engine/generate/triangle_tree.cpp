@@ -15,14 +15,8 @@ namespace astrosplat {
 namespace {
 
 constexpr std::size_t fan = TriangleTree::fan;
+constexpr std::int64_t triangles_per_chunk = 4096;
 constexpr std::size_t most_triangles = ClosestPoint::none;  // so that it is no triangle's number or slot
-
-template <class Body>
-void parallel_each(std::size_t count, const Body& body) {
-    parallel_chunks(static_cast<std::int64_t>(count), 4096, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) body(i);
-    });
-}
 
 // Of all triangles, by number.
 Buffer<TriangleCorners> corners_of(std::span<const Mesh* const> meshes) {
@@ -35,7 +29,7 @@ Buffer<TriangleCorners> corners_of(std::span<const Mesh* const> meshes) {
     Buffer<TriangleCorners> corners(count);
     std::size_t first = 0;
     for (const Mesh* mesh : meshes) {
-        parallel_each(mesh->triangles.size(), [&](std::size_t t) {
+        parallel_each(mesh->triangles.size(), triangles_per_chunk, [&](std::size_t t) {
             const auto& [a, b, c] = mesh->triangles[t].position;
             corners[first + t] = {mesh->positions[a], mesh->positions[b], mesh->positions[c]};
         });
@@ -78,7 +72,7 @@ void cut(std::span<Middle> middles, std::size_t most, const Visit& visit) {
 
 Buffer<Middle> place_order(const Buffer<TriangleCorners>& corners, const TriangleTree& tree) {
     Buffer<Middle> order(corners.size());
-    parallel_each(corners.size(), [&](std::size_t i) {
+    parallel_each(corners.size(), triangles_per_chunk, [&](std::size_t i) {
         const auto& [a, b, c] = corners[i];
         const glm::dvec3 middle = (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0 - tree.origin;
         order[i] = {glm::vec3(middle), static_cast<std::uint32_t>(i)};
@@ -103,7 +97,7 @@ TreeLevel level_of(std::size_t count) {
 
 TreeLevel level_above(const TreeLevel& below) {
     TreeLevel level = level_of((below.count + fan - 1) / fan);
-    parallel_each(level.count, [&](std::size_t i) {
+    parallel_each(level.count, triangles_per_chunk, [&](std::size_t i) {
         const auto first = static_cast<std::ptrdiff_t>(i * fan);
         const auto last = static_cast<std::ptrdiff_t>(std::min((i + 1) * fan, below.count));
         const auto least = [&](const Buffer<float>& side) {
@@ -192,7 +186,7 @@ TriangleTree make_triangle_tree(std::span<const Mesh* const> meshes) {
     const Buffer<Middle> order = place_order(corners, tree);
     tree.triangles.resize(order.size());
     TreeLevel level = level_of(order.size());
-    parallel_each(order.size(), [&](std::size_t slot) {
+    parallel_each(order.size(), triangles_per_chunk, [&](std::size_t slot) {
         const std::uint32_t number = order[slot].number;
         const TriangleShape shape = triangle_shape(corners[number]);
         tree.triangles[slot] = {corners[number], number, triangle_disc(shape, tree.origin)};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -18,23 +19,16 @@ namespace {
 
 constexpr std::int64_t chunk_size = 1 << 14;  // splats; 1.3 MB in and out
 
-template <class T>
-void make_room(Buffer<T>& buffer, std::size_t size) {
-    buffer.clear();  // nothing to copy should it grow
-    buffer.resize(size);
-}
-
 void make_room(ShadedSplats& shaded, std::int64_t count) {
     const auto size = std::size_t(count);
     if (shaded.position.capacity() < size) {
         const std::size_t bytes = 2 * sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(std::uint64_t);
         claim_memory(count * std::int64_t(bytes), "shaded splats");
     }
-    make_room(shaded.position, size);
-    make_room(shaded.color, size);
-    make_room(shaded.alpha, size);
-    make_room(shaded.radius, size);
-    make_room(shaded.id, size);
+    for_each_array(shaded, [&](auto& array) {
+        array.clear();  // nothing to copy should it grow
+        array.resize(size);
+    });
 }
 
 template <class T>
@@ -49,27 +43,16 @@ void close_gaps(Buffer<T>& buffer, const std::vector<std::int64_t>& kept) {
 }
 
 void close_gaps(ShadedSplats& shaded, const std::vector<std::int64_t>& kept) {
-    parallel_for(5, [&](std::int64_t array, int) {
-        if (array == 0) close_gaps(shaded.position, kept);
-        if (array == 1) close_gaps(shaded.color, kept);
-        if (array == 2) close_gaps(shaded.alpha, kept);
-        if (array == 3) close_gaps(shaded.radius, kept);
-        if (array == 4) close_gaps(shaded.id, kept);
-    });
+    std::vector<std::function<void()>> tasks;
+    for_each_array(shaded, [&](auto& array) { tasks.push_back([&] { close_gaps(array, kept); }); });
+    parallel_each(tasks.size(), 1, [&](std::size_t array) { tasks[array](); });
 }
 
 // Gives memory back where most of it is not used.
-template <class T>
-void trim(Buffer<T>& buffer) {
-    if (buffer.capacity() > 2 * buffer.size()) buffer.shrink_to_fit();
-}
-
 void trim(ShadedSplats& shaded) {
-    trim(shaded.position);
-    trim(shaded.color);
-    trim(shaded.alpha);
-    trim(shaded.radius);
-    trim(shaded.id);
+    for_each_array(shaded, [](auto& array) {
+        if (array.capacity() > 2 * array.size()) array.shrink_to_fit();
+    });
 }
 
 // Hands the set's arrays to the shaded splats, the distances where it has no radii. The set's other arrays

@@ -26,7 +26,7 @@ std::vector<double> piece_ends(const Column& column) {
     std::vector<double> ends = {0.0, column.end};
     for (double x : corners(column.pdf)) ends.push_back(x);
     for (double x : corners(column.vertical)) ends.push_back(x / column.vertical_ratio);
-    std::sort(ends.begin(), ends.end());
+    std::ranges::sort(ends);
     ends.erase(
         std::remove_if(ends.begin(), ends.end(), [&](double x) { return !(x >= 0.0 && x <= column.end); }),
         ends.end());

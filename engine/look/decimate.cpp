@@ -29,11 +29,9 @@ void decimate(ShadedSplats& splats, float share, bool additive) {
     assert(share > 0.0f && share <= 1.0f);
     if (share == 1.0f) return;
     const float inverse = 1.0f / share;
-    parallel_chunks(splats.size(), chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            const float wanted = splats.alpha[i] * inverse;
-            additive ? brighten(splats, i, wanted) : thicken(splats, i, wanted);
-        }
+    parallel_each(splats.alpha.size(), chunk, [&](std::size_t i) {
+        const float wanted = splats.alpha[i] * inverse;
+        additive ? brighten(splats, i, wanted) : thicken(splats, i, wanted);
     });
 }
 

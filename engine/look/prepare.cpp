@@ -23,13 +23,9 @@ using namespace shared_types;
 using Match = VerticalAlpha::Match;
 
 // Shapes of a density are numbered as the shaders number profiles.
-static_assert(static_cast<int>(DensityCurve::Shape::constant) == PROFILE_CONSTANT);
-static_assert(static_cast<int>(DensityCurve::Shape::linear) == PROFILE_LINEAR);
-static_assert(static_cast<int>(DensityCurve::Shape::quadratic) == PROFILE_QUADRATIC);
-static_assert(static_cast<int>(DensityCurve::Shape::exponential) == PROFILE_EXPONENTIAL);
-static_assert(static_cast<int>(DensityCurve::Shape::gaussian) == PROFILE_GAUSSIAN);
-static_assert(static_cast<int>(DensityCurve::Shape::smooth) == PROFILE_SMOOTH);
-static_assert(static_cast<int>(DensityCurve::Shape::curve) == PROFILE_CURVE);
+static_assert(numbered_as<DensityCurve::Shape>(PROFILE_CONSTANT, PROFILE_LINEAR, PROFILE_QUADRATIC,
+                                               PROFILE_EXPONENTIAL, PROFILE_GAUSSIAN, PROFILE_SMOOTH,
+                                               PROFILE_CURVE));
 
 int profile_shape(VerticalAlpha::Shape shape) {
     switch (shape) {

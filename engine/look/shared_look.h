@@ -5,10 +5,8 @@
 #include "core/shared_maths.h"
 #include "look/shared_uniforms.h"
 
-#if defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#endif
 
 namespace astrosplat::shared {
 using namespace astrosplat::shared_types;
@@ -19,6 +17,4 @@ namespace {
 }  // namespace
 }  // namespace astrosplat::shared
 
-#if defined(__GNUC__)
 #pragma GCC diagnostic pop
-#endif

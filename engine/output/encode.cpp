@@ -44,12 +44,21 @@ float soft_curve(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0
 
 float gain_of(const FrameFormat& format) { return static_cast<float>(real::pow(2.0, format.exposure)); }
 
-// Calls row(y) for every row of a picture, on all threads.
-template <class Row>
-void for_rows(const Image& image, const Row& row) {
-    parallel_chunks(image.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y) row(y);
+// Rows of channels that put(x, y, encoded, out) makes of every pixel, on all threads.
+template <class T, class Put>
+std::vector<T> encode_rows(const FrameFormat& format, const Image& image, const Put& put) {
+    const int channels = stored_channels(format);
+    const float gain = gain_of(format);
+    std::vector<T> samples(static_cast<std::size_t>(image.width * image.height * channels));
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        T* out = samples.data() + y * image.width * channels;
+        for (std::int64_t x = 0; x < image.width; ++x, out += channels) {
+            float stored[4] = {0.0f, 0.0f, 0.0f, 1.0f};
+            encode_pixel(format, gain, image.at(x, y), stored);
+            put(x, y, stored, out);
+        }
     });
+    return samples;
 }
 
 }  // namespace
@@ -91,46 +100,31 @@ void encode_pixel(const FrameFormat& format, float gain, const float* rgba, floa
 
 std::vector<std::uint8_t> encode_8bit(const FrameFormat& format, const Image& image, std::int64_t x0,
                                       std::int64_t y0) {
-    int channels = stored_channels(format);
-    float gain = gain_of(format);
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(image.width * image.height * channels));
-    for_rows(image, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x) {
-            float stored[4] = {0.0f, 0.0f, 0.0f, 1.0f};
-            encode_pixel(format, gain, image.at(x, y), stored);
-            std::uint8_t* out = bytes.data() + (y * image.width + x) * channels;
-            for (int c = 0; c < channels; ++c) {
-                float code = std::floor(stored[c] * 255.0f + 0.5f + dither(x0 + x, y0 + y, c));
-                out[c] = static_cast<std::uint8_t>(std::clamp(code, 0.0f, 255.0f));
-            }
-            if (format.alpha == Alpha::premultiplied)
-                for (int c = 0; c < 3; ++c) out[c] = std::min(out[c], out[3]);
+    const int channels = stored_channels(format);
+    const auto put = [&](std::int64_t x, std::int64_t y, const float* stored, std::uint8_t* out) {
+        for (int c = 0; c < channels; ++c) {
+            float code = std::floor(stored[c] * 255.0f + 0.5f + dither(x0 + x, y0 + y, c));
+            out[c] = static_cast<std::uint8_t>(std::clamp(code, 0.0f, 255.0f));
         }
-    });
-    return bytes;
+        if (format.alpha == Alpha::premultiplied)
+            for (int c = 0; c < 3; ++c) out[c] = std::min(out[c], out[3]);
+    };
+    return encode_rows<std::uint8_t>(format, image, put);
 }
 
 std::vector<std::uint16_t> encode_16bit(const FrameFormat& format, const Image& image) {
-    int channels = stored_channels(format);
-    float gain = gain_of(format);
-    std::vector<std::uint16_t> words(static_cast<std::size_t>(image.width * image.height * channels));
-    for_rows(image, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x) {
-            float stored[4];
-            encode_pixel(format, gain, image.at(x, y), stored);
-            std::uint16_t* out = words.data() + (y * image.width + x) * channels;
+    const int channels = stored_channels(format);
+    return encode_rows<std::uint16_t>(
+        format, image, [=](std::int64_t, std::int64_t, const float* stored, std::uint16_t* out) {
             for (int c = 0; c < channels; ++c)
                 out[c] = static_cast<std::uint16_t>(stored[c] * 65535.0f + 0.5f);
-        }
-    });
-    return words;
+        });
 }
 
 Image encode_float(const FrameFormat& format, const Image& image) {
-    int channels = stored_channels(format);
-    Image result{image.width, image.height, channels, {}};
-    result.pixels.resize(static_cast<std::size_t>(image.width * image.height * channels));
-    for_rows(image, [&](std::int64_t y) {
+    Image result{image.width, image.height, stored_channels(format), {}};
+    result.pixels.resize(static_cast<std::size_t>(image.width * image.height * result.channels));
+    parallel_each(image.height, 16, [&](std::int64_t y) {
         for (std::int64_t x = 0; x < image.width; ++x)
             encode_pixel(format, 1.0f, image.at(x, y), result.at(x, y));
     });

@@ -11,8 +11,8 @@
 
 #include "core/error.h"
 #include "core/file_format.h"
+#include "core/text.h"
 #include "output/frame_path.h"
-#include "scene/suggest.h"
 
 namespace astrosplat {
 namespace {
@@ -73,13 +73,13 @@ const KindRules& rules_for(const std::filesystem::path& file) {
 
 template <class T>
 bool contains(const std::vector<T>& list, T value) {
-    return std::find(list.begin(), list.end(), value) != list.end();
+    return std::ranges::find(list, value) != list.end();
 }
 
 void check_aovs(const OutputParams& output, const KindRules& rule) {
     const auto& known = OutputParams::known_aovs;
     for (const std::string& aov : output.aovs)
-        if (std::find(known.begin(), known.end(), aov) == known.end())
+        if (std::ranges::find(known, aov) == known.end())
             throw InputError(fmt::format("output.aovs: expected {}, found '{}'",
                                          alternatives({known.begin(), known.end()}), aov));
     if (!output.aovs.empty() && rule.kind != FrameKind::exr)

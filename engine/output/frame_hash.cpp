@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 bool is_elsewhere(const ParameterSpec& spec) {
     constexpr std::array<std::string_view, 5> keys = {"output.path", "output.frames", "output.fps",
                                                       "output.compression", "layer.preset"};
-    return std::find(keys.begin(), keys.end(), spec.generic_key.text()) != keys.end() ||
+    return std::ranges::find(keys, spec.generic_key.text()) != keys.end() ||
            spec.generic_key.is_below("provenance");
 }
 
@@ -33,7 +33,7 @@ bool shows(const EnvironmentParams& environment) {
 
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
     if (spec.generic_key.is_below("environment")) return !shows(now.environment);
-    return std::any_of(now.layers.begin(), now.layers.end(), [&](const LayerParams& layer) {
+    return std::ranges::any_of(now.layers, [&](const LayerParams& layer) {
         return !layer.visible && spec.key.layer() == layer.name;
     });
 }

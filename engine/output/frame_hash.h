@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "core/file_stamp.h"
+#include "core/file.h"
 #include "core/image.h"
 #include "scene/scene.h"
 

@@ -56,7 +56,7 @@ void PictureFile::check(bool done) {
         (void)out_->geterror();  // a message left behind would be printed
     }
     if (sink_.failure) std::rethrow_exception(sink_.failure);
-    std::replace(reason.begin(), reason.end(), '\n', ' ');
+    std::ranges::replace(reason, '\n', ' ');
     if (reason.empty()) reason = "unknown reason";
     throw OutputError(fmt::format("{}: cannot be written: {}", sink_.file.target().string(), reason));
 }

@@ -1,4 +1,5 @@
-// What --resume asks of a frame file that lies there already: its hashes, and whether it is whole.
+// Headers, and what --resume asks of a frame file that lies there already: its hashes, and whether it is
+// whole.
 #include "output/read_frame.h"
 
 #include <fmt/format.h>
@@ -29,6 +30,20 @@ std::unique_ptr<OIIO::ImageInput> open_if_picture(const std::filesystem::path& f
 }
 
 }  // namespace
+
+ImageInfo read_image_info(const std::filesystem::path& file) {
+    const auto in = open_picture(file);
+    const OIIO::ImageSpec& spec = in->spec();
+    ImageInfo info{spec.width,       spec.height,       spec.x, spec.y, spec.full_width,
+                   spec.full_height, in->format_name(), {},     {}};
+    for (int c = 0; c < spec.nchannels; ++c) {
+        info.channels.emplace_back(spec.channel_name(c), spec.channelformat(c).c_str());
+    }
+    for (const OIIO::ParamValue& value : spec.extra_attribs) {
+        info.metadata.emplace_back(value.name().string(), value.get_string());
+    }
+    return info;
+}
 
 std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::path& file) {
     const auto in = open_if_picture(file);

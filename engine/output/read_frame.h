@@ -1,11 +1,26 @@
-// What a frame file that lies there already tells of itself.
+// What frame files, and pictures of any kind, tell of themselves.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace astrosplat {
+
+struct ImageInfo {
+    std::int64_t width = 0, height = 0;  // px, of the pixels stored
+    std::int64_t x = 0, y = 0;           // px, where they lie in the whole picture
+    std::int64_t whole_width = 0, whole_height = 0;
+    std::string file_format;                                    // "openexr", "tiff", "png", ...
+    std::vector<std::pair<std::string, std::string>> channels;  // name and type: "R", "half"
+    std::vector<std::pair<std::string, std::string>> metadata;  // everything else in the header, as text
+};
+
+/// What a picture file says of itself in its header, without reading its pixels. Throws InputError when the
+/// file cannot be opened as a picture.
+ImageInfo read_image_info(const std::filesystem::path& file);
 
 /// frame_hash and pixel_hash stored in a frame file, empty when there are none or the file is damaged.
 std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::path& file);

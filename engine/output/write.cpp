@@ -115,19 +115,15 @@ OIIO::ImageSpec make_spec(const FrameFormat& format, const Image& beauty, const 
     return spec;
 }
 
-bool asked(const OutputParams& output, const char* aov) {
-    return std::find(output.aovs.begin(), output.aovs.end(), aov) != output.aovs.end();
-}
-
 std::vector<Channel> exr_channels(const Image& beauty, const std::vector<Image>& layers,
                                   const RenderedFrame& frame, const FrameFile& target, bool half) {
     const OutputParams& output = target.output;
     static const char* const names[4] = {"R", "G", "B", "A"};
     std::vector<Channel> channels;
     for (int c = 0; c < beauty.channels; ++c) channels.push_back({names[c], &beauty, c, half});
-    if (asked(output, "depth")) channels.push_back({"Z", &frame.depth, 0, false});
-    if (asked(output, "coverage")) channels.push_back({"coverage", &frame.coverage, 0, half});
-    if (asked(output, "count")) channels.push_back({"count", &frame.count, 0, false});
+    if (output.holds("depth")) channels.push_back({"Z", &frame.depth, 0, false});
+    if (output.holds("coverage")) channels.push_back({"coverage", &frame.coverage, 0, half});
+    if (output.holds("count")) channels.push_back({"count", &frame.count, 0, false});
     for (std::size_t i = 0; i < layers.size(); ++i)
         for (int c = 0; c < layers[i].channels; ++c)
             channels.push_back({fmt::format("{}.{}", target.layer_names[i], names[c]), &layers[i], c, half});
@@ -173,7 +169,7 @@ void write_exr(const FrameFile& target, const FrameFormat& format, const Rendere
                OIIO::ImageSpec spec, const FrameMetadata& metadata) {
     const Image beauty = encode_float(format, frame.beauty);
     std::vector<Image> layers;
-    if (asked(target.output, "layers"))
+    if (target.output.holds("layers"))
         for (const Image& layer : frame.layers) layers.push_back(encode_float(format, layer));
     assert(layers.size() <= target.layer_names.size());
     const std::vector<Channel> channels =
@@ -207,10 +203,10 @@ void write_flat(const FrameFile& target, const FrameFormat& format, const Image&
 
 void check_frame(const RenderedFrame& frame, const OutputParams& output) {
     check_finite(frame.beauty, "beauty");
-    if (asked(output, "depth")) check_finite(frame.depth, "depth");
-    if (asked(output, "coverage")) check_finite(frame.coverage, "coverage");
-    if (asked(output, "count")) check_finite(frame.count, "count");
-    if (!asked(output, "layers")) return;
+    if (output.holds("depth")) check_finite(frame.depth, "depth");
+    if (output.holds("coverage")) check_finite(frame.coverage, "coverage");
+    if (output.holds("count")) check_finite(frame.count, "count");
+    if (!output.holds("layers")) return;
     for (const Image& layer : frame.layers) check_finite(layer, "layer");
 }
 

@@ -165,7 +165,7 @@ Image with_border(const Image& picture) {
 }
 
 float largest_value(const Image& image) {
-    return image.pixels.empty() ? 0.0f : *std::max_element(image.pixels.begin(), image.pixels.end());
+    return image.pixels.empty() ? 0.0f : *std::ranges::max_element(image.pixels);
 }
 
 void fill_borders(std::vector<std::vector<Image>>& faces, std::size_t level) {

@@ -248,7 +248,7 @@ void close_cell(const Cell& cell, float stop, TilePlanes& planes) {
 
 FoldCommon common_of(const FoldJob& job) {
     const std::span<const FoldLayer> layers = job.layers;
-    const auto all_like = [&](auto&& test) { return std::all_of(layers.begin(), layers.end(), test); };
+    const auto all_like = [&](auto&& test) { return std::ranges::all_of(layers, test); };
     const bool one_table =
         all_like([&](const FoldLayer& layer) { return layer.footprints == layers[0].footprints; });
     const bool screen =
@@ -309,15 +309,14 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
 
 template <class Pixels>
 void fold_pixels(const FoldJob& job, TilePlanes& planes) {
-    const bool flat = std::any_of(job.layers.begin(), job.layers.end(),
-                                  [](const FoldLayer& layer) { return layer.footprints->flat_core; });
+    const bool flat =
+        std::ranges::any_of(job.layers, [](const FoldLayer& layer) { return layer.footprints->flat_core; });
     flat ? fold_cells<Pixels, Outline::flat>(job, planes) : fold_cells<Pixels, Outline::soft>(job, planes);
 }
 
 template <bool kAovs>
 void fold_kind(const FoldJob& job, TilePlanes& planes) {
-    const bool holds = std::any_of(job.layers.begin(), job.layers.end(),
-                                   [](const FoldLayer& layer) { return layer.holdout; });
+    const bool holds = std::ranges::any_of(job.layers, [](const FoldLayer& layer) { return layer.holdout; });
     if (job.settings.kind == FoldKind::lighten)
         fold_pixels<LightenPixels<kAovs>>(job, planes);
     else if (holds)

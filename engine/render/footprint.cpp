@@ -66,7 +66,7 @@ std::vector<double> panel_ends(const Falloff& falloff) {
     const bool decays =
         falloff.shape == Falloff::Shape::gaussian || falloff.shape == Falloff::Shape::exponential;
     if (decays && falloff.sharpness > 8.0f) ends.insert(ends.end(), {0.005, 0.02, 0.06, 0.12});
-    std::sort(ends.begin(), ends.end());
+    std::ranges::sort(ends);
     return ends;
 }
 

@@ -34,9 +34,14 @@ float lerp(float a, float b, float t) { return a + (b - a) * t; }
 
 }  // namespace
 
-LevelChoice choose_levels(float diameter_px, float limit_px, int max_children) {
+int finest_level(int max_children) {
     int finest = 0;
     while (finest < 12 && children_of_level(finest + 1) <= max_children) ++finest;
+    return finest;
+}
+
+LevelChoice choose_levels(float diameter_px, float limit_px, int max_children) {
+    const int finest = finest_level(max_children);
     LevelChoice choice;
     if (!(limit_px > 0.0f) || !(diameter_px > limit_px) || finest < first_level) return choice;
     float threshold_px = limit_px;  // above it, level `fine`

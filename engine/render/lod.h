@@ -26,6 +26,9 @@ struct LevelChoice {
 /// fades in over a factor 1.5 in size.
 LevelChoice choose_levels(float diameter_px, float limit_px, int max_children);
 
+/// The finest level of at most so many children.
+int finest_level(int max_children);
+
 inline std::int64_t children_of_level(int level) { return std::int64_t{1} << (2 * level); }
 /// Radius of the children over that of the parent: 2 / sqrt(N).
 inline float child_radius_scale(int level) {

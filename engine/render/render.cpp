@@ -38,13 +38,6 @@ void keep_small(Map& map) {
     if (map.size() > most) map.clear();
 }
 
-/// Finest level of detail a layer can need.
-int finest_level(const LevelOfDetail& lod) {
-    int level = 0;
-    while (level < 12 && children_of_level(level + 1) <= lod.max_children) ++level;
-    return level;
-}
-
 /// The largest light of a single splat: alpha * opacity * brightest channel, over all layers (DESIGN 7's L).
 /// Taken over all splats, seen or not, so that a region renders as the whole does.
 float largest_light(std::span<const RenderLayer> layers, const Progress& progress) {
@@ -175,7 +168,7 @@ void prepare(Job& job, RenderCache::State& cache) {
         projection.reach = footprints.reach;
         projection.variance = footprints.variance;
         if (projection.lod_limit_px > 0.0f)
-            projection.lod = &cache.lod(render.falloff, finest_level(render.lod), job.progress);
+            projection.lod = &cache.lod(render.falloff, finest_level(render.lod.max_children), job.progress);
         job.projections.push_back(projection);
         job.fold_layers.push_back({&footprints, render.blend, render.holdout});
     }
@@ -244,18 +237,17 @@ std::vector<std::int64_t> tile_order(const Job& job, const TileGrid& grid) {
         const std::int64_t y = 2 * (r.y - job.region.y) + r.height - job.region.height;
         return x * x + y * y;
     };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::int64_t a, std::int64_t b) { return from_middle(a) < from_middle(b); });
+    std::ranges::stable_sort(order,
+                             [&](std::int64_t a, std::int64_t b) { return from_middle(a) < from_middle(b); });
     return order;
 }
 
 /// Makes the footprints that the splats of a band ask for.
-void make_footprints(const Job& job, const TileBins& bins, RenderCache::State& cache) {
-    const auto [least_px, largest_px] = bins.radii_px();
-    if (least_px > largest_px) return;
+void make_footprints(const Job& job, const TileBins::Sums& sums, RenderCache::State& cache) {
+    if (sums.least_px > sums.largest_px) return;
     for (const RenderLayer& layer : job.layers)
-        make_footprint_nodes(cache.footprint(layer.render.falloff, job.settings.pixel_filter), least_px,
-                             largest_px, job.progress);
+        make_footprint_nodes(cache.footprint(layer.render.falloff, job.settings.pixel_filter), sums.least_px,
+                             sums.largest_px, job.progress);
 }
 
 /// One band, which will take about so many `records`; `before` of the picture's share is done already.
@@ -265,7 +257,8 @@ void render_band(const Job& job, const TileGrid& grid, std::int64_t records, dou
     cache.store.clear();
     TileBins bins(grid, static_cast<int>(job.groups.size()), records);
     bins.scatter(job.projections, job.group_of_layer, cache.store, job.progress);
-    make_footprints(job, bins, cache);
+    const TileBins::Sums sums = bins.sums();
+    make_footprints(job, sums, cache);
     job.progress.at(before + 0.4 * share);
     std::vector<TileWorker> workers;
     for (int i = 0; i < thread_count(); ++i)
@@ -281,8 +274,8 @@ void render_band(const Job& job, const TileGrid& grid, std::int64_t records, dou
             job.progress.at(before + share * (0.4 + 0.6 * static_cast<double>(finished) /
                                                         static_cast<double>(grid.tiles())));
     });
-    frame.statistics.splats_drawn += bins.instances();
-    frame.statistics.mean_overlap += bins.footprint_px();
+    frame.statistics.splats_drawn += sums.instances;
+    frame.statistics.mean_overlap += sums.footprint_px;
 }
 
 /// The picture's tiles, and the records they will take, roughly.
@@ -326,8 +319,8 @@ std::vector<TileGrid> make_bands(const Job& job, const TileGrid& grid, std::int6
     const auto from_middle = [&](const TileGrid& band) {
         return std::abs(2 * (band.y0 - grid.y0) + band.height - grid.height);
     };
-    std::stable_sort(bands.begin(), bands.end(),
-                     [&](const TileGrid& a, const TileGrid& b) { return from_middle(a) < from_middle(b); });
+    std::ranges::stable_sort(
+        bands, [&](const TileGrid& a, const TileGrid& b) { return from_middle(a) < from_middle(b); });
     return bands;
 }
 

@@ -13,7 +13,7 @@ FoldKind kind_of(std::span<const RenderLayer> layers, const std::vector<std::siz
         !layers[members[0]].render.holdout)
         return FoldKind::lighten;
     const auto all = [&](Blend blend) {
-        return std::all_of(members.begin(), members.end(), [&](std::size_t i) {
+        return std::ranges::all_of(members, [&](std::size_t i) {
             return layers[i].render.blend == blend && !layers[i].render.holdout;
         });
     };

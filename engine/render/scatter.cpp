@@ -235,25 +235,15 @@ void TileBins::collect(std::int64_t tile, int group, std::vector<std::span<const
     }
 }
 
-std::int64_t TileBins::instances() const {
-    std::int64_t sum = 0;
-    for (const Sums& chunk : sums_) sum += chunk.instances;
-    return sum;
-}
-
-double TileBins::footprint_px() const {
-    double sum = 0.0;
-    for (const Sums& chunk : sums_) sum += chunk.footprint_px;
-    return sum;
-}
-
-std::pair<float, float> TileBins::radii_px() const {
+TileBins::Sums TileBins::sums() const {
     Sums all;
     for (const Sums& chunk : sums_) {
+        all.instances += chunk.instances;
+        all.footprint_px += chunk.footprint_px;
         all.least_px = std::min(all.least_px, chunk.least_px);
         all.largest_px = std::max(all.largest_px, chunk.largest_px);
     }
-    return {all.least_px, all.largest_px};
+    return all;
 }
 
 std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,

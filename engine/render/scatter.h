@@ -12,7 +12,6 @@
 #include <limits>
 #include <mutex>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/buffer.h"
@@ -74,20 +73,18 @@ class TileBins {
     std::span<const Shape> shapes() const { return shapes_; }
 
     const TileGrid& grid() const { return grid_; }
-    std::int64_t instances() const;  // splats (children counted one by one), each in one band only
-    double footprint_px() const;     // sum of their footprints' areas, square px
-    /// The least and the largest radius in px whose footprint nodes are needed; empty (least > largest)
-    /// without records.
-    std::pair<float, float> radii_px() const;
+    /// Over the splats; children count one by one, each in one band only.
+    struct Sums {
+        std::int64_t instances = 0;
+        double footprint_px = 0.0;  // sum of their footprints' areas, square px
+        // Radii whose footprint nodes are needed; empty (least > largest) without records.
+        float least_px = std::numeric_limits<float>::max(), largest_px = 0.0f;
+    };
+    Sums sums() const;
 
   private:
     struct Entry {  // a splat in a bin
         std::uint32_t bin, splat;
-    };
-    struct Sums {  // over a chunk of splats
-        std::int64_t instances = 0;
-        double footprint_px = 0.0;
-        float least_px = std::numeric_limits<float>::max(), largest_px = 0.0f;  // radii
     };
     struct Block {
         ScreenSplat* records;

@@ -53,8 +53,8 @@ std::vector<double> track_at(const Track& track, const ParameterSpec& spec, doub
 Scene scene_at(const Scene& scene, double frame) {
     Scene still = scene;
     const Description description = describe(still, [&](const ParameterKey& group) {
-        return std::any_of(scene.animation.begin(), scene.animation.end(),
-                           [&](const Track& track) { return track.key.is_below(group); });
+        return std::ranges::any_of(scene.animation,
+                                   [&](const Track& track) { return track.key.is_below(group); });
     });
     for (const Track& track : scene.animation) {
         const Parameter* parameter = find_parameter(description, track.key);
@@ -68,8 +68,8 @@ bool ever_visible(const Scene& scene, const LayerParams& layer) {
     const ParameterKey key = layer_key(layer.name) / "visible";
     for (const Track& track : scene.animation) {
         if (track.key != key) continue;
-        return std::any_of(track.keys.begin(), track.keys.end(),
-                           [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
+        return std::ranges::any_of(track.keys,
+                                   [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
     }
     return layer.visible;
 }

@@ -50,10 +50,9 @@ const ParameterList* list_at(const Description& description, const ParameterKey&
 /// Whether `key` names something that has parameters below it, such as layer.look.alpha.
 bool is_group(const Description& description, const ParameterKey& key) {
     const auto below = [&](const ParameterKey& known) { return known == key || known.is_below(key); };
-    return std::any_of(description.parameters.begin(), description.parameters.end(),
-                       [&](const Parameter& p) { return below(p.spec.key); }) ||
-           std::any_of(description.lists.begin(), description.lists.end(),
-                       [&](const ParameterList& l) { return below(l.key); });
+    return std::ranges::any_of(description.parameters,
+                               [&](const Parameter& p) { return below(p.spec.key); }) ||
+           std::ranges::any_of(description.lists, [&](const ParameterList& l) { return below(l.key); });
 }
 
 void set_list_length(const Description& description, const Entry& entry, const EntryOrigin& origin) {
@@ -87,8 +86,7 @@ std::string example_below(const Entry& entry, const EntryOrigin& origin, const D
         if (!spec.key.is_below(entry.key)) continue;
         const ParameterKey& key = origin.command_line ? spec.key : spec.generic_key;
         if (first.empty()) first = fmt::format("; it has keys such as {}", key);
-        if (!given || std::find(spec.choices.begin(), spec.choices.end(), given->get()) == spec.choices.end())
-            continue;
+        if (!given || std::ranges::find(spec.choices, given->get()) == spec.choices.end()) continue;
         const std::string value = origin.command_line ? "=" + given->get() : " = " + to_toml(given->get());
         return fmt::format("; did you mean {}{}?", key, value);
     }
@@ -161,8 +159,8 @@ void set_leaf(const Description& description, const Entry& entry, const EntryOri
 void check_table(const Description& description, const Entry& entry, const EntryOrigin& origin,
                  const std::vector<Entry>& entries) {
     if (is_group(description, full_key(description, entry.key)) || is_group(description, entry.key)) return;
-    const bool has_children = std::any_of(entries.begin(), entries.end(),
-                                          [&](const Entry& other) { return other.key.is_below(entry.key); });
+    const bool has_children =
+        std::ranges::any_of(entries, [&](const Entry& other) { return other.key.is_below(entry.key); });
     if (!has_children) fail_unknown(entry, origin, description);
 }
 
@@ -183,6 +181,12 @@ std::string unknown_key(const std::string& shown, const ParameterKey& key, const
     const std::string hint = did_you_mean(key, known_keys(layer_group));
     return fmt::format("unknown key '{}'{}", shown,
                        hint.empty() ? "; 'astrosplat parameters' lists all keys" : hint);
+}
+
+std::string unknown_layer(const Scene& scene, const std::string& name) {
+    const std::vector<std::string> names = layer_names(scene);
+    if (std::ranges::find(names, name) != names.end()) return "";
+    return fmt::format("unknown layer '{}'{}", name, did_you_mean(name, names));
 }
 
 void flatten(const toml::node& node, const ParameterKey& key, const ParameterKey& generic_key,
@@ -215,7 +219,7 @@ void extend_lists(const Description& description, const ParameterKey& key) {
 
 void apply_entries(std::vector<Entry> entries, const EntryOrigin& origin,
                    const std::function<Description()>& describe_target, Places& places) {
-    std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    std::ranges::stable_sort(entries, [](const Entry& a, const Entry& b) {
         return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
     });
     const Description lists = describe_target();

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "scene/parameter.h"
+#include "scene/scene.h"
 #include "scene/toml_read.h"
 
 namespace astrosplat {
@@ -44,5 +45,8 @@ void extend_lists(const Description& description, const ParameterKey& key);
 
 /// "unknown key 'x'; did you mean 'y'?" for a key that no parameter has. `shown` is as the person wrote it.
 std::string unknown_key(const std::string& shown, const ParameterKey& key, const ParameterKey& layer_group);
+
+/// "unknown layer 'x'; did you mean 'y'?", or "" where the scene has it.
+std::string unknown_layer(const Scene& scene, const std::string& name);
 
 }  // namespace astrosplat

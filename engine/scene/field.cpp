@@ -87,7 +87,7 @@ std::size_t choice_of(const Value& value, const ParameterSpec& spec) {
     const bool scalar = value.data.index() <= 1 || value.text();  // depth = 16 and unpremultiply = true count
     if (!scalar) refuse(expectation(spec), kind_of(value));
     const std::string name = value.text() ? *value.text() : to_toml(value);
-    const auto found = std::find(spec.choices.begin(), spec.choices.end(), name);
+    const auto found = std::ranges::find(spec.choices, name);
     if (found == spec.choices.end())
         refuse(expectation(spec), fmt::format("'{}'{}", name, did_you_mean(name, spec.choices)));
     return static_cast<std::size_t>(found - spec.choices.begin());
@@ -97,7 +97,7 @@ std::vector<std::string> words_of(const Value& value, const ParameterSpec& spec)
     std::vector<std::string> words;
     for (const Value& element : list_of(value, spec)) {
         words.push_back(spec.choices[choice_of(element, spec)]);
-        if (std::count(words.begin(), words.end(), words.back()) > 1)
+        if (std::ranges::count(words, words.back()) > 1)
             refuse(expectation(spec), fmt::format("'{}' twice", words.back()));
     }
     return words;

@@ -56,24 +56,18 @@ void add_item(std::string_view item, const std::string& place, std::vector<std::
     for (std::int64_t frame = first; frame <= last; frame += step) frames.push_back(frame);
 }
 
-std::string without_blanks(const std::string& text) {
-    std::string result;
-    for (const char c : text)
-        if (c != ' ' && c != '\t') result += c;
-    return result;
-}
-
 }  // namespace
 
 std::vector<std::int64_t> parse_frames(const std::string& text, const std::string& place) {
-    const std::string compact = without_blanks(text);
+    std::string compact = text;
+    std::erase_if(compact, [](char c) { return c == ' ' || c == '\t'; });
     std::vector<std::int64_t> frames;
     for (std::size_t begin = 0; begin <= compact.size();) {
         const std::size_t end = std::min(compact.find(',', begin), compact.size());
         add_item(std::string_view(compact).substr(begin, end - begin), place, frames);
         begin = end + 1;
     }
-    std::sort(frames.begin(), frames.end());
+    std::ranges::sort(frames);
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     return frames;
 }

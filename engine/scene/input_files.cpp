@@ -30,7 +30,7 @@ std::vector<fs::path> all_files(const SourceParams& source) {
 
 bool has_own_pictures(const MeshInput& input) {
     const auto is_empty = [](const fs::path& file) { return file.empty(); };
-    return !is_builtin_mesh(input.mesh) && std::all_of(input.texture.begin(), input.texture.end(), is_empty);
+    return !is_builtin_mesh(input.mesh) && std::ranges::all_of(input.texture, is_empty);
 }
 
 std::vector<fs::path> picture_files(const Scene& scene) {

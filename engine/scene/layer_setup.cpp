@@ -52,11 +52,8 @@ LookInputs look_inputs(const LayerParams& params) {
 Bounds world_bounds(const Bounds& box, const RenderLayer& layer) {
     Bounds result;
     if (box.empty()) return result;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                           corner & 4 ? box.hi.z : box.lo.z);
-        result.add(layer.world_from_layer * (layer.scale * p) + layer.translate);
-    }
+    for (int corner = 0; corner < 8; ++corner)
+        result.add(layer.world_from_layer * (layer.scale * box.corner(corner)) + layer.translate);
     return result;
 }
 

@@ -11,10 +11,10 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/log.h"
+#include "core/text.h"
 #include "scene/check.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
-#include "scene/suggest.h"
 #include "scene/tracks.h"
 
 namespace astrosplat {
@@ -194,11 +194,8 @@ class Loader {
     }
 
     void check_layer_exists(const std::string& name, const ParameterKey& key) const {
-        std::vector<std::string> names;
-        for (const LayerParams& layer : scene_.layers) names.push_back(layer.name);
-        if (std::find(names.begin(), names.end(), name) != names.end()) return;
-        throw InputError(
-            fmt::format("--set: {}: unknown layer '{}'{}", key, name, did_you_mean(name, names)));
+        if (const std::string problem = unknown_layer(scene_, name); !problem.empty())
+            throw InputError(fmt::format("--set: {}: {}", key, problem));
     }
 
     void rename_layer(const std::string& from, const std::string& to) {
@@ -214,20 +211,18 @@ class Loader {
     }
 
     void add_track(Track track) {
-        for (Track& old : scene_.animation)
-            if (old.key == track.key) {
-                old = std::move(track);
-                return;
-            }
-        scene_.animation.push_back(std::move(track));
+        const auto old = std::ranges::find(scene_.animation, track.key, &Track::key);
+        if (old == scene_.animation.end())
+            scene_.animation.push_back(std::move(track));
+        else
+            *old = std::move(track);
     }
 
     /// --set wins over the scene: a parameter set there is no longer animated.
     void drop_track(const ParameterKey& key) {
         const ParameterKey full = full_key(describe(scene_), key);
         auto& tracks = scene_.animation;
-        const auto found =
-            std::find_if(tracks.begin(), tracks.end(), [&](const Track& t) { return t.key == full; });
+        const auto found = std::ranges::find(tracks, full, &Track::key);
         if (found == tracks.end()) return;
         log_info(fmt::format("--set {} replaces its animation", key));
         tracks.erase(found);
@@ -242,15 +237,11 @@ class Loader {
 }  // namespace
 
 Assignment parse_assignment(const std::string& text) {
-    const std::size_t equals = text.find('=');
-    const auto trimmed = [](const std::string& part) {
-        const std::size_t first = part.find_first_not_of(" \t");
-        if (first == std::string::npos) return std::string();
-        return part.substr(first, part.find_last_not_of(" \t") - first + 1);
-    };
-    const std::string key = equals == std::string::npos ? "" : trimmed(text.substr(0, equals));
-    if (key.empty()) throw InputError(fmt::format("--set: expected KEY=VALUE, found '{}'", text));
-    return {key, trimmed(text.substr(equals + 1))};
+    const std::size_t equals = std::min(text.find('='), text.size());
+    const std::string_view key = trim(std::string_view(text).substr(0, equals));
+    if (key.empty() || equals == text.size())
+        throw InputError(fmt::format("--set: expected KEY=VALUE, found '{}'", text));
+    return {key, std::string(trim(std::string_view(text).substr(equals + 1)))};
 }
 
 static PlacedScene parse(const std::string& toml, const fs::path& file,

@@ -68,7 +68,7 @@ opacity = 1.0                     # of the whole layer
 }  // namespace
 
 std::string new_scene_text(const fs::path& image, const std::string& shape, const fs::path& file) {
-    if (std::find(shapes.begin(), shapes.end(), shape) == shapes.end())
+    if (std::ranges::find(shapes, shape) == shapes.end())
         throw InputError(fmt::format("--shape: expected plane, relief, disk or sphere, found '{}'{}", shape,
                                      did_you_mean(shape, shapes)));
     const std::string name = layer_name_of(image.stem().string(), "picture");

@@ -70,8 +70,7 @@ ParameterKey ParameterKey::generic() const {
 ParameterKey layer_key(std::string_view name) { return ParameterKey(layers_group) / name; }
 
 bool is_list_index(std::string_view part) {
-    return !part.empty() &&
-           std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return !part.empty() && std::ranges::all_of(part, [](char c) { return c >= '0' && c <= '9'; });
 }
 
 }  // namespace astrosplat

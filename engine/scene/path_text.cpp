@@ -30,7 +30,7 @@ std::string expand_environment(const std::string& text) {
 namespace {
 
 bool stands_for_itself(const std::string& text, const ParameterSpec& spec) {
-    return text.empty() || std::find(spec.choices.begin(), spec.choices.end(), text) != spec.choices.end();
+    return text.empty() || std::ranges::find(spec.choices, text) != spec.choices.end();
 }
 
 std::string resolve(const std::string& text, const ParameterSpec& spec, const fs::path& folder) {

@@ -8,8 +8,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "core/atomic_file.h"
-#include "core/file.h"
 #include "scene/describe.h"
 #include "scene/load.h"
 #include "scene/path_text.h"
@@ -20,12 +18,6 @@
 namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
-
-std::vector<std::string> layer_names(const Scene& scene) {
-    std::vector<std::string> names;
-    for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
-    return names;
-}
 
 /// The default of an element's parameter.
 const Value& standard_value(const ParameterKey& generic_key) {
@@ -65,8 +57,7 @@ class Saver {
     /// Writes lists whose length differs, or that the text does not have, as a whole.
     void set_lists(const Description& base, const Description& wanted) {
         for (const ParameterList& list : wanted.lists) {
-            const auto old = std::find_if(base.lists.begin(), base.lists.end(),
-                                          [&](const ParameterList& l) { return l.key == list.key; });
+            const auto old = std::ranges::find(base.lists, list.key, &ParameterList::key);
             const bool written = text_.contains(path_of(list.key, wanted));
             const bool same_length = old != base.lists.end() && old->size() == list.size();
             if (same_length && (written || same_elements(list.key, base, wanted))) continue;
@@ -86,7 +77,7 @@ class Saver {
 
   private:
     std::string layer_index(const std::string& name) const {
-        return std::to_string(std::find(layers_.begin(), layers_.end(), name) - layers_.begin());
+        return std::to_string(std::ranges::find(layers_, name) - layers_.begin());
     }
 
     static std::size_t section_size(const ParameterKey& generic_key) {
@@ -95,12 +86,11 @@ class Saver {
     }
 
     static bool same_elements(const ParameterKey& list, const Description& base, const Description& wanted) {
-        return std::all_of(wanted.parameters.begin(), wanted.parameters.end(),
-                           [&](const Parameter& parameter) {
-                               if (!parameter.spec.key.is_below(list)) return true;
-                               const Parameter* old = find_parameter(base, parameter.spec.key);
-                               return old && old->get() == parameter.get();
-                           });
+        return std::ranges::all_of(wanted.parameters, [&](const Parameter& parameter) {
+            if (!parameter.spec.key.is_below(list)) return true;
+            const Parameter* old = find_parameter(base, parameter.spec.key);
+            return old && old->get() == parameter.get();
+        });
     }
 
     std::string list_text(const ParameterList& list, const Description& description) const {
@@ -132,7 +122,7 @@ class Saver {
 /// A layer that is new at the place of one that is gone was renamed.
 void rename_layers(TomlText& text, std::vector<std::string>& old, const std::vector<std::string>& wanted) {
     const auto has = [](const std::vector<std::string>& names, const std::string& name) {
-        return std::find(names.begin(), names.end(), name) != names.end();
+        return std::ranges::find(names, name) != names.end();
     };
     for (std::size_t i = 0; i < std::min(old.size(), wanted.size()); ++i) {
         if (old[i] == wanted[i] || has(old, wanted[i]) || has(wanted, old[i])) continue;
@@ -169,8 +159,7 @@ void remove_tracks(TomlText& text, const Scene& scene, const Description& wanted
     std::vector<ParameterKey> kept;
     for (const std::string& name : text.children({"animation"})) {
         const ParameterKey key = full_key(wanted, name);
-        const bool stays = std::any_of(scene.animation.begin(), scene.animation.end(),
-                                       [&](const Track& track) { return track.key == key; });
+        const bool stays = std::ranges::find(scene.animation, key, &Track::key) != scene.animation.end();
         if (stays)
             kept.push_back(key);
         else
@@ -186,7 +175,7 @@ void remove_tracks(TomlText& text, const Scene& scene, const Description& wanted
 
 void set_tracks(TomlText& text, const Scene& base, const Scene& scene, const Description& wanted) {
     for (const Track& track : scene.animation) {
-        if (std::find(base.animation.begin(), base.animation.end(), track) != base.animation.end()) continue;
+        if (std::ranges::find(base.animation, track) != base.animation.end()) continue;
         const Parameter* parameter = find_parameter(wanted, track.key);
         if (!parameter) continue;
         std::string name = track.key;
@@ -213,8 +202,7 @@ void rebase_paths(Saver& saver, const std::string& original, const fs::path& fro
 /// Presets come first: they change what the other keys start from.
 void set_presets(Saver& saver, const Scene& before, const Scene& scene, const Description& wanted) {
     for (const LayerParams& layer : scene.layers) {
-        const auto same = [&](const LayerParams& old) { return old.name == layer.name; };
-        const auto old = std::find_if(before.layers.begin(), before.layers.end(), same);
+        const auto old = std::ranges::find(before.layers, layer.name, &LayerParams::name);
         if (old == before.layers.end() ? layer.preset.empty() : old->preset == layer.preset) continue;
         const Parameter* parameter = find_parameter(wanted, layer_key(layer.name) / "preset");
         saver.set(parameter->spec, parameter->get(), wanted);
@@ -243,12 +231,6 @@ std::string save_text(const Scene& scene, const std::string& original, const fs:
     saver.set_values(describe(base), wanted);
     set_tracks(saver.text(), base, target, wanted);
     return saver.text().text();
-}
-
-void save_scene(const Scene& scene, const fs::path& file) {
-    std::error_code ignored;
-    const bool exists = !scene.file.empty() && fs::exists(scene.file, ignored);
-    write_file_atomically(file, save_text(scene, exists ? read_file(scene.file) : "", file));
 }
 
 std::string save_preset_text(const Look& look, const LayerRender& render, const fs::path& file) {

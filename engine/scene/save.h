@@ -13,9 +13,6 @@ namespace astrosplat {
 /// relative to `file`'s folder where they were relative or lie below it.
 std::string save_text(const Scene& scene, const std::string& original, const std::filesystem::path& file);
 
-/// Writes save_text of the text now in scene.file to `file`, atomically. Throws OutputError.
-void save_scene(const Scene& scene, const std::filesystem::path& file);
-
 /// A preset file that gives this look and render to any layer; paths relative to `file`'s folder.
 std::string save_preset_text(const Look& look, const LayerRender& render, const std::filesystem::path& file);
 

@@ -3,6 +3,7 @@
 // frame k.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -47,6 +48,7 @@ struct OutputParams {
     View view = View::automatic;
     double exposure = 0.0;      // stops
     double pixel_filter = 0.5;  // px
+    bool holds(std::string_view aov) const { return std::ranges::find(aovs, aov) != aovs.end(); }
     bool operator==(const OutputParams&) const = default;
 };
 

@@ -52,11 +52,4 @@ std::string did_you_mean(std::string_view name, std::span<const std::string> kno
     return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
-std::string alternatives(const std::vector<std::string>& names) {
-    std::string text;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        text += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-    return text;
-}
-
 }  // namespace astrosplat

@@ -1,10 +1,9 @@
-// Lists of names in messages: "Did you mean ...?", the nearest of the known ones, and "this, that or those".
+// "Did you mean ...?": the nearest of the known names.
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace astrosplat {
 
@@ -17,8 +16,5 @@ std::string nearest_name(std::string_view name, std::span<const std::string> kno
 
 /// "; did you mean 'NAME'?" or "".
 std::string did_you_mean(std::string_view name, std::span<const std::string> known);
-
-/// "over, add or screen".
-std::string alternatives(const std::vector<std::string>& names);
 
 }  // namespace astrosplat

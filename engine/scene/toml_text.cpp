@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scene/parameter_key.h"
 #include "scene/toml_scanner.h"
 #include "scene/value.h"
 
@@ -21,14 +22,10 @@ std::size_t common_parts(const TomlPath& a, const TomlPath& b) {
 }
 
 bool is_bare(const std::string& part) {
-    return !part.empty() && std::all_of(part.begin(), part.end(), [](char c) {
+    return !part.empty() && std::ranges::all_of(part, [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
                c == '-';
     });
-}
-
-bool is_index(const std::string& part) {
-    return std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 }  // namespace
@@ -62,10 +59,8 @@ const TomlText::Item* TomlText::find(const TomlPath& path) const {
 }
 
 bool TomlText::contains(const TomlPath& path) const {
-    return std::any_of(items_.begin(), items_.end(),
-                       [&](const Item& i) { return begins_with(i.path, path); }) ||
-           std::any_of(headers_.begin(), headers_.end(),
-                       [&](const Header& h) { return begins_with(h.path, path); });
+    return std::ranges::any_of(items_, [&](const Item& i) { return begins_with(i.path, path); }) ||
+           std::ranges::any_of(headers_, [&](const Header& h) { return begins_with(h.path, path); });
 }
 
 std::vector<std::string> TomlText::children(const TomlPath& path) const {
@@ -75,10 +70,10 @@ std::vector<std::string> TomlText::children(const TomlPath& path) const {
     };
     for (const Header& header : headers_) add(header.path, header.begin);
     for (const Item& item : items_) add(item.path, item.begin);
-    std::sort(found.begin(), found.end());
+    std::ranges::sort(found);
     std::vector<std::string> names;
     for (const auto& [at, name] : found)
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     return names;
 }
 
@@ -170,7 +165,7 @@ void TomlText::insert_header(const TomlPath& path, std::size_t section, const st
         if (common_parts(headers_[i].path, path) >= owner) at = body_end(i);
     TomlPath header;
     for (std::size_t i = 0; i < section; ++i)
-        if (!is_index(path[i])) header.push_back(path[i]);
+        if (!is_list_index(path[i])) header.push_back(path[i]);
     insert_line(at, "\n[" + toml_key(header) + "]\n" + toml_key(path, section) + " = " + value);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/error.h"
 #include "scene/describe.h"
@@ -28,7 +29,7 @@ template <NamedEnum E>
 E read_name(const toml::node& node, const std::string& what, const Place& at) {
     const std::vector<std::string> names = all_names<E>();
     const auto* text = node.as_string();
-    const auto found = std::find(names.begin(), names.end(), text ? text->get() : "");
+    const auto found = std::ranges::find(names, text ? text->get() : "");
     if (found != names.end()) return static_cast<E>(found - names.begin());
     at.fail(fmt::format("{}: expected {}, found {}{}", what, fmt::join(names, ", "),
                         text ? "'" + text->get() + "'" : kind_of(node),
@@ -50,8 +51,7 @@ Keyframe<std::vector<double>> read_key(const toml::node& node, const Parameter& 
         parameter.set(value);
         key.value = to_numbers(parameter.spec, value);
         const bool none = key.value.empty() || (value.text() && value == parameter.spec.nothing);
-        const bool zero = std::count(key.value.begin(), key.value.end(), 0.0) ==
-                          static_cast<std::ptrdiff_t>(key.value.size());
+        const bool zero = std::ranges::count(key.value, 0.0) == static_cast<std::ptrdiff_t>(key.value.size());
         if (zero && parameter.spec.type == ParameterType::rotation)
             throw ValueError("expected a quaternion that is not zero, found 0, 0, 0, 0");
         if (none) throw ValueError(fmt::format("expected {}, found none", expectation(parameter.spec)));
@@ -104,10 +104,7 @@ const Parameter& animated_parameter(const Description& description, const Scene&
     ParameterKey layer_group = "layer";
     if (at.key.is_below("layer")) {
         const std::string name = at.key.layer();
-        std::vector<std::string> names;
-        for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
-        if (std::find(names.begin(), names.end(), name) == names.end())
-            at.fail(fmt::format("unknown layer '{}'{}", name, did_you_mean(name, names)));
+        if (const std::string problem = unknown_layer(scene, name); !problem.empty()) at.fail(problem);
         layer_group = layer_key(name);
     }
     throw InputError(fmt::format("{}: {}", at.place, unknown_key(at.key, at.key, layer_group)));
@@ -152,9 +149,8 @@ std::vector<Track> read_tracks(const toml::table& table, Scene& scene, const std
                 throw InputError(
                     fmt::format("{}: {}: expected one track, found a second", place, found.back().track.key));
     }
-    std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-        return a.position.line != b.position.line ? a.position.line < b.position.line
-                                                  : a.position.column < b.position.column;
+    std::ranges::sort(found, [](const Found& a, const Found& b) {
+        return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
     });
     std::vector<Track> tracks;
     for (Found& one : found) tracks.push_back(std::move(one.track));

@@ -86,7 +86,7 @@ FitsHdu go_to_hdu(const fs::path& file, fitsfile* in, int number) {
     fits_get_img_paramll(in, static_cast<int>(axes.size()), &hdu.bitpix, &naxis, axes.data(), &status);
     if (status != 0) fail(file, fmt::format("reading the header of HDU {}", number), status);
     hdu.axes.assign(axes.begin(), axes.begin() + naxis);
-    const bool empty = naxis == 0 || std::find(hdu.axes.begin(), hdu.axes.end(), 0) != hdu.axes.end();
+    const bool empty = naxis == 0 || std::ranges::find(hdu.axes, 0) != hdu.axes.end();
     int ignored = 0;
     hdu.kind = empty ? "empty" : fits_is_compressed_image(in, &ignored) ? "compressed image" : "image";
     hdu.picture = !empty && naxis >= 2;
@@ -170,8 +170,7 @@ std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progres
         if (hdu.kind == "image" || hdu.kind == "compressed image") {
             const Buffer<double> values = read_values(file, in.get(), 0, product(file, hdu.axes), progress);
             hdu.range = value_range(values);
-            hdu.nan_count =
-                std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+            hdu.nan_count = std::ranges::count_if(values, [](double v) { return std::isnan(v); });
         }
         hdus.push_back(std::move(hdu));
     }

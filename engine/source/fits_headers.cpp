@@ -163,7 +163,7 @@ struct Checker {
         const std::string quoted = cards.find("ZCMPTYPE")->second;
         const std::string compression(trim(std::string_view(quoted).substr(
             quoted.empty() ? 0 : 1, std::max<std::size_t>(2, quoted.size()) - 2)));
-        if (std::find(compressions.begin(), compressions.end(), compression) == compressions.end())
+        if (std::ranges::find(compressions, compression) == compressions.end())
             fail("ZCMPTYPE", fmt::format("one of {}", fmt::join(compressions, ", ")), quoted);
         const auto quantized = cards.find("ZQUANTIZ");
         if (quantized != cards.end() && quantized->second.starts_with("'SUBTRACTIVE") &&

@@ -162,7 +162,7 @@ std::string rest_of(std::string_view text, const Words& words) {
 }
 
 fs::path native(std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');
+    std::ranges::replace(name, '\\', '/');
     return name;
 }
 

@@ -31,7 +31,6 @@ struct Channels {
     std::array<int, 3> color{};
     int alpha = -1;
     bool luma_chroma = false;  // color is Y, RY, BY
-    bool gray = false;
 };
 
 int find_channel(const ImageSpec& spec, const char* name) {
@@ -48,9 +47,7 @@ Channels choose_channels(const ImageSpec& spec) {
     c.alpha = named ? spec.alpha_channel : find_channel(spec, "A");
     const std::array<int, 3> rgb{find_channel(spec, "R"), find_channel(spec, "G"), find_channel(spec, "B")};
     const std::array<int, 3> yc{find_channel(spec, "Y"), find_channel(spec, "RY"), find_channel(spec, "BY")};
-    const auto complete = [](const std::array<int, 3>& set) {
-        return *std::min_element(set.begin(), set.end()) >= 0;
-    };
+    const auto complete = [](const std::array<int, 3>& set) { return *std::ranges::min_element(set) >= 0; };
     c.luma_chroma = complete(yc);
     if (complete(rgb) || c.luma_chroma) {
         c.color = complete(rgb) ? rgb : yc;
@@ -60,7 +57,6 @@ Channels choose_channels(const ImageSpec& spec) {
     const int first = c.alpha == 0 && spec.nchannels > 1 ? 1 : 0;
     const bool three =
         spec.nchannels - first - (c.alpha > first ? 1 : 0) >= 3 && (c.alpha < first || c.alpha >= first + 3);
-    c.gray = !three;
     c.color =
         three ? std::array<int, 3>{first, first + 1, first + 2} : std::array<int, 3>{first, first, first};
     return c;
@@ -123,19 +119,17 @@ Image pick_channels(const Image& all, const ImageSpec& spec, const Channels& cha
     const Region window = display_window(spec);
     const int count = channels.alpha >= 0 ? 4 : 3;
     Image image = make_image(window.width, window.height, count);
-    parallel_chunks(window.height, 64, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y) {
-            const std::int64_t from_y = window.y + y - spec.y;
-            if (from_y < 0 || from_y >= all.height) continue;
-            const std::int64_t shift = window.x - spec.x;
-            for (std::int64_t x = std::max<std::int64_t>(0, -shift);
-                 x < std::min(window.width, all.width - shift); ++x) {
-                const float* from = all.at(x + shift, from_y);
-                float* to = image.at(x, y);
-                for (int c = 0; c < 3; ++c) to[c] = from[channels.color[static_cast<std::size_t>(c)]];
-                if (channels.luma_chroma) to_rgb(to);
-                if (count == 4) to[3] = from[channels.alpha];
-            }
+    parallel_each(window.height, 64, [&](std::int64_t y) {
+        const std::int64_t from_y = window.y + y - spec.y;
+        if (from_y < 0 || from_y >= all.height) return;
+        const std::int64_t shift = window.x - spec.x;
+        for (std::int64_t x = std::max<std::int64_t>(0, -shift);
+             x < std::min(window.width, all.width - shift); ++x) {
+            const float* from = all.at(x + shift, from_y);
+            float* to = image.at(x, y);
+            for (int c = 0; c < 3; ++c) to[c] = from[channels.color[static_cast<std::size_t>(c)]];
+            if (channels.luma_chroma) to_rgb(to);
+            if (count == 4) to[3] = from[channels.alpha];
         }
     });
     return image;
@@ -165,14 +159,12 @@ Image turned(Image image, int orientation) {
     const bool from_below = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
     Image result =
         make_image(swaps ? image.height : image.width, swaps ? image.width : image.height, image.channels);
-    parallel_chunks(result.height, 64, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y) {
-            for (std::int64_t x = 0; x < result.width; ++x) {
-                const std::int64_t column = swaps ? y : x, row = swaps ? x : y;
-                std::copy_n(image.at(from_right ? image.width - 1 - column : column,
-                                     from_below ? image.height - 1 - row : row),
-                            image.channels, result.at(x, y));
-            }
+    parallel_each(result.height, 64, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < result.width; ++x) {
+            const std::int64_t column = swaps ? y : x, row = swaps ? x : y;
+            std::copy_n(image.at(from_right ? image.width - 1 - column : column,
+                                 from_below ? image.height - 1 - row : row),
+                        image.channels, result.at(x, y));
         }
     });
     return result;
@@ -216,7 +208,6 @@ Picture read_picture(const fs::path& file, const Progress& progress) {
     picture.image = turned(pick_channels(all, spec, channels), orientation);
     picture.max_integer = largest_integer(spec);
     picture.associated = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
-    picture.gray = channels.gray;
     picture.cube = is_cube_map(spec);
     picture.credit = find_credit(file, spec);
     picture.summary =

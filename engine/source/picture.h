@@ -13,7 +13,6 @@ struct Picture {
     Image image;  // 3 channels, or 4 with the file's alpha; integers scaled to 0..1; row 0 on top
     double max_integer = 0.0;  // largest value of integer files (255, 65535); 0 for float files
     bool associated = false;   // the colours are already multiplied by the file's alpha
-    bool gray = false;         // one value per pixel, repeated in r, g, b
     bool cube = false;         // an environment: six square faces +x -x +y -y +z -z one above the other
     std::string credit;        // may be empty
     std::string summary;       // "1920x1200 px, uint8"

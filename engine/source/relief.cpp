@@ -68,7 +68,7 @@ void blur(Heights& heights, double sigma, bool along_x) {
 
 // The brightest place is 1, so that `height` means what it says for dark pictures too.
 void normalise(Heights& heights) {
-    const double most = *std::max_element(heights.values.begin(), heights.values.end());
+    const double most = *std::ranges::max_element(heights.values);
     if (!(most > 0.0)) return;
     for (double& value : heights.values) value /= most;
 }

@@ -33,7 +33,7 @@ ValueRange value_range(std::span<const double> values) {
     std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
                  [](double v) { return std::isfinite(v); });
     if (finite.empty()) return {};
-    const auto [min, max] = std::minmax_element(finite.begin(), finite.end());
+    const auto [min, max] = std::ranges::minmax_element(finite);
     ValueRange range{*min, *max, 0.0, 0.0};
     range.black = percentile(finite, 0.0025);
     range.white = percentile(finite, 0.9975);

@@ -48,15 +48,11 @@ Stored read_fits_picture(const fs::path& file, const Settings& settings, const P
     const Settings::Stretch stretch = stretch_of(settings);
     Stored stored;
     stored.display_values = stretch != Settings::Stretch::linear;
-    stored.picture.gray = true;
     stored.picture.credit = plane.credit;
     stored.picture.image = make_image(plane.width, plane.height, 3);
-    parallel_chunks(plane.width * plane.height, 1 << 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) {
-            const double value =
-                stretched(plane.values[static_cast<std::size_t>(i)], limits, stretch, settings.softening);
-            std::fill_n(stored.picture.image.pixels.data() + 3 * i, 3, static_cast<float>(value));
-        }
+    parallel_each(plane.values.size(), 1 << 16, [&](std::size_t i) {
+        const double value = stretched(plane.values[i], limits, stretch, settings.softening);
+        std::fill_n(stored.picture.image.pixels.data() + 3 * i, 3, static_cast<float>(value));
     });
     stored.picture.summary = fmt::format("{}x{} px, HDU {}{}{}, {} stretch, black {:.6g}, white {:.6g}",
                                          plane.width, plane.height, plane.hdu, plane.name.empty() ? "" : " ",
@@ -94,7 +90,6 @@ Stored combine(const std::vector<fs::path>& files, const Settings& settings, con
     first.picture.image = std::move(rgb);
     first.picture.max_integer = 0.0;
     first.picture.associated = false;
-    first.picture.gray = false;
     return first;
 }
 

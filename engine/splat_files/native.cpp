@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cassert>
 #include <cfloat>
@@ -339,20 +338,8 @@ SplatSet read_native_bytes(const Checker& checker, std::string_view bytes, const
                            const Progress& progress) {
     const Layout layout = read_layout(checker, bytes);
     SplatSet set = empty_set(layout, wanted, checker.file);
-    std::vector<std::string> errors(layout.table.size());
-    std::atomic<std::size_t> done{0};
-    parallel_for(static_cast<std::int64_t>(errors.size()), [&](std::int64_t block, int) {
-        progress.check();
-        const auto i = static_cast<std::size_t>(block);
-        try {
-            read_block(checker, layout, i, set);
-        } catch (const InputError& error) {
-            errors[i] = error.what();
-        }
-        progress.at(static_cast<double>(++done) / static_cast<double>(errors.size()));
-    });
-    for (const std::string& error : errors)
-        if (!error.empty()) throw InputError(error);
+    parallel_parts(layout.table.size(), progress,
+                   [&](std::size_t block) { read_block(checker, layout, block, set); });
     if ((layout.header.flags & by_id) && !ids_ascend(set.id))
         checker.fail("", "ids in ascending order", "another order");
     return set;
@@ -360,12 +347,8 @@ SplatSet read_native_bytes(const Checker& checker, std::string_view bytes, const
 
 }  // namespace
 
-SplatSet read_native(const std::filesystem::path& file, const Progress& progress) {
-    return read_native(file, OptionalColumns{}, progress);
-}
-
-SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& wanted,
-                     const Progress& progress) {
+SplatSet read_native(const std::filesystem::path& file, const Progress& progress,
+                     const OptionalColumns& wanted) {
     return read_mapped(file, [&](std::string_view bytes) {
         return read_native_bytes(Checker{file.string()}, bytes, wanted, progress);
     });
@@ -390,12 +373,8 @@ std::int64_t native_splat_count(const std::filesystem::path& file) {
     });
 }
 
-void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
-    write_native(file, set, RowOrder::space, progress);
-}
-
-void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
-                  const Progress& progress) {
+void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress,
+                  RowOrder order) {
     check_consistent(set);
     assert(order == RowOrder::space || ids_ascend(set.id));
     if (order == RowOrder::id)

@@ -37,21 +37,17 @@ enum class RowOrder { space, id };
 
 /// Rows come back in the file's order; sort_by_id brings back that of the ids. Every length is checked before
 /// memory is taken or touched, every block against its checksum. Throws InputError.
-SplatSet read_native(const std::filesystem::path& file, const Progress& progress = {});
-
-/// The same, but columns that are not wanted stay empty.
-SplatSet read_native(const std::filesystem::path& file, const OptionalColumns& wanted,
-                     const Progress& progress);
+/// Columns that are not wanted stay empty.
+SplatSet read_native(const std::filesystem::path& file, const Progress& progress = {},
+                     const OptionalColumns& wanted = {});
 
 /// How many splats a file holds, from its header. Throws InputError.
 std::int64_t native_splat_count(const std::filesystem::path& file);
 
-/// In RowOrder::space. The same bytes for any thread count. Throws OutputError.
-void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {});
-
-/// For RowOrder::id the set must be in ascending order of id.
-void write_native(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
-                  const Progress& progress);
+/// The same bytes for any thread count. For RowOrder::id the set must be in ascending order of id. Throws
+/// OutputError.
+void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {},
+                  RowOrder order = RowOrder::space);
 
 /// Length of the file that write_native makes of a set.
 std::int64_t native_file_bytes(const SplatSet& set);

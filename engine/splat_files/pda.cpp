@@ -94,14 +94,12 @@ const std::vector<KnownAttribute>& known_attributes() {
 
 const KnownAttribute* find_known(std::string_view name) {
     const auto& known = known_attributes();
-    const auto found =
-        std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.name == name; });
+    const auto found = std::ranges::find_if(known, [&](const auto& k) { return k.name == name; });
     return found == known.end() ? nullptr : &*found;
 }
 
 bool has_attribute(const std::vector<Attribute>& attributes, std::string_view name) {
-    return std::any_of(attributes.begin(), attributes.end(),
-                       [&](const Attribute& a) { return a.name == name; });
+    return std::ranges::any_of(attributes, [&](const Attribute& a) { return a.name == name; });
 }
 
 std::string_view read_attributes(Words& words, std::vector<Attribute>& attributes) {

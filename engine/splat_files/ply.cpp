@@ -58,30 +58,28 @@ constexpr std::span color_groups(groups, 3);
 constexpr std::string_view opacities[] = {"alpha", "diffuse_alpha", "a"};
 
 bool has_scalar(const PlyElement& element, std::string_view name) {
-    return std::any_of(element.properties.begin(), element.properties.end(),
-                       [&](const Column& c) { return c.name == name && !c.list; });
+    return std::ranges::any_of(element.properties,
+                               [&](const Column& c) { return c.name == name && !c.list; });
 }
 
 bool has_all(const PlyElement& vertex, std::span<const std::string_view> names) {
-    return std::all_of(names.begin(), names.end(),
-                       [&](std::string_view name) { return name.empty() || has_scalar(vertex, name); });
+    return std::ranges::all_of(
+        names, [&](std::string_view name) { return name.empty() || has_scalar(vertex, name); });
 }
 
 /// False for a property that lacks its companions (red without green, id_high without id), and for a second
 /// colour or opacity.
 bool is_read(const PlyElement& vertex, std::string_view name) {
     if (name == "id_high") return has_scalar(vertex, "id");
-    const auto opacity = std::find(std::begin(opacities), std::end(opacities), name);
+    const auto opacity = std::ranges::find(opacities, name);
     if (opacity != std::end(opacities))
         return std::none_of(std::begin(opacities), opacity,
                             [&](std::string_view other) { return has_scalar(vertex, other); });
-    const auto holds = [&](const auto& group) {
-        return std::find(std::begin(group), std::end(group), name) != std::end(group);
-    };
-    const auto group = std::find_if(std::begin(groups), std::end(groups), holds);
+    const auto holds = [&](const auto& group) { return std::ranges::find(group, name) != std::end(group); };
+    const auto group = std::ranges::find_if(groups, holds);
     if (group == std::end(groups)) return true;
-    const auto first_color = std::find_if(color_groups.begin(), color_groups.end(),
-                                          [&](const auto& colors) { return has_all(vertex, colors); });
+    const auto first_color =
+        std::ranges::find_if(color_groups, [&](const auto& colors) { return has_all(vertex, colors); });
     const bool is_color = group - std::begin(groups) < static_cast<std::ptrdiff_t>(color_groups.size());
     return is_color ? first_color != color_groups.end() && holds(*first_color) : has_all(vertex, *group);
 }
@@ -109,8 +107,8 @@ std::span<const float> codes_for(Field field, NumberType type) {
 bool is_float(NumberType type) { return type == NumberType::f32 || type == NumberType::f64; }
 
 void assign_field(Column& column, const PlyElement& vertex, const std::filesystem::path& file) {
-    const auto* const known = std::find_if(std::begin(known_properties), std::end(known_properties),
-                                           [&](const KnownProperty& k) { return k.name == column.name; });
+    const auto* const known =
+        std::ranges::find_if(known_properties, [&](const KnownProperty& k) { return k.name == column.name; });
     if (known == std::end(known_properties) || column.list || !is_read(vertex, column.name)) return;
     column.field = known->field;
     const bool light = column.field == Field::red || column.field == Field::green ||
@@ -184,8 +182,8 @@ char* put_row(char* out, const SplatSet& set, bool wide_ids, std::size_t i) {
 std::string header_text(const SplatSet& set, bool wide_ids) {
     std::string text = "ply\nformat binary_little_endian 1.0\n";
     std::string credit = set.credit;
-    std::replace_if(
-        credit.begin(), credit.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    std::ranges::replace_if(
+        credit, [](char c) { return c == '\n' || c == '\r'; }, ' ');
     if (!credit.empty()) text += "comment credit: " + credit + "\n";
     text += fmt::format("element vertex {}\n", set.size());
     for (const char* name : {"x", "y", "z", "red", "green", "blue", "alpha", "distance"})
@@ -228,8 +226,7 @@ SplatSet read_ply(const std::filesystem::path& file, const Progress& progress) {
 void write_ply(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
     static_assert(std::endian::native == std::endian::little);
     check_consistent(set);
-    const bool wide_ids =
-        std::any_of(set.id.begin(), set.id.end(), [](std::uint64_t id) { return id >> 32 != 0; });
+    const bool wide_ids = std::ranges::any_of(set.id, [](std::uint64_t id) { return id >> 32 != 0; });
     constexpr std::size_t longest_row = 17 * sizeof(float);
     write_ordered(file, header_text(set, wide_ids), set.size(), rows_written_at_once, longest_row, progress,
                   [&](std::int64_t begin, std::int64_t end, char* out) {

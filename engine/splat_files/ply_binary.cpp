@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -223,21 +222,10 @@ void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& t
     const std::vector<std::size_t> starts = reader.chunk_starts(header.elements[vertex], at);
     const auto count = static_cast<std::int64_t>(header.elements[vertex].count);
     open_table(table, count, file);
-    std::vector<std::string> errors(starts.size() - 1);
-    std::atomic<std::size_t> done{0};
-    parallel_for(static_cast<std::int64_t>(errors.size()), [&](std::int64_t chunk, int) {
-        progress.check();
-        const auto i = static_cast<std::size_t>(chunk);
-        const std::int64_t first = chunk * rows_read_at_once;
-        try {
-            reader.read_rows(table, first, std::min(first + rows_read_at_once, count), starts[i]);
-        } catch (const InputError& error) {
-            errors[i] = error.what();
-        }
-        progress.at(static_cast<double>(++done) / static_cast<double>(errors.size()));
+    parallel_parts(starts.size() - 1, progress, [&](std::size_t chunk) {
+        const std::int64_t first = static_cast<std::int64_t>(chunk) * rows_read_at_once;
+        reader.read_rows(table, first, std::min(first + rows_read_at_once, count), starts[chunk]);
     });
-    for (const std::string& error : errors)
-        if (!error.empty()) throw InputError(error);
 }
 
 }  // namespace astrosplat

@@ -71,8 +71,8 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 NumberType number_type(const HeaderReader& reader, std::string_view name) {
-    const auto* const found = std::find_if(type_names.begin(), type_names.end(),
-                                           [&](const auto& entry) { return entry.first == name; });
+    const auto* const found =
+        std::ranges::find_if(type_names, [&](const auto& entry) { return entry.first == name; });
     if (found == type_names.end()) reader.fail("a number type such as float or uchar", name);
     return found->second;
 }
@@ -112,8 +112,7 @@ Column read_property(const HeaderReader& reader, const std::vector<std::string_v
 }
 
 bool has_property(const PlyElement& element, std::string_view name) {
-    return std::any_of(element.properties.begin(), element.properties.end(),
-                       [&](const Column& column) { return column.name == name; });
+    return std::ranges::any_of(element.properties, [&](const Column& column) { return column.name == name; });
 }
 
 /// Takes one line behind "format"; false at end_header.

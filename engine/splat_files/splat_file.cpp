@@ -28,7 +28,9 @@ struct Functions {
 constexpr std::array<Functions, 3> functions = {{
     {"pda", read_pda, write_pda, pda_attributes},
     {"ply", read_ply, write_ply, ply_attributes},
-    {"splats", read_native, write_native, native_attributes},
+    {"splats", [](const auto& file, const auto& progress) { return read_native(file, progress); },
+     [](const auto& file, const auto& set, const auto& progress) { write_native(file, set, progress); },
+     native_attributes},
 }};
 
 const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file) {

@@ -117,23 +117,22 @@ float largest(const Buffer<float>& values) {
                         of_chunk[static_cast<std::size_t>(begin / rows_per_chunk)] =
                             *std::max_element(values.begin() + begin, values.begin() + end);
                     });
-    return of_chunk.empty() ? 0.0f : *std::max_element(of_chunk.begin(), of_chunk.end());
+    return of_chunk.empty() ? 0.0f : *std::ranges::max_element(of_chunk);
 }
 
 void finish_ids(SplatTable& table) {
     Buffer<std::uint64_t>& id = table.set.id;
     const bool numbered = table.has(Field::id);
     if (numbered && table.id_high.empty()) return;
-    parallel_chunks(table.set.size(), rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            id[i] = numbered ? id[i] | std::uint64_t{table.id_high[i]} << 32 : i;
+    parallel_each(id.size(), rows_per_chunk, [&](std::size_t i) {
+        id[i] = numbered ? id[i] | std::uint64_t{table.id_high[i]} << 32 : i;
     });
 }
 
 }  // namespace
 
 bool SplatTable::has(Field field) const {
-    return std::any_of(columns.begin(), columns.end(), [&](const Column& c) { return c.field == field; });
+    return std::ranges::any_of(columns, [&](const Column& c) { return c.field == field; });
 }
 
 std::vector<std::string> attribute_names(const std::vector<Column>& columns) {
@@ -147,8 +146,7 @@ std::vector<std::string> attribute_names(const std::vector<Column>& columns) {
                                                                      {Field::id, "id"}}};
     std::vector<std::string> present;
     for (const auto& [field, name] : names)
-        if (std::any_of(columns.begin(), columns.end(),
-                        [f = field](const Column& c) { return c.field == f; }))
+        if (std::ranges::any_of(columns, [f = field](const Column& c) { return c.field == f; }))
             present.emplace_back(name);
     return present;
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstring>
 
 #include "core/error.h"
@@ -68,8 +67,7 @@ std::string describe(const SplatTable& table) {
     const char* const stop = line_end(line.begin, end);
     for (const char* p = scan::skip_blanks(line.begin, stop); p < stop; ++found)
         p = scan::skip_blanks(scan::token_end(p, stop), stop);
-    const bool lists =
-        std::any_of(table.columns.begin(), table.columns.end(), [](const Column& c) { return c.list; });
+    const bool lists = std::ranges::any_of(table.columns, [](const Column& c) { return c.list; });
     bad_input(
         file.string(), std::to_string(line.number),
         fmt::format("{}{} numbers ({})", lists ? "at least " : "", table.columns.size(), describe(table)),
@@ -160,20 +158,8 @@ TextRows split_rows(std::string_view text, std::int64_t first_line) {
 
 void read_text_rows(const TextRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
                     const std::filesystem::path& file, const Progress& progress) {
-    std::vector<std::string> errors(rows.chunks.size());
-    std::atomic<std::size_t> done{0};
-    parallel_for(static_cast<std::int64_t>(rows.chunks.size()), [&](std::int64_t i, int) {
-        progress.check();
-        const auto chunk = static_cast<std::size_t>(i);
-        try {
-            read_chunk(rows.chunks[chunk], begin, end, table, file);
-        } catch (const InputError& error) {
-            errors[chunk] = error.what();
-        }
-        progress.at(static_cast<double>(++done) / static_cast<double>(errors.size()));
-    });
-    for (const std::string& error : errors)
-        if (!error.empty()) throw InputError(error);
+    parallel_parts(rows.chunks.size(), progress,
+                   [&](std::size_t chunk) { read_chunk(rows.chunks[chunk], begin, end, table, file); });
 }
 
 std::string quoted(std::string_view text) {

@@ -56,12 +56,10 @@ Buffer<Row> place_rows(const Buffer<std::uint32_t>& keys, std::size_t key_count,
 /// ends: where each key's rows end.
 template <class Row>
 void sort_keys_by_id(Buffer<Row>& order, std::span<const Row> ends, const Buffer<std::uint64_t>& ids) {
-    parallel_chunks(
-        static_cast<std::int64_t>(ends.size()), 64, [&](std::int64_t begin, std::int64_t end, int) {
-            for (auto key = static_cast<std::size_t>(begin); key < static_cast<std::size_t>(end); ++key)
-                std::sort(order.data() + (key > 0 ? ends[key - 1] : 0), order.data() + ends[key],
-                          [&](Row a, Row b) { return std::tuple(ids[a], a) < std::tuple(ids[b], b); });
-        });
+    parallel_each(ends.size(), 64, [&](std::size_t key) {
+        std::sort(order.data() + (key > 0 ? ends[key - 1] : 0), order.data() + ends[key],
+                  [&](Row a, Row b) { return std::tuple(ids[a], a) < std::tuple(ids[b], b); });
+    });
 }
 
 }  // namespace

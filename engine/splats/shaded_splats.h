@@ -21,4 +21,14 @@ struct ShadedSplats {
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
 
+/// Calls visit(array) for all but stretch, which no look makes.
+template <class Visit>
+void for_each_array(ShadedSplats& splats, const Visit& visit) {
+    visit(splats.position);
+    visit(splats.color);
+    visit(splats.alpha);
+    visit(splats.radius);
+    visit(splats.id);
+}
+
 }  // namespace astrosplat

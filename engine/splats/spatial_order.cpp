@@ -31,10 +31,8 @@ Buffer<std::uint32_t> cells_of(const SplatSet& set) {
     const glm::dvec3 extent = box.extent();
     const double edge = std::max({extent.x, extent.y, extent.z}) / cells_per_axis;
     Buffer<std::uint32_t> keys(set.position.size());
-    parallel_chunks(set.size(), 1 << 14, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            keys[i] = morton_cell(glm::dvec3(set.position[i]) - box.lo, edge);
-    });
+    parallel_each(keys.size(), 1 << 14,
+                  [&](std::size_t i) { keys[i] = morton_cell(glm::dvec3(set.position[i]) - box.lo, edge); });
     return keys;
 }
 

@@ -39,7 +39,7 @@ struct IdSteps {
 
 IdSteps steps_of(const Buffer<std::uint64_t>& ids) {
     constexpr int step_bits = 16;
-    const auto [lowest, highest] = std::minmax_element(ids.begin(), ids.end());
+    const auto [lowest, highest] = std::ranges::minmax_element(ids);
     const int shift = std::max(0, static_cast<int>(std::bit_width(*highest - *lowest)) - step_bits);
     return {*lowest, shift, static_cast<std::size_t>((*highest - *lowest) >> shift) + 1};
 }
@@ -53,9 +53,8 @@ template <class Row>
 void sort_rows(SplatSet& set) {
     const IdSteps steps = steps_of(set.id);
     Buffer<std::uint32_t> keys(set.id.size());
-    parallel_chunks(set.size(), splats_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            keys[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
+    parallel_each(keys.size(), splats_per_chunk, [&](std::size_t i) {
+        keys[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
     });
     const Buffer<Row> order = rows_by_key<Row>(keys, steps.count, set.id);
     for_each_column([&](auto column, SplatColumn) { permute(set.*column, order); });

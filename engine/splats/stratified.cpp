@@ -178,10 +178,7 @@ template <class T, class RowAt>
 void copy_array(const Buffer<T>& from, std::int64_t count, const RowAt& row_at, Buffer<T>& to) {
     if (from.empty()) return;
     to.resize(static_cast<std::size_t>(count));
-    parallel_chunks(count, rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            to[i] = from[row_at(i)];
-    });
+    parallel_each(to.size(), rows_at_once, [&](std::size_t i) { to[i] = from[row_at(i)]; });
 }
 
 /// Row i of the result is row row_at(i) of the set.

@@ -222,7 +222,11 @@ const std::vector<Target>& targets() {
     static const std::vector<Target> all = {
         {"pda", {written(write_pda, "pda")}, read_pda_bytes},
         {"ply", {written(write_ply, "ply"), ascii_ply, big_endian_ply()}, read_ply_bytes},
-        {"splats", {written(write_native, "splats")}, read_native_bytes},
+        {"splats",
+         {written([](const auto& file, const auto& set,
+                     const auto& progress) { write_native(file, set, progress); },
+                  "splats")},
+         read_native_bytes},
         {"obj", {obj}, read_obj_bytes},
         {"toml", {toml}, read_toml_bytes},
         {"fits", fits_seeds(), read_fits_bytes},

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <set>
 
-#include "output/image_info.h"
+#include "output/read_frame.h"
 #include "source/texture.h"
 #include "window/window_test.h"
 

@@ -10,6 +10,7 @@
 #include "core/vector_target.h"
 #include "generate/lattice.h"
 #include "unit/generate/generate_support.h"
+#include "unit/generate/lattice_positions.h"
 
 namespace astrosplat {
 namespace {

@@ -14,6 +14,15 @@
 #include "generate/generate.h"
 #include "unit/splats/same_bits.h"
 
+namespace astrosplat {
+
+inline ClosestPoint closest_on_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b,
+                                        const glm::dvec3& c) {
+    return closest_on_triangle(p, triangle_shape(a, b, c));
+}
+
+}  // namespace astrosplat
+
 namespace astrosplat::test {
 
 inline Texture flat_texture(const glm::vec4& straight, std::int64_t size = 8) {

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "unit/generate/generate_support.h"
+#include "unit/generate/lattice_positions.h"
 
 namespace astrosplat {
 namespace {

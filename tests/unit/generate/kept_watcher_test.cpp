@@ -1,5 +1,5 @@
 // Who watches a generation sees every splat once, and changes nothing.
-#include "generate/kept_watcher.h"
+#include "generate/kept_store.h"
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 #include "generate/triangle_tree.h"
 #include "support/test_data.h"
 #include "unit/generate/generate_support.h"
+#include "unit/generate/lattice_positions.h"
 
 namespace astrosplat {
 namespace {

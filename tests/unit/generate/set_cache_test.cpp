@@ -377,7 +377,7 @@ TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
     std::thread other([&] { loaded = load(); });
     while (!waits) std::this_thread::yield();
     set.key = set_key_text(source_, "dust");
-    write_native(key_file(".splats"), set, RowOrder::id, {});
+    write_native(key_file(".splats"), set, {}, RowOrder::id);
     set.key.clear();
     fs::remove(key_file(".lock"));  // as FileLock gives it back
     close(lock);

@@ -53,7 +53,7 @@ TEST_F(Native, AKeySurvivesBesideTheCredit) {
     SplatSet set = full_set(10);
     for (const char* credit : {"", "ESA"}) {
         set.credit = credit, set.key = "set 1\nseed 3\n";
-        write_native(path("a.splats"), set, RowOrder::id, {});
+        write_native(path("a.splats"), set, {}, RowOrder::id);
         const SplatSet got = read_native(path("a.splats"));
         EXPECT_EQ(got.credit, credit);
         EXPECT_EQ(got.key, set.key);
@@ -80,7 +80,7 @@ TEST_F(Native, OptionalArraysStayUnknown) {
 
 TEST_F(Native, ColumnsThatAreNotWantedStayEmpty) {
     const SplatSet set = full_set(70000);  // a block and a part
-    write_native(path("a.splats"), set, RowOrder::id, {});
+    write_native(path("a.splats"), set, {}, RowOrder::id);
     for (int without = 0; without < 8; ++without) {
         const OptionalColumns wanted{(without & 1) == 0, (without & 2) == 0, (without & 4) == 0};
         SplatSet expected = set;
@@ -88,7 +88,7 @@ TEST_F(Native, ColumnsThatAreNotWantedStayEmpty) {
         EXPECT_EQ(expected.uv.empty(), !wanted.uv);
         EXPECT_EQ(expected.normal.empty(), !wanted.normal);
         EXPECT_EQ(expected.mesh.empty(), !wanted.mesh);
-        expect_same_set(read_native(path("a.splats"), wanted, {}), expected);
+        expect_same_set(read_native(path("a.splats"), {}, wanted), expected);
     }
 }
 
@@ -110,7 +110,7 @@ TEST_F(Native, ThreadsAndOrderOfTheSetDoNotChangeBytes) {
 TEST_F(Native, RowsByIdNeedNoSorting) {
     SplatSet set = full_set(200000);
     std::sort(set.id.begin(), set.id.end());
-    write_native(path("a.splats"), set, RowOrder::id, {});
+    write_native(path("a.splats"), set, {}, RowOrder::id);
     expect_same_set(read_native(path("a.splats")), set);
     EXPECT_EQ(native_file_bytes(set), static_cast<std::int64_t>(bytes_of(path("a.splats")).size()));
     EXPECT_EQ(native_splat_count(path("a.splats")), 200000);
