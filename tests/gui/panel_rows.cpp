@@ -56,6 +56,36 @@ TEST(PanelRows, EverySourceHasItsOwnFiles) {
     EXPECT_TRUE(file.has_row("layer.dust.source.file"));
 }
 
+TEST(PanelRows, TheFirstThicknessKeyChangesNothing) {
+    PanelDriver d(std::string(rows_scene) + "[layer.look]\npdf = { shape = \"gaussian\" }\n");
+    d.show(PanelTab::look);
+    const auto keys = [&] { return d.document.scene().layers[0].look.thickness.keys; };
+    d.click(d.row("layer.dust.look.thickness.map").label + glm::vec2(-20.0f, 26.0f));  // the line below
+    ASSERT_EQ(keys().size(), 1u);
+    EXPECT_EQ(keys()[0].pdf, d.document.scene().layers[0].look.pdf);
+    d.document.undo();
+    EXPECT_TRUE(keys().empty());
+}
+
+TEST(PanelRows, AMeshIsAShapeOrAFile) {
+    PanelDriver d(rows_scene);
+    d.show(PanelTab::source);
+    const std::string mesh = "layer.dust.source.meshes.0.mesh";
+    const auto browse = [&] {
+        d.click({310.0f, d.row(mesh).value.y});  // the folder at the end of the row
+        d.frames(2);
+    };
+    browse();
+    d.choose("Sphere");
+    EXPECT_EQ(d.value(mesh), Value("sphere"));
+    browse();
+    d.choose("File...");
+    const std::optional<FileRequest> request = d.panel.take_request();
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->kind, FileRequest::Kind::parameter);
+    EXPECT_EQ(request->key, mesh);
+}
+
 TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
     PanelDriver d(rows_scene);
     d.show(PanelTab::render);

@@ -129,11 +129,14 @@ class SaveConflict : public testing::Test {
 };
 
 TEST_F(SaveConflict, IsAskedAbout) {
+    EXPECT_FALSE(window.gui.busy());
     save();
     EXPECT_TRUE(commands_after_frames().empty());
+    EXPECT_TRUE(window.gui.busy());
     window.click("conflict/Cancel");
     EXPECT_TRUE(commands_after_frames().empty());
     EXPECT_FALSE(window.has("conflict/Cancel"));
+    EXPECT_FALSE(window.gui.busy());
     save();
     window.click("conflict/Overwrite");
     EXPECT_EQ(commands_after_frames(), std::vector<Kind>{Kind::save});

@@ -63,6 +63,17 @@ TEST(Picture, KeysFlyOnlyWhileLookingAround) {
     window.release(1);
 }
 
+TEST(ToolRow, TheSharePreviewsShowIsDraggedAndZeroMeansAuto) {
+    TestWindow window(example_document());
+    ASSERT_EQ(window.view.preview_share, 0.0f);
+    window.drag(window.at("preview"), {50.0f, 0.0f});
+    EXPECT_GT(window.view.preview_share, 0.02f);
+    EXPECT_LT(window.view.preview_share, 0.5f);
+    window.frame(60);  // not a double click
+    window.drag(window.at("preview"), {-400.0f, 0.0f});
+    EXPECT_EQ(window.view.preview_share, 0.0f);
+}
+
 TEST(Picture, TheWipeIsDragged) {
     TestWindow window(example_document());
     window.view.compare = CompareMode::wipe;

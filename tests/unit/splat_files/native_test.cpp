@@ -41,6 +41,16 @@ std::string forged(std::string bytes, std::size_t at, T value, std::size_t heade
     return bytes;
 }
 
+/// A valid file of one block with another lower bound in its table, and the table's checksum made to fit.
+std::string with_bounds(std::string bytes, float lo) {
+    constexpr std::size_t entry = 32, checksum = 8;
+    const std::size_t table = bytes.size() - checksum - entry;
+    std::memcpy(bytes.data() + table, &lo, sizeof lo);
+    const std::uint64_t sum = xxh64(std::string_view(bytes).substr(table, entry));
+    std::memcpy(bytes.data() + table + entry, &sum, sizeof sum);
+    return bytes;
+}
+
 TEST_F(Native, EverythingSurvives) {
     const SplatSet set = full_set(200000);  // three blocks and a part
     write_native(path("a.splats"), set);
@@ -215,6 +225,8 @@ TEST_F(Native, Messages) {
     damaged[200] ^= 1;
     EXPECT_EQ(error(damaged),
               "a.splats:block 0: expected the checksum written with it, found another (damaged file)");
+    EXPECT_EQ(error(with_bounds(whole, -9.0f)),
+              "a.splats:block 0: expected positions within its bounds, found others");
     damaged = whole;
     damaged[whole.size() - 20] ^= 1;
     EXPECT_EQ(error(damaged),
