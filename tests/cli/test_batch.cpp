@@ -121,6 +121,24 @@ TEST_F(Batch, DryRunTellsAndWritesNothing) {
     EXPECT_EQ(names_in("."), (std::set<std::string>{"scene.toml", "stars.pda", "dust.pda"}));
 }
 
+/// Four floats a pixel, and with any extra output those and each layer's four.
+TEST_F(Batch, DryRunEstimatesThePicturesThatAreKept) {
+    const auto mib = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"--dry-run"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const RunResult result = batch(arguments);
+        const std::string before = "memory about ";
+        EXPECT_NE(result.out.find(" MiB, threads"), std::string::npos) << result.out;
+        return std::stod(result.out.substr(result.out.find(before) + before.size()));
+    };
+    const double small = mib({}), pixels_mib = 4000.0 * 3000.0 / 1048576.0;
+    EXPECT_NEAR(mib({"--resolution", "4000x3000"}) - small, 16.0 * pixels_mib, 2.0);
+    EXPECT_NEAR(mib({"--resolution", "4000x3000", "--set", "output.aovs=[\"depth\"]"}) - small,
+                (16.0 + 4.0 + 2 * 16.0) * pixels_mib, 2.0);
+    EXPECT_NEAR(mib({"--resolution", "4000x3000", "--region", "0,0,4000,1000"}) - small,
+                16.0 / 3.0 * pixels_mib, 2.0);
+}
+
 TEST_F(Batch, StatsHoldTheKeysOfTheContract) {
     ASSERT_EQ(batch({"--stats", "figures/stats.json", "-t", "2"}).code, 0);
     const nlohmann::json stats = json("figures/stats.json");
