@@ -153,6 +153,17 @@ TEST_F(PreviewPicture, FromInsideWithDotsWiderThanPoints) {
                             camera);
 }
 
+TEST_F(PreviewPicture, FromInsideWhereverTheSetLies) {
+    Camera camera = test::perspective_camera(width, height);
+    PreviewLayer layer = test::cloud_layer(2000, 9, 0.3f, render_with(Falloff::Shape::gaussian));
+    SplatSet moved = *layer.set;
+    for (glm::vec3& p : moved.position) p += glm::vec3(20.0f, -30.0f, 40.0f);
+    layer.set = std::make_shared<const SplatSet>(moved);
+    camera.eye = {20.1, -29.98, 40.3};
+    camera.near_fade = 0.05;
+    expect_like_offline({layer}, camera);
+}
+
 /// Above the flat cloud, looking down on it.
 Camera camera_above(double eye_height) {
     CameraParams params;

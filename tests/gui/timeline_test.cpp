@@ -55,24 +55,54 @@ TEST(Timeline, KeysOfTheFirstAndTheLastRowMoveToo) {
 
 /// The same scene looks the same, whether it was opened so or edited while it was shown.
 TEST(Timeline, ShowsTheSceneAsItIsNow) {
-    const auto picture = [](bool shown_before) {
-        TestWindow window(example_document());
-        const auto edit = [&] {
-            window.document.edit("Key", [](Scene& scene) {
+    const auto pictures = [](bool shown_before) {
+        const auto edit = [&](Document& document) {
+            document.edit("Key", [](Scene& scene) {
                 set_key(scene, "layer.stars.render.opacity", 120, 0.4);
                 set_key(scene, "layer.nebulae.render.opacity", 60, 0.5);
             });
-            window.frame(2);
         };
-        if (!shown_before) edit();
+        Document document = example_document();
+        if (!shown_before) edit(document);
+        TestWindow window(std::move(document));
         window.click("graph");
         window.click("track layer.stars.render.opacity");
-        if (shown_before) edit();
-        window.move({-100, -100});
-        window.frame(3);
-        return window.picture(Style::schematic);
+        if (shown_before) edit(window.document);
+        window.frame(2);
+        std::vector<Picture8> seen;
+        for (const std::string track : {"", "track layer.nebulae.render.opacity"}) {
+            if (!track.empty()) window.click(track);
+            window.move({-100, -100});
+            window.frame(3);
+            seen.push_back(window.picture(Style::schematic));
+        }
+        return seen;
     };
-    EXPECT_TRUE(picture(true).pixels == picture(false).pixels);
+    const std::vector<Picture8> edited = pictures(true), opened = pictures(false);
+    for (std::size_t i = 0; i < edited.size(); ++i) EXPECT_TRUE(edited[i].pixels == opened[i].pixels) << i;
+}
+
+TEST(Timeline, EveryInterpolationHasAMarkOfItsOwn) {
+    std::vector<std::vector<Rgba8>> marks;
+    for (const int interpolation : {-1, 0, 1, 2}) {
+        TestWindow window(example_document());
+        const std::string opacity = "layer.stars.render.opacity";
+        const glm::vec2 place = window.at("key " + opacity + " 24");
+        window.document.edit("Key", [&](Scene& scene) {
+            if (interpolation < 0)
+                remove_key(scene, opacity, 24);
+            else
+                set_interpolation(scene, opacity, 24, static_cast<Interpolation>(interpolation));
+        });
+        window.frame(2);
+        const Picture8 mark = cropped(window.picture(Style::schematic), static_cast<int>(place.x) - 4,
+                                      static_cast<int>(place.y) - 4, 9, 9);
+        for (const auto& other : marks) EXPECT_FALSE(mark.pixels == other) << interpolation;
+        marks.push_back(mark.pixels);
+    }
+    const auto middle = [&](std::size_t i) { return marks[i][4 * 9 + 4]; };
+    EXPECT_FALSE(middle(1) == middle(0));
+    for (const std::size_t i : {2u, 3u}) EXPECT_TRUE(middle(i) == middle(1)) << i;
 }
 
 TEST(Timeline, CtrlDragCopiesAndDeleteRemoves) {

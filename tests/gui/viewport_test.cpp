@@ -6,6 +6,7 @@
 #include "gui/test_window.h"
 #include "gui/viewport.h"
 #include "gui/viewport_overlay.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
@@ -135,6 +136,48 @@ TEST(Picture, TheBadgesButtons) {
     commands = window.take_commands();
     ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::cancel_load});
     EXPECT_EQ(commands[0].index, 1U);
+}
+
+TEST(Picture, TheBadgeStaysInThePictureHoweverLongANameIs) {
+    TestWindow window(example_document());
+    window.document.edit("Rename", [](Scene& scene) { scene.layers[1].name = std::string(300, 'x'); });
+    window.status.layers[1].loading = true;
+    window.frame(2);
+    const Rect picture = make_layout(window.view, 1600.0f, 900.0f, 1.0f).viewport;
+    EXPECT_LT(window.at("badge/Cancel").x, picture.x + picture.width - 25.0f);
+    EXPECT_GT(window.at("badge/Cancel").x, picture.x + picture.width - 80.0f);
+}
+
+TEST(Fitting, ATextThatJustFitsIsNotCut) {
+    const TestWindow window(example_document());
+    ImGui::NewFrame();
+    const std::string text = "abcdefgh";
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    EXPECT_EQ(fitting(text, width), text);
+    EXPECT_NE(fitting(text, width - 1.0f), text);
+    EXPECT_LE(ImGui::CalcTextSize(fitting(text, width - 1.0f).c_str()).x, width - 1.0f);
+    ImGui::Render();
+}
+
+TEST(MessageBar, AnErrorStaysUntilItIsClicked) {
+    TestWindow window(example_document());
+    const Rect bar = make_layout(window.view, 1600.0f, 900.0f, 1.0f).status;
+    const auto seen = [&] {
+        window.move({-100.0f, -100.0f});
+        window.frame(2);
+        return cropped(window.picture(Style::schematic), 0, static_cast<int>(bar.y), 800,
+                       static_cast<int>(bar.height))
+            .pixels;
+    };
+    window.status.message = {};
+    const auto empty = seen();
+    window.status.message = {"a.toml:14: expected a file", true};
+    const auto error = seen();
+    EXPECT_FALSE(error == empty);
+    window.status.message = {};
+    EXPECT_TRUE(seen() == error);
+    window.click("message");
+    EXPECT_TRUE(seen() == empty);
 }
 
 TEST(Picture, CountsHaveThreeDigitsAtMost) {

@@ -89,7 +89,7 @@ def main():
     earlier = earlier_results(work)
     results = {} if options.fresh else earlier
     tests = tests_of(work, options.tests, options.without)
-    for number, site in enumerate(chosen, 1):
+    for number, site in enumerate(sorted(chosen, key=lambda site: site.key), 1):  # a fair sample, however long it runs
         known = results.get(site.key)
         if not fnmatch.fnmatch(site.path, options.only) or known and (known["caught"] or not options.again):
             continue

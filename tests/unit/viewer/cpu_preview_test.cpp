@@ -139,6 +139,7 @@ TEST_F(CpuPreviewTest, ALookThatCannotBeAppliedIsRefusedUntilItIsMended) {
 
 TEST_F(CpuPreviewTest, NoLayersAndEmptySets) {
     CpuPreview preview;
+    EXPECT_EQ(preview.shown(), 0);
     layers[0].set = std::make_shared<const SplatSet>();
     layers.pop_back();
     const Image& picture = preview.draw(layers, camera(), nullptr, width, height, 0.5f);

@@ -1,0 +1,76 @@
+// Two looks one after the other, the output's own pixels, and a movie of the scene's frames.
+#include <cmath>
+
+#include "output/read_frame.h"
+#include "source/texture.h"
+#include "window/window_test.h"
+
+namespace astrosplat::test {
+namespace {
+
+class WindowCompare : public WindowTest {};
+
+TEST_F(WindowCompare, TabShowsTheStoredLookAndTheOneAtHand) {
+    start();
+    const Pixels stored = settled_picture();
+    person->key("b");
+    person->drag(value_box(power), {60.0f, 0.0f});
+    const Pixels changed = settled_picture(stored);
+    person->key("Tab");
+    expect_settled(stored);
+    person->key("Tab");
+    expect_settled(changed);
+    expect_title("scene.toml - edited");
+}
+
+/// Of a picture larger than the viewport its middle, pixel by pixel as it will be in the file.
+TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
+    std::string text = text_of(scene_file);
+    text.replace(text.find("[320, 180]"), 10, "[1600, 1200]");
+    write_text(scene_file, text);
+    start();
+    const Pixels fitted = settled_picture();
+    person->key("z");
+    const Pixels shown = settled_picture(fitted);
+    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
+    const Image frame = load_raw_image(folder / "frame.png");
+    ViewState view;
+    view.size = SizeMode::one_to_one;
+    const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
+    const Rect whole = place_picture(view, viewport, 1600, 1200);
+    const auto left = static_cast<int>(viewport.x - whole.x), top = static_cast<int>(viewport.y - whole.y);
+    ASSERT_GT(left, 0);
+    ASSERT_GT(top, 0);
+    int wrong = 0;
+    for (int y = 150; y < shown.height - 150; ++y)  // words and a frame lie over the edges
+        for (int x = 200; x < shown.width - 200; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const int wanted = static_cast<int>(std::lround(255.0f * frame.at(x + left, y + top)[c]));
+                const std::uint32_t rgb =
+                    shown.rgb[std::size_t(y) * std::size_t(shown.width) + std::size_t(x)];
+                wrong += std::abs(static_cast<int>(rgb >> (16 - 8 * c) & 255) - wanted) > 1;
+            }
+    EXPECT_EQ(wrong, 0);
+}
+
+/// With a stand-in for ffmpeg that writes down what it is asked for.
+TEST_F(WindowCompare, AMovieHasTheScenesFramesAndSpeed) {
+    const fs::path stand_in = folder / "no programs/ffmpeg";
+    write_text(stand_in, "#!/bin/sh\nfor last in \"$@\"; do :; done\necho \"$@\" > \"$last\"\n");
+    fs::permissions(stand_in, fs::perms::owner_all);
+    start();
+    settled_picture();
+    same_widgets().status.has_ffmpeg = true;
+    same_widgets().frame();
+    choose("Render/Movie...");
+    same_widgets().frame(2);
+    person->key("ctrl+a");
+    person->type("film.mp4");
+    person->key("Return");
+    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "film.mp4"); }));
+    EXPECT_NE(text_of(folder / "film.mp4").find("-framerate 24 "), std::string::npos)
+        << text_of(folder / "film.mp4");
+}
+
+}  // namespace
+}  // namespace astrosplat::test
