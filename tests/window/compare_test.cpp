@@ -53,6 +53,18 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
     EXPECT_EQ(wrong, 0);
 }
 
+TEST_F(WindowCompare, WhatACommandDidIsSaid) {
+    start();
+    settled_picture();
+    const Rect bar = make_layout(ViewState(), width, height, 1.0f).status;
+    const auto message = [&] {
+        return screen->pixels({0, static_cast<int>(bar.y), 400, static_cast<int>(bar.height)});
+    };
+    const Pixels before = message();
+    choose("Render/Copy batch command");
+    EXPECT_TRUE(comes_true([&] { return message() != before; }));
+}
+
 /// With a stand-in for ffmpeg that writes down what it is asked for.
 TEST_F(WindowCompare, AMovieHasTheScenesFramesAndSpeed) {
     const fs::path stand_in = folder / "no programs/ffmpeg";
