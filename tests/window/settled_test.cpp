@@ -1,6 +1,7 @@
 // The settled picture is the very frame that --batch computes.
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "output/write.h"
 #include "source/texture.h"
@@ -68,6 +69,24 @@ TEST_F(Settled, EqualsBatchBitForBit) {
         EXPECT_EQ(hashes.back(), stats.at("frames").at(i).at("sha256").get<std::string>());
     }
     EXPECT_NE(hashes[0], hashes[1]) << "the frames must differ for this test to say anything";
+}
+
+TEST_F(Settled, TheWidgetsAreInAScreenshotThatAsksForThem) {
+    const RunResult result = run({"--screenshot", "window.png", "--ui", "--settled", "--size", "900x600",
+                                  scene_file.string(), "--no-cache"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    const Image window = load_raw_image(folder / "window.png");
+    ASSERT_EQ(window.width, 900);
+    ASSERT_EQ(window.height, 600);
+    const auto reds = [&](std::int64_t x0, std::int64_t x1, std::int64_t y0, std::int64_t y1) {
+        std::set<float> found;
+        for (std::int64_t y = y0; y < y1; ++y)
+            for (std::int64_t x = x0; x < x1; ++x) found.insert(window.at(x, y)[0]);
+        return found;
+    };
+    EXPECT_EQ(reds(500, 880, 2, 4).size(), 1u) << "the menu bar's background";
+    EXPECT_GT(*reds(500, 880, 2, 4).begin(), 0.0f);
+    EXPECT_GT(reds(0, 300, 4, 24).size(), 8u) << "the menus' names";
 }
 
 TEST_F(Settled, APreviewsLightCanBeSavedToo) {
