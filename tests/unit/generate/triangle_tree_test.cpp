@@ -39,6 +39,13 @@ TEST(ClosestOnTriangle, Edges) {
                    0.5);  // the hypotenuse's normal is (3, 4)
 }
 
+/// To the last bit: what the formula for the inside rounds differently.
+TEST(ClosestOnTriangle, OverAnEdgeIsOnTheEdge) {
+    const dvec3 a(0, 0, 0), b(0, 1, 0), c(6, 0, 0);
+    EXPECT_EQ(closest_on_triangle({5, 0, 2}, a, b, c).barycentric, glm::dvec2(0.0, 30.0 / 36.0));
+    EXPECT_EQ(closest_on_triangle({5, 0, 2}, a, c, b).barycentric, glm::dvec2(30.0 / 36.0, 0.0));
+}
+
 TEST(ClosestOnTriangle, InsideFromBothSides) {
     expect_closest(right_triangle({1, 1, 2}), 2.0, 0.25, 1.0 / 3.0);
     expect_closest(right_triangle({1, 1, -2}), 2.0, 0.25, 1.0 / 3.0);

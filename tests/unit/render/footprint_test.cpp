@@ -140,6 +140,18 @@ double convolved(const Falloff& falloff, double radius, double sigma, double d) 
     return sum / mass;
 }
 
+TEST(Footprint, WeightsEndAtZero) {
+    for (const Falloff::Shape shape : all_shapes) {
+        const FootprintTable table = make_footprint_table({shape, 0.5f, 4.5f}, 0.5f);
+        for (const float radius : {0.3f, 2.0f, 7.0f, 40.0f}) {
+            Footprint footprint;
+            footprint_at(table, radius, 0.3f, 0.7f, footprint);
+            EXPECT_NEAR(footprint_weight(table, footprint, 0.99999f * footprint.support_px), 0.0f, 4e-6f)
+                << testing::PrintToString(shape) << ", radius " << radius;
+        }
+    }
+}
+
 TEST(Footprint, ProfileIsTheConvolution) {
     for (const Falloff::Shape shape : all_shapes) {
         const Falloff falloff{shape, 0.5f, 4.5f};
