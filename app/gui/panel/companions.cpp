@@ -1,9 +1,6 @@
 // The smallest size drags the largest along, a custom curve begins as the shape it replaces, and so on.
 #include "gui/panel/companions.h"
 
-#include <algorithm>
-#include <charconv>
-
 #include "gui/panel/words.h"
 #include "look/prepare.h"
 #include "look/shared_look.h"
@@ -13,8 +10,6 @@ namespace astrosplat::panel {
 namespace {
 
 using Result = std::vector<Companion>;
-
-bool is_word(const Value& value, const char* word) { return value.text() && *value.text() == word; }
 
 // Five points of a profile, enough to look like it.
 Value sampled(const LookProfile& profile) {
@@ -26,73 +21,70 @@ Value sampled(const LookProfile& profile) {
     return curve_value(points);
 }
 
-Result density_points(const DensityCurve& pdf, const std::string& head) {
-    if (pdf.points.size() >= 2) return {};
-    return {{head + "points", sampled(density_profile(pdf, "points"))}};
+/// A curve is first what the shape before it was; `key` is the shape's.
+Result points_for_shape(const Look& look, const ParameterKey& key) {
+    const ParameterKey generic = key.generic(), points = key.parent() / "points";
+    const auto of_density = [&](const DensityCurve& pdf) -> Result {
+        if (pdf.points.size() >= 2) return {};
+        return {{points, sampled(density_profile(pdf, "points"))}};
+    };
+    if (generic == "layer.look.pdf.shape") return of_density(look.pdf);
+    if (generic == "layer.look.thickness.keys.shape")
+        return of_density(look.thickness.keys.at(place_in_list(key)).pdf);
+    if (generic == "layer.look.vertical.shape" && look.vertical.points.size() < 2)
+        return {{points, sampled(vertical_profile(look.vertical))}};
+    return {};
 }
 
-Result points_for_shape(const LayerParams& layer, const std::string& head, const std::string& rest) {
-    const Look& look = layer.look;
-    if (rest == "look.pdf.shape") return density_points(look.pdf, head + "look.pdf.");
-    if (rest == "look.vertical.shape") {
-        if (look.vertical.points.size() >= 2) return {};
-        return {{head + "look.vertical.points", sampled(vertical_profile(look.vertical))}};
-    }
-    const std::string list = "look.thickness.keys.";
-    std::size_t index = look.thickness.keys.size();
-    if (rest.rfind(list, 0) == 0)
-        std::from_chars(rest.data() + list.size(), rest.data() + rest.size(), index);
-    if (index >= look.thickness.keys.size()) return {};
-    return density_points(look.thickness.keys[index].pdf, head + list + std::to_string(index) + ".");
-}
-
-// Two numbers of which the first may not be above the second: the other one follows. `gap` apart at least.
+/// Two numbers of which the first may not be above the second: the other one follows. `gap` apart at least.
 struct Pair {
-    const char* lower;
-    const char* upper;
-    double gap;
+    ParameterKey lower, upper;
+    double lower_value, upper_value, gap;
 };
 
-Result follow(const Pair& pair, double lower, double upper, const std::string& head, const std::string& rest,
-              double value) {
-    if (rest == pair.lower && value + pair.gap > upper) return {{head + pair.upper, value + pair.gap}};
-    if (rest == pair.upper && value - pair.gap < lower) return {{head + pair.lower, value - pair.gap}};
+Result follow(const Pair& pair, const ParameterKey& key, const Value& value) {
+    if (!value.is_number()) return {};
+    const double number = value.number();
+    if (key == pair.lower && number + pair.gap > pair.upper_value) return {{pair.upper, number + pair.gap}};
+    if (key == pair.upper && number - pair.gap < pair.lower_value) return {{pair.lower, number - pair.gap}};
     return {};
 }
 
-Result of_source(const SourceParams& source, const std::string& head, const std::string& rest,
+Result of_source(const SourceParams& params, const ParameterKey& source, const ParameterKey& key,
                  const Value& value) {
-    if (rest == "source.voxels" && value.list() && source.voxel_size > 0.0)
-        return {{head + "source.voxel_size", 0.0}};
-    if (rest == "source.kind" && is_word(value, "mesh") && source.meshes.empty())
-        return {{head + "source.meshes.0.mesh", "plane"}};
+    if (key == source / "voxels" && value.list() && params.voxel_size > 0.0)
+        return {{source / "voxel_size", 0.0}};
+    if (key == source / "kind" && value == Value("mesh") && params.meshes.empty())
+        return {{source / "meshes.0.mesh", "plane"}};
     return {};
 }
 
-Result of_layer(const LayerParams& layer, const std::string& head, const std::string& rest,
+Result of_layer(const LayerParams& layer, const ParameterKey& group, const ParameterKey& key,
                 const Value& value) {
-    if (is_word(value, "curve")) return points_for_shape(layer, head, rest);
-    const Radius& radius = layer.look.radius;
+    if (value == Value("curve")) return points_for_shape(layer.look, key);
+    if (key.is_below(group / "source")) return of_source(layer.source, group / "source", key, value);
+    const ParameterKey radius = group / "look.radius", hybrid = group / "render.hybrid";
     const LayerRender& render = layer.render;
-    if (value.is_number() && rest.rfind("look.radius.", 0) == 0)
-        return follow({"look.radius.min", "look.radius.max", 0.0}, widen(radius.min), widen(radius.max), head,
-                      rest, value.number());
-    if (value.is_number() && rest.rfind("render.hybrid.", 0) == 0)
-        return follow({"render.hybrid.from_deg", "render.hybrid.to_deg", 1.0}, widen(render.hybrid_from_deg),
-                      widen(render.hybrid_to_deg), head, rest, value.number());
-    return of_source(layer.source, head, rest, value);
+    if (key.is_below(radius))
+        return follow(
+            {radius / "min", radius / "max", widen(layer.look.radius.min), widen(layer.look.radius.max), 0.0},
+            key, value);
+    return follow({hybrid / "from_deg", hybrid / "to_deg", widen(render.hybrid_from_deg),
+                   widen(render.hybrid_to_deg), 1.0},
+                  key, value);
 }
 
 }  // namespace
 
-std::vector<Companion> companions(const Scene& scene, const std::string& key, const Value& value) {
+std::size_t place_in_list(const ParameterKey& key) { return std::stoul(key.parent().parts().back()); }
+
+std::vector<Companion> companions(const Scene& scene, const ParameterKey& key, const Value& value) {
     const EnvironmentParams& environment = scene.environment;
     if (key == "environment.image" && !environment.cube.empty()) return {{"environment.cube", Value::List{}}};
     if (key == "environment.cube" && !environment.image.empty()) return {{"environment.image", ""}};
-    for (const LayerParams& layer : scene.layers) {
-        const std::string head = "layer." + layer.name + ".";
-        if (key.rfind(head, 0) == 0) return of_layer(layer, head, key.substr(head.size()), value);
-    }
+    for (const LayerParams& layer : scene.layers)
+        if (const ParameterKey group = layer_key(layer.name); key.is_below(group))
+            return of_layer(layer, group, key, value);
     return {};
 }
 

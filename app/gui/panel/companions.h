@@ -2,22 +2,25 @@
 // edit can stand. Pure.
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "scene/parameter_key.h"
 #include "scene/scene.h"
 #include "scene/value.h"
 
 namespace astrosplat::panel {
 
 struct Companion {
-    std::string key;
+    ParameterKey key;
     Value value;
 };
 
 /// To be set before `key` is set to `value`, in this order; empty where nothing else is concerned. `scene`
 /// as it stands at the frame.
-std::vector<Companion> companions(const Scene& scene, const std::string& key, const Value& value);
+std::vector<Companion> companions(const Scene& scene, const ParameterKey& key, const Value& value);
+
+/// The place in its list of the element that a parameter is of: 2 of "look.noise.2.cull".
+std::size_t place_in_list(const ParameterKey& key);
 
 /// Keys for a thickness map that has none: red, green and blue, from thick to thin, all with the look's own
 /// shape.

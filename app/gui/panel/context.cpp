@@ -22,15 +22,19 @@ void describe_current(Memory& memory, const Document& document, double frame) {
     d.frame = frame;
     d.scene = std::make_unique<Scene>(scene_at(document.scene(), frame));
     d.description = describe(*d.scene);
-    d.index.clear();
-    for (std::size_t i = 0; i < d.description.parameters.size(); ++i)
-        d.index.emplace(d.description.parameters[i].spec.key, i);
+    d.by_key.clear();
+    for (const Parameter& parameter : d.description.parameters)
+        d.by_key.emplace(parameter.spec.key, &parameter);
 }
 
-const Parameter* find(const Context& context, const std::string& key) {
-    const Described& d = context.memory.described;
-    const auto found = d.index.find(key);
-    return found == d.index.end() ? nullptr : &d.description.parameters[found->second];
+const Parameter* find(const Context& context, const ParameterKey& key) {
+    const auto& by_key = context.memory.described.by_key;
+    const auto found = by_key.find(key);
+    return found == by_key.end() ? nullptr : found->second;
+}
+
+ParameterKey Context::layer_key() const {
+    return scene().layers.empty() ? ParameterKey() : astrosplat::layer_key(layer().name);
 }
 
 const Value& default_of(Context& context, const ParameterSpec& spec) {
@@ -48,7 +52,7 @@ Gesture begin_gesture(Context& context) {
 
 namespace {
 
-void attempt(Context& context, const std::string& key, const std::function<void()>& change) {
+void attempt(Context& context, const ParameterKey& key, const std::function<void()>& change) {
     Memory& memory = context.memory;
     try {
         change();
@@ -59,13 +63,9 @@ void attempt(Context& context, const std::string& key, const std::function<void(
     }
 }
 
-}  // namespace
-
-namespace {
-
 // Things that are one wish of a person but need more than one parameter, or a file first. True when done.
 bool set_specially(Context& context, const Parameter& parameter, const Value& value) {
-    const std::string& key = parameter.spec.key;
+    const ParameterKey& key = parameter.spec.key;
     if (parameter.spec.generic_key == "layer.look.thickness.map" && value.text() && !value.text()->empty() &&
         context.layer().look.thickness.keys.empty()) {
         const std::size_t layer = context.view.layer;
@@ -78,33 +78,33 @@ bool set_specially(Context& context, const Parameter& parameter, const Value& va
     }
     const bool to_file = parameter.spec.generic_key == "layer.source.kind" && value == Value("splats");
     if (!to_file || !context.layer().source.file.empty()) return false;
-    context.memory.request = FileRequest{FileRequest::Kind::parameter, context.prefix + "source.file"};
+    context.memory.request = FileRequest{FileRequest::Kind::parameter, context.layer_key() / "source.file"};
     return true;
 }
 
 }  // namespace
 
-void set_value(Context& context, const std::string& key, const Value& value, Gesture gesture) {
+void set_value(Context& context, const ParameterKey& key, const Value& value, Gesture gesture) {
     const Parameter* parameter = find(context, key);
     if (parameter && set_specially(context, *parameter, value)) return;
     std::vector<Companion> others = companions(context.scene(), key, value);
-    if (key == context.prefix + "source.file" && context.layer().source.kind != SourceKind::splats)
+    if (key == context.layer_key() / "source.file" && context.layer().source.kind != SourceKind::splats)
         others.push_back({key, value});                                     // and then the kind
     if (!others.empty() && gesture == 0) gesture = begin_gesture(context);  // all of it is one undo step
     attempt(context, key, [&] {
         for (const Companion& other : others)
             context.document.set(other.key, other.value, context.view.frame, gesture);
         const bool kind = !others.empty() && others.back().key == key;
-        context.document.set(kind ? context.prefix + "source.kind" : key, kind ? Value("splats") : value,
+        context.document.set(kind ? context.layer_key() / "source.kind" : key, kind ? Value("splats") : value,
                              context.view.frame, gesture);
     });
 }
 
-void reset_value(Context& context, const std::string& key) {
+void reset_value(Context& context, const ParameterKey& key) {
     attempt(context, key, [&] { context.document.reset(key); });
 }
 
-void edit(Context& context, const std::string& key, const std::string& name,
+void edit(Context& context, const ParameterKey& key, const std::string& name,
           const std::function<void(Scene&)>& change, Gesture gesture) {
     attempt(context, key, [&] { context.document.edit(name, change, gesture); });
 }

@@ -21,7 +21,7 @@ struct Described {
     double frame = 0.0;
     std::unique_ptr<Scene> scene;  // the handles below point into it
     Description description;
-    std::unordered_map<std::string, std::size_t> index;  // key -> place in description.parameters
+    std::unordered_map<std::string, const Parameter*> by_key;
 };
 
 /// A value being dragged or typed. There is only one at a time.
@@ -51,24 +51,24 @@ struct NoisePicture {
 
 struct Memory {
     Described described;
-    std::map<std::string, Value> defaults;  // by generic key
+    std::map<ParameterKey, Value> defaults;  // by generic key
     Touch touch;
-    Gesture gesture = 0;                     // of the drag that runs; a new one for every press
-    std::string error_key;                   // parameter whose last edit was refused
-    std::string error;                       // why
-    bool error_shown = false;                // beside its row, in this frame
-    std::map<std::string, bool> open;        // sections, by title
-    bool all_open = false;                   // in the next frame every section unfolds
-    bool after_open = false;                 // the section above is unfolded: leave some room
-    std::map<std::string, glm::vec4> plots;  // by the key they edit: x, y, width, height
-    std::string selected_curve;              // key of the curve whose point is selected
+    Gesture gesture = 0;       // of the drag that runs; a new one for every press
+    ParameterKey error_key;    // parameter whose last edit was refused
+    std::string error;         // why
+    bool error_shown = false;  // beside its row, in this frame
+    std::map<std::pair<PanelTab, std::string>, bool> open;  // sections, by tab and title
+    bool all_open = false;                                  // in the next frame every section unfolds
+    bool after_open = false;                                // the section above is unfolded: leave some room
+    std::map<ParameterKey, glm::vec4> plots;                // by the key they edit: x, y, width, height
+    ParameterKey selected_curve;                            // the one whose point is selected
     int selected_point = -1;
     std::string renaming;  // layer whose name is typed
     int dragged_layer = -1;
     std::optional<CopiedLook> copied;
     std::vector<NoisePicture> noises;  // by entry of the list
     float scroll = 0.0f;               // how far the tab can be scrolled
-    std::string hovered;               // row under the mouse, and since when: tooltips wait a little
+    ParameterKey hovered;              // row under the mouse, and since when: tooltips wait a little
     double hovered_since = 0.0;
     std::optional<FileRequest> request;
 };
@@ -80,11 +80,11 @@ struct Context {
     Commands& commands;
     Memory& memory;
     std::vector<DrawnRow>& rows;
-    std::string prefix;  // of the selected layer: "layer.dust."; empty without layers
-
     const Scene& scene() const { return *memory.described.scene; }
     /// The selected layer at the current frame; there must be one.
     const LayerParams& layer() const { return scene().layers[view.layer]; }
+    /// "layer.dust"; empty without layers.
+    ParameterKey layer_key() const;
     /// Its status; an empty one while the viewer has not heard of the layer.
     const LayerStatus& layer_status() const;
 };
@@ -93,7 +93,7 @@ struct Context {
 void describe_current(Memory& memory, const Document& document, double frame);
 
 /// nullptr when there is no such parameter (any more).
-const Parameter* find(const Context& context, const std::string& key);
+const Parameter* find(const Context& context, const ParameterKey& key);
 
 /// Its default in a new scene.
 const Value& default_of(Context& context, const ParameterSpec& spec);
@@ -103,13 +103,13 @@ Gesture begin_gesture(Context& context);
 
 /// Document::set at the current frame, with what else must change for it to stand (companions.h), as one undo
 /// step; a refusal becomes the row's message. `gesture` 0: a step of its own.
-void set_value(Context& context, const std::string& key, const Value& value, Gesture gesture = 0);
+void set_value(Context& context, const ParameterKey& key, const Value& value, Gesture gesture = 0);
 
 /// Back to the default; a refusal becomes the row's message.
-void reset_value(Context& context, const std::string& key);
+void reset_value(Context& context, const ParameterKey& key);
 
 /// Document::edit; a refusal becomes the message of the row `key`.
-void edit(Context& context, const std::string& key, const std::string& name,
+void edit(Context& context, const ParameterKey& key, const std::string& name,
           const std::function<void(Scene&)>& change, Gesture gesture = 0);
 
 /// Whether a widget that is drawn only while it matters should count as a wish for the next frame.

@@ -65,7 +65,7 @@ int insert(Points& points, glm::vec2 p) {
     return index;
 }
 
-void press(Context& context, const std::string& key, const Chart& chart, Points points) {
+void press(Context& context, const ParameterKey& key, const Chart& chart, Points points) {
     Memory& memory = context.memory;
     begin_gesture(context);
     memory.selected_curve = key;
@@ -76,14 +76,14 @@ void press(Context& context, const std::string& key, const Chart& chart, Points 
     if (memory.selected_point >= 0) set_value(context, key, curve_value(points), memory.gesture);
 }
 
-void drag(Context& context, const std::string& key, const Chart& chart, Points points) {
+void drag(Context& context, const ParameterKey& key, const Chart& chart, Points points) {
     const int index = context.memory.selected_point;
     if (index < 0 || index >= static_cast<int>(points.size())) return;
     place(points, index, chart.point(ImGui::GetIO().MousePos));
     set_value(context, key, curve_value(points), context.memory.gesture);
 }
 
-void remove(Context& context, const std::string& key, const Chart& chart, Points points) {
+void remove(Context& context, const ParameterKey& key, const Chart& chart, Points points) {
     const int index = nearest(chart, points, ImGui::GetIO().MousePos);
     if (index < 0 || points.size() <= 2) return;
     points.erase(points.begin() + index);
@@ -91,7 +91,7 @@ void remove(Context& context, const std::string& key, const Chart& chart, Points
     set_value(context, key, curve_value(points));
 }
 
-void nudge(Context& context, const std::string& key, const Chart& chart, Points points) {
+void nudge(Context& context, const ParameterKey& key, const Chart& chart, Points points) {
     const int index = context.memory.selected_point;
     if (context.memory.selected_curve != key || index < 0 || index >= static_cast<int>(points.size())) return;
     if (!ImGui::IsWindowFocused() || ImGui::GetIO().WantTextInput) return;
@@ -104,7 +104,7 @@ void nudge(Context& context, const std::string& key, const Chart& chart, Points 
     set_value(context, key, curve_value(points));
 }
 
-void draw_points(const Context& context, const std::string& key, const Chart& chart, const Points& points) {
+void draw_points(const Context& context, const ParameterKey& key, const Chart& chart, const Points& points) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const int under = nearest(chart, points, ImGui::GetIO().MousePos);
     for (int i = 0; i < static_cast<int>(points.size()); ++i) {
@@ -118,7 +118,7 @@ void draw_points(const Context& context, const std::string& key, const Chart& ch
 
 }  // namespace
 
-void edit_curve(Context& context, const std::string& key, const Area& area, std::span<const float> samples) {
+void edit_curve(Context& context, const ParameterKey& key, const Area& area, std::span<const float> samples) {
     const Parameter* parameter = find(context, key);
     if (!parameter) return;
     Points points = curve_of(parameter->get(), parameter->spec);
@@ -127,7 +127,7 @@ void edit_curve(Context& context, const std::string& key, const Area& area, std:
     for (const glm::vec2& p : points) top = std::max(top, p.y);
     const Chart chart{area, top};
     context.memory.plots[key] = {area.corner.x, area.corner.y, area.size.x, area.size.y};
-    ImGui::PushID(key.c_str());
+    ImGui::PushID(key.text().c_str());
     ImGui::SetCursorScreenPos(area.corner);
     ImGui::InvisibleButton("curve", area.size);
     if (ImGui::IsItemActivated())

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 #include "gui/panel/row.h"
 
@@ -10,6 +9,6 @@ namespace astrosplat::panel {
 
 /// A plot of the curve whose points the parameter `key` holds: click adds, drag moves, right click deletes,
 /// arrows nudge. `samples` is the curve itself, over x in 0..1. The area takes the mouse.
-void edit_curve(Context& context, const std::string& key, const Area& area, std::span<const float> samples);
+void edit_curve(Context& context, const ParameterKey& key, const Area& area, std::span<const float> samples);
 
 }  // namespace astrosplat::panel

@@ -36,8 +36,8 @@ bool merged(const LayerParams& layer) {
     return !layer.render.isolate && layer.render.blend != Blend::lighten;
 }
 
-std::string key_of(const Context& context, std::size_t i, const char* name) {
-    return "layer." + context.scene().layers[i].name + "." + name;
+ParameterKey key_of(const Context& context, std::size_t i, const char* name) {
+    return layer_key(context.scene().layers[i].name) / name;
 }
 
 ImU32 chip_color(const Context& context, std::size_t i) {
@@ -192,7 +192,6 @@ void row_body(Context& context, std::size_t i, const Area& row) {
         context.memory.dragged_layer = static_cast<int>(i);
     if (hovered && ImGui::IsMouseReleased(ImGuiMouseButton_Right)) {
         context.view.layer = i;
-        context.prefix = "layer." + context.scene().layers[i].name + ".";
         ImGui::OpenPopup("layer");
     }
     if (hovered && context.view.layer != i)

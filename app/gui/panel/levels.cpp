@@ -13,7 +13,7 @@ namespace {
 
 using Values = LayerHistograms::Values;
 
-double value_or(Context& context, const std::string& key, double automatic) {
+double value_or(Context& context, const ParameterKey& key, double automatic) {
     const Parameter* parameter = find(context, key);
     const Value value = parameter ? parameter->get() : Value();
     return value.is_number() ? value.number() : automatic;
@@ -51,12 +51,12 @@ void edit_levels(Context& context) {
     const auto& histograms = context.layer_status().histograms;
     if (!histograms || histograms->values.share.empty()) return;
     const Values& values = histograms->values;
-    const std::string source = context.prefix + "source.";
-    double black = value_or(context, source + "black", values.black);
-    double white = value_or(context, source + "white", values.white);
+    const ParameterKey source = context.layer_key() / "source";
+    double black = value_or(context, source / "black", values.black);
+    double white = value_or(context, source / "white", values.white);
     const Area area = begin_plot();
     const ImVec2 below = ImGui::GetCursorScreenPos();
-    context.memory.plots[source + "black"] = {area.corner.x, area.corner.y, area.size.x, area.size.y};
+    context.memory.plots[source / "black"] = {area.corner.x, area.corner.y, area.size.x, area.size.y};
     draw_bars(area, values.share);
     const ImU32 shade = color::with_opacity(color::window, 0.6f);
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -64,9 +64,9 @@ void edit_levels(Context& context) {
     list->AddRectFilled({place(area, values, white), area.corner.y}, area.end(), shade);
     const double least = (values.hi - values.lo) * 2e-3;
     if (handle(context, area, values, "black", black))
-        set_value(context, source + "black", std::min(black, white - least), context.memory.gesture);
+        set_value(context, source / "black", std::min(black, white - least), context.memory.gesture);
     if (handle(context, area, values, "white", white))
-        set_value(context, source + "white", std::max(white, black + least), context.memory.gesture);
+        set_value(context, source / "white", std::max(white, black + least), context.memory.gesture);
     ImGui::SetCursorScreenPos(below);
     captions(figures(values.lo), figures(values.hi));
 }

@@ -5,12 +5,10 @@
 
 #include "gui/panel/context.h"
 #include "gui/panel/layer_list.h"
-#include "gui/panel/look_tab.h"
-#include "gui/panel/render_tab.h"
 #include "gui/panel/row.h"
-#include "gui/panel/scene_tabs.h"
 #include "gui/panel/section.h"
-#include "gui/panel/source_tab.h"
+#include "gui/panel/tab.h"
+#include "gui/panel/tab_sections.h"
 #include "gui/theme.h"
 
 namespace astrosplat {
@@ -24,16 +22,16 @@ namespace {
 using namespace panel;
 
 struct Tab {
-    const char* label;
+    const char* label;  // as ParameterSpec::tab
     PanelTab tab;
-    void (*draw)(Context&);
     bool of_layer;
+    void (*top)(Context&);  // drawn above the sections; nullptr: nothing
 };
-constexpr Tab tabs[] = {{"Source", PanelTab::source, source_tab, true},
-                        {"Look", PanelTab::look, look_tab, true},
-                        {"Render", PanelTab::render, render_tab, true},
-                        {"Camera", PanelTab::camera, camera_tab, false},
-                        {"Output", PanelTab::output, output_tab, false}};
+constexpr Tab tabs[] = {{"Source", PanelTab::source, true, source_state},
+                        {"Look", PanelTab::look, true, nullptr},
+                        {"Render", PanelTab::render, true, nullptr},
+                        {"Camera", PanelTab::camera, false, camera_buttons},
+                        {"Output", PanelTab::output, false, output_buttons}};
 
 void tab_row(ViewState& view) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -70,10 +68,11 @@ void tab_content(Context& context) {
     Memory& memory = context.memory;
     memory.after_open = false;
     // Sections of layers share their ids, so that a drag does not survive a change of layer.
-    ImGui::PushID(tab->of_layer ? context.prefix.c_str() : tab->label);
+    ImGui::PushID(tab->of_layer ? context.layer_key().text().c_str() : tab->label);
     if (!memory.error.empty() && !memory.error_shown) note(memory.error, color::error);
     memory.error_shown = false;
-    tab->draw(context);
+    if (tab->top) tab->top(context);
+    draw_tab(context, tab->label);
     ImGui::PopID();
 }
 
@@ -116,18 +115,13 @@ void Panel::draw(Document& document, ViewState& view, const Status& status, Comm
     memory.touch.seen = false;
     const std::size_t layers = memory.described.scene->layers.size();
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;
-    Context context{document, view, status, commands, memory, state_->rows, ""};
-    const auto set_prefix = [&] {
-        if (view.layer < layers) context.prefix = "layer." + context.scene().layers[view.layer].name + ".";
-    };
-    set_prefix();
+    Context context{document, view, status, commands, memory, state_->rows};
     const ImVec2 room = ImGui::GetContentRegionAvail();
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
     layer_list(context, std::min(layer_list_height(context), room.y * 0.4f));
     tab_row(view);
     ImGui::PopStyleVar();
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;  // a layer was added or taken away
-    set_prefix();
     tab_body(context);
     memory.all_open = false;
     forget_untouched(memory.touch);
@@ -149,9 +143,7 @@ void Panel::answer(const FileRequest& request, const std::filesystem::path& file
     describe_current(memory, document, view.frame);
     ViewState unchanged = view;
     const Status unknown;
-    Context context{document, unchanged, unknown, commands, memory, state_->rows, ""};
-    if (view.layer < context.scene().layers.size())
-        context.prefix = "layer." + context.scene().layers[view.layer].name + ".";
+    Context context{document, unchanged, unknown, commands, memory, state_->rows};
     set_value(context, request.key, file.string());
 }
 

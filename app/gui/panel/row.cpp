@@ -19,7 +19,7 @@ bool mouse_over(const Area& area) {
     return ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(area.corner, area.end());
 }
 
-void draw_label(Context& context, const Row& row, const std::string& label) {
+void draw_label(Context& context, const Row& row) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ParameterSpec& spec = row.parameter.spec;
     const bool by_command = context.document.set_by_command_line(spec.key);
@@ -28,13 +28,13 @@ void draw_label(Context& context, const Row& row, const std::string& label) {
         list->AddRectFilled(corner, {corner.x + px(2), corner.y + px(14)},
                             by_command ? color::key : color::accent);
     }
-    clipped_text(list, row.layout.label, 0.0f, color::text, label);
+    clipped_text(list, row.layout.label, 0.0f, color::text, spec.row_label);
 }
 
 void show_tooltip(Context& context, const Row& row) {
     Memory& memory = context.memory;
     if (!mouse_over(row.layout.whole) || ImGui::IsAnyItemActive()) {
-        if (memory.hovered == row.key()) memory.hovered.clear();
+        if (memory.hovered == row.key()) memory.hovered = {};
         return;
     }
     if (memory.hovered != row.key()) {
@@ -52,7 +52,7 @@ void show_tooltip(Context& context, const Row& row) {
 }
 
 void toggle_key(Context& context, const Row& row) {
-    const std::string key = row.key();
+    const ParameterKey& key = row.key();
     const double frame = std::round(context.view.frame);
     const Value value = row.value;
     if (has_key_at(context.document.scene(), key, frame))
@@ -65,7 +65,7 @@ void toggle_key(Context& context, const Row& row) {
 
 void animation_menu(Context& context, const Row& row) {
     if (row.parameter.spec.animation == Animation::no) return;
-    const std::string key = row.key();
+    const ParameterKey& key = row.key();
     const Scene& scene = context.document.scene();
     const bool here = has_key_at(scene, key, std::round(context.view.frame));
     if (ImGui::MenuItem(here ? "Remove key" : "Key")) toggle_key(context, row);
@@ -106,7 +106,7 @@ void row_menu(Context& context, const Row& row) {
     animation_menu(context, row);
     const std::string set = set_option(row.key(), row.value);
     if (ImGui::MenuItem("Copy value")) ImGui::SetClipboardText(to_toml(row.value).c_str());
-    if (ImGui::MenuItem("Copy key path")) ImGui::SetClipboardText(row.key().c_str());
+    if (ImGui::MenuItem("Copy key path")) ImGui::SetClipboardText(row.key().text().c_str());
     if (ImGui::MenuItem("Copy --set")) ImGui::SetClipboardText(set.c_str());
     if (ImGui::MenuItem("Paste")) paste(context, row);
     end_popup();
@@ -116,17 +116,10 @@ void message_row(Context& context, const Row& row) {
     Memory& memory = context.memory;
     if (memory.error.empty() || memory.error_key != row.key()) return;
     memory.error_shown = true;
-    ImGui::PushFont(small_font());
-    ImGui::PushStyleColor(ImGuiCol_Text, color::error);
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextUnformatted(memory.error.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-    ImGui::PopFont();
+    note(memory.error, color::error);
 }
 
-}  // namespace
-
+/// The next row's, at the cursor.
 RowLayout next_row() {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = px(row_height);
@@ -160,34 +153,22 @@ void draw_diamond(Context& context, const Row& row) {
               keyed ? color::key : quiet);
 }
 
-void begin_row(Context& context, const Row& row, const std::string& label) {
+}  // namespace
+
+void parameter_row(Context& context, const Parameter& parameter) {
+    const Row row{parameter, parameter.get(), next_row()};
     note_row(context, row);
-    ImGui::PushID(row.key().c_str());
-    draw_label(context, row, label);
+    ImGui::PushID(row.key().text().c_str());
+    draw_label(context, row);
     draw_diamond(context, row);
-}
-
-void end_row(Context& context, const Row& row) {
-    show_tooltip(context, row);
-    row_menu(context, row);
-    ImGui::PopID();
-    message_row(context, row);
-}
-
-void parameter_row(Context& context, const std::string& key, const char* label) {
-    const Parameter* parameter = find(context, key);
-    if (!parameter) return;
-    const Row row{*parameter, parameter->get(), next_row()};
-    begin_row(context, row, label ? label : parameter->spec.label);
     if (!value_field(context, row)) {
         ImGui::SetCursorScreenPos(row.layout.whole.corner);
         ImGui::Dummy({row.layout.whole.size.x, px(row_height)});
     }
-    end_row(context, row);
-}
-
-void layer_row(Context& context, const std::string& key, const char* label) {
-    parameter_row(context, context.prefix + key, label);
+    show_tooltip(context, row);
+    row_menu(context, row);
+    ImGui::PopID();
+    message_row(context, row);
 }
 
 }  // namespace astrosplat::panel

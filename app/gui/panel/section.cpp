@@ -37,7 +37,7 @@ void edge_line(float y) {
 
 bool section(Context& context, const char* title, const std::string& state, bool open_at_first) {
     Memory& memory = context.memory;
-    bool& open = memory.open.emplace(title, open_at_first).first->second;
+    bool& open = memory.open.emplace(std::pair(context.view.tab, title), open_at_first).first->second;
     open = open || memory.all_open;
     if (memory.after_open) ImGui::Dummy({0.0f, px(6)});
     const ImVec2 corner = ImGui::GetCursorScreenPos();

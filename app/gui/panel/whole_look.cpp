@@ -12,7 +12,7 @@ void copy_look(Context& context) {
 
 void give_look(Context& context, const std::string& name, const CopiedLook& copied,
                const std::function<bool(std::size_t)>& to) {
-    edit(context, context.prefix, name, [&](Scene& scene) {
+    edit(context, context.layer_key(), name, [&](Scene& scene) {
         for (std::size_t i = 0; i < scene.layers.size(); ++i) {
             if (!to(i)) continue;
             scene.layers[i].look = copied.look;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "edit/batch_command.h"
+
 namespace astrosplat::panel {
 namespace {
 
@@ -97,11 +99,7 @@ std::string tooltip_text(const ParameterSpec& spec, const Value& standard) {
 }
 
 std::string set_option(const std::string& key, const Value& value) {
-    const std::string option = key + "=" + to_toml(value);
-    if (option.find_first_of(" \"'[]{}$&;()*?#<>|`\\") == std::string::npos) return "--set " + option;
-    std::string quoted;
-    for (const char c : option) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return "--set '" + quoted + "'";
+    return "--set " + shell_word(key + "=" + to_toml(value));
 }
 
 double drag_step(const ParameterSpec& spec, double value) {

@@ -1,0 +1,100 @@
+#include "gui/panel/list_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/text.h"
+#include "gui/panel/section.h"
+
+namespace astrosplat::panel {
+namespace {
+
+template <class T>
+void erase_at(std::vector<T>& list, std::size_t index) {
+    list.erase(list.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+/// The first key changes nothing.
+void add_thickness_key(LayerParams& layer) {
+    Look& look = layer.look;
+    ThicknessKey key;
+    if (look.thickness.keys.empty()) key.pdf = look.pdf;
+    look.thickness.keys.push_back(key);
+}
+
+bool can_take_thickness_key(const LayerParams& layer) {
+    const Thickness& thickness = layer.look.thickness;
+    return thickness.keys.empty() || (!thickness.map.empty() && thickness.keys.size() < 8);
+}
+
+const ListRows lists[] = {
+    {.key = "layer.source.meshes",
+     .section = "Files",
+     .after = "layer.source.kind",
+     .title = "Mesh",
+     .element = "mesh",
+     .least = 1,
+     .size = [](const LayerParams& layer) { return layer.source.meshes.size(); },
+     .add =
+         [](LayerParams& layer) {
+             layer.source.meshes.push_back({"plane", {}, 0.15});
+         },
+     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.source.meshes, i); },
+     .is_shown = [](const LayerParams& layer) { return layer.source.kind == SourceKind::mesh; }},
+    {.key = "layer.look.noise",
+     .section = "Noise",
+     .after = "",
+     .title = "Noise",
+     .element = "noise",
+     .least = 0,
+     .size = [](const LayerParams& layer) { return layer.look.noise.size(); },
+     .add = [](LayerParams& layer) { layer.look.noise.emplace_back(); },
+     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.noise, i); },
+     .can_grow = [](const LayerParams& layer) { return layer.look.noise.size() < 4; }},
+    {.key = "layer.look.thickness.keys",
+     .section = "Thickness map",
+     .after = "layer.look.thickness.map",
+     .title = "Key",
+     .element = "thickness key",
+     .least = 0,
+     .size = [](const LayerParams& layer) { return layer.look.thickness.keys.size(); },
+     .add = add_thickness_key,
+     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.thickness.keys, i); },
+     .can_grow = can_take_thickness_key}};
+
+}  // namespace
+
+std::span<const ListRows> list_rows() { return lists; }
+
+bool has_list(std::string_view section) {
+    return std::ranges::any_of(lists, [&](const ListRows& list) { return list.section == section; });
+}
+
+const ListRows* list_of(const ParameterSpec& spec) {
+    const auto holds = [&](const ListRows& list) { return spec.generic_key.is_below(list.key); };
+    const auto found = std::ranges::find_if(lists, holds);
+    return found == std::end(lists) ? nullptr : found;
+}
+
+bool list_element_head(Context& context, const ListRows& list, std::size_t index) {
+    if (list.size(context.layer()) <= list.least) return false;
+    return element_head(fmt::format("{} {}", list.title, index + 1).c_str());
+}
+
+void remove_element(Context& context, const ListRows& list, std::size_t index) {
+    const std::size_t layer = context.view.layer;
+    edit(context, context.layer_key(), std::string("Remove ") + list.element,
+         [&](Scene& scene) { list.remove(scene.layers[layer], index); });
+}
+
+void list_add_line(Context& context, const ListRows& list) {
+    const std::string label = std::string("Add ") + lower_case(list.title);
+    const bool full = list.can_grow && !list.can_grow(context.layer());
+    if (full || !add_line(label.c_str())) return;
+    const std::size_t layer = context.view.layer;
+    edit(context, context.layer_key(), std::string("Add ") + list.element,
+         [&](Scene& scene) { list.add(scene.layers[layer]); });
+}
+
+}  // namespace astrosplat::panel

@@ -1,0 +1,149 @@
+#include "gui/panel/row_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "gui/panel/companions.h"
+#include "gui/panel/curve_plot.h"
+#include "gui/panel/levels.h"
+#include "gui/panel/pictures.h"
+#include "gui/panel/plot.h"
+#include "gui/panel/section.h"
+#include "gui/panel/words.h"
+#include "gui/theme.h"
+
+namespace astrosplat::panel {
+namespace {
+
+/// Where the look has x = 1 for the selected layer, scene units; 0: not known.
+double reach_of(const Context& context) {
+    const Look& look = context.layer().look;
+    if (look.reach > 0.0f) return widen(look.reach);
+    const auto& histograms = context.layer_status().histograms;
+    if (histograms && histograms->max_distance > 0.0) return histograms->max_distance;
+    return context.layer().source.max_distance;
+}
+
+std::string reach_caption(double reach) { return reach > 0.0 ? "reach " + figures(reach) : "reach"; }
+
+void draw_distances(const Context& context, const Area& area, double reach) {
+    const auto& histograms = context.layer_status().histograms;
+    if (histograms && histograms->max_distance > 0.0 && reach > 0.0)
+        draw_bars(area, histograms->distance, histograms->max_distance / reach);
+}
+
+/// The profile whose shape `spec` chooses, and its points to be dragged where it is a curve.
+void draw_profile(Context& context, const Area& area, const ParameterSpec& spec,
+                  const std::vector<float>& samples, double reach) {
+    const ImVec2 below = ImGui::GetCursorScreenPos();
+    if (find(context, spec.key)->get() == Value("curve"))
+        edit_curve(context, spec.key.parent() / "points", area, samples);
+    else
+        draw_curve(area, samples, 1.05f, color::accent);
+    ImGui::SetCursorScreenPos(below);
+    captions("surface", reach_caption(reach));
+}
+
+void density_plot(Context& context, const ParameterSpec& spec, const DensityCurve& pdf, double reach) {
+    const Area area = begin_plot();
+    draw_distances(context, area, reach);
+    draw_profile(context, area, spec, density_samples(pdf), reach);
+}
+
+void density_picture(Context& context, const ParameterSpec& spec) {
+    density_plot(context, spec, context.layer().look.pdf, reach_of(context));
+}
+
+void key_density_picture(Context& context, const ParameterSpec& spec) {
+    const ThicknessKey& key = context.layer().look.thickness.keys[place_in_list(spec.key)];
+    density_plot(context, spec, key.pdf, reach_of(context) * widen(key.scale));
+}
+
+/// A map's colour, bright enough for a line on the plot's ground.
+ImU32 key_ink(const glm::vec3& color) {
+    const auto byte = [](float c) { return static_cast<int>(105.0f + 125.0f * std::clamp(c, 0.0f, 1.0f)); };
+    return IM_COL32(byte(color.x), byte(color.y), byte(color.z), 255);
+}
+
+/// What the thickness keys make of it: each key's shape in the colour it stands for, over distances.
+void all_densities(Context& context, const ParameterSpec&) {
+    const std::vector<ThicknessKey>& keys = context.layer().look.thickness.keys;
+    if (keys.empty()) return;
+    const Area area = begin_plot();
+    const double reach = reach_of(context);
+    draw_distances(context, area, reach);
+    for (const ThicknessKey& key : keys)
+        draw_curve(area, density_samples(key.pdf), 1.05f, key_ink(key.color), key.scale);
+    captions("surface", reach_caption(reach));
+    note("Each key of the thickness map has its own shape.");
+}
+
+void alpha_picture(Context& context, const ParameterSpec&) {
+    draw_curve(begin_plot(56.0f), alpha_samples(context.layer().look.alpha), 1.05f, color::accent);
+    captions("transparent", "opaque");
+}
+
+void vertical_picture(Context& context, const ParameterSpec& spec) {
+    const VerticalAlpha& vertical = context.layer().look.vertical;
+    if (vertical.shape == VerticalAlpha::Shape::none) return;
+    const double reach = vertical.reach > 0.0f ? widen(vertical.reach) : reach_of(context);
+    draw_profile(context, begin_plot(), spec, vertical_samples(vertical), reach);
+}
+
+void automatic_size_note(Context& context, const ParameterSpec&) {
+    const Radius& radius = context.layer().look.radius;
+    const LayerStatus& status = context.layer_status();
+    if (radius.min != 0.0f || radius.max != 0.0f || !(status.radius_max > 0.0)) return;
+    const std::string largest = figures(status.radius_max);
+    note(status.radius_min == status.radius_max
+             ? fmt::format("0, 0: {} scene units", largest)
+             : fmt::format("0, 0: the file's own, {} to {}", figures(status.radius_min), largest));
+}
+
+void noise_picture(Context& context, const ParameterSpec& spec) {
+    const Bounds& box = context.status.box;
+    const glm::dvec3 size = box.empty() ? glm::dvec3(10.0) : glm::dvec3(box.hi - box.lo);
+    const std::size_t place = place_in_list(spec.key);
+    draw_noise(context, place, context.layer().look.noise[place], std::max({size.x, size.y, size.z}));
+}
+
+void falloff_picture(Context& context, const ParameterSpec&) { draw_falloff(context.layer().render.falloff); }
+
+void hybrid_picture(Context& context, const ParameterSpec&) {
+    const LayerRender& render = context.layer().render;
+    draw_hybrid(render.hybrid_from_deg, render.hybrid_to_deg);
+}
+
+void levels_picture(Context& context, const ParameterSpec&) { edit_levels(context); }
+
+using Draw = void (*)(Context&, const ParameterSpec&);
+using Pictures = std::map<std::string_view, Draw>;  // by generic key
+
+void draw_of(const Pictures& pictures, Context& context, const ParameterSpec& spec) {
+    const auto found = pictures.find(spec.generic_key);
+    if (found != pictures.end()) found->second(context, spec);
+}
+
+}  // namespace
+
+void draw_above(Context& context, const ParameterSpec& spec) {
+    static const Pictures pictures{{"layer.source.black", levels_picture},
+                                   {"layer.look.pdf.shape", density_picture},
+                                   {"layer.look.density", all_densities},
+                                   {"layer.look.alpha.power", alpha_picture},
+                                   {"layer.look.vertical.shape", vertical_picture},
+                                   {"layer.look.noise.frequency", noise_picture},
+                                   {"layer.look.thickness.keys.shape", key_density_picture},
+                                   {"layer.render.falloff", falloff_picture},
+                                   {"layer.render.hybrid.from_deg", hybrid_picture}};
+    draw_of(pictures, context, spec);
+}
+
+void draw_below(Context& context, const ParameterSpec& spec) {
+    static const Pictures pictures{{"layer.look.radius.max", automatic_size_note}};
+    draw_of(pictures, context, spec);
+}
+
+}  // namespace astrosplat::panel

@@ -1,0 +1,248 @@
+#include "gui/panel/tab_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/file_format.h"
+#include "edit/camera_moves.h"
+#include "edit/keys.h"
+#include "gui/panel/section.h"
+#include "gui/panel/whole_look.h"
+#include "gui/panel/words.h"
+#include "gui/theme.h"
+
+namespace astrosplat::panel {
+namespace {
+
+bool unfolded(const Context&) { return true; }
+
+bool is_fits(const Context& context) {
+    for (const MeshInput& mesh : context.layer().source.meshes)
+        for (const auto& texture : mesh.texture) {
+            const FileFormat* const format = format_by_name(texture);
+            if (format && format->id == "fits") return true;
+        }
+    return false;
+}
+
+/// The value of a parameter of the layer, in words.
+template <const auto& key>
+std::string value_of(const Context& context) {
+    const Parameter* parameter = find(context, context.layer_key() / key);
+    return parameter ? in_words(parameter->spec, parameter->get()) : "";
+}
+constexpr char falloff[] = "render.falloff", blend[] = "render.blend";
+
+std::string files_state(const Context& context) {
+    const SourceParams& source = context.layer().source;
+    if (source.kind == SourceKind::splats) return source.file.filename().string();
+    if (source.kind == SourceKind::stars) return source.stars.catalogue.filename().string();
+    return source.meshes.empty() ? "none" : source.meshes.front().mesh.filename().string();
+}
+
+std::string picture_state(const Context& context) { return is_fits(context) ? "FITS" : ""; }
+
+std::string splats_state(const Context& context) {
+    const std::int64_t splats = context.layer_status().splats;
+    return splats > 0 ? short_count(splats) : "";
+}
+
+std::string placement_state(const Context& context) {
+    const LayerTransform& transform = context.layer().transform;
+    return transform == LayerTransform() ? "as it lies" : fmt::format("x {}", figures(transform.scale));
+}
+
+std::string layer_state(const Context& context) { return context.layer().name; }
+
+/// Of a set that is still growing the preview knows too little.
+std::string kept_state(const Context& context) {
+    const LayerStatus& status = context.layer_status();
+    const bool is_known = status.splats > 0 && status.kept >= 0 && !status.loading;
+    return is_known ? percent(double(status.kept) / double(status.splats)) + " kept" : "";
+}
+
+void kept_note(Context& context) {
+    if (const std::string kept = kept_state(context); !kept.empty())
+        note(kept + " of " + splat_count(context.layer_status().splats));
+}
+
+std::string alpha_state(const Context& context) {
+    const HorizontalAlpha& alpha = context.layer().look.alpha;
+    return alpha == HorizontalAlpha() ? "off" : "power " + short_number(widen(alpha.power));
+}
+
+std::string vertical_state(const Context& context) {
+    static constexpr char shape[] = "look.vertical.shape";
+    if (context.layer().look.vertical.shape == VerticalAlpha::Shape::none) return "off";
+    return value_of<shape>(context);
+}
+
+std::string size_state(const Context& context) {
+    const Radius& radius = context.layer().look.radius;
+    if (radius.min == 0.0f && radius.max == 0.0f) return "auto";
+    return short_number(widen(radius.min)) + " to " + short_number(widen(radius.max));
+}
+
+std::string noise_state(const Context& context) {
+    const std::vector<Noise>& noise = context.layer().look.noise;
+    return noise.empty() ? "off" : fmt::format("{}", noise.size());
+}
+
+std::string thickness_state(const Context& context) {
+    const Thickness& thickness = context.layer().look.thickness;
+    const std::size_t count = thickness.keys.size();
+    return thickness.map.empty() && count == 0 ? "off"
+                                               : fmt::format("{} key{}", count, count == 1 ? "" : "s");
+}
+
+std::string color_state(const Context& context) {
+    return context.layer().look.grade == Grade() ? "off" : "changed";
+}
+
+std::string whole_look_state(const Context&) { return "export, apply, copy"; }
+
+void lighten_note(Context& context) {
+    if (context.layer().render.blend == Blend::lighten)
+        note("Lighten is always composited as a whole, in the order of the list.");
+}
+
+std::string detail_state(const Context& context) {
+    const LevelOfDetail& lod = context.layer().render.lod;
+    return lod.max_px > 0.0f ? figures(widen(lod.max_px)) + " px" : "off";
+}
+
+std::string place_state(const Context& context) {
+    if (is_keyed(context.document.scene(), "camera.position")) return "keyed";
+    return context.scene().camera.position ? "" : "auto";
+}
+
+std::string lens_state(const Context& context) { return figures(context.scene().camera.fov) + " degrees"; }
+
+std::string environment_state(const Context& context) {
+    const EnvironmentParams& environment = context.scene().environment;
+    if (environment.image.empty() && environment.cube.empty()) return "none";
+    return environment.visible ? environment.image.filename().string() : "hidden";
+}
+
+std::string resolution_state(const Context& context) {
+    const OutputParams& output = context.scene().output;
+    return fmt::format("{} x {}", output.width, output.height);
+}
+
+std::string frames_state(const Context& context) { return context.scene().output.frames; }
+
+std::string format_state(const Context& context) {
+    const std::string& path = context.scene().output.path;
+    return path.substr(std::min(path.rfind('.'), path.size()));
+}
+
+std::string provenance_state(const Context& context) { return context.scene().provenance.title; }
+
+const TabSection sections[] = {
+    {"Source", "Files", unfolded, files_state},
+    {"Source",
+     "Picture",
+     is_fits,
+     picture_state,
+     {"layer.source.black", "layer.source.white", "layer.source.stretch", "layer.source.softening",
+      "layer.source.hdu", "layer.source.plane"}},
+    {"Source",
+     "Splats",
+     unfolded,
+     splats_state,
+     {"layer.source.count", "layer.source.max_distance", "layer.source.voxels", "layer.source.voxel_size"}},
+    {"Source", "Placement", nullptr, placement_state, {"layer.transform"}},
+    {"Source", "Layer", nullptr, layer_state},
+    {"Look", "Density with distance", unfolded, kept_state, {"layer.look.pdf"}, kept_note},
+    {"Look",
+     "Opacity at soft edges",
+     unfolded,
+     alpha_state,
+     {"layer.look.alpha.power", "layer.look.alpha.threshold", "layer.look.alpha.gain"}},
+    {"Look", "Opacity with distance", nullptr, vertical_state},
+    {"Look", "Size", unfolded, size_state},
+    {"Look", "Noise", nullptr, noise_state},
+    {"Look", "Thickness map", nullptr, thickness_state},
+    {"Look", "Colour", nullptr, color_state},
+    {"Look", "Whole look", nullptr, whole_look_state, {}, look_buttons},
+    {"Render", "Dot profile", unfolded, value_of<falloff>},
+    {"Render",
+     "Mixing",
+     unfolded,
+     value_of<blend>,
+     {"layer.render.blend", "layer.render.hybrid"},
+     lighten_note},
+    {"Render", "Level of detail", nullptr, detail_state},
+    {"Camera", "Place", unfolded, place_state, {"camera.position", "camera.rotation"}},
+    {"Camera", "Lens", unfolded, lens_state},
+    {"Camera", "Environment", nullptr, environment_state, {"environment.visible"}},
+    {"Output", "Picture", unfolded, resolution_state},
+    {"Output", "Frames", unfolded, frames_state},
+    {"Output", "File format", nullptr, format_state},
+    {"Output", "Provenance", nullptr, provenance_state}};
+
+bool covers(const ParameterKey& group, const ParameterSpec& spec) {
+    return spec.generic_key == group || spec.generic_key.is_below(group);
+}
+
+}  // namespace
+
+std::span<const TabSection> tab_sections() { return sections; }
+
+std::size_t rank_in(const TabSection& section, const ParameterSpec& spec) {
+    const auto found =
+        std::ranges::find_if(section.first, [&](const auto& key) { return covers(key, spec); });
+    return static_cast<std::size_t>(found - section.first.begin());
+}
+
+bool suits_layer(const Context& context, const ParameterSpec& spec) {
+    if (covers("layer.look.pdf", spec)) return context.layer().look.thickness.keys.empty();
+    if (spec.generic_key == "layer.source.hdu" || spec.generic_key == "layer.source.plane")
+        return is_fits(context);
+    if (spec.generic_key == "layer.source.softening")
+        return is_fits(context) || context.layer().source.texture.stretch == TextureSettings::Stretch::asinh;
+    return true;
+}
+
+void source_state(Context& context) {
+    const LayerStatus& status = context.layer_status();
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (status.loading) {
+        const std::string text =
+            status.found > 0 ? "Generating, " + splat_count(status.found) : std::string("Generating");
+        if (progress_line(width, std::max(status.progress, 0.001f), text, "Cancel"))
+            context.commands.push_back({Command::Kind::cancel_load, {}, "", context.view.layer});
+    } else if (status.stale) {
+        if (progress_line(width, 0.0f, "Source changed", "Regenerate"))
+            context.commands.push_back({Command::Kind::regenerate, {}, "", context.view.layer});
+    } else {
+        note("Changing these regenerates the splats.");
+    }
+    if (!status.error.empty()) note(status.error, color::error);
+    ImGui::Dummy({0.0f, px(4)});
+}
+
+void camera_buttons(Context& context) {
+    const int clicked = button_line({"Key camera here", "Add move"});
+    if (clicked == 0)
+        edit(context, "camera.position", "Key camera",
+             [&](Scene& scene) { key_seen_camera(scene, context.view, context.status); });
+    if (clicked == 1) ImGui::OpenPopup("moves");
+    if (begin_popup("moves")) {
+        for (std::size_t i = 0; i < camera_move_names.size(); ++i)
+            if (ImGui::MenuItem(camera_move_names[i]))
+                context.commands.push_back({Command::Kind::add_move, {}, "", i});
+        end_popup();
+    }
+    ImGui::Dummy({0.0f, px(4)});
+}
+
+void output_buttons(Context& context) {
+    const int clicked = button_line({"Render range", "Copy batch command"});
+    if (clicked == 0) context.commands.push_back({Command::Kind::render_range, {}, "", 0});
+    if (clicked == 1) context.commands.push_back({Command::Kind::copy_batch_command, {}, "", 0});
+    ImGui::Dummy({0.0f, px(4)});
+}
+
+}  // namespace astrosplat::panel
