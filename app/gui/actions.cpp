@@ -3,12 +3,7 @@
 
 #include <imgui.h>
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "edit/camera_moves.h"
-#include "edit/layers.h"
 #include "gui/action_functions.h"
 #include "gui/key_codes.h"
 
@@ -18,7 +13,6 @@ namespace {
 using Kind = Command::Kind;
 using F = GuiFrame&;
 using C = const GuiFrame&;
-using List = std::vector<Action>;
 
 template <Kind kind, std::size_t index = 0>
 void ask(F f) {
@@ -28,198 +22,132 @@ template <Kind kind>
 void ask_for_layer(F f) {
     request(f, kind, f.view.layer);
 }
-template <bool ViewState::*flag>
-void flip(F f) {
-    f.view.*flag = !(f.view.*flag);
-}
-template <bool ViewState::*flag>
-bool is_on(C f) {
-    return f.view.*flag;
-}
-template <ViewKind kind>
-void look_from(F f) {
-    f.view.view = kind;
-}
-template <ViewKind kind>
-bool looks_from(C f) {
-    return f.view.view == kind;
-}
-template <CompareMode mode>
-void compare(F f) {
-    set_compare(f, mode);
-}
-template <CompareMode mode>
-bool compares(C f) {
-    return f.view.compare == mode;
-}
 
 constexpr Shortcut plain(int key) { return {key, false, false}; }
 constexpr Shortcut shift(int key) { return {key, false, true}; }
 constexpr Shortcut ctrl(int key) { return {key, true, false}; }
 constexpr Shortcut ctrl_shift(int key) { return {key, true, true}; }
 
-void add_file(List& list) {
-    list.push_back({"File", "New from picture...", {}, ask<Kind::new_from_file>});
-    list.push_back({"File", "Open...", ctrl('O'), ask<Kind::open>});
-    list.push_back({"File", "Open the demo", {}, ask<Kind::open_demo>});
-    list.push_back({"File", "Save", ctrl('S'), ask<Kind::save>, nullptr, nullptr, nullptr, true});
-    list.push_back({"File", "Save as...", ctrl_shift('S'), ask<Kind::save_as>});
-    list.push_back({"File", "Reload", {}, ask<Kind::reload>, has_file});
-    list.push_back(
-        {"File", "Import as a layer...", {}, ask<Kind::import_file>, nullptr, nullptr, nullptr, true});
-    list.push_back({"File", "Export look...", {}, ask<Kind::save_look>, has_layer});
-    list.push_back({"File", "Apply look...", {}, ask<Kind::apply_look>, has_layer});
-    list.push_back({"File", "Screenshot...", plain(key_code::f12), ask<Kind::screenshot>, nullptr, nullptr,
-                    nullptr, true});
-    list.push_back({"File", "Quit", ctrl('Q'), ask<Kind::quit>, nullptr, nullptr, nullptr, true});
+/// The first of a group of a menu.
+Action below_line(Action action) {
+    action.line_above = true;
+    return action;
 }
 
-void add_edit(List& list) {
-    list.push_back({"Edit", "Undo", ctrl('Z'), undo, can_undo, nullptr, undo_label, false, true});
-    list.push_back({"Edit", "Redo", ctrl_shift('Z'), redo, can_redo, nullptr, redo_label, false, true});
-    list.push_back({"Edit", "Store as B", plain('B'), ask<Kind::store_b>, nullptr, nullptr, nullptr, true});
-    list.push_back({"Edit", "Take snapshot", {}, take_snapshot});
+/// Only the keys do it; again and again while they are held.
+Action repeated(const char* label, int key, void (*run)(F)) {
+    return {.menu = "", .label = label, .shortcut = plain(key), .run = run, .repeats = true};
 }
 
-void add_view(List& list) {
-    list.push_back({"View", "Camera", plain(key_code::n0), look_from<ViewKind::camera>, nullptr,
-                    looks_from<ViewKind::camera>});
-    list.push_back({"View", "Free", {}, look_from<ViewKind::free>, nullptr, looks_from<ViewKind::free>});
-    list.push_back({"View", "Front", plain(key_code::n1), look_from<ViewKind::front>, nullptr,
-                    looks_from<ViewKind::front>});
-    list.push_back({"View", "Side", plain(key_code::n3), look_from<ViewKind::side>, nullptr,
-                    looks_from<ViewKind::side>});
-    list.push_back(
-        {"View", "Top", plain(key_code::n7), look_from<ViewKind::top>, nullptr, looks_from<ViewKind::top>});
-    list.push_back({"View", "Three-quarter", plain(key_code::n9), three_quarter, has_box});
-    list.push_back({"View", "Frame layer", plain('F'), ask_for_layer<Kind::frame_layer>, has_layer, nullptr,
-                    nullptr, true});
-    list.push_back({"View", "Frame all", plain(key_code::home), ask<Kind::frame_all>});
-    list.push_back({"View", "Output pixels 1:1", plain('Z'), toggle_one_to_one, nullptr, is_one_to_one});
-    list.push_back({"View", "Swap A and B", plain(key_code::tab), swap_a_b, nullptr, nullptr, nullptr, true});
-    list.push_back(
-        {"View", "Wipe A | B", {}, compare<CompareMode::wipe>, nullptr, compares<CompareMode::wipe>});
-    list.push_back({"View",
-                    "Reference",
-                    {},
-                    compare<CompareMode::reference>,
-                    nullptr,
-                    compares<CompareMode::reference>});
-    list.push_back({"View",
-                    "Difference",
-                    {},
-                    compare<CompareMode::difference>,
-                    nullptr,
-                    compares<CompareMode::difference>});
-    list.push_back({"View", "Load reference...", {}, ask<Kind::set_reference>});
-    list.push_back({"View", "Gate", plain('G'), flip<&ViewState::gate>, nullptr, is_on<&ViewState::gate>,
-                    nullptr, true});
-    list.push_back(
-        {"View", "Safe areas", {}, flip<&ViewState::safe_areas>, nullptr, is_on<&ViewState::safe_areas>});
-    list.push_back(
-        {"View", "Camera path", {}, flip<&ViewState::camera_path>, nullptr, is_on<&ViewState::camera_path>});
-    list.push_back({"View",
-                    "Settle to the final picture",
-                    {},
-                    flip<&ViewState::settle>,
-                    nullptr,
-                    is_on<&ViewState::settle>});
-    list.push_back({"View",
-                    "Timeline",
-                    {},
-                    flip<&ViewState::timeline_open>,
-                    nullptr,
-                    is_on<&ViewState::timeline_open>,
-                    nullptr,
-                    true});
-    list.push_back({"View",
-                    "Snapshots",
-                    {},
-                    flip<&ViewState::snapshots_open>,
-                    nullptr,
-                    is_on<&ViewState::snapshots_open>});
-    list.push_back({"View", "Panels", plain(key_code::f11), flip<&ViewState::panels>, nullptr,
-                    is_on<&ViewState::panels>});
+/// Turns a flag of the view on and off.
+template <bool ViewState::*flag>
+Action flip(const char* menu, const char* label, Shortcut shortcut = {}) {
+    return {.menu = menu,
+            .label = label,
+            .shortcut = shortcut,
+            .run = [](F f) { f.view.*flag = !(f.view.*flag); },
+            .checked = [](C f) { return f.view.*flag; }};
 }
 
-void add_layer_menu(List& list) {
-    list.push_back({"Layer", "Add...", {}, ask<Kind::import_file>});
-    list.push_back({"Layer", "Duplicate", {}, duplicate_selected_layer, has_layer});
-    list.push_back({"Layer", "Remove", {}, remove_selected_layer, has_layer});
-    list.push_back({"Layer", "Visible", plain('H'), hide_layer, has_layer, layer_visible, nullptr, true});
-    list.push_back({"Layer", "Solo", plain('S'), solo_layer, has_layer, layer_solo});
-    list.push_back({"Layer", "Move up", {}, move_layer_up, can_move_up, nullptr, nullptr, true});
-    list.push_back({"Layer", "Move down", {}, move_layer_down, can_move_down});
-    list.push_back(
-        {"Layer", "Regenerate", {}, ask_for_layer<Kind::regenerate>, layer_stale, nullptr, nullptr, true});
+template <ViewKind kind>
+Action look_from(const char* label, Shortcut shortcut = {}) {
+    return {.menu = "View",
+            .label = label,
+            .shortcut = shortcut,
+            .run = [](F f) { f.view.view = kind; },
+            .checked = [](C f) { return f.view.view == kind; }};
+}
+
+template <CompareMode mode>
+Action compare(const char* label) {
+    return {.menu = "View",
+            .label = label,
+            .run = [](F f) { set_compare(f, mode); },
+            .checked = [](C f) { return f.view.compare == mode; }};
 }
 
 template <CameraMove move>
-void add_move(List& list) {
+Action add_move() {
     constexpr auto index = static_cast<std::size_t>(move);
-    list.push_back({"Camera/Add move", camera_move_names[index], {}, ask<Kind::add_move, index>, has_box});
+    return {"Camera/Add move", camera_move_names[index], {}, ask<Kind::add_move, index>, has_box};
 }
 
-void add_camera(List& list) {
-    list.push_back({"Camera", "Key camera here", {}, key_camera_here});
-    list.push_back({"Camera", "Camera from this view", {}, camera_from_view, in_free_view});
-    add_move<CameraMove::orbit>(list);
-    add_move<CameraMove::fly_in>(list);
-    add_move<CameraMove::face_on_to_edge_on>(list);
-    list.push_back({"Camera",
-                    "Lock to camera",
-                    {},
-                    flip<&ViewState::lock_to_camera>,
-                    nullptr,
-                    is_on<&ViewState::lock_to_camera>,
-                    nullptr,
-                    true});
-}
+const Action table[] = {
+    {"File", "New from picture...", {}, ask<Kind::new_from_file>},
+    {"File", "Open...", ctrl('O'), ask<Kind::open>},
+    {"File", "Open the demo", {}, ask<Kind::open_demo>},
+    below_line({"File", "Save", ctrl('S'), ask<Kind::save>}),
+    {"File", "Save as...", ctrl_shift('S'), ask<Kind::save_as>},
+    {"File", "Reload", {}, ask<Kind::reload>, has_file},
+    below_line({"File", "Import as a layer...", {}, ask<Kind::import_file>}),
+    {"File", "Export look...", {}, ask<Kind::save_look>, has_layer},
+    {"File", "Apply look...", {}, ask<Kind::apply_look>, has_layer},
+    below_line({"File", "Screenshot...", plain(key_code::f12), ask<Kind::screenshot>}),
+    below_line({"File", "Quit", ctrl('Q'), ask<Kind::quit>}),
 
-void add_render(List& list) {
-    list.push_back({"Render", "This frame...", ctrl('R'), ask<Kind::render_frame>});
-    list.push_back(
-        {"Render", "Range", ctrl_shift('R'), ask<Kind::render_range>, nullptr, nullptr, range_label});
-    list.push_back({"Render", "Movie...", {}, ask<Kind::render_movie>, has_ffmpeg, nullptr, movie_label});
-    list.push_back({"Render", "Cancel", {}, ask<Kind::cancel_render>, has_job});
-    list.push_back(
-        {"Render", "Copy batch command", {}, ask<Kind::copy_batch_command>, nullptr, nullptr, nullptr, true});
-}
+    {"Edit", "Undo", ctrl('Z'), undo, can_undo, nullptr, undo_label, false, true},
+    {"Edit", "Redo", ctrl_shift('Z'), redo, can_redo, nullptr, redo_label, false, true},
+    below_line({"Edit", "Store as B", plain('B'), ask<Kind::store_b>}),
+    {"Edit", "Take snapshot", {}, take_snapshot},
 
-void add_help(List& list) {
-    list.push_back({"Help", "Keys", plain(key_code::f1), flip<&ViewState::help_open>, nullptr,
-                    is_on<&ViewState::help_open>});
-    list.push_back({"Help", "Log", {}, flip<&ViewState::log_open>, nullptr, is_on<&ViewState::log_open>});
-}
+    look_from<ViewKind::camera>("Camera", plain(key_code::n0)),
+    look_from<ViewKind::free>("Free"),
+    look_from<ViewKind::front>("Front", plain(key_code::n1)),
+    look_from<ViewKind::side>("Side", plain(key_code::n3)),
+    look_from<ViewKind::top>("Top", plain(key_code::n7)),
+    {"View", "Three-quarter", plain(key_code::n9), three_quarter, has_box},
+    below_line({"View", "Frame layer", plain('F'), ask_for_layer<Kind::frame_layer>, has_layer}),
+    {"View", "Frame all", plain(key_code::home), ask<Kind::frame_all>},
+    {"View", "Output pixels 1:1", plain('Z'), toggle_one_to_one, nullptr, is_one_to_one},
+    below_line({"View", "Swap A and B", plain(key_code::tab), swap_a_b}),
+    compare<CompareMode::wipe>("Wipe A | B"),
+    compare<CompareMode::reference>("Reference"),
+    compare<CompareMode::difference>("Difference"),
+    {"View", "Load reference...", {}, ask<Kind::set_reference>},
+    below_line(flip<&ViewState::gate>("View", "Gate", plain('G'))),
+    flip<&ViewState::safe_areas>("View", "Safe areas"),
+    flip<&ViewState::camera_path>("View", "Camera path"),
+    flip<&ViewState::settle>("View", "Settle to the final picture"),
+    below_line(flip<&ViewState::timeline_open>("View", "Timeline")),
+    flip<&ViewState::snapshots_open>("View", "Snapshots"),
+    flip<&ViewState::panels>("View", "Panels", plain(key_code::f11)),
 
-void add_keys(List& list) {
-    list.push_back({"", "Play or pause", plain(key_code::space), flip<&ViewState::playing>});
-    list.push_back(
-        {"", "Next frame", plain(key_code::right), next_frame, nullptr, nullptr, nullptr, false, true});
-    list.push_back({"", "Previous frame", plain(key_code::left), previous_frame, nullptr, nullptr, nullptr,
-                    false, true});
-    list.push_back({"", "Next key", plain(key_code::up), next_key, nullptr, nullptr, nullptr, false, true});
-    list.push_back(
-        {"", "Previous key", plain(key_code::down), previous_key, nullptr, nullptr, nullptr, false, true});
-    list.push_back({"", "First frame", ctrl(key_code::left), first_frame});
-    list.push_back({"", "Last frame", ctrl(key_code::right), last_frame});
-    list.push_back({"", "Key the row under the mouse, or the camera", plain('K'), key_here});
-    list.push_back({"", "Remove that key", shift('K'), remove_key_here});
-    list.push_back({"", "Cancel what runs, close what is open", plain(key_code::escape), cancel});
-}
+    {"Layer", "Add...", {}, ask<Kind::import_file>},
+    {"Layer", "Duplicate", {}, duplicate_selected_layer, has_layer},
+    {"Layer", "Remove", {}, remove_selected_layer, has_layer},
+    below_line({"Layer", "Visible", plain('H'), hide_layer, has_layer, layer_visible}),
+    {"Layer", "Solo", plain('S'), solo_layer, has_layer, layer_solo},
+    below_line({"Layer", "Move up", {}, move_layer_up, can_move_up}),
+    {"Layer", "Move down", {}, move_layer_down, can_move_down},
+    below_line({"Layer", "Regenerate", {}, ask_for_layer<Kind::regenerate>, layer_stale}),
 
-List make_actions() {
-    List list;
-    add_file(list);
-    add_edit(list);
-    add_view(list);
-    add_layer_menu(list);
-    add_camera(list);
-    add_render(list);
-    add_help(list);
-    add_keys(list);
-    return list;
-}
+    {"Camera", "Key camera here", {}, key_camera_here},
+    {"Camera", "Camera from this view", {}, camera_from_view, in_free_view},
+    add_move<CameraMove::orbit>(),
+    add_move<CameraMove::fly_in>(),
+    add_move<CameraMove::face_on_to_edge_on>(),
+    below_line(flip<&ViewState::lock_to_camera>("Camera", "Lock to camera")),
+
+    {"Render", "This frame...", ctrl('R'), ask<Kind::render_frame>},
+    {"Render", "Range", ctrl_shift('R'), ask<Kind::render_range>, nullptr, nullptr, range_label},
+    {"Render", "Movie...", {}, ask<Kind::render_movie>, has_ffmpeg, nullptr, movie_label},
+    {"Render", "Cancel", {}, ask<Kind::cancel_render>, has_job},
+    below_line({"Render", "Copy batch command", {}, ask<Kind::copy_batch_command>}),
+
+    flip<&ViewState::help_open>("Help", "Keys", plain(key_code::f1)),
+    flip<&ViewState::log_open>("Help", "Log"),
+
+    flip<&ViewState::playing>("", "Play or pause", plain(key_code::space)),
+    repeated("Next frame", key_code::right, next_frame),
+    repeated("Previous frame", key_code::left, previous_frame),
+    repeated("Next key", key_code::up, next_key),
+    repeated("Previous key", key_code::down, previous_key),
+    {"", "First frame", ctrl(key_code::left), first_frame},
+    {"", "Last frame", ctrl(key_code::right), last_frame},
+    {"", "Key the row under the mouse, or the camera", plain('K'), key_here},
+    {"", "Remove that key", shift('K'), remove_key_here},
+    {"", "Cancel what runs, close what is open", plain(key_code::escape), cancel},
+};
 
 bool pressed(const Action& action) {
     const ImGuiIO& io = ImGui::GetIO();
@@ -230,10 +158,7 @@ bool pressed(const Action& action) {
 
 }  // namespace
 
-std::span<const Action> actions() {
-    static const List list = make_actions();
-    return list;
-}
+std::span<const Action> actions() { return table; }
 
 std::string shortcut_text(const Shortcut& s) {
     return std::string(s.ctrl ? "Ctrl+" : "") + (s.shift ? "Shift+" : "") + key_name(s.key);

@@ -17,7 +17,7 @@ struct Shortcut {
 struct Action {
     const char* menu;  // "File"; "Camera/Add move" for a submenu; "" where only the key does it
     const char* label;
-    Shortcut shortcut;
+    Shortcut shortcut = {};
     void (*run)(GuiFrame&);
     bool (*enabled)(const GuiFrame&) = nullptr;           // nullptr: always
     bool (*checked)(const GuiFrame&) = nullptr;           // nullptr: not a switch
