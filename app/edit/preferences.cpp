@@ -32,7 +32,6 @@ Preferences from_json(const Json& json) {
     Preferences p;
     read(json, "window_width", p.window_width, 100, 65536);
     read(json, "window_height", p.window_height, 100, 65536);
-    read(json, "maximized", p.maximized);
     read(json, "panel_width", p.panel_width, 300, 520);
     read(json, "timeline_height", p.timeline_height, 36, 2000);
     read(json, "timeline_open", p.timeline_open);
@@ -51,7 +50,6 @@ Json to_json(const Preferences& p) {
     for (const fs::path& file : p.recent) recent.push_back(file.string());
     return {{"window_width", p.window_width},
             {"window_height", p.window_height},
-            {"maximized", p.maximized},
             {"panel_width", p.panel_width},
             {"timeline_height", p.timeline_height},
             {"timeline_open", p.timeline_open},

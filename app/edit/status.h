@@ -39,7 +39,6 @@ struct LayerStatus {
     bool stale = false;                         // the source was changed and not generated again
     std::string error;                          // why it could not be loaded, one line
     double radius_min = 0.0, radius_max = 0.0;  // what radius 0, 0 means for this set, scene units
-    double spacing = 0.0;                       // lattice step, scene units; 0: unknown
     std::optional<glm::vec3> color;             // mean of its splats, linear
     std::shared_ptr<const LayerHistograms> histograms;
 };
@@ -100,7 +99,6 @@ struct Status {
     std::vector<Message> log;
     std::int64_t memory_bytes = 0;
     int threads = 1;
-    float frames_per_second = 0.0f;
     std::vector<std::filesystem::path> recent;
     bool changed_on_disk = false;
     std::vector<RecoveryOffer> recoveries;  // of scenes that were not closed

@@ -47,7 +47,6 @@ struct ViewState {
     float wipe = 0.5f;  // 0..1 of the picture's width; A lies to the left
     float difference_gain = 1.0f;
     std::filesystem::path reference;  // picture to compare with
-    float reference_opacity = 1.0f;
 
     float inspect_exposure = 0.0f;  // stops; shown in amber while not 0
     DisplayView display = DisplayView::scene;

@@ -1,9 +1,8 @@
 // Icons as strokes in a unit square: one short function each, and a table from name to function.
 #include "gui/icons.h"
 
-#include <array>
 #include <cmath>
-#include <cstdint>
+#include <iterator>
 
 #include "gui/theme.h"
 #include "gui/widgets.h"
@@ -62,14 +61,6 @@ void pause(const Pen& pen) {
     pen.list->AddRectFilled(pen.at(-0.7f, -0.8f), pen.at(-0.2f, 0.8f), pen.color);
     pen.list->AddRectFilled(pen.at(0.2f, -0.8f), pen.at(0.7f, 0.8f), pen.color);
 }
-void to_start(const Pen& pen) {
-    pen.line(-0.8f, -0.75f, -0.8f, 0.75f);
-    pen.triangle(0.75f, -0.75f, -0.5f, 0.0f, 0.75f, 0.75f);
-}
-void to_end(const Pen& pen) {
-    pen.line(0.8f, -0.75f, 0.8f, 0.75f);
-    pen.triangle(-0.75f, -0.75f, 0.5f, 0.0f, -0.75f, 0.75f);
-}
 void chevron_right(const Pen& pen) { pen.path({{-0.3f, -0.65f}, {0.4f, 0}, {-0.3f, 0.65f}}, false); }
 void chevron_down(const Pen& pen) { pen.path({{-0.65f, -0.3f}, {0, 0.4f}, {0.65f, -0.3f}}, false); }
 void chevron_up(const Pen& pen) { pen.path({{-0.65f, 0.3f}, {0, -0.4f}, {0.65f, 0.3f}}, false); }
@@ -92,11 +83,6 @@ void curve(const Pen& pen) {
     pen.list->PathBezierCubicCurveTo(pen.at(0.1f, 0.7f), pen.at(-0.1f, -0.7f), pen.at(0.85f, -0.7f));
     pen.list->PathStroke(pen.color, ImDrawFlags_None, pen.width);
 }
-void lock(const Pen& pen) {
-    pen.list->AddRectFilled(pen.at(-0.6f, -0.1f), pen.at(0.6f, 0.8f), pen.color, 0.1f * pen.half);
-    pen.list->PathArcTo(pen.at(0, -0.15f), 0.38f * pen.half, -3.1416f, 0.0f);
-    pen.list->PathStroke(pen.color, ImDrawFlags_None, pen.width);
-}
 void warning(const Pen& pen) {
     pen.path({{0, -0.8f}, {0.9f, 0.75f}, {-0.9f, 0.75f}}, true);
     pen.line(0, -0.25f, 0, 0.25f);
@@ -110,22 +96,16 @@ void folder(const Pen& pen) {
 void file(const Pen& pen) {
     pen.path({{-0.6f, -0.85f}, {0.2f, -0.85f}, {0.6f, -0.4f}, {0.6f, 0.85f}, {-0.6f, 0.85f}}, true);
 }
-void reset(const Pen& pen) {
-    pen.list->PathArcTo(pen.center, 0.65f * pen.half, -2.6f, 2.2f);
-    pen.list->PathStroke(pen.color, ImDrawFlags_None, pen.width);
-    pen.triangle(-0.95f, -0.75f, -0.2f, -0.45f, -0.85f, 0.05f);
-}
 void dots(const Pen& pen) {
     for (const float x : {-0.7f, 0.0f, 0.7f})
         pen.list->AddCircleFilled(pen.at(x, 0), 0.18f * pen.half, pen.color);
 }
 
 using Draw = void (*)(const Pen&);
-constexpr std::array<Draw, 22> drawings{
-    eye,           eye_closed,   diamond,    diamond_empty, play,  pause, to_start, to_end,
-    chevron_right, chevron_down, chevron_up, plus,          cross, ring,  ring_cut, curve,
-    lock,          warning,      folder,     file,          reset, dots};
-static_assert(drawings.size() == static_cast<std::size_t>(Icon::dots) + 1);
+constexpr Draw drawings[] = {eye,           eye_closed,   diamond,    diamond_empty, play,  pause,
+                             chevron_right, chevron_down, chevron_up, plus,          cross, ring,
+                             ring_cut,      curve,        warning,    folder,        file,  dots};
+static_assert(std::size(drawings) == static_cast<std::size_t>(Icon::dots) + 1);
 
 }  // namespace
 

@@ -12,8 +12,6 @@ enum class Icon {
     diamond_empty,  // animated, no key here; or can be keyed
     play,
     pause,
-    to_start,
-    to_end,
     chevron_right,
     chevron_down,
     chevron_up,
@@ -22,11 +20,9 @@ enum class Icon {
     ring,      // holdout off
     ring_cut,  // holdout on
     curve,
-    lock,
     warning,
     folder,
     file,
-    reset,  // an arrow that turns back
     dots
 };
 

@@ -2,6 +2,8 @@
 // letters and digits are their ASCII codes. Written out so that the widgets need no window library.
 #pragma once
 
+#include <string>
+
 namespace astrosplat {
 
 namespace key_code {
@@ -13,11 +15,7 @@ inline constexpr int f1 = 290, f11 = 300, f12 = 301;
 inline constexpr int pad_enter = 335;
 }  // namespace key_code
 
-/// Tells ImGui which of these are its own keys, as the window library's backend does; for a context without
-/// one (pictures off screen, tests).
-void set_key_map();
-
 /// What is written on the key, for menus and the sheet of keys; "" for key 0.
-const char* key_name(int key);
+std::string key_name(int key);
 
 }  // namespace astrosplat

@@ -145,7 +145,6 @@ void apply_theme(float content_scale) {
     ImGui::GetIO().IniFilename = nullptr;
 }
 
-ImFont* regular_font() { return ImGui::GetIO().Fonts->Fonts[0]; }
 ImFont* medium_font() { return ImGui::GetIO().Fonts->Fonts[1]; }
 ImFont* small_font() { return ImGui::GetIO().Fonts->Fonts[2]; }
 

@@ -31,8 +31,7 @@ inline constexpr ImU32 fill = with_opacity(accent, 0.25f);
 /// For ImGui::PushStyleColor and the like that want floats.
 inline ImVec4 color4(ImU32 c) { return ImGui::ColorConvertU32ToFloat4(c); }
 
-// The fonts apply_theme loaded into the current context.
-ImFont* regular_font();  // 15 px
+// Fonts that apply_theme loaded into the current context, besides the regular one of 15 px.
 ImFont* medium_font();   // 15 px, for heads
 ImFont* small_font();    // 13 px, for plots and the status bar
 

@@ -63,15 +63,9 @@ void compare_choice(GuiFrame& frame) {
     if (clicked >= 0) set_compare(frame, static_cast<CompareMode>(clicked));
     ViewState& view = frame.view;
     ImGui::SameLine(0, px(small_gap));
-    if (view.compare == CompareMode::reference) {
-        float percent = view.reference_opacity * 100.0f;
-        if (drag_field("##opacity", percent, 0.5f, 0, 100, "%.0f %%", px(52), color::text))
-            view.reference_opacity = percent / 100.0f;
-        tooltip("How much of the reference is seen");
-    } else if (view.compare == CompareMode::difference) {
-        drag_field("##gain", view.difference_gain, 0.02f, 0.1f, 100, "x %.1f", px(52), color::text);
-        tooltip("The difference is multiplied by this");
-    }
+    if (view.compare != CompareMode::difference) return;
+    drag_field("##gain", view.difference_gain, 0.02f, 0.1f, 100, "x %.1f", px(52), color::text);
+    tooltip("The difference is multiplied by this");
 }
 
 // A field that opens a list of choices.

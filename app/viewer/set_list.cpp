@@ -3,7 +3,6 @@
 #include "viewer/set_list.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "generate/lattice.h"
@@ -229,11 +228,9 @@ LayerStatus SetList::status(const LayerParams& layer) const {
     const Layer& seen = entry.growing ? entry.growing : entry.loaded;
     if (!seen) return status;
     status.stale = !status.loading && !satisfies(*seen, identity);
-    const glm::dvec3 s = seen->preview->spacing;
     status.splats = seen->splats;
     status.radius_min = seen->radius.x;
     status.radius_max = seen->radius.y;
-    status.spacing = std::cbrt(s.x * s.y * s.z);
     status.color = seen->color;
     status.histograms = seen->histograms;
     return status;

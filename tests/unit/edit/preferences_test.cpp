@@ -33,7 +33,6 @@ TEST(Preferences, RoundTrip) {
     Preferences p;
     p.window_width = 1234;
     p.window_height = 777;
-    p.maximized = true;
     p.panel_width = 401.5f;
     p.timeline_height = 200.25f;
     p.timeline_open = false;
@@ -67,10 +66,8 @@ TEST(Preferences, SingleValuesThatAreWrongHaveTheirDefault) {
     const fs::path file =
         folder.file("viewer.json",
                     "{\"window_width\": \"wide\", \"window_height\": -5, \"panel_width\": 1e9,"
-                    " \"timeline_open\": 3, \"maximized\": true, \"recent\": [1, \"/gone\"]}");
-    Preferences wanted;
-    wanted.maximized = true;
-    EXPECT_EQ(load_preferences(file), wanted);
+                    " \"timeline_open\": 3, \"recent\": [1, \"/gone\"]}");
+    EXPECT_EQ(load_preferences(file), Preferences{});
 }
 
 TEST(Preferences, AFolderThatCannotBeWrittenCostsOneWarning) {
