@@ -57,10 +57,6 @@ Track new_track(const ParameterSpec& spec) {
     return track;
 }
 
-void erase_track(Scene& scene, const std::string& key) {
-    std::erase_if(scene.animation, [&](const Track& track) { return track.key == key; });
-}
-
 }  // namespace
 
 const Track* find_track(const Scene& scene, const std::string& key) {
@@ -112,20 +108,18 @@ void remove_key(Scene& scene, const std::string& key, double frame) {
     const Description description = describe(scene);
     if (const Parameter* parameter = find_parameter(description, key))
         parameter->set(from_numbers(parameter->spec, found->value));
-    erase_track(scene, key);
+    remove_track(scene, key);
 }
 
-void remove_track(Scene& scene, const std::string& key) { erase_track(scene, key); }
+void remove_track(Scene& scene, const std::string& key) {
+    std::erase_if(scene.animation, [&](const Track& track) { return track.key == key; });
+}
 
 void move_key(Scene& scene, const std::string& key, double from, double to) {
     Track* track = track_of(scene, key);
-    if (!track || from == to || !std::isfinite(to)) return;
-    const auto found = key_at(*track, from);
-    if (found == track->keys.end()) return;
-    TrackKey moved = *found;
-    moved.frame = to;
-    track->keys.erase(found);
-    insert_key(*track, std::move(moved));
+    if (!track || from == to || !std::isfinite(to) || key_at(*track, from) == track->keys.end()) return;
+    copy_key(scene, key, from, to);
+    track->keys.erase(key_at(*track, from));
 }
 
 void copy_key(Scene& scene, const std::string& key, double from, double to) {

@@ -194,19 +194,7 @@ std::uint64_t Display::version() const { return state_->version; }
 
 std::vector<unsigned char> Display::read() const {
     const GlTarget& target = state_->target;
-    const auto row = static_cast<std::size_t>(target.width()) * 4;
-    const auto rows = static_cast<std::size_t>(target.height());
-    std::vector<unsigned char> bytes(row * rows);
-    if (bytes.empty()) return bytes;
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer());
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, target.width(), target.height(), GL_RGBA, GL_UNSIGNED_BYTE, bytes.data());
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
-    for (std::size_t y = 0; y < rows / 2; ++y)
-        std::swap_ranges(bytes.begin() + std::ptrdiff_t(y * row),
-                         bytes.begin() + std::ptrdiff_t((y + 1) * row),
-                         bytes.begin() + std::ptrdiff_t((rows - 1 - y) * row));
-    return bytes;
+    return read_rgba8(target.framebuffer(), target.width(), target.height());
 }
 
 }  // namespace astrosplat

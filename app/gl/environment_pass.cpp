@@ -5,6 +5,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "core/real.h"
+#include "gl/picture_texture.h"
 
 namespace astrosplat {
 namespace {
@@ -21,23 +22,14 @@ double level_of(const Environment& environment, double spread) {
     return texels > 1.0 ? std::fmin(real::log(texels) / real::log(2.0), last) : 0.0;
 }
 
-/// A number that another picture at the same address hardly has.
-float probe_of(const Image& image) {
-    float sum = 0.0f;
-    const std::size_t step = std::max<std::size_t>(1, image.pixels.size() / 97);
-    for (std::size_t i = 0; i < image.pixels.size(); i += step) sum = 0.75f * sum + image.pixels[i];
-    return sum;
-}
-
 }  // namespace
 
 void EnvironmentPass::Level::hold(const Environment& environment, std::size_t level) {
     const Image& first = (*environment.faces)[0][level];
-    const float found = probe_of(first);
-    if (texture.name() != 0 && pixels == first.pixels.data() && width == first.width && probe == found)
+    const float found = content_probe(first);
+    if (texture.name() != 0 && pixels == first.pixels.data() && probe == found)
         return;
     pixels = first.pixels.data();
-    width = first.width;
     probe = found;
     glBindTexture(GL_TEXTURE_2D_ARRAY, texture.get());
     glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGB32F, static_cast<GLsizei>(first.width),

@@ -24,7 +24,6 @@ class EnvironmentPass {
     struct Level {
         GlTexture texture;
         const float* pixels = nullptr;  // of the first face, and some of what they held
-        std::int64_t width = 0;
         float probe = 0.0f;
         void hold(const Environment& environment, std::size_t level);
     };

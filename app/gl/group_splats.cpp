@@ -1,7 +1,6 @@
 #include "gl/group_splats.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "look/prepare.h"
 
@@ -33,13 +32,6 @@ void RawSplatStore::drop_unused() {
         const bool used = std::exchange(entry->second.used, false);
         entry = used ? std::next(entry) : entries_.erase(entry);
     }
-}
-
-std::int64_t shown_count(const PreviewLayer& layer) {
-    const auto size = layer.set ? layer.set->size() : 0;
-    const auto wanted =
-        static_cast<std::int64_t>(std::ceil(double(layer.share) * double(whole_count(layer))));
-    return std::clamp(wanted, std::min<std::int64_t>(size, 1), size);
 }
 
 bool GroupSplats::lay_out(const std::vector<const PreviewLayer*>& layers) {

@@ -31,9 +31,6 @@ class RawSplatStore {
     std::map<const SplatSet*, Entry> entries_;
 };
 
-/// Splats of a layer that its share shows: at least one where the set has any.
-std::int64_t shown_count(const PreviewLayer& layer);
-
 class GroupSplats {
   public:
     /// Brings the shaded splats of these layers up to date. Throws InputError as prepare_look does.

@@ -37,6 +37,18 @@ void GlTarget::bind() {
     glViewport(0, 0, width_, height_);
 }
 
+std::vector<unsigned char> read_rgba8(GLuint framebuffer, int width, int height) {
+    const auto row = static_cast<std::size_t>(width) * 4, rows = static_cast<std::size_t>(height);
+    std::vector<unsigned char> bottom_up(row * rows), top_down(row * rows);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, bottom_up.data());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    for (std::size_t y = 0; y < rows; ++y)
+        std::copy_n(bottom_up.data() + (rows - 1 - y) * row, row, top_down.data() + y * row);
+    return top_down;
+}
+
 void bind_texture(int unit, GLenum target, GLuint texture) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(target, texture);

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace astrosplat {
 
@@ -83,6 +84,9 @@ class GlTarget {
     GlFramebuffer framebuffer_;
     int width_ = 0, height_ = 0;
 };
+
+/// What a framebuffer shows as 8-bit RGBA, top row first.
+std::vector<unsigned char> read_rgba8(GLuint framebuffer, int width, int height);
 
 /// Binds a texture to a unit.
 void bind_texture(int unit, GLenum target, GLuint texture);

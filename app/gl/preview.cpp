@@ -14,6 +14,7 @@
 #include "gl/draw_pass.h"
 #include "gl/environment_pass.h"
 #include "gl/group_splats.h"
+#include "gl/picture_texture.h"
 #include "render/resolve.h"
 
 namespace astrosplat {
@@ -58,15 +59,6 @@ double distance_to(const LayerProjection& p, const Bounds& box) {
     return std::sqrt(glm::dot(outside, outside)) * double(p.radius_scale);
 }
 
-/// A number that another picture at the same address hardly has.
-float probe_of(const Image* image) {
-    if (!image || image->pixels.empty()) return 0.0f;
-    float sum = static_cast<float>(image->width);
-    const std::size_t step = std::max<std::size_t>(1, image->pixels.size() / 97);
-    for (std::size_t i = 0; i < image->pixels.size(); i += step) sum = 0.75f * sum + image->pixels[i];
-    return sum;
-}
-
 /// Copies with the merged groups cut into pieces that one pass can draw.
 std::vector<BlendGroup> drawable(std::vector<BlendGroup> groups) {
     std::vector<BlendGroup> result;
@@ -87,10 +79,18 @@ std::vector<BlendGroup> drawable(std::vector<BlendGroup> groups) {
 
 }  // namespace
 
+std::int64_t shown_count(const PreviewLayer& layer) {
+    const auto size = layer.set ? layer.set->size() : 0;
+    const auto wanted =
+        static_cast<std::int64_t>(std::ceil(double(layer.share) * double(whole_count(layer))));
+    return std::clamp(wanted, std::min<std::int64_t>(size, 1), size);
+}
+
 Shading shading_of(const PreviewLayer& layer) {
     const LayerRender& render = layer.layer.render;
+    const Image* map = layer.inputs.thickness_map;
     return {layer.look, layer.inputs, render.blend == Blend::add && !render.holdout,
-            probe_of(layer.inputs.thickness_map)};
+            map ? content_probe(*map) : 0.0f};
 }
 
 struct GlPreview::State {

@@ -33,6 +33,9 @@ inline std::int64_t whole_count(const PreviewLayer& layer) {
     return layer.whole > there ? layer.whole : there;
 }
 
+/// Splats of a layer that its share shows: at least one where the set has any.
+std::int64_t shown_count(const PreviewLayer& layer);
+
 /// All that a layer's splats are shaded and thinned out with, beside its rows and share: while it stays
 /// equal, they stay.
 struct Shading {

@@ -32,21 +32,8 @@ std::string aspect_text(std::int64_t width, std::int64_t height) {
     return fmt::format("{:.2f}:1", static_cast<double>(width) / static_cast<double>(height));
 }
 
-const char* view_name(ViewKind view) {
-    switch (view) {
-        case ViewKind::camera:
-            return "Camera";
-        case ViewKind::free:
-            return "Free view, 0 returns to the camera";
-        case ViewKind::front:
-            return "Front";
-        case ViewKind::top:
-            return "Top";
-        case ViewKind::side:
-            return "Side";
-    }
-    return "";
-}
+// By ViewKind.
+constexpr const char* view_names[] = {"Camera", "Free view, 0 returns to the camera", "Front", "Top", "Side"};
 
 // The part of the picture that the output shows: as high as it, as the camera's angle is vertical.
 Rect gate_of(const Scene& scene, const Rect& picture) {
@@ -117,7 +104,7 @@ void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& picture) {
 
 void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& picture) {
     const OutputParams& output = frame.document.scene().output;
-    std::string text = view_name(frame.view.view);
+    std::string text = view_names[static_cast<std::size_t>(frame.view.view)];
     text += fmt::format("   frame {:g}", frame.view.frame);
     if (frame.view.view == ViewKind::camera && frame.view.gate)
         text += "   " + aspect_text(output.width, output.height) + " gate";

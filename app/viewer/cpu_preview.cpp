@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -24,13 +23,8 @@ struct KeptLayer {
     ShadedSplats shaded;
 };
 
-std::int64_t rows_to_show(const PreviewLayer& layer) {
-    const double wanted = static_cast<double>(layer.share) * static_cast<double>(whole_count(layer));
-    return std::min(std::max<std::int64_t>(std::llround(wanted), 1), layer.set->size());
-}
-
 void cut(const PreviewLayer& layer, KeptLayer& kept) {
-    const std::int64_t rows = rows_to_show(layer);
+    const std::int64_t rows = shown_count(layer);
     if (kept.set == layer.set && kept.rows.size() == rows) return;
     kept.rows = first_rows(*layer.set, rows);
     kept.set = layer.set;

@@ -188,8 +188,7 @@ std::vector<PreviewLayer> ViewPicture::Impl::preview_layers() {
         // A share of a small layer, such as a star cluster, would lose what it is made of.
         const auto small = static_cast<float>(small_layer) / static_cast<float>(sizes[n]);
         layers[n].share = std::min(1.0f, std::max(share, choice.share > 0.0f ? 0.0f : small));
-        shown[places[n]] = std::min(
-            layers[n].set->size(), static_cast<std::int64_t>(layers[n].share * static_cast<float>(sizes[n])));
+        shown[places[n]] = shown_count(layers[n]);
     }
     return layers;
 }

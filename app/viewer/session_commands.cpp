@@ -1,7 +1,7 @@
 #include "viewer/session_commands.h"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 #include "core/atomic_file.h"
 #include "edit/batch_command.h"
@@ -165,50 +165,44 @@ struct Entry {
     void (*function)(State&, const Command&);
 };
 
-/// In the order of Command::Kind.
-constexpr std::array entries{Entry{Kind::new_from_file, open_path},
-                             Entry{Kind::open, open_path},
-                             Entry{Kind::open_demo, open_demo},
-                             Entry{Kind::save, save},
-                             Entry{Kind::save_as, save_as},
-                             Entry{Kind::reload, reload},
-                             Entry{Kind::keep, keep},
-                             Entry{Kind::recover, recover_autosave},
-                             Entry{Kind::discard_recovery, discard},
-                             Entry{Kind::quit, quit},
-                             Entry{Kind::import_file, import_file},
-                             Entry{Kind::set_reference, set_reference},
-                             Entry{Kind::save_look, save_look},
-                             Entry{Kind::apply_look, apply_look_file},
-                             Entry{Kind::regenerate, regenerate},
-                             Entry{Kind::cancel_load, cancel_load},
-                             Entry{Kind::render_frame, render_files},
-                             Entry{Kind::render_range, render_files},
-                             Entry{Kind::render_movie, render_files},
-                             Entry{Kind::cancel_render, cancel_render},
-                             Entry{Kind::screenshot, take_screenshot},
-                             Entry{Kind::store_b, store_b},
-                             Entry{Kind::take_snapshot, snapshot},
-                             Entry{Kind::restore_snapshot, restore_snapshot},
-                             Entry{Kind::delete_snapshot, delete_snapshot},
-                             Entry{Kind::compare_snapshot, compare_snapshot},
-                             Entry{Kind::copy_batch_command, copy_batch_command},
-                             Entry{Kind::copy_text, copy_text},
-                             Entry{Kind::frame_layer, frame_layer},
-                             Entry{Kind::frame_all, frame_all},
-                             Entry{Kind::add_move, add_move}};
+constexpr Entry entries[] = {{Kind::new_from_file, open_path},
+                             {Kind::open, open_path},
+                             {Kind::open_demo, open_demo},
+                             {Kind::save, save},
+                             {Kind::save_as, save_as},
+                             {Kind::reload, reload},
+                             {Kind::keep, keep},
+                             {Kind::recover, recover_autosave},
+                             {Kind::discard_recovery, discard},
+                             {Kind::quit, quit},
+                             {Kind::import_file, import_file},
+                             {Kind::set_reference, set_reference},
+                             {Kind::save_look, save_look},
+                             {Kind::apply_look, apply_look_file},
+                             {Kind::regenerate, regenerate},
+                             {Kind::cancel_load, cancel_load},
+                             {Kind::render_frame, render_files},
+                             {Kind::render_range, render_files},
+                             {Kind::render_movie, render_files},
+                             {Kind::cancel_render, cancel_render},
+                             {Kind::screenshot, take_screenshot},
+                             {Kind::store_b, store_b},
+                             {Kind::take_snapshot, snapshot},
+                             {Kind::restore_snapshot, restore_snapshot},
+                             {Kind::delete_snapshot, delete_snapshot},
+                             {Kind::compare_snapshot, compare_snapshot},
+                             {Kind::copy_batch_command, copy_batch_command},
+                             {Kind::copy_text, copy_text},
+                             {Kind::frame_layer, frame_layer},
+                             {Kind::frame_all, frame_all},
+                             {Kind::add_move, add_move}};
 
-constexpr bool in_order() {
-    for (std::size_t i = 0; i < entries.size(); ++i)
-        if (entries[i].kind != static_cast<Kind>(i)) return false;
-    return entries.size() == static_cast<std::size_t>(Kind::add_move) + 1;
-}
-static_assert(in_order());
+static_assert(std::size(entries) == static_cast<std::size_t>(Kind::add_move) + 1);
 
 }  // namespace
 
 void carry_out(SessionState& state, const Command& command) {
-    entries[static_cast<std::size_t>(command.kind)].function(state, command);
+    std::ranges::find(entries, command.kind, &Entry::kind)->function(state, command);
 }
 
 }  // namespace astrosplat

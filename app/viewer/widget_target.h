@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "gl/objects.h"
+
 namespace astrosplat {
 
 class WidgetTarget {
@@ -21,8 +23,7 @@ class WidgetTarget {
     std::vector<unsigned char> read() const;
 
   private:
-    int width_, height_;
-    unsigned texture_ = 0, framebuffer_ = 0;
+    GlTarget target_;
 };
 
 }  // namespace astrosplat

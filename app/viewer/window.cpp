@@ -11,6 +11,7 @@
 #include <iterator>
 #include <utility>
 
+#include "gl/objects.h"
 #include "splat_files/checksum.h"
 
 namespace astrosplat {
@@ -244,17 +245,9 @@ float Window::content_scale() const {
 
 std::vector<unsigned char> Window::read(int& width, int& height) const {
     glfwGetFramebufferSize(window_, &width, &height);
-    std::vector<unsigned char> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
     draw_widgets(width, height);  // again: not every driver lets what is shown be read
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadBuffer(GL_BACK);
-    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-    const std::size_t row = static_cast<std::size_t>(width) * 4;
-    for (std::size_t y = 0; y < static_cast<std::size_t>(height) / 2; ++y)
-        std::swap_ranges(pixels.begin() + static_cast<std::ptrdiff_t>(y * row),
-                         pixels.begin() + static_cast<std::ptrdiff_t>((y + 1) * row),
-                         pixels.end() - static_cast<std::ptrdiff_t>((y + 1) * row));
-    return pixels;
+    return read_rgba8(0, width, height);
 }
 
 }  // namespace astrosplat
