@@ -48,12 +48,9 @@ Preferences from_json(const Json& json) {
 Json to_json(const Preferences& p) {
     Json recent = Json::array();
     for (const fs::path& file : p.recent) recent.push_back(file.string());
-    return {{"window_width", p.window_width},
-            {"window_height", p.window_height},
-            {"panel_width", p.panel_width},
-            {"timeline_height", p.timeline_height},
-            {"timeline_open", p.timeline_open},
-            {"recent", recent}};
+    return {{"window_width", p.window_width},   {"window_height", p.window_height},
+            {"panel_width", p.panel_width},     {"timeline_height", p.timeline_height},
+            {"timeline_open", p.timeline_open}, {"recent", recent}};
 }
 
 }  // namespace

@@ -4,16 +4,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "edit/status.h"
 #include "edit/view_state.h"
-#include "gl/display.h"
+#include "gl/picture_texture.h"
 #include "gl/preview.h"
 #include "scene/scene.h"
 #include "viewer/cpu_preview.h"
 #include "viewer/final_picture.h"
+#include "viewer/picture_files.h"
 #include "viewer/preview_budget.h"
 #include "viewer/set_loader.h"
 
@@ -42,31 +44,26 @@ struct PreviewChoice {
     double target_ms = 25.0;  // of one preview
 };
 
-/// Pictures that several views share: thickness maps and environments, by file.
-class PictureFiles;
-
 class ViewPicture {
   public:
-    explicit ViewPicture(std::shared_ptr<PictureFiles> files);
-    ~ViewPicture();
+    explicit ViewPicture(std::shared_ptr<PictureFiles> files) : files_(std::move(files)) {}
 
     /// Shows `request`: draws a preview where it differs from the last one, else goes on towards the final
     /// picture once nothing has changed for 0.3 s (`settle`; `hurry`: at once). `now` in seconds.
     void show(const PictureRequest& request, const PreviewChoice& choice, bool settle, double now,
               bool hurry = false);
-    /// Stops the work on the final picture; show() begins it again.
-    void stop();
-
-    unsigned texture() const;
+    unsigned texture() const { return texture_; }
     /// Grows whenever the texture's pixels change.
-    std::uint64_t version() const;
-    const PictureStatus& status() const;
+    std::uint64_t version() const { return version_; }
+    const PictureStatus& status() const { return status_; }
     /// show() should be called again soon although nobody did anything.
-    bool waiting() const;
+    bool waiting() const {
+        return status_.state == PictureState::preview || status_.state == PictureState::refining;
+    }
     /// Preview splats of each layer in the last preview.
-    const std::vector<std::int64_t>& shown() const;
+    const std::vector<std::int64_t>& shown() const { return shown_; }
     /// Splats of each layer that its look keeps, estimated from the last preview; below 0: not known.
-    const std::vector<std::int64_t>& kept() const;
+    const std::vector<std::int64_t>& kept() const { return kept_; }
     /// The preview is that of the present request, in order.
     bool exact() const;
     /// Seconds until the final picture may begin.
@@ -79,12 +76,33 @@ class ViewPicture {
     std::shared_ptr<const RenderedFrame> final_frame() const;
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
-};
+    std::vector<PreviewLayer> preview_layers();
+    void note_kept(const std::vector<double>& shares);
+    bool environment_arrived();
+    bool previews_arrived(const PictureRequest& now) const;
+    void draw_preview(double now);
+    void take_final();
+    void begin_final();
 
-std::shared_ptr<PictureFiles> make_picture_files();
-/// Reads these again when they are next asked for.
-void forget(PictureFiles& pictures, const std::vector<std::filesystem::path>& files);
+    std::shared_ptr<PictureFiles> files_;
+    std::optional<PictureRequest> request_;
+    std::shared_ptr<const Environment> environment_;  // of the last preview
+    PreviewChoice choice_;
+    CpuPreview cpu_;
+    std::unique_ptr<GlPreview> gl_;  // made when first wanted
+    PreviewBudget budget_;
+    FramePace pace_;
+    FinalPicture final_;
+    bool final_started_ = false;
+    double changed_at_ = 0.0;
+    PictureTexture canvas_texture_;
+    const Image* drawn_ = nullptr;  // the processor's preview; null while the GPU's is shown
+    Image canvas_;                  // preview and tiles of the final picture, once that has begun
+    unsigned texture_ = 0;
+    std::uint64_t version_ = 0;  // of its pixels
+    PictureStatus status_;
+    std::vector<std::int64_t> shown_, kept_;
+    std::vector<std::size_t> places_;  // in the scene, of the layers that the last preview drew
+};
 
 }  // namespace astrosplat

@@ -17,6 +17,7 @@
 #include "exit_code.h"
 #include "viewer/clock.h"
 #include "viewer/session.h"
+#include "viewer/session_picture.h"
 #include "viewer/window.h"
 
 namespace astrosplat {
@@ -65,18 +66,18 @@ class Loop {
     Loop& operator=(const Loop&) = delete;
 
     void run() {
-        while (!session_.quitting()) {
+        while (!session_.quitting) {
             wait();
             frame();
         }
         int width = 0, height = 0;
         window_.size(width, height);
-        session_.close(width, height);
+        close(session_, width, height);
     }
 
   private:
     void wait() {
-        const double due = session_.next_due(seconds_now());
+        const double due = next_due(session_, seconds_now());
         if (window_.has_input()) {
             window_.wait(0.0);
         } else if (frames_left_ > 0 || gui_.busy() || due <= 0.0) {
@@ -91,37 +92,39 @@ class Loop {
     }
 
     void frame() {
-        if (interrupted_) session_.interrupt();
-        if (window_.close_requested()) gui_.ask_to_quit(session_.document());
+        if (interrupted_) interrupt(session_);
+        if (window_.close_requested()) gui_.ask_to_quit(session_.document);
         const std::vector<std::filesystem::path> dropped = window_.take_dropped();
-        if (!dropped.empty()) session_.drop(dropped);
+        if (!dropped.empty()) drop(session_, dropped);
         const double now = seconds_now();
-        session_.advance(now);
-        for (const Message& message : log_.take()) session_.say(message.text, message.error);
-        if (session_.title() != title_) window_.set_title(title_ = session_.title());
+        advance(session_, now);
+        for (const Message& message : log_.take()) say(session_.status, message.text, message.error);
+        if (title(session_) != title_) window_.set_title(title_ = title(session_));
         if (window_.has_input()) frames_left_ = frames_after_event;
         if (!window_.begin_frame(gui_.opening())) return;
-        const bool was_settled = session_.settled();
-        Commands commands = session_.take_dropped();
-        gui_.draw(session_.document(), session_.view(), session_.status(), commands);
-        session_.navigate(gui_.viewport_input(), now);
-        session_.carry_out(commands);
+        const bool was_settled = settled(session_);
+        Commands commands = std::exchange(session_.dropped, {});
+        gui_.draw(session_.document, session_.view, session_.status, commands);
+        navigate(session_, gui_.viewport_input(), now);
+        carry_out(session_, commands);
         const ImGuiIO& io = ImGui::GetIO();
         const Layout layout =
-            make_layout(session_.view(), io.DisplaySize.x, io.DisplaySize.y, window_.content_scale());
-        session_.draw(static_cast<int>(layout.viewport.width * io.DisplayFramebufferScale.x),
-                      static_cast<int>(layout.viewport.height * io.DisplayFramebufferScale.y), now);
+            make_layout(session_.view, io.DisplaySize.x, io.DisplaySize.y, window_.content_scale());
+        draw_viewport(session_,
+                      {static_cast<int>(layout.viewport.width * io.DisplayFramebufferScale.x),
+                       static_cast<int>(layout.viewport.height * io.DisplayFramebufferScale.y)},
+                      now);
         // The badge was drawn before the picture: it must not call a preview final.
-        if (was_settled && !session_.settled()) {
+        if (was_settled && !settled(session_)) {
             frames_left_ = frames_after_event;
             return window_.drop_frame();
         }
-        still_ = !window_.end_frame(session_.picture_version());
-        if (const auto text = session_.take_clipboard()) ImGui::SetClipboardText(text->c_str());
-        if (const auto file = session_.take_screenshot_request()) {
+        still_ = !window_.end_frame(session_.display.version());
+        if (const auto text = std::exchange(session_.clipboard, {})) ImGui::SetClipboardText(text->c_str());
+        if (const auto file = std::exchange(session_.screenshot, {})) {
             int width = 0, height = 0;
             const std::vector<unsigned char> pixels = window_.read(width, height);
-            session_.save_screenshot(*file, width, height, pixels);
+            save_screenshot(session_, *file, width, height, pixels);
         }
     }
 

@@ -5,18 +5,33 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/memory.h"
 #include "edit/new_from_file.h"
 #include "output/write_picture.h"
+#include "viewer/programs.h"
 #include "viewer/session_commands.h"
-#include "viewer/session_picture.h"
-#include "viewer/session_state.h"
 #include "viewer/session_status.h"
 
 namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Splats of a layer that a preview will ever draw.
+std::int64_t preview_limit(const GlInfo& gl) { return gl.software ? 1'000'000 : 60'000'000; }
+
+/// A scene, or what any other file becomes, untitled. Throws InputError.
+Document document_for(const fs::path& file, std::span<const Assignment> assignments = {}) {
+    if (kind_of_file(file) == FileKind::scene) return Document::open(file, assignments);
+    const fs::path place = fs::absolute(file).replace_extension(".toml");
+    return Document::untitled(scene_text_for(file, place), place, assignments);
+}
+
+/// A picture is first seen from the front, as it was before it had depth.
+void look_first(ViewState& view, const fs::path& file) {
+    if (kind_of_file(file) == FileKind::picture) view.view = ViewKind::top;
+}
 
 /// Does it, or says in the message line why not: nothing that a person asks for ends the window.
 template <class Act>
@@ -33,34 +48,34 @@ void attempt(Status& status, const Act& act) {
 }
 
 /// Textures, meshes, maps, skies, a reference: what was changed shows without being asked for.
-void read_again(SessionState& state, const std::vector<fs::path>& files) {
-    outdate_layers_of(files, state.document.scene(), state.sets.loader());
-    forget(*state.files, files);
-    say(state.status, files.size() == 1 ? "Read again: " + files[0].filename().string()
-                                        : "Read again: " + std::to_string(files.size()) + " files");
-    const fs::path reference = state.comparison.reference_file();
+void read_again(Session& session, const std::vector<fs::path>& files) {
+    outdate_layers_of(files, session.document.scene(), session.sets.loader());
+    session.files->forget(files);
+    say(session.status, files.size() == 1 ? "Read again: " + files[0].filename().string()
+                                          : "Read again: " + std::to_string(files.size()) + " files");
+    const fs::path reference = session.comparison.reference_file();
     if (std::find(files.begin(), files.end(), reference) == files.end()) return;
-    state.comparison.forget_reference();
-    attempt(state.status, [&] { state.comparison.load_reference(reference); });
+    session.comparison.forget_reference();
+    attempt(session.status, [&] { session.comparison.load_reference(reference); });
 }
 
-void watch_files(SessionState& state) {
-    state.disk.watch(state.document.scene(), state.sets.loader(), state.comparison.reference_file());
+void watch_files(Session& session) {
+    session.disk.watch(session.document.scene(), session.sets.loader(), session.comparison.reference_file());
 }
 
-void look_at_disk(SessionState& state, double now) {
-    if (!state.disk.due(now)) return;
-    state.status.changed_on_disk = state.document.changed_on_disk();
-    state.status.memory_bytes = resident_memory_bytes();
-    watch_files(state);
-    const std::vector<fs::path> changed = state.disk.changed();
-    if (!changed.empty()) read_again(state, changed);
+void look_at_disk(Session& session, double now) {
+    if (!session.disk.due(now)) return;
+    session.status.changed_on_disk = session.document.changed_on_disk();
+    session.status.memory_bytes = resident_memory_bytes();
+    watch_files(session);
+    const std::vector<fs::path> changed = session.disk.changed();
+    if (!changed.empty()) read_again(session, changed);
 }
 
-void want_sets(SessionState& state, double now) {
-    if (!state.sets.due(state.document, now)) return;
-    watch_files(state);  // before they are read, so that no change after that is missed
-    state.sets.want(state.document);
+void want_sets(Session& session, double now) {
+    if (!session.sets.due(session.document, now)) return;
+    watch_files(session);  // before they are read, so that no change after that is missed
+    session.sets.want(session.document);
 }
 
 Command::Kind command_for(FileKind kind, bool fresh) {
@@ -71,117 +86,143 @@ Command::Kind command_for(FileKind kind, bool fresh) {
 
 }  // namespace
 
-Session::Session(const ViewerOptions& options, const GlInfo& gl)
-    : state_(std::make_unique<SessionState>(options, gl)) {}
-Session::~Session() = default;
-
-Document& Session::document() { return state_->document; }
-ViewState& Session::view() { return state_->view; }
-const Status& Session::status() const { return state_->status; }
-
-void Session::advance(double now) {
-    SessionState& state = *state_;
-    const bool for_screenshot = state.fixed_splats > 0;
-    state.playback.advance(state.view, state.document.scene().output, now);
-    want_sets(state, now);
-    if (!for_screenshot) state.sets.show_growth(now);
-    look_at_disk(state, now);
-    if (const auto news = state.jobs.poll(state.status.job)) say(news->text, news->error);
-    state.autosave.update(state.document);
-    fill_status(state);
+Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
+    : gl(gl_info),
+      preferences(load_preferences()),
+      document(options.input.empty() ? demo_document(options.assignments)
+                                     : document_for(options.input, options.assignments)),
+      sets(options.cache, preview_limit(gl_info)),
+      jobs(options.cache),
+      fresh_demo(options.input.empty()) {
+    view.hint_open = fresh_demo;
+    apply_preferences(view, preferences);
+    view.frame = first_frame(document.scene());
+    if (!options.input.empty()) look_first(view, options.input);
+    find_recoveries(status);
+    status.has_ffmpeg = find_program("ffmpeg").has_value();
+    status.recent = preferences.recent;
 }
 
-void Session::navigate(const ViewportInput& input, double now) {
-    SessionState& state = *state_;
-    if (state.request.width <= 0) return;
-    probe(state, input.hovered ? input.mouse_px : glm::dvec2(-1.0));
-    if (state.view.size == SizeMode::one_to_one) return;  // the widgets move and zoom the picture
-    attempt(state.status, [&] {
-        if (state.navigator.navigate(input, state.shown(), now, state.document, state.view))
-            say(left_camera_message);
+void say(Status& status, const std::string& text, bool error) {
+    constexpr std::size_t most = 500;
+    status.message = {text, error, status.message.number + 1};
+    status.log.push_back(status.message);
+    if (status.log.size() > most) status.log.erase(status.log.begin());
+}
+
+void take_document(Session& session, Document next) {
+    session.document = std::move(next);
+    ViewState& view = session.view;
+    view.frame = first_frame(session.document.scene());
+    view.layer = 0;
+    view.view = ViewKind::camera;
+    view.solo.clear();
+    view.playing = false;
+    view.hint_open = session.fresh_demo = false;
+    session.comparison.clear_snapshots();
+    session.autosave.remove();
+    if (!session.document.file().empty()) add_recent(session.preferences, session.document.file());
+    session.status.recent = session.preferences.recent;
+}
+
+void open_file(Session& session, const fs::path& file) {
+    take_document(session, document_for(file));
+    look_first(session.view, file);
+}
+
+void find_recoveries(Status& status) {
+    status.recoveries.clear();
+    for (const Recovery& recovery : recoveries())
+        status.recoveries.push_back({recovery.autosave,
+                                     recovery.titled ? recovery.original.filename().string() : "Untitled",
+                                     recovery.time + " UTC"});
+}
+
+Document demo_document(std::span<const Assignment> assignments) {
+    const fs::path file = demo_scene_file();
+    if (file.empty())
+        throw InputError("the demo scene is not installed; name a scene, picture, mesh or splat file");
+    return Document::untitled(read_file(file), file, assignments);
+}
+
+void advance(Session& session, double now) {
+    const bool for_screenshot = session.fixed_splats > 0;
+    session.playback.advance(session.view, session.document.scene().output, now);
+    want_sets(session, now);
+    if (!for_screenshot) session.sets.show_growth(now);
+    look_at_disk(session, now);
+    if (const auto news = session.jobs.poll(session.status.job)) say(session.status, news->text, news->error);
+    session.autosave.update(session.document);
+    fill_status(session);
+}
+
+void navigate(Session& session, const ViewportInput& input, double now) {
+    if (session.request.width <= 0) return;
+    probe(session, input.hovered ? input.mouse_px : glm::dvec2(-1.0));
+    if (session.view.size == SizeMode::one_to_one) return;  // the widgets move and zoom the picture
+    attempt(session.status, [&] {
+        if (session.navigator.navigate(input, session.shown(), now, session.document, session.view))
+            say(session.status, left_camera_message);
     });
 }
 
-void Session::carry_out(Commands& commands) {
-    for (const Command& command : commands)
-        attempt(state_->status, [&] { astrosplat::carry_out(*state_, command); });
+void carry_out(Session& session, Commands& commands) {
+    for (const Command& command : commands) attempt(session.status, [&] { carry_out(session, command); });
     commands.clear();
 }
 
-/// Files dropped on the window: a scene is opened; a look is given to the chosen layer; a mesh and a picture
-/// together make one layer; on the untouched demo anything else makes a scene of its own, elsewhere a layer.
-void Session::drop(const std::vector<fs::path>& files) {
+/// A scene is opened; a look is given to the chosen layer; a mesh and a picture together make one layer; on
+/// the untouched demo anything else makes a scene of its own, elsewhere a layer.
+void drop(Session& session, const std::vector<fs::path>& files) {
     Commands commands;
     for (const fs::path& file : files) {
-        const bool fresh = state_->fresh_demo && !state_->document.edited() && commands.empty();
+        const bool fresh = session.fresh_demo && !session.document.edited() && commands.empty();
         commands.push_back({command_for(kind_of_file(file), fresh), file, {}, 0});
     }
-    state_->dropped.insert(state_->dropped.end(), commands.begin(), commands.end());
+    session.dropped.insert(session.dropped.end(), commands.begin(), commands.end());
 }
 
-Commands Session::take_dropped() { return std::exchange(state_->dropped, {}); }
-
-void Session::draw(int viewport_width, int viewport_height, double now, bool hurry) {
-    draw_viewport(*state_, {viewport_width, viewport_height}, now, hurry);
-}
-
-double Session::next_due(double now) const {
-    const SessionState& state = *state_;
-    if (!state.sets.loader().idle() || state.jobs.running()) return 0.1;
-    if (state.view.playing) return 0.0;
-    if (!state.picture.exact()) return 0.02;
-    const PictureState reached = state.picture.status().state;
-    if (reached == PictureState::refining || state.comparison.waiting()) return 0.03;
-    if (reached == PictureState::preview && state.view.settle) return state.picture.due(now);
+double next_due(const Session& session, double now) {
+    if (!session.sets.loader().idle() || session.jobs.running()) return 0.1;
+    if (session.view.playing) return 0.0;
+    if (!session.picture.exact()) return 0.02;
+    const PictureState reached = session.picture.status().state;
+    if (reached == PictureState::refining || session.comparison.waiting()) return 0.03;
+    if (reached == PictureState::preview && session.view.settle) return session.picture.due(now);
     return 1.0;  // to look at the disk and autosave
 }
 
-bool Session::loaded() const { return state_->sets.loaded(state_->document); }
-bool Session::preview_exact() const { return state_->picture.exact() && state_->sets.same_sets(); }
-std::uint64_t Session::picture_version() const { return state_->display.version(); }
-bool Session::settled() const { return state_->picture.status().state == PictureState::final; }
-void Session::say(const std::string& text, bool error) { astrosplat::say(state_->status, text, error); }
-bool Session::quitting() const { return state_->quitting; }
-std::string Session::title() const {
-    return state_->document.name() + (state_->document.edited() ? " - edited" : "") + " - astrosplat";
+bool preview_exact(const Session& session) { return session.picture.exact() && session.sets.same_sets(); }
+bool settled(const Session& session) { return session.picture.status().state == PictureState::final; }
+std::string title(const Session& session) {
+    return session.document.name() + (session.document.edited() ? " - edited" : "") + " - astrosplat";
 }
 
-void Session::prepare_screenshot(bool with_panels) {
+void prepare_screenshot(Session& session, bool with_panels) {
     constexpr std::int64_t preview_splats = 500'000;
-    state_->viewport_is_picture = !with_panels;
-    state_->fixed_splats = preview_splats;
-    state_->status.recoveries.clear();
+    session.viewport_is_picture = !with_panels;
+    session.fixed_splats = preview_splats;
+    session.status.recoveries.clear();
 }
 
-std::optional<fs::path> Session::take_screenshot_request() {
-    return std::exchange(state_->screenshot, std::nullopt);
-}
-
-void Session::save_screenshot(const fs::path& file, int width, int height,
-                              const std::vector<unsigned char>& rgba) {
-    attempt(state_->status, [&] {
+void save_screenshot(Session& session, const fs::path& file, int width, int height,
+                     const std::vector<unsigned char>& rgba) {
+    attempt(session.status, [&] {
         write_picture(file, width, height, rgba);
-        say("Saved " + file.string());
+        say(session.status, "Saved " + file.string());
     });
 }
 
-std::optional<std::string> Session::take_clipboard() {
-    return std::exchange(state_->clipboard, std::nullopt);
-}
-std::shared_ptr<const RenderedFrame> Session::final_frame() const { return state_->picture.final_frame(); }
-Image Session::shown_light() const { return state_->picture.read(); }
-std::vector<unsigned char> Session::shown_pixels() const { return state_->display.read(); }
-
-void Session::interrupt() {
-    if (state_->document.edited()) state_->autosave.write(state_->document);
+void interrupt(Session& session) {
+    if (session.document.edited()) session.autosave.write(session.document);
     throw Cancelled();  // an autosave stays behind an exception
 }
 
-void Session::close(int window_width, int window_height) {
-    Preferences& preferences = state_->preferences;
+void close(Session& session, int window_width, int window_height) {
+    Preferences& preferences = session.preferences;
     preferences.window_width = window_width;
     preferences.window_height = window_height;
-    remember_panels(preferences, state_->view);
+    remember_panels(preferences, session.view);
     save_preferences(preferences);
 }
 

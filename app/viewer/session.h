@@ -2,88 +2,111 @@
 // once per frame. The window and the screenshot both drive it. Needs a current OpenGL context.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "edit/autosave.h"
 #include "edit/commands.h"
 #include "edit/document.h"
+#include "edit/preferences.h"
 #include "edit/status.h"
 #include "edit/view_state.h"
 #include "gl/context.h"
+#include "gl/display.h"
 #include "gui/gui.h"
+#include "viewer/camera_overlay.h"
+#include "viewer/comparison.h"
+#include "viewer/disk_watch.h"
+#include "viewer/jobs.h"
+#include "viewer/navigator.h"
 #include "viewer/picture.h"
+#include "viewer/playback.h"
 #include "viewer/run_viewer.h"
+#include "viewer/set_wishes.h"
 
 namespace astrosplat {
 
-struct SessionState;
-
-class Session {
-  public:
+/// Document, view and status, and the parts that each keep a state of their own.
+struct Session {
     /// Opens options.input, or the demo. Throws InputError.
-    Session(const ViewerOptions& options, const GlInfo& gl);
-    ~Session();
+    Session(const ViewerOptions& options, const GlInfo& gl_info);
 
-    Document& document();
-    ViewState& view();
-    const Status& status() const;
+    GlInfo gl;
+    Preferences preferences;
+    Document document;
+    ViewState view;
+    Status status;
 
-    /// Loads what the scene needs and takes what jobs have to say. `now` in seconds.
-    void advance(double now);
-    /// What mouse and keys did over the viewport, after the widgets drew.
-    void navigate(const ViewportInput& input, double now);
-    /// Carries them out and empties the list; errors become the message line.
-    void carry_out(Commands& commands);
-    /// Files dropped on the window.
-    void drop(const std::vector<std::filesystem::path>& files);
-    /// What they ask for, to be shown to the widgets, which ask about unsaved changes.
-    Commands take_dropped();
-    /// Draws the viewport's content at its size in px; Status::picture_texture shows it. `hurry`: the final
-    /// picture at once.
-    void draw(int viewport_width, int viewport_height, double now, bool hurry = false);
+    SetWishes sets;
+    std::shared_ptr<PictureFiles> files = std::make_shared<PictureFiles>();
+    ViewPicture picture{files};  // A
+    Comparison comparison{files};
+    Display display;
+    CameraOverlay overlay;
+    Navigator navigator;
+    Playback playback;
+    DiskWatch disk;
+    Jobs jobs;
+    Autosave autosave{autosave_folder(), autosave_interval()};
 
-    /// Seconds until something is due by itself; 0: draw again at once.
-    double next_due(double now) const;
-    /// Grows whenever the pixels of Status::picture_texture change.
-    std::uint64_t picture_version() const;
-    /// Every set is there, or has failed.
-    bool loaded() const;
-    /// The preview is that of the present camera, look and sets.
-    bool preview_exact() const;
-    /// The picture is final.
-    bool settled() const;
-    /// For the message line.
-    void say(const std::string& text, bool error = false);
-    bool quitting() const;
-    std::string title() const;
-    /// For screenshots: the preview draws a fixed number of splats instead of one that holds a frame rate;
-    /// and where the panels are left out, the whole viewport is the picture, whatever the output's aspect.
-    void prepare_screenshot(bool with_panels);
+    bool quitting = false, fresh_demo = false;
+    bool viewport_is_picture = false;                 // for a screenshot without panels
+    std::int64_t fixed_splats = 0;                    // of the preview; 0: by the frame rate
+    std::optional<std::filesystem::path> screenshot;  // asked for: the caller reads the window and saves it
+    std::optional<std::string> clipboard;             // text for it
+    std::set<std::string> said_errors;                // of the picture and the layers, that still hold
+    Commands dropped;  // from files, to be shown to the widgets, which ask about unsaved changes
 
-    /// A screenshot that was asked for; the caller reads the window and hands the pixels back.
-    std::optional<std::filesystem::path> take_screenshot_request();
-    void save_screenshot(const std::filesystem::path& file, int width, int height,
-                         const std::vector<unsigned char>& rgba);
-    /// Text for the clipboard.
-    std::optional<std::string> take_clipboard();
+    // Of the last draw_viewport():
+    PictureRequest request;
+    glm::ivec2 viewport_px{0};
 
-    std::shared_ptr<const RenderedFrame> final_frame() const;
-    /// The light of what draw() showed, preview or not, before the view transform; linear, premultiplied.
-    Image shown_light() const;
-    /// The viewport as shown, 8-bit RGBA, top row first.
-    std::vector<unsigned char> shown_pixels() const;
-
-    /// For SIGTERM: writes an autosave, which stays, and throws Cancelled.
-    [[noreturn]] void interrupt();
-    /// A clean end: autosaves of this session are removed, preferences written.
-    void close(int window_width, int window_height);
-
-  private:
-    std::unique_ptr<SessionState> state_;
+    ShownPicture shown() const { return {request, viewport_px, status.box}; }
 };
+
+/// Loads what the scene needs and takes what jobs have to say. `now` in seconds.
+void advance(Session& session, double now);
+/// What mouse and keys did over the viewport, after the widgets drew.
+void navigate(Session& session, const ViewportInput& input, double now);
+/// Carries them out and empties the list; errors become the message line.
+void carry_out(Session& session, Commands& commands);
+/// Files dropped on the window.
+void drop(Session& session, const std::vector<std::filesystem::path>& files);
+
+/// Seconds until something is due by itself; 0: draw again at once.
+double next_due(const Session& session, double now);
+/// The preview is that of the present camera, look and sets.
+bool preview_exact(const Session& session);
+/// The picture is final.
+bool settled(const Session& session);
+std::string title(const Session& session);
+
+/// For the message line and the log.
+void say(Status& status, const std::string& text, bool error = false);
+/// Another document in place of the one that is open.
+void take_document(Session& session, Document next);
+/// A scene, or anything that becomes one. Throws InputError.
+void open_file(Session& session, const std::filesystem::path& file);
+/// Fills Status::recoveries.
+void find_recoveries(Status& status);
+/// The demo as an untitled scene. Throws InputError where it is not installed.
+Document demo_document(std::span<const Assignment> assignments = {});
+
+/// For screenshots: the preview draws a fixed number of splats instead of one that holds a frame rate; and
+/// where the panels are left out, the whole viewport is the picture, whatever the output's aspect.
+void prepare_screenshot(Session& session, bool with_panels);
+void save_screenshot(Session& session, const std::filesystem::path& file, int width, int height,
+                     const std::vector<unsigned char>& rgba);
+
+/// For SIGTERM: writes an autosave, which stays, and throws Cancelled.
+[[noreturn]] void interrupt(Session& session);
+/// A clean end: autosaves of this session are removed, preferences written.
+void close(Session& session, int window_width, int window_height);
 
 }  // namespace astrosplat

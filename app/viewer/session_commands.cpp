@@ -15,7 +15,7 @@ namespace astrosplat {
 namespace {
 
 using Kind = Command::Kind;
-using State = SessionState;
+using State = Session;
 
 /// The layer of an index, or the last; null without layers.
 const LayerParams* layer_at(const State& s, std::size_t index) {
@@ -201,8 +201,8 @@ static_assert(std::size(entries) == static_cast<std::size_t>(Kind::add_move) + 1
 
 }  // namespace
 
-void carry_out(SessionState& state, const Command& command) {
-    std::ranges::find(entries, command.kind, &Entry::kind)->function(state, command);
+void carry_out(Session& session, const Command& command) {
+    std::ranges::find(entries, command.kind, &Entry::kind)->function(session, command);
 }
 
 }  // namespace astrosplat

@@ -62,29 +62,29 @@ Region visible_part(const Rect& place, int width, int height, int viewport_width
 }
 
 /// Size in px of the whole picture.
-glm::ivec2 picture_size(const SessionState& state, const OutputParams& output) {
+glm::ivec2 picture_size(const Session& session, const OutputParams& output) {
     const glm::dvec2 output_px(static_cast<double>(output.width), static_cast<double>(output.height));
-    if (state.view.size == SizeMode::one_to_one) return output_px;
-    if (state.view.view != ViewKind::camera || state.viewport_is_picture) return state.viewport_px;
+    if (session.view.size == SizeMode::one_to_one) return output_px;
+    if (session.view.view != ViewKind::camera || session.viewport_is_picture) return session.viewport_px;
     const double aspect = output_px.x / output_px.y;
-    const double height = std::min<double>(state.viewport_px.y, state.viewport_px.x / aspect);
+    const double height = std::min<double>(session.viewport_px.y, session.viewport_px.x / aspect);
     return {std::max(1, static_cast<int>(std::lround(height * aspect))),
             std::max(1, static_cast<int>(std::lround(height)))};
 }
 
-PictureRequest make_request(const SessionState& state, Scene now) {
+PictureRequest make_request(const Session& session, Scene now) {
     PictureRequest made;
-    made.files = state.disk.changes();
+    made.files = session.disk.changes();
     for (const LayerParams& layer : now.layers) {
-        made.layers.push_back(state.sets.loader().layer(layer.name));
+        made.layers.push_back(session.sets.loader().layer(layer.name));
         if (layer.visible && made.layers.back())
             made.box.add(world_bounds(made.layers.back()->box, render_layer(layer)));
     }
-    const glm::ivec2 size = picture_size(state, now.output);
+    const glm::ivec2 size = picture_size(session, now.output);
     made.width = size.x;
     made.height = size.y;
     const double aspect = static_cast<double>(made.width) / static_cast<double>(made.height);
-    now.camera = view_camera(now, state.view, made.box, aspect);
+    now.camera = view_camera(now, session.view, made.box, aspect);
     forget_what_is_not_seen(now);
     now.output.width = made.width;
     now.output.height = made.height;
@@ -102,26 +102,26 @@ Rect crop_to_viewport(PictureRequest& request, const Rect& whole, glm::ivec2 vie
             scale * static_cast<float>(part.width), scale * static_cast<float>(part.height)};
 }
 
-PreviewChoice preview_choice(const SessionState& state) {
+PreviewChoice preview_choice(const Session& session) {
     PreviewChoice choice;
-    choice.opengl = draws_by_opengl(state);
-    choice.share = state.view.preview_share;
-    choice.splats = state.fixed_splats;
+    choice.opengl = draws_by_opengl(session);
+    choice.share = session.view.preview_share;
+    choice.splats = session.fixed_splats;
     return choice;
 }
 
 /// Where A and what it is compared with are shown: `place` holds the picture's part, `whole` all of it.
-DisplaySettings display_settings(const SessionState& state, const OutputParams& output, const Rect& place,
+DisplaySettings display_settings(const Session& session, const OutputParams& output, const Rect& place,
                                  const Rect& whole) {
     DisplaySettings shown;
-    shown.view = display_view(state.view.display, output.view);
-    shown.exposure = static_cast<float>(output.exposure) + state.view.inspect_exposure;
-    shown.a = state.picture.texture();
+    shown.view = display_view(session.view.display, output.view);
+    shown.exposure = static_cast<float>(output.exposure) + session.view.inspect_exposure;
+    shown.a = session.picture.texture();
     shown.x = place.x;
     shown.y = place.y;
     shown.width = place.width;
     shown.height = place.height;
-    shown.wipe = (whole.x + whole.width * state.view.wipe - place.x) / place.width;
+    shown.wipe = (whole.x + whole.width * session.view.wipe - place.x) / place.width;
     return shown;
 }
 
@@ -134,50 +134,51 @@ Scene evaluated(const Scene& scene, const ViewState& view) {
     return now;
 }
 
-bool draws_by_opengl(const SessionState& state) {
-    return state.view.engine == PreviewEngine::opengl ||
-           (state.view.engine == PreviewEngine::automatic && !state.gl.software);
+bool draws_by_opengl(const Session& session) {
+    return session.view.engine == PreviewEngine::opengl ||
+           (session.view.engine == PreviewEngine::automatic && !session.gl.software);
 }
 
-void draw_viewport(SessionState& state, glm::ivec2 viewport_px, double now, bool hurry) {
-    state.viewport_px = glm::max(viewport_px, glm::ivec2(1));
-    const glm::vec2 port_px(state.viewport_px);
-    state.status.viewport_aspect = static_cast<double>(port_px.x) / static_cast<double>(port_px.y);
-    const Scene scene = evaluated(state.document.scene(), state.view);
-    const bool new_sets = state.sets.new_sets();
-    state.request = make_request(state, scene);
-    keep_free_camera(state.view, state.shown());
-    const Rect whole =
-        place_picture(state.view, {0, 0, port_px.x, port_px.y}, state.request.width, state.request.height);
-    const bool from_outside = state.view.view != ViewKind::camera && state.view.camera_path;
-    state.status.overlay_lines.clear();
+void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry) {
+    session.viewport_px = glm::max(viewport_px, glm::ivec2(1));
+    const glm::vec2 port_px(session.viewport_px);
+    session.status.viewport_aspect = static_cast<double>(port_px.x) / static_cast<double>(port_px.y);
+    const Scene scene = evaluated(session.document.scene(), session.view);
+    const bool new_sets = session.sets.new_sets();
+    session.request = make_request(session, scene);
+    keep_free_camera(session.view, session.shown());
+    const Rect whole = place_picture(session.view, {0, 0, port_px.x, port_px.y}, session.request.width,
+                                     session.request.height);
+    const bool from_outside = session.view.view != ViewKind::camera && session.view.camera_path;
+    session.status.overlay_lines.clear();
     if (from_outside)
-        state.status.overlay_lines =
-            state.overlay.lines(state.document.scene(), scene, state.status.box, state.request, whole);
-    const bool one_to_one = state.view.size == SizeMode::one_to_one;
-    const Rect place = one_to_one ? crop_to_viewport(state.request, whole, state.viewport_px) : whole;
+        session.status.overlay_lines = session.overlay.lines(session.document.scene(), scene,
+                                                             session.status.box, session.request, whole);
+    const bool one_to_one = session.view.size == SizeMode::one_to_one;
+    const Rect place = one_to_one ? crop_to_viewport(session.request, whole, session.viewport_px) : whole;
 
-    const PreviewChoice choice = preview_choice(state);
-    const bool may_settle = state.view.settle && !state.view.playing && state.sets.loader().sets_there();
+    const PreviewChoice choice = preview_choice(session);
+    const bool may_settle =
+        session.view.settle && !session.view.playing && session.sets.loader().sets_there();
     const double start = thread_seconds();
-    state.picture.show(state.request, choice, may_settle, now, hurry);
-    if (new_sets) state.sets.drew_new_sets(thread_seconds() - start);
-    const PictureState reached = state.picture.status().state;
-    state.sets.loader().hold(reached == PictureState::refining);
+    session.picture.show(session.request, choice, may_settle, now, hurry);
+    if (new_sets) session.sets.drew_new_sets(thread_seconds() - start);
+    const PictureState reached = session.picture.status().state;
+    session.sets.loader().hold(reached == PictureState::refining);
 
-    DisplaySettings shown = display_settings(state, scene.output, place, whole);
+    DisplaySettings shown = display_settings(session, scene.output, place, whole);
     // A's final picture comes first; B's follows it.
     const bool a_is_done = reached == PictureState::final || reached == PictureState::failed;
     const auto request_for = [&](const Scene& other) {
-        PictureRequest wanted = make_request(state, evaluated(other, state.view));
-        wanted.region = state.request.region;
+        PictureRequest wanted = make_request(session, evaluated(other, session.view));
+        wanted.region = session.request.region;
         return wanted;
     };
-    state.comparison.show(state.document.scene(), state.view,
-                          {request_for, choice, may_settle && a_is_done, now}, shown);
-    shown.content = 1 + state.picture.version() + state.comparison.version();
-    state.status.picture_texture =
-        to_handle(state.display.draw(shown, state.viewport_px.x, state.viewport_px.y));
+    session.comparison.show(session.document.scene(), session.view,
+                            {request_for, choice, may_settle && a_is_done, now}, shown);
+    shown.content = 1 + session.picture.version() + session.comparison.version();
+    session.status.picture_texture =
+        to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));
 }
 
 }  // namespace astrosplat

@@ -2,7 +2,7 @@
 // are placed in the viewport, with lines of the camera over them.
 #pragma once
 
-#include "viewer/session_state.h"
+#include "viewer/session.h"
 
 namespace astrosplat {
 
@@ -10,10 +10,10 @@ namespace astrosplat {
 Scene evaluated(const Scene& scene, const ViewState& view);
 
 /// The preview is drawn by OpenGL rather than by the processor.
-bool draws_by_opengl(const SessionState& state);
+bool draws_by_opengl(const Session& session);
 
 /// Draws the viewport's content at its size in px into Status::picture_texture. `now` in seconds; `hurry`:
 /// the final picture at once.
-void draw_viewport(SessionState& state, glm::ivec2 viewport_px, double now, bool hurry);
+void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry = false);
 
 }  // namespace astrosplat

@@ -24,6 +24,7 @@
 #include "scene/scene.h"
 #include "support/temp_folder.h"
 #include "viewer/session.h"
+#include "viewer/session_picture.h"
 #include "viewer/widget_target.h"
 
 namespace astrosplat::bench {
@@ -90,7 +91,7 @@ class Viewer {
   public:
     Viewer(const ViewerOptions& options, const GlInfo& gl, int width, int height, bool panels)
         : session_(options, gl), width_(width), height_(height) {
-        session_.view().hint_open = false;
+        session_.view.hint_open = false;
         if (panels) widgets_ = std::make_unique<WidgetTarget>(width, height);
         if (panels) gui_ = std::make_unique<Gui>();
     }
@@ -100,18 +101,19 @@ class Viewer {
     /// One turn of the loop, until the pixels are there.
     void frame(bool hurry = false) {
         const double now = seconds_now();
-        session_.advance(now);
+        advance(session_, now);
         if (widgets_) {
             widgets_->begin();
             Commands commands;
-            gui_->draw(session_.document(), session_.view(), session_.status(), commands);
+            gui_->draw(session_.document, session_.view, session_.status, commands);
             const Layout layout =
-                make_layout(session_.view(), static_cast<float>(width_), static_cast<float>(height_), 1.0f);
-            session_.draw(static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height),
+                make_layout(session_.view, static_cast<float>(width_), static_cast<float>(height_), 1.0f);
+            draw_viewport(session_,
+                          {static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height)},
                           now, hurry);
             widgets_->end();
         } else {
-            session_.draw(width_, height_, now, hurry);
+            draw_viewport(session_, {width_, height_}, now, hurry);
         }
         glFinish();
     }
@@ -120,12 +122,12 @@ class Viewer {
         for (;;) {
             frame();
             if (done()) return;
-            std::this_thread::sleep_for(std::chrono::duration<double>(session_.next_due(seconds_now())));
+            std::this_thread::sleep_for(std::chrono::duration<double>(next_due(session_, seconds_now())));
         }
     }
     void settle() {
-        session_.view().settle = true;
-        run_until([&] { return session_.settled(); });
+        session_.view.settle = true;
+        run_until([&] { return settled(session_); });
     }
     void orbit_a_little() {
         ViewportInput input;
@@ -134,7 +136,7 @@ class Viewer {
         input.drag_begins = !orbiting_;
         input.delta_px = {5.0, 0.5};
         orbiting_ = true;
-        session_.navigate(input, seconds_now());
+        navigate(session_, input, seconds_now());
     }
     Times orbit(int frames) {
         Times times;
@@ -161,12 +163,14 @@ std::string shown_of(const PictureStatus& picture) {
 }
 
 void measure_start(Viewer& viewer, double started, double processor_started) {
-    viewer.session().view().settle = false;
-    viewer.run_until([&] { return viewer.session().status().picture.shown > 0; });
+    viewer.session().view.settle = false;
+    viewer.run_until([&] { return viewer.session().status.picture.shown > 0; });
     viewer.frame();
     print_row("start to first picture", "<= 1.5 s", fmt::format("{:.2f} s", seconds_now() - started),
               fmt::format("processor {:.2f} s", processor_seconds() - processor_started));
-    viewer.run_until([&] { return viewer.session().loaded() && viewer.session().preview_exact(); });
+    viewer.run_until([&] {
+        return viewer.session().sets.loaded(viewer.session().document) && preview_exact(viewer.session());
+    });
     print_row("start to all layers and environment", "", fmt::format("{:.2f} s", seconds_now() - started),
               fmt::format("processor {:.2f} s", processor_seconds() - processor_started));
 }
@@ -177,16 +181,15 @@ void measure_settling(Viewer& viewer, const std::string& what) {
     const double touched = seconds_now(), processor = processor_seconds();
     double first = 0.0;
     std::vector<unsigned char> before;
-    session.view().settle = true;
+    session.view.settle = true;
     viewer.run_until([&] {
-        if (first == 0.0 && session.status().picture.state != PictureState::loading) {
-            std::vector<unsigned char> pixels = session.shown_pixels();
-            const bool refining =
-                session.status().picture.state == PictureState::refining || session.settled();
+        if (first == 0.0 && session.status.picture.state != PictureState::loading) {
+            std::vector<unsigned char> pixels = session.display.read();
+            const bool refining = session.status.picture.state == PictureState::refining || settled(session);
             if (refining && pixels != before) first = seconds_now();
             before = std::move(pixels);
         }
-        return session.settled();
+        return settled(session);
     });
     print_row("settled: " + what, "first tiles <= 0.5 s, all <= 2 s",
               fmt::format("{:.2f} s, {:.2f} s", first - touched, seconds_now() - touched),
@@ -199,7 +202,7 @@ Times drag_slider(Viewer& viewer, std::size_t first, std::size_t last) {
     Times times;
     for (int i = 0; i < samples; ++i)
         times.measure([&] {
-            viewer.session().document().edit(
+            viewer.session().document.edit(
                 "Drag",
                 [&](Scene& scene) {
                     for (std::size_t k = first; k < last; ++k)
@@ -212,7 +215,7 @@ Times drag_slider(Viewer& viewer, std::size_t first, std::size_t last) {
 }
 
 void measure_sliders(Viewer& viewer) {
-    const Scene scene = viewer.session().document().scene();
+    const Scene scene = viewer.session().document.scene();
     for (std::size_t i = 0; i < scene.layers.size(); ++i)
         print_wait("slider of layer " + scene.layers[i].name, "<= 80 ms", drag_slider(viewer, i, i + 1));
     print_wait("slider of all layers at once", "<= 80 ms", drag_slider(viewer, 0, scene.layers.size()));
@@ -220,10 +223,10 @@ void measure_sliders(Viewer& viewer) {
 
 void measure_scrubbing(Viewer& viewer) {
     Times times;
-    viewer.session().view().view = ViewKind::camera;
+    viewer.session().view.view = ViewKind::camera;
     for (int i = 0; i < samples; ++i)
         times.measure([&] {
-            viewer.session().view().frame = 1.0 + 7.0 * i;
+            viewer.session().view.frame = 1.0 + 7.0 * i;
             viewer.frame();
         });
     print_wait("scrub to another frame", "<= 80 ms", times);
@@ -234,12 +237,12 @@ void measure_cancelling(Viewer& viewer) {
     Times times;
     Session& session = viewer.session();
     for (int i = 0; i < samples; ++i) {
-        session.view().settle = true;
+        session.view.settle = true;
         viewer.orbit_a_little();
         viewer.frame();
-        while (session.status().picture.state != PictureState::refining) {
+        while (session.status.picture.state != PictureState::refining) {
             viewer.frame(true);
-            session.advance(seconds_now());
+            advance(session, seconds_now());
         }
         std::this_thread::sleep_for(std::chrono::milliseconds(20 + 13 * i));
         times.measure([&] {
@@ -247,7 +250,7 @@ void measure_cancelling(Viewer& viewer) {
             viewer.frame();
         });
     }
-    session.view().settle = false;
+    session.view.settle = false;
     print_wait("touched while refining: new preview", "<= 80 ms", times);
 }
 
@@ -269,13 +272,13 @@ struct Parts {
 };
 
 void measure_viewport(Viewer& viewer, const Parts& wanted) {
-    ViewState& view = viewer.session().view();
+    ViewState& view = viewer.session().view;
     if (wanted("settle")) measure_settling(viewer, "after the start");
     view.settle = false;
     viewer.orbit(warm_frames);
     if (wanted("orbit"))
         print_rate("orbit, 960x540", ">= 24 frames/s, never below 12", viewer.orbit(orbit_frames),
-                   shown_of(viewer.session().status().picture));
+                   shown_of(viewer.session().status.picture));
     if (wanted("slider")) measure_sliders(viewer);
     if (wanted("scrub")) measure_scrubbing(viewer);
     if (!wanted("settle")) return;
@@ -288,12 +291,14 @@ void measure_viewport(Viewer& viewer, const Parts& wanted) {
 }
 
 void measure_window(Viewer& viewer, const Parts& wanted) {
-    viewer.session().view().settle = false;
-    viewer.run_until([&] { return viewer.session().loaded() && viewer.session().preview_exact(); });
+    viewer.session().view.settle = false;
+    viewer.run_until([&] {
+        return viewer.session().sets.loaded(viewer.session().document) && preview_exact(viewer.session());
+    });
     viewer.orbit(warm_frames);
     if (wanted("window"))
         print_rate("orbit, window of 1600x900 with panels", "", viewer.orbit(orbit_frames),
-                   shown_of(viewer.session().status().picture));
+                   shown_of(viewer.session().status.picture));
     viewer.settle();
     Times redraw;
     for (int i = 0; i < samples; ++i) redraw.measure([&] { viewer.frame(); });

@@ -1,0 +1,91 @@
+#include "viewer/picture_files.h"
+
+#include <algorithm>
+
+#include "source/texture.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+
+const Image& PictureFiles::map(const fs::path& file) {
+    std::unique_ptr<Image>& image = maps_[file];
+    if (!image) image = std::make_unique<Image>(load_raw_image(file));
+    return *image;
+}
+
+std::shared_ptr<const Environment> PictureFiles::environment(const EnvironmentParams& params) {
+    constexpr std::size_t most_skies = 3;
+    const bool seen = has_environment(params) && params.visible;
+    const Files files{params.image, params.cube};
+    bool is_new = false;
+    {
+        const auto held = worker_.lock();
+        wanted_ = seen ? std::optional(files) : std::nullopt;
+        is_new = seen && !skies_.count(files);
+        if (is_new && skies_.size() >= most_skies)
+            std::erase_if(skies_, [](const auto& sky) { return sky.second.rests(); });
+        if (seen && !is_new) {
+            const Sky& sky = skies_[files];
+            if (sky.error) std::rethrow_exception(sky.error);
+            if (!sky.loaded) return nullptr;
+            Environment environment = *sky.loaded;
+            set_environment_params(environment, params);
+            return std::make_shared<const Environment>(std::move(environment));
+        }
+        if (is_new) skies_[files];
+    }
+    if (is_new) worker_.wake();
+    return nullptr;
+}
+
+bool PictureFiles::loading() const {
+    const auto held = worker_.lock();
+    const auto sky = wanted_ ? skies_.find(*wanted_) : skies_.end();
+    return sky != skies_.end() && !sky->second.rests();
+}
+
+void PictureFiles::forget(const std::vector<fs::path>& files) {
+    const auto is_changed = [&](const fs::path& file) {
+        return std::find(files.begin(), files.end(), file) != files.end();
+    };
+    old_maps_.clear();
+    for (const fs::path& file : files)
+        if (auto map = maps_.extract(file)) old_maps_.push_back(std::move(map.mapped()));
+    {
+        const auto held = worker_.lock();
+        for (auto& [of, sky] : skies_)
+            if (is_changed(of.first) || std::ranges::any_of(of.second, is_changed)) sky.due = true;
+    }
+    worker_.wake();
+}
+
+/// The one that is waited for first.
+Worker::Task PictureFiles::next_sky() {
+    auto next = wanted_ ? skies_.find(*wanted_) : skies_.end();
+    if (next == skies_.end() || !next->second.due)
+        next = std::ranges::find_if(skies_, [](const auto& sky) { return sky.second.due; });
+    if (next == skies_.end()) return {};
+    next->second.due = false;
+    next->second.loading = true;
+    return [this, files = next->first] { load(files); };
+}
+
+void PictureFiles::load(const Files& files) {
+    EnvironmentParams params;
+    params.image = files.first;
+    params.cube = files.second;
+    std::optional<Environment> loaded;
+    std::exception_ptr error;
+    try {
+        loaded = load_environment(params);
+    } catch (...) {
+        error = std::current_exception();
+    }
+    const auto held = worker_.lock();
+    Sky& sky = skies_[files];  // which stays while it is loading
+    sky.loaded = std::move(loaded);
+    sky.error = error;
+    sky.loading = false;
+}
+
+}  // namespace astrosplat
