@@ -52,11 +52,21 @@ fs::path make_job_folder() {
 }  // namespace
 
 void Jobs::start(const Command& command, const Document& document, double frame) {
+    const fs::path folder = make_job_folder();
+    try {
+        start_in(folder, command, document, frame);
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove_all(folder, ignored);
+        throw;
+    }
+}
+
+void Jobs::start_in(const fs::path& folder, const Command& command, const Document& document, double frame) {
     using Kind = Command::Kind;
     const OutputParams& output = document.scene().output;
     std::vector<std::string> arguments = {"--overwrite"};
     if (!cache_.folder.empty()) arguments.insert(arguments.end(), {"--cache", cache_.folder.string()});
-    const fs::path folder = make_job_folder();
     std::vector<ProcessStep> afterwards;
     auto frames = static_cast<std::int64_t>(parse_frames(output.frames, "output.frames").size());
     fs::path target = command.path;

@@ -32,6 +32,9 @@ class Jobs {
     std::optional<News> poll(JobStatus& status);
 
   private:
+    void start_in(const std::filesystem::path& folder, const Command& command, const Document& document,
+                  double frame);
+
     SetCache cache_;
     RenderJob job_;
     std::filesystem::path target_;  // as it is told to the person

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "exit_code.h"
@@ -14,6 +15,7 @@
 #include "output/write_picture.h"
 #include "viewer/clock.h"
 #include "viewer/session.h"
+#include "viewer/session_picture.h"
 #include "viewer/widget_target.h"
 
 namespace astrosplat {
@@ -21,16 +23,17 @@ namespace {
 
 /// Advances until the sets are there and the picture is what was asked for.
 template <class DrawFrame>
-void wait_for_picture(Session& session, bool settled, const DrawFrame& draw_frame) {
+void wait_for_picture(Session& session, bool final, const DrawFrame& draw_frame) {
     for (;;) {
         const double now = seconds_now();
-        session.advance(now);
+        advance(session, now);
         draw_frame(now);
-        if (session.status().picture.state == PictureState::failed)
-            throw InputError(session.status().picture.error);
-        for (const LayerStatus& layer : session.status().layers)
+        if (session.status.picture.state == PictureState::failed)
+            throw InputError(session.status.picture.error);
+        for (const LayerStatus& layer : session.status.layers)
             if (!layer.error.empty()) throw InputError(layer.error);
-        if (session.loaded() && (settled ? session.settled() : session.preview_exact())) return;
+        if (session.sets.loaded(session.document) && (final ? settled(session) : preview_exact(session)))
+            return;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
 }
@@ -57,32 +60,33 @@ double parse_frame(const std::string& text) {
 
 void write_exr(const ScreenshotOptions& options, const Size& size, Session& session) {
     RenderedFrame preview;
-    OutputParams output = session.document().scene().output;
+    OutputParams output = session.document.scene().output;
     if (!options.settled) {
-        preview.beauty = session.shown_light();
+        preview.beauty = session.picture.read();
         output.aovs.clear();
     }
-    const std::shared_ptr<const RenderedFrame> settled = options.settled ? session.final_frame() : nullptr;
-    const RenderedFrame& frame = settled ? *settled : preview;
+    const auto final = options.settled ? session.picture.final_frame() : nullptr;
+    const RenderedFrame& frame = final ? *final : preview;
     output.path = options.output.string();
     output.depth = OutputParams::Depth::float32;
     output.compression = OutputParams::Compression::automatic;
     output.view = OutputParams::View::automatic;
     output.alpha = OutputParams::Alpha::automatic;
     FrameMetadata metadata;
-    metadata.frame = static_cast<std::int64_t>(session.view().frame);
+    metadata.frame = static_cast<std::int64_t>(session.view.frame);
     metadata.fps = output.fps;
     metadata.pixel_hash = pixel_hash(frame.beauty);
-    metadata.provenance = session.document().scene().provenance;
+    metadata.provenance = session.document.scene().provenance;
     write_frame({options.output, output, size.width, size.height}, frame, metadata);
 }
 
 /// The viewport alone.
 void take_picture(const ScreenshotOptions& options, const Size& size, bool exr, Session& session) {
-    wait_for_picture(session, options.settled,
-                     [&](double now) { session.draw(size.width, size.height, now, true); });
+    wait_for_picture(session, options.settled, [&](double now) {
+        draw_viewport(session, {size.width, size.height}, now, true);
+    });
     if (exr) return write_exr(options, size, session);
-    write_picture(options.output, size.width, size.height, session.shown_pixels());
+    write_picture(options.output, size.width, size.height, session.display.read());
 }
 
 /// The window with its panels.
@@ -92,16 +96,17 @@ void take_window(const ScreenshotOptions& options, const Size& size, Session& se
     const auto draw_frame = [&](double now) {
         target.begin();
         Commands commands;
-        gui.draw(session.document(), session.view(), session.status(), commands);
-        const Layout layout = make_layout(session.view(), static_cast<float>(size.width),
-                                          static_cast<float>(size.height), 1.0f);
-        session.draw(static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height), now,
-                     true);
+        gui.draw(session.document, session.view, session.status, commands);
+        const Layout layout =
+            make_layout(session.view, static_cast<float>(size.width), static_cast<float>(size.height), 1.0f);
+        draw_viewport(session,
+                      {static_cast<int>(layout.viewport.width), static_cast<int>(layout.viewport.height)},
+                      now, true);
         target.end();
     };
     wait_for_picture(session, options.settled, draw_frame);
     for (int i = 0; i < 3; ++i) {  // until the widgets have seen the last status
-        session.advance(seconds_now());
+        advance(session, seconds_now());
         draw_frame(seconds_now());
     }
     write_picture(options.output, size.width, size.height, target.read());
@@ -109,21 +114,19 @@ void take_window(const ScreenshotOptions& options, const Size& size, Session& se
 
 void take(const ScreenshotOptions& options, const GlInfo& gl) {
     const Size size = options.size ? parse_size(*options.size) : Size{};
-    std::string ending = options.output.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-    const bool exr = ending == ".exr";
-    if (!exr && ending != ".png")
+    const FileFormat* const format = format_by_name(options.output);
+    const bool exr = format && format->id == "openexr";
+    if (!exr && !(format && format->id == "png"))
         bad_input("--screenshot", "", "a .png or .exr file", options.output.string());
     if (exr && options.ui)
         bad_input("--screenshot", "", "no --ui with an .exr file, which holds the picture's light",
                   options.output.string());
     Session session(options.scene, gl);
-    if (options.frame) session.view().frame = parse_frame(*options.frame);
-    session.view().settle = options.settled;
-    session.view().hint_open = false;
-    session.prepare_screenshot(options.ui);
-    if (options.opengl) session.view().engine = PreviewEngine::opengl;
+    if (options.frame) session.view.frame = parse_frame(*options.frame);
+    session.view.settle = options.settled;
+    session.view.hint_open = false;
+    prepare_screenshot(session, options.ui);
+    if (options.opengl) session.view.engine = PreviewEngine::opengl;
     options.ui ? take_window(options, size, session) : take_picture(options, size, exr, session);
 }
 

@@ -1,0 +1,59 @@
+// What cannot be done says why: failed pictures and layers in the message line, refused jobs by an error, and
+// nothing of them stays on the disk.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/error.h"
+#include "support/temp_folder.h"
+#include "support/variable.h"
+#include "viewer/jobs.h"
+#include "viewer/session_status.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Refusals, AFailedPictureAndLayerAreSaidOnce) {
+    Status status;
+    std::set<std::string> said;
+    status.layers.resize(2);
+    say_new_errors(status, said);
+    EXPECT_TRUE(status.log.empty());
+    status.picture.state = PictureState::failed;
+    status.picture.error = "s.toml: camera.fov: expected an angle, found 0";
+    say_new_errors(status, said);
+    ASSERT_EQ(status.log.size(), 1u);
+    EXPECT_TRUE(status.message.error);
+    EXPECT_EQ(status.message.text, status.picture.error);
+    status.layers[1].error = "a.png: expected a picture, found none";
+    say_new_errors(status, said);
+    say_new_errors(status, said);
+    ASSERT_EQ(status.log.size(), 2u);
+    EXPECT_EQ(status.message.text, status.layers[1].error);
+    status.picture.state = PictureState::preview;
+    say_new_errors(status, said);
+    status.picture.state = PictureState::failed;
+    say_new_errors(status, said);
+    EXPECT_EQ(status.log.size(), 3u) << "it has failed again";
+}
+
+TEST(Refusals, AJobThatIsRefusedLeavesNoFolder) {
+    const TempFolder folder;
+    const fs::path temporary = folder / "temporary";
+    fs::create_directory(temporary);
+    const fs::path preset = folder.file("look.toml", "astrosplat = 1\n[look]\ndensity = 0.5\n");
+    const std::string scene =
+        "astrosplat = 1\n[[layer]]\nname = \"a\"\npreset = \"look.toml\"\n"
+        "[layer.source]\nmeshes = [ { mesh = \"plane\", texture = \"a.png\" } ]\n";
+    const Document document = Document::open(folder.file("scene.toml", scene));
+    fs::remove(preset);  // without it the scene cannot be written
+    const Variable place("TMPDIR", temporary.c_str());
+    Jobs jobs{SetCache{}};
+    EXPECT_THROW(jobs.start({Command::Kind::render_range, {}, {}, 0}, document, 1.0), InputError);
+    EXPECT_TRUE(fs::is_empty(temporary));
+}
+
+}  // namespace
+}  // namespace astrosplat
