@@ -11,7 +11,7 @@ namespace astrosplat {
 
 struct Preferences {
     static constexpr std::size_t most_recent_files = 12;
-    int window_width = 1600, window_height = 900;  // px at scale 1
+    int window_width = 1600, window_height = 900;          // px at scale 1
     float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
     bool timeline_open = true;
     std::vector<std::filesystem::path> recent;  // newest first, absolute

@@ -27,8 +27,7 @@ double level_of(const Environment& environment, double spread) {
 void EnvironmentPass::Level::hold(const Environment& environment, std::size_t level) {
     const Image& first = (*environment.faces)[0][level];
     const float found = content_probe(first);
-    if (texture.name() != 0 && pixels == first.pixels.data() && probe == found)
-        return;
+    if (texture.name() != 0 && pixels == first.pixels.data() && probe == found) return;
     pixels = first.pixels.data();
     probe = found;
     glBindTexture(GL_TEXTURE_2D_ARRAY, texture.get());

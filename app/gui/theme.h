@@ -32,8 +32,8 @@ inline constexpr ImU32 fill = with_opacity(accent, 0.25f);
 inline ImVec4 color4(ImU32 c) { return ImGui::ColorConvertU32ToFloat4(c); }
 
 // Fonts that apply_theme loaded into the current context, besides the regular one of 15 px.
-ImFont* medium_font();   // 15 px, for heads
-ImFont* small_font();    // 13 px, for plots and the status bar
+ImFont* medium_font();  // 15 px, for heads
+ImFont* small_font();   // 13 px, for plots and the status bar
 
 /// Window pixels of a length given at content scale 1.
 float px(float length);
