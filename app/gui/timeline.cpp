@@ -10,13 +10,14 @@
 
 #include "gui/icons.h"
 #include "gui/theme.h"
+#include "gui/timeline_rows.h"
 #include "gui/widgets.h"
 #include "scene/describe.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr float header_height = 36, ruler_height = 22, name_width = 160, value_gutter = 56, margin = 16;
+constexpr float header_height = 36, ruler_height = 22;
 constexpr double zoom_step = 1.25;
 
 std::string seconds_text(const Scene& scene, double frame) {
@@ -36,51 +37,26 @@ void frame_entry(GuiFrame& frame) {
     if (changed) frame.view.frame = std::round(static_cast<double>(value));
 }
 
-}  // namespace
-
-double ruler_step(const TimeScale& scale, float least_px) {
-    const double px_per_frame = static_cast<double>(scale.x1 - scale.x0) / (scale.last - scale.first);
-    double step = 1.0;
-    for (int i = 0; step * px_per_frame < static_cast<double>(least_px) && i < 30; ++i)
-        step *= i % 3 == 1 ? 2.5 : 2.0;  // 1 2 5 10 20 50 ...
-    return step;
-}
-
-std::string track_label(const std::string& key, const ParameterSpec& spec) {
-    std::string group = key.substr(0, key.find('.'));
-    if (group == "layer") {
-        const std::size_t begin = key.find('.') + 1;
-        group = key.substr(begin, key.find('.', begin) - begin);
-    } else if (!group.empty()) {
-        group[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(group[0])));
-    }
-    return group + ": " + (spec.label.empty() ? key : spec.label);
-}
-
-void Timeline::refresh(const Document& document) {
+void refresh(TimelineState& t, const Document& document) {
     const FrameRange range = frame_range(document.scene());
-    if (!zoomed_ || range.first != fitted_.first || range.last != fitted_.last) {
-        fitted_ = range;
-        zoomed_ = false;
-        scale_.first = range.first;
-        scale_.last = std::max(range.last, range.first + 1.0);
+    if (!t.zoomed || range.first != t.fitted.first || range.last != t.fitted.last) {
+        t.fitted = range;
+        t.zoomed = false;
+        t.scale.first = range.first;
+        t.scale.last = std::max(range.last, range.first + 1.0);
     }
-    if (document.revision() == revision_ && !specs_.empty()) return;
-    revision_ = document.revision();
-    specs_.clear();
+    if (document.revision() == t.revision && !t.specs.empty()) return;
+    t.revision = document.revision();
+    t.specs.clear();
     if (document.scene().animation.empty()) return;
     Scene scene = document.scene();
     const Description description = describe(scene);
     for (const Track& track : scene.animation)
         if (const Parameter* parameter = find_parameter(description, track.key))
-            specs_[track.key] = parameter->spec;
+            t.specs[track.key] = parameter->spec;
 }
 
-float Timeline::names_width(const ViewState& view) const {
-    return px(name_width) + (view.graph_open ? px(value_gutter) : 0.0f);
-}
-
-void Timeline::draw_header(GuiFrame& frame, const Rect& area) {
+void draw_header(GuiFrame& frame, const Rect& area) {
     ViewState& view = frame.view;
     const Scene& scene = frame.document.scene();
     const float control = px(24), y = area.y + px(6);
@@ -113,45 +89,45 @@ void Timeline::draw_header(GuiFrame& frame, const Rect& area) {
     note_item(frame, "fold timeline");
 }
 
-void Timeline::zoom_with_wheel(const Rect& area) {
+void zoom_with_wheel(TimelineState& t, const Rect& area) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool inside =
         ImGui::IsMouseHoveringRect({area.x, area.y}, {area.x + area.width, area.y + area.height});
     if (!inside || io.MouseWheel == 0.0f) return;
-    const double middle = scale_.frame_at(io.MousePos.x);
+    const double middle = t.scale.frame_at(io.MousePos.x);
     const double factor = io.MouseWheel > 0 ? 1.0 / zoom_step : zoom_step;
-    const double least = 4.0, most = 4.0 * std::max(fitted_.last - fitted_.first, least);
-    const double span = std::clamp((scale_.last - scale_.first) * factor, least, most);
-    const double ratio = span / (scale_.last - scale_.first);
-    scale_.first = middle - (middle - scale_.first) * ratio;
-    scale_.last = scale_.first + span;
-    zoomed_ = true;
+    const double least = 4.0, most = 4.0 * std::max(t.fitted.last - t.fitted.first, least);
+    const double span = std::clamp((t.scale.last - t.scale.first) * factor, least, most);
+    const double ratio = span / (t.scale.last - t.scale.first);
+    t.scale.first = middle - (middle - t.scale.first) * ratio;
+    t.scale.last = t.scale.first + span;
+    t.zoomed = true;
 }
 
-void Timeline::draw_ruler(GuiFrame& frame, const Rect& area) {
-    ImGui::SetCursorScreenPos({scale_.x0 - px(margin), area.y});
-    ImGui::InvisibleButton("ruler", {scale_.x1 - scale_.x0 + 2 * px(margin), area.height});
+void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
+    ImGui::SetCursorScreenPos({t.scale.x0 - px(timeline_margin), area.y});
+    ImGui::InvisibleButton("ruler", {t.scale.x1 - t.scale.x0 + 2 * px(timeline_margin), area.height});
     note_item(frame, "ruler");
     if (ImGui::IsItemActivated()) {
-        drag_ = Drag::scrub;
+        t.drag = TimelineState::Drag::scrub;
         frame.view.playing = false;
     }
-    if (ImGui::IsItemActive() && drag_ == Drag::scrub)
-        frame.view.frame =
-            std::clamp(std::round(scale_.frame_at(ImGui::GetIO().MousePos.x)), fitted_.first, fitted_.last);
-    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) zoomed_ = false;
-    zoom_with_wheel({scale_.x0, area.y, scale_.x1 - scale_.x0, area.height});
+    if (ImGui::IsItemActive() && t.drag == TimelineState::Drag::scrub)
+        frame.view.frame = std::clamp(std::round(t.scale.frame_at(ImGui::GetIO().MousePos.x)), t.fitted.first,
+                                      t.fitted.last);
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) t.zoomed = false;
+    zoom_with_wheel(t, {t.scale.x0, area.y, t.scale.x1 - t.scale.x0, area.height});
 
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height}, color::window);
     ImGui::PushFont(small_font());
-    const double step = ruler_step(scale_, px(56)), small = ruler_step(scale_, px(8));
-    for (double f = std::ceil(scale_.first / small) * small; f <= scale_.last; f += small) {
-        const float x = std::floor(scale_.x_of(f)) + 0.5f;
+    const double step = ruler_step(t.scale, px(56)), small = ruler_step(t.scale, px(8));
+    for (double f = std::ceil(t.scale.first / small) * small; f <= t.scale.last; f += small) {
+        const float x = std::floor(t.scale.x_of(f)) + 0.5f;
         list->AddLine({x, area.y + area.height - px(4)}, {x, area.y + area.height}, color::hover);
     }
-    for (double f = std::ceil(scale_.first / step) * step; f <= scale_.last; f += step) {
-        const float x = std::floor(scale_.x_of(f)) + 0.5f;
+    for (double f = std::ceil(t.scale.first / step) * step; f <= t.scale.last; f += step) {
+        const float x = std::floor(t.scale.x_of(f)) + 0.5f;
         const std::string text = fmt::format("{:.0f}", f);
         list->AddLine({x, area.y + area.height - px(7)}, {x, area.y + area.height}, color::dim);
         list->AddText({x - std::floor(ImGui::CalcTextSize(text.c_str()).x * 0.5f), area.y + px(1)},
@@ -160,15 +136,9 @@ void Timeline::draw_ruler(GuiFrame& frame, const Rect& area) {
     ImGui::PopFont();
 }
 
-void Timeline::draw_playhead_line(const GuiFrame& frame, const Rect& area) {
-    const float x = std::floor(scale_.x_of(frame.view.frame)) + 0.5f;
-    if (x >= scale_.x0 - px(margin) && x <= scale_.x1 + px(margin))
-        ImGui::GetWindowDrawList()->AddLine({x, area.y}, {x, area.y + area.height}, color::accent);
-}
-
-void Timeline::draw_playhead(const GuiFrame& frame, const Rect& ruler) {
-    const float x = std::floor(scale_.x_of(frame.view.frame)) + 0.5f;
-    if (x < scale_.x0 - px(margin) || x > scale_.x1 + px(margin)) return;
+void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ruler) {
+    const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
+    if (x < t.scale.x0 - px(timeline_margin) || x > t.scale.x1 + px(timeline_margin)) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
     ImGui::PushFont(small_font());
     const std::string text = fmt::format("{:g}", std::round(frame.view.frame * 100.0) / 100.0);
@@ -181,16 +151,35 @@ void Timeline::draw_playhead(const GuiFrame& frame, const Rect& ruler) {
     ImGui::PopFont();
 }
 
-void Timeline::end_drag() {
-    if (drag_ == Drag::none || ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
-    drag_ = Drag::none;
-    before_.clear();
+void end_drag(TimelineState& t) {
+    if (t.drag == TimelineState::Drag::none || ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+    t.drag = TimelineState::Drag::none;
+    t.before.clear();
+}
+
+}  // namespace
+
+double ruler_step(const TimeScale& scale, float least_px) {
+    const double px_per_frame = static_cast<double>(scale.x1 - scale.x0) / (scale.last - scale.first);
+    double step = 1.0;
+    for (int i = 0; step * px_per_frame < static_cast<double>(least_px) && i < 30; ++i)
+        step *= i % 3 == 1 ? 2.5 : 2.0;  // 1 2 5 10 20 50 ...
+    return step;
+}
+
+std::string track_label(const std::string& key, const ParameterSpec& spec) {
+    std::string group = ParameterKey(key).layer();
+    if (group.empty() && !key.empty()) {
+        group = ParameterKey(key).parts().front();
+        group[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(group[0])));
+    }
+    return group + ": " + (spec.label.empty() ? key : spec.label);
 }
 
 void Timeline::draw(GuiFrame& frame, const Rect& area) {
     if (area.height <= 0) return;
-    refresh(frame.document);
-    end_drag();
+    refresh(state_, frame.document);
+    end_drag(state_);
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     ImGui::BeginChild("timeline", {area.width, area.height}, false,
@@ -200,12 +189,12 @@ void Timeline::draw(GuiFrame& frame, const Rect& area) {
     const Rect ruler{area.x, area.y + px(header_height), area.width, px(ruler_height)};
     const float bottom = area.y + area.height;
     if (bottom > ruler.y + ruler.height) {
-        scale_.x0 = area.x + names_width(frame.view) + px(margin);
-        scale_.x1 = std::max(area.x + area.width - px(margin) * 1.5f, scale_.x0 + 1.0f);
-        draw_ruler(frame, ruler);
+        state_.scale.x0 = area.x + names_width(frame.view) + px(timeline_margin);
+        state_.scale.x1 = std::max(area.x + area.width - px(timeline_margin) * 1.5f, state_.scale.x0 + 1.0f);
+        draw_ruler(state_, frame, ruler);
         const Rect rows{area.x, ruler.y + ruler.height, area.width, bottom - ruler.y - ruler.height};
-        draw_rows(frame, rows);
-        draw_playhead(frame, ruler);
+        draw_rows(state_, frame, rows);
+        draw_playhead(state_, frame, ruler);
     }
     ImGui::EndChild();
 }

@@ -1,16 +1,17 @@
 // What is done to the selected keys at once: their interpolation, the ends of their tracks, removing them.
+#include "gui/timeline_menu.h"
+
 #include <imgui.h>
 
 #include "edit/keys.h"
 #include "gui/theme.h"
-#include "gui/timeline.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
 
-void Timeline::remove_selected(GuiFrame& frame) {
-    const std::vector<KeyPlace> places = std::move(selected_);
-    selected_.clear();
+void remove_selected(TimelineState& t, GuiFrame& frame) {
+    const std::vector<KeyPlace> places = std::move(t.selected);
+    t.selected.clear();
     if (places.empty()) return;
     try_edit([&] {
         frame.document.edit(places.size() == 1 ? "Remove key" : "Remove keys", [&](Scene& scene) {
@@ -20,7 +21,7 @@ void Timeline::remove_selected(GuiFrame& frame) {
     });
 }
 
-void Timeline::draw_key_menu(GuiFrame& frame) {
+void draw_key_menu(TimelineState& t, GuiFrame& frame) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), px(8)));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
     const bool open = ImGui::BeginPopup("key menu");
@@ -29,7 +30,7 @@ void Timeline::draw_key_menu(GuiFrame& frame) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
     const auto on_selected = [&](const char* name,
                                  const std::function<void(Scene&, const KeyPlace&)>& change) {
-        const std::vector<KeyPlace> places = selected_;
+        const std::vector<KeyPlace> places = t.selected;
         try_edit([&] {
             frame.document.edit(name, [&](Scene& scene) {
                 for (const KeyPlace& place : places)
@@ -49,14 +50,14 @@ void Timeline::draw_key_menu(GuiFrame& frame) {
     }
     ImGui::Separator();
     const Track* track =
-        selected_.empty() ? nullptr : find_track(frame.document.scene(), selected_.front().key);
+        t.selected.empty() ? nullptr : find_track(frame.document.scene(), t.selected.front().key);
     const bool eased = track && track->ends == Ends::ease;
     if (ImGui::MenuItem("Rest at the ends", nullptr, eased))
         on_selected("Ends", [&](Scene& scene, const KeyPlace& place) {
             set_ends(scene, place.key, eased ? Ends::through : Ends::ease);
         });
     ImGui::Separator();
-    if (ImGui::MenuItem("Delete", "Del")) remove_selected(frame);
+    if (ImGui::MenuItem("Delete", "Del")) remove_selected(t, frame);
     note_item(frame, "key menu/Delete");
     if (ImGui::MenuItem("Delete all keys of the row"))
         on_selected("Remove animation",

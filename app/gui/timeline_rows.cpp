@@ -1,22 +1,25 @@
-// One row for every animated parameter, its keys as diamonds: selected by click or box, moved by dragging,
-// copied with Ctrl, removed with Delete, and a menu for the rest.
+#include "gui/timeline_rows.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "edit/keys.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/timeline.h"
+#include "gui/timeline_graph.h"
+#include "gui/timeline_menu.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr float row_height = 26, key_reach = 7;
+constexpr float row_height = 26, key_reach = 7, name_width = 160, value_gutter = 56;
 
 // Diamond: linear; disc: smooth; square: step.
 void draw_key_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation, bool selected) {
@@ -42,54 +45,51 @@ std::string value_text(const std::vector<double>& numbers) {
     return text;
 }
 
-}  // namespace
-
-bool Timeline::is_selected(const KeyPlace& place) const {
-    return std::find(selected_.begin(), selected_.end(), place) != selected_.end();
+bool is_selected(const TimelineState& t, const KeyPlace& place) {
+    return std::find(t.selected.begin(), t.selected.end(), place) != t.selected.end();
 }
 
-const Timeline::KeyPlace* Timeline::key_under_mouse(const Scene& scene, float rows_y) {
+std::optional<KeyPlace> key_under_mouse(const TimelineState& t, const Scene& scene, float rows_y) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const int row = static_cast<int>(std::floor((mouse.y - rows_y) / px(row_height)));
-    if (row < 0 || row >= static_cast<int>(scene.animation.size())) return nullptr;
+    if (row < 0 || row >= static_cast<int>(scene.animation.size())) return std::nullopt;
     const Track& track = scene.animation[static_cast<std::size_t>(row)];
     float nearest = px(key_reach);
-    bool found = false;
+    std::optional<KeyPlace> found;
     for (const auto& key : track.keys) {
-        const float distance = std::fabs(scale_.x_of(key.frame) - mouse.x);
+        const float distance = std::fabs(t.scale.x_of(key.frame) - mouse.x);
         if (distance > nearest) continue;
         nearest = distance;
-        found_ = {track.key, key.frame};
-        found = true;
+        found = KeyPlace{track.key, key.frame};
     }
-    return found ? &found_ : nullptr;
+    return found;
 }
 
-void Timeline::press_key(GuiFrame& frame, const KeyPlace& place) {
+void press_key(TimelineState& t, GuiFrame& frame, const KeyPlace& place) {
     if (ImGui::GetIO().KeyShift) {
-        if (is_selected(place))
-            std::erase(selected_, place);
+        if (is_selected(t, place))
+            std::erase(t.selected, place);
         else
-            selected_.push_back(place);
-    } else if (!is_selected(place)) {
-        selected_ = {place};
+            t.selected.push_back(place);
+    } else if (!is_selected(t, place)) {
+        t.selected = {place};
     }
     frame.view.graph_key = place.key;
-    drag_ = Drag::keys;
-    gesture_ = new_gesture();
-    before_ = frame.document.scene().animation;
-    picked_ = selected_;
-    grabbed_frame_ = scale_.frame_at(ImGui::GetIO().MousePos.x);
-    moved_ = 0.0;
+    t.drag = TimelineState::Drag::keys;
+    t.gesture = new_gesture();
+    t.before = frame.document.scene().animation;
+    t.picked = t.selected;
+    t.grabbed_frame = t.scale.frame_at(ImGui::GetIO().MousePos.x);
+    t.moved = 0.0;
 }
 
-void Timeline::drag_keys(GuiFrame& frame) {
-    const double delta = std::round(scale_.frame_at(ImGui::GetIO().MousePos.x) - grabbed_frame_);
-    if (delta == moved_) return;
-    moved_ = delta;
+void drag_keys(TimelineState& t, GuiFrame& frame) {
+    const double delta = std::round(t.scale.frame_at(ImGui::GetIO().MousePos.x) - t.grabbed_frame);
+    if (delta == t.moved) return;
+    t.moved = delta;
     const bool copies = ImGui::GetIO().KeyCtrl;
     // The leading key goes first, so that none lands on one that has still to move.
-    std::vector<KeyPlace> order = picked_;
+    std::vector<KeyPlace> order = t.picked;
     std::sort(order.begin(), order.end(), [&](const KeyPlace& a, const KeyPlace& b) {
         return delta > 0 ? a.frame > b.frame : a.frame < b.frame;
     });
@@ -97,28 +97,28 @@ void Timeline::drag_keys(GuiFrame& frame) {
         frame.document.edit(
             copies ? "Copy keys" : "Move keys",
             [&](Scene& scene) {
-                scene.animation = before_;
+                scene.animation = t.before;
                 if (delta == 0.0) return;
                 for (const KeyPlace& place : order)
                     (copies ? copy_key : move_key)(scene, place.key, place.frame, place.frame + delta);
             },
-            gesture_);
+            t.gesture);
     });
-    selected_ = picked_;
-    for (KeyPlace& place : selected_) place.frame += delta;
+    t.selected = t.picked;
+    for (KeyPlace& place : t.selected) place.frame += delta;
 }
 
-void Timeline::select_in_box(const Scene& scene, float rows_y) {
+void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const ImVec2 low{std::min(box_x_, mouse.x), std::min(box_y_, mouse.y)};
-    const ImVec2 high{std::max(box_x_, mouse.x), std::max(box_y_, mouse.y)};
-    selected_.clear();
+    const ImVec2 low{std::min(t.box_x, mouse.x), std::min(t.box_y, mouse.y)};
+    const ImVec2 high{std::max(t.box_x, mouse.x), std::max(t.box_y, mouse.y)};
+    t.selected.clear();
     for (std::size_t row = 0; row < scene.animation.size(); ++row) {
         const float y = rows_y + (static_cast<float>(row) + 0.5f) * px(row_height);
         if (y < low.y || y > high.y) continue;
         for (const auto& key : scene.animation[row].keys) {
-            const float x = scale_.x_of(key.frame);
-            if (x >= low.x && x <= high.x) selected_.push_back({scene.animation[row].key, key.frame});
+            const float x = t.scale.x_of(key.frame);
+            if (x >= low.x && x <= high.x) t.selected.push_back({scene.animation[row].key, key.frame});
         }
     }
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -126,7 +126,7 @@ void Timeline::select_in_box(const Scene& scene, float rows_y) {
     list->AddRect(low, high, color::with_opacity(color::accent, 0.6f));
 }
 
-void Timeline::draw_name(GuiFrame& frame, const Track& track, float x, float y, float width) {
+void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, float y, float width) {
     ImGui::PushID(track.key.text().c_str());
     ImGui::SetCursorScreenPos({x, y});
     if (ImGui::InvisibleButton("name", {width, px(row_height)})) frame.view.graph_key = track.key;
@@ -138,8 +138,8 @@ void Timeline::draw_name(GuiFrame& frame, const Track& track, float x, float y, 
         list->AddRectFilled(low, high, color::selection);
     else if (ImGui::IsItemHovered())
         list->AddRectFilled(low, high, color::hover);
-    const auto spec = specs_.find(track.key);
-    const std::string whole = spec == specs_.end() ? track.key.text() : track_label(track.key, spec->second);
+    const auto spec = t.specs.find(track.key);
+    const std::string whole = spec == t.specs.end() ? track.key.text() : track_label(track.key, spec->second);
     const std::string text = fitting(whole, width - px(20));
     const float text_y = y + std::floor((px(row_height) - ImGui::GetFontSize()) * 0.5f);
     list->AddText({x + px(12), text_y}, chosen ? color::text : color::dim, text.c_str());
@@ -147,44 +147,44 @@ void Timeline::draw_name(GuiFrame& frame, const Track& track, float x, float y, 
     ImGui::PopID();
 }
 
-void Timeline::draw_keys(GuiFrame& frame, const Track& track, float y) {
+void draw_keys(TimelineState& t, GuiFrame& frame, const Track& track, float y) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float middle = std::floor(y + px(row_height) * 0.5f) + 0.5f;
     if (track.keys.size() > 1)
-        list->AddLine({scale_.x_of(track.keys.front().frame), middle},
-                      {scale_.x_of(track.keys.back().frame), middle}, color::with_opacity(color::key, 0.35f),
+        list->AddLine({t.scale.x_of(track.keys.front().frame), middle},
+                      {t.scale.x_of(track.keys.back().frame), middle}, color::with_opacity(color::key, 0.35f),
                       px(2));
     for (const auto& key : track.keys) {
-        const ImVec2 at{scale_.x_of(key.frame), middle};
-        draw_key_mark(list, at, key.interpolation, is_selected({track.key, key.frame}));
+        const ImVec2 at{t.scale.x_of(key.frame), middle};
+        draw_key_mark(list, at, key.interpolation, is_selected(t, {track.key, key.frame}));
         note_item(frame, fmt::format("key {} {:g}", track.key, key.frame), {at.x, at.y});
     }
 }
 
-void Timeline::handle_rows_mouse(GuiFrame& frame, const Rect& keys) {
+void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& keys) {
     const Scene& scene = frame.document.scene();
     ImGui::SetCursorScreenPos({keys.x, keys.y});
     ImGui::InvisibleButton("keys", {std::max(keys.width, 1.0f), std::max(keys.height, 1.0f)},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
-    const KeyPlace* under = hovered ? key_under_mouse(scene, keys.y) : nullptr;
+    const std::optional<KeyPlace> under = hovered ? key_under_mouse(t, scene, keys.y) : std::nullopt;
     if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         if (under) {
-            press_key(frame, *under);
+            press_key(t, frame, *under);
         } else {
-            selected_.clear();
-            drag_ = Drag::box;
-            box_x_ = ImGui::GetIO().MousePos.x;
-            box_y_ = ImGui::GetIO().MousePos.y;
+            t.selected.clear();
+            t.drag = TimelineState::Drag::box;
+            t.box_x = ImGui::GetIO().MousePos.x;
+            t.box_y = ImGui::GetIO().MousePos.y;
         }
     }
     if (hovered && under && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
-        if (!is_selected(*under)) selected_ = {*under};
+        if (!is_selected(t, *under)) t.selected = {*under};
         ImGui::OpenPopup("key menu");
     }
-    if (drag_ == Drag::keys) drag_keys(frame);
-    if (drag_ == Drag::box) select_in_box(scene, keys.y);
-    if (under && drag_ == Drag::none) {
+    if (t.drag == TimelineState::Drag::keys) drag_keys(t, frame);
+    if (t.drag == TimelineState::Drag::box) select_in_box(t, scene, keys.y);
+    if (under && t.drag == TimelineState::Drag::none) {
         ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
         const Track* track = find_track(scene, under->key);
         for (const auto& key : track->keys)
@@ -195,7 +195,19 @@ void Timeline::handle_rows_mouse(GuiFrame& frame, const Rect& keys) {
     }
 }
 
-void Timeline::draw_rows(GuiFrame& frame, const Rect& area) {
+void draw_playhead_line(const TimelineState& t, const GuiFrame& frame, const Rect& area) {
+    const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
+    if (x >= t.scale.x0 - px(timeline_margin) && x <= t.scale.x1 + px(timeline_margin))
+        ImGui::GetWindowDrawList()->AddLine({x, area.y}, {x, area.y + area.height}, color::accent);
+}
+
+}  // namespace
+
+float names_width(const ViewState& view) {
+    return px(name_width) + (view.graph_open ? px(value_gutter) : 0.0f);
+}
+
+void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::BeginChild("rows", {area.width, area.height});
     const float names = names_width(frame.view);
@@ -208,30 +220,30 @@ void Timeline::draw_rows(GuiFrame& frame, const Rect& area) {
         row_text("Nothing moves yet. The diamond beside a value keys it at this frame; K keys the camera.",
                  px(row_height), color::dim);
     } else if (frame.view.graph_open) {
-        draw_graph(frame, {origin.x + names, area.y, area.width - names, area.height});
+        draw_graph(t, frame, {origin.x + names, area.y, area.width - names, area.height});
     } else {
         const Rect keys{origin.x + names, origin.y, area.width - names, std::max(height, area.height)};
-        handle_rows_mouse(frame, keys);
+        handle_rows_mouse(t, frame, keys);
     }
     float y = origin.y;
     for (const Track& track : tracks) {
-        draw_name(frame, track, origin.x, y, px(160));
+        draw_name(t, frame, track, origin.x, y, px(name_width));
         if (!frame.view.graph_open) {
             list->AddLine({origin.x, y + px(row_height) - 0.5f},
                           {origin.x + area.width, y + px(row_height) - 0.5f},
                           color::with_opacity(color::line, 0.6f));
             ImGui::PushClipRect({origin.x + names, area.y}, {area.x + area.width, area.y + area.height},
                                 true);
-            draw_keys(frame, track, y);
+            draw_keys(t, frame, track, y);
             ImGui::PopClipRect();
         }
         y += px(row_height);
     }
-    if (!tracks.empty()) draw_playhead_line(frame, area);
+    if (!tracks.empty()) draw_playhead_line(t, frame, area);
     const bool here = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     if (here && !ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(key_code::del, false))
-        remove_selected(frame);
-    draw_key_menu(frame);
+        remove_selected(t, frame);
+    draw_key_menu(t, frame);
     ImGui::EndChild();
 }
 

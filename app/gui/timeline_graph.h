@@ -1,0 +1,11 @@
+// The graph of one animated parameter in the timeline.
+#pragma once
+
+#include "gui/timeline_state.h"
+
+namespace astrosplat {
+
+/// Of the parameter ViewState::graph_key, else of the first one animated.
+void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area);
+
+}  // namespace astrosplat

@@ -1,0 +1,63 @@
+// What the timeline remembers from frame to frame: the frames it shows, the selected keys, the drag at hand.
+// Its parts (header and ruler, rows, graph, menu) all work on it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gui/gui_frame.h"
+
+namespace astrosplat {
+
+/// Frames along the ruler: `first` lies at x0, `last` at x1.
+struct TimeScale {
+    double first = 1.0, last = 240.0;
+    float x0 = 0.0f, x1 = 1.0f;  // px
+
+    float x_of(double frame) const {
+        return x0 + static_cast<float>((frame - first) / (last - first)) * (x1 - x0);
+    }
+    double frame_at(float x) const {
+        return first + (last - first) * static_cast<double>(x - x0) / (x1 - x0);
+    }
+};
+
+inline constexpr float timeline_margin = 16;  // px at scale 1, at both ends of the frames
+
+/// One key of a track.
+struct KeyPlace {
+    std::string key;
+    double frame = 0.0;
+    bool operator==(const KeyPlace&) const = default;
+};
+
+struct TimelineState {
+    TimeScale scale;
+    FrameRange fitted;                           // range the scale was fitted to
+    bool zoomed = false;                         // by hand: a new range does not refit
+    std::uint64_t revision = 0;                  // of specs
+    std::map<std::string, ParameterSpec> specs;  // of the tracks' parameters
+
+    std::vector<KeyPlace> selected;
+    enum class Drag { none, scrub, keys, box, value } drag = Drag::none;
+    Gesture gesture = 0;
+    std::vector<Track> before;         // animation when the drag began
+    std::vector<KeyPlace> picked;      // selection then
+    double grabbed_frame = 0.0;        // under the mouse then
+    double moved = 0.0;                // frames so far
+    float box_x = 0.0f, box_y = 0.0f;  // corner where the selecting box began
+
+    struct Graph {
+        std::string key;
+        std::uint64_t revision = 0;
+        TimeScale scale;
+        std::vector<std::vector<double>> samples;  // [component][sample], evenly from scale.x0 to scale.x1
+        double low = 0.0, high = 1.0;              // of the plot
+        double grabbed_key = 0.0;                  // frame of the dragged key
+        std::size_t component = 0;
+    };
+    Graph graph;
+};
+
+}  // namespace astrosplat
