@@ -46,7 +46,7 @@ Elevation turned(Elevation e, double turn, double raise) {
 FreeCamera scaled_about(const FreeCamera& camera, const glm::dvec3& fixed, double factor) {
     FreeCamera result = camera;
     result.pivot = fixed + (camera.pivot - fixed) * factor;
-    if (camera.orthographic) {
+    if (has_parallel_rays(camera)) {
         result.height = std::fmax(nearest, camera.height * factor);
         result.position = result.pivot + (camera.position - camera.pivot);
         return result;
@@ -86,7 +86,8 @@ FreeCamera orbit(const FreeCamera& camera, const glm::dvec2& delta_px, double vi
 }
 
 FreeCamera look_around(const FreeCamera& camera, const glm::dvec2& delta_px, double viewport_height_px) {
-    const double per_px = real::radians(camera.orthographic ? 45.0 : camera.fov_deg) / viewport_height_px;
+    const double per_px =
+        real::radians(has_parallel_rays(camera) ? 45.0 : camera.fov_deg) / viewport_height_px;
     const ViewAxes axes = view_axes(camera);
     const Elevation now = elevation_of(axes.forward, glm::normalize(camera.up), axes.up);
     FreeCamera result = camera;

@@ -16,15 +16,15 @@ CameraParams axis_view(const glm::dvec3& back, const glm::dvec3& up, const Bound
     camera.position = back;
     camera.pivot = glm::dvec3(0.0);
     camera.up = up;
-    camera.orthographic = true;
+    camera.projection = Projection::orthographic;
     return camera_params(framed(camera, box, aspect));
 }
 
 /// Field of view, height and clipping of a resolved camera that sees one unit of picture height.
 FreeCamera lens_of(const Camera& camera, const CameraParams& params) {
     FreeCamera free;
-    free.orthographic = camera.projection == Projection::orthographic;
-    if (free.orthographic)
+    free.projection = camera.projection;
+    if (has_parallel_rays(free))
         free.height = 1.0 / camera.focal_px;
     else
         free.fov_deg = 2.0 * real::degrees(real::atan(0.5 / camera.focal_px));
@@ -36,7 +36,7 @@ FreeCamera lens_of(const Camera& camera, const CameraParams& params) {
 
 /// Where the camera is and which way it looks; a free camera has no roll and no rotation.
 void set_place(CameraParams& params, const FreeCamera& camera) {
-    params.projection = camera.orthographic ? Projection::orthographic : Projection::perspective;
+    params.projection = camera.projection;
     params.position = camera.position;
     params.target = camera.pivot;
     params.up = camera.up;
@@ -45,6 +45,8 @@ void set_place(CameraParams& params, const FreeCamera& camera) {
 }
 
 }  // namespace
+
+bool has_parallel_rays(const FreeCamera& camera) { return camera.projection == Projection::orthographic; }
 
 ViewAxes view_axes(const FreeCamera& camera) {
     const Camera resolved = make_camera(camera_params(camera), 1.0, 1.0, {});
@@ -103,7 +105,7 @@ CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, do
     CameraParams params = base;
     set_place(params, camera);
     const double tan_y = real::tan(real::radians(camera.fov_deg) * 0.5);
-    if (camera.orthographic)
+    if (has_parallel_rays(camera))
         params.height = keep_or(base.height, camera.height);
     else if (base.focal_length > 0.0)
         params.focal_length = keep_or(base.focal_length, 0.5 * base.film_width / (tan_y * aspect));
@@ -112,9 +114,13 @@ CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, do
     return params;
 }
 
+double aspect_of(const OutputParams& output) {
+    return static_cast<double>(output.width) / static_cast<double>(output.height);
+}
+
 CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status& status) {
     const Scene now = scene_at(scene, view.frame);
-    const double aspect = static_cast<double>(now.output.width) / static_cast<double>(now.output.height);
+    const double aspect = aspect_of(now.output);
     CameraParams camera = now.camera;
     if (view.view != ViewKind::camera) {
         const double shape = status.viewport_aspect > 0.0 ? status.viewport_aspect : aspect;
@@ -147,7 +153,7 @@ FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect) {
     result.height = std::fmax(framing.height, 1e-9);
     result.position = framing.position;
     // From far enough outside that the near plane cuts nothing, nor dots beyond the box.
-    if (camera.orthographic)
+    if (has_parallel_rays(camera))
         result.position = framing.target - axes.forward * (2.0 * glm::length(box_to_frame(box).extent()));
     return result;
 }

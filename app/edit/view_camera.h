@@ -13,13 +13,19 @@ namespace astrosplat {
 
 /// What a view looks through at a frame. `box`: the visible layers' bounds in world space, which a scene
 /// camera without position and the front, top and side views frame. `aspect` = width / height of the picture.
-/// Front looks along -z, side along -x, top along -y with -z up, all orthographic.
+/// Front looks along -z, side along -x, top along -y with -z up, all with parallel rays.
 CameraParams view_camera(const Scene& scene, const ViewState& view, const Bounds& box, double aspect);
+
+/// Width over height of the output's frames.
+double aspect_of(const OutputParams& output);
 
 /// What is seen in the window as the scene's camera would show it, with a place of its own. A view beside the
 /// camera is as high as the viewport, or as the output's shape within it where that is the lower of the two.
 /// Throws InputError where a camera without a position has nothing to frame yet.
 CameraParams seen_camera(const Scene& scene, const ViewState& view, const Status& status);
+
+/// Nothing becomes smaller with its distance: FreeCamera::height counts instead of the field of view.
+bool has_parallel_rays(const FreeCamera& camera);
 
 CameraParams camera_params(const FreeCamera& camera);
 /// The free camera that shows what `params` shows; its pivot is the target, or for a camera given by a

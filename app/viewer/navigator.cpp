@@ -26,7 +26,7 @@ FreeCamera in_perspective(FreeCamera camera) {
     const glm::dvec3 back = glm::normalize(camera.position - camera.pivot);
     camera.position =
         camera.pivot + back * (0.5 * camera.height / real::tan(0.5 * real::radians(camera.fov_deg)));
-    camera.orthographic = false;
+    camera.projection = Projection::perspective;
     return camera;
 }
 

@@ -53,7 +53,7 @@ std::vector<FreeCamera> cameras() {
     all[3].up = {0.3, 2.0, -0.5};
     all[3].fov_deg = 20.0;
     all[4] = all[0];
-    all[4].orthographic = true;
+    all[4].projection = Projection::orthographic;
     all[4].height = 7.0;
     return all;
 }
@@ -299,12 +299,12 @@ TEST(Views, AFreeCopyShowsTheSame) {
 
 /// From in front, the right and above at once, with the lens as it was and the whole box in the picture.
 TEST(Views, ThreeQuarterIsDiagonalAndHoldsTheBox) {
-    for (const bool orthographic : {false, true}) {
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
         FreeCamera before = cameras()[3];
-        before.orthographic = orthographic;
+        before.projection = projection;
         const FreeCamera camera = three_quarter_view(before, box, aspect);
         EXPECT_EQ(camera.fov_deg, before.fov_deg);
-        EXPECT_EQ(camera.orthographic, orthographic);
+        EXPECT_EQ(camera.projection, projection);
         expect_near(camera.pivot, box.center(), 1e-12);
         expect_near(view_axes(camera).forward, -glm::normalize(glm::dvec3(1.0, 0.8, 1.0)), 1e-12);
         EXPECT_NEAR(view_axes(camera).right.y, 0.0, 1e-12);
