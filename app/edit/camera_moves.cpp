@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "core/real.h"
 #include "edit/keys.h"
@@ -30,28 +31,6 @@ const char* const rotation_key = "camera.rotation";
 
 Value vector_value(const glm::dvec3& v) { return Value::List{v.x, v.y, v.z}; }
 
-double aspect_of(const Scene& scene) {
-    return static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height);
-}
-
-/// The quaternion x y z w of a rotation matrix (Shepperd 1978: the largest component first).
-glm::dvec4 quaternion_of(const glm::dmat3& m) {
-    const double trace = m[0][0] + m[1][1] + m[2][2];
-    if (trace > 0.0) {
-        const double s = 2.0 * std::sqrt(trace + 1.0);
-        return {(m[1][2] - m[2][1]) / s, (m[2][0] - m[0][2]) / s, (m[0][1] - m[1][0]) / s, 0.25 * s};
-    }
-    const int i = m[0][0] >= m[1][1] && m[0][0] >= m[2][2] ? 0 : m[1][1] >= m[2][2] ? 1 : 2;
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const double s = 2.0 * std::sqrt(1.0 + m[i][i] - m[j][j] - m[k][k]);
-    glm::dvec4 q;
-    q[i] = 0.25 * s;
-    q[j] = (m[i][j] + m[j][i]) / s;
-    q[k] = (m[i][k] + m[k][i]) / s;
-    q[3] = (m[j][k] - m[k][j]) / s;
-    return q;
-}
-
 void set_lens_and_up(CameraParams& params, const CameraParams& camera) {
     params.projection = camera.projection;
     params.fov = camera.fov;
@@ -67,8 +46,8 @@ void key_orientation(Scene& scene, const CameraParams& camera, double frame) {
         set_key(scene, target_key, frame, vector_value(camera.target));
         return;
     }
-    const double aspect = aspect_of(scene);
-    const glm::dvec4 q = quaternion_of(make_camera(camera, aspect, 1.0, {}).world_from_camera);
+    const glm::dquat q =
+        glm::quat_cast(make_camera(camera, aspect_of(scene.output), 1.0, {}).world_from_camera);
     set_key(scene, rotation_key, frame, Value::List{q.x, q.y, q.z, q.w});
 }
 
@@ -121,7 +100,7 @@ void add_path(Scene& scene, const Path& path, const glm::dvec3& target, double f
 /// Where the camera is at a frame; a camera without a position frames the box.
 glm::dvec3 camera_place(const Scene& scene, const Bounds& box, double frame) {
     const CameraParams camera = scene_at(scene, frame).camera;
-    return camera.position ? *camera.position : make_camera(camera, aspect_of(scene), 1.0, box).eye;
+    return camera.position ? *camera.position : make_camera(camera, aspect_of(scene.output), 1.0, box).eye;
 }
 
 Path orbit_path(const glm::dvec3& middle, const glm::dvec3& start) {
@@ -157,7 +136,7 @@ Path face_on_path(const Scene& scene, const Bounds& box, const glm::dvec3& start
     side -= axis * glm::dot(side, axis);
     if (!(glm::length(side) > 0.0)) side = glm::dvec3(1.0, 0.0, 0.0);
     side = glm::normalize(side);
-    const Framing framing = frame_box(box, scene.camera.fov, aspect_of(scene));
+    const Framing framing = frame_box(box, scene.camera.fov, aspect_of(scene.output));
     const double distance = glm::length(framing.position - framing.target);
     return [=](double share) {
         const double angle = real::radians(face_on_tilt_deg + share * (90.0 - face_on_tilt_deg));

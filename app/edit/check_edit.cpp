@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"
@@ -25,19 +26,11 @@ void check_names(const Scene& scene, const std::string& name) {
 
 /// Bytes that UTF-8 cannot have, such as file names of another encoding: a scene file cannot hold them.
 bool is_utf8(const std::string& text) {
-    std::size_t follow = 0;  // bytes of the character that are still to come
-    for (const char c : text) {
-        const unsigned byte = static_cast<unsigned char>(c);
-        const bool continues = (byte & 0xc0u) == 0x80u;
-        if (continues != (follow > 0)) return false;
-        if (continues) {
-            --follow;
-            continue;
-        }
-        if (byte >= 0xf8u || byte == 0xc0u || byte == 0xc1u) return false;
-        follow = byte >= 0xf0u ? 3 : byte >= 0xe0u ? 2 : byte >= 0xc0u ? 1 : 0;
+    try {
+        return !nlohmann::json(text).dump().empty();
+    } catch (const nlohmann::json::exception&) {
+        return false;
     }
-    return follow == 0;
 }
 
 void check_text(const Value& value, const std::string& key) {

@@ -95,16 +95,4 @@ void add_recent(Preferences& preferences, const fs::path& file) {
     if (recent.size() > Preferences::most_recent_files) recent.resize(Preferences::most_recent_files);
 }
 
-void apply_preferences(ViewState& view, const Preferences& preferences) {
-    view.panel_width = preferences.panel_width;
-    view.timeline_height = preferences.timeline_height;
-    view.timeline_open = preferences.timeline_open;
-}
-
-void remember_panels(Preferences& preferences, const ViewState& view) {
-    preferences.panel_width = view.panel_width;
-    preferences.timeline_height = view.timeline_height;
-    preferences.timeline_open = view.timeline_open;
-}
-
 }  // namespace astrosplat

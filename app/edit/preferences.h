@@ -9,12 +9,10 @@
 
 namespace astrosplat {
 
-struct Preferences {
+struct Preferences : PanelSizes {
     static constexpr std::size_t most_recent_files = 12;
-    int window_width = 1600, window_height = 900;          // px at scale 1
-    float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
-    bool timeline_open = true;
-    std::vector<std::filesystem::path> recent;  // newest first, absolute
+    int window_width = 1600, window_height = 900;  // px at scale 1
+    std::vector<std::filesystem::path> recent;     // newest first, absolute
     bool operator==(const Preferences&) const = default;
 };
 
@@ -29,9 +27,5 @@ void save_preferences(const Preferences& preferences, const std::filesystem::pat
 
 /// `file` becomes the first of the recent ones.
 void add_recent(Preferences& preferences, const std::filesystem::path& file);
-
-/// Panel sizes into a view, and out of it.
-void apply_preferences(ViewState& view, const Preferences& preferences);
-void remember_panels(Preferences& preferences, const ViewState& view);
 
 }  // namespace astrosplat

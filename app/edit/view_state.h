@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "scene/scene.h"
 
 namespace astrosplat {
 
@@ -18,19 +19,25 @@ enum class SizeMode { fit, one_to_one };  // the viewport's size, or the output'
 enum class CompareMode { a, wipe, b, reference, difference };
 enum class PanelTab { source, look, render, camera, output };
 enum class PreviewEngine { automatic, opengl, processor };
-enum class DisplayView { scene, linear, srgb, soft };  // scene: as [output] view has it
 
 /// A camera that belongs to the window, not to the scene.
 struct FreeCamera {
     glm::dvec3 position{0.0, 0.0, 10.0}, pivot{0.0}, up{0.0, 1.0, 0.0};
-    double fov_deg = 45.0;  // vertical
-    bool orthographic = false;
-    double height = 10.0;                            // scene units, orthographic
+    Projection projection = Projection::perspective;
+    double fov_deg = 45.0;                           // vertical
+    double height = 10.0;                            // scene units, where rays are parallel
     double near = 0.01, far = 0.0, near_fade = 0.0;  // as CameraParams has them
     bool operator==(const FreeCamera&) const = default;
 };
 
-struct ViewState {
+/// What the window remembers of its parts between sessions.
+struct PanelSizes {
+    float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
+    bool timeline_open = true;
+    bool operator==(const PanelSizes&) const = default;
+};
+
+struct ViewState : PanelSizes {
     std::size_t layer = 0;  // selected
     PanelTab tab = PanelTab::look;
     double frame = 1.0;
@@ -48,8 +55,8 @@ struct ViewState {
     float difference_gain = 1.0f;
     std::filesystem::path reference;  // picture to compare with
 
-    float inspect_exposure = 0.0f;  // stops; shown in amber while not 0
-    DisplayView display = DisplayView::scene;
+    float inspect_exposure = 0.0f;                               // stops; shown in amber while not 0
+    OutputParams::View display = OutputParams::View::automatic;  // as [output] view has it
     bool gate = true, safe_areas = false, camera_path = true;
     PreviewEngine engine = PreviewEngine::automatic;
     float preview_share = 0.0f;  // 0: sized to hold the frame rate; else 0..1 of every layer
@@ -57,9 +64,8 @@ struct ViewState {
 
     std::set<std::string> solo;  // names of layers; empty: all
 
-    bool panels = true;                                    // F11
-    float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
-    bool timeline_open = true, graph_open = false;
+    bool panels = true;  // F11
+    bool graph_open = false;
     std::string graph_key;    // parameter shown in the timeline's graph
     std::string hovered_key;  // of the panel's row under the mouse, set every frame; K keys it
     bool snapshots_open = false;

@@ -18,6 +18,9 @@ namespace {
 
 constexpr int view_none = 3;  // VIEW_NONE of display_fragment.glsl
 
+/// VIEW_LINEAR, VIEW_SRGB, VIEW_SOFT of display_fragment.glsl.
+int view_number(OutputParams::View view) { return static_cast<int>(view) - 1; }
+
 /// What one program of display_fragment.glsl is made for.
 struct Variant {
     int view_a = 0, view_b = 0;
@@ -132,7 +135,7 @@ struct Display::State {
         const Picture picture = picture_of(b ? s.b : s.a, s);
         bind(0, picture);
         Variant variant;
-        variant.view_a = b && s.b_is_display ? view_none : static_cast<int>(s.view);
+        variant.view_a = b && s.b_is_display ? view_none : view_number(s.view);
         variant.taps_a = picture.taps;
         variant.dither = s.dither;
         draw(r, variant, s);
@@ -142,7 +145,7 @@ struct Display::State {
         const Picture a = picture_of(s.a, s), b = picture_of(s.b, s);
         bind(0, a);
         bind(1, b);
-        const int view = static_cast<int>(s.view);
+        const int view = view_number(s.view);
         draw(r, {view, s.b_is_display ? view_none : view, a.taps, b.taps, true, false}, s);
     }
 

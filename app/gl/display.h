@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "core/image.h"
+#include "scene/scene.h"
 
 namespace astrosplat {
 
-/// How a picture is shown. `view` as in OutputParams.
+/// How a picture is shown. `view` is not automatic.
 struct DisplaySettings {
-    enum class View { linear, srgb, soft } view = View::srgb;
+    OutputParams::View view = OutputParams::View::srgb;
     float exposure = 0.0f;  // stops
     unsigned a = 0, b = 0;  // textures; b 0: only a
     enum class Mode { a, wipe, b, difference } mode = Mode::a;

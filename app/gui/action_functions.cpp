@@ -25,10 +25,6 @@ void go_to(GuiFrame& f, double frame) {
     f.view.frame = std::clamp(frame, range.first, range.last);
 }
 
-double aspect_of(const OutputParams& output) {
-    return static_cast<double>(output.width) / static_cast<double>(output.height);
-}
-
 Value value_now(const GuiFrame& f, const std::string& key) {
     Scene still = scene_at(f.document.scene(), f.view.frame);
     const Description description = describe(still);

@@ -40,7 +40,7 @@ Action repeated(const char* label, int key, void (*run)(F)) {
 }
 
 /// Turns a flag of the view on and off.
-template <bool ViewState::*flag>
+template <auto flag>
 Action flip(const char* menu, const char* label, Shortcut shortcut = {}) {
     return {.menu = menu,
             .label = label,

@@ -62,7 +62,7 @@ void CommandFlow::take_answer(GuiFrame& frame, Panel& panel, Commands& out) {
     const FileDialog::Answer answer = std::move(answer_);
     answer_ = {};
     const std::optional<Command> command = std::move(needs_file_);
-    const std::optional<FileRequest> asked_by_panel = std::move(panel_request_);
+    const std::optional<ParameterKey> asked_by_panel = std::move(panel_request_);
     needs_file_.reset();
     panel_request_.reset();
     if (!answer.file) {
@@ -70,9 +70,7 @@ void CommandFlow::take_answer(GuiFrame& frame, Panel& panel, Commands& out) {
         return;
     }
     if (asked_by_panel) {
-        try_edit([&] {
-            panel.answer(*asked_by_panel, *answer.file, frame.document, frame.view, frame.requested);
-        });
+        try_edit([&] { panel.answer(*asked_by_panel, *answer.file, frame.document, frame.view); });
     } else if (command) {
         Command complete = *command;
         complete.path = *answer.file;
@@ -96,10 +94,7 @@ void CommandFlow::draw_question(GuiFrame& frame, Commands& out) {
     if (!begin_dialog("unsaved", "Save the changes to " + frame.document.name() + before_what(kind),
                       question_.has_value(), 460, 0))
         return;
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextColored(color4(color::dim), "Changes that are not saved are lost.");
-    ImGui::PopTextWrapPos();
-    ImGui::Dummy({0, px(10)});
+    dialog_note("Changes that are not saved are lost.", 10);
     const int button = dialog_buttons(frame, "unsaved", {"Don't save", "Cancel", "Save"}, true);
     const Command command = *question_;
     if (button >= 0 || dialog_escape()) {
@@ -120,10 +115,7 @@ void CommandFlow::draw_conflict(GuiFrame& frame, Commands& out) {
     if (!begin_dialog("conflict", frame.document.name() + " was changed by another program", conflict_, 460,
                       0))
         return;
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextColored(color4(color::dim), "Saving replaces what is on disk now by the scene as it is here.");
-    ImGui::PopTextWrapPos();
-    ImGui::Dummy({0, px(10)});
+    dialog_note("Saving replaces what is on disk now by the scene as it is here.", 10);
     const int button = dialog_buttons(frame, "conflict", {"Overwrite", "Cancel", "Save as..."}, true);
     const bool cancelled = button == 1 || dialog_escape();
     if (button >= 0 || cancelled) {
@@ -141,11 +133,7 @@ void CommandFlow::draw_recovery(GuiFrame& frame, Commands& out) {
     const std::vector<RecoveryOffer>& offers = frame.status.recoveries;
     const bool open = !recovery_answered_ && !offers.empty();
     if (!begin_dialog("recovery", "The last session ended without saving", open, 520, 0)) return;
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextColored(color4(color::dim),
-                       "An autosave of what was being edited is here. Its file on disk is untouched.");
-    ImGui::PopTextWrapPos();
-    ImGui::Dummy({0, px(6)});
+    dialog_note("An autosave of what was being edited is here. Its file on disk is untouched.", 6);
     for (const RecoveryOffer& offer : offers) {
         ImGui::PushID(offer.autosave.c_str());
         row_text(fitting(offer.scene + ", " + offer.time, px(300)), px(28), color::text);
@@ -163,10 +151,10 @@ void CommandFlow::draw_recovery(GuiFrame& frame, Commands& out) {
 
 void CommandFlow::run(GuiFrame& frame, Panel& panel, Commands& out) {
     finish_save(frame, out);
-    if (const std::optional<FileRequest> wish = panel.take_request()) {
+    if (const std::optional<ParameterKey> wish = panel.take_request()) {
         needs_file_.reset();
         panel_request_ = wish;
-        dialog_.open(*query_for(*wish, frame.document));
+        dialog_.open(query_for(*wish, frame.document));
     }
     take_answer(frame, panel, out);
     Commands wishes;

@@ -33,9 +33,9 @@ class CommandFlow {
     Commands asked_;
     FileDialog dialog_;
 
-    std::optional<Command> needs_file_;         // waits for the dialog
-    std::optional<FileRequest> panel_request_;  // likewise
-    FileDialog::Answer answer_;                 // until taken
+    std::optional<Command> needs_file_;          // waits for the dialog
+    std::optional<ParameterKey> panel_request_;  // likewise
+    FileDialog::Answer answer_;                  // until taken
 
     std::optional<Command> question_;  // would lose unsaved changes
     bool conflict_ = false;            // saving would lose what another program wrote there

@@ -53,6 +53,13 @@ bool begin_dialog(const char* id, const std::string& title, bool open, float wid
 
 void end_dialog() { ImGui::EndPopup(); }
 
+void dialog_note(const char* text, float gap) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextColored(color4(color::dim), "%s", text);
+    ImGui::PopTextWrapPos();
+    ImGui::Dummy({0, px(gap)});
+}
+
 bool dialog_escape() {
     return pressed(key_code::escape) && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
 }

@@ -14,6 +14,9 @@ namespace astrosplat {
 bool begin_dialog(const char* id, const std::string& title, bool open, float width, float height);
 void end_dialog();
 
+/// A quiet line below the title, `gap` px at scale 1 above what follows.
+void dialog_note(const char* text, float gap);
+
 /// Escape was pressed in the dialog, with no text field to leave first.
 bool dialog_escape();
 

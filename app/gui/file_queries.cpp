@@ -62,18 +62,8 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
     }
 }
 
-std::optional<FileQuery> query_for(const FileRequest& request, const Document& document) {
-    switch (request.kind) {
-        case FileRequest::Kind::import:
-            return query_for(Command::Kind::import_file, document);
-        case FileRequest::Kind::save_look:
-            return query_for(Command::Kind::save_look, document);
-        case FileRequest::Kind::apply_look:
-            return query_for(Command::Kind::apply_look, document);
-        case FileRequest::Kind::parameter:
-            break;
-    }
-    return FileQuery{"File for " + request.key, false, "files", {}, folder_of_document(document), ""};
+FileQuery query_for(const ParameterKey& key, const Document& document) {
+    return {"File for " + key.text(), false, "files", {}, folder_of_document(document), ""};
 }
 
 }  // namespace astrosplat

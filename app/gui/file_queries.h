@@ -24,6 +24,7 @@ struct FileQuery {
 
 /// What to ask for where `kind` needs a path; nothing where it needs none.
 std::optional<FileQuery> query_for(Command::Kind kind, const Document& document);
-std::optional<FileQuery> query_for(const FileRequest& request, const Document& document);
+/// What to ask for as the value of a parameter.
+FileQuery query_for(const ParameterKey& key, const Document& document);
 
 }  // namespace astrosplat

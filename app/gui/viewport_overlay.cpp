@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "edit/view_camera.h"
 #include "gui/icons.h"
 #include "gui/theme.h"
 
@@ -37,9 +38,7 @@ constexpr const char* view_names[] = {"Camera", "Free view, 0 returns to the cam
 
 // The part of the picture that the output shows: as high as it, as the camera's angle is vertical.
 Rect gate_of(const Scene& scene, const Rect& picture) {
-    const float aspect = static_cast<float>(static_cast<double>(scene.output.width) /
-                                            static_cast<double>(scene.output.height));
-    const float width = std::round(picture.height * aspect);
+    const float width = std::round(picture.height * static_cast<float>(aspect_of(scene.output)));
     return {std::round(picture.x + (picture.width - width) * 0.5f), picture.y, width, picture.height};
 }
 

@@ -10,6 +10,9 @@
 
 namespace astrosplat {
 
+/// A program of this name is on the PATH.
+bool has_program(const std::string& name);
+
 class ChildProcess {
   public:
     /// Starts arguments[0] (found on the PATH) with stdout and stderr read by output().

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/clock.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "edit/preferences.h"
 #include "exit_code.h"
-#include "viewer/clock.h"
 #include "viewer/session.h"
 #include "viewer/session_picture.h"
 #include "viewer/window.h"

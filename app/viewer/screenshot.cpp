@@ -6,6 +6,7 @@
 #include <cmath>
 #include <thread>
 
+#include "core/clock.h"
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/log.h"
@@ -13,7 +14,6 @@
 #include "exit_code.h"
 #include "output/write.h"
 #include "output/write_picture.h"
-#include "viewer/clock.h"
 #include "viewer/session.h"
 #include "viewer/session_picture.h"
 #include "viewer/widget_target.h"

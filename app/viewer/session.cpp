@@ -4,12 +4,13 @@
 #include <new>
 #include <utility>
 
+#include "core/assets.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "edit/new_from_file.h"
 #include "output/write_picture.h"
-#include "viewer/programs.h"
+#include "viewer/child_process.h"
 #include "viewer/session_commands.h"
 #include "viewer/session_status.h"
 
@@ -95,11 +96,11 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       jobs(options.cache),
       fresh_demo(options.input.empty()) {
     view.hint_open = fresh_demo;
-    apply_preferences(view, preferences);
+    static_cast<PanelSizes&>(view) = preferences;
     view.frame = first_frame(document.scene());
     if (!options.input.empty()) look_first(view, options.input);
     find_recoveries(status);
-    status.has_ffmpeg = find_program("ffmpeg").has_value();
+    status.has_ffmpeg = has_program("ffmpeg");
     status.recent = preferences.recent;
 }
 
@@ -139,8 +140,9 @@ void find_recoveries(Status& status) {
 }
 
 Document demo_document(std::span<const Assignment> assignments) {
-    const fs::path file = demo_scene_file();
-    if (file.empty())
+    const fs::path file = assets_folder("scenes") / "whirlpool.toml";
+    std::error_code ignored;
+    if (!fs::exists(file, ignored))
         throw InputError("the demo scene is not installed; name a scene, picture, mesh or splat file");
     return Document::untitled(read_file(file), file, assignments);
 }
@@ -222,7 +224,7 @@ void close(Session& session, int window_width, int window_height) {
     Preferences& preferences = session.preferences;
     preferences.window_width = window_width;
     preferences.window_height = window_height;
-    remember_panels(preferences, session.view);
+    static_cast<PanelSizes&>(preferences) = session.view;
     save_preferences(preferences);
 }
 

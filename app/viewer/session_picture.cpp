@@ -28,19 +28,9 @@ void forget_what_is_not_seen(Scene& scene) {
     std::erase_if(output.aovs, [](const std::string& aov) { return aov != "depth"; });  // the probe shows it
 }
 
-DisplaySettings::View display_view(DisplayView chosen, OutputParams::View of_scene) {
-    switch (chosen) {
-        case DisplayView::linear:
-            return DisplaySettings::View::linear;
-        case DisplayView::srgb:
-            return DisplaySettings::View::srgb;
-        case DisplayView::soft:
-            return DisplaySettings::View::soft;
-        case DisplayView::scene:
-            break;
-    }
-    if (of_scene == OutputParams::View::linear) return DisplaySettings::View::linear;
-    return of_scene == OutputParams::View::soft ? DisplaySettings::View::soft : DisplaySettings::View::srgb;
+OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of_scene) {
+    const OutputParams::View view = chosen == OutputParams::View::automatic ? of_scene : chosen;
+    return view == OutputParams::View::automatic ? OutputParams::View::srgb : view;
 }
 
 /// The part of a 1:1 picture that the viewport shows; empty: all of it.

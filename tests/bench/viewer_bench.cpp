@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/clock.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
 #include "gl/preview.h"

@@ -64,8 +64,7 @@ TEST(PanelCompanions, ChoosingCurveInTheListWorks) {
 
 TEST(PanelCompanions, AThicknessMapBringsItsFirstKeys) {
     PanelDriver d(companions_scene);
-    d.panel.answer({FileRequest::Kind::parameter, look + "thickness.map"}, "/nowhere/map.png", d.document,
-                   d.view, d.commands);
+    d.panel.answer(look + "thickness.map", "/nowhere/map.png", d.document, d.view);
     const Thickness& thickness = d.document.scene().layers[0].look.thickness;
     EXPECT_EQ(thickness.map, "/nowhere/map.png");
     ASSERT_EQ(thickness.keys.size(), 3u);
@@ -81,10 +80,10 @@ TEST(PanelCompanions, SplatsAskForTheirFileFirst) {
     d.frames(2);
     d.choose("Splats");
     EXPECT_EQ(d.value("layer.dust.source.kind"), Value("mesh"));
-    const std::optional<FileRequest> request = d.panel.take_request();
+    const std::optional<ParameterKey> request = d.panel.take_request();
     ASSERT_TRUE(request);
-    EXPECT_EQ(request->key, "layer.dust.source.file");
-    d.panel.answer(*request, "/nowhere/set.ply", d.document, d.view, d.commands);
+    EXPECT_EQ(request->text(), "layer.dust.source.file");
+    d.panel.answer(*request, "/nowhere/set.ply", d.document, d.view);
     EXPECT_EQ(d.value("layer.dust.source.kind"), Value("splats"));
     d.document.undo();
     EXPECT_EQ(d.value("layer.dust.source.kind"), Value("mesh"));

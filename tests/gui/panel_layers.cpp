@@ -117,9 +117,8 @@ TEST(PanelLayers, TheMenuDuplicatesAndDeletes) {
 TEST(PanelLayers, LooksAreCopiedAndGivenToAll) {
     PanelDriver d(layers_scene);
     choose(d, 0, "Export look...");
-    const std::optional<FileRequest> request = d.panel.take_request();
-    ASSERT_TRUE(request);
-    EXPECT_EQ(request->kind, FileRequest::Kind::save_look);
+    ASSERT_EQ(d.commands.size(), 1u);
+    EXPECT_EQ(d.commands[0].kind, Command::Kind::save_look);
     choose(d, 0, "Copy look");
     choose(d, 2, "Paste look");
     EXPECT_FLOAT_EQ(d.document.scene().layers[2].render.opacity, 0.5f);
@@ -129,14 +128,9 @@ TEST(PanelLayers, LooksAreCopiedAndGivenToAll) {
     EXPECT_EQ(d.document.undo_name(), "Look of disk to all layers");
 }
 
-TEST(PanelLayers, PlusAsksForAFileAndTheAnswerImportsIt) {
+TEST(PanelLayers, PlusAsksForAFileToImport) {
     PanelDriver d(layers_scene);
     d.click({360.0f - 19.0f, 16.0f});
-    const std::optional<FileRequest> request = d.panel.take_request();
-    ASSERT_TRUE(request);
-    EXPECT_EQ(request->kind, FileRequest::Kind::import);
-    EXPECT_FALSE(d.panel.take_request());
-    d.panel.answer(*request, "/nowhere/new.obj", d.document, d.view, d.commands);
     ASSERT_EQ(d.commands.size(), 1u);
     EXPECT_EQ(d.commands[0].kind, Command::Kind::import_file);
 }
@@ -144,7 +138,7 @@ TEST(PanelLayers, PlusAsksForAFileAndTheAnswerImportsIt) {
 TEST(PanelLayers, AFileParametersAnswerIsAnEdit) {
     PanelDriver d(layers_scene);
     const std::string key = "environment.image";
-    d.panel.answer({FileRequest::Kind::parameter, key}, "/nowhere/sky.png", d.document, d.view, d.commands);
+    d.panel.answer(key, "/nowhere/sky.png", d.document, d.view);
     EXPECT_EQ(to_toml(d.value(key)), "\"/nowhere/sky.png\"");
     EXPECT_TRUE(d.commands.empty());
 }

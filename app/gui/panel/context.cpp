@@ -78,7 +78,7 @@ bool set_specially(Context& context, const Parameter& parameter, const Value& va
     }
     const bool to_file = parameter.spec.generic_key == "layer.source.kind" && value == Value("splats");
     if (!to_file || !context.layer().source.file.empty()) return false;
-    context.memory.request = FileRequest{FileRequest::Kind::parameter, context.layer_key() / "source.file"};
+    context.memory.request = context.layer_key() / "source.file";
     return true;
 }
 

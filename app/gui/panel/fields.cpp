@@ -124,8 +124,7 @@ void shape_popup(Context& context, const Row& row) {
     for (const std::string& choice : row.parameter.spec.choices)
         if (ImGui::MenuItem(choice_label(choice).c_str())) set_value(context, row.key(), choice);
     ImGui::Separator();
-    if (ImGui::MenuItem("File..."))
-        context.memory.request = FileRequest{FileRequest::Kind::parameter, row.key()};
+    if (ImGui::MenuItem("File...")) context.memory.request = row.key();
     end_popup();
 }
 
@@ -139,7 +138,7 @@ void file_field(Context& context, const Row& row) {
         if (shapes)
             ImGui::OpenPopup("shapes");
         else
-            context.memory.request = FileRequest{FileRequest::Kind::parameter, row.key()};
+            context.memory.request = row.key();
     }
     shape_popup(context, row);
 }

@@ -279,7 +279,7 @@ void list_head(Context& context, float width) {
     ImGui::SetCursorScreenPos({corner.x + width - px(margin) - px(20), corner.y + px(4)});
     if (icon_button("add", Icon::plus, {px(26), px(24)}, px(11), color::text,
                     "Add a picture, mesh or splat file"))
-        context.memory.request = FileRequest{FileRequest::Kind::import, ""};
+        context.commands.push_back({Command::Kind::import_file, {}, "", 0});
     ImGui::SetCursorScreenPos({corner.x, corner.y + px(32)});
 }
 

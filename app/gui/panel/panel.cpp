@@ -127,24 +127,19 @@ void Panel::draw(Document& document, ViewState& view, const Status& status, Comm
     forget_untouched(memory.touch);
 }
 
-std::optional<FileRequest> Panel::take_request() {
+std::optional<ParameterKey> Panel::take_request() {
     return std::exchange(state_->memory.request, std::nullopt);
 }
 
-void Panel::answer(const FileRequest& request, const std::filesystem::path& file, Document& document,
-                   const ViewState& view, Commands& commands) {
-    using Kind = FileRequest::Kind;
-    if (request.kind == Kind::import) commands.push_back({Command::Kind::import_file, file, "", 0});
-    if (request.kind == Kind::save_look) commands.push_back({Command::Kind::save_look, file, "", view.layer});
-    if (request.kind == Kind::apply_look)
-        commands.push_back({Command::Kind::apply_look, file, "", view.layer});
-    if (request.kind != Kind::parameter) return;
+void Panel::answer(const ParameterKey& key, const std::filesystem::path& file, Document& document,
+                   const ViewState& view) {
     Memory& memory = state_->memory;
     describe_current(memory, document, view.frame);
     ViewState unchanged = view;
     const Status unknown;
-    Context context{document, unchanged, unknown, commands, memory, state_->rows};
-    set_value(context, request.key, file.string());
+    Commands none;
+    Context context{document, unchanged, unknown, none, memory, state_->rows};
+    set_value(context, key, file.string());
 }
 
 void Panel::open_all() { state_->memory.all_open = true; }

@@ -1,6 +1,7 @@
 // The right side panel (VIEWER.md): layers list, tabs, one row per parameter, plots. In: the document, what
 // the person looks at, the viewer's status. Out: edits of the document and the view state, commands for the
-// viewer, and wishes for a file dialog. Everything about a parameter comes from its description. No OpenGL.
+// viewer, and wishes for a parameter's file. Everything about a parameter comes from its description. No
+// OpenGL.
 #pragma once
 
 #include <filesystem>
@@ -26,13 +27,6 @@ struct DrawnRow {
     glm::vec2 diamond{-1.0f};  // (-1, -1) where it cannot be keyed
 };
 
-/// A wish for a file dialog; give the chosen file back with Panel::answer.
-struct FileRequest {
-    enum class Kind { import, parameter, save_look, apply_look };
-    Kind kind;
-    std::string key;  // parameter: its full key
-};
-
 class Panel {
   public:
     Panel();
@@ -40,11 +34,11 @@ class Panel {
     /// Draws over the content region of the current ImGui window, between NewFrame and Render.
     void draw(Document& document, ViewState& view, const Status& status, Commands& commands);
 
-    /// What was asked for since the last call.
-    std::optional<FileRequest> take_request();
-    /// The dialog's answer: an edit of the document, or a command.
-    void answer(const FileRequest& request, const std::filesystem::path& file, Document& document,
-                const ViewState& view, Commands& commands);
+    /// The parameter that a file was asked for since the last call.
+    std::optional<ParameterKey> take_request();
+    /// The dialog's answer: an edit of the document.
+    void answer(const ParameterKey& key, const std::filesystem::path& file, Document& document,
+                const ViewState& view);
 
     /// Unfolds every section, as a person could one by one.
     void open_all();

@@ -26,6 +26,11 @@ void paste_look(Context& context) {
     give_look(context, "Paste look", *context.memory.copied, [&](std::size_t i) { return i == layer; });
 }
 
+/// The window asks for it, as it does where a menu sent the command.
+void ask_for_file(Context& context, Command::Kind kind) {
+    context.commands.push_back({kind, {}, "", context.view.layer});
+}
+
 void look_to_all(Context& context) {
     const CopiedLook copied{context.layer().look, context.layer().render};
     give_look(context, "Look of " + context.layer().name + " to all layers", copied,
@@ -37,8 +42,8 @@ void look_to_all(Context& context) {
 void look_buttons(Context& context) {
     Memory& memory = context.memory;
     const int files = button_line({"Export look...", "Apply look..."});
-    if (files == 0) memory.request = FileRequest{FileRequest::Kind::save_look, ""};
-    if (files == 1) memory.request = FileRequest{FileRequest::Kind::apply_look, ""};
+    if (files == 0) ask_for_file(context, Command::Kind::save_look);
+    if (files == 1) ask_for_file(context, Command::Kind::apply_look);
     const int looks = button_line({"Copy", "Paste", "To all layers"});
     if (looks == 0) copy_look(context);
     if (looks == 1 && memory.copied) paste_look(context);
@@ -50,8 +55,8 @@ void look_menu(Context& context) {
     if (ImGui::MenuItem("Copy look")) copy_look(context);
     if (ImGui::MenuItem("Paste look", nullptr, false, memory.copied.has_value())) paste_look(context);
     if (ImGui::MenuItem("Look to all layers")) look_to_all(context);
-    if (ImGui::MenuItem("Export look...")) memory.request = FileRequest{FileRequest::Kind::save_look, ""};
-    if (ImGui::MenuItem("Apply look...")) memory.request = FileRequest{FileRequest::Kind::apply_look, ""};
+    if (ImGui::MenuItem("Export look...")) ask_for_file(context, Command::Kind::save_look);
+    if (ImGui::MenuItem("Apply look...")) ask_for_file(context, Command::Kind::apply_look);
 }
 
 }  // namespace astrosplat::panel

@@ -99,9 +99,9 @@ TEST(Preferences, PanelsGoIntoAViewAndBack) {
     p.timeline_height = 99.0f;
     p.timeline_open = false;
     ViewState view;
-    apply_preferences(view, p);
+    static_cast<PanelSizes&>(view) = p;
     EXPECT_EQ(view.panel_width, 444.0f);
-    remember_panels(back, view);
+    static_cast<PanelSizes&>(back) = view;
     EXPECT_EQ(back, p);
 }
 
