@@ -23,7 +23,7 @@ int run_new(const NewOptions& options) {
     const std::string text = new_scene_text(options.image, options.shape, options.scene);
     refuse_to_overwrite(options.scene, options.overwrite);
     prove_writable(folder_of(options.scene));
-    write_file_atomically(options.scene, text, options.overwrite ? Existing::replace : Existing::keep);
+    write_file_atomically(options.scene, text, existing_of(options.overwrite));
     fmt::print("{}\n", printable(options.scene.string()));
     return exit_done;
 }

@@ -40,9 +40,9 @@ void check_splat_output(const std::filesystem::path& file, bool overwrite) {
     prove_writable(folder_of(file));
 }
 
-void write_and_report(const std::filesystem::path& file, const SplatSet& set, ProgressReport& report) {
-    write_splats(file, set, report.begin_step("writing"));
-    fmt::print("{}: {}\n", printable(file.string()), counted(set.size(), "splat"));
+void write_and_report(const WriteTarget& target, const SplatSet& set, ProgressReport& report) {
+    write_splats(target, set, report.begin_step("writing"));
+    fmt::print("{}: {}\n", printable(target.file.string()), counted(set.size(), "splat"));
 }
 
 }  // namespace
@@ -57,7 +57,7 @@ int run_generate(const GenerateOptions& options) {
     const SplatSet set =
         load_source(options.cache, layer.source, layer.name, report.begin_step("generating " + layer.name))
             .set;
-    write_and_report(options.output, set, report);
+    write_and_report({options.output, existing_of(options.overwrite)}, set, report);
     return exit_done;
 }
 
@@ -66,7 +66,7 @@ int run_convert(const ConvertOptions& options) {
     check_splat_output(options.output, options.overwrite);
     ProgressReport report(options.progress);
     const SplatSet set = read_splats(options.input, report.begin_step("reading"));
-    write_and_report(options.output, set, report);
+    write_and_report({options.output, existing_of(options.overwrite)}, set, report);
     return exit_done;
 }
 

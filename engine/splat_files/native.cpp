@@ -169,11 +169,11 @@ std::string table_bytes(const std::vector<BlockEntry>& table) {
 }
 
 /// The file, whose blocks are what `pack_rows` makes of their rows.
-void write_blocks(const std::filesystem::path& file, const SplatSet& set, RowOrder order,
-                  const Progress& progress, const FormatRows& pack_rows) {
+void write_blocks(const WriteTarget& target, const SplatSet& set, RowOrder order, const Progress& progress,
+                  const FormatRows& pack_rows) {
     std::vector<BlockEntry> table(block_count(static_cast<std::uint64_t>(set.size()), splats_per_block));
     write_ordered(
-        file, header_bytes(set, order), set.size(), splats_per_block, row_bytes(flags_of(set, order)),
+        target, header_bytes(set, order), set.size(), splats_per_block, row_bytes(flags_of(set, order)),
         progress,
         [&](std::int64_t begin, std::int64_t end, char* out) {
             char* const stop = pack_rows(begin, end, out);
@@ -185,12 +185,13 @@ void write_blocks(const std::filesystem::path& file, const SplatSet& set, RowOrd
 }
 
 template <class Row>
-void write_in_space(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+void write_in_space(const WriteTarget& target, const SplatSet& set, const Progress& progress) {
     const Buffer<Row> order = spatial_order<Row>(set);
-    write_blocks(file, set, RowOrder::space, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
-        const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-        return pack(set, std::span(order).subspan(first, count), out);
-    });
+    write_blocks(
+        target, set, RowOrder::space, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
+            const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+            return pack(set, std::span(order).subspan(first, count), out);
+        });
 }
 
 // ---- reading
@@ -373,18 +374,17 @@ std::int64_t native_splat_count(const std::filesystem::path& file) {
     });
 }
 
-void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress,
-                  RowOrder order) {
+void write_native(const WriteTarget& target, const SplatSet& set, const Progress& progress, RowOrder order) {
     check_consistent(set);
     assert(order == RowOrder::space || ids_ascend(set.id));
     if (order == RowOrder::id)
-        write_blocks(file, set, order, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
+        write_blocks(target, set, order, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
             return pack(set, begin, end, out);
         });
     else if (set.size() <= std::numeric_limits<std::uint32_t>::max())
-        write_in_space<std::uint32_t>(file, set, progress);
+        write_in_space<std::uint32_t>(target, set, progress);
     else
-        write_in_space<std::uint64_t>(file, set, progress);
+        write_in_space<std::uint64_t>(target, set, progress);
 }
 
 std::int64_t native_file_bytes(const SplatSet& set) {

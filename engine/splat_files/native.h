@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -46,7 +47,7 @@ std::int64_t native_splat_count(const std::filesystem::path& file);
 
 /// The same bytes for any thread count. For RowOrder::id the set must be in ascending order of id. Throws
 /// OutputError.
-void write_native(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {},
+void write_native(const WriteTarget& target, const SplatSet& set, const Progress& progress = {},
                   RowOrder order = RowOrder::space);
 
 /// Length of the file that write_native makes of a set.

@@ -77,10 +77,10 @@ class Ring {
 
 }  // namespace
 
-void write_ordered(const std::filesystem::path& file, std::string_view header, std::int64_t count,
-                   std::int64_t chunk, std::size_t row_bytes, const Progress& progress,
-                   const FormatRows& format, const Footer& footer) {
-    AtomicFile output(file);
+void write_ordered(const WriteTarget& target, std::string_view header, std::int64_t count, std::int64_t chunk,
+                   std::size_t row_bytes, const Progress& progress, const FormatRows& format,
+                   const Footer& footer) {
+    AtomicFile output(target.file, target.existing);
     output.write(header);
     const std::int64_t chunks = (count + chunk - 1) / chunk;
     const std::size_t bytes = static_cast<std::size_t>(std::min(chunk, count)) * row_bytes;

@@ -5,12 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <string_view>
 
 #include "core/progress.h"
+#include "splat_files/write_target.h"
 
 namespace astrosplat {
 
@@ -21,8 +21,8 @@ using Footer = std::function<std::string()>;
 
 /// `header`, then `count` rows in chunks of `chunk`, each row at most `row_bytes` long. Atomic: the file
 /// appears whole or not at all. Throws OutputError, Cancelled.
-void write_ordered(const std::filesystem::path& file, std::string_view header, std::int64_t count,
-                   std::int64_t chunk, std::size_t row_bytes, const Progress& progress,
-                   const FormatRows& format, const Footer& footer = {});
+void write_ordered(const WriteTarget& target, std::string_view header, std::int64_t count, std::int64_t chunk,
+                   std::size_t row_bytes, const Progress& progress, const FormatRows& format,
+                   const Footer& footer = {});
 
 }  // namespace astrosplat

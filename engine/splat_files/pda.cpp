@@ -237,10 +237,10 @@ SplatSet read_pda(const std::filesystem::path& file, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) { return read_pda_bytes(file, bytes, progress); });
 }
 
-void write_pda(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& progress) {
     check_consistent(set);
     constexpr std::int64_t rows = 16384;  // about 1 MiB of text
-    write_ordered(file, header_text(set), set.size(), rows, longest_row, progress,
+    write_ordered(target, header_text(set), set.size(), rows, longest_row, progress,
                   [&](std::int64_t begin, std::int64_t end, char* out) {
                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
                           out = put_row(out, set, i);

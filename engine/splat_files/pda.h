@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -19,7 +20,7 @@ SplatSet read_pda(const std::filesystem::path& file, const Progress& progress = 
 
 /// Shortest decimal numbers that read back to the same float32, 64-bit ids; the same bytes for any thread
 /// count. What PDA has no attribute for (uv, normal, spacing, credit) is left out. Throws OutputError.
-void write_pda(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {});
+void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& progress = {});
 
 /// splat_attributes() of a PDA file.
 std::vector<std::string> pda_attributes(const std::filesystem::path& file);

@@ -223,12 +223,12 @@ SplatSet read_ply(const std::filesystem::path& file, const Progress& progress) {
     return read_mapped(file, [&](std::string_view bytes) { return read_ply_bytes(file, bytes, progress); });
 }
 
-void write_ply(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
+void write_ply(const WriteTarget& target, const SplatSet& set, const Progress& progress) {
     static_assert(std::endian::native == std::endian::little);
     check_consistent(set);
     const bool wide_ids = std::ranges::any_of(set.id, [](std::uint64_t id) { return id >> 32 != 0; });
     constexpr std::size_t longest_row = 17 * sizeof(float);
-    write_ordered(file, header_text(set, wide_ids), set.size(), rows_written_at_once, longest_row, progress,
+    write_ordered(target, header_text(set, wide_ids), set.size(), rows_written_at_once, longest_row, progress,
                   [&](std::int64_t begin, std::int64_t end, char* out) {
                       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
                           out = put_row(out, set, wide_ids, i);

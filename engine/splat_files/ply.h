@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -19,7 +20,7 @@ SplatSet read_ply(const std::filesystem::path& file, const Progress& progress = 
 
 /// Binary little-endian, all numbers as they are in memory; id_high only where an id needs it. A credit
 /// becomes a comment; normal and spacing are left out. Throws OutputError.
-void write_ply(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {});
+void write_ply(const WriteTarget& target, const SplatSet& set, const Progress& progress = {});
 
 /// splat_attributes() of a PLY file.
 std::vector<std::string> ply_attributes(const std::filesystem::path& file);

@@ -21,7 +21,7 @@ namespace {
 struct Functions {
     std::string_view format;
     SplatSet (*read)(const std::filesystem::path&, const Progress&);
-    void (*write)(const std::filesystem::path&, const SplatSet&, const Progress&);
+    void (*write)(const WriteTarget&, const SplatSet&, const Progress&);
     std::vector<std::string> (*attributes)(const std::filesystem::path&);
 };
 
@@ -54,8 +54,8 @@ std::vector<std::string> splat_attributes(const std::filesystem::path& file) {
     return functions_of(format_of_file(file), file).attributes(file);
 }
 
-void write_splats(const std::filesystem::path& file, const SplatSet& set, const Progress& progress) {
-    functions_of(format_by_name(file), file).write(file, set, progress);
+void write_splats(const WriteTarget& target, const SplatSet& set, const Progress& progress) {
+    functions_of(format_by_name(target.file), target.file).write(target, set, progress);
 }
 
 }  // namespace astrosplat

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -21,6 +22,6 @@ std::vector<std::string> splat_attributes(const std::filesystem::path& file);
 
 /// In the format of the ending. Writes to a temporary name, then renames: the file appears whole or not at
 /// all. Throws OutputError.
-void write_splats(const std::filesystem::path& file, const SplatSet& set, const Progress& progress = {});
+void write_splats(const WriteTarget& target, const SplatSet& set, const Progress& progress = {});
 
 }  // namespace astrosplat
