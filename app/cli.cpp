@@ -51,19 +51,12 @@ struct Invocation {
     std::function<int()> action;  // of the subcommand, when there is one
 };
 
-void add_text(CLI::App& app, const std::string& names, std::optional<std::string>& value,
-              const std::string& placeholder, const std::string& help) {
-    app.add_option_function<std::string>(
-           names, [&value](const std::string& text) { value = text; }, help)
-        ->option_text(placeholder);
-}
-
-void add_path(CLI::App& app, const std::string& names, std::filesystem::path& value,
-              const std::string& placeholder, const std::string& help, bool required = true) {
-    app.add_option_function<std::string>(
-           names, [&value](const std::string& text) { value = text; }, help)
-        ->option_text(placeholder)
-        ->required(required);
+/// `value` is text or a path, maybe optional.
+template <class Value>
+CLI::Option* add_value(CLI::App& app, const std::string& names, Value& value, const std::string& placeholder,
+                       const std::string& help) {
+    const auto set = [&value](const std::string& text) { value = text; };
+    return app.add_option_function<std::string>(names, set, help)->option_text(placeholder);
 }
 
 void add_assignments(CLI::App& app, std::vector<std::string>& values) {
@@ -93,13 +86,10 @@ void add_progress(CLI::App& app, ProgressMode& mode) {
 void add_common(CLI::App& app, CommonOptions& common) {
     app.set_help_flag("-h,--help", "Prints this help");
     app.set_version_flag("--version", version_line, "Prints the version");
-    app.add_option("-t,--threads", common.threads, "Threads (default: the cores this process may use)")
-        ->option_text("N");
-    app.add_option(
-           "--cache", common.cache,
-           "Folder that keeps generated sets (default: $ASTROSPLAT_CACHE, $XDG_CACHE_HOME/astrosplat or "
-           "~/.cache/astrosplat); at most 20 GiB or a tenth of the disk, the least recently used go")
-        ->option_text("DIR");
+    add_value(app, "-t,--threads", common.threads, "N", "Threads (default: the cores this process may use)");
+    add_value(app, "--cache", common.cache, "DIR",
+              "Folder that keeps generated sets (default: $ASTROSPLAT_CACHE, $XDG_CACHE_HOME/astrosplat or "
+              "~/.cache/astrosplat); at most 20 GiB or a tenth of the disk, the least recently used go");
     app.add_flag("--no-cache", common.no_cache, "Neither reads nor writes generated sets");
     app.add_flag("-v,--verbose", common.verbose, "Says more");
     app.add_flag("-q,--quiet", common.quiet, "Says only warnings and errors");
@@ -109,28 +99,26 @@ void add_batch(CLI::App& app, Invocation& call) {
     BatchOptions& batch = call.batch_options;
     app.add_flag("--batch", call.batch, "Renders the scene's frames without a window");
     app.add_option("SCENE", call.input, "A scene; without --batch also a picture, mesh or splat file");
-    add_text(app, "-f,--frames", batch.frames, "1-100,120,200-300x2", "Frames to render");
-    add_text(app, "-o,--output", batch.output, "PATTERN", "Frame files, such as frames/shot.####.exr");
-    add_text(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the picture");
+    add_value(app, "-f,--frames", batch.frames, "1-100,120,200-300x2", "Frames to render");
+    add_value(app, "-o,--output", batch.output, "PATTERN", "Frame files, such as frames/shot.####.exr");
+    add_value(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the picture");
     add_assignments(app, batch.assignments);
-    add_text(app, "--layers", batch.layers, "A,B", "Renders only these layers");
-    add_text(app, "--memory", batch.memory_gib, "GiB", "Limit of the renderer's working memory");
-    add_text(app, "--region", batch.region, "X,Y,W,H", "Part of the picture, from the top left, in pixels");
+    add_value(app, "--layers", batch.layers, "A,B", "Renders only these layers");
+    add_value(app, "--memory", batch.memory_gib, "GiB", "Limit of the renderer's working memory");
+    add_value(app, "--region", batch.region, "X,Y,W,H", "Part of the picture, from the top left, in pixels");
     app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
     app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
     app.add_flag("--dry-run", batch.dry_run, "Says what would be done, and does nothing");
-    app.add_option_function<std::string>(
-           "--stats", [&batch](const std::string& text) { batch.stats = text; }, "Writes figures as JSON")
-        ->option_text("FILE.json");
+    add_value(app, "--stats", batch.stats, "FILE.json", "Writes figures as JSON");
     add_progress(app, batch.progress);
 }
 
 void add_screenshot(CLI::App& app, Invocation& call) {
     ScreenshotOptions& shot = call.screenshot;
-    add_path(app, "--screenshot", shot.output, "OUT.png|OUT.exr",
-             "Saves what the window would show, without one", false);
-    add_text(app, "--size", shot.size, "WxH", "With --screenshot: its size in pixels (default: 960x540)");
-    add_text(app, "--frame", shot.frame, "N", "With --screenshot: the frame (default: the first)");
+    add_value(app, "--screenshot", shot.output, "OUT.png|OUT.exr",
+              "Saves what the window would show, without one");
+    add_value(app, "--size", shot.size, "WxH", "With --screenshot: its size in pixels (default: 960x540)");
+    add_value(app, "--frame", shot.frame, "N", "With --screenshot: the frame (default: the first)");
     app.add_flag("--ui", shot.ui, "With --screenshot: the whole window with its panels");
     app.add_flag("--settled", shot.settled, "With --screenshot: the final picture, not the preview");
     app.add_flag("--opengl", shot.opengl, "With --screenshot: a preview drawn by OpenGL on any machine");
@@ -148,20 +136,20 @@ CLI::App& add_command(CLI::App& app, Invocation& call, const char* name, const c
 void add_new(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "new", "Writes a scene for a picture",
                                     [&call] { return run_new(call.create); });
-    add_path(command, "IMAGE", call.create.image, "IMAGE", "The picture");
-    add_path(command, "-o,--output", call.create.scene, "SCENE", "The scene file to write");
-    command.add_option("--shape", call.create.shape, "The mesh (default: plane)")
-        ->option_text("plane|relief|disk|sphere");
+    add_value(command, "IMAGE", call.create.image, "IMAGE", "The picture")->required();
+    add_value(command, "-o,--output", call.create.scene, "SCENE", "The scene file to write")->required();
+    add_value(command, "--shape", call.create.shape, "plane|relief|disk|sphere", "The mesh (default: plane)");
     command.add_flag("--overwrite", call.create.overwrite, "Replaces the scene file");
 }
 
 void add_generate(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "generate", "Generates a layer's splats into a file",
                                     [&call] { return run_generate(call.generate); });
-    add_path(command, "SCENE", call.generate.scene, "SCENE", "The scene");
-    command.add_option("--layer", call.generate.layer, "Name of the layer")->option_text("NAME")->required();
-    add_path(command, "-o,--output", call.generate.output, "FILE.(pda|ply|splats)",
-             "The splat file to write");
+    add_value(command, "SCENE", call.generate.scene, "SCENE", "The scene")->required();
+    add_value(command, "--layer", call.generate.layer, "NAME", "Name of the layer")->required();
+    add_value(command, "-o,--output", call.generate.output, "FILE.(pda|ply|splats)",
+              "The splat file to write")
+        ->required();
     add_assignments(command, call.generate.assignments);
     command.add_flag("--overwrite", call.generate.overwrite, "Replaces the file");
     add_progress(command, call.generate.progress);
@@ -170,8 +158,8 @@ void add_generate(CLI::App& app, Invocation& call) {
 void add_convert(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "convert", "Converts between splat files",
                                     [&call] { return run_convert(call.convert); });
-    add_path(command, "IN", call.convert.input, "IN", "A .pda, .ply or .splats file");
-    add_path(command, "OUT", call.convert.output, "OUT", "A .pda, .ply or .splats file");
+    add_value(command, "IN", call.convert.input, "IN", "A .pda, .ply or .splats file")->required();
+    add_value(command, "OUT", call.convert.output, "OUT", "A .pda, .ply or .splats file")->required();
     command.add_flag("--overwrite", call.convert.overwrite, "Replaces the file");
     add_progress(command, call.convert.progress);
 }
@@ -179,16 +167,16 @@ void add_convert(CLI::App& app, Invocation& call) {
 void add_reports(CLI::App& app, Invocation& call) {
     CLI::App& info = add_command(app, call, "info", "Describes any file the program reads",
                                  [&call] { return run_info(call.info); });
-    add_path(info, "FILE", call.info.file, "FILE", "Scene, mesh, picture, frame or splat file");
+    add_value(info, "FILE", call.info.file, "FILE", "Scene, mesh, picture, frame or splat file")->required();
     info.add_flag("--json", call.info.json, "Prints JSON");
 
     CLI::App& compare = add_command(app, call, "compare", "Compares the linear light of two pictures",
                                     [&call] { return run_compare(call.compare); });
-    add_path(compare, "A", call.compare.a, "A", "A picture");
-    add_path(compare, "B", call.compare.b, "B", "A picture of the same size");
+    add_value(compare, "A", call.compare.a, "A", "A picture")->required();
+    add_value(compare, "B", call.compare.b, "B", "A picture of the same size")->required();
     compare.add_flag("--json", call.compare.json, "Prints JSON");
-    add_text(compare, "--max-difference", call.compare.max_difference, "X",
-             "Largest difference allowed in any channel; beyond it the exit code is 3");
+    add_value(compare, "--max-difference", call.compare.max_difference, "X",
+              "Largest difference allowed in any channel; beyond it the exit code is 3");
 
     CLI::App& parameters = add_command(app, call, "parameters", "Lists every key of a scene file",
                                        [&call] { return run_parameters(call.parameters); });

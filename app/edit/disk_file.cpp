@@ -8,26 +8,26 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 
 DiskFile::DiskFile(const fs::path& file, std::string_view content)
-    : file_(file), looked_at_(stamp_of(file)), hash_(Sha256().add(content).hex()) {}
+    : file_(file), checked_(stamp_of(file)), hash_(Sha256().add(content).hex()) {}
 
 bool DiskFile::changed() {
     if (file_.empty()) return false;
     const FileStamp now = stamp_of(file_);
     if (now == FileStamp{}) return false;
-    if (now == looked_at_) return changed_;
+    if (now == checked_) return changed_;
     try {
         changed_ = sha256_of_file(file_) != hash_;
     } catch (const InputError&) {
         return false;
     }
-    looked_at_ = now;
+    checked_ = now;
     return changed_;
 }
 
 void DiskFile::accept() {
     if (file_.empty()) return;
     try {
-        looked_at_ = stamp_of(file_);
+        checked_ = stamp_of(file_);
         hash_ = sha256_of_file(file_);
         changed_ = false;
     } catch (const InputError&) {

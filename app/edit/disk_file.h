@@ -24,7 +24,7 @@ class DiskFile {
 
   private:
     std::filesystem::path file_;  // empty: there is none
-    FileStamp looked_at_;         // at the last look
+    FileStamp checked_;           // at the last look
     std::string hash_;
     bool changed_ = false;  // what that look found
 };

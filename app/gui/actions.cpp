@@ -50,7 +50,7 @@ Action flip(const char* menu, const char* label, Shortcut shortcut = {}) {
 }
 
 template <ViewKind kind>
-Action look_from(const char* label, Shortcut shortcut = {}) {
+Action view_from(const char* label, Shortcut shortcut = {}) {
     return {.menu = "View",
             .label = label,
             .shortcut = shortcut,
@@ -90,11 +90,11 @@ const Action table[] = {
     below_line({"Edit", "Store as B", plain('B'), ask<Kind::store_b>}),
     {"Edit", "Take snapshot", {}, take_snapshot},
 
-    look_from<ViewKind::camera>("Camera", plain(key_code::n0)),
-    look_from<ViewKind::free>("Free"),
-    look_from<ViewKind::front>("Front", plain(key_code::n1)),
-    look_from<ViewKind::side>("Side", plain(key_code::n3)),
-    look_from<ViewKind::top>("Top", plain(key_code::n7)),
+    view_from<ViewKind::camera>("Camera", plain(key_code::n0)),
+    view_from<ViewKind::free>("Free"),
+    view_from<ViewKind::front>("Front", plain(key_code::n1)),
+    view_from<ViewKind::side>("Side", plain(key_code::n3)),
+    view_from<ViewKind::top>("Top", plain(key_code::n7)),
     {"View", "Three-quarter", plain(key_code::n9), three_quarter, has_box},
     below_line({"View", "Frame layer", plain('F'), ask_for_layer<Kind::frame_layer>, has_layer}),
     {"View", "Frame all", plain(key_code::home), ask<Kind::frame_all>},

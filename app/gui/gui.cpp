@@ -18,6 +18,7 @@
 #include "gui/timeline.h"
 #include "gui/tool_row.h"
 #include "gui/viewport.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
@@ -36,16 +37,6 @@ void begin_host() {
                      ImGuiWindowFlags_NoNav);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);
-}
-
-// A child window over `area`; false (and nothing to end) where there is none.
-bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags) {
-    if (area.width <= 0 || area.height <= 0) return false;
-    ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::BeginChild(name, {area.width, area.height}, false, flags);
-    ImGui::PopStyleVar();
-    return true;
 }
 
 // The parameter that K keys: of the panel's row that the mouse is on.

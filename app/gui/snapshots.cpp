@@ -84,11 +84,7 @@ void draw_take_button(GuiFrame& frame) {
 }  // namespace
 
 void draw_snapshots(GuiFrame& frame, const Rect& area) {
-    if (area.height <= 0) return;
-    ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::BeginChild("snapshots", {area.width, area.height}, false, ImGuiWindowFlags_HorizontalScrollbar);
-    ImGui::PopStyleVar();
+    if (!begin_part("snapshots", area, ImGuiWindowFlags_HorizontalScrollbar)) return;
     ImGui::SetCursorPos({px(margin), px(margin)});
     draw_take_button(frame);
     for (std::size_t i = 0; i < frame.status.snapshots.size(); ++i) {

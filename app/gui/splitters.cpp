@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
@@ -23,11 +24,8 @@ struct Edge {
 
 // The edge follows the mouse: `size` grows as the mouse goes left or up.
 void draw_splitter(GuiFrame& frame, const Edge& edge, float& size) {
-    ImGui::SetCursorScreenPos({edge.zone.x, edge.zone.y});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::BeginChild(edge.name, {edge.zone.width, edge.zone.height}, false,
-                      ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar);
-    ImGui::PopStyleVar();
+    if (!begin_part(edge.name, edge.zone, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar))
+        return;
     ImGui::InvisibleButton("edge", {edge.zone.width, edge.zone.height});
     note_item(frame, edge.name);
     const bool active = ImGui::IsItemActive();

@@ -177,14 +177,10 @@ std::string track_label(const std::string& key, const ParameterSpec& spec) {
 }
 
 void Timeline::draw(GuiFrame& frame, const Rect& area) {
-    if (area.height <= 0) return;
+    constexpr ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+    if (!begin_part("timeline", area, still)) return;
     refresh(state_, frame.document);
     end_drag(state_);
-    ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::BeginChild("timeline", {area.width, area.height}, false,
-                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-    ImGui::PopStyleVar();
     draw_header(frame, area);
     const Rect ruler{area.x, area.y + px(header_height), area.width, px(ruler_height)};
     const float bottom = area.y + area.height;

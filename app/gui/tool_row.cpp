@@ -155,11 +155,7 @@ void draw_right_tools(GuiFrame& frame, const Rect& area, float left_end) {
 }  // namespace
 
 void draw_tool_row(GuiFrame& frame, const Rect& area) {
-    if (area.height <= 0) return;
-    ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    ImGui::BeginChild("tools", {area.width, area.height}, false, ImGuiWindowFlags_NoScrollbar);
-    ImGui::PopStyleVar();
+    if (!begin_part("tools", area)) return;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(px(8), (px(control_height) - ImGui::GetFontSize()) / 2));
     ImGui::SetCursorScreenPos({area.x + px(8), area.y + px(4)});

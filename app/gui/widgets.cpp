@@ -27,6 +27,15 @@ std::size_t character_length(const std::string& text, std::size_t at) {
 
 }  // namespace
 
+bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags) {
+    if (area.width <= 0 || area.height <= 0) return false;
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::BeginChild(name, {area.width, area.height}, false, flags);
+    ImGui::PopStyleVar();
+    return true;
+}
+
 void tooltip(const char* text) {
     if (!text || !ImGui::IsItemHovered()) return;
     static ImVec2 resting;  // where the mouse came to rest, and when: one mouse, one tooltip

@@ -6,7 +6,12 @@
 #include <initializer_list>
 #include <string>
 
+#include "gui/layout.h"
+
 namespace astrosplat {
+
+/// A child window over `area`, without padding; false (and nothing to end) where there is none.
+bool begin_part(const char* name, const Rect& area, ImGuiWindowFlags flags = ImGuiWindowFlags_NoScrollbar);
 
 /// A tooltip of the last item after a short wait.
 void tooltip(const char* text);

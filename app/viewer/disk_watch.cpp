@@ -20,8 +20,8 @@ std::vector<fs::path> files_of(const LayerParams& layer, const SetLoader& loader
 
 bool DiskWatch::due(double now) {
     constexpr double every_s = 1.0;
-    if (now - looked_at_s_ < every_s) return false;
-    looked_at_s_ = now;
+    if (now - checked_at_s_ < every_s) return false;
+    checked_at_s_ = now;
     return true;
 }
 

@@ -26,7 +26,7 @@ class DiskWatch {
 
   private:
     WatchedFiles files_;
-    double looked_at_s_ = 0.0;
+    double checked_at_s_ = 0.0;
     std::uint64_t changes_ = 0;
 };
 

@@ -27,17 +27,13 @@ struct Run {
     std::atomic<float> progress{0.0f};
     Image canvas;  // region-sized RGBA; a tile is whole before it appears in `fresh`
 
-    std::mutex mutex;  // for all below
-    FinalPicture::State state = FinalPicture::State::running;
+    std::mutex mutex;           // for all below
     std::vector<Region> fresh;  // px of the canvas
-    std::string error;
-    std::shared_ptr<const RenderedFrame> frame;
-    double seconds = 0.0;
+    FinalPicture::Outcome outcome{FinalPicture::State::running, {}, 0.0, {}};
 
-    void end(FinalPicture::State how, std::string why = {}) {
+    void end(FinalPicture::Outcome how) {
         const std::lock_guard lock(mutex);
-        state = how;
-        error = std::move(why);
+        outcome = std::move(how);
     }
 };
 
@@ -74,10 +70,7 @@ void render_run(Pipeline& pipeline, Run& run) {
     };
     auto frame =
         std::make_shared<RenderedFrame>(pipeline.frame(request.frame, settings, progress, tile_done));
-    const std::lock_guard lock(run.mutex);
-    run.frame = std::move(frame);
-    run.seconds = seconds_since(start);
-    run.state = FinalPicture::State::done;
+    run.end({FinalPicture::State::done, {}, seconds_since(start), std::move(frame)});
     run.progress = 1.0f;
 }
 
@@ -124,11 +117,11 @@ void FinalPicture::Impl::work(Run& run) {
         if (!pipeline || other_files) pipeline = std::make_unique<Pipeline>();
         render_run(*pipeline, run);
     } catch (const Cancelled&) {
-        run.end(State::idle);
+        run.end({});
     } catch (const std::bad_alloc&) {
-        run.end(State::failed, "not enough memory for the final picture");
+        run.end({State::failed, "not enough memory for the final picture", 0.0, {}});
     } catch (const std::exception& error) {
-        run.end(State::failed, error.what());
+        run.end({State::failed, error.what(), 0.0, {}});
     }
 }
 
@@ -143,37 +136,16 @@ void FinalPicture::start(FinalRequest request) {
 
 void FinalPicture::cancel() { impl_->replace(nullptr); }
 
-FinalPicture::State FinalPicture::state() const {
+FinalPicture::Outcome FinalPicture::outcome() const {
     const std::shared_ptr<Run> run = impl_->latest();
-    if (!run) return State::idle;
+    if (!run) return {};
     const std::lock_guard lock(run->mutex);
-    return run->state;
+    return run->outcome;
 }
 
 float FinalPicture::progress() const {
     const std::shared_ptr<Run> run = impl_->latest();
     return run ? run->progress.load() : 0.0f;
-}
-
-std::string FinalPicture::error() const {
-    const std::shared_ptr<Run> run = impl_->latest();
-    if (!run) return {};
-    const std::lock_guard lock(run->mutex);
-    return run->error;
-}
-
-double FinalPicture::seconds() const {
-    const std::shared_ptr<Run> run = impl_->latest();
-    if (!run) return 0.0;
-    const std::lock_guard lock(run->mutex);
-    return run->seconds;
-}
-
-std::shared_ptr<const RenderedFrame> FinalPicture::frame() const {
-    const std::shared_ptr<Run> run = impl_->latest();
-    if (!run) return nullptr;
-    const std::lock_guard lock(run->mutex);
-    return run->frame;
 }
 
 std::vector<Region> FinalPicture::take_tiles(Image& picture) {

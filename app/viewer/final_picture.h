@@ -37,13 +37,15 @@ class FinalPicture {
     void cancel();
 
     enum class State { idle, running, done, failed };
-    State state() const;
+    struct Outcome {
+        State state = State::idle;
+        std::string error;  // failed
+        // When done:
+        double seconds = 0.0;  // from the thread's taking up the request to the last pixel
+        std::shared_ptr<const RenderedFrame> frame;  // its beauty is region-sized
+    };
+    Outcome outcome() const;
     float progress() const;
-    std::string error() const;
-    /// When done: from the thread's taking up the request to the last pixel.
-    double seconds() const;
-    /// When done. Its beauty is region-sized.
-    std::shared_ptr<const RenderedFrame> frame() const;
 
     /// Tiles finished since the last call, copied into `picture` (resized to the request's). Returns their
     /// regions, px of `picture`. Never blocks on the renderer.

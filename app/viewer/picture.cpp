@@ -164,13 +164,11 @@ void ViewPicture::take_final() {
     }
     texture_ = canvas_texture_.handle();
     status_.progress = final_.progress();
-    if (final_.state() == FinalPicture::State::done) {
-        status_.state = PictureState::final;
-        status_.seconds = final_.seconds();
-    } else if (final_.state() == FinalPicture::State::failed) {
-        status_.state = PictureState::failed;
-        status_.error = final_.error();
-    }
+    const FinalPicture::Outcome outcome = final_.outcome();
+    status_.seconds = outcome.seconds;
+    status_.error = outcome.error;
+    if (outcome.state == FinalPicture::State::done) status_.state = PictureState::final;
+    if (outcome.state == FinalPicture::State::failed) status_.state = PictureState::failed;
 }
 
 void ViewPicture::show(const PictureRequest& request, const PreviewChoice& choice, bool settle, double now,
@@ -217,7 +215,7 @@ double ViewPicture::due(double now) const { return std::max(0.0, changed_at_ + r
 bool ViewPicture::exact() const { return request_ && !files_->loading() && !(gl_ && gl_->sorting()); }
 
 std::shared_ptr<const RenderedFrame> ViewPicture::final_frame() const {
-    return status_.state == PictureState::final ? final_.frame() : nullptr;
+    return status_.state == PictureState::final ? final_.outcome().frame : nullptr;
 }
 
 }  // namespace astrosplat

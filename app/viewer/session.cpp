@@ -30,7 +30,7 @@ Document document_for(const fs::path& file, std::span<const Assignment> assignme
 }
 
 /// A picture is first seen from the front, as it was before it had depth.
-void look_first(ViewState& view, const fs::path& file) {
+void choose_first_view(ViewState& view, const fs::path& file) {
     if (kind_of_file(file) == FileKind::picture) view.view = ViewKind::top;
 }
 
@@ -64,7 +64,7 @@ void watch_files(Session& session) {
     session.disk.watch(session.document.scene(), session.sets.loader(), session.comparison.reference_file());
 }
 
-void look_at_disk(Session& session, double now) {
+void check_disk(Session& session, double now) {
     if (!session.disk.due(now)) return;
     session.status.changed_on_disk = session.document.changed_on_disk();
     session.status.memory_bytes = resident_memory_bytes();
@@ -98,7 +98,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     view.hint_open = fresh_demo;
     static_cast<PanelSizes&>(view) = preferences;
     view.frame = first_frame(document.scene());
-    if (!options.input.empty()) look_first(view, options.input);
+    if (!options.input.empty()) choose_first_view(view, options.input);
     find_recoveries(status);
     status.has_ffmpeg = has_program("ffmpeg");
     status.recent = preferences.recent;
@@ -128,7 +128,7 @@ void take_document(Session& session, Document next) {
 
 void open_file(Session& session, const fs::path& file) {
     take_document(session, document_for(file));
-    look_first(session.view, file);
+    choose_first_view(session.view, file);
 }
 
 void find_recoveries(Status& status) {
@@ -152,7 +152,7 @@ void advance(Session& session, double now) {
     session.playback.advance(session.view, session.document.scene().output, now);
     want_sets(session, now);
     if (!for_screenshot) session.sets.show_growth(now);
-    look_at_disk(session, now);
+    check_disk(session, now);
     if (const auto news = session.jobs.poll(session.status.job)) say(session.status, news->text, news->error);
     session.autosave.update(session.document);
     fill_status(session);

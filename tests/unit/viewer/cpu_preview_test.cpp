@@ -58,7 +58,7 @@ class CpuPreviewTest : public testing::Test {
         settings.pixel_filter = pixel_filter;
         return pixel_hash(render(wanted, camera(), nullptr, settings).beauty);
     }
-    std::string drawn_anew() const {
+    std::string redrawn() const {
         CpuPreview preview;
         return draw(preview);
     }
@@ -82,7 +82,7 @@ TEST_F(CpuPreviewTest, WhatIsKeptNeverShows) {
     const auto changed = [&](const auto& change) {
         change();
         seen.push_back(draw(kept));
-        EXPECT_EQ(seen.back(), drawn_anew()) << "change " << seen.size() - 1;
+        EXPECT_EQ(seen.back(), redrawn()) << "change " << seen.size() - 1;
         EXPECT_NE(seen.back(), seen[seen.size() - 2]) << "change " << seen.size() - 1;
     };
     changed([&] { layers[0].share = layers[1].share = 0.3f; });
@@ -102,12 +102,12 @@ TEST_F(CpuPreviewTest, WhatIsKeptNeverShows) {
 
 TEST_F(CpuPreviewTest, APrefixCountsItsShareOfTheWhole) {
     for (PreviewLayer& layer : layers) layer.share = 0.25f;
-    const std::string wanted = drawn_anew();
+    const std::string wanted = redrawn();
     for (PreviewLayer& layer : layers) {
         layer.whole = layer.set->size();
         layer.set = std::make_shared<const SplatSet>(first_rows(*layer.set, layer.set->size() / 2));
     }
-    EXPECT_EQ(drawn_anew(), wanted);
+    EXPECT_EQ(redrawn(), wanted);
 }
 
 TEST_F(CpuPreviewTest, AShareBeyondThePrefixShowsAllOfIt) {
@@ -122,9 +122,9 @@ TEST_F(CpuPreviewTest, AShareBeyondThePrefixShowsAllOfIt) {
 }
 
 TEST_F(CpuPreviewTest, LargeSplatsAreNotSplitUp) {
-    const std::string wanted = drawn_anew();
+    const std::string wanted = redrawn();
     for (PreviewLayer& layer : layers) layer.layer.render.lod.max_px = 4.0f;
-    EXPECT_EQ(drawn_anew(), wanted);
+    EXPECT_EQ(redrawn(), wanted);
 }
 
 TEST_F(CpuPreviewTest, ALookThatCannotBeAppliedIsRefusedUntilItIsMended) {

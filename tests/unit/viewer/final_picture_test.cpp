@@ -49,7 +49,8 @@ class FinalPictureTest : public testing::Test {
     }
 
     static void wait(const FinalPicture& picture) {
-        while (picture.state() == State::running) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (picture.outcome().state == State::running)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 
     SmallScene small;
@@ -58,13 +59,13 @@ class FinalPictureTest : public testing::Test {
 
 TEST_F(FinalPictureTest, SettlesToThePipelinesPixels) {
     FinalPicture picture;
-    EXPECT_EQ(picture.state(), State::idle);
+    EXPECT_EQ(picture.outcome().state, State::idle);
     picture.start(request(0));
     wait(picture);
-    ASSERT_EQ(picture.state(), State::done) << picture.error();
+    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
     const std::string wanted = hash_of(request(0));
-    EXPECT_EQ(pixel_hash(picture.frame()->beauty), wanted);
-    EXPECT_TRUE(picture.frame()->depth.pixels.empty());
+    EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), wanted);
+    EXPECT_TRUE(picture.outcome().frame->depth.pixels.empty());
     EXPECT_EQ(picture.progress(), 1.0f);
     Image tiles;
     EXPECT_FALSE(picture.take_tiles(tiles).empty());
@@ -78,9 +79,9 @@ TEST_F(FinalPictureTest, DepthComesWithTheSamePixels) {
     FinalPicture picture;
     picture.start(wanted);
     wait(picture);
-    ASSERT_EQ(picture.state(), State::done) << picture.error();
-    EXPECT_EQ(pixel_hash(picture.frame()->beauty), hash_of(request(0)));
-    EXPECT_EQ(picture.frame()->depth.width, wanted.width);
+    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+    EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash_of(request(0)));
+    EXPECT_EQ(picture.outcome().frame->depth.width, wanted.width);
 }
 
 TEST_F(FinalPictureTest, ARegionIsThatPartOfThePicture) {
@@ -89,7 +90,7 @@ TEST_F(FinalPictureTest, ARegionIsThatPartOfThePicture) {
     FinalPicture picture;
     picture.start(wanted);
     wait(picture);
-    ASSERT_EQ(picture.state(), State::done) << picture.error();
+    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
     Image tiles;
     picture.take_tiles(tiles);
     EXPECT_EQ(tiles.width, 90);
@@ -111,13 +112,13 @@ TEST_F(FinalPictureTest, CancelsAndRestartsInAnyOrderLeaveNoTrace) {
         if (action == 4) std::this_thread::sleep_for(std::chrono::milliseconds((chance >> 8) % 12));
         if (step % 20 != 19) continue;
         picture.start(request(current));
-        while (picture.state() == State::running) {
+        while (picture.outcome().state == State::running) {
             picture.take_tiles(tiles);
             std::this_thread::yield();
         }
         picture.take_tiles(tiles);
-        ASSERT_EQ(picture.state(), State::done) << picture.error();
-        ASSERT_EQ(pixel_hash(picture.frame()->beauty), wanted[current]) << "step " << step;
+        ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+        ASSERT_EQ(pixel_hash(picture.outcome().frame->beauty), wanted[current]) << "step " << step;
         ASSERT_EQ(pixel_hash(tiles), wanted[current]) << "step " << step;
     }
 }
@@ -134,9 +135,9 @@ TEST_F(FinalPictureTest, ACancelledPictureStaysUnfinished) {
         finished += picture.take_tiles(tiles).size();
     }
     picture.cancel();
-    EXPECT_EQ(picture.state(), State::idle);
+    EXPECT_EQ(picture.outcome().state, State::idle);
     EXPECT_EQ(picture.progress(), 0.0f);
-    EXPECT_FALSE(picture.frame());
+    EXPECT_FALSE(picture.outcome().frame);
     EXPECT_TRUE(picture.take_tiles(tiles).empty());
     EXPECT_LT(finished, 4000u * 4000u / (128u * 128u));  // no tile is larger than that
 
@@ -145,7 +146,7 @@ TEST_F(FinalPictureTest, ACancelledPictureStaysUnfinished) {
     next.region = {0, 0, 1, 1};
     picture.start(next);
     wait(picture);
-    EXPECT_EQ(picture.state(), State::done);
+    EXPECT_EQ(picture.outcome().state, State::done);
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
     std::printf("from cancel to the next picture's pixel: %.1f ms\n", taken.count());
 }
@@ -156,15 +157,15 @@ TEST_F(FinalPictureTest, AFailureIsOneLineAndTheNextPictureWorks) {
     FinalPicture picture;
     picture.start(bad);
     wait(picture);
-    EXPECT_EQ(picture.state(), State::failed);
-    EXPECT_NE(picture.error().find("missing.png"), std::string::npos);
-    EXPECT_EQ(picture.error().find('\n'), std::string::npos);
-    EXPECT_FALSE(picture.frame());
+    EXPECT_EQ(picture.outcome().state, State::failed);
+    EXPECT_NE(picture.outcome().error.find("missing.png"), std::string::npos);
+    EXPECT_EQ(picture.outcome().error.find('\n'), std::string::npos);
+    EXPECT_FALSE(picture.outcome().frame);
     picture.start(request(0));
     wait(picture);
-    EXPECT_EQ(picture.state(), State::done);
-    EXPECT_EQ(picture.error(), "");
-    EXPECT_EQ(pixel_hash(picture.frame()->beauty), hash_of(request(0)));
+    EXPECT_EQ(picture.outcome().state, State::done);
+    EXPECT_EQ(picture.outcome().error, "");
+    EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash_of(request(0)));
 }
 
 TEST_F(FinalPictureTest, LayersStillLoadingAreLeftOut) {
@@ -173,9 +174,9 @@ TEST_F(FinalPictureTest, LayersStillLoadingAreLeftOut) {
     FinalPicture picture;
     picture.start(wanted);
     wait(picture);
-    ASSERT_EQ(picture.state(), State::done) << picture.error();
-    EXPECT_EQ(pixel_hash(picture.frame()->beauty), hash_of(wanted));
-    EXPECT_NE(pixel_hash(picture.frame()->beauty), hash_of(request(0)));
+    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+    EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash_of(wanted));
+    EXPECT_NE(pixel_hash(picture.outcome().frame->beauty), hash_of(request(0)));
 }
 
 TEST_F(FinalPictureTest, EndsInTheMiddleOfAPicture) {
