@@ -80,10 +80,9 @@ TEST(PanelRows, AMeshIsAShapeOrAFile) {
     EXPECT_EQ(d.value(mesh), Value("sphere"));
     browse();
     d.choose("File...");
-    const std::optional<FileRequest> request = d.panel.take_request();
+    const std::optional<ParameterKey> request = d.panel.take_request();
     ASSERT_TRUE(request);
-    EXPECT_EQ(request->kind, FileRequest::Kind::parameter);
-    EXPECT_EQ(request->key, mesh);
+    EXPECT_EQ(request->text(), mesh);
 }
 
 TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
