@@ -139,7 +139,7 @@ SplatSet small_set() {
     return set;
 }
 
-std::string written(void (*write)(const fs::path&, const SplatSet&, const Progress&),
+std::string written(void (*write)(const WriteTarget&, const SplatSet&, const Progress&),
                     const std::string& ending) {
     const TemporaryFile file("", ending);
     write(file.path, small_set(), {});
