@@ -195,6 +195,9 @@ TEST(Buffer, FreedBlocksServeTheNextOfTheirSize) {
 }
 
 TEST(Buffer, SpareBlocksAddLittleToTheMostInUse) {
+#ifdef __SANITIZE_THREAD__
+    GTEST_SKIP() << "the thread sanitizer keeps several pages for each of the program's";
+#endif
     release_spare_pages();
     const std::int64_t page = 4096, before = pages_of_process();
     constexpr std::size_t large = std::size_t{512} << 20;  // more than any test before; half of it is 256 MiB

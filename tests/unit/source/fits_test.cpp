@@ -76,6 +76,10 @@ TEST(FitsCompressed, CardsThatCannotBeAreOneLine) {
         EXPECT_THROW(describe_fits(file), InputError);
         EXPECT_THROW(require_picture(file), InputError);
     }
+    std::string flat = whole;
+    flat.replace(flat.find("ZNAXIS2 ="), 1, "X");
+    EXPECT_EQ(message_of<InputError>([&] { read_fits(folder.file("bad.fits", flat), "auto", 0); }),
+              (folder / "bad.fits").string() + ":HDU 1: expected ZNAXIS2 to be there, found none");
     std::string nameless = whole;
     nameless.replace(whole.find("ZVAL2   ="), 5, "XVAL2");
     EXPECT_EQ(message_of<InputError>([&] { read_fits(folder.file("bad.fits", nameless), "auto", 0); }),

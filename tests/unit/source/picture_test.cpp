@@ -103,6 +103,14 @@ TEST(PictureFile, LibrariesPrintNothingOfTheirOwn) {
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "others still print\n");
 }
 
+TEST(PictureFile, ADamagedHeaderIsNotBlamedOnTheColours) {
+    const TempFolder folder;
+    const fs::path file = folder.file("a.exr", "\x76\x2f\x31\x01 and then nothing of the kind");
+    const std::string message = message_of<InputError>([&] { read_picture(file); });
+    EXPECT_EQ(message.rfind(file.string() + ": ", 0), 0u) << message;
+    EXPECT_EQ(message.find("resolution"), message.npos) << message;
+}
+
 TEST(PictureFile, ReadingStopsWhenAsked) {
     const TempFolder folder;
     for (const char* ending : {"png", "exr", "tif", "jpg"}) {
