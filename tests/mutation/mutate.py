@@ -89,12 +89,13 @@ def main():
     earlier = earlier_results(work)
     results = {} if options.fresh else earlier
     tests = tests_of(work, options.tests, options.without)
-    for number, site in enumerate(sorted(chosen, key=lambda site: site.key), 1):  # a fair sample, however long it runs
+    # In an order that has nothing to do with the files: a run that is stopped has tried a fair sample.
+    for number, site in enumerate(sorted(chosen, key=lambda site: site.key), 1):
         known = results.get(site.key)
         if not fnmatch.fnmatch(site.path, options.only) or known and (known["caught"] or not options.again):
             continue
         before = earlier.get(site.key, {"caught": ""})
-        results[site.key] = trial.trial(work, site, tests, options.limit, before["caught"])
+        results[site.key] = trial.trial(work, site, tests, options.limit, before["caught"], wide=options.again)
         print(f"{number}/{len(chosen)} {describe(site)}: {results[site.key]['caught'] or 'SURVIVES'}", flush=True)
         report(work, chosen, results, equivalent_mutants())
     lines, share = report(work, chosen, results, equivalent_mutants())

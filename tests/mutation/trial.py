@@ -90,9 +90,11 @@ def run_tests(work, program, mutant, tests, at_start):
 
 
 def culprit(output, tests):
-    """The test that failed or was running at the end."""
+    """The test that failed or was running at the end. After a failure the rest are named too, as skipped."""
     last = tests[0].name
     for line in output.splitlines():
+        if line.startswith("[  FAILED  ] "):
+            break
         if line.startswith("[ RUN      ] "):
             last = line[13:].strip()
     return next((test for test in tests if test.name == last), tests[0])
@@ -145,12 +147,17 @@ def steps(tests, limit_s, known):
     return [(program, group) for (_, program), group in sorted(groups.items(), key=lambda item: item[0][0])]
 
 
-def trial(work, site, tests, limit_s, known=""):
+def trial(work, site, tests, limit_s, known="", wide=False):
     """{"caught": name of the test or "", "reached": how many tests execute the place, "run": how many were run}.
-    `known`: what caught it in an earlier run."""
+    `known`: what caught it in an earlier run. `wide`: then the other tests of these programs are run too, because what
+    a process makes only once is executed by the first test alone that needs it."""
     reaching = [test for test in tests if site.id in test.reached]
     result = {"caught": "", "reached": len(reaching), "run": 0}
-    for program, group in steps(reaching, limit_s, known.removesuffix(" (hangs)")):
+    order = steps(reaching, limit_s, known.removesuffix(" (hangs)"))
+    if wide:
+        programs = {test.program for test in reaching}
+        order += steps([t for t in tests if t.program in programs and site.id not in t.reached], limit_s, known)
+    for program, group in order:
         at_start = site.id in group[0].at_start
         code = run_tests(work, program, site.id, group, at_start)
         result["run"] += len(group)
