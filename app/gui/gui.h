@@ -50,8 +50,7 @@ class Gui {
     ~Gui();
     /// Draws one frame of widgets, between ImGui::NewFrame and ImGui::Render. Commands come out complete:
     /// where a path was missing a dialog has asked for it, and where unsaved changes would be lost the person
-    /// has agreed.
-    /// Commands already in the list (dropped files) are asked about in the same way.
+    /// has agreed. Commands already in the list (dropped files) are asked about in the same way.
     void draw(Document& document, ViewState& view, const Status& status, Commands& commands);
     /// Of the last draw().
     const ViewportInput& viewport_input() const;

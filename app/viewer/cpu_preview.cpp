@@ -4,24 +4,15 @@
 
 #include <algorithm>
 #include <cassert>
-#include <optional>
 #include <utility>
 
 #include "look/apply.h"
 #include "look/decimate.h"
 #include "render/backdrop.h"
-#include "render/render.h"
 #include "splats/stratified.h"
 
 namespace astrosplat {
 namespace {
-
-struct KeptLayer {
-    std::shared_ptr<const SplatSet> set;  // what `rows` was cut from
-    SplatSet rows;                        // its first ones
-    std::optional<Shading> shading;       // what `shaded` was made with
-    ShadedSplats shaded;
-};
 
 void cut(const PreviewLayer& layer, KeptLayer& kept) {
     const std::int64_t rows = shown_count(layer);
@@ -45,62 +36,47 @@ void shade(const PreviewLayer& layer, KeptLayer& kept) {
 
 }  // namespace
 
-struct CpuPreview::State {
-    std::vector<KeptLayer> layers;
-    RenderCache cache;
-    Image picture, backdrop;
-    std::int64_t shown = 0;
-
-    KeptLayer& layer_at(std::size_t index, const std::shared_ptr<const SplatSet>& set);
-};
-
 /// What is kept of the layer that shows this set: when a layer before it is hidden, the others stay as they
 /// are.
-KeptLayer& CpuPreview::State::layer_at(std::size_t index, const std::shared_ptr<const SplatSet>& set) {
-    const auto first = layers.begin() + static_cast<std::ptrdiff_t>(std::min(index, layers.size()));
-    const auto found = std::find_if(first, layers.end(), [&](const KeptLayer& k) { return k.set == set; });
-    if (found != layers.end())
-        std::iter_swap(layers.begin() + static_cast<std::ptrdiff_t>(index), found);
+KeptLayer& CpuPreview::layer_at(std::size_t index, const std::shared_ptr<const SplatSet>& set) {
+    const auto first = layers_.begin() + static_cast<std::ptrdiff_t>(std::min(index, layers_.size()));
+    const auto found = std::find_if(first, layers_.end(), [&](const KeptLayer& k) { return k.set == set; });
+    if (found != layers_.end())
+        std::iter_swap(layers_.begin() + static_cast<std::ptrdiff_t>(index), found);
     else
-        layers.emplace(first);
-    return layers[index];
+        layers_.emplace(first);
+    return layers_[index];
 }
-
-CpuPreview::CpuPreview() : state_(std::make_unique<State>()) {}
-CpuPreview::~CpuPreview() = default;
 
 const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
                               const Environment* environment, int width, int height, float pixel_filter) {
-    State& state = *state_;
-    state.shown = 0;
+    shown_ = 0;
     std::vector<RenderLayer> visible;
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        KeptLayer& kept = state.layer_at(i, layers[i].set);
+        KeptLayer& kept = layer_at(i, layers[i].set);
         cut(layers[i], kept);
         shade(layers[i], kept);
-        state.shown += kept.rows.size();
+        shown_ += kept.rows.size();
         visible.push_back(layers[i].layer);
         visible.back().render.lod.max_px = 0.0f;
     }
-    state.layers.resize(layers.size());
-    for (std::size_t i = 0; i < layers.size(); ++i) visible[i].splats = &state.layers[i].shaded;
+    layers_.resize(layers.size());
+    for (std::size_t i = 0; i < layers.size(); ++i) visible[i].splats = &layers_[i].shaded;
     RenderSettings settings;
     settings.width = width;
     settings.height = height;
     settings.pixel_filter = pixel_filter;
     if (environment && !environment->faces->empty()) {
-        draw_backdrop(*environment, camera, width, height, state.backdrop);
-        settings.backdrop = &state.backdrop;
+        draw_backdrop(*environment, camera, width, height, backdrop_);
+        settings.backdrop = &backdrop_;
     }
-    state.picture = render(visible, camera, nullptr, settings, {}, &state.cache).beauty;
-    return state.picture;
+    picture_ = render(visible, camera, nullptr, settings, {}, &cache_).beauty;
+    return picture_;
 }
-
-std::int64_t CpuPreview::shown() const { return state_->shown; }
 
 std::vector<double> CpuPreview::kept() const {
     std::vector<double> shares;
-    for (const KeptLayer& layer : state_->layers) {
+    for (const KeptLayer& layer : layers_) {
         const auto rows = static_cast<double>(std::max<std::int64_t>(1, layer.rows.size()));
         shares.push_back(static_cast<double>(layer.shaded.size()) / rows);
     }

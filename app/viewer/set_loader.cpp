@@ -6,9 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/worker.h"
 #include "pipeline.h"
-#include "viewer/set_list.h"
 
 namespace astrosplat {
 namespace {
@@ -21,73 +19,52 @@ std::string reason(const std::exception& error) {
 
 }  // namespace
 
-struct SetLoader::Impl {
-    Load load_set;
-    std::int64_t preview_limit;
-    SetList list;  // used with the worker's lock
-    Worker worker{[this] { return next_task(); }};
-
-    Impl(Load load, std::int64_t limit) : load_set(std::move(load)), preview_limit(limit), list(limit) {}
-    ~Impl() {
-        const auto held = worker.lock();
-        list.cancel_job();
-    }
-
-    // The thread's.
-    Worker::Task next_task();
-    void work(SetJob& job);
-    void load(SetJob& job);
-    void arrange(const SetJob& job);
-    void describe(const SetJob& job);
-    void replace(const SetJob& job, LoadedLayer layer);
-};
-
-Worker::Task SetLoader::Impl::next_task() {
-    list.end();
-    if (!list.next_task()) return {};
-    return [this, job = list.begin_next()] { work(*job); };
+Worker::Task SetLoader::next_task() {
+    list_.end();
+    if (!list_.next_task()) return {};
+    return [this, job = list_.begin_next()] { work(*job); };
 }
 
-void SetLoader::Impl::work(SetJob& job) {
+void SetLoader::work(SetJob& job) {
     try {
         if (job.task == SetTask::load) load(job);
         if (job.task == SetTask::arrange) arrange(job);
         if (job.task == SetTask::describe) describe(job);
     } catch (const Cancelled&) {  // the caller that cancelled has said in the list what comes next
     } catch (const std::exception& error) {
-        const auto held = worker.lock();
-        list.fail(job, reason(error));
+        const auto held = worker_.lock();
+        list_.fail(job, reason(error));
     }
 }
 
 /// The set, and what the preview needs to begin.
-void SetLoader::Impl::load(SetJob& job) {
+void SetLoader::load(SetJob& job) {
     Progress progress;
     progress.cancelled = &job.cancelled;
     progress.report = [&](double fraction) { job.progress = static_cast<float>(fraction); };
-    auto set = std::make_shared<const SplatSet>(load_set(job.source, job.name, progress, job.growing));
-    auto layer =
-        std::make_shared<const LoadedLayer>(whole_layer(std::move(set), job.source, job.name, preview_limit));
+    auto set = std::make_shared<const SplatSet>(load_set_(job.source, job.name, progress, job.growing));
+    auto layer = std::make_shared<const LoadedLayer>(
+        whole_layer(std::move(set), job.source, job.name, preview_limit_));
 
     SetList::Layer old;  // let go after the lock
-    const auto held = worker.lock();
-    old = list.keep(job, std::move(layer));
+    const auto held = worker_.lock();
+    old = list_.keep(job, std::move(layer));
 }
 
-void SetLoader::Impl::arrange(const SetJob& job) {
+void SetLoader::arrange(const SetJob& job) {
     Progress progress;
     progress.cancelled = &job.cancelled;
-    replace(job, arranged_layer(*job.loaded, preview_limit, progress));
+    replace(job, arranged_layer(*job.loaded, preview_limit_, progress));
 }
 
 /// After everything that is waited for.
-void SetLoader::Impl::describe(const SetJob& job) { replace(job, described_layer(*job.loaded)); }
+void SetLoader::describe(const SetJob& job) { replace(job, described_layer(*job.loaded)); }
 
-void SetLoader::Impl::replace(const SetJob& job, LoadedLayer layer) {
+void SetLoader::replace(const SetJob& job, LoadedLayer layer) {
     auto better = std::make_shared<const LoadedLayer>(std::move(layer));
     SetList::Layer old;  // let go after the lock
-    const auto held = worker.lock();
-    old = list.replace(job, std::move(better));
+    const auto held = worker_.lock();
+    old = list_.replace(job, std::move(better));
 }
 
 SetLoader::SetLoader(const SetCache& cache, std::int64_t preview_limit)
@@ -96,82 +73,86 @@ SetLoader::SetLoader(const SetCache& cache, std::int64_t preview_limit)
                   KeptWatcher& watcher) { return load_source(cache, source, name, progress, &watcher).set; },
           preview_limit) {}
 SetLoader::SetLoader(Load load, std::int64_t preview_limit)
-    : impl_(std::make_unique<Impl>(std::move(load), preview_limit)) {}
-SetLoader::~SetLoader() = default;
+    : load_set_(std::move(load)), preview_limit_(preview_limit), list_(preview_limit) {}
+
+SetLoader::~SetLoader() {
+    const auto held = worker_.lock();
+    list_.cancel_job();
+}
 
 void SetLoader::want(const Scene& scene) {
     {
-        const auto held = impl_->worker.lock();
-        impl_->list.want(scene);
+        const auto held = worker_.lock();
+        list_.want(scene);
     }
-    impl_->worker.wake();
+    worker_.wake();
 }
 
 void SetLoader::outdate(const std::string& layer_name) {
-    const auto held = impl_->worker.lock();
-    impl_->list.outdate(layer_name);
+    const auto held = worker_.lock();
+    list_.outdate(layer_name);
 }
 
 void SetLoader::retry(const std::string& layer_name) {
     {
-        const auto held = impl_->worker.lock();
-        impl_->list.retry(layer_name);
+        const auto held = worker_.lock();
+        list_.retry(layer_name);
     }
-    impl_->worker.wake();
+    worker_.wake();
 }
 
 void SetLoader::cancel(const std::string& layer_name) {
-    const auto held = impl_->worker.lock();
-    impl_->list.cancel(layer_name);
+    const auto held = worker_.lock();
+    list_.cancel(layer_name);
 }
 
 bool SetLoader::grow() {
     std::shared_ptr<SetJob> job;
     {
-        const auto held = impl_->worker.lock();
-        job = impl_->list.growing_job();
+        const auto held = worker_.lock();
+        job = list_.growing_job();
     }
     if (!job) return false;
     LoadedLayer grown = growing_layer(job->growing.sample(), job->source, job->name);
-    const auto held = impl_->worker.lock();
-    return impl_->list.grow(*job, std::move(grown));
+    const auto held = worker_.lock();
+    return list_.grow(*job, std::move(grown));
 }
 
 std::uint64_t SetLoader::revision() const {
-    const auto held = impl_->worker.lock();
-    return impl_->list.revision();
+    const auto held = worker_.lock();
+    return list_.revision();
 }
 
 std::shared_ptr<const LoadedLayer> SetLoader::layer(const std::string& layer_name) const {
-    const auto held = impl_->worker.lock();
-    return impl_->list.shown(layer_name);
+    const auto held = worker_.lock();
+    return list_.shown(layer_name);
 }
 
 LayerStatus SetLoader::status(const LayerParams& layer) const {
-    const auto held = impl_->worker.lock();
-    return impl_->list.status(layer);
+    const auto held = worker_.lock();
+    return list_.status(layer);
 }
 
 bool SetLoader::sets_there() const {
-    const auto held = impl_->worker.lock();
-    return !impl_->list.loading();
+    const auto held = worker_.lock();
+    return !list_.loading();
 }
 
 void SetLoader::hold(bool rest) {
     {
-        const auto held = impl_->worker.lock();
-        if (!impl_->list.hold(rest)) return;
+        const auto held = worker_.lock();
+        if (!list_.hold(rest)) return;
     }
-    impl_->worker.wake();
+    worker_.wake();
 }
 
 bool SetLoader::idle() const {
-    const auto held = impl_->worker.lock();
-    return impl_->list.resting();
+    const auto held = worker_.lock();
+    return list_.resting();
 }
 
 void SetLoader::wait() {
-    impl_->worker.wait([&] { return impl_->list.resting(); });
+    worker_.wait([&] { return list_.resting(); });
 }
 
 }  // namespace astrosplat

@@ -7,10 +7,12 @@
 #include <memory>
 #include <string>
 
+#include "core/worker.h"
 #include "edit/status.h"
 #include "generate/set_cache.h"
 #include "scene/scene.h"
 #include "viewer/loaded_layer.h"
+#include "viewer/set_list.h"
 
 namespace astrosplat {
 
@@ -57,8 +59,18 @@ class SetLoader {
     void hold(bool rest);
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    Worker::Task next_task();
+    // In the worker's thread:
+    void work(SetJob& job);
+    void load(SetJob& job);
+    void arrange(const SetJob& job);
+    void describe(const SetJob& job);
+    void replace(const SetJob& job, LoadedLayer layer);
+
+    Load load_set_;
+    std::int64_t preview_limit_;
+    SetList list_;  // used with the worker's lock
+    Worker worker_{[this] { return next_task(); }};
 };
 
 }  // namespace astrosplat

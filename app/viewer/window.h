@@ -37,8 +37,7 @@ class Window {
     void drop_frame();
     /// Draws the widgets and shows the frame, unless it would look like the one before: filling the window
     /// takes a software rasteriser 30 ms. `pictures`: differs whenever the pixels of a texture do that the
-    /// widgets show.
-    /// Returns whether it was shown.
+    /// widgets show. Returns whether it was shown.
     bool end_frame(std::uint64_t pictures);
 
     bool close_requested();  // and forgets it
