@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "splat_files/float_text.h"
 #include "splat_files/mapped_file.h"
 #include "splat_files/number_scan.h"
 #include "splat_files/ordered_writer.h"
@@ -164,17 +165,16 @@ std::vector<Column> columns_of(const std::vector<Attribute>& attributes) {
         for (int component = 0; component < (attribute.type == 'V' ? 3 : 1); ++component) {
             Column column;
             column.name = attribute.name;
-            if (known) column.field = known->fields[static_cast<std::size_t>(component)];
+            if (known) column.field = known->fields[component];
             columns.push_back(column);
         }
     }
     return columns;
 }
 
-/// The shortest text that reads back as the same bits has at most 16 characters, a whole number 20.
-constexpr std::size_t longest_number = 20;
+constexpr std::size_t longest_number = float_text_room;  // a whole number has 20 digits at most
 
-char* put_text(char* out, float value) { return std::to_chars(out, out + longest_number, value).ptr; }
+char* put_text(char* out, float value) { return put_float(out, value); }
 char* put_text(char* out, std::uint64_t value) { return std::to_chars(out, out + longest_number, value).ptr; }
 char* put_text(char* out, const glm::vec3& v) {
     out = put_text(out, v.x);
