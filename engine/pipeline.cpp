@@ -15,14 +15,16 @@
 namespace astrosplat {
 namespace {
 
+constexpr double farthest_in_world = 1000.0 * largest_number;  // scene units, of splats in place
+
 /// All that reaches apply_look beside the set: while it stays equal, the shaded splats stay.
-struct ShadingKey {
+struct ShadingInputs {
     Look look;
     glm::vec3 axis{0.0f};
     std::uint32_t seed = 0;
     double falloff_integral = 0.0;
     ColumnLaw column = ColumnLaw::transmittance;
-    bool operator==(const ShadingKey&) const = default;
+    bool operator==(const ShadingInputs&) const = default;
 };
 
 /// One layer between frames; the index is that of Scene::layers.
@@ -32,7 +34,7 @@ struct LayerState {
     Bounds box;                           // of the set, layer space
     std::filesystem::path thickness_file;
     Image thickness_map;
-    std::optional<ShadingKey> key;  // what `shaded` was made with
+    std::optional<ShadingInputs> shaded_with;  // what `shaded` was made with
     ShadedSplats shaded;
 };
 
@@ -123,19 +125,20 @@ LayerState Pipeline::State::take_layer(const std::string& name, const std::share
 void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Progress& progress) {
     LayerState& layer = layers[index];
     LookInputs inputs = look_inputs(params);
-    const ShadingKey key{params.look, inputs.axis, inputs.seed, inputs.falloff_integral, inputs.column};
-    if (layer.key == key) return;
+    const ShadingInputs shading{params.look, inputs.axis, inputs.seed, inputs.falloff_integral,
+                                inputs.column};
+    if (layer.shaded_with == shading) return;
     load_map(layer, params.look.thickness.map);
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
-    layer.key.reset();  // an exception below must not leave old splats under a new key
+    layer.shaded_with.reset();  // should an exception below leave old splats
     LookStatistics counts;
     if (layer.to_use_up) {
-        layer.shaded = apply_look_in_place(*layer.to_use_up, key.look, inputs, progress, &counts);
+        layer.shaded = apply_look_in_place(*layer.to_use_up, shading.look, inputs, progress, &counts);
         layer.to_use_up.reset();
     } else {
-        apply_look(*layer.set, key.look, inputs, layer.shaded, progress, &counts);
+        apply_look(*layer.set, shading.look, inputs, layer.shaded, progress, &counts);
     }
-    layer.key = key;
+    layer.shaded_with = shading;
     statistics[index].drawn = layer.shaded.size();
     statistics[index].look_seconds += counts.seconds;
 }
@@ -172,7 +175,9 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache&
     : state_(std::make_unique<State>()) {
     // What can be refused at once comes before the long work.
     check_supported(scene.camera);
-    if (has_environment(scene.environment)) state_->environment = load_environment(scene.environment);
+    const Progress cancel_only{{}, progress.cancelled};  // pictures are no share of the work reported
+    if (has_environment(scene.environment))
+        state_->environment = load_environment(scene.environment, cancel_only);
     state_->scene = scene;
     state_->layers.resize(scene.layers.size());
     state_->statistics.resize(scene.layers.size());
@@ -221,7 +226,10 @@ RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, cons
     const Scene now = scene_at(state_->scene, frame);
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         progress.check();
-        if (state_->drawn(now, i)) state_->shade(i, now.layers[i], progress);
+        if (!state_->drawn(now, i)) continue;
+        const LayerParams& layer = now.layers[i];
+        check_extent(world_bounds(state_->layers[i].box, render_layer(layer)), layer.name, farthest_in_world);
+        state_->shade(i, layer, progress);
     }
     return render(state_->visible_layers(now), state_->camera(now, settings), state_->environment_at(now),
                   settings, progress, &state_->render_cache, tile_done);

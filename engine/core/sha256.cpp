@@ -39,11 +39,14 @@ std::string Sha256::hex() {
     return text;
 }
 
-std::string sha256_of_file(const std::filesystem::path& file) {
+std::string sha256_of_file(const std::filesystem::path& file, const Progress& progress) {
     InputFile in(file);
     Sha256 hash;
     std::vector<char> block(std::size_t{1} << 20);
-    while (const std::size_t got = in.read(block.data(), block.size())) hash.add(block.data(), got);
+    while (const std::size_t got = in.read(block.data(), block.size())) {
+        progress.check();
+        hash.add(block.data(), got);
+    }
     return hash.hex();
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/progress.h"
+
 namespace astrosplat {
 
 class Sha256 {
@@ -27,7 +29,7 @@ class Sha256 {
     std::unique_ptr<State> state_;
 };
 
-/// Hash of a file's bytes. Throws InputError when it cannot be read.
-std::string sha256_of_file(const std::filesystem::path& file);
+/// Hash of a file's bytes. Throws InputError when it cannot be read; Cancelled.
+std::string sha256_of_file(const std::filesystem::path& file, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -18,8 +18,8 @@
 #include "core/file_lock.h"
 #include "core/log.h"
 #include "core/memory.h"
-#include "generate/generate.h"
-#include "generate/set_key.h"
+#include "generate/cache_key.h"
+#include "generate/load_source.h"
 #include "splat_files/native.h"
 
 namespace astrosplat {
@@ -53,7 +53,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 /// Nothing where there is no entry, or none that can be used: one that is damaged, or that was made of
 /// something else, whatever its name says. Where the memory left would not hold it the generator is to say
 /// so.
-std::optional<SplatSet> read_entry(const fs::path& file, const SetKey& key, const Progress& progress,
+std::optional<SplatSet> read_entry(const fs::path& file, const CacheKey& key, const Progress& progress,
                                    const OptionalColumns& wanted) {
     std::error_code error;
     const std::uintmax_t bytes = fs::file_size(file, error);
@@ -143,7 +143,7 @@ void write_entry(const SetCache& cache, const std::string& name, const SplatSet&
 }
 
 /// Called with the key's lock held (or on file systems without locks).
-void keep(const SetCache& cache, const SetKey& key, SplatSet& set, const Progress& progress) {
+void keep(const SetCache& cache, const CacheKey& key, SplatSet& set, const Progress& progress) {
     set.key = key.text;
     write_entry(cache, key.name, set, progress);
     set.key.clear();
@@ -161,7 +161,7 @@ FileLock::State wait_for(FileLock& lock, const std::string& layer_name, const Pr
     }
 }
 
-std::optional<SplatSet> find(const SetCache& cache, const SetKey& key, const std::string& layer_name,
+std::optional<SplatSet> find(const SetCache& cache, const CacheKey& key, const std::string& layer_name,
                              const Progress& progress, const OptionalColumns& wanted) {
     std::optional<SplatSet> set = read_entry(entry_file(cache, key.name), key, progress, wanted);
     if (set)
@@ -172,7 +172,7 @@ std::optional<SplatSet> find(const SetCache& cache, const SetKey& key, const std
 /// With columns that are not wanted where the set had to be generated.
 LoadedSet find_or_load(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                        const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
-    const SetKey key = serves(cache, source) ? set_key(source, layer_name) : SetKey();
+    const CacheKey key = serves(cache, source) ? cache_key(source, layer_name, progress) : CacheKey();
     if (key.name.empty()) return {load_source(source, layer_name, progress, watcher), false};
     if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
     std::error_code error;
@@ -186,7 +186,7 @@ LoadedSet find_or_load(const SetCache& cache, const SourceParams& source, const 
     if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
     if (locked) remove_leftovers(cache.folder, key.name);
     LoadedSet loaded{load_source(source, layer_name, progress, watcher), false};
-    if (set_key_text(source, layer_name) == key.text)
+    if (cache_key_text(source, layer_name, progress) == key.text)
         keep(cache, key, loaded.set, progress);  // else a file changed
     return loaded;
 }
@@ -215,7 +215,7 @@ LoadedSet load_source(const SetCache& cache, const SourceParams& source, const s
 
 std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,
                                           const std::string& layer_name) try {
-    const std::string key = serves(cache, source) ? set_key(source, layer_name).name : "";
+    const std::string key = serves(cache, source) ? cache_key(source, layer_name).name : "";
     std::error_code error;
     if (key.empty() || !fs::is_regular_file(entry_file(cache, key), error)) return std::nullopt;
     return native_splat_count(entry_file(cache, key));

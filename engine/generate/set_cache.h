@@ -3,7 +3,7 @@
 // that is damaged is generated again, and a folder that cannot be read or written costs a warning, never a
 // run.
 //
-// In the folder: KEY.splats (native.h, rows by id; the key is set_key.h's, whose text is in the file; its
+// In the folder: KEY.splats (native.h, rows by id; the key is cache_key.h's, whose text is in the file; its
 // file time says when it was last used), KEY.lock while a process generates that set, .KEY.*.part.splats
 // while it is written.
 #pragma once

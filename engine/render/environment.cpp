@@ -175,10 +175,11 @@ void fill_borders(std::vector<std::vector<Image>>& faces, std::size_t level) {
     fill_cube_border(images);
 }
 
-void build_levels(std::vector<std::vector<Image>>& faces) {
+void build_levels(std::vector<std::vector<Image>>& faces, const Progress& progress) {
     fill_borders(faces, 0);
     for (std::size_t level = 0; inner(faces[0][level].width) > 1 || inner(faces[0][level].height) > 1;
          ++level) {
+        progress.check();
         for (std::vector<Image>& face : faces) face.push_back(half_size(face[level]));
         fill_borders(faces, level + 1);
     }
@@ -217,7 +218,7 @@ double texels_per_spread(const Environment& environment, double spread) {
 
 }  // namespace
 
-Environment load_environment(const EnvironmentParams& params) {
+Environment load_environment(const EnvironmentParams& params, const Progress& progress) {
     if (!params.cube.empty() && params.cube.size() != 6)
         throw InputError(
             fmt::format("environment.cube: expected six pictures, in the order +x -x +y -y +z -z, found {}",
@@ -229,7 +230,7 @@ Environment load_environment(const EnvironmentParams& params) {
     Environment environment;
     EnvironmentFaces faces;
     for (const std::filesystem::path& file : files) {
-        const std::vector<Image> pictures = load_environment_pictures(file);
+        const std::vector<Image> pictures = load_environment_pictures(file, progress);
         if (files.size() == 6 && pictures.size() != 1)
             bad_input(file.string(), "environment.cube", "a picture of one face",
                       "a cube map, which environment.image takes");
@@ -240,7 +241,7 @@ Environment load_environment(const EnvironmentParams& params) {
         }
     }
     if (files.size() == 6) check_cube(files, faces);
-    if (!files.empty()) build_levels(faces);
+    if (!files.empty()) build_levels(faces, progress);
     environment.faces = std::make_shared<const EnvironmentFaces>(std::move(faces));
     set_environment_params(environment, params);
     return environment;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/progress.h"
 
 namespace astrosplat {
 
@@ -35,9 +36,9 @@ struct Environment {
     float largest = 0.0f;        // the same times gain
 };
 
-/// Loads the pictures and builds their mip levels (box filter). Throws InputError. The picture part is
-/// independent of gain and rotation, which may be animated: see set_environment_params.
-Environment load_environment(const EnvironmentParams& params);
+/// Loads the pictures and builds their mip levels (box filter). Throws InputError, Cancelled. The picture
+/// part is independent of gain and rotation, which may be animated: see set_environment_params.
+Environment load_environment(const EnvironmentParams& params, const Progress& progress = {});
 void set_environment_params(Environment& environment, const EnvironmentParams& params);
 
 /// Where an equirectangular picture shows a unit direction (environment space), from its upper left corner,

@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "generate/lattice.h"
 #include "render/falloff.h"
-#include "scene/parameter.h"
 
 namespace astrosplat {
 namespace {
@@ -57,14 +56,14 @@ Bounds world_bounds(const Bounds& box, const RenderLayer& layer) {
     return result;
 }
 
-void check_extent(const Bounds& box, const std::string& layer) {
+void check_extent(const Bounds& box, const std::string& layer, double farthest) {
     if (box.empty()) return;
     for (int axis = 0; axis < 3; ++axis)
         for (const double x : {double(box.lo[axis]), double(box.hi[axis])})
-            if (!(std::fabs(x) <= largest_number))
+            if (!(std::fabs(x) <= farthest))
                 throw InputError(
                     fmt::format("{}: expected splats within {:g} scene units of 0, found one at {:g}",
-                                layer_key(layer), largest_number, x));
+                                layer_key(layer), farthest, x));
 }
 
 bool has_environment(const EnvironmentParams& params) {

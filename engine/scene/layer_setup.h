@@ -5,6 +5,7 @@
 #include "core/bounds.h"
 #include "look/apply.h"
 #include "render/frame.h"
+#include "scene/parameter.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -18,8 +19,9 @@ LookInputs look_inputs(const LayerParams& params);
 /// Bounds in world space of a box in layer space: of its eight corners, so that no splat lies outside.
 Bounds world_bounds(const Bounds& box, const RenderLayer& layer);
 
-/// Throws InputError, naming the layer, where splats lie so far out that their distances leave 32 bits.
-void check_extent(const Bounds& box, const std::string& layer);
+/// Throws InputError, naming the layer, where splats lie farther than `farthest` scene units from 0: so far
+/// out that their distances leave 32 bits.
+void check_extent(const Bounds& box, const std::string& layer, double farthest = largest_number);
 
 bool has_environment(const EnvironmentParams& params);
 

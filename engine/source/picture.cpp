@@ -80,7 +80,7 @@ bool report_progress(void* progress, float fraction) {
 
 Image read_all(const fs::path& file, ImageInput& in, const ImageSpec& spec, const Progress& progress) {
     Image all{spec.width, spec.height, spec.nchannels, {}};
-    all.pixels.resize(static_cast<std::size_t>(all.width * all.height * all.channels));
+    all.pixels.resize(all.width * all.height * all.channels);
     const QuietStderr quiet;
     const bool read =
         in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, all.pixels.data(), OIIO::AutoStride,
@@ -127,7 +127,7 @@ Image pick_channels(const Image& all, const ImageSpec& spec, const Channels& cha
              x < std::min(window.width, all.width - shift); ++x) {
             const float* from = all.at(x + shift, from_y);
             float* to = image.at(x, y);
-            for (int c = 0; c < 3; ++c) to[c] = from[channels.color[static_cast<std::size_t>(c)]];
+            for (int c = 0; c < 3; ++c) to[c] = from[channels.color[c]];
             if (channels.luma_chroma) to_rgb(to);
             if (count == 4) to[3] = from[channels.alpha];
         }
@@ -203,7 +203,7 @@ Picture read_picture(const fs::path& file, const Progress& progress) {
     const Channels channels = choose_channels(spec);
     const Image all = read_all(file, *in, spec, progress);
     const int orientation = orientation_of(spec);
-    const char* const turn = orientations[static_cast<std::size_t>(orientation)];
+    const char* const turn = orientations[orientation];
     Picture picture;
     picture.image = turned(pick_channels(all, spec, channels), orientation);
     picture.max_integer = largest_integer(spec);

@@ -236,6 +236,8 @@ TEST(Sha256, OfFiles) {
     EXPECT_EQ(message_of<InputError>([&] { sha256_of_file(missing); }),
               missing + ": cannot be read: No such file or directory");
     EXPECT_NE(message_of<InputError>([&] { sha256_of_file(folder.path()); }), "no error");
+    const std::atomic<bool> cancelled{true};
+    EXPECT_THROW(sha256_of_file(folder.file("a b", "abc"), Progress{{}, &cancelled}), Cancelled);
 }
 
 TEST(File, ReadsAllBytesOrSaysWhyNot) {

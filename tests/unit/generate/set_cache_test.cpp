@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "core/log.h"
-#include "generate/generate.h"
-#include "generate/set_key.h"
+#include "generate/cache_key.h"
+#include "generate/load_source.h"
 #include "splat_files/native.h"
 #include "support/temp_folder.h"
 #include "support/variable.h"
@@ -80,7 +80,7 @@ class SetCacheTest : public testing::Test {
     }
     LoadedSet load() const { return load(source_); }
     fs::path key_file(const std::string& ending) const {
-        return cache_.folder / (set_key(source_, "dust").name + ending);
+        return cache_.folder / (cache_key(source_, "dust").name + ending);
     }
 
     TempFolder folder_;
@@ -168,11 +168,11 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
         [](SourceParams& s) { s.uv = UvMode::planar_xz; },
         [](SourceParams& s) { s.seed = 5; },
     };
-    std::vector<std::string> keys = {set_key(source_, "dust").name, set_key(source_, "stars").name};
+    std::vector<std::string> keys = {cache_key(source_, "dust").name, cache_key(source_, "stars").name};
     for (const auto& change : changes) {
         SourceParams source = source_;
         change(source);
-        keys.push_back(set_key(source, "dust").name);
+        keys.push_back(cache_key(source, "dust").name);
         EXPECT_EQ(keys.back().size(), 64u);
     }
     std::sort(keys.begin(), keys.end());
@@ -182,35 +182,40 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
 TEST_F(SetCacheTest, WhatDoesNotReachTheSetStaysOutOfTheKey) {
     SourceParams seeded = source_, sized = source_, moved = source_;
     seeded.seed = 5;
-    EXPECT_EQ(set_key(seeded, "dust").name, set_key(seeded, "stars").name);
+    EXPECT_EQ(cache_key(seeded, "dust").name, cache_key(seeded, "stars").name);
     sized.voxel_size = 0.1;
-    const std::string key = set_key(sized, "dust").name;
+    const std::string key = cache_key(sized, "dust").name;
     sized.count = 7;
     sized.meshes[0].relief = 0.7;
-    EXPECT_EQ(set_key(sized, "dust").name, key);
+    EXPECT_EQ(cache_key(sized, "dust").name, key);
     fs::copy_file(folder_ / "p.ppm", folder_ / "other.ppm");
     moved.meshes[0].texture = {folder_ / "other.ppm"};
-    EXPECT_EQ(set_key(moved, "dust").name, set_key(source_, "dust").name);
+    EXPECT_EQ(cache_key(moved, "dust").name, cache_key(source_, "dust").name);
 }
 
 TEST_F(SetCacheTest, BytesOfEveryInputChangeTheKey) {
     const SourceParams source = mesh_source();
-    std::vector<std::string> keys = {set_key(source, "dust").name};
+    std::vector<std::string> keys = {cache_key(source, "dust").name};
     folder_.file("p.ppm", picture(16, 129));
-    keys.push_back(set_key(source, "dust").name);
+    keys.push_back(cache_key(source, "dust").name);
     folder_.file("a.obj", std::string(triangle) + "#\n");
-    keys.push_back(set_key(source, "dust").name);
+    keys.push_back(cache_key(source, "dust").name);
     folder_.file("a.mtl", "newmtl m\nmap_Kd q.ppm\n");
-    keys.push_back(set_key(source, "dust").name);
+    keys.push_back(cache_key(source, "dust").name);
     folder_.file("q.ppm", picture(8));
-    keys.push_back(set_key(source, "dust").name);
+    keys.push_back(cache_key(source, "dust").name);
     std::sort(keys.begin(), keys.end());
     EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
 }
 
+TEST_F(SetCacheTest, HashingInputsCanBeCancelled) {
+    const std::atomic<bool> cancelled{true};
+    EXPECT_THROW(cache_key(mesh_source(), "dust", Progress{{}, &cancelled}), Cancelled);
+}
+
 TEST_F(SetCacheTest, InputsThatCannotBeReadHaveNoKeyAndTheLoaderSaysWhy) {
     source_.meshes[0].texture = {folder_ / "none.ppm"};
-    EXPECT_EQ(set_key(source_, "dust").name, "");
+    EXPECT_EQ(cache_key(source_, "dust").name, "");
     try {
         load();
         FAIL();
@@ -244,11 +249,11 @@ TEST_F(SetCacheTest, TheLeastRecentlyUsedGoFirst) {
     std::int64_t largest = 0;
     for (const std::uint32_t seed : {1u, 2u, 3u}) {
         LoadedSet loaded = load(with_seed(seed));
-        loaded.set.key = set_key_text(with_seed(seed), "dust");
+        loaded.set.key = cache_key_text(with_seed(seed), "dust");
         largest = std::max(largest, native_file_bytes(loaded.set));
     }
     const auto age = [&](std::uint32_t seed, int hours) {
-        fs::last_write_time(cache_.folder / (set_key(with_seed(seed), "dust").name + ".splats"),
+        fs::last_write_time(cache_.folder / (cache_key(with_seed(seed), "dust").name + ".splats"),
                             fs::file_time_type::clock::now() - std::chrono::hours(hours));
     };
     age(1, 30), age(2, 20), age(3, 10);
@@ -345,7 +350,7 @@ TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
 
 TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
     fs::create_directories(cache_.folder);
-    const std::string dead(64, 'd'), alive(64, 'a'), own = set_key(source_, "dust").name;
+    const std::string dead(64, 'd'), alive(64, 'a'), own = cache_key(source_, "dust").name;
     const auto leave = [&](const std::string& name) {
         std::ofstream(cache_.folder / name) << "x";
         return cache_.folder / name;
@@ -376,7 +381,7 @@ TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
     set_log_sink([&](LogLevel, const std::string& line) { waits = waits || line.find("waiting") < 99; });
     std::thread other([&] { loaded = load(); });
     while (!waits) std::this_thread::yield();
-    set.key = set_key_text(source_, "dust");
+    set.key = cache_key_text(source_, "dust");
     write_native(key_file(".splats"), set, {}, RowOrder::id);
     set.key.clear();
     fs::remove(key_file(".lock"));  // as FileLock gives it back
@@ -390,14 +395,17 @@ TEST_F(SetCacheTest, WaitingCanBeCancelled) {
     fs::create_directories(cache_.folder);
     const int lock = open(key_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     ASSERT_EQ(flock(lock, LOCK_EX), 0);
-    const std::atomic<bool> cancelled{true};
+    std::atomic<bool> cancelled{false};
+    set_log_sink([&](LogLevel, const std::string& line) { cancelled = line.find("waiting") < 99; });
     EXPECT_THROW(load_source(cache_, source_, "dust", Progress{{}, &cancelled}), Cancelled);
+    EXPECT_TRUE(cancelled);
     close(lock);
 }
 
 TEST_F(SetCacheTest, ACancelledRunLeavesNothing) {
-    const std::atomic<bool> cancelled{true};
-    EXPECT_THROW(load_source(cache_, source_, "dust", Progress{{}, &cancelled}), Cancelled);
+    std::atomic<bool> cancelled{false};
+    const Progress progress{[&](double) { cancelled = true; }, &cancelled};  // when some is generated
+    EXPECT_THROW(load_source(cache_, source_, "dust", progress), Cancelled);
     EXPECT_TRUE(fs::is_empty(cache_.folder));
 }
 

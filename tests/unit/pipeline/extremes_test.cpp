@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "generate/generate.h"
+#include "generate/load_source.h"
 #include "pipeline.h"
 #include "scene/describe.h"
 #include "support/small_scene.h"
@@ -93,6 +93,25 @@ TEST_F(Extremes, SplatsTooFarOutNameTheirLayer) {
     } catch (const InputError& error) {
         EXPECT_STREQ(error.what(),
                      "layer.dust: expected splats within 1e+12 scene units of 0, found one at 1e+20");
+    }
+}
+
+TEST_F(Extremes, SplatsThatTheirTransformPutsTooFarOutNameTheirLayer) {
+    SplatSet far_out = *sets[1];
+    far_out.position[7].y = 1e8f;
+    sets[1] = std::make_shared<const SplatSet>(std::move(far_out));
+    Pipeline pipeline;
+    pipeline.set_scene(small.scene, sets);
+    EXPECT_NO_THROW(pipeline.frame(1.0, pipeline.settings(1.0)));
+    small.scene.layers[1].transform.scale = 1e9;
+    pipeline.set_scene(small.scene, sets);
+    try {
+        pipeline.frame(1.0, pipeline.settings(1.0));
+        FAIL() << "expected an InputError";
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()).find("layer.dust: expected splats within 1e+15 scene units of 0"),
+                  0u)
+            << error.what();
     }
 }
 

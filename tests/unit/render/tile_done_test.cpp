@@ -14,7 +14,7 @@ namespace {
 
 using namespace astrosplat::test;
 
-constexpr int width_px = 211, height_px = 133;
+constexpr int frame_width_px = 211, frame_height_px = 133;
 
 /// A row of splats so dense that a small memory limit asks for bands.
 ShadedSplats dense_splats() {
@@ -31,14 +31,14 @@ RenderedFrame watch(const RenderSettings& settings, const TileDone& tile_done,
                     const Progress& progress = {}) {
     const ShadedSplats splats = dense_splats();
     const RenderLayer layer = layer_of("dense", splats);
-    return render({&layer, 1}, pixel_camera(width_px, height_px), nullptr, settings, progress, nullptr,
-                  tile_done);
+    return render({&layer, 1}, pixel_camera(frame_width_px, frame_height_px), nullptr, settings, progress,
+                  nullptr, tile_done);
 }
 
 class TileDoneTest : public ::testing::TestWithParam<std::int64_t> {  // memory limit in bytes
   protected:
     RenderSettings settings() const {
-        RenderSettings s = settings_of(width_px, height_px);
+        RenderSettings s = settings_of(frame_width_px, frame_height_px);
         s.region = {10, 5, 150, 120};
         s.memory_limit_bytes = GetParam();
         return s;
@@ -84,10 +84,10 @@ TEST(TileDone, TheMiddleComesFirst) {
     const int before = thread_count();
     set_thread_count(1);
     std::vector<std::int64_t> distances;  // of the tiles' centres from the picture's, squared and times four
-    RenderSettings settings = settings_of(width_px, height_px);
+    RenderSettings settings = settings_of(frame_width_px, frame_height_px);
     settings.tile_px = 32;
     watch(settings, [&](const Region& t, const RenderedFrame&) {
-        const std::int64_t x = 2 * t.x + t.width - width_px, y = 2 * t.y + t.height - height_px;
+        const std::int64_t x = 2 * t.x + t.width - frame_width_px, y = 2 * t.y + t.height - frame_height_px;
         distances.push_back(x * x + y * y);
     });
     set_thread_count(before);

@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "source/texture.h"
+#include "support/cube_map.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
 
@@ -174,37 +175,10 @@ TEST(Orientation, OfAJpegAndInWords) {
     EXPECT_EQ(said, file.string() + ": turned by 90 degrees clockwise, as its orientation 6 says");
 }
 
-/// Makes a cube map of an uncompressed EXR by putting the attribute "envmap" before its others and moving the
-/// offsets of the rows. (OpenImageIO 2.4 cannot write one.)
-void make_cube_map(const fs::path& file, std::size_t rows, std::size_t row_bytes) {
-    std::ifstream in(file, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    const std::string attribute("envmap\0envmap\0\1\0\0\0\1", 19);
-    const std::size_t table = bytes.size() - rows * (8 + row_bytes) - rows * 8;
-    for (std::size_t row = 0; row < rows; ++row) {
-        std::uint64_t offset = 0;
-        std::memcpy(&offset, bytes.data() + table + 8 * row, 8);
-        ASSERT_EQ(offset, table + rows * 8 + row * (8 + row_bytes));
-        offset += attribute.size();
-        std::memcpy(bytes.data() + table + 8 * row, &offset, 8);
-    }
-    bytes.insert(8, attribute);
-    std::ofstream(file, std::ios::binary) << bytes;
-}
-
 TEST(CubeMap, AllSixFacesOfAnExrAreRead) {
     const TempFolder folder;
-    OIIO::ImageSpec spec(4, 24, 3, OIIO::TypeFloat);
-    spec.attribute("compression", "none");
-    std::vector<float> pixels;
-    for (int i = 0; i < 4 * 24; ++i) pixels.insert(pixels.end(), 3, static_cast<float>(i));
     const fs::path file = folder / "sky.exr";
-    {
-        const auto out = OIIO::ImageOutput::create(file.string());
-        ASSERT_TRUE(out && out->open(file.string(), spec) &&
-                    out->write_image(OIIO::TypeFloat, pixels.data()) && out->close());
-    }
-    make_cube_map(file, 24, 4 * 3 * sizeof(float));
+    write_cube_map(file, 4, [](int x, int y) { return static_cast<float>(4 * y + x); });
     const std::vector<Image> faces = load_environment_pictures(file);
     ASSERT_EQ(faces.size(), 6u);
     for (std::size_t face = 0; face < 6; ++face) {

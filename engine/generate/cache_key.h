@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/progress.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -14,13 +15,14 @@ inline constexpr int set_version = 2;
 /// What is hashed, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
 /// picture also its material libraries and their pictures), and the parameters in use, with the seed
 /// resolved. Names of files stay out, except for their endings. Empty where an input cannot be read: then the
-/// loader says why. For kind mesh.
-std::string set_key_text(const SourceParams& source, const std::string& layer_name);
+/// loader says why. For kind mesh. Throws Cancelled.
+std::string cache_key_text(const SourceParams& source, const std::string& layer_name,
+                           const Progress& progress = {});
 
 /// That text, and its hash, which names the entry; both empty where an input cannot be read.
-struct SetKey {
+struct CacheKey {
     std::string text, name;
 };
-SetKey set_key(const SourceParams& source, const std::string& layer_name);
+CacheKey cache_key(const SourceParams& source, const std::string& layer_name, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
 // One line for each thing that a generated set depends on.
-#include "generate/set_key.h"
+#include "generate/cache_key.h"
 
 #include <fmt/format.h>
 
@@ -10,28 +10,30 @@
 #include "core/sha256.h"
 #include "generate/lattice.h"
 #include "source/mesh.h"
+#include "source/obj.h"
 
 namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string file_line(const char* what, const fs::path& file) {
-    return fmt::format("{} {} {}\n", what, sha256_of_file(file), file.extension().string());
+std::string file_line(const char* what, const fs::path& file, const Progress& progress) {
+    return fmt::format("{} {} {}\n", what, sha256_of_file(file, progress), file.extension().string());
 }
 
-std::string mesh_lines(const MeshInput& input) {
+std::string mesh_lines(const MeshInput& input, const Progress& progress) {
     const auto& [mesh, texture, relief] = input;
     std::string text;
     if (is_builtin_mesh(mesh)) {
         text = fmt::format("built-in {}\n", mesh.string());
         if (mesh == "relief") text += fmt::format("relief {}\n", relief);
     } else {
-        text = file_line("mesh", mesh);
+        text = file_line("mesh", mesh, progress);
         if (texture.empty())
-            for (const fs::path& file : obj_materials(mesh)) text += file_line("material", file);
+            for (const fs::path& file : obj_materials(mesh, progress))
+                text += file_line("material", file, progress);
     }
-    for (const fs::path& file : texture) text += file_line("texture", file);
+    for (const fs::path& file : texture) text += file_line("texture", file, progress);
     return text;
 }
 
@@ -59,13 +61,14 @@ std::string lattice_lines(const SourceParams& source) {
 
 }  // namespace
 
-std::string set_key_text(const SourceParams& source, const std::string& layer_name) try {
+std::string cache_key_text(const SourceParams& source, const std::string& layer_name,
+                           const Progress& progress) try {
     assert(source.kind == SourceKind::mesh);
     // Names all fields, so that a new one cannot be forgotten: either it belongs below, or among the unused.
     [[maybe_unused]] const auto& [kind, meshes, texture, buffer, voxels, voxel_size, count, jitter,
                                   max_distance, uv, seed, file, stars] = source;
     std::string text = fmt::format("set {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
-    for (const MeshInput& input : meshes) text += mesh_lines(input);
+    for (const MeshInput& input : meshes) text += mesh_lines(input, progress);
     text += texture_lines(texture) + lattice_lines(source);
     return text + fmt::format("jitter {}\nmax_distance {}\nuv {}\nseed {}\n", jitter, max_distance,
                               static_cast<int>(uv), resolved_seed(seed, layer_name));
@@ -73,8 +76,8 @@ std::string set_key_text(const SourceParams& source, const std::string& layer_na
     return {};
 }
 
-SetKey set_key(const SourceParams& source, const std::string& layer_name) {
-    std::string text = set_key_text(source, layer_name);
+CacheKey cache_key(const SourceParams& source, const std::string& layer_name, const Progress& progress) {
+    std::string text = cache_key_text(source, layer_name, progress);
     std::string name = text.empty() ? "" : Sha256().add(text).hex();
     return {std::move(text), std::move(name)};
 }
