@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "generate/generate.h"
+#include "generate/load_source.h"
 #include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"

@@ -18,6 +18,7 @@
 #include "scene/load.h"
 #include "source/fits.h"
 #include "source/mesh.h"
+#include "source/obj.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {

@@ -15,6 +15,7 @@
 #include "scene/new_scene.h"
 #include "scene/value.h"
 #include "source/mesh.h"
+#include "source/obj.h"
 #include "source/picture.h"
 #include "splat_files/splat_file.h"
 

@@ -1,5 +1,6 @@
 // Counting into bins; the pictures are read again, because a set no longer knows their values.
 #include "viewer/histograms.h"
+#include "source/obj.h"
 
 #include <algorithm>
 #include <cmath>

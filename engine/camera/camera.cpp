@@ -210,8 +210,8 @@ ExrMatrices exr_matrices(const Camera& camera, double width_px, double height_px
     ExrMatrices result{};
     for (int r = 0; r < 4; ++r)
         for (int c = 0; c < 4; ++c) {
-            result.world_to_camera[4 * r + c] = static_cast<float>(column[static_cast<std::size_t>(c)][r]);
-            result.world_to_ndc[4 * r + c] = static_cast<float>(ndc[static_cast<std::size_t>(c)][r]);
+            result.world_to_camera[4 * r + c] = static_cast<float>(column[c][r]);
+            result.world_to_ndc[4 * r + c] = static_cast<float>(ndc[c][r]);
         }
     return result;
 }

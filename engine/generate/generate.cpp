@@ -15,6 +15,7 @@
 #include "generate/block_query.h"
 #include "generate/kept_store.h"
 #include "generate/surface.h"
+#include "source/sample.h"
 
 namespace astrosplat {
 namespace {
@@ -88,9 +89,9 @@ class BlockRun {
         const std::vector<BlockRange> rows = rows_of(blocks, batch);
         parallel_for(static_cast<std::int64_t>(rows.size()), [&](std::int64_t row, int number) {
             progress_.check();
-            const BlockRange& range = rows[static_cast<std::size_t>(row)];
+            const BlockRange& range = rows[row];
             const std::size_t count = range.end - range.begin;
-            Worker& worker = workers_[static_cast<std::size_t>(number)];
+            Worker& worker = workers_[number];
             const std::size_t runs = worker.kept.runs().size();
             run_row({&blocks[range.begin], count}, kind, worker);
             if (watcher_) watcher_->keeps(std::span(worker.kept.runs()).subspan(runs));

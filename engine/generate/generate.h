@@ -4,12 +4,10 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 
 #include "core/progress.h"
 #include "generate/lattice.h"
 #include "generate/textured_mesh.h"
-#include "source/source.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -26,10 +24,5 @@ std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const L
 SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
                   double jitter, std::uint32_t seed, const Progress& progress = {},
                   KeptWatcher* watcher = nullptr);
-
-/// The whole of a source: kind mesh as above, kind splats by reading the file (sorted by id). Prints at info
-/// level what was chosen. Throws InputError; kind stars is refused in one clear line until it exists.
-SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress = {},
-                     KeptWatcher* watcher = nullptr);
 
 }  // namespace astrosplat

@@ -1,4 +1,6 @@
 // The front door of a layer's source: meshes and pictures from files or built in, or a splat file.
+#include "generate/load_source.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +10,8 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "generate/generate.h"
+#include "source/obj.h"
+#include "source/relief.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {

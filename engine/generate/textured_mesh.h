@@ -1,10 +1,9 @@
-// A mesh together with the pictures that colour it: what generation reads. In: a mesh source's parameters.
+// A mesh together with the pictures that colour it: what generation reads.
 #pragma once
 
 #include <vector>
 
 #include "source/mesh.h"
-#include "source/source.h"
 #include "source/texture.h"
 
 namespace astrosplat {
@@ -14,9 +13,5 @@ struct TexturedMesh {
     Mesh mesh;
     std::vector<Texture> textures;
 };
-
-/// Loads the meshes and pictures of a mesh source (paths already resolved). Wrap::automatic is clamp for
-/// built-in meshes and planar uv, repeat for a mesh's own uv. Throws InputError.
-std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress = {});
 
 }  // namespace astrosplat

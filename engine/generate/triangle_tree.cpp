@@ -79,9 +79,8 @@ Buffer<Middle> place_order(const Buffer<TriangleCorners>& corners, const Triangl
     });
     std::vector<std::span<Middle>> parts;  // one task each
     cut(order, std::size_t{1} << 15, [&](std::span<Middle> part) { parts.push_back(part); });
-    parallel_for(static_cast<std::int64_t>(parts.size()), [&](std::int64_t part, int) {
-        cut(parts[static_cast<std::size_t>(part)], fan, [](std::span<Middle>) {});
-    });
+    parallel_for(static_cast<std::int64_t>(parts.size()),
+                 [&](std::int64_t part, int) { cut(parts[part], fan, [](std::span<Middle>) {}); });
     return order;
 }
 

@@ -23,7 +23,7 @@ std::array<float, table_steps + 2> make_srgb_table() {
     std::array<float, table_steps + 2> table{};
     for (int i = 0; i <= table_steps + 1; ++i) {
         double s = static_cast<double>(i) / table_steps;
-        table[static_cast<std::size_t>(i)] = static_cast<float>(1.055 * real::pow(s, 2.0 / 2.4) - 0.055);
+        table[i] = static_cast<float>(1.055 * real::pow(s, 2.0 / 2.4) - 0.055);
     }
     return table;
 }
@@ -123,7 +123,7 @@ std::vector<std::uint16_t> encode_16bit(const FrameFormat& format, const Image& 
 
 Image encode_float(const FrameFormat& format, const Image& image) {
     Image result{image.width, image.height, stored_channels(format), {}};
-    result.pixels.resize(static_cast<std::size_t>(image.width * image.height * result.channels));
+    result.pixels.resize(image.width * image.height * result.channels);
     parallel_each(image.height, 16, [&](std::int64_t y) {
         for (std::int64_t x = 0; x < image.width; ++x)
             encode_pixel(format, 1.0f, image.at(x, y), result.at(x, y));

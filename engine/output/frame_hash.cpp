@@ -13,6 +13,7 @@
 #include "scene/describe.h"
 #include "scene/input_files.h"
 #include "source/mesh.h"
+#include "source/obj.h"
 
 namespace astrosplat {
 namespace {

@@ -40,12 +40,12 @@ class Places {
     Places(const Environment& environment, const Camera& camera, const Image& level, const Image& picture)
         : columns_(picture.width / block_px + 2), size_(level.width - 2, level.height - 2) {
         const std::int64_t rows = picture.height / block_px + 2;
-        places_.resize(static_cast<std::size_t>(columns_ * rows));
+        places_.resize(columns_ * rows);
         parallel_each(columns_ * rows, 8 * columns_, [&](std::int64_t i) {
             const glm::dvec3 ray = ray_direction(camera, static_cast<double>(i % columns_ * block_px) + 0.5,
                                                  static_cast<double>(i / columns_ * block_px) + 0.5);
             const glm::dvec2 place = latlong_place(environment.environment_from_world * ray);
-            places_[static_cast<std::size_t>(i)] = glm::vec2(place * glm::dvec2(size_));
+            places_[i] = glm::vec2(place * glm::dvec2(size_));
         });
     }
 

@@ -65,8 +65,8 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
                        const ScreenRect& rect, Buffer<ScreenSplat>& out, Buffer<Shape>& shapes) {
     const shared::Instance at = shared::instance_of(layer.lens, splat.position);
     if (!shared::is_in_range(layer.lens, at.depth)) return;
-    const glm::mat3 ellipsoid = splat.radius / layer.radius_scale * glm::mat3(layer.camera_from_layer) *
-                                layer.splats->stretch[static_cast<std::size_t>(index)];
+    const glm::mat3 ellipsoid =
+        splat.radius / layer.radius_scale * glm::mat3(layer.camera_from_layer) * layer.splats->stretch[index];
     const Shape shape = project_ellipsoid(layer.lens, splat.position, ellipsoid, at.px_per_unit);
     splat.radius = shape_radii(shape).larger / at.px_per_unit;
     ScreenSplat screen;

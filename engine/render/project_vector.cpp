@@ -90,7 +90,7 @@ void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64
         for (std::uint32_t bits = project_block(layer, begin, rect, c); bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
             const std::int64_t index = begin + i;
-            const glm::vec3& color = layer.splats->color[static_cast<std::size_t>(index)];
+            const glm::vec3& color = layer.splats->color[index];
             *to++ = {c.disc[i][0],
                      c.disc[i][1],
                      c.disc[i][2],
@@ -102,7 +102,7 @@ void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64
                      hybrid ? hybrid_of(layer, {c.x[i], c.y[i], c.z[i]}) : std::uint16_t{0}};
         }
     }
-    out.resize(static_cast<std::size_t>(to - out.data()));
+    out.resize(to - out.data());
 }
 
 int block_size() { return lanes; }

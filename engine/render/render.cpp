@@ -53,7 +53,7 @@ float largest_light(std::span<const RenderLayer> layers, const Progress& progres
                 const glm::vec3& c = splats.color[i];
                 most = std::max(most, splats.alpha[i] * std::max({c.x, c.y, c.z}));
             }
-            partial[static_cast<std::size_t>(begin / chunk)] = most;
+            partial[begin / chunk] = most;
         });
         for (float p : partial) largest = std::max(largest, p * layer.render.opacity);
     }
@@ -267,8 +267,7 @@ void render_band(const Job& job, const TileGrid& grid, std::int64_t records, dou
     std::atomic<std::int64_t> done = 0;
     parallel_for(grid.tiles(), [&](std::int64_t i, int worker) {
         job.progress.check();
-        render_tile(job, bins, order[static_cast<std::size_t>(i)], workers[static_cast<std::size_t>(worker)],
-                    frame);
+        render_tile(job, bins, order[i], workers[worker], frame);
         const std::int64_t finished = ++done;
         if (finished % 64 == 0)
             job.progress.at(before + share * (0.4 + 0.6 * static_cast<double>(finished) /

@@ -84,7 +84,7 @@ void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Env
     const double spread = pixel_spread(camera);
     for (int y = 0; y < tile.height; ++y) {
         for (int x = 0; x < tile.width; ++x) {
-            PixelState& pixel = pixels_[static_cast<std::size_t>(y * tile.width + x)];
+            PixelState& pixel = pixels_[y * tile.width + x];
             const glm::dvec3 ray = ray_direction(camera, static_cast<double>(tile.x0 + x) + 0.5,
                                                  static_cast<double>(tile.y0 + y) + 0.5);
             const glm::vec3 color = sample_environment(*environment, ray, spread);
@@ -98,7 +98,7 @@ void TileResolver::begin_with_backdrop(const TilePlanes& tile) {
     for (int y = 0; y < tile.height; ++y) {
         const float* color = settings_.backdrop->at(tile.x0, tile.y0 + y);
         for (int x = 0; x < tile.width; ++x) {
-            PixelState& pixel = pixels_[static_cast<std::size_t>(y * tile.width + x)];
+            PixelState& pixel = pixels_[y * tile.width + x];
             std::copy_n(color + 4 * x, 3, pixel.color);
             pixel.alpha = 1.0f;
         }

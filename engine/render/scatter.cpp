@@ -200,20 +200,20 @@ void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const 
             chunks.push_back({l, begin, std::min(begin + chunk_splats, layers[l].splats->size())});
     sums_.assign(chunks.size(), {});
     std::vector<Writer> writers(static_cast<std::size_t>(thread_count()));
-    for (Writer& writer : writers) writer.cursors.resize(static_cast<std::size_t>(bins()));
+    for (Writer& writer : writers) writer.cursors.resize(bins());
     const ScreenRect rect = rect_of(grid_);
     parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int worker) {
-        const Chunk& chunk = chunks[static_cast<std::size_t>(c)];
+        const Chunk& chunk = chunks[c];
         const LayerProjection& layer = layers[chunk.layer];
         const int group = group_of_layer[chunk.layer];
-        Writer& writer = writers[static_cast<std::size_t>(worker)];
+        Writer& writer = writers[worker];
         // Level of detail may turn a splat into thousands.
         const std::int64_t step = layer.lod ? 16 : step_splats;
         for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
             progress.check();
             writer.splats.clear();
             project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats, writer.shapes);
-            sum_up(writer, sums_[static_cast<std::size_t>(c)]);
+            sum_up(writer, sums_[c]);
             write(list_entries(layer, group, writer), store, writer);
         }
     });
@@ -229,7 +229,7 @@ void TileBins::collect(std::int64_t tile, int group, std::vector<std::span<const
         const std::int64_t bin =
             group * bins_per_group_ + level.first_bin + (row >> l) * level.columns + (column >> l);
         const auto at = [&](std::int64_t b) {
-            return blocks_.begin() + static_cast<std::ptrdiff_t>(first_block_[static_cast<std::size_t>(b)]);
+            return blocks_.begin() + static_cast<std::ptrdiff_t>(first_block_[b]);
         };
         out.insert(out.end(), at(bin), at(bin + 1));
     }

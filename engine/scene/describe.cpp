@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "scene/describer.h"
+#include "scene/describe_layer.h"
+#include "scene/describe_look.h"
 
 namespace astrosplat {
 

@@ -1,6 +1,8 @@
 // The description of one layer: [[layer]], transform, source; describe_look.cpp has the rest. One line per
 // parameter.
-#include "scene/describer.h"
+#include "scene/describe_layer.h"
+
+#include "scene/describe_look.h"
 
 namespace astrosplat {
 namespace {

@@ -1,6 +1,6 @@
 // The description of [layer.look] and [layer.render], which are also what a preset holds. One line per
 // parameter.
-#include "scene/describer.h"
+#include "scene/describe_look.h"
 
 namespace astrosplat {
 namespace {

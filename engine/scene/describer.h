@@ -136,9 +136,4 @@ class Describer {
     bool animated_;
 };
 
-/// The keys of one layer; the describer stands at "layer.NAME".
-void describe_layer(const Describer& d, LayerParams& layer);
-void describe_look(const Describer& d, Look& look);
-void describe_render(const Describer& d, LayerRender& render);
-
 }  // namespace astrosplat

@@ -26,7 +26,7 @@ const Value::List& list_of(const Value& value, const ParameterSpec& spec) {
 
 }  // namespace
 
-bool boolean_of(const Value& value) {
+bool boolean_of(const Value& value, const ParameterSpec&) {
     if (const auto* b = std::get_if<bool>(&value.data)) return *b;
     refuse("true or false", kind_of(value));
 }

@@ -15,7 +15,7 @@
 namespace astrosplat {
 
 // The checks, without templates. Each throws ValueError.
-bool boolean_of(const Value& value);
+bool boolean_of(const Value& value, const ParameterSpec& spec);
 std::int64_t integer_of(const Value& value, const ParameterSpec& spec);  // whole floats such as 2e6 count
 double number_of(const Value& value, const ParameterSpec& spec);         // finite and in range
 float float_of(const Value& value, const ParameterSpec& spec);
@@ -35,11 +35,16 @@ inline double widened(float x) { return widen(x); }
 template <class T>
 struct Field;
 
+/// Fields of one type and one way in.
+template <ParameterType kind, auto read>
+struct PlainField {
+    static void describe(ParameterSpec& spec) { spec.type = kind; }
+    static auto set(const Value& value, const ParameterSpec& spec) { return read(value, spec); }
+};
+
 template <>
-struct Field<bool> {
-    static void describe(ParameterSpec& spec) { spec.type = ParameterType::boolean; }
+struct Field<bool> : PlainField<ParameterType::boolean, boolean_of> {
     static Value get(bool field, const ParameterSpec&) { return field; }
-    static bool set(const Value& value, const ParameterSpec&) { return boolean_of(value); }
 };
 
 template <std::integral T>
@@ -56,17 +61,13 @@ requires(!std::same_as<T, bool>) struct Field<T> {
 };
 
 template <>
-struct Field<double> {
-    static void describe(ParameterSpec& spec) { spec.type = ParameterType::number; }
+struct Field<double> : PlainField<ParameterType::number, number_of> {
     static Value get(double field, const ParameterSpec&) { return field; }
-    static double set(const Value& value, const ParameterSpec& spec) { return number_of(value, spec); }
 };
 
 template <>
-struct Field<float> {
-    static void describe(ParameterSpec& spec) { spec.type = ParameterType::number; }
+struct Field<float> : PlainField<ParameterType::number, float_of> {
     static Value get(float field, const ParameterSpec&) { return widen(field); }
-    static float set(const Value& value, const ParameterSpec& spec) { return float_of(value, spec); }
 };
 
 template <class T>
@@ -92,43 +93,27 @@ struct Field<std::string> {
 };
 
 template <>
-struct Field<std::vector<std::string>> {
-    static void describe(ParameterSpec& spec) { spec.type = ParameterType::words; }
+struct Field<std::vector<std::string>> : PlainField<ParameterType::words, words_of> {
     static Value get(const std::vector<std::string>& field, const ParameterSpec&) {
         return Value::List(field.begin(), field.end());
     }
-    static std::vector<std::string> set(const Value& value, const ParameterSpec& spec) {
-        return words_of(value, spec);
-    }
 };
 
 template <>
-struct Field<std::filesystem::path> {
-    static void describe(ParameterSpec& spec) { spec.type = ParameterType::file; }
+struct Field<std::filesystem::path> : PlainField<ParameterType::file, text_of> {
     static Value get(const std::filesystem::path& field, const ParameterSpec&) { return field.string(); }
-    static std::filesystem::path set(const Value& value, const ParameterSpec& spec) {
-        return text_of(value, spec);
-    }
 };
 
 template <>
-struct Field<std::vector<std::filesystem::path>> {
-    static void describe(ParameterSpec& spec) { spec.type = ParameterType::files; }
+struct Field<std::vector<std::filesystem::path>> : PlainField<ParameterType::files, files_of> {
     static Value get(const std::vector<std::filesystem::path>& field, const ParameterSpec& spec) {
         return files_value(field, spec);
     }
-    static std::vector<std::filesystem::path> set(const Value& value, const ParameterSpec& spec) {
-        return files_of(value, spec);
-    }
 };
 
 template <>
-struct Field<std::vector<glm::vec2>> {
-    static void describe(ParameterSpec& spec) { spec.type = ParameterType::curve; }
+struct Field<std::vector<glm::vec2>> : PlainField<ParameterType::curve, curve_of> {
     static Value get(const std::vector<glm::vec2>& field, const ParameterSpec&) { return curve_value(field); }
-    static std::vector<glm::vec2> set(const Value& value, const ParameterSpec& spec) {
-        return curve_of(value, spec);
-    }
 };
 
 template <int N, class T>
@@ -153,11 +138,11 @@ struct Field<glm::vec<N, T>> {
         Vector field;
         for (int i = 0; i < N; ++i) {
             if constexpr (std::integral<T>)
-                field[i] = integer_of(numbers[static_cast<std::size_t>(i)], spec);
+                field[i] = integer_of(numbers[i], spec);
             else if constexpr (std::same_as<T, float>)
-                field[i] = float_of(numbers[static_cast<std::size_t>(i)], spec);
+                field[i] = float_of(numbers[i], spec);
             else
-                field[i] = numbers[static_cast<std::size_t>(i)];
+                field[i] = numbers[i];
         }
         return field;
     }

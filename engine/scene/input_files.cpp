@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "source/mesh.h"
+#include "source/obj.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -69,7 +69,7 @@ std::string xmp_credit(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     std::string start(searched_bytes, '\0');
     in.read(start.data(), static_cast<std::streamsize>(start.size()));
-    start.resize(static_cast<std::size_t>(in.gcount()));
+    start.resize(in.gcount());
     const std::size_t begin = start.find("<x:xmpmeta");
     if (begin == std::string::npos) return {};
     const std::string_view packet = up_to(std::string_view(start).substr(begin), "</x:xmpmeta>");

@@ -1,5 +1,5 @@
-// Triangle meshes: OBJ files (their materials through tinyobjloader) and the built-in shapes. In: a path or a
-// name. Out: Mesh, with polygons triangulated and negative indices resolved.
+// Triangle meshes: their measures, planar projections and the built-in shapes. In: a name, or a Mesh of
+// obj.h.
 #pragma once
 
 #include <array>
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "core/bounds.h"
-#include "core/progress.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -32,18 +31,8 @@ struct Mesh {
     std::string name;  // the file, for messages
 };
 
-/// Reads an OBJ: several objects, quads and polygons, negative indices, map_Kd. Faces keep the file's order.
-/// A missing MTL is a warning. Throws InputError (file, line where known) for unreadable, truncated or empty
-/// files, indices out of range, coordinates that are not finite;
-/// Cancelled.
-Mesh load_obj(const std::filesystem::path& file, const Progress& progress = {});
-
 /// Bounds of all vertices (also of those no face uses).
 Bounds bounds(const Mesh& mesh);
-
-/// The files besides the OBJ itself that its map_Kd pictures come from: the material libraries that it names
-/// and the pictures that those name, as far as they exist. Reads no geometry. Throws InputError.
-std::vector<std::filesystem::path> obj_materials(const std::filesystem::path& file);
 
 /// Sum of the triangles' areas, square scene units.
 double surface_area(const Mesh& mesh);
@@ -58,7 +47,7 @@ bool is_builtin_mesh(const std::filesystem::path& name);
 /// "plane": in xz, centred, longer side 10, `aspect` = width / height of the picture, u to +x, v to -z.
 /// "disk": radius 5 in xz, uv as the plane's, and the largest circle around the middle of the picture.
 /// "sphere": radius 5, equirectangular uv, seen from outside right way round. ("relief" needs a picture: see
-/// relief_mesh in texture.h.)
+/// relief.h.)
 Mesh builtin_mesh(const std::string& name, double aspect);
 
 }  // namespace astrosplat

@@ -1,6 +1,8 @@
 // Wavefront OBJ. In: a file. Out: Mesh. tinyobjloader reads the materials; the geometry is read here, because
 // version 2.0.0rc10 refuses whole files for "1//" (which exporters write), and takes an incomplete vertex, a
 // face of two corners and an index out of range without a word. (Its numbers agree with ours.)
+#include "source/obj.h"
+
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
@@ -13,7 +15,6 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
-#include "source/mesh.h"
 #include "source/polygon.h"
 
 namespace astrosplat {
@@ -182,7 +183,7 @@ bool load_materials(Reader& r, const std::string& name) {
     tinyobj::LoadMtl(&ids, &materials, &in, &warning, &problem);
     r.libraries.push_back(file);
     for (const auto& [material, id] : ids) {
-        const std::string& map = materials[static_cast<std::size_t>(id)].diffuse_texname;
+        const std::string& map = materials[id].diffuse_texname;
         r.material_maps[material] = map.empty() ? fs::path() : file.parent_path() / native(map);
     }
     return true;
@@ -244,8 +245,7 @@ void triangulate_polygons(Reader& r) {
     std::vector<glm::vec3> corners;
     for (const Polygon& polygon : r.polygons) {
         corners.clear();
-        for (const Corner& c : polygon.corners)
-            corners.push_back(r.mesh.positions[static_cast<std::size_t>(c.position)]);
+        for (const Corner& c : polygon.corners) corners.push_back(r.mesh.positions[c.position]);
         const auto triples = triangulate(corners);
         r.line = polygon.line;
         if (triples.empty())
@@ -304,12 +304,12 @@ Mesh load_obj(const fs::path& file, const Progress& progress) {
     return std::move(r.mesh);
 }
 
-std::vector<fs::path> obj_materials(const fs::path& file) {
-    const std::string content = read_file(file);
+std::vector<fs::path> obj_materials(const fs::path& file, const Progress& progress) {
+    const std::string content = read_file(file, progress);
     Reader r;
     r.file = file;
     Words words;
-    for_each_line(r, content, {}, [&](std::string_view line) {
+    for_each_line(r, content, {{}, progress.cancelled}, [&](std::string_view line) {
         if (line.find("mtllib") == std::string_view::npos) return;
         split(line, words);
         if (words[0] == "mtllib") read_mtllib(r, line, words);

@@ -1,11 +1,13 @@
 // The built-in relief: brightness, smoothed, as the height of a grid.
+#include "source/relief.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 #include "core/color.h"
 #include "core/real.h"
-#include "source/texture.h"
+#include "source/sample.h"
 
 namespace astrosplat {
 namespace {
@@ -18,7 +20,7 @@ struct Heights {
     std::int64_t columns, rows;
     std::vector<double> values;
 
-    double& at(std::int64_t x, std::int64_t y) { return values[static_cast<std::size_t>(y * columns + x)]; }
+    double& at(std::int64_t x, std::int64_t y) { return values[y * columns + x]; }
 };
 
 // What the eye sees as brightness: the display value of the luminance, each vertex averaging the texels of
@@ -30,7 +32,7 @@ Heights brightness(const Texture& texture, std::int64_t columns, std::int64_t ro
     lookup.wrap = TextureSettings::Wrap::clamp;
     const glm::vec2 box(static_cast<float>(texture.image.width) / static_cast<float>(columns - 1),
                         static_cast<float>(texture.image.height) / static_cast<float>(rows - 1));
-    Heights heights{columns, rows, std::vector<double>(static_cast<std::size_t>(columns * rows))};
+    Heights heights{columns, rows, std::vector<double>(columns * rows)};
     for (std::int64_t y = 0; y < rows; ++y) {
         for (std::int64_t x = 0; x < columns; ++x) {
             const glm::vec2 uv(static_cast<float>(x) / static_cast<float>(columns - 1),
@@ -59,7 +61,7 @@ void blur(Heights& heights, double sigma, bool along_x) {
             for (std::int64_t k = -reach; k <= reach; ++k) {
                 const std::int64_t sx = along_x ? std::clamp<std::int64_t>(x + k, 0, heights.columns - 1) : x;
                 const std::int64_t sy = along_x ? y : std::clamp<std::int64_t>(y + k, 0, heights.rows - 1);
-                sum += weight[static_cast<std::size_t>(k + reach)] * from.at(sx, sy);
+                sum += weight[k + reach] * from.at(sx, sy);
             }
             heights.at(x, y) = sum / total;
         }

@@ -1,9 +1,9 @@
 // Filtered lookup in a texture: premultiplied texels are weighted, then the colour is divided by alpha once.
+#include "source/sample.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/vec4.hpp>
-
-#include "source/texture.h"
 
 namespace astrosplat {
 namespace {

@@ -73,7 +73,7 @@ Stored combine(const std::vector<fs::path>& files, const Settings& settings, con
     Stored first = read_stored(files[0], settings, progress);
     Image rgb = make_image(first.picture.image.width, first.picture.image.height, 3);
     for (int c = 0; c < 3; ++c) {
-        const fs::path& file = files[static_cast<std::size_t>(c)];
+        const fs::path& file = files[c];
         const Stored one = c == 0 ? std::move(first) : read_stored(file, settings, progress);
         const Image& from = one.picture.image;
         if (from.width != rgb.width || from.height != rgb.height)
@@ -81,8 +81,7 @@ Stored combine(const std::vector<fs::path>& files, const Settings& settings, con
                       fmt::format("{}x{} px like {}", rgb.width, rgb.height, files[0].string()),
                       fmt::format("{}x{} px", from.width, from.height));
         for (std::int64_t i = 0; i < from.width * from.height; ++i)
-            rgb.pixels[static_cast<std::size_t>(3 * i + c)] =
-                from.pixels[static_cast<std::size_t>(i * from.channels + c)];
+            rgb.pixels[3 * i + c] = from.pixels[i * from.channels + c];
         if (c == 0) first.display_values = one.display_values;
         if (c == 0) first.picture.credit = one.picture.credit;
         first.picture.summary = (c == 0 ? "" : first.picture.summary + "; ") + one.picture.summary;

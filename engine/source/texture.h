@@ -27,12 +27,6 @@ struct Texture {
     std::string summary;  // one line for messages: size, HDU, limits and stretch chosen
 };
 
-/// Straight colour and alpha at one place of a picture.
-struct TextureSample {
-    glm::vec3 color;  // linear, straight; 0 where alpha is 0
-    float alpha;      // 0..1
-};
-
 /// `default_wrap` is what Wrap::automatic means here. Throws InputError, Cancelled.
 Texture load_texture(const std::vector<std::filesystem::path>& files, const TextureSettings& settings,
                      TextureSettings::Wrap default_wrap, const Progress& progress = {});
@@ -47,13 +41,5 @@ Image load_linear_image(const std::filesystem::path& file, const Progress& progr
 /// The same for environments: one picture, or the six faces (+x -x +y -y +z -z) of an OpenEXR cube map.
 std::vector<Image> load_environment_pictures(const std::filesystem::path& file,
                                              const Progress& progress = {});
-
-/// Filtered lookup at uv (v = 0 is the bottom row). `box_texels` is the side, in texels along u and v, of the
-/// box averaged by Filter::area; the other filters ignore it. Alpha of exactly 0 comes back as exactly 0.
-TextureSample sample(const Texture& texture, glm::vec2 uv, glm::vec2 box_texels = glm::vec2(0.0f));
-
-/// The built-in "relief": the plane of the texture's aspect, lifted towards +y by the smoothed brightness of
-/// the picture; `height` is a fraction of the plane's width. 256 cells along the longer side.
-Mesh relief_mesh(const Texture& texture, double height);
 
 }  // namespace astrosplat

@@ -147,7 +147,7 @@ char* pack(const SplatSet& set, std::int64_t begin, std::int64_t end, char* out)
         const auto& array = set.*column;
         if (array.empty()) return;
         const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
-        std::memcpy(out, &array[static_cast<std::size_t>(begin)], bytes);
+        std::memcpy(out, &array[begin], bytes);
         out += bytes;
     });
     return out;
@@ -177,8 +177,8 @@ void write_blocks(const WriteTarget& target, const SplatSet& set, RowOrder order
         progress,
         [&](std::int64_t begin, std::int64_t end, char* out) {
             char* const stop = pack_rows(begin, end, out);
-            table[static_cast<std::size_t>(begin / splats_per_block)] = describe_block(
-                {out, static_cast<std::size_t>(stop - out)}, static_cast<std::size_t>(end - begin));
+            table[begin / splats_per_block] = describe_block({out, static_cast<std::size_t>(stop - out)},
+                                                             static_cast<std::size_t>(end - begin));
             return stop;
         },
         [&] { return table_bytes(table); });

@@ -18,26 +18,25 @@ namespace astrosplat {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, NumberType>, 18> type_names = {{
-    {"char", NumberType::i8},
-    {"int8", NumberType::i8},
-    {"uchar", NumberType::u8},
-    {"uint8", NumberType::u8},
-    {"short", NumberType::i16},
-    {"int16", NumberType::i16},
-    {"ushort", NumberType::u16},
-    {"uint16", NumberType::u16},
-    {"int", NumberType::i32},
-    {"int32", NumberType::i32},
-    {"uint", NumberType::u32},
-    {"uint32", NumberType::u32},
-    {"int64", NumberType::i64},
-    {"uint64", NumberType::u64},
-    {"float", NumberType::f32},
-    {"float32", NumberType::f32},
-    {"double", NumberType::f64},
-    {"float64", NumberType::f64},
-}};
+constexpr std::array<std::pair<std::string_view, NumberType>, 18> type_names = {
+    {{"char", NumberType::i8},
+     {"int8", NumberType::i8},
+     {"uchar", NumberType::u8},
+     {"uint8", NumberType::u8},
+     {"short", NumberType::i16},
+     {"int16", NumberType::i16},
+     {"ushort", NumberType::u16},
+     {"uint16", NumberType::u16},
+     {"int", NumberType::i32},
+     {"int32", NumberType::i32},
+     {"uint", NumberType::u32},
+     {"uint32", NumberType::u32},
+     {"int64", NumberType::i64},
+     {"uint64", NumberType::u64},
+     {"float", NumberType::f32},
+     {"float32", NumberType::f32},
+     {"double", NumberType::f64},
+     {"float64", NumberType::f64}}};
 
 struct HeaderReader {
     std::string file;

@@ -50,52 +50,38 @@ void allocate(SplatTable& table, std::size_t rows) {
     if (table.has(Field::id_high)) table.id_high.resize(rows);
 }
 
-void point_at(Column& column, float* array, std::size_t component, std::size_t stride) {
-    column.out = array + component;
-    column.stride = stride;
-}
-
 void bind(Column& column, SplatTable& table) {
     SplatSet& set = table.set;
+    const auto point_at = [&](float* array, Field first, std::size_t stride) {
+        column.out = array + (static_cast<std::size_t>(column.field) - static_cast<std::size_t>(first));
+        column.stride = stride;
+    };
     switch (column.field) {
         case Field::skip:
             break;
         case Field::x:
-            point_at(column, &set.position.data()->x, 0, 3);
-            break;
         case Field::y:
-            point_at(column, &set.position.data()->x, 1, 3);
-            break;
         case Field::z:
-            point_at(column, &set.position.data()->x, 2, 3);
+            point_at(&set.position.data()->x, Field::x, 3);
             break;
         case Field::red:
-            point_at(column, &set.color.data()->x, 0, 3);
-            break;
         case Field::green:
-            point_at(column, &set.color.data()->x, 1, 3);
-            break;
         case Field::blue:
-            point_at(column, &set.color.data()->x, 2, 3);
+            point_at(&set.color.data()->x, Field::red, 3);
             break;
         case Field::s:
-            point_at(column, &set.uv.data()->x, 0, 2);
-            break;
         case Field::t:
-            point_at(column, &set.uv.data()->x, 1, 2);
+            point_at(&set.uv.data()->x, Field::s, 2);
             break;
         case Field::alpha:
-            point_at(column, set.alpha.data(), 0, 1);
+            point_at(set.alpha.data(), Field::alpha, 1);
             column.lowest = 0.0f;
             column.highest = 1.0f;
             column.clamped = &table.clamped;
             break;
         case Field::distance:
-            point_at(column, set.distance.data(), 0, 1);
-            column.lowest = 0.0f;
-            break;
         case Field::radius:
-            point_at(column, set.radius.data(), 0, 1);
+            column.out = (column.field == Field::radius ? set.radius : set.distance).data();
             column.lowest = 0.0f;
             break;
         case Field::mesh:
@@ -114,7 +100,7 @@ float largest(const Buffer<float>& values) {
     std::vector<float> of_chunk((values.size() + rows_per_chunk - 1) / rows_per_chunk, 0.0f);
     parallel_chunks(static_cast<std::int64_t>(values.size()), rows_per_chunk,
                     [&](std::int64_t begin, std::int64_t end, int) {
-                        of_chunk[static_cast<std::size_t>(begin / rows_per_chunk)] =
+                        of_chunk[begin / rows_per_chunk] =
                             *std::max_element(values.begin() + begin, values.begin() + end);
                     });
     return of_chunk.empty() ? 0.0f : *std::ranges::max_element(of_chunk);

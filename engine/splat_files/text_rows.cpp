@@ -145,7 +145,7 @@ void read_chunk(const TextChunk& chunk, std::int64_t begin, std::int64_t end, co
 TextRows split_rows(std::string_view text, std::int64_t first_line) {
     TextRows result{cut(text), 0};
     parallel_for(static_cast<std::int64_t>(result.chunks.size()),
-                 [&](std::int64_t i, int) { count(result.chunks[static_cast<std::size_t>(i)]); });
+                 [&](std::int64_t i, int) { count(result.chunks[i]); });
     for (TextChunk& chunk : result.chunks) {
         const TextChunk counted = chunk;
         chunk.first_row = result.rows;

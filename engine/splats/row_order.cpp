@@ -26,8 +26,7 @@ Buffer<Row> part_starts(const Buffer<std::uint32_t>& keys, std::size_t key_count
     Buffer<Row> starts(static_cast<std::size_t>(parts.count) * key_count, 0);
     parallel_for(parts.count, [&](std::int64_t part, int) {
         Row* const counts = starts.data() + static_cast<std::size_t>(part) * key_count;
-        for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i)
-            ++counts[keys[static_cast<std::size_t>(i)]];
+        for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i) ++counts[keys[i]];
     });
     Row sum = 0;
     for (std::size_t key = 0; key < key_count; ++key) {
@@ -48,7 +47,7 @@ Buffer<Row> place_rows(const Buffer<std::uint32_t>& keys, std::size_t key_count,
     parallel_for(parts.count, [&](std::int64_t part, int) {
         Row* const places = starts.data() + static_cast<std::size_t>(part) * key_count;
         for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i)
-            order[places[keys[static_cast<std::size_t>(i)]]++] = static_cast<Row>(i);
+            order[places[keys[i]]++] = static_cast<Row>(i);
     });
     return order;
 }

@@ -79,9 +79,9 @@ Bounds bounds(const SplatSet& set) {
         Bounds box;  // kept apart from its neighbours in `parts`, which other threads write
         const std::int64_t end = std::min(set.size(), (part + 1) * splats_per_chunk);
         for (std::int64_t i = part * splats_per_chunk; i < end; ++i) {
-            box.add(glm::dvec3(set.position[static_cast<std::size_t>(i)]));
+            box.add(glm::dvec3(set.position[i]));
         }
-        parts[static_cast<std::size_t>(part)] = box;
+        parts[part] = box;
     });
     Bounds box;
     for (const Bounds& part : parts) box.add(part);

@@ -42,8 +42,7 @@ class MortonKeys {
     }
 
     KeyedRow operator()(std::int64_t row) const {
-        const glm::dvec3 p =
-            (glm::dvec3(set_.position[static_cast<std::size_t>(row)]) - lo_) * cells_per_unit_;
+        const glm::dvec3 p = (glm::dvec3(set_.position[row]) - lo_) * cells_per_unit_;
         return {morton_place(cell(p.x), cell(p.y), cell(p.z)), row};
     }
 
@@ -70,11 +69,10 @@ Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
     const auto each_row = [&](std::int64_t c, const auto& visit) {
         progress.check();
         const std::int64_t end = std::min(set.size(), (c + 1) * rows_at_once);
-        for (std::int64_t row = c * rows_at_once; row < end; ++row)
-            visit(key_of(row), next[static_cast<std::size_t>(c)]);
+        for (std::int64_t row = c * rows_at_once; row < end; ++row) visit(key_of(row), next[c]);
     };
     parallel_for(chunks, [&](std::int64_t c, int) {
-        next[static_cast<std::size_t>(c)].fill(0);
+        next[c].fill(0);
         each_row(c, [](const KeyedRow& r, auto& counts) { ++counts[part_of(r.key)]; });
     });
     starts.assign(parts + 1, 0);
@@ -86,9 +84,7 @@ Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
     starts[parts] = sum;
     Buffer<KeyedRow> sorted(set.position.size());
     parallel_for(chunks, [&](std::int64_t c, int) {
-        each_row(c, [&](const KeyedRow& r, auto& places) {
-            sorted[static_cast<std::size_t>(places[part_of(r.key)]++)] = r;
-        });
+        each_row(c, [&](const KeyedRow& r, auto& places) { sorted[places[part_of(r.key)]++] = r; });
     });
     return sorted;
 }
@@ -107,7 +103,7 @@ void sort_part(KeyedRow* rows, std::size_t count, std::vector<KeyedRow>& scratch
 
 /// Rows of equal keys by id, for sets that are not in that order.
 void order_ties(const SplatSet& set, KeyedRow* rows, std::size_t count) {
-    const auto id = [&](const KeyedRow& r) { return set.id[static_cast<std::size_t>(r.row)]; };
+    const auto id = [&](const KeyedRow& r) { return set.id[r.row]; };
     for (std::size_t i = 0; i < count;) {
         std::size_t end = i + 1;
         while (end < count && rows[end].key == rows[i].key) ++end;
@@ -129,7 +125,7 @@ Buffer<KeyedRow> morton_order(const SplatSet& set, const Progress& progress) {
             for (auto part = static_cast<std::size_t>(begin); part < static_cast<std::size_t>(end); ++part) {
                 KeyedRow* first = rows.data() + starts[part];
                 const auto count = static_cast<std::size_t>(starts[part + 1] - starts[part]);
-                sort_part(first, count, scratch[static_cast<std::size_t>(worker)]);
+                sort_part(first, count, scratch[worker]);
                 if (!by_id) order_ties(set, first, count);
             }
         });
@@ -156,18 +152,16 @@ Buffer<std::int64_t> by_reversed_rank(const Buffer<KeyedRow>& sorted, const Prog
     std::vector<std::uint64_t> starts(static_cast<std::size_t>(blocks + 1), 0);
     for (std::uint64_t b = 0; b < blocks; ++b) {
         const std::uint64_t first = reversed(b, high);
-        starts[static_cast<std::size_t>(b + 1)] =
-            starts[static_cast<std::size_t>(b)] + (first < count ? (count - first + blocks - 1) >> high : 0);
+        starts[b + 1] = starts[b] + (first < count ? (count - first + blocks - 1) >> high : 0);
     }
     Buffer<std::int64_t> order(sorted.size());
     parallel_for(static_cast<std::int64_t>(blocks), [&](std::int64_t block, int) {
         progress.check();
         const std::uint64_t first = reversed(static_cast<std::uint64_t>(block), high);
-        std::uint64_t at = starts[static_cast<std::size_t>(block)];
+        std::uint64_t at = starts[block];
         for (std::uint64_t j = 0; j < std::uint64_t{1} << low; ++j) {
             const std::uint64_t rank = reversed(j, low) << high | first;
-            if (rank < count)
-                order[static_cast<std::size_t>(at++)] = sorted[static_cast<std::size_t>(rank)].row;
+            if (rank < count) order[at++] = sorted[rank].row;
         }
         assert(at == starts[static_cast<std::size_t>(block) + 1]);
     });
@@ -177,7 +171,7 @@ Buffer<std::int64_t> by_reversed_rank(const Buffer<KeyedRow>& sorted, const Prog
 template <class T, class RowAt>
 void copy_array(const Buffer<T>& from, std::int64_t count, const RowAt& row_at, Buffer<T>& to) {
     if (from.empty()) return;
-    to.resize(static_cast<std::size_t>(count));
+    to.resize(count);
     parallel_each(to.size(), rows_at_once, [&](std::size_t i) { to[i] = from[row_at(i)]; });
 }
 

@@ -15,6 +15,7 @@
 
 #include "scene/load.h"
 #include "source/mesh.h"
+#include "source/obj.h"
 #include "source/texture.h"
 #include "splat_files/checksum.h"
 #include "splat_files/native.h"

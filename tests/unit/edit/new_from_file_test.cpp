@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "edit/layers.h"
-#include "generate/generate.h"
+#include "generate/load_source.h"
 #include "scenes.h"
 #include "splat_files/splat_file.h"
 #include "support/test_data.h"

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "source/sample.h"
 #include "unit/generate/generate_support.h"
 #include "unit/generate/lattice_positions.h"
 

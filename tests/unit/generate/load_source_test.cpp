@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/log.h"
-#include "generate/generate.h"
+#include "generate/load_source.h"
 #include "splat_files/splat_file.h"
 #include "support/test_data.h"
 #include "unit/splat_files/file_support.h"

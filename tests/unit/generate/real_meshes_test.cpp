@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "generate/triangle_tree.h"
+#include "source/obj.h"
 #include "support/test_data.h"
 #include "unit/generate/generate_support.h"
 #include "unit/generate/lattice_positions.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "generate/generate.h"
+#include "generate/load_source.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "support/small_scene.h"

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/real.h"
+#include "source/obj.h"
 #include "source/polygon.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "source/relief.h"
+#include "source/sample.h"
 #include "source/texture.h"
 
 namespace astrosplat {

@@ -15,6 +15,7 @@
 #include "source/credit.h"
 #include "source/fits.h"
 #include "source/picture.h"
+#include "source/sample.h"
 #include "source/texture.h"
 #include "support/errors.h"
 #include "support/temp_folder.h"
@@ -95,7 +96,7 @@ TEST(Texture, DerivedAlphaIsTheBrightestChannelAndKeepsThePicture) {
     settings.alpha = Alpha::luminance;
     EXPECT_FLOAT_EQ(pixels_of(exr, settings)[3], 0.2126f * 0.25f + 0.7152f * 0.5f + 0.0722f * 0.125f);
     settings.alpha = Alpha::max;
-    settings.unpremultiply = Unpremultiply::no;  // the picture squared, when somebody asks for it
+    settings.unpremultiply = Unpremultiply::no;  // the picture squared, for those who ask for it
     EXPECT_EQ(pixels_of(exr, settings), (Pixels{0.125f, 0.25f, 0.0625f, 0.5f}));
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "generate/generate.h"
+#include "generate/load_source.h"
 #include "output/write.h"
 #include "render/render.h"
 #include "scene/layer_setup.h"

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "core/shared_maths.h"
-#include "generate/generate.h"
+#include "generate/load_source.h"
 #include "output/write.h"
 #include "pipeline.h"
 #include "support/small_scene.h"

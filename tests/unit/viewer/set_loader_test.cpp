@@ -12,7 +12,7 @@
 #include <numeric>
 #include <utility>
 
-#include "generate/generate.h"
+#include "generate/load_source.h"
 #include "splat_files/ply.h"
 #include "splats/stratified.h"
 #include "support/small_scene.h"
