@@ -17,6 +17,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "source/fits_headers.h"
+#include "source/fits_tiles.h"
 
 namespace astrosplat {
 namespace {
@@ -108,6 +109,8 @@ Buffer<double> read_values(const fs::path& file, fitsfile* in, std::int64_t firs
         bad_input(file.string(), "", "a picture that fits into memory", fmt::format("{} values", count));
     claim_memory(count * 24,
                  fmt::format("reading {}", file.string()));  // and a copy or two for the percentiles
+    int ignored = 0;
+    if (fits_is_compressed_image(in, &ignored)) check_gzip_tiles(file, in);
     Buffer<double> values(static_cast<std::size_t>(count));
     double undefined = std::numeric_limits<double>::quiet_NaN();
     int any_undefined = 0, status = 0;

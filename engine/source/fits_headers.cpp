@@ -122,6 +122,15 @@ struct Checker {
         if (keyword == "ZSCALE" || keyword == "ZZERO") check_number(keyword, value);
     }
 
+    // CFITSIO goes on without a number that it could not read, and takes memory for whatever stood there.
+    void check_table() const {
+        for (const char* keyword : {"NAXIS", "NAXIS1", "NAXIS2", "PCOUNT", "GCOUNT", "TFIELDS"}) {
+            const auto value = cards.find(keyword);
+            if (value == cards.end()) fail(keyword, "there", "");
+            check_whole(keyword, value->second, 0, keyword == std::string_view("TFIELDS") ? 999 : 1e18);
+        }
+    }
+
     // The compression's own parameters: CFITSIO takes the first two by their number, whatever their name.
     void check_parameters(const std::string& compression) const {
         for (int i = 1; i <= 9; ++i) {
@@ -181,9 +190,11 @@ void check_fits_headers(const fs::path& file) {
     if (!in) return;
     Cards cards;
     for (int hdu = 0; read_header(in.get(), cards); ++hdu) {
-        const auto image = cards.find("ZIMAGE");
-        if (image != cards.end() && image->second != "F")
-            Checker{file.string(), fmt::format("HDU {}", hdu), cards}.check_compressed_image();
+        const Checker checker{file.string(), fmt::format("HDU {}", hdu), cards};
+        const auto image = cards.find("ZIMAGE"), extension = cards.find("XTENSION");
+        if (extension != cards.end() && extension->second.find("TABLE") != std::string::npos)
+            checker.check_table();
+        if (image != cards.end() && image->second != "F") checker.check_compressed_image();
         const std::optional<std::int64_t> bytes = data_bytes(cards);
         if (!bytes || gzseek(in.get(), *bytes, SEEK_CUR) < 0) return;
     }

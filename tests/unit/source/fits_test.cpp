@@ -62,11 +62,24 @@ TEST(FitsCompressed, AllKindsAreRead) {
 TEST(FitsCompressed, CardsThatCannotBeAreOneLine) {
     const TempFolder folder;
     const std::string whole = bytes_of(write_compressed(folder / "whole.fits", RICE_1));
-    const std::pair<const char*, const char*> wrong[] = {
-        {"ZVAL2", "("},        {"ZVAL2", "2("},    {"ZVAL2", "3"},           {"ZVAL1", "0"},
-        {"ZVAL1", "932"},      {"ZTILE1", "0"},    {"ZTILE2", "0"},          {"ZTILE1", "4x"},
-        {"ZTILE2", "."},       {"ZNAXIS", "9"},    {"ZNAXIS1", "-48"},       {"ZBITPIX", "-16"},
-        {"ZCMPTYPE", "'RAR'"}, {"ZNAXIS2", "1e9"}, {"ZTILE1", "99999999999"}};
+    const std::pair<const char*, const char*> wrong[] = {{"ZVAL2", "("},
+                                                         {"ZVAL2", "2("},
+                                                         {"ZVAL2", "3"},
+                                                         {"ZVAL1", "0"},
+                                                         {"ZVAL1", "932"},
+                                                         {"ZTILE1", "0"},
+                                                         {"ZTILE2", "0"},
+                                                         {"ZTILE1", "4x"},
+                                                         {"ZTILE2", "."},
+                                                         {"ZNAXIS", "9"},
+                                                         {"ZNAXIS1", "-48"},
+                                                         {"ZBITPIX", "-16"},
+                                                         {"ZCMPTYPE", "'RAR'"},
+                                                         {"ZNAXIS2", "1e9"},
+                                                         {"ZTILE1", "99999999999"},
+                                                         {"TFIELDS", "140000000000000"},
+                                                         {"NAXIS2", "?"},
+                                                         {"PCOUNT", "4x"}};
     for (const auto& [keyword, value] : wrong) {
         const fs::path file = folder.file("bad.fits", with_value(whole, keyword, value));
         const std::string message = message_of<InputError>([&] { read_fits(file, "auto", 0); });
@@ -106,6 +119,34 @@ TEST(FitsCompressed, AnyWrongByteOfTheDescriptionIsReadOrRefused) {
         }
     }
     EXPECT_GT(refused, 100);
+}
+
+// CFITSIO 4.2 took all memory for some of these.
+TEST(FitsCompressed, DamagedGzipTilesAreRefused) {
+    const TempFolder folder;
+    for (const int compression : {GZIP_1, GZIP_2}) {
+        const std::string whole =
+            bytes_of(write_compressed(folder / fmt::format("{}.fits", compression), compression));
+        const std::size_t tile = whole.find("\x1f\x8b");
+        ASSERT_NE(tile, std::string::npos);
+        int refused = 0;
+        for (std::size_t byte = 0; byte < 60; ++byte) {
+            std::string bytes = whole;
+            bytes[tile + byte] = static_cast<char>(bytes[tile + byte] ^ 0x15);
+            try {
+                read_fits(folder.file("bad.fits", bytes), "auto", 0);
+            } catch (const InputError& error) {
+                ++refused;
+                EXPECT_EQ(std::string(error.what()),
+                          (folder / "bad.fits").string() +
+                              ":tile 1: expected gzip data of at most 384 bytes, found something else");
+            }
+        }
+        EXPECT_GT(refused, 40);  // a byte of the gzip header that nobody reads does no harm
+        EXPECT_THROW(
+            read_fits(folder.file("short.fits", std::string(whole).replace(tile, 30, 30, '\0')), "auto", 0),
+            InputError);
+    }
 }
 
 TEST(Fits, CreditIsTheAuthorElseTheOrigin) {
