@@ -12,6 +12,7 @@
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
 #include "render/shape.h"
+#include "support/printing.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
