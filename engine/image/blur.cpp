@@ -1,0 +1,154 @@
+// Separable passes: along rows over contiguous floats, down columns a row at a time.
+#include "image/blur.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/real.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double widest_direct_px = 2.5;  // above this, halving is quicker and as good
+constexpr double halving_variance = 1.5;  // px^2 of halving and doubling together
+constexpr std::int64_t rows_per_blur_chunk = 16;
+
+// Index of the mirrored picture: ... 1 0 | 0 1 2 ... n-1 | n-1 n-2 ...
+std::int64_t mirrored(std::int64_t i, std::int64_t n) {
+    const std::int64_t period = 2 * n;
+    i = ((i % period) + period) % period;
+    return i < n ? i : period - 1 - i;
+}
+
+std::vector<float> gaussian_weights(double sigma) {
+    const auto radius = static_cast<std::int64_t>(4.0 * sigma + 0.5);
+    std::vector<double> w;
+    double sum = 0.0;
+    for (std::int64_t i = -radius; i <= radius; ++i) {
+        const double t = static_cast<double>(i) / sigma;
+        w.push_back(real::exp(-0.5 * t * t));
+        sum += w.back();
+    }
+    std::vector<float> weights;
+    for (const double v : w) weights.push_back(static_cast<float>(v / sum));
+    return weights;
+}
+
+// Calls row(y) for every row, on all threads.
+template <class Row>
+void for_blurred_rows(std::int64_t height, const Row& row) {
+    parallel_chunks(height, rows_per_blur_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t y = begin; y < end; ++y) row(y);
+    });
+}
+
+// One row of `width` pixels from `middle` on gets `margin` mirrored pixels at either side.
+void mirror_ends(float* middle, std::int64_t width, int channels, std::int64_t margin) {
+    for (std::int64_t i = 0; i < margin; ++i) {
+        std::copy_n(middle + mirrored(-1 - i, width) * channels, channels, middle - (1 + i) * channels);
+        std::copy_n(middle + mirrored(width + i, width) * channels, channels,
+                    middle + (width + i) * channels);
+    }
+}
+
+// out[i] = sum of weights[k] * rows[k][i], terms in ascending k.
+template <class RowOf>
+void weighted_sum(const std::vector<float>& weights, std::int64_t count, float* out, const RowOf& row_of) {
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+        const float w = weights[k];
+        const float* const in = row_of(static_cast<std::int64_t>(k));
+        for (std::int64_t i = 0; i < count; ++i) out[i] += w * in[i];
+    }
+}
+
+Image blurred_rows(const Image& image, const std::vector<float>& weights) {
+    Image out = make_image(image.width, image.height, image.channels);
+    const auto margin = static_cast<std::int64_t>(weights.size() / 2);
+    const std::int64_t count = image.width * image.channels;
+    for_blurred_rows(image.height, [&](std::int64_t y) {
+        std::vector<float> padded(static_cast<std::size_t>(count + 2 * margin * image.channels));
+        float* const middle = padded.data() + margin * image.channels;
+        std::copy_n(image.at(0, y), count, middle);
+        mirror_ends(middle, image.width, image.channels, margin);
+        weighted_sum(weights, count, out.at(0, y),
+                     [&](std::int64_t k) { return padded.data() + k * image.channels; });
+    });
+    return out;
+}
+
+Image blurred_columns(const Image& image, const std::vector<float>& weights) {
+    Image out = make_image(image.width, image.height, image.channels);
+    const auto margin = static_cast<std::int64_t>(weights.size() / 2);
+    for_blurred_rows(image.height, [&](std::int64_t y) {
+        weighted_sum(weights, image.width * image.channels, out.at(0, y),
+                     [&](std::int64_t k) { return image.at(0, mirrored(y + k - margin, image.height)); });
+    });
+    return out;
+}
+
+// The four rows or columns that the pixel at 2 i + 1/2 averages.
+const std::vector<float> binomial{0.125f, 0.375f, 0.375f, 0.125f};
+
+}  // namespace
+
+Image convolved_with_gaussian(const Image& image, double sigma_px) {
+    assert(sigma_px >= 0.0);
+    if (sigma_px < 0.125 || image.width == 0 || image.height == 0) return image;  // the kernel is one pixel
+    const std::vector<float> weights = gaussian_weights(sigma_px);
+    return blurred_columns(blurred_rows(image, weights), weights);
+}
+
+Image halved(const Image& image) {
+    const int channels = image.channels;
+    Image out = make_image((image.width + 1) / 2, (image.height + 1) / 2, channels);
+    for_blurred_rows(out.height, [&](std::int64_t y) {
+        std::vector<float> sum(static_cast<std::size_t>((image.width + 4) * channels), 0.0f);
+        float* const middle = sum.data() + 2 * channels;
+        weighted_sum(binomial, image.width * channels, middle,
+                     [&](std::int64_t k) { return image.at(0, mirrored(2 * y + k - 1, image.height)); });
+        mirror_ends(middle, image.width, channels, 2);
+        float* const row = out.at(0, y);
+        for (std::int64_t x = 0; x < out.width; ++x) {
+            for (int c = 0; c < channels; ++c) {
+                const float* const p = middle + (2 * x - 1) * channels + c;
+                row[x * channels + c] = binomial[0] * p[0] + binomial[1] * p[channels] +
+                                        binomial[2] * p[2 * channels] + binomial[3] * p[3 * channels];
+            }
+        }
+    });
+    return out;
+}
+
+Image doubled(const Image& image, std::int64_t width, std::int64_t height) {
+    assert((width + 1) / 2 == image.width && (height + 1) / 2 == image.height);
+    const int channels = image.channels;
+    Image out = make_image(width, height, channels);
+    for_blurred_rows(height, [&](std::int64_t y) {
+        std::vector<float> row(static_cast<std::size_t>((image.width + 2) * channels));
+        const float* const near = image.at(0, y / 2);
+        const float* const far = image.at(0, mirrored(y % 2 ? y / 2 + 1 : y / 2 - 1, image.height));
+        float* const middle = row.data() + channels;
+        for (std::int64_t i = 0; i < image.width * channels; ++i)
+            middle[i] = 0.75f * near[i] + 0.25f * far[i];
+        mirror_ends(middle, image.width, channels, 1);
+        float* const to = out.at(0, y);
+        for (std::int64_t x = 0; x < width; ++x) {
+            const float* const p = middle + (x / 2) * channels;
+            const float* const q = x % 2 ? p + channels : p - channels;
+            for (int c = 0; c < channels; ++c) to[x * channels + c] = 0.75f * p[c] + 0.25f * q[c];
+        }
+    });
+    return out;
+}
+
+Image gaussian_blur(const Image& image, double sigma_px) {
+    if (sigma_px <= widest_direct_px || std::min(image.width, image.height) < 4)
+        return convolved_with_gaussian(image, sigma_px);
+    const double rest = std::sqrt((sigma_px * sigma_px - halving_variance) / 4.0);
+    return doubled(gaussian_blur(halved(image), rest), image.width, image.height);
+}
+
+}  // namespace astrosplat
