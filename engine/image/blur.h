@@ -10,7 +10,7 @@ namespace astrosplat {
 /// 4 sigma and normalised. The cost grows with sigma.
 Image convolved_with_gaussian(const Image& image, double sigma_px);
 
-/// The same for any width at a cost that does not grow with it. Up to 2.5 px it is the convolution above;
+/// The same for any width at a cost that does not grow with it. Up to 4 px it is the convolution above;
 /// wider blurs are made at half the size (a binomial halving and a linear doubling add 1.5 px^2 of
 /// variance, which the blur between them leaves out), so that the profile stays within 1 % of the
 /// Gaussian's peak. The picture's sum is kept where its sides are even as often as they are halved;

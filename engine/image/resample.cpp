@@ -42,10 +42,11 @@ void sample_linearly(const Image& image, const glm::dvec2& place, float* out) {
 
 }  // namespace
 
-PixelMap filling_map(const Image& image, std::int64_t width, std::int64_t height) {
+PixelMap map_to_width(const Image& image, std::int64_t width, std::int64_t height) {
+    const double scale = static_cast<double>(image.width) / static_cast<double>(width);
     PixelMap map;
-    map.linear[0][0] = static_cast<double>(image.width) / static_cast<double>(width);
-    map.linear[1][1] = static_cast<double>(image.height) / static_cast<double>(height);
+    map.linear *= scale;
+    map.offset.y = 0.5 * (static_cast<double>(image.height) - scale * static_cast<double>(height));
     return map;
 }
 

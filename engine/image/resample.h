@@ -16,8 +16,9 @@ struct PixelMap {
     glm::dmat2 linear{1.0};
 };
 
-/// The map under which a picture of `width` x `height` texels fills an output of that size exactly.
-PixelMap filling_map(const Image& image, std::int64_t width, std::int64_t height);
+/// The map under which the picture fills an output of that size from left to right, its middle in the
+/// middle.
+PixelMap map_to_width(const Image& image, std::int64_t width, std::int64_t height);
 
 /// The picture convolved with a Gaussian of `sigma_px` output pixels (for a map that scales unevenly: of as
 /// many texels as have the same area) and sampled, linearly between texels, at width x height pixel

@@ -23,18 +23,18 @@ Image ramp(std::int64_t width, std::int64_t height) {
 
 TEST(Resample, ARampShowsItsPlaceAwayFromTheEdges) {
     const Image image = ramp(120, 80);
-    const Image small = resampled(image, filling_map(image, 40, 20), 40, 20, 0.5);
-    for (const auto& [x, y] : {std::pair{10, 5}, {20, 10}, {30, 14}}) {
+    const Image small = resampled(image, map_to_width(image, 40, 26), 40, 26, 0.5);
+    for (const auto& [x, y] : {std::pair{10, 5}, {20, 10}, {30, 19}}) {
         EXPECT_NEAR(small.at(x, y)[0], (x + 0.5) * 3.0, 1e-4);
-        EXPECT_NEAR(small.at(x, y)[1], (y + 0.5) * 4.0, 1e-4);
+        EXPECT_NEAR(small.at(x, y)[1], (y + 0.5) * 3.0 + 1.0, 1e-4);
     }
-    for (std::int64_t i = 0; i < 40 * 20; ++i)
+    for (std::int64_t i = 0; i < 40 * 26; ++i)
         EXPECT_NEAR(small.pixels[static_cast<std::size_t>(3 * i + 2)], 1.0f, 1e-6f);
 }
 
 TEST(Resample, OfTheSameSizeWithoutAFilterIsThePicture) {
     const Image image = ramp(31, 17);
-    EXPECT_EQ(resampled(image, filling_map(image, 31, 17), 31, 17, 0.0).pixels, image.pixels);
+    EXPECT_EQ(resampled(image, map_to_width(image, 31, 17), 31, 17, 0.0).pixels, image.pixels);
 }
 
 TEST(Resample, OutsideOfThePictureIsBlack) {
@@ -57,8 +57,8 @@ TEST(Resample, APictureMayLieAcross) {
 
 TEST(Resample, TheFilterIsOfOutputPixels) {
     Image point = make_image(300, 300, 1);
-    *point.at(149, 149) = 1.0f;  // the centre of output pixel (49, 49)
-    const Image small = resampled(point, filling_map(point, 100, 100), 100, 100, 0.5);
+    *point.at(148, 148) = 1.0f;  // the centre of output pixel (49, 49)
+    const Image small = resampled(point, map_to_width(point, 100, 100), 100, 100, 0.5);
     // At 1.5 texels the peak is 1 / (2 pi 1.5^2), and one output pixel on e^(-1/2 (1 / .5)^2) of it.
     const double peak = 1.0 / (2.0 * 3.14159265358979 * 2.25);
     EXPECT_NEAR(*small.at(49, 49), peak, 1e-4 * peak);
