@@ -16,6 +16,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/vector_target.h"
+#include "fidelity.h"
 #include "info.h"
 #include "interrupt.h"
 #include "new.h"
@@ -47,6 +48,7 @@ struct Invocation {
     ConvertOptions convert;
     InfoOptions info;
     CompareOptions compare;
+    FidelityOptions fidelity;
     ParametersOptions parameters;
     std::function<int()> action;  // of the subcommand, when there is one
 };
@@ -183,6 +185,20 @@ void add_reports(CLI::App& app, Invocation& call) {
     parameters.add_flag("--json", call.parameters.json, "Prints JSON");
 }
 
+void add_fidelity(CLI::App& app, Invocation& call) {
+    FidelityOptions& fidelity = call.fidelity;
+    CLI::App& command = add_command(app, call, "fidelity", "Measures how true a scene is to its picture",
+                                    [&call] { return run_fidelity(call.fidelity); });
+    add_value(command, "SCENE", fidelity.scene, "SCENE", "The scene")->required();
+    add_value(command, "-o,--output", fidelity.output, "REPORT.(html|json)", "The report to write")
+        ->required();
+    add_value(command, "--reference", fidelity.reference, "IMAGE",
+              "A picture to compare with, in place of the layer's own");
+    add_assignments(command, fidelity.assignments);
+    command.add_flag("--overwrite", fidelity.overwrite, "Replaces the report");
+    add_progress(command, fidelity.progress);
+}
+
 void apply_common(const CommonOptions& common) {
     if (common.quiet) set_log_level(LogLevel::warning);
     if (common.verbose) set_log_level(LogLevel::detail);
@@ -202,7 +218,8 @@ SetCache cache_of(const CommonOptions& common) {
 
 /// Of every command, unless a mode was asked for.
 void silence_progress(Invocation& call) {
-    for (ProgressMode* mode : {&call.batch_options.progress, &call.generate.progress, &call.convert.progress})
+    for (ProgressMode* mode : {&call.batch_options.progress, &call.generate.progress, &call.convert.progress,
+                               &call.fidelity.progress})
         if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
 }
 
@@ -235,7 +252,7 @@ int run_window(Invocation& call) {
 int run(Invocation& call) {
     apply_common(call.common);
     log_detail(fmt::format("threads {}, vector target {}", thread_count(), vector_target()));
-    call.batch_options.cache = call.generate.cache = cache_of(call.common);
+    call.batch_options.cache = call.generate.cache = call.fidelity.cache = cache_of(call.common);
     if (call.common.quiet) silence_progress(call);
     if (call.action) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
@@ -270,6 +287,7 @@ int run_command_line(int argc, char** argv) {
     add_generate(app, call);
     add_convert(app, call);
     add_reports(app, call);
+    add_fidelity(app, call);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {

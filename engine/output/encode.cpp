@@ -2,9 +2,9 @@
 #include "output/encode.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "core/color.h"
 #include "core/parallel.h"
 #include "core/real.h"
 
@@ -13,30 +13,6 @@ namespace {
 
 using Alpha = OutputParams::Alpha;
 using View = OutputParams::View;
-
-constexpr int table_steps = 4096;
-
-// The power part of the sRGB curve over s = sqrt(x), where it is so smooth that straight lines between 4097
-// points are within 1e-7 of it; a pow for each of six million channels would take longer than the rest of
-// the encoding.
-std::array<float, table_steps + 2> make_srgb_table() {
-    std::array<float, table_steps + 2> table{};
-    for (int i = 0; i <= table_steps + 1; ++i) {
-        double s = static_cast<double>(i) / table_steps;
-        table[i] = static_cast<float>(1.055 * real::pow(s, 2.0 / 2.4) - 0.055);
-    }
-    return table;
-}
-
-// IEC 61966-2-1 of x in [0, 1].
-float srgb_curve(float x) {
-    static const std::array<float, table_steps + 2> table = make_srgb_table();
-    if (x <= 0.0031308f) return x * 12.92f;
-    float at = std::sqrt(x) * static_cast<float>(table_steps);
-    float below = std::floor(at);
-    auto i = static_cast<std::size_t>(below);
-    return table[i] + (table[i + 1] - table[i]) * (at - below);
-}
 
 float clamp01(float x) { return x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f; }
 
@@ -67,7 +43,7 @@ float apply_view(View view, float value) {
     if (!(value > 0.0f)) return 0.0f;
     // Beyond 1e6 the soft curve has long met its limit; its squares would overflow.
     float x = view == View::soft ? soft_curve(std::fmin(value, 1e6f)) : value;
-    return view == View::linear ? clamp01(x) : srgb_curve(clamp01(x));
+    return view == View::linear ? clamp01(x) : display_srgb(x);
 }
 
 float dither(std::int64_t x, std::int64_t y, int channel) {

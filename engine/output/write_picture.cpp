@@ -18,4 +18,16 @@ void write_picture(const std::filesystem::path& file, std::int64_t width, std::i
     picture.commit();
 }
 
+std::string png_bytes(std::int64_t width, std::int64_t height, std::span<const unsigned char> rgb) {
+    assert(static_cast<std::int64_t>(rgb.size()) == width * height * 3);
+    OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
+    OIIO::Filesystem::IOVecOutput memory;
+    const auto png = OIIO::ImageOutput::create("png");
+    const bool written = png && png->set_ioproxy(&memory) && png->open("memory.png", spec) &&
+                         png->write_image(OIIO::TypeDesc::UINT8, rgb.data()) && png->close();
+    if (!written)
+        throw OutputError("a picture cannot be encoded: " + (png ? png->geterror() : OIIO::geterror()));
+    return {memory.buffer().begin(), memory.buffer().end()};
+}
+
 }  // namespace astrosplat

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace astrosplat {
 
@@ -11,5 +12,8 @@ namespace astrosplat {
 /// colour is written, alpha is left out. Throws OutputError.
 void write_picture(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
                    std::span<const unsigned char> rgba);
+
+/// A PNG file in memory, of width x height px of RGB bytes, top row first. Throws OutputError.
+std::string png_bytes(std::int64_t width, std::int64_t height, std::span<const unsigned char> rgb);
 
 }  // namespace astrosplat

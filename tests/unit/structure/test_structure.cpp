@@ -73,6 +73,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
     const std::map<std::string, std::set<std::string>> allowed = {
         {"core", {"core"}},
         {"image", {"core", "image"}},
+        {"fidelity", {"core", "image", "fidelity"}},
         {"source", {"core", "source"}},
         {"splats", {"core", "splats"}},
         {"splat_files", {"core", "splats", "splat_files"}},
@@ -87,7 +88,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
           "output"}},
         {"",
          {"core", "source", "splats", "splat_files", "generate", "look", "camera", "render", "scene",
-          "output", ""}},  // pipeline
+          "output", "image", "fidelity", ""}},  // pipeline, measure_fidelity
     };
     const std::vector<Include> includes = includes_below("engine");
     ASSERT_GT(includes.size(), 100u);

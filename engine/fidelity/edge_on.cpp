@@ -1,0 +1,130 @@
+#include "fidelity/edge_on.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/color.h"
+#include "image/blur.h"
+#include "image/percentile.h"
+#include "image/row_sums.h"
+
+namespace astrosplat {
+namespace {
+
+using Profile = std::vector<double>;
+
+Image brightest_channel(const Image& linear) {
+    Image image = make_image(linear.width, linear.height, 1);
+    for (std::int64_t i = 0; i < linear.width * linear.height; ++i) {
+        const float* const p = linear.pixels.data() + i * linear.channels;
+        image.pixels[static_cast<std::size_t>(i)] = std::max({p[0], p[1], p[2]});
+    }
+    return image;
+}
+
+struct Profiles {
+    Profile rows, columns;  // mean light of each
+};
+
+Profiles mean_profiles(const Image& light) {
+    Profiles p{Profile(static_cast<std::size_t>(light.height)),
+               Profile(static_cast<std::size_t>(light.width))};
+    for (std::int64_t y = 0; y < light.height; ++y)
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            p.rows[static_cast<std::size_t>(y)] += *light.at(x, y) / static_cast<double>(light.width);
+            p.columns[static_cast<std::size_t>(x)] += *light.at(x, y) / static_cast<double>(light.height);
+        }
+    return p;
+}
+
+double greatest(const Profile& p) { return *std::max_element(p.begin(), p.end()); }
+
+// First and last index whose value is above a threshold that the greatest exceeds.
+struct Span {
+    std::int64_t first, last;
+    std::int64_t length() const { return last - first + 1; }
+};
+
+Span span_above(const Profile& p, double threshold) {
+    const auto above = [&](double v) { return v > threshold; };
+    const auto first = std::find_if(p.begin(), p.end(), above) - p.begin();
+    const auto last = std::find_if(p.rbegin(), p.rend(), above) - p.rbegin();
+    return {first, static_cast<std::int64_t>(p.size()) - 1 - last};
+}
+
+Profile blurred(const Profile& profile, double sigma_px) {
+    Image line = make_image(static_cast<std::int64_t>(profile.size()), 1, 1);
+    std::copy(profile.begin(), profile.end(), line.pixels.begin());
+    line = convolved_with_gaussian(line, sigma_px);
+    return {line.pixels.begin(), line.pixels.end()};
+}
+
+// The least of the middle half of the profile between its half maxima, below their greatest.
+double depth_of_lane(const Profile& rows, const Span& half) {
+    if (half.length() <= 6) return 0.0;
+    const Profile all = blurred(rows, 0.8);
+    const Profile inside(all.begin() + half.first, all.begin() + half.last + 1);
+    const std::int64_t quarter = half.length() / 4;
+    return 1.0 - *std::min_element(inside.begin() + quarter, inside.end() - quarter) / greatest(inside);
+}
+
+// Values [begin, end) as far as they exist; one at least.
+Profile part(const Profile& p, std::int64_t begin, std::int64_t end) {
+    const auto size = static_cast<std::int64_t>(p.size());
+    const std::int64_t from = std::clamp<std::int64_t>(begin, 0, size - 1);
+    return {p.begin() + from, p.begin() + std::clamp(end, from + 1, size)};
+}
+
+double mean(const Profile& p) {
+    double sum = 0.0;
+    for (const double v : p) sum += v;
+    return sum / static_cast<double>(p.size());
+}
+
+double center_over_half_radius(const Image& light, const Profile& columns, const Span& disk) {
+    const Image smooth = convolved_with_gaussian(light, 1.5);
+    Profile peak(columns.size());
+    for (std::int64_t y = 0; y < smooth.height; ++y)
+        for (std::size_t x = 0; x < peak.size(); ++x)
+            peak[x] = std::max(peak[x], static_cast<double>(*smooth.at(static_cast<std::int64_t>(x), y)));
+    const std::int64_t length = disk.length(), middle = (disk.first + disk.last) / 2,
+                       reach = std::max<std::int64_t>(2, length / 40);
+    const Profile wide = blurred(columns, static_cast<double>(length) / 30.0);
+    const std::int64_t brightest = std::max_element(wide.begin(), wide.end()) - wide.begin();
+    const std::int64_t begin = std::max<std::int64_t>(0, brightest - reach);
+    const double center = percentile(part(peak, begin, begin + 2 * reach), 0.5);
+    const auto at = [&](std::int64_t x) { return mean(part(peak, x - reach, x + reach)); };
+    const double half = 0.5 * (at(middle - length / 4) + at(middle + length / 4));
+    return center / std::max(half, 1e-6);
+}
+
+double body_brightness(const Image& light) {
+    const Image smooth = convolved_with_gaussian(light, 6.0);
+    const float threshold = 0.3f * *std::max_element(smooth.pixels.begin(), smooth.pixels.end());
+    double sum = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) {
+        if (!(smooth.pixels[i] > threshold)) continue;
+        sum += static_cast<double>(light.pixels[i]);
+        count += 1.0;
+    }
+    return static_cast<double>(display_srgb(static_cast<float>(sum / count)));
+}
+
+}  // namespace
+
+EdgeOnProfile edge_on_profile(const Image& edge_view) {
+    const Image light = brightest_channel(edge_view);
+    const auto [rows, columns] = mean_profiles(light);
+    if (rows.empty() || columns.empty() || !(greatest(rows) > 0.0)) return {};
+    const Span half = span_above(rows, 0.5 * greatest(rows)),
+               disk = span_above(columns, 0.15 * greatest(columns));
+    EdgeOnProfile result;
+    result.fwhm_over_length = static_cast<double>(half.length()) / static_cast<double>(disk.length());
+    result.dust_dip = depth_of_lane(rows, half);
+    result.center_over_half = center_over_half_radius(light, columns, disk);
+    result.body_srgb = body_brightness(light);
+    return result;
+}
+
+}  // namespace astrosplat

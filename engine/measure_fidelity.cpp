@@ -1,0 +1,147 @@
+#include "measure_fidelity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "generate/load_source.h"
+#include "image/resample.h"
+#include "pipeline.h"
+#include "scene/front_picture.h"
+#include "scene/layer_setup.h"
+#include "source/texture.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t side_height_px = 720, edge_height_px = 400;
+
+const LayerParams& layer_with_picture(const Scene& now) {
+    const LayerParams* found = nullptr;
+    for (const LayerParams& layer : now.layers) {
+        if (layer.source.kind != SourceKind::mesh) continue;
+        if (layer.visible) return layer;
+        if (!found) found = &layer;
+    }
+    if (!found)
+        bad_input(now.file.string(), "",
+                  "a layer of kind \"mesh\", whose picture the front view is compared with", "none");
+    return *found;
+}
+
+void require_proportions(const FidelityReference& reference) {
+    const double width = static_cast<double>(reference.picture.width);
+    const double height = static_cast<double>(reference.picture.height);
+    const double stretch = width * reference.frame.height / (height * reference.frame.width);
+    if (std::fabs(stretch - 1.0) > 0.01)
+        bad_input(reference.file.string(), "",
+                  fmt::format("the proportions of layer '{}', {:.4g} x {:.4g}", reference.layer,
+                              reference.frame.width, reference.frame.height),
+                  fmt::format("{} x {} px", reference.picture.width, reference.picture.height));
+}
+
+// The scene's sets and a pipeline that renders it from one camera after the other.
+class FidelityViews {
+  public:
+    FidelityViews(const Scene& now, const SetCache& cache, const Progress& progress) : scene_(now) {
+        scene_.animation.clear();
+        scene_.environment = {};
+        for (const LayerParams& layer : now.layers) {
+            OptionalColumns wanted{false, false, false};
+            wanted.uv = !layer.look.thickness.map.empty();
+            sets_.push_back(nullptr);
+            if (!layer.visible) continue;
+            LoadedSet loaded = load_source(cache, layer.source, layer.name, progress, nullptr, wanted);
+            sets_.back() = std::make_shared<const SplatSet>(std::move(loaded.set));
+        }
+    }
+
+    Image render(const FrontFrame& frame, JudgingView view, std::int64_t width_px, std::int64_t height_px,
+                 const Progress& progress) {
+        scene_.camera =
+            judging_camera(frame, view, static_cast<double>(width_px) / static_cast<double>(height_px));
+        pipeline_.set_scene(scene_, sets_);
+        RenderSettings settings = pipeline_.settings(0.0);
+        settings.width = width_px;
+        settings.height = height_px;
+        settings.aov_depth = settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
+        return pipeline_.frame(0.0, settings, progress).beauty;
+    }
+
+  private:
+    Scene scene_;
+    std::vector<std::shared_ptr<const SplatSet>> sets_;
+    Pipeline pipeline_;
+};
+
+}  // namespace
+
+std::int64_t FidelityReference::height_px(std::int64_t width_px) const {
+    const double height = static_cast<double>(width_px) * frame.height / frame.width;
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(height + 0.5));
+}
+
+FidelityReference fidelity_reference(const Scene& now, const std::optional<std::filesystem::path>& file,
+                                     const Progress& progress) {
+    const LayerParams& layer = layer_with_picture(now);
+    FidelityReference reference;
+    reference.layer = layer.name;
+    if (file) reference.file = *file;
+    if (file) reference.picture = load_linear_image(*file, progress);
+    try {
+        const std::vector<TexturedMesh> meshes = load_meshes(layer.source, progress);
+        const FrontFrame frame = front_frame(meshes);
+        reference.frame = in_world(frame, render_layer(layer));
+        if (!file) reference.picture = front_picture(meshes, frame, progress);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("layer '{}': {}", layer.name, error.what()));
+    }
+    if (file) require_proportions(reference);
+    return reference;
+}
+
+std::int64_t fidelity_bytes(const FidelityReference& reference) {
+    const Image& picture = reference.picture;
+    const std::int64_t pixels = picture.width * picture.height;
+    const std::int64_t blurs = 3 * pixels * picture.channels * static_cast<std::int64_t>(sizeof(float));
+    const std::int64_t views = pixels * (4 + 3) * static_cast<std::int64_t>(sizeof(float));
+    return blurs + views + front_fidelity_bytes(picture.width, picture.height);
+}
+
+FidelityReport measure_fidelity(const Scene& now, const FidelityReference& reference, const SetCache& cache,
+                                const std::function<Progress(const std::string& step)>& begin_step) {
+    const auto step = [&](const std::string& name) { return begin_step ? begin_step(name) : Progress{}; };
+    FidelityViews views(now, cache, step("preparing"));
+    FidelityReport report;
+    report.layer = reference.layer;
+    report.reference = reference.file;
+    const auto measure_front = [&](std::int64_t width_px, Image& seen, Image& picture) {
+        const std::int64_t height_px = reference.height_px(width_px);
+        const Progress progress = step(fmt::format("front at {} px", width_px));
+        seen = views.render(reference.frame, JudgingView::front, width_px, height_px, progress);
+        picture = resampled(reference.picture, map_to_width(reference.picture, width_px, height_px), width_px,
+                            height_px, now.output.pixel_filter);
+        progress.check();
+        return front_fidelity(seen, picture);  // a border in which the light fades is to be left out here
+    };
+    report.front = measure_front(fidelity_width_px, report.front_view, report.front_reference);
+    const auto render = [&](JudgingView view, std::int64_t height_px, const char* name) {
+        return views.render(reference.frame, view, fidelity_width_px, height_px, step(name));
+    };
+    report.side_view = render(JudgingView::side, side_height_px, "from 60 degrees");
+    report.needles = needles(report.side_view);
+    report.edge_view = render(JudgingView::edge, edge_height_px, "edge-on");
+    report.edge = edge_on_profile(report.edge_view);
+    Image seen, picture;
+    report.full = reference.picture.width == fidelity_width_px
+                      ? report.front
+                      : measure_front(reference.picture.width, seen, picture);
+    return report;
+}
+
+}  // namespace astrosplat

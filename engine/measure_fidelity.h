@@ -1,0 +1,62 @@
+// How true a scene is to the telescope: what its splats look like from the front against its picture, and
+// whether they hold from the side and from the edge. In: a scene. Out: numbers and the pictures that they
+// were taken of.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/image.h"
+#include "core/progress.h"
+#include "fidelity/edge_on.h"
+#include "fidelity/front.h"
+#include "fidelity/needles.h"
+#include "generate/set_cache.h"
+#include "scene/front_frame.h"
+#include "scene/scene.h"
+
+namespace astrosplat {
+
+/// What the front view is compared with.
+struct FidelityReference {
+    std::string layer;           // whose picture it is, or stands for
+    std::filesystem::path file;  // empty: the layer's own picture
+    FrontFrame frame;            // world space
+    Image picture;               // linear light on black, in its own resolution
+
+    /// Height in px of a front view so wide.
+    std::int64_t height_px(std::int64_t width_px) const;
+};
+
+/// The picture of the first visible layer made of meshes, or of the first such layer at all, so that a
+/// scene of splat files can name its picture in a layer that is not visible. `file` replaces the picture,
+/// not its place; its proportions are to be the frame's within 1 %. `now`: the scene at one frame. Throws
+/// InputError, Cancelled.
+FidelityReference fidelity_reference(const Scene& now, const std::optional<std::filesystem::path>& file,
+                                     const Progress& progress = {});
+
+struct FidelityReport {
+    std::string layer;
+    std::filesystem::path reference;
+    FrontFidelity front, full;  // at 1280 px and at the picture's own width
+    Needles needles;            // from 60 degrees
+    EdgeOnProfile edge;
+    Image front_view, front_reference;  // at 1280 px: linear light on black
+    Image side_view, edge_view;
+};
+
+/// Width in px of the smaller front view and of the other views.
+inline constexpr std::int64_t fidelity_width_px = 1280;
+
+/// Bytes of pictures and measures at their peak, about: what comes on top of the splats.
+std::int64_t fidelity_bytes(const FidelityReference& reference);
+
+/// Renders the scene as it stands, with its looks and without its environment, and measures. `begin_step`
+/// is told of each step and says where it reports to. Throws InputError, Cancelled.
+FidelityReport measure_fidelity(const Scene& now, const FidelityReference& reference,
+                                const SetCache& cache = {},
+                                const std::function<Progress(const std::string& step)>& begin_step = {});
+
+}  // namespace astrosplat
