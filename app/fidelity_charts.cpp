@@ -50,7 +50,7 @@ float displayed_mean(const float* p) {
 /// -1 .. 1: how far a difference is from none to full colour.
 double strength(double difference) { return std::clamp(difference / full_colour, -1.0, 1.0); }
 
-constexpr double chart_width = 560, chart_height = 260, chart_left = 44, chart_top = 14, chart_bottom = 40;
+constexpr double chart_width = 440, chart_height = 250, chart_left = 44, chart_top = 14, chart_bottom = 40;
 
 double chart_x(std::size_t band, std::size_t bands) {
     return chart_left +

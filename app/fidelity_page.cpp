@@ -88,8 +88,11 @@ std::string table(const std::vector<FidelityRow>& rows) {
     for (const FidelityRow& row : rows) {
         if (row.view != view) html += fmt::format("<tr><th colspan='4'>{}</th></tr>\n", escaped(row.view));
         view = row.view;
-        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class='{}'>{}</td></tr>\n", row.measure,
-                            row.value, row.target, word_of(row.verdict), word_of(row.verdict));
+        const std::string cells = row.target.empty()
+                                      ? fmt::format("<td colspan='3'>{}</td>", row.value)
+                                      : fmt::format("<td>{}</td><td>{}</td><td class='{}'>{}</td>", row.value,
+                                                    row.target, word_of(row.verdict), word_of(row.verdict));
+        html += fmt::format("<tr><td>{}</td>{}</tr>\n", row.measure, cells);
     }
     return html + "</table></div>\n";
 }

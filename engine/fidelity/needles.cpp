@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t most_points = 400;
 constexpr std::int64_t edge_px = 12, peak_reach_px = 4;
 constexpr std::int64_t reach_px = 9, side_px = 2 * reach_px + 1;  // of the square around a point
+constexpr float least_height = 1e-4f;  // of white: below, peaks are those of rounding
 constexpr double needle_elongation = 1.6;
 constexpr double pixel_variance = 0.08;  // px^2, so that a single pixel has a width (about 1/12)
 constexpr float background_share = 0.35f;
@@ -25,11 +26,15 @@ struct Peak {
     float height;
 };
 
+// Of equal neighbours the first from the top left is the peak.
 bool is_peak(const Image& image, std::int64_t x, std::int64_t y) {
     const float height = *image.at(x, y);
+    if (height < least_height) return false;
     for (std::int64_t j = y - peak_reach_px; j <= y + peak_reach_px; ++j)
-        for (std::int64_t i = x - peak_reach_px; i <= x + peak_reach_px; ++i)
-            if (*image.at(i, j) > height) return false;
+        for (std::int64_t i = x - peak_reach_px; i <= x + peak_reach_px; ++i) {
+            const bool before = j < y || (j == y && i < x);
+            if (*image.at(i, j) > height || (before && *image.at(i, j) == height)) return false;
+        }
     return true;
 }
 

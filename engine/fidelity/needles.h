@@ -12,8 +12,9 @@ struct Needles {
     double share = 0.0;  // of them longer than 1.6 times their width, from top to bottom; 0 without points
 };
 
-/// Points are peaks of the displayed brightest channel, blurs of 1 px minus 7 px, 12 px away from the
-/// edges. The width and length of each are moments of what stands out of its surroundings within 9 px.
+/// Points are peaks of the displayed brightest channel, blurs of 1 px minus 7 px, at least 1e-4, 12 px away
+/// from the edges. The width and length of each are moments of what stands out of its surroundings within 9
+/// px.
 Needles needles(const Image& side_view);
 
 }  // namespace astrosplat
