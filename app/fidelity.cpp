@@ -52,16 +52,16 @@ Scene scene_to_measure(const FidelityOptions& options) {
     return now;
 }
 
-void announce_memory(const Scene& now, const FidelityReference& reference, const SetCache& cache) {
+void announce_memory(const Scene& now, const FidelityReference& reference, const FidelitySettings& settings) {
     BatchPlan plan;
     plan.scene = now;
-    plan.cache = cache;
-    plan.scene.output.width = std::max(fidelity_width_px, reference.picture.width);
+    plan.cache = settings.cache;
+    plan.scene.output.width = std::max(settings.width_px, reference.picture.width);
     plan.scene.output.height = reference.height_px(plan.scene.output.width);
     plan.scene.output.aovs.clear();
     const JobEstimate job = estimate(plan);
-    const std::int64_t bytes = job.bytes + fidelity_bytes(reference);
-    log_info(fmt::format("front views of {} and {} px, about {}, about {} of memory", fidelity_width_px,
+    const std::int64_t bytes = job.bytes + fidelity_bytes(reference, settings);
+    log_info(fmt::format("front views of {} and {} px, about {}, about {} of memory", settings.width_px,
                          reference.picture.width, human_count(job.splats, "splat"),
                          human_bytes(static_cast<double>(bytes))));
 }
@@ -88,9 +88,11 @@ int run_fidelity(const FidelityOptions& options) {
     ProgressReport progress(options.progress);
     const FidelityReference reference =
         fidelity_reference(now, options.reference, progress.begin_step("reading the picture"));
-    announce_memory(now, reference, options.cache);
-    const FidelityReport report = measure_fidelity(
-        now, reference, options.cache, [&](const std::string& step) { return progress.begin_step(step); });
+    FidelitySettings settings;
+    settings.cache = options.cache;
+    settings.begin_step = [&](const std::string& step) { return progress.begin_step(step); };
+    announce_memory(now, reference, settings);
+    const FidelityReport report = measure_fidelity(now, reference, settings);
     const std::string name = now.file.filename().string();
     const std::string text =
         html ? fidelity_page(report, name)

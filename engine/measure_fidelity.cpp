@@ -19,7 +19,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t side_height_px = 720, edge_height_px = 400;
+// Of the views from the side: width over height.
+constexpr std::int64_t side_aspect[] = {16, 9}, edge_aspect[] = {16, 5};
 
 const LayerParams& layer_with_picture(const Scene& now) {
     const LayerParams* found = nullptr;
@@ -105,18 +106,22 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<std::
     return reference;
 }
 
-std::int64_t fidelity_bytes(const FidelityReference& reference) {
+std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySettings& settings) {
     const Image& picture = reference.picture;
-    const std::int64_t pixels = picture.width * picture.height;
-    const std::int64_t blurs = 3 * pixels * picture.channels * static_cast<std::int64_t>(sizeof(float));
-    const std::int64_t views = pixels * (4 + 3) * static_cast<std::int64_t>(sizeof(float));
-    return blurs + views + front_fidelity_bytes(picture.width, picture.height);
+    const std::int64_t width = std::max(picture.width, settings.width_px),
+                       height = reference.height_px(width);
+    const auto floats = static_cast<std::int64_t>(sizeof(float));
+    const std::int64_t blurs = 2 * picture.width * picture.height * picture.channels * floats;
+    const std::int64_t views = width * height * (4 + picture.channels) * floats;
+    return blurs + views + front_fidelity_bytes(width, height);
 }
 
-FidelityReport measure_fidelity(const Scene& now, const FidelityReference& reference, const SetCache& cache,
-                                const std::function<Progress(const std::string& step)>& begin_step) {
-    const auto step = [&](const std::string& name) { return begin_step ? begin_step(name) : Progress{}; };
-    FidelityViews views(now, cache, step("preparing"));
+FidelityReport measure_fidelity(const Scene& now, const FidelityReference& reference,
+                                const FidelitySettings& settings) {
+    const auto step = [&](const std::string& name) {
+        return settings.begin_step ? settings.begin_step(name) : Progress{};
+    };
+    FidelityViews views(now, settings.cache, step("preparing"));
     FidelityReport report;
     report.layer = reference.layer;
     report.reference = reference.file;
@@ -129,16 +134,17 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
         progress.check();
         return front_fidelity(seen, picture);  // a border in which the light fades is to be left out here
     };
-    report.front = measure_front(fidelity_width_px, report.front_view, report.front_reference);
-    const auto render = [&](JudgingView view, std::int64_t height_px, const char* name) {
-        return views.render(reference.frame, view, fidelity_width_px, height_px, step(name));
+    report.front = measure_front(settings.width_px, report.front_view, report.front_reference);
+    const auto render = [&](JudgingView view, const std::int64_t(&aspect)[2], const char* name) {
+        return views.render(reference.frame, view, settings.width_px,
+                            settings.width_px * aspect[1] / aspect[0], step(name));
     };
-    report.side_view = render(JudgingView::side, side_height_px, "from 60 degrees");
+    report.side_view = render(JudgingView::side, side_aspect, "from 60 degrees");
     report.needles = needles(report.side_view);
-    report.edge_view = render(JudgingView::edge, edge_height_px, "edge-on");
+    report.edge_view = render(JudgingView::edge, edge_aspect, "edge-on");
     report.edge = edge_on_profile(report.edge_view);
     Image seen, picture;
-    report.full = reference.picture.width == fidelity_width_px
+    report.full = reference.picture.width == settings.width_px
                       ? report.front
                       : measure_front(reference.picture.width, seen, picture);
     return report;

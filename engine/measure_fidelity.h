@@ -40,23 +40,26 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<std::
 struct FidelityReport {
     std::string layer;
     std::filesystem::path reference;
-    FrontFidelity front, full;  // at 1280 px and at the picture's own width
+    FrontFidelity front, full;  // at FidelitySettings::width_px and at the picture's own width
     Needles needles;            // from 60 degrees
     EdgeOnProfile edge;
-    Image front_view, front_reference;  // at 1280 px: linear light on black
+    Image front_view, front_reference;  // of `front`: linear light on black
     Image side_view, edge_view;
 };
 
-/// Width in px of the smaller front view and of the other views.
-inline constexpr std::int64_t fidelity_width_px = 1280;
+struct FidelitySettings {
+    SetCache cache;
+    std::int64_t width_px = 1280;  // of the smaller front view and of the views from the side
+    /// Told of each step; says where the step reports to. Empty: nowhere.
+    std::function<Progress(const std::string& step)> begin_step;
+};
 
 /// Bytes of pictures and measures at their peak, about: what comes on top of the splats.
-std::int64_t fidelity_bytes(const FidelityReference& reference);
+std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySettings& settings = {});
 
-/// Renders the scene as it stands, with its looks and without its environment, and measures. `begin_step`
-/// is told of each step and says where it reports to. Throws InputError, Cancelled.
+/// Renders the scene as it stands, with its looks and without its environment, and measures. Throws
+/// InputError, Cancelled.
 FidelityReport measure_fidelity(const Scene& now, const FidelityReference& reference,
-                                const SetCache& cache = {},
-                                const std::function<Progress(const std::string& step)>& begin_step = {});
+                                const FidelitySettings& settings = {});
 
 }  // namespace astrosplat

@@ -12,7 +12,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t most_compared_pixels = 2'000'000;
+constexpr std::int64_t most_compared_pixels = 500'000;
 
 // The cube root with its tangent below (6/29)^3, CIE 15.
 double lab_curve(double t) {

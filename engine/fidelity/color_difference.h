@@ -22,7 +22,7 @@ struct ColorDifferences {
     double median = 0.0, percentile_95 = 0.0;
 };
 
-/// Over all pixels of two pictures of one size, or an even lattice of about two million of them.
+/// Over all pixels of two pictures of one size, or an even lattice of up to half a million of them.
 ColorDifferences color_differences(const Image& a, const Image& b);
 
 }  // namespace astrosplat

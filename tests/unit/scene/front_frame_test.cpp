@@ -1,0 +1,174 @@
+// Where a picture lies in the world, and what it shows from the front.
+#include "scene/front_frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "scene/front_picture.h"
+#include "support/errors.h"
+
+namespace astrosplat {
+namespace {
+
+// Every texel differs from its neighbours; opaque.
+Texture numbered_texture(std::int64_t width, std::int64_t height) {
+    Texture texture;
+    texture.wrap = TextureSettings::Wrap::clamp;
+    texture.image = make_image(width, height, 4, 1.0f);
+    for (std::int64_t y = 0; y < height; ++y)
+        for (std::int64_t x = 0; x < width; ++x) {
+            texture.image.at(x, y)[0] = static_cast<float>(x);
+            texture.image.at(x, y)[1] = static_cast<float>(y);
+            texture.image.at(x, y)[2] = 0.5f;
+        }
+    return texture;
+}
+
+std::vector<TexturedMesh> builtin(const std::string& name, std::int64_t width, std::int64_t height) {
+    std::vector<TexturedMesh> meshes(1);
+    meshes[0].mesh = builtin_mesh(name, static_cast<double>(width) / static_cast<double>(height));
+    meshes[0].textures.push_back(numbered_texture(width, height));
+    return meshes;
+}
+
+// Moves every vertex.
+template <class Move>
+std::vector<TexturedMesh> moved(std::vector<TexturedMesh> meshes, const Move& move) {
+    for (TexturedMesh& m : meshes)
+        for (glm::vec3& p : m.mesh.positions) p = move(p);
+    return meshes;
+}
+
+void expect_near(const glm::dvec3& a, const glm::dvec3& b) {
+    EXPECT_LT(glm::distance(a, b), 1e-6) << a.x << " " << a.y << " " << a.z;
+}
+
+void expect_frame(const FrontFrame& frame, const glm::dvec3& right, const glm::dvec3& up, double width,
+                  double height) {
+    expect_near(frame.right, right);
+    expect_near(frame.up, up);
+    expect_near(frame.toward, glm::cross(right, up));
+    EXPECT_NEAR(frame.width, width, 1e-6);
+    EXPECT_NEAR(frame.height, height, 1e-6);
+}
+
+constexpr glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+
+TEST(FrontFrame, OfThePlaneIsSeenFromAbove) {
+    expect_frame(front_frame(builtin("plane", 32, 16)), x, -z, 10.0, 5.0);
+    expect_frame(front_frame(builtin("plane", 16, 32)), x, -z, 5.0, 10.0);
+    expect_frame(front_frame(builtin("disk", 32, 16)), x, -z, 10.0, 10.0);
+}
+
+TEST(FrontFrame, PicturesReadRightWhicheverWayTheyStand) {
+    const std::vector<TexturedMesh> plane = builtin("plane", 32, 16);
+    const auto turned = [&](const auto& move) { return front_frame(moved(plane, move)); };
+    expect_frame(turned([](const glm::vec3& p) { return glm::vec3(p.x, -p.z, 0.0f); }), x, y, 10.0, 5.0);
+    expect_frame(turned([](const glm::vec3& p) { return glm::vec3(0.0f, -p.z, -p.x); }), -z, y, 10.0, 5.0);
+    expect_frame(turned([](const glm::vec3& p) { return glm::vec3(p.z, 0.0f, p.x); }), z, -x, 10.0, 5.0);
+    expect_frame(turned([](const glm::vec3& p) { return glm::vec3(-p.x, 0.0f, p.z); }), -x, -z, 10.0, 5.0);
+    expect_near(turned([](const glm::vec3& p) { return p + glm::vec3(1, 2, 3); }).center,
+                glm::dvec3(1, 2, 3));
+}
+
+TEST(FrontFrame, FollowsTheLayersTransform) {
+    RenderLayer layer;
+    layer.world_from_layer = rotation_from_degrees({90.0, 0.0, 0.0});
+    layer.scale = 2.0;
+    layer.translate = {0.0, 0.0, 7.0};
+    const FrontFrame frame = in_world(front_frame(builtin("plane", 32, 16)), layer);
+    expect_frame(frame, x, y, 20.0, 10.0);
+    expect_near(frame.center, glm::dvec3(0, 0, 7));
+}
+
+TEST(FrontFrame, CamerasStandInFrontAtSixtyDegreesAndInThePlane) {
+    const FrontFrame frame = front_frame(builtin("plane", 32, 16));
+    const CameraParams front = judging_camera(frame, JudgingView::front, 2.0);
+    const CameraParams side = judging_camera(frame, JudgingView::side, 1280.0 / 720.0);
+    const CameraParams edge = judging_camera(frame, JudgingView::edge, 3.2);
+    expect_near(*front.position, glm::dvec3(0, 20, 0));
+    expect_near(front.up, -z);
+    EXPECT_NEAR(front.height, 5.0, 1e-12);
+    expect_near(*side.position, glm::dvec3(0, 10, 20.0 * std::sqrt(0.75)));
+    expect_near(side.up, y);
+    EXPECT_NEAR(side.height, 5.625, 1e-12);
+    expect_near(*edge.position, glm::dvec3(0, 0, 20));
+    EXPECT_NEAR(edge.height, 3.125, 1e-12);
+}
+
+TEST(FrontFrame, AMeshWithoutAreaIsRefused) {
+    const std::vector<TexturedMesh> line =
+        moved(builtin("plane", 4, 4), [](const glm::vec3& p) { return glm::vec3(p.x, 0.0f, 0.0f); });
+    EXPECT_NE(message_of<InputError>([&] { front_frame(line); }).find("a line or a point"),
+              std::string::npos);
+    EXPECT_NE(message_of<InputError>([] { front_frame({}); }).find("vertices"), std::string::npos);
+}
+
+TEST(FrontPicture, OfAPlaneIsItsPicture) {
+    for (const auto& [width, height] : {std::pair{37, 23}, {64, 200}, {1, 1}}) {
+        const std::vector<TexturedMesh> plane = builtin("plane", width, height);
+        const Image picture = front_picture(plane, front_frame(plane));
+        ASSERT_EQ(picture.width, width);
+        ASSERT_EQ(picture.height, height);
+        for (std::int64_t j = 0; j < height; ++j)
+            for (std::int64_t i = 0; i < width; ++i) {
+                ASSERT_NEAR(picture.at(i, j)[0], static_cast<float>(i), 1e-3f) << i << " " << j;
+                ASSERT_NEAR(picture.at(i, j)[1], static_cast<float>(j), 1e-3f) << i << " " << j;
+            }
+    }
+}
+
+TEST(FrontPicture, OfADiskIsBlackAroundIt) {
+    const std::vector<TexturedMesh> disk = builtin("disk", 64, 64);
+    const Image picture = front_picture(disk, front_frame(disk));
+    ASSERT_EQ(picture.width, 64);
+    ASSERT_EQ(picture.height, 64);
+    for (std::int64_t j = 0; j < 64; ++j)
+        for (std::int64_t i = 0; i < 64; ++i) {
+            const double r = std::hypot(static_cast<double>(i) - 31.5, static_cast<double>(j) - 31.5);
+            if (std::fabs(r - 32.0) > 0.6) {
+                EXPECT_EQ(picture.at(i, j)[2], r < 32.0 ? 0.5f : 0.0f) << i << " " << j;
+            }
+            if (r < 31.0) {
+                EXPECT_NEAR(picture.at(i, j)[0], static_cast<float>(i), 1e-3f);
+            }
+        }
+}
+
+TEST(FrontPicture, TheNearestFaceIsSeen) {
+    std::vector<TexturedMesh> meshes = builtin("plane", 16, 16);
+    meshes.push_back(moved(builtin("plane", 16, 16),
+                           [](const glm::vec3& p) { return glm::vec3(0.5f * p.x, 1.0f, 0.5f * p.z); })[0]);
+    for (float& value : meshes[1].textures[0].image.pixels) value = 1.0f;
+    FrontFrame frame = front_frame(meshes);
+    for (const bool above : {true, false}) {
+        const Image picture = front_picture(meshes, frame);
+        EXPECT_EQ(picture.at(picture.width / 2, picture.height / 2)[2], above ? 1.0f : 0.5f);
+        EXPECT_EQ(picture.at(1, 1)[2], 0.5f);
+        for (glm::vec3& p : meshes[1].mesh.positions) p.y = -1.0f;
+    }
+}
+
+// A picture whose faces carry different shares of it has the same bits in one band as in many.
+TEST(FrontPicture, HasTheSameBitsOnAnyThreads) {
+    const std::vector<TexturedMesh> sphere = builtin("sphere", 200, 100);
+    set_thread_count(1);
+    const Image one = front_picture(sphere, front_frame(sphere));
+    set_thread_count(2);
+    EXPECT_EQ(front_picture(sphere, front_frame(sphere)).pixels, one.pixels);
+    set_thread_count(0);
+}
+
+TEST(FrontPicture, WithoutTextureCoordinatesIsRefused) {
+    std::vector<TexturedMesh> plane = builtin("plane", 4, 4);
+    for (Mesh::Triangle& face : plane[0].mesh.triangles) face.uv.fill(Mesh::no_uv);
+    EXPECT_NE(message_of<InputError>([&] { front_picture(plane, front_frame(plane)); }).find("found none"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace astrosplat
