@@ -66,6 +66,17 @@ void announce_memory(const Scene& now, const FidelityReference& reference, const
                          human_bytes(static_cast<double>(bytes))));
 }
 
+/// A front view holds the light of all layers, a picture that of one.
+void warn_of_other_layers(const Scene& now, const FidelityReference& reference) {
+    const auto shown = std::count_if(now.layers.begin(), now.layers.end(),
+                                     [](const LayerParams& layer) { return layer.visible; });
+    if (shown > 1 && reference.file.empty())
+        log_warning(
+            fmt::format("{} layers are seen, and compared with the picture of '{}' alone; --reference names "
+                        "another picture",
+                        shown, reference.layer));
+}
+
 void print_rows(const std::vector<FidelityRow>& rows) {
     std::string view;
     for (const FidelityRow& row : rows) {
@@ -88,6 +99,7 @@ int run_fidelity(const FidelityOptions& options) {
     ProgressReport progress(options.progress);
     const FidelityReference reference =
         fidelity_reference(now, options.reference, progress.begin_step("reading the picture"));
+    warn_of_other_layers(now, reference);
     FidelitySettings settings;
     settings.cache = options.cache;
     settings.begin_step = [&](const std::string& step) { return progress.begin_step(step); };

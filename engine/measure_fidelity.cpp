@@ -108,12 +108,15 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<std::
 
 std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySettings& settings) {
     const Image& picture = reference.picture;
-    const std::int64_t width = std::max(picture.width, settings.width_px),
-                       height = reference.height_px(width);
-    const auto floats = static_cast<std::int64_t>(sizeof(float));
-    const std::int64_t blurs = 2 * picture.width * picture.height * picture.channels * floats;
-    const std::int64_t views = width * height * (4 + picture.channels) * floats;
-    return blurs + views + front_fidelity_bytes(width, height);
+    const auto views = [&](std::int64_t width) {
+        return width * reference.height_px(width) * (4 + picture.channels);
+    };
+    const std::int64_t small = settings.width_px, large = std::max(picture.width, small);
+    const std::int64_t blurs = 2 * picture.width * picture.height * picture.channels;
+    const std::int64_t sides = 4 * small * small * (side_aspect[1] + edge_aspect[1]) / side_aspect[0];
+    const std::int64_t floats = blurs + views(small) + sides + views(large);
+    return floats * static_cast<std::int64_t>(sizeof(float)) +
+           front_fidelity_bytes(large, reference.height_px(large));
 }
 
 FidelityReport measure_fidelity(const Scene& now, const FidelityReference& reference,

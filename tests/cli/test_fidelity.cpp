@@ -4,6 +4,24 @@
 namespace astrosplat::test {
 namespace {
 
+// The bytes of the first picture of a page.
+std::string first_picture(const std::string& page) {
+    const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const std::string start = "data:image/png;base64,";
+    std::string bytes;
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (std::size_t at = page.find(start) + start.size(); letters.find(page[at]) != std::string::npos;
+         ++at) {
+        bits = bits << 6 | static_cast<std::uint32_t>(letters.find(page[at]));
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes += static_cast<char>(bits >> count & 255u);
+    }
+    return bytes;
+}
+
 class FidelityCommand : public SceneTest {
   protected:
     FidelityCommand() {
@@ -50,10 +68,32 @@ TEST_F(FidelityCommand, ThePageHoldsAllThatItShows) {
          (at = page.find("src='data:image/png;base64,iVBORw0KGgo", at)) != std::string::npos; ++at)
         ++pictures;
     EXPECT_EQ(pictures, 5u) << "rendered, picture, difference, two from the side";
+    write_text(folder / "first.png", first_picture(page));
+    const RunResult described = run({"info", "first.png"});
+    EXPECT_EQ(described.code, 0) << described.err;
+    EXPECT_NE(described.out.find("1280"), std::string::npos) << described.out;
     for (const char* part : {"PSNR", "CIEDE2000", "<svg class='cells'", "<svg class='power'", "</html>"})
         EXPECT_NE(page.find(part), std::string::npos) << part;
     for (const char* elsewhere : {"http:", "https:", "src='/", "url(", "@import"})
         EXPECT_EQ(page.find(elsewhere), std::string::npos) << elsewhere;
+}
+
+TEST_F(FidelityCommand, SaysThatThePictureIsOneLayersAlone) {
+    const std::string part = "2 layers are seen, and compared with the picture of 'picture' alone";
+    EXPECT_EQ(fidelity({"-o", "one.json"}).err.find(part), std::string::npos);
+    write_text(folder / "picture.toml", text_of(folder / "picture.toml") + R"(
+[[layer]]
+name = "stars"
+[layer.source]
+kind = "splats"
+file = "stars.pda"
+)");
+    const RunResult two = fidelity({"-o", "two.json"});
+    EXPECT_NE(two.err.find(part), std::string::npos) << two.err;
+    EXPECT_NE(json("one.json").at("full_size"), json("two.json").at("full_size"));
+    const RunResult named = fidelity({"-o", "named.json", "--reference", "picture.ppm"});
+    EXPECT_EQ(named.err.find(part), std::string::npos) << named.err;
+    EXPECT_EQ(json("named.json").at("reference"), "picture.ppm");
 }
 
 TEST_F(FidelityCommand, RefusesWhatItShould) {
