@@ -92,11 +92,10 @@ ColorDifferences color_differences(const Image& a, const Image& b) {
     while ((a.width / step) * (a.height / step) > most_compared_pixels) ++step;
     const std::int64_t columns = (a.width + step - 1) / step, rows = (a.height + step - 1) / step;
     std::vector<double> differences(static_cast<std::size_t>(columns * rows));
-    parallel_chunks(rows, 8, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y)
-            for (std::int64_t x = 0; x < columns; ++x)
-                differences[static_cast<std::size_t>(y * columns + x)] = ciede2000(
-                    lab_of_linear(a.at(x * step, y * step)), lab_of_linear(b.at(x * step, y * step)));
+    parallel_each(rows, 8, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < columns; ++x)
+            differences[static_cast<std::size_t>(y * columns + x)] =
+                ciede2000(lab_of_linear(a.at(x * step, y * step)), lab_of_linear(b.at(x * step, y * step)));
     });
     return {percentile(differences, 0.5), percentile(differences, 0.95)};
 }

@@ -15,9 +15,8 @@ Image made_of(const Image& from, int channels, const PerPixel& make) {
     assert(from.channels >= 3);
     Image image{from.width, from.height, channels, {}};
     image.pixels.resize(static_cast<std::size_t>(from.width * from.height * channels));
-    parallel_chunks(from.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin * from.width; i < end * from.width; ++i)
-            make(from.pixels.data() + i * from.channels, image.pixels.data() + i * channels);
+    parallel_each(from.width * from.height, 1 << 14, [&](std::int64_t i) {
+        make(from.pixels.data() + i * from.channels, image.pixels.data() + i * channels);
     });
     return image;
 }

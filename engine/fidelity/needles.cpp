@@ -41,11 +41,10 @@ bool is_peak(const Image& image, std::int64_t x, std::int64_t y) {
 // The strongest first; of equal ones the first from the top left.
 std::vector<Peak> strongest_peaks(const Image& image) {
     std::vector<std::vector<Peak>> of_row(static_cast<std::size_t>(image.height));
-    parallel_chunks(image.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = std::max(begin, edge_px); y < std::min(end, image.height - edge_px); ++y)
-            for (std::int64_t x = edge_px; x < image.width - edge_px; ++x)
-                if (is_peak(image, x, y))
-                    of_row[static_cast<std::size_t>(y)].push_back({x, y, *image.at(x, y)});
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        if (y < edge_px || y >= image.height - edge_px) return;
+        for (std::int64_t x = edge_px; x < image.width - edge_px; ++x)
+            if (is_peak(image, x, y)) of_row[static_cast<std::size_t>(y)].push_back({x, y, *image.at(x, y)});
     });
     std::vector<Peak> peaks;
     for (const std::vector<Peak>& row : of_row) peaks.insert(peaks.end(), row.begin(), row.end());

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double widest_direct_px = 4.0;  // above this, halving is quicker and within 1 % of the peak
 constexpr double halving_variance = 1.5;  // px^2 of halving and doubling together
-constexpr std::int64_t rows_per_blur_chunk = 16;
+constexpr std::int64_t rows_per_chunk = 16;
 
 // Index of the mirrored picture: ... 1 0 | 0 1 2 ... n-1 | n-1 n-2 ...
 std::int64_t mirrored(std::int64_t i, std::int64_t n) {
@@ -35,14 +35,6 @@ std::vector<float> gaussian_weights(double sigma) {
     std::vector<float> weights;
     for (const double v : w) weights.push_back(static_cast<float>(v / sum));
     return weights;
-}
-
-// Calls row(y) for every row, on all threads.
-template <class Row>
-void for_blurred_rows(std::int64_t height, const Row& row) {
-    parallel_chunks(height, rows_per_blur_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y) row(y);
-    });
 }
 
 // One row of `width` pixels from `middle` on gets `margin` mirrored pixels at either side.
@@ -68,7 +60,7 @@ Image blurred_rows(const Image& image, const std::vector<float>& weights) {
     Image out = make_image(image.width, image.height, image.channels);
     const auto margin = static_cast<std::int64_t>(weights.size() / 2);
     const std::int64_t count = image.width * image.channels;
-    for_blurred_rows(image.height, [&](std::int64_t y) {
+    parallel_each(image.height, rows_per_chunk, [&](std::int64_t y) {
         std::vector<float> padded(static_cast<std::size_t>(count + 2 * margin * image.channels));
         float* const middle = padded.data() + margin * image.channels;
         std::copy_n(image.at(0, y), count, middle);
@@ -82,7 +74,7 @@ Image blurred_rows(const Image& image, const std::vector<float>& weights) {
 Image blurred_columns(const Image& image, const std::vector<float>& weights) {
     Image out = make_image(image.width, image.height, image.channels);
     const auto margin = static_cast<std::int64_t>(weights.size() / 2);
-    for_blurred_rows(image.height, [&](std::int64_t y) {
+    parallel_each(image.height, rows_per_chunk, [&](std::int64_t y) {
         weighted_sum(weights, image.width * image.channels, out.at(0, y),
                      [&](std::int64_t k) { return image.at(0, mirrored(y + k - margin, image.height)); });
     });
@@ -104,7 +96,7 @@ Image convolved_with_gaussian(const Image& image, double sigma_px) {
 Image halved(const Image& image) {
     const int channels = image.channels;
     Image out = make_image((image.width + 1) / 2, (image.height + 1) / 2, channels);
-    for_blurred_rows(out.height, [&](std::int64_t y) {
+    parallel_each(out.height, rows_per_chunk, [&](std::int64_t y) {
         std::vector<float> sum(static_cast<std::size_t>((image.width + 4) * channels), 0.0f);
         float* const middle = sum.data() + 2 * channels;
         weighted_sum(binomial, image.width * channels, middle,
@@ -126,7 +118,7 @@ Image doubled(const Image& image, std::int64_t width, std::int64_t height) {
     assert((width + 1) / 2 == image.width && (height + 1) / 2 == image.height);
     const int channels = image.channels;
     Image out = make_image(width, height, channels);
-    for_blurred_rows(height, [&](std::int64_t y) {
+    parallel_each(height, rows_per_chunk, [&](std::int64_t y) {
         std::vector<float> row(static_cast<std::size_t>((image.width + 2) * channels));
         const float* const near = image.at(0, y / 2);
         const float* const far = image.at(0, mirrored(y % 2 ? y / 2 + 1 : y / 2 - 1, image.height));

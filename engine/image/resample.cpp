@@ -10,8 +10,6 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t rows_per_sample_chunk = 16;
-
 // Two neighbouring texels along an axis of n and the share of the second.
 struct Neighbours {
     std::int64_t first, second;
@@ -55,13 +53,12 @@ Image resampled(const Image& image, const PixelMap& texel_from_pixel, std::int64
     const double texels_per_pixel = std::sqrt(std::fabs(glm::determinant(texel_from_pixel.linear)));
     const Image filtered = convolved_with_gaussian(image, sigma_px * texels_per_pixel);
     Image out = make_image(width, height, image.channels);
-    parallel_chunks(height, rows_per_sample_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y)
-            for (std::int64_t x = 0; x < width; ++x) {
-                const glm::dvec2 center(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
-                sample_linearly(filtered, texel_from_pixel.offset + texel_from_pixel.linear * center,
-                                out.at(x, y));
-            }
+    parallel_each(height, 16, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < width; ++x) {
+            const glm::dvec2 center(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
+            sample_linearly(filtered, texel_from_pixel.offset + texel_from_pixel.linear * center,
+                            out.at(x, y));
+        }
     });
     return out;
 }

@@ -12,9 +12,7 @@ namespace astrosplat {
 template <class Row>
 double sum_over_rows(std::int64_t height, const Row& row) {
     std::vector<double> sums(static_cast<std::size_t>(height));
-    parallel_chunks(height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t y = begin; y < end; ++y) sums[static_cast<std::size_t>(y)] = row(y);
-    });
+    parallel_each(height, 16, [&](std::int64_t y) { sums[static_cast<std::size_t>(y)] = row(y); });
     double sum = 0.0;
     for (const double s : sums) sum += s;
     return sum;
