@@ -66,6 +66,9 @@ TEST(Lab, OfKnownColours) {
     EXPECT_NEAR(lab.L, 53.24, 0.01);
     EXPECT_NEAR(lab.a, 80.10, 0.01);
     EXPECT_NEAR(lab.b, 67.22, 0.01);
+    const float black[] = {0.0f, 0.0f, 0.0f}, faint[] = {0.001f, 0.001f, 0.001f};
+    EXPECT_NEAR(lab_of_linear(black).L, 0.0, 1e-12);
+    EXPECT_NEAR(lab_of_linear(faint).L, 24389.0 / 27.0 * 0.001, 1e-6) << "the straight part";
     const float beyond[] = {3.0f, -1.0f, 0.0f};
     EXPECT_EQ(lab_of_linear(beyond).L, lab.L) << "clamped to what is displayed";
 }

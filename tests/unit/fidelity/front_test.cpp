@@ -95,6 +95,17 @@ TEST(Flux, OfAScaledPictureIsTheScale) {
     for (const double p : {even.frame, even.cells_5, even.cells_50, even.cells_95}) EXPECT_NEAR(p, 1.1, 1e-6);
 }
 
+TEST(Flux, ThePercentilesAreThoseOfTheCells) {
+    const Image reference = make_image(320, 320, 3, 0.5f);
+    Image seen = reference;  // the columns of cells hold 1.00, 1.01 ... 1.31 of the light
+    for (std::int64_t y = 0; y < 320; ++y)
+        for (std::int64_t x = 0; x < 320; ++x) seen.at(x, y)[1] *= 1.0f + 0.03f * static_cast<float>(x / 10);
+    const FluxRatios flux = flux_ratios(seen, reference);
+    EXPECT_NEAR(flux.cells_5, 1.01, 1e-5);
+    EXPECT_NEAR(flux.cells_50, 1.155, 1e-5);
+    EXPECT_NEAR(flux.cells_95, 1.30, 1e-5);
+}
+
 TEST(Flux, ACellIsAPlaceAndADarkOneCountsForNothing) {
     Image reference = make_image(64, 96, 3, 0.5f), seen = reference;  // cells of 2 x 3 px
     const auto set_cell = [](Image& image, std::int64_t column, std::int64_t row, float value) {

@@ -38,6 +38,20 @@ TEST(Needles, AreLongFromTopToBottomAndNotAcross) {
     EXPECT_NEAR(needles(points([](int i) { return std::pair{1.2, i % 4 ? 1.2 : 3.0}; })).share, 0.25, 1e-12);
 }
 
+TEST(Needles, TwoPointsAboveEachOtherAreNotOne) {
+    const Image pairs = drawn(400, 300, [](std::int64_t x, std::int64_t y, int) {
+        double value = 0.0;
+        for (const double above : {0.0, 8.0}) {
+            const double dx = static_cast<double>(x % 50 - 25), dy = static_cast<double>(y % 60 - 30) + above;
+            value += 0.5 * std::exp(-0.5 * (dx * dx + dy * dy));
+        }
+        return value;
+    });
+    const Needles found = needles(pairs);
+    EXPECT_EQ(found.points, 2 * 8 * 5);
+    EXPECT_EQ(found.share, 0.0);
+}
+
 TEST(Needles, AreCountedAmongTheStrongestAwayFromTheEdges) {
     const Image crowded = drawn(1280, 720, [](std::int64_t x, std::int64_t y, int) {
         const auto dx = static_cast<double>(x % 32 - 16), dy = static_cast<double>(y % 24 - 12);
