@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "image/resample.h"
 #include "measure_fidelity.h"
 #include "support/errors.h"
 #include "support/small_scene.h"
@@ -76,6 +77,13 @@ TEST_F(Fidelity, DoesNotDependOnCameraSkyThreadsOrPlace) {
     const FidelityReport elsewhere = measured();
     EXPECT_NEAR(elsewhere.front.psnr_db, before.front.psnr_db, 0.05);
     EXPECT_NEAR(elsewhere.front.flux.frame, before.front.flux.frame, 1e-3);
+}
+
+TEST_F(Fidelity, ThePictureIsSeenThroughThePixelFilter) {
+    scene.output.pixel_filter = 4.0;
+    const Image picture = fidelity_reference(scene, std::nullopt).picture;
+    const Image filtered = resampled(picture, map_to_width(picture, 160, 160), 160, 160, 4.0);
+    EXPECT_EQ(measured().front_reference.pixels, filtered.pixels);
 }
 
 TEST_F(Fidelity, AnotherPictureTakesThePlaceOfTheLayersOwn) {

@@ -122,6 +122,15 @@ TEST(FrontPicture, OfAPlaneIsItsPicture) {
     }
 }
 
+TEST(FrontPicture, TransparencyIsSeenOnBlack) {
+    std::vector<TexturedMesh> plane = builtin("plane", 8, 8);
+    for (std::int64_t i = 0; i < 64; ++i)
+        plane[0].textures[0].image.pixels[static_cast<std::size_t>(4 * i + 3)] = 0.75f;
+    const Image picture = front_picture(plane, front_frame(plane));  // the texture is premultiplied already
+    EXPECT_NEAR(picture.at(4, 4)[2], 0.5f, 1e-6f);
+    EXPECT_NEAR(picture.at(6, 2)[0], 6.0f, 1e-3f);
+}
+
 TEST(FrontPicture, OfADiskIsBlackAroundIt) {
     const std::vector<TexturedMesh> disk = builtin("disk", 64, 64);
     const Image picture = front_picture(disk, front_frame(disk));
