@@ -36,6 +36,7 @@ th { text-align: left; font-weight: 600; padding: 1.2rem 0 .35rem; }
 td { padding: .32rem 1rem .32rem 0; border-top: 1px solid var(--line); vertical-align: top; }
 td:nth-child(3), td:nth-child(4) { color: var(--quiet); font-size: .9rem; white-space: nowrap; }
 td.met { color: var(--met) !important; } td.missed { color: var(--missed) !important; }
+@media (max-width: 34rem) { table { font-size: .9rem; } td { padding-right: .6rem; } }
 .card { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 1rem; }
 svg { display: block; width: 100%; height: auto; }
 svg text { font: 12px system-ui, sans-serif; fill: var(--quiet); }
@@ -46,7 +47,7 @@ polyline { fill: none; stroke-width: 2; stroke-linejoin: round; }
 .line0 polyline { stroke: var(--ink); } .line0 circle { fill: var(--ink); }
 .line1 polyline { stroke: var(--less); } .line1 circle { fill: var(--less); }
 .key0 { color: var(--ink); } .key1 { color: var(--less); }
-.wipe { position: relative; display: none; touch-action: none; cursor: ew-resize; }
+.wipe { position: relative; display: none; touch-action: pan-y; cursor: ew-resize; }
 .wipe img + img { position: absolute; top: 0; clip-path: inset(0 0 0 var(--at, 50%)); }
 .wipe i { position: absolute; top: 0; bottom: 1.9rem; left: var(--at, 50%); width: 1px; background: #fff9; }
 )css";
