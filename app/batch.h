@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "exit_code.h"
-#include "generate/set_cache.h"
 #include "progress_report.h"
+#include "sets/set_cache.h"
 
 namespace astrosplat {
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "generate/load_source.h"
 #include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"
+#include "sets/load_source.h"
 
 namespace astrosplat {
 namespace {

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "core/error.h"
-#include "generate/load_source.h"
 #include "image/resample.h"
 #include "pipeline.h"
 #include "scene/front_picture.h"
 #include "scene/layer_setup.h"
 #include "source/texture.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 namespace {

@@ -13,9 +13,9 @@
 #include "fidelity/edge_on.h"
 #include "fidelity/front.h"
 #include "fidelity/needles.h"
-#include "generate/set_cache.h"
 #include "scene/front_frame.h"
 #include "scene/scene.h"
+#include "sets/set_cache.h"
 
 namespace astrosplat {
 

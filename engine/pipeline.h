@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "generate/set_cache.h"
 #include "render/render.h"
 #include "scene/scene.h"
+#include "sets/set_cache.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

@@ -9,7 +9,7 @@
 #include "edit/commands.h"
 #include "edit/document.h"
 #include "edit/status.h"
-#include "generate/set_cache.h"
+#include "sets/set_cache.h"
 #include "viewer/render_job.h"
 
 namespace astrosplat {

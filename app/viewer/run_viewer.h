@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "generate/set_cache.h"
 #include "scene/load.h"
+#include "sets/set_cache.h"
 
 namespace astrosplat {
 

@@ -9,8 +9,8 @@
 
 #include "core/worker.h"
 #include "edit/status.h"
-#include "generate/set_cache.h"
 #include "scene/scene.h"
+#include "sets/set_cache.h"
 #include "viewer/loaded_layer.h"
 #include "viewer/set_list.h"
 

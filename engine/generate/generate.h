@@ -7,7 +7,8 @@
 
 #include "core/progress.h"
 #include "generate/lattice.h"
-#include "generate/textured_mesh.h"
+#include "source/source.h"
+#include "source/textured_mesh.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {

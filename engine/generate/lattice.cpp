@@ -75,12 +75,6 @@ double automatic_size(const SourceParams& source, std::span<const TexturedMesh> 
 
 }  // namespace
 
-Bounds bounds(std::span<const TexturedMesh> meshes) {
-    Bounds box;
-    for (const TexturedMesh& m : meshes) box.add(bounds(m.mesh));
-    return box;
-}
-
 double resolved_max_distance(const SourceParams& source, const Bounds& meshes_box) {
     if (!(source.max_distance >= 0.0 && std::isfinite(source.max_distance))) {
         bad_key("max_distance", "a number of at least 0", fmt::format("{}", source.max_distance));

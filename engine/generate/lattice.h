@@ -8,8 +8,8 @@
 #include <string>
 
 #include "core/bounds.h"
-#include "generate/textured_mesh.h"
 #include "source/source.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 
@@ -36,9 +36,6 @@ inline double lattice_coordinate(const Lattice& lattice, int axis, double cells)
     return lattice.box.lo[axis] +
            (lattice.box.hi[axis] - lattice.box.lo[axis]) * cells / static_cast<double>(lattice.n[axis]);
 }
-
-/// Bounds of all vertices of all meshes.
-Bounds bounds(std::span<const TexturedMesh> meshes);
 
 /// source.max_distance, or 2 % of the longest side of the meshes' box where that is 0. Throws InputError.
 double resolved_max_distance(const SourceParams& source, const Bounds& meshes_box);

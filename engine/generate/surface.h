@@ -9,7 +9,7 @@
 
 #include "core/buffer.h"
 #include "generate/closest_triangle.h"
-#include "generate/textured_mesh.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 

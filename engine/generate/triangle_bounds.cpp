@@ -9,7 +9,7 @@
 namespace astrosplat {
 namespace {
 
-double squared(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
+double squared_length(const glm::dvec3& v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 
 // The middle of the smallest circle around a triangle, from its first corner: the circumcentre where all
 // angles are acute, else the middle of the longest side.
@@ -34,7 +34,7 @@ double overshoot(const TriangleShape& s) {
 // Unit, or 0 for triangles that have no plane worth a bound.
 glm::dvec3 usable_normal(const TriangleShape& s) {
     const glm::dvec3 normal = glm::cross(s.ab, s.ac);
-    const double length = std::sqrt(squared(normal));
+    const double length = std::sqrt(squared_length(normal));
     return length > 0.0 && !is_narrow(s) ? normal / length : glm::dvec3(0.0);
 }
 
@@ -49,8 +49,8 @@ TriangleBox triangle_box(const TriangleShape& s, const glm::dvec3& origin) {
 
 TriangleDisc triangle_disc(const TriangleShape& s, const glm::dvec3& origin) {
     const glm::dvec3 middle = circle_middle(s);
-    const double radius =
-        std::sqrt(std::max({squared(middle), squared(middle - s.ab), squared(middle - s.ac)}));
+    const double radius = std::sqrt(
+        std::max({squared_length(middle), squared_length(middle - s.ab), squared_length(middle - s.ac)}));
     return {glm::vec3(s.a - origin + middle), glm::vec3(usable_normal(s)),
             static_cast<float>(radius * (1.0 + overshoot(s)))};
 }

@@ -93,6 +93,26 @@ void describe_stars(const Describer& d, StarsParams& stars) {
       slider(0.3, 5));
 }
 
+void describe_structure(const Describer& d, StructureParams& s) {
+    const Describer bodies = d.only_with("kind", {"disk", "sheet", "walls"});
+    d(s.kind, "kind", "Structure", "",
+      "How the picture gets depth: columns extrudes it; disk (galaxies), sheet (nebulae) and walls (shells) "
+      "make bodies.");
+    bodies(s.height, "height", "Scale height", "scene units",
+           "Thickness; 0: 1.1 % of the picture's longest side.", at_least(0), slider(0, 1));
+    d(s.depth, "depth", "Depth", "of the width", "Whole depth of walls, or of the relief of a flat sheet.",
+      within(0, 10), slider(0, 0.5), only_with("kind", {"sheet", "walls"}));
+    bodies(s.clumps, "clumps", "Clumps", "", "How strongly depths gather in clouds.", within(0, 100),
+           slider(0, 3));
+    bodies(s.stars, "stars", "Stars apart", "", "Stars are found and become single dots.");
+    bodies(s.opacity, "opacity", "Opacity", "",
+           "Power of brightness that opacity grows with; low makes dim parts denser.", within(0.01, 10),
+           slider(0.2, 1.5));
+    bodies(s.density, "density", "Density", "", "Opacity of white.", within(0, 1), slider(0.1, 0.98));
+    bodies(s.border, "border", "Soft border", "of the width",
+           "Light fades over this share towards the picture's edges.", within(0, 0.5), slider(0, 0.2));
+}
+
 void describe_source(const Describer& d, SourceParams& s) {
     const Describer files = d.shown_in("Source", "Files"), splats = d.shown_in("Source", "Splats");
     const Describer lattice = splats.only_with("kind", {"mesh"});
@@ -115,6 +135,7 @@ void describe_source(const Describer& d, SourceParams& s) {
             slider(0, 10));
     files.only_with("kind", {"mesh"})(s.uv, "uv", "Picture coordinates", "",
                                       "The mesh's own, or projected along an axis.");
+    describe_structure(lattice.in("structure", false), s.structure);
     splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",
            slider(0, 1000));
     files(s.file, "file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.",

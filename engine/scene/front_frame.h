@@ -5,8 +5,8 @@
 #include <span>
 
 #include "camera/camera.h"
-#include "generate/textured_mesh.h"
 #include "render/frame.h"
+#include "source/textured_mesh.h"
 
 namespace astrosplat {
 

@@ -81,6 +81,24 @@ constexpr auto names_of(UvMode) {
     return names_up_to<UvMode::planar_yz>("mesh", "planar-xy", "planar-xz", "planar-yz");
 }
 
+/// How a picture fills the neighbourhood of its mesh (DEPTH 7): columns extrudes it, the others make bodies.
+enum class StructureKind { columns, disk, sheet, walls };
+constexpr auto names_of(StructureKind) {
+    return names_up_to<StructureKind::walls>("columns", "disk", "sheet", "walls");
+}
+
+struct StructureParams {
+    StructureKind kind = StructureKind::columns;
+    double height = 0.0;    // scene units, scale height; 0: 1.1 % of the picture's longest side
+    double depth = 0.15;    // of the picture's width: whole depth of walls, or of a flat sheet's relief
+    double clumps = 1.0;    // how strongly depths follow the noise
+    bool stars = true;      // found and made into single dots
+    double opacity = 0.55;  // power of brightness that opacity grows with
+    double density = 0.75;  // opacity of white
+    double border = 0.0;    // of the width, over which light fades towards the picture's edges
+    bool operator==(const StructureParams&) const = default;
+};
+
 struct SourceParams {
     SourceKind kind = SourceKind::mesh;
     std::vector<MeshInput> meshes;
@@ -92,6 +110,7 @@ struct SourceParams {
     double jitter = 1.0;                 // 0..1 of half a voxel
     double max_distance = 0.0;           // scene units; 0: 2 % of the longest side of the meshes' box
     UvMode uv = UvMode::mesh;
+    StructureParams structure;
     std::uint32_t seed = 0;      // 0: derived from the layer's name
     std::filesystem::path file;  // kind splats
     StarsParams stars;           // kind stars

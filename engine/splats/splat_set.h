@@ -21,7 +21,7 @@ struct SplatSetFacts {
     std::int64_t test_positions = 0;  // lattice positions looked at, 0 for files
     std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
     std::string credit;               // from the inputs' metadata
-    std::string key;                  // of an entry of the cache: all that made it (generate/cache_key.h)
+    std::string key;                  // of an entry of the cache: all that made it (sets/cache_key.h)
 };
 
 /// Arrays either have size() entries or are empty ("not known"); position, color, alpha, distance and id are

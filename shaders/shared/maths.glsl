@@ -81,3 +81,5 @@ const uint PURPOSE_RADIUS = 5u;
 const uint PURPOSE_CHILD = 6u;  // level of detail: 6, 7, 8, 9
 const uint PURPOSE_NAME = 16u;  // seeds from names
 const uint PURPOSE_NOISE = 17u;
+const uint PURPOSE_DEPTH = 18u;  // of a dot of a picture
+const uint PURPOSE_KNOT = 19u;

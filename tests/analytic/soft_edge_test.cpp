@@ -9,7 +9,7 @@
 #include "analytic/support.h"
 #include "core/color.h"
 #include "core/real.h"
-#include "generate/load_source.h"
+#include "sets/load_source.h"
 
 namespace astrosplat {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/image.h"
 #include "generate/lattice.h"
-#include "generate/textured_mesh.h"
+#include "source/textured_mesh.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat::bench {

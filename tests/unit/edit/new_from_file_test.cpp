@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "edit/layers.h"
-#include "generate/load_source.h"
 #include "scenes.h"
+#include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
 #include "support/test_data.h"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/error.h"
-#include "generate/load_source.h"
 #include "pipeline.h"
 #include "scene/describe.h"
+#include "sets/load_source.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {

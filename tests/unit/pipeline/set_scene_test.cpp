@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/error.h"
-#include "generate/load_source.h"
 #include "output/write.h"
 #include "pipeline.h"
+#include "sets/load_source.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {

@@ -77,6 +77,7 @@ max_distance = 0.0
 filter = "bilinear"
 wrap = "auto"
 uv = "mesh"
+structure = { kind = "columns", height = 0.0, depth = 0.15, clumps = 1.0, stars = true, opacity = 0.55, density = 0.75, border = 0.0 }
 seed = 0
 plane = 0
 voxel_size = 0.0

@@ -81,13 +81,16 @@ TEST(Structure, EngineIncludesPointOneWay) {
         {"look", {"core", "source", "splats", "look"}},
         {"camera", {"core", "camera"}},
         {"render", {"core", "source", "splats", "camera", "render"}},
+        {"bodies", {"core", "image", "source", "splats", "camera", "render", "bodies"}},
+        {"sets", {"core", "source", "splats", "splat_files", "generate", "bodies", "sets"}},
         {"scene",
-         {"core", "source", "splats", "splat_files", "generate", "look", "camera", "render", "scene"}},
+         {"core", "source", "splats", "splat_files", "generate", "bodies", "sets", "look", "camera", "render",
+          "scene"}},
         {"output",
-         {"core", "source", "splats", "splat_files", "generate", "look", "camera", "render", "scene",
+         {"core", "source", "splats", "splat_files", "generate", "sets", "look", "camera", "render", "scene",
           "output"}},
         {"",
-         {"core", "source", "splats", "splat_files", "generate", "look", "camera", "render", "scene",
+         {"core", "source", "splats", "splat_files", "generate", "sets", "look", "camera", "render", "scene",
           "output", "image", "fidelity", ""}},  // pipeline, measure_fidelity
     };
     const std::vector<Include> includes = includes_below("engine");

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "generate/load_source.h"
 #include "output/write.h"
 #include "render/render.h"
 #include "scene/layer_setup.h"
+#include "sets/load_source.h"
 #include "splats/stratified.h"
 #include "support/small_scene.h"
 

@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "core/shared_maths.h"
-#include "generate/load_source.h"
 #include "output/write.h"
 #include "pipeline.h"
+#include "sets/load_source.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {

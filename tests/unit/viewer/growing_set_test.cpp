@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "generate/load_source.h"
+#include "sets/load_source.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {

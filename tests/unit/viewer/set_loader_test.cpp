@@ -12,7 +12,7 @@
 #include <numeric>
 #include <utility>
 
-#include "generate/load_source.h"
+#include "sets/load_source.h"
 #include "splat_files/ply.h"
 #include "splats/stratified.h"
 #include "support/small_scene.h"

@@ -1,6 +1,6 @@
 // The cache of generated sets: the same bits as generated, a key that follows every input, a size limit,
 // processes that share a folder, and folders and entries that cannot be used.
-#include "generate/set_cache.h"
+#include "sets/set_cache.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "core/log.h"
-#include "generate/cache_key.h"
-#include "generate/load_source.h"
+#include "sets/cache_key.h"
+#include "sets/load_source.h"
 #include "splat_files/native.h"
 #include "support/temp_folder.h"
 #include "support/variable.h"

@@ -1,5 +1,5 @@
 // One line for each thing that a generated set depends on.
-#include "generate/cache_key.h"
+#include "sets/cache_key.h"
 
 #include <fmt/format.h>
 
@@ -59,6 +59,15 @@ std::string lattice_lines(const SourceParams& source) {
     return fmt::format("{}\nbuffer {}\n", size, buffer);
 }
 
+// Nothing for columns, so that sets made before there was a choice keep their keys.
+std::string structure_lines(const StructureParams& params) {
+    const auto& [kind, height, depth, clumps, stars, opacity, density, border] = params;
+    if (kind == StructureKind::columns) return "";
+    return fmt::format("structure {}\nheight {}\ndepth {}\nclumps {}\nstars {}\n", static_cast<int>(kind),
+                       height, depth, clumps, stars) +
+           fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border);
+}
+
 }  // namespace
 
 std::string cache_key_text(const SourceParams& source, const std::string& layer_name,
@@ -66,10 +75,11 @@ std::string cache_key_text(const SourceParams& source, const std::string& layer_
     assert(source.kind == SourceKind::mesh);
     // Names all fields, so that a new one cannot be forgotten: either it belongs below, or among the unused.
     [[maybe_unused]] const auto& [kind, meshes, texture, buffer, voxels, voxel_size, count, jitter,
-                                  max_distance, uv, seed, file, stars] = source;
+                                  max_distance, uv, structure, seed, file, stars] = source;
     std::string text = fmt::format("set {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
     for (const MeshInput& input : meshes) text += mesh_lines(input, progress);
     text += texture_lines(texture) + lattice_lines(source);
+    text += structure_lines(structure);
     return text + fmt::format("jitter {}\nmax_distance {}\nuv {}\nseed {}\n", jitter, max_distance,
                               static_cast<int>(uv), resolved_seed(seed, layer_name));
 } catch (const InputError&) {

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "core/log.h"
-#include "generate/load_source.h"
+#include "sets/load_source.h"
+#include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
 #include "support/test_data.h"
 #include "unit/splat_files/file_support.h"

@@ -1,7 +1,7 @@
 // An entry is read without a lock, for it appears whole or not at all. The lock of its key is held from
 // before generation until the file is in place; what is found unlocked was left by a process that ended
 // early.
-#include "generate/set_cache.h"
+#include "sets/set_cache.h"
 
 #include <fmt/format.h>
 
@@ -18,8 +18,8 @@
 #include "core/file_lock.h"
 #include "core/log.h"
 #include "core/memory.h"
-#include "generate/cache_key.h"
-#include "generate/load_source.h"
+#include "sets/cache_key.h"
+#include "sets/load_source.h"
 #include "splat_files/native.h"
 
 namespace astrosplat {

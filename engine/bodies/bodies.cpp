@@ -1,0 +1,181 @@
+#include "bodies/bodies.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "bodies/bands.h"
+#include "bodies/front_fit.h"
+#include "bodies/picture_light.h"
+#include "bodies/picture_splats.h"
+#include "bodies/placement.h"
+#include "bodies/stars.h"
+#include "bodies/uv_surface.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int most_pictures = 255;  // ids hold 8 bits of their number
+constexpr int picture_bit = 56, instance_bit = 42;
+constexpr std::uint64_t most_instances = 63;
+
+// A picture of a mesh's material, where a face shows it.
+struct PictureOnMesh {
+    const TexturedMesh* mesh = nullptr;
+    std::uint32_t mesh_index = 0, material = 0;
+    const Texture& texture() const { return mesh->textures[material]; }
+};
+
+std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
+    std::vector<PictureOnMesh> pictures;
+    for (std::uint32_t m = 0; m < meshes.size(); ++m)
+        for (std::uint32_t i = 0; i < meshes[m].textures.size(); ++i)
+            if (meshes[m].textures[i].image.width > 0) pictures.push_back({&meshes[m], m, i});
+    if (pictures.size() > most_pictures)
+        throw InputError(fmt::format("source.structure: expected at most {} pictures on the meshes, found {}",
+                                     most_pictures, pictures.size()));
+    return pictures;
+}
+
+PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const StructureParams& params,
+                      std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
+    const PictureLight picture = picture_light(texture, params.border);
+    Image without_stars = picture.light;
+    const std::vector<Star> stars = params.stars ? take_stars(without_stars) : std::vector<Star>{};
+    progress.check();
+    const Placement placement = make_placement(brightest_channel(without_stars), params,
+                                               surface.texels_per_unit(), surface.flat(), seed);
+    const Opacity opacity{static_cast<float>(params.opacity), static_cast<float>(params.density)};
+    const Image brightest = brightest_channel(picture.light);
+    const std::vector<Band> bands = make_bands(picture.light.width);
+    PictureSplats dots;
+    split_bands(std::move(without_stars), bands, [&](const Band& band, const Image& light) {
+        progress.check();
+        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        add_band(light, band_dots(band, coarsest, placement), brightest, picture.alpha, placement, opacity,
+                 dots);
+    });
+    add_stars(stars, placement, opacity, dots);
+    const FrontFit fit = fit_front(dots, picture.light, progress);
+    log_detail(fmt::format(
+        "layer '{}': {} and {} in {}, front view {:.1f} dB after {} steps of the fit, {:.1f} before",
+        layer_name, human_count(static_cast<double>(dots.splats.size())) + " dots",
+        counted(static_cast<std::int64_t>(stars.size()), "star"),
+        counted(static_cast<std::int64_t>(bands.size()), "band"), fit.psnr_db, fit.steps, fit.first_psnr_db));
+    return dots;
+}
+
+// Dots of a chunk on their places of the mesh, in order.
+struct PlacedDots {
+    std::vector<std::int64_t> dot;
+    std::vector<SurfacePlace> place;
+    std::vector<std::uint8_t> instance;
+};
+
+std::vector<PlacedDots> on_surface(const PictureSplats& dots, const UvSurface& surface, const Image& image) {
+    constexpr std::int64_t per_chunk = 16384;
+    const std::int64_t count = dots.splats.size();
+    std::vector<PlacedDots> chunks(static_cast<std::size_t>((count + per_chunk - 1) / per_chunk));
+    parallel_chunks(count, per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        PlacedDots& chunk = chunks[static_cast<std::size_t>(begin / per_chunk)];
+        for (std::int64_t i = begin; i < end; ++i) {
+            const glm::vec3 p = dots.splats.position[static_cast<std::size_t>(i)];
+            std::uint64_t instance = 0;
+            surface.at(
+                {p.x / static_cast<float>(image.width) + 0.5f, p.y / static_cast<float>(image.height) + 0.5f},
+                [&](const SurfacePlace& place) {
+                    if (instance > most_instances) return;
+                    chunk.dot.push_back(i);
+                    chunk.place.push_back(place);
+                    chunk.instance.push_back(static_cast<std::uint8_t>(instance++));
+                });
+        }
+    });
+    return chunks;
+}
+
+void resize(SplatSet& set, std::int64_t count) {
+    for_each_column([&]<class T>(Buffer<T> SplatSet::*column, SplatColumn) {
+        (set.*column).resize(static_cast<std::size_t>(count));
+    });
+}
+
+void write_dot(const PictureSplats& dots, const PlacedDots& chunk, std::size_t i,
+               const PictureOnMesh& picture, std::uint64_t number, std::size_t at, SplatSet& set) {
+    const auto dot = static_cast<std::size_t>(chunk.dot[i]);
+    const SurfacePlace& place = chunk.place[i];
+    const Image& image = picture.texture().image;
+    const glm::vec3 p = dots.splats.position[dot];
+    set.position[at] = place.position + place.normal * (p.z * place.units_per_texel);
+    set.color[at] = dots.splats.color[dot];
+    set.alpha[at] = dots.splats.alpha[dot];
+    set.distance[at] = dots.distance[dot] * place.units_per_texel;
+    set.id[at] = number << picture_bit | static_cast<std::uint64_t>(chunk.instance[i]) << instance_bit |
+                 dots.splats.id[dot];
+    set.uv[at] = {p.x / static_cast<float>(image.width) + 0.5f,
+                  p.y / static_cast<float>(image.height) + 0.5f};
+    set.normal[at] = place.normal;
+    set.mesh[at] = picture.mesh_index;
+    set.radius[at] = dots.splats.radius[dot] * place.units_per_texel;
+}
+
+// Puts the dots onto the mesh and behind those that are there.
+void append(const PictureSplats& dots, const UvSurface& surface, const PictureOnMesh& picture,
+            std::uint64_t number, SplatSet& set) {
+    const std::vector<PlacedDots> chunks = on_surface(dots, surface, picture.texture().image);
+    std::vector<std::int64_t> first{set.size()};
+    for (const PlacedDots& chunk : chunks)
+        first.push_back(first.back() + static_cast<std::int64_t>(chunk.dot.size()));
+    resize(set, first.back());
+    parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int) {
+        const PlacedDots& chunk = chunks[static_cast<std::size_t>(c)];
+        for (std::size_t i = 0; i < chunk.dot.size(); ++i)
+            write_dot(dots, chunk, i, picture, number,
+                      static_cast<std::size_t>(first[static_cast<std::size_t>(c)]) + i, set);
+    });
+    set.test_positions += dots.splats.size();
+}
+
+}  // namespace
+
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes) {
+    std::int64_t largest = 0, dots = 0;
+    for (const PictureOnMesh& picture : pictures_of(meshes)) {
+        const std::int64_t pixels = picture.texture().image.width * picture.texture().image.height;
+        largest = std::max(largest, pixels);
+        dots += pixels * 3 / 2;
+    }
+    constexpr std::int64_t bytes_per_pixel = 160, bytes_per_dot = 84 + 44;
+    return largest * bytes_per_pixel + dots * bytes_per_dot;
+}
+
+SplatSet make_bodies(std::span<const TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
+                     const std::string& layer_name, const Progress& progress) {
+    SplatSet set;
+    const std::vector<PictureOnMesh> pictures = pictures_of(meshes);
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        const PictureOnMesh& picture = pictures[i];
+        const Texture& texture = picture.texture();
+        const UvSurface surface(picture.mesh->mesh, picture.material, texture.image.width,
+                                texture.image.height, texture.wrap == TextureSettings::Wrap::repeat);
+        const PictureSplats dots =
+            dots_of(texture, surface, params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
+        append(dots, surface, picture, i, set);
+        if (set.credit.empty()) set.credit = texture.credit;
+        progress.at(static_cast<double>(i + 1) / static_cast<double>(pictures.size()));
+    }
+    sort_by_id(set);
+    for (const float distance : set.distance)
+        set.max_distance = std::max(set.max_distance, static_cast<double>(distance));
+    set.divided = true;
+    return set;
+}
+
+}  // namespace astrosplat

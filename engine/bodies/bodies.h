@@ -1,0 +1,27 @@
+// A picture as bodies in depth instead of columns (source.structure): its stars, its bands and their depths
+// become dots that show the picture from the front and hold up from everywhere else. In: meshes with
+// pictures. Out: a SplatSet whose colours, alphas and radii are final, so that a plain look shows it as it
+// is.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/progress.h"
+#include "source/source.h"
+#include "source/textured_mesh.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+/// Bytes that make_bodies() will take at its peak beside the meshes and pictures, about.
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes);
+
+/// Every picture of every mesh by itself. `params.kind` is not columns. Announces memory before taking it and
+/// says at detail level what was found. The same bits with any number of threads. Throws InputError,
+/// Cancelled.
+SplatSet make_bodies(std::span<const TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
+                     const std::string& layer_name, const Progress& progress = {});
+
+}  // namespace astrosplat

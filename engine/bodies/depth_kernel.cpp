@@ -1,0 +1,165 @@
+// Each step is a plain loop over the dots of a block, which the compiler turns into vectors.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bodies/depth_kernel.cpp"
+#include <hwy/foreach_target.h>
+// after foreach_target
+#include <hwy/highway.h>
+
+#include "bodies/depth_kernel.h"
+#include "core/glsl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace astrosplat {
+namespace HWY_NAMESPACE {
+namespace {
+
+using namespace astrosplat::glsl;
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include "maths.glsl"
+// after maths
+#include "noise.glsl"
+#pragma GCC diagnostic pop
+
+#define ASTROSPLAT_DEPTH_LOOP HWY_FLATTEN void
+
+constexpr float unit_deviation = 1.0f / 0.26f;  // of an octave
+constexpr int coarse_octaves = 3;
+constexpr int coarse_candidates = 24, fine_candidates = 8;
+
+using Lane = float[DepthBlock::size];
+
+// A number of 0..1 that follows from a dot's hash: another for each `which`.
+float uniform_of(uint random, int which) { return as_uniform(as_mix(random + uint(which) * 0x9e3779b9u)); }
+
+// Quantile of sech^2(z / height) / (2 height), at most 2.1 heights from the middle: farther out a few wide
+// dots would stand alone, as smoke.
+float logistic(float u, float height) {
+    const float inside = 0.015f + 0.97f * u;
+    return 0.5f * height * as_log(inside / (1.0f - inside));
+}
+
+ASTROSPLAT_DEPTH_LOOP add_octave(const NoiseStack& noise, int octave, const DepthBlock& block,
+                                 const float* HWY_RESTRICT z, float* HWY_RESTRICT sum) {
+    const float frequency = noise.frequency[octave], gain = noise.gain[octave] * unit_deviation;
+    for (int i = 0; i < block.count; ++i)
+        sum[i] = sum[i] + gain * as_noise_octave(block.x[i], block.y[i], z[i], frequency, noise.seed, octave);
+}
+
+ASTROSPLAT_DEPTH_LOOP clear(float* HWY_RESTRICT values, int count) {
+    for (int i = 0; i < count; ++i) values[i] = 0.0f;
+}
+
+ASTROSPLAT_DEPTH_LOOP coarse_places(const DepthBlock& block, int candidate, float* HWY_RESTRICT z) {
+    for (int i = 0; i < block.count; ++i) {
+        const float u =
+            (float(candidate) + uniform_of(block.random[i], candidate)) / float(coarse_candidates);
+        z[i] = logistic(u, block.height[i]);
+    }
+}
+
+ASTROSPLAT_DEPTH_LOOP fine_places(const DepthBlock& block, float longest, int candidate,
+                                  float* HWY_RESTRICT z) {
+    for (int i = 0; i < block.count; ++i) {
+        const float u = uniform_of(block.random[i], coarse_candidates + candidate);
+        const float span = min(0.6f * longest, block.height[i]);
+        z[i] = block.z[i] + span * ((float(candidate) + u) / float(fine_candidates) - 0.5f);
+    }
+}
+
+ASTROSPLAT_DEPTH_LOOP weights(float* HWY_RESTRICT energy, float* HWY_RESTRICT sum, int count) {
+    for (int i = 0; i < count; ++i) {
+        energy[i] = as_exp(energy[i]);
+        sum[i] = sum[i] + energy[i];
+    }
+}
+
+ASTROSPLAT_DEPTH_LOOP start_choice(const DepthBlock& block, int which, float* HWY_RESTRICT rest) {
+    for (int i = 0; i < block.count; ++i) rest[i] = rest[i] * uniform_of(block.random[i], which);
+}
+
+// Takes the candidate where the rest of the weight is not used up yet, so that the last one taken is the
+// choice.
+ASTROSPLAT_DEPTH_LOOP choose(const float* HWY_RESTRICT weight, const float* HWY_RESTRICT place,
+                             float* HWY_RESTRICT rest, float* HWY_RESTRICT z, int count) {
+    for (int i = 0; i < count; ++i) {
+        z[i] = rest[i] >= 0.0f ? place[i] : z[i];
+        rest[i] = rest[i] - weight[i];
+    }
+}
+
+// One draw among `candidates` places, with octaves [first, end) as weights.
+template <int candidates, class Places>
+void draw(const NoiseStack& noise, int first, int end, int which, DepthBlock& block, Places places) {
+    Lane place[candidates], weight[candidates], rest;
+    clear(rest, block.count);
+    for (int candidate = 0; candidate < candidates; ++candidate) {
+        places(candidate, place[candidate]);
+        clear(weight[candidate], block.count);
+        for (int octave = first; octave < end; ++octave)
+            add_octave(noise, octave, block, place[candidate], weight[candidate]);
+        weights(weight[candidate], rest, block.count);
+    }
+    start_choice(block, which, rest);
+    for (int candidate = 0; candidate < candidates; ++candidate)
+        choose(weight[candidate], place[candidate], rest, block.z, block.count);
+}
+
+ASTROSPLAT_DEPTH_LOOP add_spread(float spread, DepthBlock& block) {
+    for (int i = 0; i < block.count; ++i) {
+        const float most = 2.0f * block.height[i];
+        block.z[i] = clamp(block.z[i], -most, most) +
+                     logistic(uniform_of(block.random[i], 0), min(spread, block.height[i]));
+    }
+}
+
+}  // namespace
+
+void disk_depths_target(const NoiseStack& noise, DepthBlock& block) {
+    constexpr int choices = coarse_candidates + fine_candidates;
+    draw<coarse_candidates>(noise, 0, min(noise.count, coarse_octaves), choices, block,
+                            [&](int candidate, float* z) { coarse_places(block, candidate, z); });
+    if (noise.count <= coarse_octaves) return;
+    const float longest = 1.0f / noise.frequency[coarse_octaves];
+    draw<fine_candidates>(noise, coarse_octaves, noise.count, choices + 1, block,
+                          [&](int candidate, float* z) { fine_places(block, longest, candidate, z); });
+}
+
+void noise_sum_target(const NoiseStack& noise, DepthBlock& block) {
+    Lane plane;
+    clear(plane, block.count);
+    clear(block.z, block.count);
+    for (int octave = 0; octave < noise.count; ++octave) add_octave(noise, octave, block, plane, block.z);
+}
+
+void sheet_depths_target(const NoiseStack& noise, float spread, DepthBlock& block) {
+    noise_sum_target(noise, block);
+    add_spread(spread, block);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace astrosplat
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace astrosplat {
+
+HWY_EXPORT(disk_depths_target);
+HWY_EXPORT(noise_sum_target);
+HWY_EXPORT(sheet_depths_target);
+
+void disk_depths(const NoiseStack& noise, DepthBlock& block) {
+    HWY_DYNAMIC_DISPATCH(disk_depths_target)(noise, block);
+}
+
+void noise_sum(const NoiseStack& noise, DepthBlock& block) {
+    HWY_DYNAMIC_DISPATCH(noise_sum_target)(noise, block);
+}
+
+void sheet_depths(const NoiseStack& noise, float spread, DepthBlock& block) {
+    HWY_DYNAMIC_DISPATCH(sheet_depths_target)(noise, spread, block);
+}
+
+}  // namespace astrosplat
+#endif

@@ -1,0 +1,39 @@
+// Depths of many dots at once, in the noise that all bands share (DEPTH 4). Compiled once per instruction set
+// with the same bits on each.
+#pragma once
+
+#include <cstdint>
+
+namespace astrosplat {
+
+/// Octaves of a noise field, coarse to fine.
+struct NoiseStack {
+    static constexpr int most = 16;
+    int count = 0;
+    float frequency[most];  // a texel
+    float gain[most];       // times an octave of unit deviation
+    std::uint32_t seed = 0;
+};
+
+/// Dots on their way to a depth, texels.
+struct DepthBlock {
+    static constexpr int size = 256;
+    int count = 0;
+    float x[size], y[size];
+    float height[size];          // scale height H_k of the envelope
+    std::uint32_t random[size];  // a hash for each dot; all of its choices follow from it
+    float z[size];               // out
+};
+
+/// z drawn from sech^2(z / H_k) exp(sum of gain N(x, y, z)), normalised in every column: 24 stratified
+/// candidates by the first three octaves, then eight about the one chosen by the others.
+void disk_depths(const NoiseStack& noise, DepthBlock& block);
+
+/// z = sum of gain N(x, y, 0), at most 2 H_k from 0, and a draw from sech^2(z / spread) with the spread at
+/// most H_k.
+void sheet_depths(const NoiseStack& noise, float spread, DepthBlock& block);
+
+/// z = sum of gain N(x, y, 0) alone.
+void noise_sum(const NoiseStack& noise, DepthBlock& block);
+
+}  // namespace astrosplat

@@ -1,0 +1,17 @@
+// How thick a layer is and where its middle lies, as smooth fields over a picture (DEPTH 4). In: the
+// picture's light without its stars. Out: one-channel images of the picture's size, in texels.
+#pragma once
+
+#include "core/image.h"
+
+namespace astrosplat {
+
+/// The scale height at every pixel of a layer whose typical one is `height`: .55 to 2.2 times it, more where
+/// the picture is bright over a wide area: H clamp(.55 + 1.6 (G_40 * m / its 99.5 %)^1.5, .55, 2.2).
+Image thickness_field(const Image& brightest, double height);
+
+/// How far a body stands out, 0 to `depth`: the root of the picture's brightness over wide areas, 0 on empty
+/// sky. Nowhere steeper than `steepest`; what is steeper looks like drapery.
+Image relief_field(const Image& brightest, double depth, double steepest);
+
+}  // namespace astrosplat

@@ -1,0 +1,22 @@
+// The front view made right (DEPTH 5): what is composited dims what lies deep, so colours are raised, step by
+// step, by the ratio of the picture to what is seen. In and out: the dots of a picture.
+#pragma once
+
+#include "bodies/picture_splats.h"
+#include "core/image.h"
+#include "core/progress.h"
+
+namespace astrosplat {
+
+struct FrontFit {
+    int steps = 0;
+    double first_psnr_db = 0.0,
+           psnr_db = 0.0;  // on sRGB values of every fourth row, at the picture's own resolution
+};
+
+/// Multiplies colours until the orthographic front view is the picture as the default pixel filter shows it,
+/// at most five times and as long as a step gains .1 dB; last, cells of 32 px get the picture's flux. The
+/// same bits with any number of threads. Throws Cancelled; InputError where memory does not suffice.
+FrontFit fit_front(PictureSplats& dots, const Image& light, const Progress& progress = {});
+
+}  // namespace astrosplat

@@ -1,0 +1,121 @@
+#include "bodies/knots.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "image/blur.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double finest_sigma_px = 1.6;
+constexpr double sigma_ratio = 1.6;
+constexpr int scales = 4;
+constexpr float prominence = 1.5f;        // times the mean contrast around it
+constexpr float least_contrast = 0.006f;  // of the displayed white
+constexpr float reach_sigmas = 3.0f;
+constexpr float rim_share = 0.4f;  // of the reach, over which the weight falls to 0
+
+struct Peak {
+    Knot knot;
+    float contrast;
+};
+
+Image difference(const Image& a, const Image& b) {
+    Image out = a;
+    parallel_chunks(out.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t i = begin * out.width; i < end * out.width; ++i)
+            out.pixels[static_cast<std::size_t>(i)] -= b.pixels[static_cast<std::size_t>(i)];
+    });
+    return out;
+}
+
+Image magnitude(Image image) {
+    for (float& v : image.pixels) v = std::fabs(v);
+    return image;
+}
+
+bool is_peak(const Image& contrast, std::int64_t x, std::int64_t y, std::int64_t reach) {
+    const float here = *contrast.at(x, y);
+    for (std::int64_t j = y - reach; j <= y + reach; ++j)
+        for (std::int64_t i = x - reach; i <= x + reach; ++i)
+            if (*contrast.at(i, j) > here) return false;
+    return true;
+}
+
+// Peaks of one scale, in order of rows.
+std::vector<Peak> peaks(const Image& contrast, double sigma) {
+    const Image common = gaussian_blur(magnitude(contrast), 12.0 + 4.0 * sigma);
+    const auto reach = static_cast<std::int64_t>(std::ceil(1.2 * sigma));
+    std::vector<std::vector<Peak>> rows(static_cast<std::size_t>(contrast.height));
+    parallel_chunks(contrast.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t y = std::max(begin, reach); y < std::min(end, contrast.height - reach); ++y) {
+            for (std::int64_t x = reach; x < contrast.width - reach; ++x) {
+                const float here = *contrast.at(x, y);
+                if (here < least_contrast || here < prominence * *common.at(x, y)) continue;
+                if (!is_peak(contrast, x, y, reach)) continue;
+                const Knot knot{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
+                                static_cast<float>(sigma)};
+                rows[static_cast<std::size_t>(y)].push_back({knot, here});
+            }
+        }
+    });
+    std::vector<Peak> found;
+    for (const auto& row : rows) found.insert(found.end(), row.begin(), row.end());
+    return found;
+}
+
+// Gives the knot the pixels within its reach, where no other has a greater claim.
+void claim(const Knot& knot, std::int32_t index, const Image& image, Knots& out) {
+    const float reach = reach_sigmas * knot.sigma;
+    const auto first = [](float v) {
+        return std::max<std::int64_t>(0, static_cast<std::int64_t>(std::floor(v)));
+    };
+    const std::int64_t x_end = std::min(image.width, first(knot.x + reach) + 1);
+    const std::int64_t y_end = std::min(image.height, first(knot.y + reach) + 1);
+    for (std::int64_t y = first(knot.y - reach); y < y_end; ++y) {
+        for (std::int64_t x = first(knot.x - reach); x < x_end; ++x) {
+            const float dx = static_cast<float>(x) + 0.5f - knot.x,
+                        dy = static_cast<float>(y) + 0.5f - knot.y;
+            const float inside = 1.0f - std::sqrt(dx * dx + dy * dy) / reach;
+            const float weight = std::clamp(inside / rim_share, 0.0f, 1.0f);
+            const auto at = static_cast<std::size_t>(y * image.width + x);
+            if (weight <= out.weight[at]) continue;
+            out.weight[at] = weight;
+            out.owner[at] = index;
+        }
+    }
+}
+
+}  // namespace
+
+Knots find_knots(const Image& brightest) {
+    std::vector<Peak> peaks_found;
+    double sigma = finest_sigma_px;
+    Image finer = gaussian_blur(brightest, sigma);
+    for (int scale = 0; scale < scales; ++scale) {
+        Image coarser = gaussian_blur(finer, sigma * std::sqrt(sigma_ratio * sigma_ratio - 1.0));
+        const std::vector<Peak> found = peaks(difference(finer, coarser), sigma);
+        peaks_found.insert(peaks_found.end(), found.begin(), found.end());
+        finer = std::move(coarser);
+        sigma *= sigma_ratio;
+    }
+    std::stable_sort(peaks_found.begin(), peaks_found.end(),
+                     [](const Peak& a, const Peak& b) { return a.contrast > b.contrast; });
+    Knots result;
+    const auto pixels = static_cast<std::size_t>(brightest.width * brightest.height);
+    result.owner.assign(pixels, -1);
+    result.weight.assign(pixels, 0.0f);
+    for (const Peak& peak : peaks_found) {
+        const Knot& knot = peak.knot;
+        const auto at = static_cast<std::size_t>(static_cast<std::int64_t>(knot.y) * brightest.width +
+                                                 static_cast<std::int64_t>(knot.x));
+        if (result.weight[at] > 0.5f) continue;
+        claim(knot, static_cast<std::int32_t>(result.knots.size()), brightest, result);
+        result.knots.push_back(knot);
+    }
+    return result;
+}
+
+}  // namespace astrosplat

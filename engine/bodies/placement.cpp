@@ -1,0 +1,187 @@
+#include "bodies/placement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodies/fields.h"
+#include "bodies/picture_light.h"
+#include "core/parallel.h"
+#include "core/real.h"
+#include "core/shared_maths.h"
+
+namespace astrosplat {
+namespace {
+
+using shared::as_hash, shared::as_log, shared::as_mix, shared::as_uniform;
+
+constexpr float least_sigma = 0.45f;         // texels; .62 as published ends 2 dB below
+constexpr double widest_sigma_share = 0.45;  // of H; larger dots are a fog of their own
+constexpr double shortest_wave = 5.0;        // texels at a width of 1920
+constexpr float knot_depth = 0.6f;           // scale height of a knot, of its sigma
+constexpr float widest_in_knots = 5.0f;      // texels, sigma of the largest dots that follow their knot
+
+// Values for features of 2, 4, 8 ... texels at a width of 1920; between them linear in the logarithm.
+double by_feature(const double (&values)[8], double feature) {
+    const double k = std::clamp(real::log(feature / 2.0) / real::log(2.0), 0.0, 6.0 + 0.644);
+    const int i = std::min(6, static_cast<int>(k));
+    const double t = i == 6 ? (k - 6.0) / 0.644 : k - i;  // the last is at 200, not at 256
+    return values[i] * (1.0 - t) + values[i + 1] * t;
+}
+constexpr double dots_each[8] = {2.4, 4, 9, 16, 24, 24, 24, 24};  // within 2 pi sigma^2
+constexpr double clumpiness[8] = {3, 3, 2.6, 2.2, 1.7, 0.8, 0.3, 0.05};
+
+// Octaves from `longest` on by halves, as far down as a feature allows: small things float where their cloud
+// floats.
+NoiseStack stack(const Placement& placement, double longest, double feature, double first_gain,
+                 double ratio) {
+    NoiseStack noise;
+    noise.seed = placement.seed;
+    const double shortest = std::max(2.2 * feature, shortest_wave * placement.scale);
+    double gain = first_gain;
+    for (double wave = longest; noise.count < NoiseStack::most; wave /= 2.0, gain *= ratio) {
+        if (noise.count > 0 && wave < shortest) break;
+        noise.frequency[noise.count] = static_cast<float>(1.0 / wave);
+        noise.gain[noise.count++] = static_cast<float>(gain);
+    }
+    return noise;
+}
+
+NoiseStack waves(const Placement& placement, std::uint32_t field,
+                 std::initializer_list<std::pair<double, double>> wave_and_gain) {
+    NoiseStack noise;
+    noise.seed = as_mix(placement.seed + field);
+    for (const auto& [wave, gain] : wave_and_gain) {
+        noise.frequency[noise.count] = static_cast<float>(1.0 / (wave * placement.scale));
+        noise.gain[noise.count++] = static_cast<float>(gain);
+    }
+    return noise;
+}
+
+// Scale heights of a band's dots: fine bands are thinner, and wide dots bring a thickness of their own.
+void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& block) {
+    const float fine = std::min(1.0f, static_cast<float>(dots.index) / 5.0f);
+    const float share = placement.kind == StructureKind::disk ? 0.45f + 0.55f * fine : 0.6f + 0.4f * fine;
+    const float own = dots.index > 2 ? 1.2f * dots.sigma * dots.sigma : 0.0f;
+    for (int i = 0; i < block.count; ++i) {
+        const float height = bilinear(placement.thickness, 0, block.x[i], block.y[i]);
+        const float h = height * share;
+        block.height[i] = std::sqrt(std::max(h * h - own, 0.09f * height * height));
+    }
+}
+
+float logistic(float u, float height) {
+    const float inside = std::clamp(u, 1e-5f, 1.0f - 1e-5f);
+    return 0.5f * height * as_log(inside / (1.0f - inside));
+}
+
+// Which of the two walls each dot is drawn to, and how these are bent.
+void add_walls(const Placement& placement, PlacedBlock& block) {
+    DepthBlock side = block, bend = block;
+    const double unit = 0.26 * placement.depth;
+    noise_sum(waves(placement, 1, {{330.0, 1.0}, {120.0, 0.6}}), side);
+    noise_sum(waves(placement, 2, {{520.0, 0.22 * unit}, {210.0, 0.07 * unit}}), bend);
+    for (int i = 0; i < block.count; ++i) {
+        const float front = 1.0f / (1.0f + shared::as_exp(-12.0f * side.z[i]));
+        const float out = bilinear(placement.relief, 0, block.x[i], block.y[i]);
+        const bool in_front = as_uniform(as_mix(block.random[i] ^ 0x5bd1e995u)) < front;
+        block.z[i] += (in_front ? out : -out) + bend.z[i];
+    }
+}
+
+void add_relief(const Placement& placement, PlacedBlock& block) {
+    if (placement.relief.pixels.empty()) return;
+    for (int i = 0; i < block.count; ++i)
+        block.z[i] += 2.0f * bilinear(placement.relief, 0, block.x[i], block.y[i]) -
+                      static_cast<float>(placement.depth);
+}
+
+void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
+    set_heights(placement, dots, block);
+    const double feature = dots.feature, h = placement.height;
+    if (placement.kind == StructureKind::disk) {
+        const double gain = 1.6 * by_feature(clumpiness, feature / placement.scale) * placement.clumps;
+        disk_depths(stack(placement, 4.0 * h, feature, gain, 0.75), block);
+    } else {
+        const double gain = 0.22 * 0.26 * 7.0 * h * placement.clumps;
+        sheet_depths(stack(placement, 7.0 * h, feature, gain, 0.5), 0.5f * dots.feature, block);
+    }
+    for (int i = 0; i < block.count; ++i) block.distance[i] = std::fabs(block.z[i]);
+    if (placement.kind == StructureKind::sheet) add_relief(placement, block);
+    if (placement.kind == StructureKind::walls) add_walls(placement, block);
+}
+
+void set_knot_depths(Placement& placement) {
+    const BandDots like{1, 1.0f, 1.0f, 0.0f, static_cast<float>(4.0 * placement.scale)};
+    const auto count = static_cast<std::int64_t>(placement.knots.knots.size());
+    placement.knot_z.resize(static_cast<std::size_t>(count));
+    parallel_chunks(count, DepthBlock::size, [&](std::int64_t begin, std::int64_t end, int) {
+        PlacedBlock block;
+        block.count = static_cast<int>(end - begin);
+        for (int i = 0; i < block.count; ++i) {
+            const Knot& knot = placement.knots.knots[static_cast<std::size_t>(begin + i)];
+            block.x[i] = knot.x;
+            block.y[i] = knot.y;
+            block.random[i] =
+                as_hash(placement.seed, static_cast<std::uint32_t>(begin + i), 0u, shared::PURPOSE_KNOT);
+        }
+        place_freely(placement, like, block);
+        std::copy_n(block.z, block.count, placement.knot_z.data() + begin);
+    });
+}
+
+void follow_knots(const Placement& placement, PlacedBlock& block) {
+    for (int i = 0; i < block.count; ++i) {
+        const auto x = std::min(static_cast<std::int64_t>(block.x[i]), placement.thickness.width - 1);
+        const auto y = std::min(static_cast<std::int64_t>(block.y[i]), placement.thickness.height - 1);
+        const auto at = static_cast<std::size_t>(y * placement.thickness.width + x);
+        const std::int32_t owner = placement.knots.owner[at];
+        const std::uint32_t random = as_mix(block.random[i] ^ 0x2c1b3c6du);
+        if (owner < 0 || as_uniform(random) >= placement.knots.weight[at]) continue;
+        const auto knot = static_cast<std::size_t>(owner);
+        block.z[i] = placement.knot_z[knot] +
+                     logistic(as_uniform(as_mix(random)), knot_depth * placement.knots.knots[knot].sigma);
+    }
+}
+
+}  // namespace
+
+Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
+                         bool flat, std::uint32_t seed) {
+    const double longest = static_cast<double>(std::max(brightest.width, brightest.height));
+    Placement placement;
+    placement.kind = params.kind;
+    placement.scale = static_cast<double>(brightest.width) / 1920.0;
+    placement.height = params.height > 0.0 ? params.height * texels_per_unit : 0.011 * longest;
+    placement.depth = 0.5 * params.depth * static_cast<double>(brightest.width);
+    placement.clumps = params.clumps;
+    placement.seed = seed;
+    placement.thickness = thickness_field(brightest, placement.height);
+    if (params.kind == StructureKind::walls) placement.relief = relief_field(brightest, placement.depth, 0.7);
+    if (params.kind == StructureKind::sheet && flat)
+        placement.relief = relief_field(brightest, placement.depth, 0.6);  // counts twice
+    placement.knots = find_knots(brightest);
+    set_knot_depths(placement);
+    return placement;
+}
+
+BandDots band_dots(const Band& band, bool coarsest, const Placement& placement) {
+    BandDots dots;
+    dots.index = band.index;
+    dots.feature = static_cast<float>(band.feature);
+    const double widest = widest_sigma_share * placement.height;
+    const double natural = coarsest ? widest : std::min(band.feature / 4.0, widest);
+    dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, static_cast<float>(natural));
+    const double each =
+        by_feature(dots_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
+    const double area = 2.0 * real::pi * static_cast<double>(dots.sigma) * static_cast<double>(dots.sigma);
+    dots.spacing = static_cast<float>(std::sqrt(std::max(1.0, area / each)));
+    dots.threshold = static_cast<float>(band.index <= 1 ? 0.05 : 0.25 / each);
+    return dots;
+}
+
+void place(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
+    place_freely(placement, dots, block);
+    if (dots.sigma <= widest_in_knots && !placement.knots.knots.empty()) follow_knots(placement, block);
+}
+
+}  // namespace astrosplat

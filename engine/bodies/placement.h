@@ -1,0 +1,53 @@
+// Where in depth each dot of a picture goes (DEPTH 4). In: the picture's light without stars and what the
+// scene says of its structure. Out: depths of dots, in texels towards the viewer.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bodies/bands.h"
+#include "bodies/depth_kernel.h"
+#include "bodies/knots.h"
+#include "core/image.h"
+#include "source/source.h"
+
+namespace astrosplat {
+
+/// What depths depend on beside a dot's own place and band.
+struct Placement {
+    StructureKind kind = StructureKind::disk;
+    double scale = 1.0;   // the picture's width over 1920 px, by which wavelengths grow
+    double height = 0.0;  // texels, typical scale height H
+    double depth = 0.0;   // texels, from the middle to the front of a relief or a wall
+    double clumps = 1.0;
+    std::uint32_t seed = 0;
+    Image thickness;  // H(x, y), texels
+    Image relief;     // how far the middle of a sheet or a wall stands out, texels; empty: not at all
+    Knots knots;      // each at one depth
+    std::vector<float> knot_z;  // theirs, texels
+};
+
+/// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
+/// relief from the picture instead.
+Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
+                         bool flat, std::uint32_t seed);
+
+/// How the dots of one band are made (DEPTH 3), lengths in texels.
+struct BandDots {
+    int index = 0;
+    float sigma = 0.0f;      // of a dot
+    float spacing = 0.0f;    // of the lattice they are drawn on
+    float threshold = 0.0f;  // amplitude over brightness below which they are thinned out
+    float feature = 0.0f;
+};
+BandDots band_dots(const Band& band, bool coarsest, const Placement& placement);
+
+/// A block's dots with their distances from the middle of what they belong to.
+struct PlacedBlock : DepthBlock {
+    float distance[size];  // texels, >= 0
+};
+
+/// Fills z and distance from x, y and random; dots of fine bands that belong to a knot take its depth.
+void place(const Placement& placement, const BandDots& dots, PlacedBlock& block);
+
+}  // namespace astrosplat

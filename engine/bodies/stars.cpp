@@ -1,0 +1,178 @@
+// Candidates are the peaks above a running median; what is left of them after the tests of width, wings and
+// roundness is a star.
+#include "bodies/stars.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "bodies/picture_light.h"
+#include "core/parallel.h"
+#include "core/real.h"
+#include "image/blur.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t median_reach = 5;  // px: a window of 11 x 11
+constexpr std::int64_t margin = 6;        // px without stars at the picture's edges
+constexpr std::int64_t noise_step = 3;    // px between the places where the noise is measured
+constexpr double noise_blur_px = 12.0;
+constexpr float least_excess = 0.04f;  // of the displayed white
+constexpr float noise_factor = 4.5f;
+constexpr double widest_sigma = 2.2, narrowest_sigma = 0.6;
+constexpr float wing_share = 0.5f;    // of the peak, that the light at 2 to 3 px must stay below
+constexpr float uneven_share = 0.3f;  // of the peak, that this light may differ by around the star
+
+/// Median of the brightness over the window about a pixel.
+float background(const Image& brightest, std::int64_t x, std::int64_t y) {
+    std::array<float, (2 * median_reach + 1) * (2 * median_reach + 1)> values;
+    std::size_t count = 0;
+    for (std::int64_t j = y - median_reach; j <= y + median_reach; ++j) {
+        if (j < 0 || j >= brightest.height) continue;
+        for (std::int64_t i = x - median_reach; i <= x + median_reach; ++i)
+            if (i >= 0 && i < brightest.width) values[count++] = *brightest.at(i, j);
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
+    return *middle;
+}
+
+// Mean excess over the background around each place, at every third pixel.
+Image local_noise(const Image& brightest) {
+    Image noise = make_image((brightest.width + noise_step - 1) / noise_step,
+                             (brightest.height + noise_step - 1) / noise_step, 1);
+    parallel_chunks(noise.height, 8, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t y = begin; y < end; ++y)
+            for (std::int64_t x = 0; x < noise.width; ++x)
+                *noise.at(x, y) = std::fabs(*brightest.at(x * noise_step, y * noise_step) -
+                                            background(brightest, x * noise_step, y * noise_step));
+    });
+    return gaussian_blur(noise, noise_blur_px / static_cast<double>(noise_step));
+}
+
+// The first of equal neighbours counts.
+bool is_brightest(const Image& brightest, std::int64_t x, std::int64_t y) {
+    const float here = *brightest.at(x, y);
+    for (std::int64_t j = -2; j <= 2; ++j) {
+        for (std::int64_t i = -2; i <= 2; ++i) {
+            const float there = *brightest.at(x + i, y + j);
+            const bool earlier = j < 0 || (j == 0 && i < 0);
+            if (there > here || (there == here && earlier)) return false;
+        }
+    }
+    return true;
+}
+
+// Its wings are below half of its peak, and even all around.
+bool is_round(const Image& brightest, std::int64_t x, std::int64_t y, float sky, float excess) {
+    float lo = 1e30f, hi = -1e30f;
+    for (int direction = 0; direction < 8; ++direction) {
+        const double angle = direction * real::pi / 4.0;
+        const double c = real::cos(angle), s = real::sin(angle);
+        float wing = 0.0f;
+        for (const double r : {2.0, 2.5, 3.0})
+            wing += bilinear(brightest, 0, static_cast<float>(static_cast<double>(x) + 0.5 + r * c),
+                             static_cast<float>(static_cast<double>(y) + 0.5 + r * s)) /
+                    3.0f;
+        lo = std::min(lo, wing - sky);
+        hi = std::max(hi, wing - sky);
+    }
+    return hi <= wing_share * excess && hi - lo <= uneven_share * excess;
+}
+
+// Median of a channel on the ring of 3.5 to 4.5 px around the star.
+float ring_median(const Image& light, std::int64_t x, std::int64_t y, int channel) {
+    std::array<float, 64> values;
+    std::size_t count = 0;
+    for (std::int64_t j = -4; j <= 4; ++j)
+        for (std::int64_t i = -4; i <= 4; ++i)
+            if (i * i + j * j >= 12 && i * i + j * j <= 20) values[count++] = light.at(x + i, y + j)[channel];
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
+    return *middle;
+}
+
+std::optional<Star> star_at(const Image& light, const Image& brightest, std::int64_t x, std::int64_t y,
+                            float noise) {
+    if (*brightest.at(x, y) < least_excess || !is_brightest(brightest, x, y)) return {};
+    const float sky = background(brightest, x, y);
+    const float excess = *brightest.at(x, y) - sky;
+    if (excess < least_excess || excess < noise_factor * noise) return {};
+    double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
+    for (std::int64_t j = -2; j <= 2; ++j) {
+        for (std::int64_t i = -2; i <= 2; ++i) {
+            const double weight = std::max(0.0f, *brightest.at(x + i, y + j) - sky);
+            sum += weight;
+            sum_x += weight * static_cast<double>(i);
+            sum_y += weight * static_cast<double>(j);
+        }
+    }
+    const double sigma = std::sqrt(sum / (2.0 * real::pi * static_cast<double>(excess)));
+    if (sigma > widest_sigma || !is_round(brightest, x, y, sky, excess)) return {};
+    Star star;
+    star.x = static_cast<float>(static_cast<double>(x) + 0.5 + sum_x / sum);
+    star.y = static_cast<float>(static_cast<double>(y) + 0.5 + sum_y / sum);
+    star.sigma = static_cast<float>(std::max(sigma, narrowest_sigma));
+    for (int c = 0; c < 3; ++c)
+        star.peak[c] = std::max(0.0f, light.at(x, y)[c] - ring_median(light, x, y, c));
+    return star;
+}
+
+// Calls visit(pixel, x, y) for the pixels within `reach` px of the star.
+template <class Visit>
+void for_each_pixel(Image& image, const Star& star, std::int64_t reach, Visit visit) {
+    const auto cx = static_cast<std::int64_t>(star.x), cy = static_cast<std::int64_t>(star.y);
+    for (std::int64_t y = std::max<std::int64_t>(0, cy - reach); y <= std::min(image.height - 1, cy + reach);
+         ++y)
+        for (std::int64_t x = std::max<std::int64_t>(0, cx - reach);
+             x <= std::min(image.width - 1, cx + reach); ++x)
+            visit(image.at(x, y), x, y);
+}
+
+void subtract(Image& light, const Star& star) {
+    for_each_pixel(light, star, 6, [&](float* pixel, std::int64_t x, std::int64_t y) {
+        const double dx = static_cast<double>(x) + 0.5 - static_cast<double>(star.x);
+        const double dy = static_cast<double>(y) + 0.5 - static_cast<double>(star.y);
+        const double width = 2.0 * static_cast<double>(star.sigma) * static_cast<double>(star.sigma);
+        const auto g = static_cast<float>(real::exp(-(dx * dx + dy * dy) / width));
+        for (int c = 0; c < 3; ++c) pixel[c] = std::max(0.0f, pixel[c] - star.peak[c] * g);
+    });
+}
+
+// What a Gaussian does not describe, wings and diffraction, is cut to a little above the background.
+void level(Image& light, const Image& before, const Star& star) {
+    const auto reach = static_cast<std::int64_t>(3.0f * star.sigma + 1.0f);
+    for_each_pixel(light, star, reach, [&](float* pixel, std::int64_t x, std::int64_t y) {
+        const float most = 1.15f * background(before, x, y) + 0.01f;
+        const float brightest = std::max({pixel[0], pixel[1], pixel[2]});
+        if (brightest <= most) return;
+        for (int c = 0; c < 3; ++c) pixel[c] *= most / brightest;
+    });
+}
+
+}  // namespace
+
+std::vector<Star> take_stars(Image& light) {
+    const Image brightest = brightest_channel(light);
+    const Image noise = local_noise(brightest);
+    std::vector<std::vector<Star>> rows(static_cast<std::size_t>(light.height));
+    parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t y = std::max(begin, margin); y < std::min(end, light.height - margin); ++y) {
+            for (std::int64_t x = margin; x < light.width - margin; ++x) {
+                const float around = *noise.at(x / noise_step, y / noise_step);
+                if (const auto star = star_at(light, brightest, x, y, around))
+                    rows[static_cast<std::size_t>(y)].push_back(*star);
+            }
+        }
+    });
+    std::vector<Star> stars;
+    for (const auto& row : rows) stars.insert(stars.end(), row.begin(), row.end());
+    for (const Star& star : stars) subtract(light, star);
+    const Image without = brightest_channel(light);
+    for (const Star& star : stars) level(light, without, star);
+    return stars;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,23 @@
+// The stars of a picture (DEPTH 1). In: linear light. Out: a list of them, and the picture without. They are
+// points: left in, each would become a needle in depth.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/image.h"
+
+namespace astrosplat {
+
+struct Star {
+    float x = 0.0f, y = 0.0f;  // px from the top left corner
+    float sigma = 0.0f;        // px, of the Gaussian that stands for it
+    glm::vec3 peak{0.0f};      // linear light of its middle above the background
+};
+
+/// Finds the round points that stand out of their surroundings, takes a Gaussian for each out of `light` and
+/// fills what is left of it up to 1.15 times the background. In order of rows. The same bits with any number
+/// of threads.
+std::vector<Star> take_stars(Image& light);
+
+}  // namespace astrosplat

@@ -1,0 +1,163 @@
+#include "bodies/uv_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <utility>
+
+namespace astrosplat {
+namespace {
+
+constexpr int most_cells = 1024;  // a side
+constexpr int most_shift = 64;    // pictures that one face may span
+
+double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
+
+/// Twice the area of (a, b, p), the same number but for its sign from both faces of the edge.
+double edge_area(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
+    if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) return -cross(a - b, p - b);
+    return cross(b - a, p - a);
+}
+
+/// Of a place on the edge itself: whether the face to the edge's left has it.
+bool owns(glm::dvec2 a, glm::dvec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); }
+
+bool inside(double area, double orientation, glm::dvec2 a, glm::dvec2 b) {
+    const double signed_area = area * orientation;
+    return signed_area > 0.0 || (signed_area == 0.0 && (orientation > 0.0 ? owns(a, b) : owns(b, a)));
+}
+
+}  // namespace
+
+UvSurface::UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height,
+                     bool repeats)
+    : mesh_(mesh) {
+    measure(mesh, material, {static_cast<double>(width), static_cast<double>(height)});
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const Mesh::Triangle& triangle = mesh.triangles[i];
+        if (!mesh.maps.empty() && triangle.material != material) continue;
+        Face face{{}, i};
+        for (int k = 0; k < 3; ++k)
+            face.uv[k] = glm::dvec2(mesh.uvs[triangle.uv[static_cast<std::size_t>(k)]]);
+        const glm::dvec2 lo = glm::min(face.uv[0], glm::min(face.uv[1], face.uv[2]));
+        const glm::dvec2 hi = glm::max(face.uv[0], glm::max(face.uv[1], face.uv[2]));
+        if (!repeats) {
+            faces_.push_back(face);
+            continue;
+        }
+        const auto first = [](double v) { return static_cast<int>(std::clamp(std::floor(v), -1e6, 1e6)); };
+        for (int u = first(lo.x); u <= std::min(first(hi.x), first(lo.x) + most_shift); ++u) {
+            for (int v = first(lo.y); v <= std::min(first(hi.y), first(lo.y) + most_shift); ++v) {
+                Face shifted = face;
+                for (glm::dvec2& corner : shifted.uv) corner -= glm::dvec2(u, v);
+                faces_.push_back(shifted);
+            }
+        }
+    }
+    fill_grid();
+}
+
+void UvSurface::measure(const Mesh& mesh, std::uint32_t material, glm::dvec2 texels) {
+    normals_.assign(mesh.positions.size(), glm::vec3(0.0f));
+    units_per_texel_.assign(mesh.positions.size(), 0.0f);
+    std::vector<double> weights(mesh.positions.size(), 0.0);
+    std::vector<glm::dvec3> normals(mesh.positions.size(), glm::dvec3(0.0));
+    std::vector<double> scales(mesh.positions.size(), 0.0);
+    double area = 0.0, texel_area = 0.0;
+    glm::dvec3 total(0.0);
+    Bounds box;
+    for (const Mesh::Triangle& triangle : mesh.triangles) {
+        if (!mesh.maps.empty() && triangle.material != material) continue;
+        glm::dvec3 p[3];
+        glm::dvec2 t[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            p[k] = glm::dvec3(mesh.positions[triangle.position[k]]);
+            t[k] = glm::dvec2(mesh.uvs[triangle.uv[k]]) * texels;
+            box.add(p[k]);
+        }
+        const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);  // twice the area long
+        const double here = glm::length(normal), there = std::fabs(cross(t[1] - t[0], t[2] - t[0]));
+        area += here;
+        texel_area += there;
+        total += normal;
+        for (const std::uint32_t vertex : triangle.position) {
+            normals[vertex] += normal;
+            scales[vertex] += there > 0.0 ? here * std::sqrt(here / there) : 0.0;
+            weights[vertex] += there > 0.0 ? here : 0.0;
+        }
+    }
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        const double length = glm::length(normals[i]);
+        if (length > 0.0) normals_[i] = glm::vec3(normals[i] / length);
+        if (weights[i] > 0.0) units_per_texel_[i] = static_cast<float>(scales[i] / weights[i]);
+    }
+    texels_per_unit_ = area > 0.0 ? std::sqrt(texel_area / area) : 0.0;
+    const double length = glm::length(total);
+    if (!(length > 0.0) || box.empty()) {
+        flat_ = false;
+        return;
+    }
+    const double most = 1e-3 * glm::length(box.hi - box.lo);
+    const glm::dvec3 up = total / length, middle = 0.5 * (box.lo + box.hi);
+    double lo = 1e300, hi = -1e300;
+    for (const Mesh::Triangle& triangle : mesh.triangles) {
+        for (const std::uint32_t vertex : triangle.position) {
+            const double h = glm::dot(glm::dvec3(mesh.positions[vertex]) - middle, up);
+            lo = std::min(lo, h);
+            hi = std::max(hi, h);
+        }
+    }
+    flat_ = hi - lo <= most;
+}
+
+template <class Visit>
+void UvSurface::for_each_cell(const Face& face, Visit visit) const {
+    const glm::dvec2 lo = glm::min(face.uv[0], glm::min(face.uv[1], face.uv[2]));
+    const glm::dvec2 hi = glm::max(face.uv[0], glm::max(face.uv[1], face.uv[2]));
+    if (!(hi.x >= 0.0 && hi.y >= 0.0 && lo.x <= 1.0 && lo.y <= 1.0)) return;
+    const auto cell = [&](double v) { return static_cast<int>(std::clamp(v * cells_, 0.0, cells_ - 1.0)); };
+    for (int y = cell(lo.y); y <= cell(hi.y); ++y)
+        for (int x = cell(lo.x); x <= cell(hi.x); ++x) visit(static_cast<std::size_t>(y * cells_ + x));
+}
+
+void UvSurface::fill_grid() {
+    const double side = std::sqrt(static_cast<double>(faces_.size()));
+    cells_ = std::clamp(static_cast<int>(side), 1, most_cells);
+    first_face_.assign(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_) + 1, 0);
+    for (const Face& face : faces_) for_each_cell(face, [&](std::size_t cell) { ++first_face_[cell + 1]; });
+    for (std::size_t i = 1; i < first_face_.size(); ++i) first_face_[i] += first_face_[i - 1];
+    cell_faces_.resize(first_face_.back());
+    std::vector<std::uint32_t> next = first_face_;
+    for (std::uint32_t i = 0; i < faces_.size(); ++i)
+        for_each_cell(faces_[i], [&](std::size_t cell) { cell_faces_[next[cell]++] = i; });
+}
+
+void UvSurface::at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>& visit) const {
+    const glm::dvec2 p(uv);
+    const auto cell = [&](double v) { return static_cast<int>(std::clamp(v * cells_, 0.0, cells_ - 1.0)); };
+    const auto here = static_cast<std::size_t>(cell(p.y) * cells_ + cell(p.x));
+    for (std::uint32_t i = first_face_[here]; i < first_face_[here + 1]; ++i) {
+        const Face& face = faces_[cell_faces_[i]];
+        const glm::dvec2 &a = face.uv[0], &b = face.uv[1], &c = face.uv[2];
+        const double whole = cross(b - a, c - a);
+        if (whole == 0.0) continue;
+        const double of_a = edge_area(b, c, p), of_b = edge_area(c, a, p), of_c = edge_area(a, b, p);
+        if (!inside(of_a, whole, b, c) || !inside(of_b, whole, c, a) || !inside(of_c, whole, a, b)) continue;
+        const double sum = of_a + of_b + of_c;
+        const double weights[3] = {of_a / sum, of_b / sum, of_c / sum};
+        glm::dvec3 position(0.0), normal(0.0);
+        double scale = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = mesh_.triangles[face.triangle].position[k];
+            position += weights[k] * glm::dvec3(mesh_.positions[vertex]);
+            normal += weights[k] * glm::dvec3(normals_[vertex]);
+            scale += weights[k] * static_cast<double>(units_per_texel_[vertex]);
+        }
+        const double length = glm::length(normal);
+        visit({glm::vec3(position), length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0, 1, 0),
+               static_cast<float>(scale)});
+    }
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,59 @@
+// A mesh as the ground its picture lies on. In: a mesh with texture coordinates. Out: for any place of the
+// picture, where it is in the scene, which way is up and how large a texel is there.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "source/mesh.h"
+
+namespace astrosplat {
+
+struct SurfacePlace {
+    glm::vec3 position;         // scene units
+    glm::vec3 normal;           // unit, smooth over the mesh
+    float units_per_texel = 0;  // scene units
+};
+
+class UvSurface {
+  public:
+    /// The faces of one material under a picture of width x height texels. `repeats`: the picture goes on
+    /// beyond 0..1; else places beyond it belong to no texel.
+    UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height,
+              bool repeats);
+
+    /// Calls visit for every face over this place of the picture, in the order of the faces: none where the
+    /// mesh does not show it, several where it does more than once. An edge belongs to one of its two faces.
+    void at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>& visit) const;
+
+    /// Texels over scene units, by the areas of all faces; 0 for a mesh without area.
+    double texels_per_unit() const { return texels_per_unit_; }
+    /// Whether all faces lie in one plane, up to a thousandth of the mesh's extent.
+    bool flat() const { return flat_; }
+
+  private:
+    struct Face {
+        glm::dvec2 uv[3];  // shifted by whole pictures so that it lies over 0..1
+        std::uint32_t triangle;
+    };
+
+    void measure(const Mesh& mesh, std::uint32_t material, glm::dvec2 texels);
+    void fill_grid();
+    template <class Visit>
+    void for_each_cell(const Face& face, Visit visit) const;
+
+    const Mesh& mesh_;
+    std::vector<glm::vec3> normals_;      // of the mesh's positions
+    std::vector<float> units_per_texel_;  // of the same
+    double texels_per_unit_ = 0.0;
+    bool flat_ = true;
+    std::vector<Face> faces_;
+    int cells_ = 1;                          // a side, over 0..1
+    std::vector<std::uint32_t> first_face_;  // of each cell, in cell_faces_; one more at the end
+    std::vector<std::uint32_t> cell_faces_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,145 @@
+// Pictures that look like a telescope's, painted by formula: what the real ones are for where they cannot be
+// had. Linear light, RGB, about 0..1 with a few brighter points.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/image.h"
+#include "core/shared_maths.h"
+
+namespace astrosplat {
+namespace painted {
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+namespace field {
+using namespace astrosplat::shared;
+namespace {
+#include "noise.glsl"
+}
+}  // namespace field
+#pragma GCC diagnostic pop
+
+inline float fbm(double x, double y, double frequency, std::uint32_t seed) {
+    return field::as_fbm(static_cast<float>(x), static_cast<float>(y), 0.5f, static_cast<float>(frequency), 6,
+                         2.0f, 0.55f, 0.5f, seed);
+}
+
+inline double random(std::uint32_t i, std::uint32_t purpose) {
+    return static_cast<double>(shared::as_uniform(shared::as_hash(20261123u, i, 0u, purpose)));
+}
+
+inline void add_point(Image& image, double x, double y, double sigma, double r, double g, double b) {
+    const auto reach = static_cast<std::int64_t>(std::ceil(5.0 * sigma));
+    const auto cx = static_cast<std::int64_t>(x), cy = static_cast<std::int64_t>(y);
+    for (std::int64_t j = std::max<std::int64_t>(0, cy - reach); j <= std::min(image.height - 1, cy + reach);
+         ++j) {
+        for (std::int64_t i = std::max<std::int64_t>(0, cx - reach);
+             i <= std::min(image.width - 1, cx + reach); ++i) {
+            const double dx = static_cast<double>(i) + 0.5 - x, dy = static_cast<double>(j) + 0.5 - y;
+            const double light = std::exp(-(dx * dx + dy * dy) / (2.0 * sigma * sigma));
+            image.at(i, j)[0] += static_cast<float>(r * light);
+            image.at(i, j)[1] += static_cast<float>(g * light);
+            image.at(i, j)[2] += static_cast<float>(b * light);
+        }
+    }
+}
+
+inline void add_stars(Image& image, int count, double sigma) {
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
+        const double x = 8.0 + random(i, 1) * (static_cast<double>(image.width) - 16.0);
+        const double y = 8.0 + random(i, 2) * (static_cast<double>(image.height) - 16.0);
+        const double light = 0.1 + 0.8 * std::pow(random(i, 3), 4.0), warm = random(i, 4);
+        add_point(image, x, y, sigma, light * (0.7 + 0.3 * warm), light * 0.85, light * (1.0 - 0.3 * warm));
+    }
+}
+
+/// Two arms, a warm bulge, blue knots along the arms, dust inside of them and stars before it.
+inline Image galaxy(std::int64_t width, std::int64_t height) {
+    Image image = make_image(width, height, 3);
+    const double w = static_cast<double>(width);
+    for (std::int64_t y = 0; y < height; ++y) {
+        for (std::int64_t x = 0; x < width; ++x) {
+            const double u = (static_cast<double>(x) + 0.5 - 0.5 * w) / w;
+            const double v = (static_cast<double>(y) + 0.5 - 0.5 * static_cast<double>(height)) / w;
+            const double r = std::hypot(u, v), turn = std::atan2(v, u) + 4.5 * std::log(r + 0.05);
+            const double clouds = 1.0 + 1.2 * static_cast<double>(fbm(u, v, 14.0, 3u));
+            const double arms = std::pow(0.5 + 0.5 * std::cos(2.0 * turn), 2.0) * std::exp(-r / 0.08);
+            const double dust =
+                1.0 - 0.6 * std::pow(0.5 + 0.5 * std::cos(2.0 * turn + 0.9), 6.0) * std::exp(-r / 0.3);
+            const double bulge = 0.8 * std::exp(-r / 0.035), disk = 0.15 * std::exp(-r / 0.07);
+            const double young = 0.35 * arms * std::max(0.1, clouds);
+            float* const p = image.at(x, y);
+            p[0] = static_cast<float>(dust * (bulge + disk + 0.7 * young) + 0.004);
+            p[1] = static_cast<float>(dust * (0.85 * bulge + 0.9 * disk + 0.85 * young) + 0.004);
+            p[2] = static_cast<float>(dust * (0.6 * bulge + 0.8 * disk + 1.2 * young) + 0.004);
+        }
+    }
+    for (std::uint32_t i = 0; i < 400; ++i) {
+        const double r = 0.06 + 0.3 * random(i, 11), side = i % 2 == 0 ? 0.0 : 3.14159265;
+        const double angle = side - 4.5 * std::log(r + 0.05) + 0.25 * (random(i, 12) - 0.5);
+        const double light = 0.15 * random(i, 13), size = 1.5 + 3.0 * random(i, 14);
+        add_point(image, 0.5 * w + r * w * std::cos(angle),
+                  0.5 * static_cast<double>(height) + r * w * std::sin(angle), size * w / 1920.0 + 0.8,
+                  0.7 * light, 0.8 * light, 1.3 * light);
+    }
+    add_stars(image, 120, 1.0);
+    return image;
+}
+
+/// Two lobes of glowing gas with filaments and a bright middle.
+inline Image nebula(std::int64_t width, std::int64_t height) {
+    Image image = make_image(width, height, 3);
+    const double w = static_cast<double>(width);
+    for (std::int64_t y = 0; y < height; ++y) {
+        for (std::int64_t x = 0; x < width; ++x) {
+            const double u = (static_cast<double>(x) + 0.5 - 0.5 * w) / w;
+            const double v = (static_cast<double>(y) + 0.5 - 0.5 * static_cast<double>(height)) / w;
+            const double warp = 0.04 * static_cast<double>(fbm(u, v, 6.0, 9u));
+            const double waist = 0.03 + 0.5 * std::fabs(u) * (1.2 - std::fabs(u) * 2.0);
+            const double inside =
+                std::exp(-std::pow(std::fabs(v + warp) / waist, 4.0)) * std::exp(-std::fabs(u) / 0.25);
+            const double ridge = 1.0 - std::fabs(2.0 * static_cast<double>(fbm(u + warp, v, 11.0, 5u)));
+            const double gas = inside * (0.25 + 0.75 * std::pow(std::max(0.0, ridge), 6.0));
+            const double core = std::exp(-std::hypot(u, v) / 0.02);
+            float* const p = image.at(x, y);
+            p[0] = static_cast<float>(0.8 * gas + core + 0.003);
+            p[1] = static_cast<float>(0.35 * gas + 0.9 * core + 0.003);
+            p[2] = static_cast<float>(0.15 * gas + core + 0.003);
+        }
+    }
+    add_stars(image, 60, 1.1);
+    return image;
+}
+
+/// A shell of thin filaments about a faint blue glow.
+inline Image remnant(std::int64_t width, std::int64_t height) {
+    Image image = make_image(width, height, 3);
+    const double w = static_cast<double>(width);
+    for (std::int64_t y = 0; y < height; ++y) {
+        for (std::int64_t x = 0; x < width; ++x) {
+            const double u = (static_cast<double>(x) + 0.5 - 0.5 * w) / w;
+            const double v = (static_cast<double>(y) + 0.5 - 0.5 * static_cast<double>(height)) / w;
+            const double edge = 0.26 + 0.05 * static_cast<double>(fbm(u, v, 5.0, 21u));
+            const double r = std::hypot(u, 1.3 * v) / edge;
+            const double body = r < 1.0 ? std::sqrt(1.0 - r * r) : 0.0,
+                         shell = std::exp(-std::pow((r - 0.9) / 0.12, 2.0));
+            const double a = std::pow(
+                std::max(0.0, 1.0 - std::fabs(4.0 * static_cast<double>(fbm(u, v, 13.0, 22u)))), 8.0);
+            const double b = std::pow(
+                std::max(0.0, 1.0 - std::fabs(4.0 * static_cast<double>(fbm(u, v, 19.0, 23u)))), 8.0);
+            const double threads = (0.4 * body + shell);
+            float* const p = image.at(x, y);
+            p[0] = static_cast<float>(0.5 * threads * a + 0.05 * body + 0.003);
+            p[1] = static_cast<float>(0.3 * threads * (a + b) * 0.7 + 0.10 * body + 0.003);
+            p[2] = static_cast<float>(0.35 * threads * b + 0.16 * body + 0.003);
+        }
+    }
+    add_stars(image, 80, 1.0);
+    return image;
+}
+
+}  // namespace painted
+}  // namespace astrosplat

@@ -1,0 +1,87 @@
+#include "bodies/bands.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/parallel.h"
+#include "support/painted_picture.h"
+
+namespace astrosplat {
+namespace {
+
+std::vector<Image> all_bands(const Image& light) {
+    std::vector<Image> images;
+    const std::vector<Band> bands = make_bands(light.width);
+    split_bands(light, bands, [&](const Band& band, const Image& image) {
+        EXPECT_EQ(band.index, static_cast<int>(images.size()));
+        images.push_back(image);
+    });
+    EXPECT_EQ(images.size(), bands.size());
+    return images;
+}
+
+TEST(Bands, LargerPicturesHaveMoreOfThem) {
+    EXPECT_EQ(make_bands(1920).size(), 8u);
+    EXPECT_EQ(make_bands(3840).size(), 9u);
+    EXPECT_EQ(make_bands(480).size(), 6u);
+    for (const Band& band : make_bands(1920)) {
+        if (band.index + 1 < 8) {
+            EXPECT_NEAR(band.feature, 2.0 * (1 << band.index), 1e-9) << band.index;
+        }
+    }
+}
+
+TEST(Bands, AddUpToThePictureAndAreNeverNegative) {
+    const Image light = painted::galaxy(240, 150);
+    const std::vector<Image> bands = all_bands(light);
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) {
+        double sum = 0.0;
+        for (const Image& band : bands) {
+            ASSERT_GE(band.pixels[i], 0.0f);
+            sum += static_cast<double>(band.pixels[i]);
+        }
+        ASSERT_NEAR(sum, light.pixels[i], 4e-7 * (1.0 + static_cast<double>(light.pixels[i]))) << "at " << i;
+    }
+}
+
+TEST(Bands, WhatIsEvenIsInTheCoarsest) {
+    Image light = make_image(160, 100, 3, 0.25f);
+    const std::vector<Image> bands = all_bands(light);
+    for (std::size_t k = 0; k + 1 < bands.size(); ++k)
+        for (const float v : bands[k].pixels) ASSERT_NEAR(v, 0.0f, 2e-4f) << "band " << k;
+    for (const float v : bands.back().pixels) ASSERT_NEAR(v, 0.25f, 1e-3f);
+}
+
+// A dot of a size is in the band of that size, not in the finest: this is what gives it a thickness of its
+// own.
+TEST(Bands, HoldWhatIsOfTheirSize) {
+    for (const int wanted : {0, 2}) {
+        Image light = make_image(320, 320, 3);
+        painted::add_point(light, 160.0, 160.0, wanted == 0 ? 0.8 : 5.0, 1.0, 1.0, 1.0);
+        const std::vector<Image> bands = all_bands(light);
+        std::size_t strongest = 0;
+        for (std::size_t k = 1; k < bands.size(); ++k)
+            if (bands[k].at(160, 160)[0] > bands[strongest].at(160, 160)[0]) strongest = k;
+        if (wanted == 0) {
+            EXPECT_EQ(strongest, 0u);
+        } else {
+            EXPECT_GE(strongest, 1u);
+            EXPECT_LE(strongest, 3u);
+        }
+    }
+}
+
+TEST(Bands, AreTheSameOnOneThread) {
+    const Image light = painted::nebula(200, 130);
+    const std::vector<Image> several = all_bands(light);
+    set_thread_count(1);
+    const std::vector<Image> one = all_bands(light);
+    set_thread_count(0);
+    for (std::size_t k = 0; k < one.size(); ++k)
+        for (std::size_t i = 0; i < one[k].pixels.size(); ++i)
+            ASSERT_EQ(one[k].pixels[i], several[k].pixels[i]);
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,247 @@
+// Whole pictures on meshes, and what carries them.
+#include "bodies/bodies.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+#include <vector>
+
+#include "bodies/front_fit.h"
+#include "bodies/picture_splats.h"
+#include "bodies/uv_surface.h"
+#include "core/parallel.h"
+#include "support/painted_picture.h"
+#include "support/printing.h"
+
+namespace astrosplat {
+namespace {
+
+Texture as_texture(const Image& rgb) {
+    Texture texture;
+    texture.image = make_image(rgb.width, rgb.height, 4, 1.0f);
+    for (std::int64_t i = 0; i < rgb.width * rgb.height; ++i)
+        std::copy_n(rgb.pixels.data() + 3 * i, 3, texture.image.pixels.data() + 4 * i);
+    return texture;
+}
+
+TexturedMesh on_plane(const Image& rgb) {
+    TexturedMesh result;
+    result.mesh = builtin_mesh("plane", static_cast<double>(rgb.width) / static_cast<double>(rgb.height));
+    result.textures.push_back(as_texture(rgb));
+    return result;
+}
+
+StructureParams of_kind(StructureKind kind) {
+    StructureParams params;
+    params.kind = kind;
+    return params;
+}
+
+std::vector<SurfacePlace> places(const UvSurface& surface, glm::vec2 uv) {
+    std::vector<SurfacePlace> found;
+    surface.at(uv, [&](const SurfacePlace& place) { found.push_back(place); });
+    return found;
+}
+
+TEST(UvSurface, ThePlaneIsThePicture) {
+    const Mesh plane = builtin_mesh("plane", 1.6);
+    const UvSurface surface(plane, 0, 1600, 1000, false);
+    EXPECT_TRUE(surface.flat());
+    EXPECT_NEAR(surface.texels_per_unit(), 160.0, 1e-6);
+    const auto middle = places(surface, {0.5f, 0.5f});  // on the diagonal of its two triangles: once
+    ASSERT_EQ(middle.size(), 1u);
+    EXPECT_NEAR(glm::length(middle[0].position), 0.0, 1e-5);
+    EXPECT_EQ(middle[0].normal, glm::vec3(0, 1, 0));
+    EXPECT_NEAR(middle[0].units_per_texel, 1.0 / 160.0, 1e-8);
+    const auto corner = places(surface, {0.001f, 0.999f});  // top left of the picture
+    ASSERT_EQ(corner.size(), 1u);
+    EXPECT_NEAR(corner[0].position.x, -4.99, 1e-3);
+    EXPECT_NEAR(corner[0].position.z, -3.11875, 1e-3);
+    EXPECT_TRUE(places(surface, {1.2f, 0.5f}).empty());
+}
+
+TEST(UvSurface, EveryPlaceOfASphereIsOnItOnce) {
+    const Mesh sphere = builtin_mesh("sphere", 2.0);
+    const UvSurface surface(sphere, 0, 2000, 1000, false);
+    EXPECT_FALSE(surface.flat());
+    for (int i = 0; i < 400; ++i) {
+        const glm::vec2 uv(
+            static_cast<float>(painted::random(static_cast<std::uint32_t>(i), 1)),
+            0.02f + 0.96f * static_cast<float>(painted::random(static_cast<std::uint32_t>(i), 2)));
+        const auto found = places(surface, uv);
+        ASSERT_EQ(found.size(), 1u) << uv.x << " " << uv.y;
+        EXPECT_NEAR(glm::length(found[0].position), 5.0, 0.05);
+        EXPECT_GT(glm::dot(found[0].normal, found[0].position), 4.9f);
+    }
+}
+
+// Two faces under the same part of the picture, and a picture that goes on beyond its edges.
+TEST(UvSurface, OverlapsAndRepetitionsAreAllVisited) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}};
+    mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
+    mesh.triangles = {{{0, 1, 2}, {0, 1, 2}}, {{3, 4, 5}, {0, 1, 2}}};
+    const auto both = places(UvSurface(mesh, 0, 100, 100, false), {0.25f, 0.25f});
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0].position.z, 0.0f);
+    EXPECT_EQ(both[1].position.z, 5.0f);
+    mesh.triangles.resize(1);
+    mesh.uvs = {{0, 0}, {2, 0}, {0, 2}};  // the picture twice along each side
+    EXPECT_EQ(places(UvSurface(mesh, 0, 100, 100, true), {0.25f, 0.25f}).size(), 3u);
+    EXPECT_EQ(places(UvSurface(mesh, 0, 100, 100, false), {0.25f, 0.25f}).size(), 1u);
+}
+
+TEST(Opacity, FollowsBrightnessAndNeverExceedsThePicturesAlpha) {
+    const Opacity opacity{0.5f, 0.8f};
+    EXPECT_NEAR(1.0 - std::exp(-static_cast<double>(opacity.depth_of(1.0f, 1.0f))), 0.8, 1e-6);
+    EXPECT_NEAR(1.0 - std::exp(-static_cast<double>(opacity.depth_of(0.25f, 1.0f))), 0.4, 1e-6);
+    EXPECT_NEAR(1.0 - std::exp(-static_cast<double>(opacity.depth_of(0.25f, 0.1f))), 0.1, 1e-6);
+    EXPECT_NEAR(1.0 - std::exp(-static_cast<double>(opacity.depth_of(100.0f, 1.0f))), 0.985, 1e-6);
+    EXPECT_EQ(opacity.depth_of(0.0f, 1.0f), 0.0f);
+}
+
+TEST(PictureLight, FadesAtTheBorderAndDropsWhatIsNoLight) {
+    Image rgb = make_image(100, 60, 3, 0.5f);
+    rgb.at(50, 30)[0] = -1.0f;
+    rgb.at(51, 30)[0] = std::nanf("");
+    const PictureLight plain = picture_light(as_texture(rgb), 0.0);
+    EXPECT_TRUE(plain.alpha.pixels.empty());
+    EXPECT_EQ(plain.light.at(50, 30)[0], 0.0f);
+    EXPECT_EQ(plain.light.at(51, 30)[0], 0.0f);
+    EXPECT_EQ(plain.light.at(0, 0)[1], 0.5f);
+    const PictureLight faded = picture_light(as_texture(rgb), 0.1);
+    EXPECT_LT(faded.light.at(0, 30)[1], 0.01f);
+    EXPECT_EQ(faded.light.at(10, 30)[1], 0.5f);
+    EXPECT_NEAR(faded.light.at(4, 30)[1] / 0.5f, *faded.alpha.at(4, 30), 1e-6);
+}
+
+// The fit makes an even picture even and keeps its flux.
+TEST(FrontFit, GivesAnEvenPictureItsColour) {
+    const Image light = [] {
+        Image image = make_image(96, 64, 3);
+        for (std::int64_t i = 0; i < 96 * 64; ++i) {
+            image.pixels[static_cast<std::size_t>(3 * i)] = 0.4f;
+            image.pixels[static_cast<std::size_t>(3 * i + 1)] = 0.2f;
+            image.pixels[static_cast<std::size_t>(3 * i + 2)] = 0.1f;
+        }
+        return image;
+    }();
+    const Image brightest = brightest_channel(light);
+    const Placement placement = make_placement(brightest, of_kind(StructureKind::disk), 10.0, true, 1u);
+    PictureSplats dots;
+    const std::vector<Band> bands = make_bands(light.width);
+    split_bands(light, bands, [&](const Band& band, const Image& image) {
+        add_band(image, band_dots(band, band.index + 1 == static_cast<int>(bands.size()), placement),
+                 brightest, {}, placement, {}, dots);
+    });
+    const FrontFit fit = fit_front(dots, light);
+    EXPECT_GT(fit.psnr_db, fit.first_psnr_db);
+    EXPECT_GT(fit.psnr_db, 30.0);
+}
+
+class EveryStructure : public testing::TestWithParam<StructureKind> {};
+INSTANTIATE_TEST_SUITE_P(Bodies, EveryStructure,
+                         testing::Values(StructureKind::disk, StructureKind::sheet, StructureKind::walls),
+                         [](const auto& kind) { return std::string(name_of(kind.param)); });
+
+Image painted_for(StructureKind kind, std::int64_t width, std::int64_t height) {
+    if (kind == StructureKind::disk) return painted::galaxy(width, height);
+    return kind == StructureKind::sheet ? painted::nebula(width, height) : painted::remnant(width, height);
+}
+
+TEST_P(EveryStructure, MakesAWholeSet) {
+    const TexturedMesh mesh = on_plane(painted_for(GetParam(), 320, 200));
+    const SplatSet set = make_bodies({&mesh, 1}, of_kind(GetParam()), 3u, "gas");
+    check_consistent(set);
+    ASSERT_GT(set.size(), 30000);
+    EXPECT_EQ(set.spacing, glm::dvec3(0.0));
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < set.id.size(); ++i) {
+        if (i > 0) {
+            ASSERT_LT(set.id[i - 1], set.id[i]);
+        }
+        ASSERT_TRUE(std::isfinite(set.position[i].y));
+        ASSERT_LE(std::fabs(set.position[i].x), 5.001f);
+        ASSERT_LE(std::fabs(set.position[i].z), 3.126f);
+        ASSERT_LT(std::fabs(set.position[i].y), 2.5f);
+        ASSERT_GT(set.alpha[i], 0.0f);
+        ASSERT_LE(set.alpha[i], 1.0f);
+        ASSERT_GE(set.color[i].x, 0.0f);
+        ASSERT_GT(set.radius[i], 0.0f);
+        ASSERT_EQ(set.normal[i], glm::vec3(0, 1, 0));
+        farthest = std::max(farthest, static_cast<double>(set.distance[i]));
+    }
+    EXPECT_EQ(set.max_distance, farthest);
+}
+
+TEST_P(EveryStructure, IsTheSameOnOneThread) {
+    const TexturedMesh mesh = on_plane(painted_for(GetParam(), 160, 100));
+    const SplatSet several = make_bodies({&mesh, 1}, of_kind(GetParam()), 3u, "gas");
+    set_thread_count(1);
+    const SplatSet one = make_bodies({&mesh, 1}, of_kind(GetParam()), 3u, "gas");
+    set_thread_count(0);
+    ASSERT_EQ(one.size(), several.size());
+    for (std::size_t i = 0; i < one.id.size(); ++i) {
+        ASSERT_EQ(one.id[i], several.id[i]);
+        ASSERT_EQ(one.position[i], several.position[i]);
+        ASSERT_EQ(one.color[i], several.color[i]);
+        ASSERT_EQ(one.alpha[i], several.alpha[i]);
+    }
+}
+
+TEST(Bodies, EveryKeyCounts) {
+    const TexturedMesh mesh = on_plane(painted::nebula(160, 100));
+    const auto positions = [&](const StructureParams& params) {
+        const SplatSet set = make_bodies({&mesh, 1}, params, 3u, "gas");
+        return std::vector<glm::vec3>(set.position.begin(), set.position.end());
+    };
+    const auto alphas = [&](const StructureParams& params) {
+        const SplatSet set = make_bodies({&mesh, 1}, params, 3u, "gas");
+        return std::vector<float>(set.alpha.begin(), set.alpha.end());
+    };
+    const StructureParams usual = of_kind(StructureKind::sheet);
+    const auto changed = [&](auto change) {
+        StructureParams params = usual;
+        change(params);
+        return params;
+    };
+    const auto as_usual = positions(usual);
+    EXPECT_NE(positions(changed([](StructureParams& p) { p.height = 0.3; })), as_usual);
+    EXPECT_NE(positions(changed([](StructureParams& p) { p.depth = 0.3; })), as_usual);
+    EXPECT_NE(positions(changed([](StructureParams& p) { p.clumps = 0.3; })), as_usual);
+    EXPECT_NE(positions(changed([](StructureParams& p) { p.stars = false; })), as_usual);
+    EXPECT_NE(positions(changed([](StructureParams& p) { p.border = 0.2; })), as_usual);
+    const auto usual_alphas = alphas(usual);
+    EXPECT_NE(alphas(changed([](StructureParams& p) { p.opacity = 0.9; })), usual_alphas);
+    EXPECT_NE(alphas(changed([](StructureParams& p) { p.density = 0.3; })), usual_alphas);
+}
+
+TEST(Bodies, WhereThePictureIsTransparentThereIsNothing) {
+    TexturedMesh mesh = on_plane(painted::nebula(160, 100));
+    Image& image = mesh.textures[0].image;
+    for (std::int64_t y = 0; y < 100; ++y)
+        for (std::int64_t x = 0; x < 80; ++x) std::fill_n(image.at(x, y), 4, 0.0f);
+    const SplatSet set = make_bodies({&mesh, 1}, of_kind(StructureKind::sheet), 3u, "gas");
+    ASSERT_GT(set.size(), 1000);
+    for (const glm::vec3& p : set.position) ASSERT_GT(p.x, -0.1f);
+}
+
+TEST(Bodies, EveryMeshShowsItsOwnPicture) {
+    std::vector<TexturedMesh> meshes{on_plane(make_image(64, 64, 3, 0.2f)),
+                                     on_plane(make_image(64, 64, 3, 0.4f))};
+    for (glm::vec3& p : meshes[1].mesh.positions) p.y += 7.0f;
+    const SplatSet set = make_bodies(meshes, of_kind(StructureKind::disk), 3u, "gas");
+    int upper = 0;
+    for (std::size_t i = 0; i < set.id.size(); ++i) {
+        ASSERT_EQ(set.mesh[i] == 1, set.position[i].y > 3.5f);
+        upper += set.mesh[i] == 1;
+    }
+    EXPECT_GT(upper, 1000);
+    EXPECT_LT(upper, set.size() - 1000);
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,236 @@
+// Depths: the envelope, the noise that all bands share, and the same bits everywhere.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "bodies/depth_kernel.h"
+#include "bodies/fields.h"
+#include "bodies/picture_light.h"
+#include "bodies/placement.h"
+#include "core/shared_maths.h"
+#include "core/vector_target.h"
+#include "support/painted_picture.h"
+
+namespace astrosplat {
+namespace {
+
+// Dots at random places of a picture of 1000 x 1000, all of one scale height.
+std::vector<std::unique_ptr<PlacedBlock>> scattered(int blocks, float height) {
+    std::vector<std::unique_ptr<PlacedBlock>> result;
+    for (int b = 0; b < blocks; ++b) {
+        auto block = std::make_unique<PlacedBlock>();
+        block->count = DepthBlock::size;
+        for (int i = 0; i < block->count; ++i) {
+            const auto id = static_cast<std::uint32_t>(b * DepthBlock::size + i);
+            block->x[i] = 1000.0f * shared::as_uniform(shared::as_hash(1u, id, 0u, 1u));
+            block->y[i] = 1000.0f * shared::as_uniform(shared::as_hash(1u, id, 0u, 2u));
+            block->height[i] = height;
+            block->random[i] = shared::as_hash(1u, id, 0u, 3u);
+        }
+        result.push_back(std::move(block));
+    }
+    return result;
+}
+
+NoiseStack octaves(int count, float gain, float longest = 80.0f) {
+    NoiseStack noise;
+    noise.seed = 5u;
+    for (int i = 0; i < count; ++i) {
+        noise.frequency[i] = static_cast<float>(1 << i) / longest;
+        noise.gain[i] = gain;
+    }
+    noise.count = count;
+    return noise;
+}
+
+TEST(Depths, WithoutClumpsFollowTheEnvelope) {
+    std::vector<double> z;
+    for (auto& block : scattered(80, 20.0f)) {
+        disk_depths(octaves(2, 0.0f), *block);
+        z.insert(z.end(), block->z, block->z + block->count);
+    }
+    std::sort(z.begin(), z.end());
+    // Quantiles of sech^2(z / 20), of which 1.5 % are cut off at either side: z = 10 ln(v / (1 - v)).
+    for (const double u : {0.05, 0.25, 0.5, 0.75, 0.95}) {
+        const double v = 0.015 + 0.97 * u;
+        EXPECT_NEAR(z[static_cast<std::size_t>(u * static_cast<double>(z.size()))],
+                    10.0 * std::log(v / (1.0 - v)), 1.0)
+            << u;
+    }
+    EXPECT_LE(z.back(), 41.9);
+}
+
+// Where the noise is high there are more dots, and for octaves past the third it is the finer draw that does
+// it.
+TEST(Depths, GatherWhereTheNoiseIsHigh) {
+    const NoiseStack noise = octaves(5, 1.5f);
+    double coarse = 0.0, fine = 0.0;
+    int count = 0;
+    for (auto& block : scattered(20, 20.0f)) {
+        disk_depths(noise, *block);
+        for (int i = 0; i < block->count; ++i, ++count) {
+            const auto octave = [&](int k) {
+                return static_cast<double>(painted::field::as_noise_octave(
+                    block->x[i], block->y[i], block->z[i], noise.frequency[k], noise.seed, k));
+            };
+            coarse += octave(0) + octave(1) + octave(2);
+            fine += octave(3) + octave(4);
+        }
+    }
+    EXPECT_GT(coarse / count, 0.3);
+    EXPECT_GT(fine / count, 0.1);
+}
+
+TEST(Depths, AnOctaveHasTheDeviationThatGainsCount) {
+    double sum = 0.0, squares = 0.0;
+    int count = 0;
+    for (auto& block : scattered(80, 1.0f)) {
+        noise_sum(octaves(1, 1.0f, 8.0f), *block);
+        for (int i = 0; i < block->count; ++i, ++count) {
+            sum += static_cast<double>(block->z[i]);
+            squares += static_cast<double>(block->z[i]) * static_cast<double>(block->z[i]);
+        }
+    }
+    EXPECT_NEAR(sum / count, 0.0, 0.03);
+    EXPECT_NEAR(std::sqrt(squares / count), 1.0, 0.05);
+}
+
+TEST(Depths, ASheetStaysWithinTwoScaleHeightsAndItsSpread) {
+    for (auto& block : scattered(8, 20.0f)) {
+        sheet_depths(octaves(4, 100.0f), 0.001f, *block);
+        float highest = 0.0f;
+        for (int i = 0; i < block->count; ++i) highest = std::max(highest, std::fabs(block->z[i]));
+        EXPECT_GT(highest, 39.0f);
+        EXPECT_LE(highest, 40.1f);
+    }
+}
+
+TEST(Depths, AreTheSameOnEveryInstructionSet) {
+    const auto run = [] {
+        std::vector<float> z;
+        for (auto& block : scattered(4, 20.0f)) {
+            disk_depths(octaves(5, 1.5f), *block);
+            z.insert(z.end(), block->z, block->z + block->count);
+            sheet_depths(octaves(5, 9.0f), 4.0f, *block);
+            z.insert(z.end(), block->z, block->z + block->count);
+        }
+        return z;
+    };
+    const std::vector<float> best = run();
+    ASSERT_GT(vector_targets().size(), 1u);
+    for (const std::string& target : vector_targets()) {
+        set_vector_target(target);
+        const std::vector<float> here = run();
+        for (std::size_t i = 0; i < best.size(); ++i) ASSERT_EQ(here[i], best[i]) << target << ", dot " << i;
+    }
+    set_vector_target("best");
+}
+
+TEST(Fields, ThicknessIsBoundedAndLargestInBrightParts) {
+    const Image brightest = brightest_channel(painted::galaxy(240, 150));
+    const Image field = thickness_field(brightest, 10.0);
+    float lo = 1e9f, hi = 0.0f;
+    for (const float v : field.pixels) {
+        lo = std::min(lo, v);
+        hi = std::max(hi, v);
+    }
+    EXPECT_GE(lo, 5.49f);
+    EXPECT_LT(lo, 6.5f);
+    EXPECT_GT(hi, 15.0f);
+    EXPECT_LE(hi, 22.01f);
+    EXPECT_GT(*field.at(120, 75), 15.0f);
+}
+
+TEST(Fields, ReliefIsNowhereTooSteepAndNothingOnEmptySky) {
+    Image brightest = make_image(240, 150, 1);
+    for (std::int64_t y = 60; y < 90; ++y)
+        for (std::int64_t x = 100; x < 140; ++x) *brightest.at(x, y) = 1.0f;
+    for (const double steepest : {0.7, 0.1}) {
+        const Image field = relief_field(brightest, 60.0, steepest);
+        float highest = 0.0f, slope = 0.0f;
+        for (std::int64_t y = 0; y + 1 < field.height; ++y) {
+            for (std::int64_t x = 0; x + 1 < field.width; ++x) {
+                highest = std::max(highest, *field.at(x, y));
+                slope = std::max(slope, std::fabs(*field.at(x + 1, y) - *field.at(x, y)));
+            }
+        }
+        EXPECT_LE(slope, 1.03 * steepest);
+        EXPECT_GT(slope, 0.5 * steepest);
+        EXPECT_LE(highest, 60.0f);
+        EXPECT_GT(highest, steepest > 0.5 ? 10.0f : 2.0f);
+        EXPECT_LT(*field.at(2, 2), 0.5f);
+    }
+}
+
+// All dots of a knot share its depth; other fine dots at the same distance from each other do not.
+TEST(Placement, AKnotIsABall) {
+    Image light = make_image(320, 200, 3, 0.05f);
+    painted::add_point(light, 160.0, 100.0, 3.0, 0.5, 0.5, 0.5);
+    StructureParams params;
+    params.kind = StructureKind::disk;
+    const Placement placement = make_placement(brightest_channel(light), params, 32.0, true, 9u);
+    ASSERT_EQ(placement.knots.knots.size(), 1u);
+    const BandDots dots = band_dots(make_bands(320)[0], false, placement);
+    const auto spread = [&](float cx, float cy) {
+        PlacedBlock block;
+        block.count = 200;
+        for (int i = 0; i < block.count; ++i) {
+            block.x[i] = cx + 0.01f * static_cast<float>(i % 10);
+            block.y[i] = cy + 0.01f * static_cast<float>(i / 10);
+            block.random[i] = shared::as_hash(3u, static_cast<std::uint32_t>(i), 0u, 4u);
+        }
+        place(placement, dots, block);
+        double sum = 0.0, squares = 0.0;
+        for (int i = 0; i < block.count; ++i) {
+            sum += static_cast<double>(block.z[i]);
+            squares += static_cast<double>(block.z[i]) * static_cast<double>(block.z[i]);
+        }
+        const double mean = sum / block.count;
+        return std::sqrt(squares / block.count - mean * mean);
+    };
+    EXPECT_LT(spread(160.0f, 100.0f), 0.7 * static_cast<double>(placement.knots.knots[0].sigma));
+    EXPECT_GT(spread(40.0f, 40.0f), 0.2 * placement.height);
+}
+
+TEST(Placement, WallsLieOnBothSidesAndASheetOnOne) {
+    const Image brightest = brightest_channel(painted::remnant(320, 200));
+    for (const StructureKind kind : {StructureKind::walls, StructureKind::sheet}) {
+        StructureParams params;
+        params.kind = kind;
+        params.stars = false;
+        const Placement placement = make_placement(brightest, params, 32.0, true, 9u);
+        const BandDots dots = band_dots(make_bands(320)[1], false, placement);
+        int front = 0, back = 0;
+        for (int repeat = 0; repeat < 20; ++repeat) {
+            PlacedBlock block;
+            block.count = DepthBlock::size;
+            for (int i = 0; i < block.count; ++i) {
+                const auto id = static_cast<std::uint32_t>(repeat * DepthBlock::size + i);
+                block.x[i] = 130.0f + 60.0f * shared::as_uniform(shared::as_hash(8u, id, 0u, 1u));
+                block.y[i] = 80.0f + 40.0f * shared::as_uniform(shared::as_hash(8u, id, 0u, 2u));
+                block.random[i] = shared::as_hash(8u, id, 0u, 3u);
+            }
+            place(placement, dots, block);
+            for (int i = 0; i < block.count; ++i) {
+                const float out = *placement.relief.at(static_cast<std::int64_t>(block.x[i]),
+                                                       static_cast<std::int64_t>(block.y[i]));
+                EXPECT_LT(block.distance[i], 6.0 * placement.height) << i;
+                front += block.z[i] > 0.5f * out;
+                back += block.z[i] < -0.5f * out;
+            }
+        }
+        EXPECT_GT(front, 1000);
+        if (kind == StructureKind::walls) {
+            EXPECT_GT(back, 1000);
+        }
+        if (kind == StructureKind::sheet) {
+            EXPECT_LT(back, front / 4);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat

@@ -1,0 +1,105 @@
+#include "bodies/stars.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "bodies/knots.h"
+#include "bodies/picture_light.h"
+#include "core/parallel.h"
+#include "support/painted_picture.h"
+
+namespace astrosplat {
+namespace {
+
+// A sky that is brighter on one side, with a little texture.
+Image sky(std::int64_t width, std::int64_t height) {
+    Image image = make_image(width, height, 3);
+    for (std::int64_t y = 0; y < height; ++y)
+        for (std::int64_t x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c)
+                image.at(x, y)[c] =
+                    0.02f + 0.1f * static_cast<float>(x) / static_cast<float>(width) +
+                    0.004f * painted::fbm(static_cast<double>(x), static_cast<double>(y), 0.11, 7u);
+    return image;
+}
+
+struct Planted {
+    double x, y, sigma, light;
+};
+const std::vector<Planted> planted{{40.3, 30.8, 0.9, 0.3},
+                                   {90.0, 80.5, 1.2, 0.8},
+                                   {150.6, 40.1, 1.5, 0.5},
+                                   {200.2, 90.9, 0.8, 0.25},
+                                   {60.7, 100.2, 1.0, 0.6}};
+
+TEST(Stars, AreFoundWhereTheyAreAndTakenOut) {
+    const Image before = sky(256, 128);
+    Image light = before;
+    for (const Planted& p : planted)
+        painted::add_point(light, p.x, p.y, p.sigma, p.light, 0.8 * p.light, 0.6 * p.light);
+    const std::vector<Star> stars = take_stars(light);
+    ASSERT_EQ(stars.size(), planted.size());
+    for (const Planted& p : planted) {
+        const Star* nearest = &stars.front();
+        for (const Star& s : stars)
+            if (std::hypot(s.x - p.x, s.y - p.y) < std::hypot(nearest->x - p.x, nearest->y - p.y))
+                nearest = &s;
+        EXPECT_NEAR(nearest->x, p.x, 0.2);
+        EXPECT_NEAR(nearest->y, p.y, 0.2);
+        EXPECT_NEAR(nearest->sigma, p.sigma, 0.25 * p.sigma);
+        EXPECT_NEAR(nearest->peak.x, p.light, 0.25 * p.light);
+        EXPECT_GT(nearest->peak.x, nearest->peak.z);
+    }
+    for (std::size_t i = 0; i < light.pixels.size(); ++i)  // what wings are cut to
+        ASSERT_NEAR(light.pixels[i], before.pixels[i], 0.016f + 0.15f * before.pixels[i])
+            << "pixel " << i / 3;
+}
+
+TEST(Stars, KnotsAndEdgesAreNone) {
+    Image light = sky(256, 128);
+    painted::add_point(light, 80.0, 60.0, 4.0, 0.5, 0.5, 0.5);  // wider than a star
+    for (int i = 0; i < 40; ++i) painted::add_point(light, 150.0 + i, 50.0, 0.9, 0.2, 0.2, 0.2);  // a thread
+    const Image before = light;
+    EXPECT_TRUE(take_stars(light).empty());
+    for (std::size_t i = 0; i < light.pixels.size(); ++i) ASSERT_EQ(light.pixels[i], before.pixels[i]);
+}
+
+TEST(Stars, AreTheSameOnOneThread) {
+    Image several = painted::galaxy(240, 150), one = several;
+    const std::vector<Star> a = take_stars(several);
+    set_thread_count(1);
+    const std::vector<Star> b = take_stars(one);
+    set_thread_count(0);
+    ASSERT_GT(a.size(), 20u);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_EQ(a[i].peak, b[i].peak);
+    for (std::size_t i = 0; i < one.pixels.size(); ++i) ASSERT_EQ(one.pixels[i], several.pixels[i]);
+}
+
+TEST(Knots, OwnThePixelsAroundThem) {
+    Image light = sky(256, 128);
+    painted::add_point(light, 80.0, 60.0, 3.0, 0.5, 0.5, 0.5);
+    const Image brightest = brightest_channel(light);
+    const Knots knots = find_knots(brightest);
+    ASSERT_EQ(knots.knots.size(), 1u);
+    EXPECT_NEAR(knots.knots[0].x, 80.0, 1.0);
+    EXPECT_NEAR(knots.knots[0].y, 60.0, 1.0);
+    EXPECT_GT(knots.knots[0].sigma, 2.0f);
+    EXPECT_LT(knots.knots[0].sigma, 5.0f);
+    const auto at = [&](std::int64_t x, std::int64_t y) { return static_cast<std::size_t>(y * 256 + x); };
+    EXPECT_EQ(knots.owner[at(80, 60)], 0);
+    EXPECT_EQ(knots.weight[at(80, 60)], 1.0f);
+    const auto rim = static_cast<std::int64_t>(80.0f + 2.6f * knots.knots[0].sigma);
+    EXPECT_GT(knots.weight[at(rim, 60)], 0.0f);
+    EXPECT_LT(knots.weight[at(rim, 60)], 0.6f);
+    EXPECT_EQ(knots.owner[at(200, 100)], -1);
+}
+
+TEST(Knots, ThereAreNoneInAnEvenSky) {
+    EXPECT_TRUE(find_knots(brightest_channel(sky(256, 128))).knots.empty());
+}
+
+}  // namespace
+}  // namespace astrosplat
