@@ -140,7 +140,11 @@ void add_new(CLI::App& app, Invocation& call) {
                                     [&call] { return run_new(call.create); });
     add_value(command, "IMAGE", call.create.image, "IMAGE", "The picture")->required();
     add_value(command, "-o,--output", call.create.scene, "SCENE", "The scene file to write")->required();
-    add_value(command, "--shape", call.create.shape, "plane|relief|disk|sphere", "The mesh (default: plane)");
+    add_value(command, "--as", call.create.as, "galaxy|nebula|remnant|plane",
+              "What the picture shows (default: by looking at it)");
+    command.add_flag("--film", call.create.film, "With a camera move of ten seconds");
+    add_value(command, "--shape", call.create.shape, "plane|relief|disk|sphere",
+              "Columns on this mesh instead of bodies");
     command.add_flag("--overwrite", call.create.overwrite, "Replaces the scene file");
 }
 

@@ -3,24 +3,75 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
+#include <optional>
+#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/file_format.h"
+#include "core/log.h"
 #include "core/text.h"
 #include "places.h"
 #include "scene/new_scene.h"
+#include "scene/picture_scene.h"
+#include "scene/suggest.h"
 #include "source/picture.h"
 
 namespace astrosplat {
+namespace {
+
+struct ObjectKind {
+    const char* name;
+    StructureKind structure;
+};
+constexpr std::array<ObjectKind, 3> object_kinds{
+    {{"galaxy", StructureKind::disk}, {"nebula", StructureKind::sheet}, {"remnant", StructureKind::walls}}};
+
+std::optional<StructureKind> structure_of(const std::string& as) {
+    if (as.empty()) return {};
+    for (const ObjectKind& kind : object_kinds)
+        if (kind.name == as) return kind.structure;
+    static const std::vector<std::string> names{"galaxy", "nebula", "remnant", "plane"};
+    throw InputError(fmt::format("--as: expected galaxy, nebula, remnant or plane, found '{}'{}", as,
+                                 did_you_mean(as, names)));
+}
+
+std::string object_name(StructureKind structure) {
+    for (const ObjectKind& kind : object_kinds)
+        if (kind.structure == structure) return kind.name;
+    return "plane";
+}
+
+std::string bodies_text(const NewOptions& options) {
+    std::string why;
+    PictureScene scene = picture_scene(options.image, structure_of(options.as), why);
+    scene.film = options.film;
+    if (!why.empty())
+        log_info(fmt::format("'{}' is taken for a {}: {}; --as chooses another",
+                             printable(options.image.filename().string()), object_name(scene.structure),
+                             why));
+    return picture_scene_text(scene, options.scene);
+}
+
+std::string columns_text(const NewOptions& options) {
+    if (options.film) throw InputError("--film: expected a scene of bodies, found --shape or --as plane");
+    if (!options.shape.empty() && !options.as.empty() && options.as != "plane")
+        throw InputError(fmt::format("--shape: expected no other kind of scene, found --as {}", options.as));
+    return new_scene_text(options.image, options.shape.empty() ? "plane" : options.shape, options.scene);
+}
+
+}  // namespace
+
 int run_new(const NewOptions& options) {
     require_picture(options.image);  // a scene around something else would fail at its first frame
     if (kind_of(format_by_name(options.scene)) != FileKind::scene) {
         bad_input(options.scene.string(), "", "a name ending in .toml",
                   "'" + options.scene.extension().string() + "'");
     }
-    const std::string text = new_scene_text(options.image, options.shape, options.scene);
+    const bool columns = !options.shape.empty() || options.as == "plane";
+    const std::string text = columns ? columns_text(options) : bodies_text(options);
     refuse_to_overwrite(options.scene, options.overwrite);
     prove_writable(folder_of(options.scene));
     write_file_atomically(options.scene, text, existing_of(options.overwrite));

@@ -1,5 +1,5 @@
-// new: writes a first scene around a picture. Prints results to stdout, everything else to stderr, and
-// returns the exit code.
+// new: writes a first scene around a picture, of bodies in depth or of columns on a shape. Prints results to
+// stdout, everything else to stderr, and returns the exit code.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,9 @@ namespace astrosplat {
 
 struct NewOptions {
     std::filesystem::path image, scene;
-    std::string shape = "plane";
+    std::string as;     // galaxy, nebula, remnant or plane; empty: chosen by looking at the picture
+    std::string shape;  // of a scene of columns; empty: a scene of bodies
+    bool film = false;
     bool overwrite = false;
 };
 int run_new(const NewOptions& options);

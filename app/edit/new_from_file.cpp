@@ -13,6 +13,7 @@
 #include "core/file.h"
 #include "core/file_format.h"
 #include "scene/new_scene.h"
+#include "scene/picture_scene.h"
 #include "scene/value.h"
 #include "source/mesh.h"
 #include "source/obj.h"
@@ -149,9 +150,11 @@ FileKind kind_of_file(const fs::path& file) {
 std::string scene_text_for(const fs::path& file, const fs::path& place) {
     require_readable(file);
     switch (kind_of_file(file)) {
-        case FileKind::picture:
+        case FileKind::picture: {
             require_picture(file);
-            return new_scene_text(file, "plane", place);
+            std::string why;
+            return picture_scene_text(picture_scene(file, {}, why), place);
+        }
         case FileKind::mesh:
             return mesh_scene_text(file, place);
         case FileKind::splats:

@@ -15,14 +15,6 @@ namespace {
 
 const std::vector<std::string> shapes{"plane", "relief", "disk", "sphere"};
 
-/// The picture as seen from the scene's folder.
-std::string picture_path(const fs::path& image, const fs::path& file) {
-    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
-    const fs::path picture = fs::absolute(image).lexically_normal();
-    const fs::path relative = picture.lexically_relative(folder);
-    return relative.empty() ? picture.string() : relative.string();
-}
-
 constexpr const char* scene_format =
     R"(# {title}: a picture as a volume of soft dots. 'astrosplat parameters' lists every key.
 astrosplat = 1
@@ -79,6 +71,13 @@ std::string new_scene_text(const fs::path& image, const std::string& shape, cons
                        fmt::arg("relief", shape == "relief" ? ", relief = 0.15" : ""),
                        // Jitter moves along one axis: depth for a flat picture, a smear on a sphere's sides.
                        fmt::arg("jitter", shape == "sphere" ? "0.0" : "0.1"));
+}
+
+std::string picture_path(const fs::path& image, const fs::path& file) {
+    const fs::path folder = fs::absolute(file).lexically_normal().parent_path();
+    const fs::path picture = fs::absolute(image).lexically_normal();
+    const fs::path relative = picture.lexically_relative(folder);
+    return relative.empty() ? picture.string() : relative.string();
 }
 
 std::string layer_name_of(const std::string& text, const char* otherwise) {

@@ -1,4 +1,4 @@
-// A first scene around a picture: what `astrosplat new` writes and what the viewer opens for a picture.
+// A first scene around a picture: on a shape of columns: what `astrosplat new --shape` writes.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,9 @@ namespace astrosplat {
 /// sphere. Throws InputError for another shape.
 std::string new_scene_text(const std::filesystem::path& image, const std::string& shape,
                            const std::filesystem::path& file);
+
+/// The path of a picture as a scene in `file` writes it.
+std::string picture_path(const std::filesystem::path& image, const std::filesystem::path& file);
 
 /// Letters, digits and _ of a file's or person's name, beginning with a letter; `otherwise` where none is
 /// left.

@@ -82,7 +82,7 @@ TEST_F(Commands, NewMakesASceneThatRenders) {
         const RunResult result = run(arguments);
         EXPECT_EQ(result.code, 0) << result.err;
     }
-    expect_one_line(run({"new", "picture.ppm", "-o", "plane.toml"}), 2, "--overwrite");
+    expect_one_line(run({"new", "picture.ppm", "-o", "plane.toml", "--as", "galaxy"}), 2, "--overwrite");
     expect_one_line(run({"new", "picture.ppm", "-o", "cube.toml", "--shape", "cube"}), 2, "cube");
     expect_one_line(run({"new", "missing.png", "-o", "x.toml"}), 2, "missing.png");
     expect_one_line(run({"new", ".", "-o", "x.toml"}), 2, "it is a folder");
@@ -90,9 +90,39 @@ TEST_F(Commands, NewMakesASceneThatRenders) {
     EXPECT_FALSE(fs::exists(folder / "x.toml"));
 }
 
+// Without a shape the picture becomes bodies; what kind is said with its reason, or asked for.
+TEST_F(Commands, NewMakesBodiesOfAPicture) {
+    write_text(folder / "picture.ppm", small_picture());
+    const RunResult chosen = run({"new", "picture.ppm", "-o", "chosen.toml"});
+    ASSERT_EQ(chosen.code, 0) << chosen.err;
+    EXPECT_NE(chosen.err.find("--as chooses another"), std::string::npos) << chosen.err;
+    for (const auto& [as, kind] :
+         {std::pair("galaxy", "disk"), std::pair("nebula", "sheet"), std::pair("remnant", "walls")}) {
+        const std::string scene = std::string(as) + ".toml";
+        const RunResult made = run({"new", "picture.ppm", "-o", scene, "--as", as, "--film"});
+        ASSERT_EQ(made.code, 0) << made.err;
+        EXPECT_EQ(made.err, "");
+        const std::string text = text_of(folder / scene);
+        EXPECT_NE(text.find("kind = \"" + std::string(kind) + "\""), std::string::npos) << text;
+        EXPECT_NE(text.find("frames     = \"1-240\""), std::string::npos) << text;
+        const RunResult rendered = run(
+            {"--batch", scene, "-f", "1,160", "-o", std::string(as) + ".####.png", "--resolution", "48x32"});
+        EXPECT_EQ(rendered.code, 0) << rendered.err;
+    }
+    EXPECT_EQ(text_of(folder / "chosen.toml").find("[animation]"), std::string::npos);
+    ASSERT_EQ(run({"new", "picture.ppm", "-o", "columns.toml", "--as", "plane"}).code, 0);
+    EXPECT_EQ(text_of(folder / "columns.toml").find("structure"), std::string::npos);
+    expect_one_line(run({"new", "picture.ppm", "-o", "x.toml", "--as", "galxy"}), 2,
+                    "did you mean 'galaxy'?");
+    expect_one_line(run({"new", "picture.ppm", "-o", "x.toml", "--as", "plane", "--film"}), 2, "--film");
+    expect_one_line(run({"new", "picture.ppm", "-o", "x.toml", "--as", "nebula", "--shape", "disk"}), 2,
+                    "--shape");
+    EXPECT_FALSE(fs::exists(folder / "x.toml"));
+}
+
 TEST_F(Commands, GenerateWritesALayer) {
     write_text(folder / "picture.ppm", small_picture());
-    ASSERT_EQ(run({"new", "picture.ppm", "-o", "new.toml"}).code, 0);
+    ASSERT_EQ(run({"new", "picture.ppm", "-o", "new.toml", "--shape", "plane"}).code, 0);
     const std::string layer = info("new.toml").at("layers")[0].at("name");
     const std::string count = "layer." + layer + ".source.count=5000";
     const RunResult result =

@@ -126,7 +126,8 @@ TEST_F(FidelityCommand, IsStoppedWithoutLeavingAnything) {
     options.folder = folder;
     const RunningProgram program(
         {ASTROSPLAT_PROGRAM, "fidelity", "picture.toml", "-o", "report.html", "--no-cache", "--progress",
-         "plain", "--set", "layer.picture.source.count=30000000"},
+         "plain", "--set", "layer.picture.source.structure.kind=columns", "--set",
+         "layer.picture.source.count=30000000"},
         options);
     while (program.running() && program.err_so_far().find("positions") == std::string::npos) usleep(1000);
     program.signal(SIGINT);

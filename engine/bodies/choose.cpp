@@ -1,0 +1,115 @@
+// Measured on a small copy without its stars, above the darkest tenth: how the light falls off from its
+// brightest place, how red it is there, and how much of it reaches the picture's edges.
+#include "bodies/choose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bodies/picture_light.h"
+#include "bodies/stars.h"
+#include "image/blur.h"
+#include "image/percentile.h"
+#include "image/resample.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t small_width = 256;
+constexpr double edge_share = 0.06;    // of the width, that counts as the picture's edge
+constexpr double bright_middle = 2.5;  // times the light at the half-light radius
+constexpr double as_red = 0.8;         // red over blue, of the middle against its surroundings
+constexpr double even_middle = 2.2;
+constexpr double dark_edge = 0.3;    // of the mean light
+constexpr double alone_edge = 0.45;  // of the same, for what has a glow around it
+
+struct Pixel {
+    double radius, light, red, blue;
+    bool edge;
+};
+
+Image small_copy(const Image& light) {
+    const auto of_width = [&](const Image& image, std::int64_t width) {
+        const std::int64_t height = std::max<std::int64_t>(1, image.height * width / image.width);
+        return resampled(image, map_to_width(image, width, height), width, height, 0.5);
+    };
+    Image copy = light.width > 2 * small_width ? of_width(light, 2 * small_width) : light;
+    take_stars(copy);
+    return gaussian_blur(of_width(copy, small_width), 1.0);
+}
+
+// The pixels by their distance from the brightest place, px.
+std::vector<Pixel> by_radius(const Image& light) {
+    const Image brightest = brightest_channel(light);
+    const Image smooth = gaussian_blur(brightest, 0.02 * static_cast<double>(light.width));
+    const auto top = std::max_element(smooth.pixels.begin(), smooth.pixels.end()) - smooth.pixels.begin();
+    const double cx = static_cast<double>(top % light.width), cy = static_cast<double>(top / light.width);
+    const double sky = percentile({brightest.pixels.begin(), brightest.pixels.end()}, 0.1);
+    const auto edge = static_cast<std::int64_t>(edge_share * static_cast<double>(light.width));
+    std::vector<Pixel> pixels;
+    for (std::int64_t y = 0; y < light.height; ++y) {
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            const float* const p = light.at(x, y);
+            const bool at_edge = x < edge || y < edge || x >= light.width - edge || y >= light.height - edge;
+            pixels.push_back({std::hypot(static_cast<double>(x) - cx, static_cast<double>(y) - cy),
+                              std::max(0.0, static_cast<double>(*brightest.at(x, y)) - sky),
+                              static_cast<double>(p[0]), static_cast<double>(p[2]), at_edge});
+        }
+    }
+    std::stable_sort(pixels.begin(), pixels.end(),
+                     [](const Pixel& a, const Pixel& b) { return a.radius < b.radius; });
+    return pixels;
+}
+
+double half_light_radius(const std::vector<Pixel>& pixels) {
+    double all = 0.0, sum = 0.0;
+    for (const Pixel& p : pixels) all += p.light;
+    for (const Pixel& p : pixels)
+        if ((sum += p.light) >= 0.5 * all) return p.radius;
+    return 0.0;
+}
+
+// Means over the pixels for which `wanted` holds.
+struct Part {
+    double light = 0.0, redness = 1.0;
+};
+template <class Wanted>
+Part part_of(const std::vector<Pixel>& pixels, Wanted wanted) {
+    double light = 0.0, red = 0.0, blue = 0.0, count = 0.0;
+    for (const Pixel& p : pixels) {
+        if (!wanted(p)) continue;
+        light += p.light;
+        red += p.red;
+        blue += p.blue;
+        count += 1.0;
+    }
+    return {light / std::max(1.0, count), red / std::max(1e-12, blue)};
+}
+
+}  // namespace
+
+StructureChoice choose_structure(const Image& light) {
+    if (light.width < 16 || light.height < 16) return {StructureKind::sheet, "it is too small to tell"};
+    const std::vector<Pixel> pixels = by_radius(small_copy(light));
+    const double half = half_light_radius(pixels);
+    const Part all = part_of(pixels, [](const Pixel&) { return true; });
+    const Part edge = part_of(pixels, [](const Pixel& p) { return p.edge; });
+    const Part middle = part_of(pixels, [&](const Pixel& p) { return p.radius <= 0.35 * half; });
+    const Part ring =
+        part_of(pixels, [&](const Pixel& p) { return p.radius > 0.8 * half && p.radius < 1.2 * half; });
+    const Part outside =
+        part_of(pixels, [&](const Pixel& p) { return p.radius > 0.9 * half && p.radius < 1.6 * half; });
+    if (!(all.light > 0.0)) return {StructureKind::sheet, "it is even up to its edges"};
+    const double peak = middle.light / std::max(1e-12, ring.light);
+    const bool red = middle.redness >= as_red * outside.redness, dark = edge.light <= dark_edge * all.light;
+    if (peak >= bright_middle && red && dark)
+        return {StructureKind::disk,
+                "its light gathers in a middle that is as red as what is around it, or redder"};
+    if (peak < even_middle && edge.light <= alone_edge * all.light)
+        return {StructureKind::walls, "it stands alone on a dark sky and is not much brighter in the middle"};
+    return {StructureKind::sheet, dark ? "it has a bright middle that is bluer than what is around it"
+                                       : "its light goes on to the picture's edges"};
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,20 @@
+// Which structure suits a picture. In: its light. Out: a kind, and the reason in words.
+#pragma once
+
+#include <string>
+
+#include "core/image.h"
+#include "source/source.h"
+
+namespace astrosplat {
+
+struct StructureChoice {
+    StructureKind kind = StructureKind::sheet;
+    std::string why;  // "its light gathers in the middle, which is redder than what is around it"
+};
+
+/// disk for what has a bright middle that is at least as red as its surroundings, walls for what stands alone
+/// on a dark sky and is bright all over or at its rim, sheet for everything else. `light`: RGB, linear, >= 0.
+StructureChoice choose_structure(const Image& light);
+
+}  // namespace astrosplat

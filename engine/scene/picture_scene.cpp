@@ -1,0 +1,140 @@
+// The text is written to be read and edited: every key a person is likely to touch, each with its one line.
+#include "scene/picture_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "bodies/choose.h"
+#include "bodies/picture_light.h"
+#include "core/real.h"
+#include "scene/new_scene.h"
+#include "scene/value.h"
+#include "source/texture.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double longest_side = 10.0;  // scene units, of the built-in plane
+constexpr std::int64_t longest_px = 1920;
+constexpr double fov = 40.0;  // degrees
+
+constexpr const char* text_format =
+    R"(# {title}: a picture as bodies in depth. 'astrosplat parameters' lists every key.
+astrosplat = 1
+
+[output]
+resolution = [{width}, {height}]         # px, as wide and high as the picture
+frames     = {frames}
+fps        = 24
+path       = {path}  # the ending chooses the format: .exr .tif .png
+exposure   = 0.0                  # stops; acts in .png and .tif, exr holds scene light
+
+[camera]                          # as the telescope saw it
+position = [0, {distance}, 0]
+target   = [0, 0, 0]
+up       = [0, 0, -1]
+fov      = {fov}                   # degrees, vertical
+
+[[layer]]
+name = {name}
+
+[layer.source]
+meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
+structure = {{ kind = {kind}, depth = {depth}, clumps = 1.0, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
+stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
+black     = "auto"                # data value shown as black
+white     = "auto"                # data value shown as white
+
+[layer.look]
+density  = 1.0                    # share of the dots that is kept
+grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 }}
+
+[layer.render]
+opacity = 1.0                     # of the whole layer
+)";
+
+struct CameraKey {
+    int frame;
+    glm::dvec3 position, target, up;
+};
+
+// Ten seconds at 24 frames/s: the front, a slow tilt, a close pass, and on: to the edge of a disk, else up
+// and away.
+std::vector<CameraKey> flight(double distance, StructureKind kind) {
+    const glm::dvec3 middle(0.0), front(0.0, distance, 0.0);
+    const bool disk = kind == StructureKind::disk;
+    const glm::dvec3 north(0.0, 0.0, -1.0), above(0.0, 1.0, 0.0);
+    return {{1, front, middle, north},
+            {36, front, middle, north},
+            {100, {0.6, 0.62 * distance, 0.62 * distance}, middle, {0.0, 1.0, -0.5}},
+            {160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above},
+            {205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above},
+            {240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above}};
+}
+
+std::string vector_text(const glm::dvec3& v) {
+    return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x, v.y, v.z);
+}
+
+std::string track_text(const char* key, const std::vector<CameraKey>& keys, glm::dvec3 CameraKey::*value) {
+    std::string text;
+    for (const CameraKey& k : keys)
+        text += fmt::format("{}    [{}, {}]", text.empty() ? "" : ",\n", k.frame, vector_text(k.*value));
+    return fmt::format("\"{}\" = {{ interpolation = \"smooth\", keys = [\n{}\n] }}\n", key, text);
+}
+
+std::string animation_text(const std::vector<CameraKey>& keys) {
+    return "\n[animation]                       # [frame, [x, y, z]]\n" +
+           track_text("camera.position", keys, &CameraKey::position) +
+           track_text("camera.target", keys, &CameraKey::target) +
+           track_text("camera.up", keys, &CameraKey::up);
+}
+
+// Even, as films want it.
+std::int64_t side_px(std::int64_t side, std::int64_t longest) {
+    return std::max<std::int64_t>(
+        2, 2 * std::llround(static_cast<double>(longest_px * side) / (2.0 * static_cast<double>(longest))));
+}
+
+}  // namespace
+
+PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
+                           std::string& why, const Progress& progress) {
+    const Texture texture = load_texture({image}, {}, TextureSettings::Wrap::clamp, progress);
+    PictureScene scene{image, texture.image.width, texture.image.height};
+    why.clear();
+    if (structure) {
+        scene.structure = *structure;
+    } else {
+        const StructureChoice choice = choose_structure(picture_light(texture, 0.0).light);
+        scene.structure = choice.kind;
+        why = choice.why;
+    }
+    return scene;
+}
+
+std::string picture_scene_text(const PictureScene& scene, const std::filesystem::path& file) {
+    const std::string name = layer_name_of(scene.image.stem().string(), "picture");
+    const std::int64_t longest = std::max(scene.width_px, scene.height_px);
+    const double height = longest_side * static_cast<double>(scene.height_px) / static_cast<double>(longest);
+    const double distance = 0.5 * height / real::tan(real::radians(0.5 * fov));
+    std::string text = fmt::format(
+        text_format, fmt::arg("title", name), fmt::arg("name", to_toml(name)),
+        fmt::arg("width", side_px(scene.width_px, longest)),
+        fmt::arg("height", side_px(scene.height_px, longest)),
+        fmt::arg("frames", scene.film
+                               ? "\"1-240\""
+                               : "\"1\"                  # such as \"1-240\" or \"1-100,120,200-300x2\""),
+        fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
+        fmt::arg("distance", fmt::format("{:.6g}", distance)), fmt::arg("fov", fmt::format("{:.1f}", fov)),
+        fmt::arg("picture", to_toml(picture_path(scene.image, file))),
+        fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
+        fmt::arg("depth", scene.structure == StructureKind::walls ? "0.18" : "0.15"));
+    return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
+}
+
+}  // namespace astrosplat

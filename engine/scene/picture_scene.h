@@ -1,0 +1,31 @@
+// A scene that shows one picture as bodies in depth: what `new` writes and what a dropped picture becomes.
+// In: the picture and what kind of object it shows. Out: the scene file's text.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/progress.h"
+#include "source/source.h"
+
+namespace astrosplat {
+
+struct PictureScene {
+    std::filesystem::path image;
+    std::int64_t width_px = 0, height_px = 0;  // the picture's
+    StructureKind structure = StructureKind::disk;
+    bool film = false;  // with a camera move of ten seconds
+};
+
+/// Reads the picture, for its size and, unless `structure` is given, to choose one; `why` then says why in
+/// words and is empty otherwise. Throws InputError, Cancelled.
+PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
+                           std::string& why, const Progress& progress = {});
+
+/// The text of a scene in `file`. Its first frame is the picture itself, filled exactly; with a film the
+/// camera holds it, tilts, passes close by and flies on.
+std::string picture_scene_text(const PictureScene& scene, const std::filesystem::path& file);
+
+}  // namespace astrosplat

@@ -1,0 +1,49 @@
+#include "bodies/choose.h"
+
+#include <gtest/gtest.h>
+
+#include "bodies/picture_light.h"
+#include "source/texture.h"
+#include "support/painted_picture.h"
+#include "support/printing.h"
+#include "support/test_data.h"
+
+namespace astrosplat {
+namespace {
+
+TEST(ChooseStructure, TellsPaintedObjectsApart) {
+    for (const std::int64_t width : {400, 900}) {
+        EXPECT_EQ(choose_structure(painted::galaxy(width, width * 5 / 8)).kind, StructureKind::disk)
+            << width << choose_structure(painted::galaxy(width, width * 5 / 8)).why;
+        EXPECT_EQ(choose_structure(painted::nebula(width, width * 5 / 8)).kind, StructureKind::sheet)
+            << width;
+        EXPECT_EQ(choose_structure(painted::remnant(width, width * 5 / 8)).kind, StructureKind::walls)
+            << width;
+    }
+}
+
+TEST(ChooseStructure, SaysWhy) {
+    EXPECT_NE(choose_structure(painted::galaxy(400, 250)).why.find("middle"), std::string::npos);
+    EXPECT_NE(choose_structure(make_image(400, 250, 3, 0.3f)).why.find("edges"), std::string::npos);
+    EXPECT_NE(choose_structure(make_image(8, 8, 3, 0.3f)).why.find("small"), std::string::npos);
+}
+
+StructureKind chosen(const std::filesystem::path& file) {
+    const Texture texture = load_texture({file}, {}, TextureSettings::Wrap::clamp);
+    return choose_structure(picture_light(texture, 0.0).light).kind;
+}
+
+TEST(ChooseStructure, TellsRealObjectsApart) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(images, "images");
+    EXPECT_EQ(chosen(images / "m101_heic0602a.jpg"), StructureKind::disk);
+    EXPECT_EQ(chosen(images / "heic0706a.jpg"), StructureKind::disk);
+    EXPECT_EQ(chosen(images / "heic1305a.jpg"), StructureKind::disk);
+    EXPECT_EQ(chosen(images / "red_spider_heic0109a.jpg"), StructureKind::sheet);
+    EXPECT_EQ(chosen(images / "m42.png"), StructureKind::sheet);
+    EXPECT_EQ(chosen(images / "heic1501a.jpg"), StructureKind::sheet);
+    EXPECT_EQ(chosen(images / "heic0515a.jpg"), StructureKind::walls);
+    EXPECT_EQ(chosen(images / "heic1310a.jpg"), StructureKind::walls);
+}
+
+}  // namespace
+}  // namespace astrosplat

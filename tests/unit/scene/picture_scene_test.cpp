@@ -1,0 +1,65 @@
+#include "scene/picture_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/animate.h"
+#include "scene/load.h"
+#include "scene/save.h"
+
+namespace astrosplat {
+namespace {
+
+Scene parsed(const PictureScene& picture) {
+    const std::string text = picture_scene_text(picture, "scenes/a.toml");
+    Scene scene = parse_scene(text, "scenes/a.toml");
+    EXPECT_EQ(save_text(scene, text, "scenes/a.toml"), text) << "saving changes nothing";
+    return scene;
+}
+
+TEST(PictureScene, BeginsWithThePictureAsItIs) {
+    for (const auto& [width, height] : {std::pair(1600, 1000), std::pair(500, 1000), std::pair(3001, 3001)}) {
+        const Scene scene = parsed({"pictures/51 M\xC3\xB6we.png", width, height, StructureKind::walls});
+        EXPECT_EQ(scene.layers.at(0).name, "M_we");
+        EXPECT_EQ(scene.layers[0].source.meshes.at(0).texture.at(0), "pictures/51 M\xC3\xB6we.png");
+        EXPECT_EQ(scene.layers[0].source.structure.kind, StructureKind::walls);
+        EXPECT_EQ(std::max(scene.output.width, scene.output.height), 1920);
+        EXPECT_EQ(scene.output.width % 2, 0);
+        EXPECT_EQ(scene.output.height % 2, 0);
+        const double aspect = static_cast<double>(width) / static_cast<double>(height);
+        EXPECT_NEAR(static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height),
+                    aspect, 0.002 * aspect);
+        // What the camera sees of the plane, which is 10 units along its longer side.
+        const double seen =
+            2.0 * scene.camera.position->y * std::tan(0.5 * scene.camera.fov * 3.14159265358979 / 180.0);
+        EXPECT_NEAR(seen, aspect >= 1.0 ? 10.0 / aspect : 10.0, 1e-4);
+        EXPECT_TRUE(scene.animation.empty());
+    }
+}
+
+TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
+    for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet}) {
+        PictureScene picture{"a.png", 1600, 1000, kind};
+        const Scene still = parsed(picture);
+        picture.film = true;
+        const Scene film = parsed(picture);
+        EXPECT_EQ(film.output.frames, "1-240");
+        for (const double frame : {1.0, 20.0, 36.0}) {
+            const Scene now = scene_at(film, frame);
+            EXPECT_NEAR(now.camera.position->y, still.camera.position->y, 1e-3) << frame;
+            EXPECT_NEAR(now.camera.position->x, 0.0, 1e-6) << frame;
+            EXPECT_EQ(now.camera.up, still.camera.up) << frame;
+        }
+        const auto height_over_plane = [&](double frame) { return scene_at(film, frame).camera.position->y; };
+        EXPECT_LT(height_over_plane(160.0), 0.25 * height_over_plane(1.0)) << "a close pass";
+        if (kind == StructureKind::disk) {
+            EXPECT_LT(height_over_plane(240.0), 0.5) << "ends at the edge";
+        } else {
+            EXPECT_GT(height_over_plane(240.0), 2.0);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat
