@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "generate/lattice.h"
 #include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"
