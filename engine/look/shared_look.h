@@ -1,8 +1,8 @@
-// shaders/shared/noise.glsl and look.glsl as C++, in astrosplat::shared like the maths: the look of one splat
-// as the preview computes it. Each translation unit gets its own copy with internal linkage.
+// shaders/shared/look.glsl as C++, in astrosplat::shared like the maths: the look of one splat as the preview
+// computes it. Each translation unit gets its own copy with internal linkage.
 #pragma once
 
-#include "core/shared_maths.h"
+#include "core/shared_noise.h"
 #include "look/shared_uniforms.h"
 
 #pragma GCC diagnostic push
@@ -11,8 +11,6 @@
 namespace astrosplat::shared {
 using namespace astrosplat::shared_types;
 namespace {
-#include "noise.glsl"
-// after noise
 #include "look.glsl"
 }  // namespace
 }  // namespace astrosplat::shared

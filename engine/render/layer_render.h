@@ -25,6 +25,7 @@ constexpr auto names_of(Blend) {
 struct LevelOfDetail {
     float max_px = 0.0f;      // projected diameter at 1080 lines above which a splat is split; 0: off
     int max_children = 4096;  // largest number of children
+    float noise = 0.0f;       // 0..2: how much structure the children's light has; 0: none
     bool operator==(const LevelOfDetail&) const = default;
 };
 

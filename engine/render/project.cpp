@@ -5,9 +5,11 @@
 #include <cmath>
 
 #include "camera/projection.h"
+#include "render/child_noise.h"
 #include "render/project_vector.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
+#include "splats/star_id.h"
 
 namespace astrosplat {
 
@@ -32,6 +34,10 @@ glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
     return glm::vec3(layer.camera_from_layer * glm::dvec3(p) + layer.origin_in_camera);
 }
 
+void set_color(ScreenSplat& splat, const glm::vec3& color) {
+    for (int k = 0; k < 3; ++k) splat.color[k] = color[k];
+}
+
 /// Where a splat is and what it looks like there, if `support_px` around it touches `rect` and it shows
 /// at all.
 bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const shared::Instance& at,
@@ -42,9 +48,7 @@ bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const s
     if (!shared::touches_rect(out.x_px, out.y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1))
         return false;
     out.opacity = splat.alpha * layer.opacity * shared::near_fade(layer.lens, at.depth, splat.radius);
-    out.color[0] = splat.color.x;
-    out.color[1] = splat.color.y;
-    out.color[2] = splat.color.z;
+    set_color(out, splat.color);
     out.depth = std::bit_cast<std::uint32_t>(shared::sort_key(layer.lens, splat.position));
     out.index = static_cast<std::uint32_t>(index);
     out.layer = layer.layer;
@@ -75,6 +79,16 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
     set_shape_number(screen, static_cast<std::uint32_t>(shapes.size()));
     out.push_back(screen);
     shapes.push_back(shape);
+}
+
+/// How much structure children get. Light that screen saturates has no room for it, and would be lost.
+float structure_of(const LayerProjection& layer, const CameraSplat& splat) {
+    const Blend blend = layer.render.blend;
+    if (blend != Blend::screen && blend != Blend::hybrid) return layer.render.lod.noise;
+    const float screened =
+        blend == Blend::screen ? 1.0f : static_cast<float>(hybrid_of(layer, splat.position)) / 65535.0f;
+    const float brightest = std::max({splat.color.x, splat.color.y, splat.color.z});
+    return layer.render.lod.noise * (1.0f - screened * std::min(1.0f, splat.alpha * brightest));
 }
 
 /// Alpha and colour of the two levels for the layer's blend. Under screen and hybrid the light of a channel
@@ -115,16 +129,20 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
                    const LevelShade& shade, const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     if (!(shade.alpha > 0.0f)) return;
     const ShadedSplats& splats = *layer.splats;
+    const float radius = splats.radius[index];
+    const ChildNoise noise = make_child_noise(structure_of(layer, parent), radius, level, layer.seed);
     CameraSplat child{parent.position, parent.radius * child_radius_scale(level), shade.alpha, shade.color};
     const std::int64_t children = children_of_level(level);
     for (std::int64_t k = 0; k < children; ++k) {
-        if (level > 0)
-            child.position =
-                to_camera(layer, splats.position[index] +
-                                     splats.radius[index] *
-                                         layer.lod->child_offset(level, k, layer.seed, splats.id[index]));
+        glm::vec3 p = splats.position[index];
+        if (level > 0) {
+            p += radius * layer.lod->child_offset(level, k, layer.seed, splats.id[index]);
+            child.position = to_camera(layer, p);
+        }
         ScreenSplat screen;
-        if (project_one(layer, child, index, rect, screen)) out.push_back(screen);
+        if (!project_one(layer, child, index, rect, screen)) continue;
+        if (noise.count > 0) set_color(screen, shade.color * child_light(noise, p));
+        out.push_back(screen);
     }
 }
 
@@ -138,6 +156,7 @@ bool project_as_children(const LayerProjection& layer, const CameraSplat& splat,
     const LevelChoice choice =
         choose_levels(2.0f * splat.radius * px_per_unit, layer.lod_limit_px, layer.render.lod.max_children);
     if (choice.fine == 0) return false;
+    if (layer.render.lod.noise > 0.0f && is_star(layer.splats->id[index])) return false;
     const shared::Instance at = shared::instance_of(layer.lens, p);
     if (at.depth + reach < near) return true;
     if (at.depth - reach > near) {

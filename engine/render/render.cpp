@@ -14,6 +14,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "render/child_noise.h"
 #include "render/fold.h"
 #include "render/lod.h"
 #include "render/project.h"
@@ -55,7 +56,9 @@ float largest_light(std::span<const RenderLayer> layers, const Progress& progres
             }
             partial[begin / chunk] = most;
         });
-        for (float p : partial) largest = std::max(largest, p * layer.render.opacity);
+        const LevelOfDetail& lod = layer.render.lod;
+        const float structure = lod.max_px > 0.0f ? largest_child_light(lod.noise) : 1.0f;
+        for (float p : partial) largest = std::max(largest, p * layer.render.opacity * structure);
     }
     return largest;
 }

@@ -132,6 +132,9 @@ void describe_render(const Describer& d, LayerRender& r) {
            "Dots that look larger are split; 0: off.", at_least(0), slider(0, 200));
     detail(r.lod.max_children, "lod.max_children", "Most children", "", "Largest number of parts of one dot.",
            range(1, 16777216), slider(1, 65536), logarithmic());
+    detail(r.lod.noise, "lod.noise", "Structure", "",
+           "How strongly the parts of a dot differ in light, as clouds do; stars of pictures stay whole.",
+           range(0, 2));
     mixing(r.holdout, "holdout", "Holdout", "", "Hides what lies behind and shows nothing itself.");
     mixing(r.isolate, "isolate", "Isolate", "", "Rendered alone, then composited as a whole.");
 }

@@ -108,7 +108,7 @@ sharpness = 4.5
 blend = "over"
 opacity = 1.0
 hybrid = { from_deg = 30.0, to_deg = 80.0 }
-lod = { max_px = 0.0, max_children = 4096 }
+lod = { max_px = 0.0, max_children = 4096, noise = 0.0 }
 holdout = false
 isolate = false
 
