@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "generate/lattice.h"
 #include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"

@@ -150,6 +150,7 @@ std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const
         if (!drawn(now, i)) continue;
         visible.push_back(render_layer(now.layers[i]));
         visible.back().splats = &layers[i].shaded;
+        visible.back().absorbs = layers[i].set->absorbs;
     }
     return visible;
 }

@@ -1,5 +1,6 @@
 // One pixel of a dot: its weight from the footprint's profile, and what it adds and hides. KIND is the number of the
-// group's FoldKind: 0 over, 1 add, 2 general (dual-source: colour = light + through * behind), 3 lighten.
+// group's FoldKind: 0 over, 1 add, 2 general (dual-source: colour = light + through * behind), 3 lighten. Needs
+// blend.glsl.
 
 uniform sampler2DArray footprint_profiles;  // weight over distance, a row per radius, a layer per falloff
 
@@ -21,8 +22,13 @@ void main() {
     float s = clamp(dot_light.w * w, 0.0, dot_table.w);
 #if KIND == 2
     vec3 hidden = min(vec3(1.0), s * dot_occlusion.rgb);
+    if (dot_occlusion.a > 1.0) {
+        float most = min(s, 1.0);
+        hidden = vec3(blend_absorbed(most, dot_occlusion.r), blend_absorbed(most, dot_occlusion.g),
+                      blend_absorbed(most, dot_occlusion.b));
+    }
     float hidden_alpha = (hidden.r + hidden.g + hidden.b) * (1.0 / 3.0);
-    light = vec4(s * dot_light.rgb, hidden_alpha * dot_occlusion.a);
+    light = vec4(s * dot_light.rgb, hidden_alpha * min(dot_occlusion.a, 1.0));
     through = vec4(1.0 - hidden, 1.0 - hidden_alpha);
 #else
     light = vec4(s * dot_light.rgb, KIND == 1 ? 0.0 : s);

@@ -11,6 +11,7 @@ struct DrawLayer {
     vec4 axis;     // of the layer, camera space; w: opacity
     vec4 blend;    // blend, hybrid from, to in degrees, 1: holdout
     vec4 falloff;  // number of its footprint table, reach, core, 1: flat inside
+    vec4 absorb;   // exponents of blend absorb
 };
 
 layout(std140) uniform DrawBlock {
@@ -36,7 +37,7 @@ flat out vec4 dot_place;  // centre in px; profile coordinate = z + w * distance
 flat out vec4 dot_table;  // row, table, edge gain, largest s
 flat out vec4 dot_light;  // colour, opacity
 #if KIND == 2
-flat out vec4 dot_occlusion;  // r, g, b; 0: shows no alpha (holdout)
+flat out vec4 dot_occlusion;  // r, g, b; 0: shows no alpha (holdout), 2: absorbs, with these exponents
 #endif
 
 const float PROFILE_SAMPLES = 256.0;
@@ -93,13 +94,18 @@ void main() {
     dot_table = vec4(node_x, layer.falloff.x, gains.edge_gain, max(1.0, color.a));
     float opacity = color.a * layer.axis.w * near_fade(lens, at.depth, radius) * gains.amplitude;
     bool holdout = layer.blend.w != 0.0;
-    dot_light = vec4(holdout ? vec3(0.0) : color.rgb, opacity);
-#if KIND == 2
     int blend = holdout ? BLEND_OVER : int(layer.blend.x);
+    bool absorbs = !holdout && blend_absorbs(blend, color.r);
+    dot_light = vec4(holdout || absorbs ? vec3(0.0) : color.rgb, opacity);
+#if KIND == 2
     float cosine = axis_cosine(lens, layer.axis.xyz, p);
     float h = blend == BLEND_HYBRID ? hybrid_amount(cosine, layer.blend.y, layer.blend.z) : 0.0;
     dot_occlusion = vec4(blend_occlusion(blend, color.r, h), blend_occlusion(blend, color.g, h),
                          blend_occlusion(blend, color.b, h), holdout ? 0.0 : 1.0);
+    if (absorbs)
+        dot_occlusion = vec4(blend_exponent(blend, color.r, layer.absorb.r),
+                             blend_exponent(blend, color.g, layer.absorb.g),
+                             blend_exponent(blend, color.b, layer.absorb.b), 2.0);
 #endif
     if (!shows || !(opacity > 0.0)) return;
 

@@ -13,7 +13,7 @@ namespace {
 
 // DrawBlock of splat_vertex.glsl; sixteens of bytes, so that std140 is how C++ lays it out.
 struct LayerBlock {
-    glm::vec4 right, up, back, eye_low, axis, blend, falloff;
+    glm::vec4 right, up, back, eye_low, axis, blend, falloff, absorb;
 };
 struct Block {
     Lens lens;
@@ -23,8 +23,8 @@ struct Block {
     std::int32_t first_splat[DrawPass::most_layers];
     LayerBlock layers[DrawPass::most_layers];
 };
-static_assert(sizeof(LayerBlock) == 7 * 16 && sizeof(Lens) == 28 &&
-              sizeof(Block) == 4 * 16 + 64 * 4 + 64 * 7 * 16);
+static_assert(sizeof(LayerBlock) == 8 * 16 && sizeof(Lens) == 28 &&
+              sizeof(Block) == 4 * 16 + 64 * 4 + 64 * 8 * 16);
 
 constexpr int profiles_unit = 0, nodes_unit = 1, places_unit = 2;  // and 3: colours
 constexpr float widest_useful_px = 512.0f;
@@ -46,7 +46,8 @@ LayerBlock layer_block(const DrawLayer& layer) {
             {static_cast<float>(p.render.blend), p.render.hybrid_from_deg, p.render.hybrid_to_deg,
              p.render.holdout ? 1.0f : 0.0f},
             {static_cast<float>(layer.footprint.table), layer.footprint.reach, layer.footprint.core,
-             layer.footprint.flat_core ? 1.0f : 0.0f}};
+             layer.footprint.flat_core ? 1.0f : 0.0f},
+            glm::vec4(p.render.absorb, 0.0f)};
 }
 
 }  // namespace
@@ -87,8 +88,8 @@ const GlProgram& DrawPass::program(FoldKind kind, bool quads) {
     if (entry) return *entry;
     std::vector<std::string> defines = {"KIND " + std::to_string(static_cast<int>(kind))};
     if (quads) defines.push_back("QUADS");
-    entry =
-        std::make_unique<GlProgram>(ProgramSource{defines, splat_vertex_files, {"splat_fragment.glsl"}, {}});
+    entry = std::make_unique<GlProgram>(
+        ProgramSource{defines, splat_vertex_files, {"maths.glsl", "blend.glsl", "splat_fragment.glsl"}, {}});
     entry->set_block("DrawBlock", 0);
     entry->set_sampler("footprint_profiles", profiles_unit);
     entry->set_sampler("footprint_nodes", nodes_unit);

@@ -39,10 +39,10 @@ struct FrameGroup {
 
 bool depends_on_order(FoldKind kind) { return kind == FoldKind::over || kind == FoldKind::general; }
 
-/// Isolated layers that cover or add do the same drawn straight onto what is behind them.
+/// Isolated layers that cover, add or absorb do the same drawn straight onto what is behind them.
 bool needs_own_picture(const BlendGroup& group) {
-    if (!group.isolated || group.holdout) return false;
-    return group.blend != Blend::over && group.blend != Blend::add;
+    if (!group.isolated || group.holdout || group.blend == Blend::absorb) return false;
+    return group.absorbs || (group.blend != Blend::over && group.blend != Blend::add);
 }
 
 /// Distance, as splats are sorted, beyond which none that reaches the picture is wider than a point may be.

@@ -54,6 +54,7 @@ std::vector<PreviewLayer> ViewPicture::preview_layers() {
         PreviewLayer layer;
         layer.layer = render_layer(params);
         layer.set = loaded->preview;
+        layer.layer.absorbs = layer.set->absorbs;
         layer.whole = loaded->splats;
         layer.look = params.look;
         layer.inputs = look_inputs(params);

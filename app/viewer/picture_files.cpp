@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "scene/layer_setup.h"
 #include "source/texture.h"
 
 namespace astrosplat {

@@ -13,7 +13,8 @@ namespace {
 constexpr double finest_blur_px = 1.2;
 constexpr double coarsest_blur_share = 80.0 / 1920.0;  // of the width
 constexpr float contrast_share = 0.5f;                 // of the deviation that stays out of the coarser band
-constexpr float least_share = 0.25f;                   // of the mean that the coarser band gets
+constexpr double finest_hole_px = 2.0;
+constexpr float least_share = 0.25f;  // of the mean that the coarser band gets
 
 // r, g, b, the brightest of them and its square: blurred together, they give means and the deviation.
 Image with_moments(const Image& light) {
@@ -32,7 +33,7 @@ Image with_moments(const Image& light) {
 }
 
 // Leaves in `light` what the coarser bands share and returns the rest.
-Image take_band(Image& light, double blur) {
+Image take_band(Image& light, double blur, bool fill_holes) {
     const Image moments = gaussian_blur(with_moments(light), blur);
     Image band = make_image(light.width, light.height, 3);
     parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
@@ -43,8 +44,9 @@ Image take_band(Image& light, double blur) {
                 std::clamp(1.0f - contrast_share * deviation / std::max(1e-6f, p[3]), least_share, 1.0f);
             for (std::int64_t c = 3 * i; c < 3 * i + 3; ++c) {
                 float& here = light.pixels[static_cast<std::size_t>(c)];
-                const float coarser = std::min(std::max(0.0f, p[c - 3 * i] * share), here);
-                band.pixels[static_cast<std::size_t>(c)] = here - coarser;
+                const float common = std::max(0.0f, p[c - 3 * i] * share);
+                const float coarser = fill_holes ? common : std::min(common, here);
+                band.pixels[static_cast<std::size_t>(c)] = std::max(0.0f, here - coarser);
                 here = coarser;
             }
         }
@@ -64,12 +66,12 @@ std::vector<Band> make_bands(std::int64_t width_px) {
     return bands;
 }
 
-void split_bands(Image light, const std::vector<Band>& bands,
+void split_bands(Image light, const std::vector<Band>& bands, bool fill_holes,
                  const std::function<void(const Band&, const Image&)>& visit) {
     assert(light.channels == 3 && !bands.empty());
     for (const Band& band : bands) {
         const bool last = band.index + 1 == static_cast<int>(bands.size());
-        visit(band, last ? light : take_band(light, band.blur));
+        visit(band, last ? light : take_band(light, band.blur, fill_holes && band.blur >= finest_hole_px));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bodies/bands.h"
+#include "bodies/dust.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
@@ -44,6 +45,13 @@ std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
     return pictures;
 }
 
+void add(const Image& light, Image& sum) {
+    parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
+        for (std::int64_t i = begin * light.width * 3; i < end * light.width * 3; ++i)
+            sum.pixels[static_cast<std::size_t>(i)] += light.pixels[static_cast<std::size_t>(i)];
+    });
+}
+
 PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const StructureParams& params,
                       std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
     const PictureLight picture = picture_light(texture, params.border);
@@ -55,13 +63,17 @@ PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const St
     const Opacity opacity{static_cast<float>(params.opacity), static_cast<float>(params.density)};
     const Image brightest = brightest_channel(picture.light);
     const std::vector<Band> bands = make_bands(picture.light.width);
+    const double dust = params.dust ? *params.dust : params.kind == StructureKind::disk ? 1.0 : 0.0;
+    Image emission = make_image(dust > 0.0 ? picture.light.width : 0, picture.light.height, 3);
     PictureSplats dots;
-    split_bands(std::move(without_stars), bands, [&](const Band& band, const Image& light) {
+    split_bands(without_stars, bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
+        if (dust > 0.0) add(light, emission);
         const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
         add_band(light, band_dots(band, coarsest, placement), brightest, picture.alpha, placement, opacity,
                  dots);
     });
+    if (dust > 0.0) add_dust(transmittance_of(without_stars, emission), dust, placement, dots);
     add_stars(stars, placement, opacity, dots);
     const FrontFit fit = fit_front(dots, picture.light, progress);
     log_detail(fmt::format(
@@ -168,6 +180,7 @@ SplatSet make_bodies(std::span<const TexturedMesh> meshes, const StructureParams
         const PictureSplats dots =
             dots_of(texture, surface, params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
         append(dots, surface, picture, i, set);
+        set.absorbs = set.absorbs || dots.absorbs;
         if (set.credit.empty()) set.credit = texture.credit;
         progress.at(static_cast<double>(i + 1) / static_cast<double>(pictures.size()));
     }

@@ -41,6 +41,7 @@ class FrontView {
         settings_.pixel_filter = static_cast<float>(filter_px);
         layer_.name = "front";
         layer_.splats = &dots.splats;
+        layer_.absorbs = dots.absorbs;
         float highest = 0.0f;
         for (const glm::vec3& p : dots.splats.position) highest = std::max(highest, p.z);
         CameraParams params;
@@ -184,6 +185,7 @@ void FrontView::match_cells() {
     parallel_chunks(dots_.splats.size(), 65536, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t i = begin; i < end; ++i) {
             const auto at = static_cast<std::size_t>(i);
+            if (dots_.splats.color[at].x < 0.0f) continue;  // dust
             const glm::vec2 p = texel(dots_.splats.position[at]) / static_cast<float>(cell_px);
             for (int c = 0; c < 3; ++c) dots_.splats.color[at][c] *= bilinear(cells, c, p.x, p.y);
         }

@@ -33,7 +33,8 @@ PictureLight picture_light(const Texture& texture, double border) {
                 const float fade = fade_y * edge_fade(x, image.width, width_px);
                 const float* const in = image.at(x, y);
                 for (int c = 0; c < 3; ++c) result.light.at(x, y)[c] = fade * finite_light(in[c]);
-                *result.alpha.at(x, y) = fade * std::clamp(finite_light(in[3]), 0.0f, 1.0f);
+                *result.alpha.at(x, y) =
+                    texture.alpha_from_light ? fade : fade * std::clamp(finite_light(in[3]), 0.0f, 1.0f);
             }
         }
     });

@@ -19,13 +19,6 @@ constexpr float greatest_opacity = 0.985f;
 constexpr float star_opacity = 0.25f;  // of a star's own
 constexpr std::int64_t star_band = 255;
 
-// Dots of a chunk of the lattice, in order of their cells.
-struct ChunkDots {
-    std::vector<glm::vec3> position, color;
-    std::vector<float> alpha, distance;
-    std::vector<std::uint64_t> id;
-};
-
 // What a dot is before it has a depth.
 struct Candidate {
     glm::vec3 light;      // of its footprint
@@ -141,8 +134,9 @@ void resize(PictureSplats& set, std::int64_t count) {
     set.distance.resize(size);
 }
 
-// Appends the chunks in order.
-void gather(const std::vector<ChunkDots>& chunks, float sigma, PictureSplats& out) {
+}  // namespace
+
+void append_dots(const std::vector<ChunkDots>& chunks, float sigma, PictureSplats& out) {
     std::vector<std::int64_t> first{out.splats.size()};
     for (const ChunkDots& chunk : chunks)
         first.push_back(first.back() + static_cast<std::int64_t>(chunk.id.size()));
@@ -157,10 +151,7 @@ void gather(const std::vector<ChunkDots>& chunks, float sigma, PictureSplats& ou
         append(chunk.distance, at, out.distance);
         std::fill_n(out.splats.radius.begin() + at, chunk.id.size(), radius_sigmas * sigma);
     });
-    out.ranges.push_back({first.front(), first.back(), sigma});
 }
-
-}  // namespace
 
 float Opacity::depth_of(float brightest, float alpha) const {
     float hidden = std::min(greatest_opacity, density * as_pow(std::max(least_brightness, brightest), power));
@@ -182,7 +173,9 @@ void add_band(const Image& band, const BandDots& dots, const Image& brightest, c
                 chunk.add_cell(column, row, first + static_cast<std::uint64_t>(row * columns + column));
         chunks[static_cast<std::size_t>(begin / rows_per_chunk)] = chunk.finish();
     });
-    gather(chunks, dots.sigma, out);
+    const std::int64_t first_dot = out.splats.size();
+    append_dots(chunks, dots.sigma, out);
+    out.ranges.push_back({first_dot, out.splats.size(), dots.sigma});
 }
 
 void add_stars(const std::vector<Star>& stars, const Placement& placement, const Opacity& opacity,

@@ -19,6 +19,7 @@ constexpr double widest_sigma_share = 0.45;  // of H; larger dots are a fog of t
 constexpr double shortest_wave = 5.0;        // texels at a width of 1920
 constexpr float knot_depth = 0.6f;           // scale height of a knot, of its sigma
 constexpr float widest_in_knots = 5.0f;      // texels, sigma of the largest dots that follow their knot
+constexpr double widest_filament = 30.0;     // texels at a width of 1920; what is wider is glow
 
 // Values for features of 2, 4, 8 ... texels at a width of 1920; between them linear in the logarithm.
 double by_feature(const double (&values)[8], double feature) {
@@ -74,16 +75,19 @@ float logistic(float u, float height) {
     return 0.5f * height * as_log(inside / (1.0f - inside));
 }
 
-// Which of the two walls each dot is drawn to, and how these are bent.
-void add_walls(const Placement& placement, PlacedBlock& block) {
+// Which of the two walls each dot is drawn to, and how these are bent. Filaments stay together on one wall;
+// wide glow fills what is between them, or one would look through the holes of one into a hollow.
+void add_walls(const Placement& placement, bool glow, PlacedBlock& block) {
     DepthBlock side = block, bend = block;
     const double unit = 0.26 * placement.depth;
     noise_sum(waves(placement, 1, {{330.0, 1.0}, {120.0, 0.6}}), side);
     noise_sum(waves(placement, 2, {{520.0, 0.22 * unit}, {210.0, 0.07 * unit}}), bend);
     for (int i = 0; i < block.count; ++i) {
-        const float front = 1.0f / (1.0f + shared::as_exp(-12.0f * side.z[i]));
-        const float out = bilinear(placement.relief, 0, block.x[i], block.y[i]);
-        const bool in_front = as_uniform(as_mix(block.random[i] ^ 0x5bd1e995u)) < front;
+        const float front = 1.0f / (1.0f + shared::as_exp(-8.0f * side.z[i]));
+        const std::uint32_t random = as_mix(block.random[i] ^ 0x5bd1e995u);
+        const float share = glow ? std::sqrt(as_uniform(as_mix(random))) : 1.0f;
+        const float out = share * bilinear(placement.relief, 0, block.x[i], block.y[i]);
+        const bool in_front = as_uniform(random) < (glow ? 0.5f : front);
         block.z[i] += (in_front ? out : -out) + bend.z[i];
     }
 }
@@ -107,7 +111,8 @@ void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock&
     }
     for (int i = 0; i < block.count; ++i) block.distance[i] = std::fabs(block.z[i]);
     if (placement.kind == StructureKind::sheet) add_relief(placement, block);
-    if (placement.kind == StructureKind::walls) add_walls(placement, block);
+    if (placement.kind == StructureKind::walls)
+        add_walls(placement, feature > widest_filament * placement.scale, block);
 }
 
 void set_knot_depths(Placement& placement) {
@@ -151,7 +156,8 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
     Placement placement;
     placement.kind = params.kind;
     placement.scale = static_cast<double>(brightest.width) / 1920.0;
-    placement.height = params.height > 0.0 ? params.height * texels_per_unit : 0.011 * longest;
+    placement.height = params.height > 0.0 ? params.height * texels_per_unit
+                                           : (params.kind == StructureKind::disk ? 0.018 : 0.011) * longest;
     placement.depth = 0.5 * params.depth * static_cast<double>(brightest.width);
     placement.clumps = params.clumps;
     placement.seed = seed;

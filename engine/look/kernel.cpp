@@ -32,6 +32,8 @@ void shade_block(const LookRun& run, std::int64_t begin, std::int64_t at, Block&
     compact(u, positions, b);
     remaining_noise(u, b);
     read_colors(run.in.color + begin, run.in.alpha + begin, b);
+    Absorbers absorbers;
+    if (u.absorbs) note_absorbers(b, absorbers);
     ShadedSplats& out = run.out;
     if (moved) {
         jitter(u, b, out.position.data() + at);
@@ -41,6 +43,7 @@ void shade_block(const LookRun& run, std::int64_t begin, std::int64_t at, Block&
     }
     colors(u, b, out.color.data() + at);  // before alphas: step 4 divides by the alpha it finds
     alphas(u, b, out.alpha.data() + at);
+    if (u.absorbs) restore(absorbers, out.color.data() + at, out.alpha.data() + at);
     radii(run, begin, b, out.radius.data() + at);
     for (int i = 0; i < b.count; ++i)
         out.id[std::size_t(at + i)] = std::uint64_t(b.id_high[i]) << 32 | b.id_low[i];

@@ -138,6 +138,32 @@ void read_colors(const glm::vec3* color, const float* alpha, Block& b) {
     }
 }
 
+// Splats that absorb, kept aside before the steps that do not act on them.
+struct Absorbers {
+    int count = 0;
+    int at[block_size];
+    glm::vec3 color[block_size];
+    float alpha[block_size];
+};
+
+void note_absorbers(const Block& b, Absorbers& absorbers) {
+    absorbers.count = 0;
+    for (int i = 0; i < b.count; ++i) {
+        if (!(b.r[i] < 0.0f)) continue;
+        const int n = absorbers.count++;
+        absorbers.at[n] = i;
+        absorbers.color[n] = {b.r[i], b.g[i], b.b[i]};
+        absorbers.alpha[n] = b.alpha[i];
+    }
+}
+
+void restore(const Absorbers& absorbers, glm::vec3* color, float* alpha) {
+    for (int n = 0; n < absorbers.count; ++n) {
+        color[absorbers.at[n]] = absorbers.color[n];
+        alpha[absorbers.at[n]] = absorbers.alpha[n];
+    }
+}
+
 void colors(const LookUniforms& u, Block& b, glm::vec3* out) {
     if (u.unpremultiply) unpremultiply(b, u.alpha_threshold);
     fill(b.color_factor, 1.0f, b.count);

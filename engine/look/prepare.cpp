@@ -113,6 +113,7 @@ void prepare_noises(const Look& look, LookUniforms& u) {
 
 void prepare_alpha(const SplatSet& set, const Look& look, LookUniforms& u) {
     u.unpremultiply = look.alpha.unpremultiply ? 1 : 0;
+    u.absorbs = set.absorbs ? 1 : 0;
     u.alpha_threshold = look.alpha.threshold;
     u.alpha_power = look.alpha.power;
     u.alpha_gain = look.alpha.gain;

@@ -251,8 +251,9 @@ FoldCommon common_of(const FoldJob& job) {
     const auto all_like = [&](auto&& test) { return std::ranges::all_of(layers, test); };
     const bool one_table =
         all_like([&](const FoldLayer& layer) { return layer.footprints == layers[0].footprints; });
-    const bool screen =
-        all_like([](const FoldLayer& layer) { return layer.blend == Blend::screen && !layer.holdout; });
+    const bool screen = all_like([](const FoldLayer& layer) {
+        return layer.blend == Blend::screen && !layer.holdout && !layer.absorbs;
+    });
     return {one_table && job.shapes.empty() ? layers[0].footprints : nullptr, screen};
 }
 

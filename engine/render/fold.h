@@ -25,7 +25,7 @@ namespace astrosplat {
 enum class FoldKind {
     over,     // all layers over: one transmittance for all channels
     add,      // all layers add: nothing hides anything
-    general,  // any mix of over, add, screen, hybrid and holdout
+    general,  // any mix of over, add, screen, hybrid, absorb and holdout
     lighten,  // the brightest splat per channel; alpha as over
 };
 
@@ -34,6 +34,8 @@ struct FoldLayer {
     const FootprintTable* footprints = nullptr;
     Blend blend = Blend::over;
     bool holdout = false;
+    glm::vec3 absorb{1.0f};  // exponents of Blend::absorb
+    bool absorbs = false;    // as in RenderLayer
 };
 
 struct FoldSettings {

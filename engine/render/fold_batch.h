@@ -33,6 +33,13 @@ struct SplatBits {
     }
 };
 
+/// How a splat's opacity s hides what lies behind it, under the general fold.
+enum class Hiding : std::uint8_t {
+    proportional,  // s times the occlusion colour
+    clamped,       // that, at most 1 a channel: a screen splat brighter than white
+    absorbing,     // 1 - (1 - s)^occlusion
+};
+
 struct SplatBatch {
     static constexpr int size = SplatBits::size;
     static constexpr int none = size;         // a place after them for a splat without light
@@ -48,8 +55,7 @@ struct SplatBatch {
     alignas(64) SplatBits touches[blocks];  // splats that may have weight in the block
     std::uint16_t layer[places];
     std::uint8_t linear_in_distance[places];  // as in FootprintTable
-    // A screen splat with a channel above 1: alpha is the mean of the clamped ones.
-    std::uint8_t bright[places];
+    Hiding hiding[places];
 
     // The weight, as in Footprint.
     alignas(64) float cubic[places][4][FootprintNode::segments];  // [splat][power][segment]

@@ -249,6 +249,14 @@ struct LightenPixels {
     }
 };
 
+/// 1 - (1 - s)^exponent lane by lane, s in [0, 1].
+HWY_INLINE V absorbed(V s, float exponent) {
+    alignas(64) float at[lanes];
+    store(s, at);
+    for (int i = 0; i < lanes; ++i) at[i] = shared::blend_absorbed(at[i], exponent);
+    return load(at);
+}
+
 /// Any mix of the affine blends. kHolds: there are holdouts, whose alpha is taken away.
 template <bool kAovs, bool kHolds>
 struct GeneralPixels {
@@ -277,8 +285,12 @@ struct GeneralPixels {
         const auto if_open = [&](V v) { return kMayClose ? hn::IfThenElseZero(is_open, v) : v; };
         V hidden[4];
         for (int k = 0; k < 4; ++k) hidden[k] = hn::Mul(s, all(step.batch.occlusion[k][step.i]));
-        if (step.batch.bright[step.i]) {  // else s and the occlusions are at most 1
-            for (int k = 0; k < 3; ++k) hidden[k] = clamp_one(hidden[k]);
+        const Hiding hiding = step.batch.hiding[step.i];
+        if (hiding != Hiding::proportional) {  // else s and the occlusions are at most 1
+            for (int k = 0; k < 3; ++k)
+                hidden[k] = hiding == Hiding::absorbing
+                                ? absorbed(clamp_one(s), step.batch.occlusion[k][step.i])
+                                : clamp_one(hidden[k]);
             hidden[3] = hn::Div(hn::Add(hn::Add(hidden[0], hidden[1]), hidden[2]), all(3.0f));
         }
         for (int k = 0; k < 3; ++k) {

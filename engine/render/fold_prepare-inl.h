@@ -180,16 +180,18 @@ HWY_INLINE void prepare_occlusion(const ScreenSplat& splat, const FoldLayer& lay
     const float h = static_cast<float>(splat.hybrid) * (1.0f / 65535.0f);
     const int blend = layer.holdout ? shared::BLEND_OVER : static_cast<int>(layer.blend);
     batch.shows[i] = layer.holdout ? 0.0f : 1.0f;
+    const bool absorbs = !layer.holdout && shared::blend_absorbs(blend, splat.color[0]);
     float sum = 0.0f;
     bool bright = false;
     for (int k = 0; k < 3; ++k) {
-        if (layer.holdout) batch.color[k][i] = 0.0f;
-        batch.occlusion[k][i] = shared::blend_occlusion(blend, splat.color[k], h);
+        if (layer.holdout || absorbs) batch.color[k][i] = 0.0f;
+        batch.occlusion[k][i] = absorbs ? shared::blend_exponent(blend, splat.color[k], layer.absorb[k])
+                                        : shared::blend_occlusion(blend, splat.color[k], h);
         sum += batch.occlusion[k][i];
         bright = bright || (blend == shared::BLEND_SCREEN && splat.color[k] > 1.0f);
     }
     batch.occlusion[3][i] = sum / 3.0f;
-    batch.bright[i] = bright;
+    batch.hiding[i] = absorbs ? Hiding::absorbing : bright ? Hiding::clamped : Hiding::proportional;
 }
 
 /// The same for `lanes` splats that are all screens.
@@ -203,11 +205,12 @@ HWY_INLINE void prepare_screens(SplatBatch& batch, int n) {
         bright = hn::Or(bright, hn::Gt(color, all(1.0f)));
     }
     store(hn::Div(sum, all(3.0f)), batch.occlusion[3] + n);
-    std::fill_n(batch.bright + n, lanes, std::uint8_t{0});
+    std::fill_n(batch.hiding + n, lanes, Hiding::proportional);
     if (hn::AllFalse(D(), bright)) return;
     alignas(64) float is_bright[lanes];
     store(hn::IfThenElseZero(bright, all(1.0f)), is_bright);
-    for (int i = 0; i < lanes; ++i) batch.bright[n + i] = is_bright[i] > 0.0f;
+    for (int i = 0; i < lanes; ++i)
+        if (is_bright[i] > 0.0f) batch.hiding[n + i] = Hiding::clamped;
 }
 
 inline float depth_of(const ScreenSplat& splat, const FoldSettings& settings) {

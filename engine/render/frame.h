@@ -24,6 +24,9 @@ struct RenderLayer {
     glm::dvec3 translate{0.0};
     glm::dvec3 axis{0.0, 1.0, 0.0};  // the layer's thin direction, layer space
     std::uint32_t seed = 1;          // for the children of level of detail
+    /// Some splats may have colours below 0: these add no light and let (1 - s)^-color through, whatever the
+    /// layer's blend.
+    bool absorbs = false;
 };
 
 struct RenderSettings {

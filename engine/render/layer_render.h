@@ -1,6 +1,8 @@
 // What [layer.render] says: dot profile, mixing, level of detail. Plain values; SCENE.md's defaults.
 #pragma once
 
+#include <glm/vec3.hpp>
+
 #include "core/enum_names.h"
 
 namespace astrosplat {
@@ -17,9 +19,9 @@ struct Falloff {
     bool operator==(const Falloff&) const = default;
 };
 
-enum class Blend { over, add, screen, lighten, hybrid };
+enum class Blend { over, add, screen, lighten, hybrid, absorb };
 constexpr auto names_of(Blend) {
-    return names_up_to<Blend::hybrid>("over", "add", "screen", "lighten", "hybrid");
+    return names_up_to<Blend::absorb>("over", "add", "screen", "lighten", "hybrid", "absorb");
 }
 
 struct LevelOfDetail {
@@ -33,8 +35,9 @@ struct LayerRender {
     Falloff falloff;
     Blend blend = Blend::over;
     float opacity = 1.0f;
-    float hybrid_from_deg = 30.0f;  // over up to here
-    float hybrid_to_deg = 80.0f;    // screen from here on
+    float hybrid_from_deg = 30.0f;        // over up to here
+    float hybrid_to_deg = 80.0f;          // screen from here on
+    glm::vec3 absorb{0.8f, 1.0f, 1.35f};  // exponents of what it lets through; dust takes more of blue
     LevelOfDetail lod;
     bool holdout = false;
     bool isolate = false;

@@ -173,7 +173,8 @@ void prepare(Job& job, RenderCache::State& cache) {
         if (projection.lod_limit_px > 0.0f)
             projection.lod = &cache.lod(render.falloff, finest_level(render.lod.max_children), job.progress);
         job.projections.push_back(projection);
-        job.fold_layers.push_back({&footprints, render.blend, render.holdout});
+        job.fold_layers.push_back(
+            {&footprints, render.blend, render.holdout, render.absorb, layers[l].absorbs});
     }
     float largest = largest_light(layers, job.progress);
     if (job.environment) largest = std::max(largest, job.environment->largest);

@@ -14,7 +14,7 @@ FoldKind kind_of(std::span<const RenderLayer> layers, const std::vector<std::siz
         return FoldKind::lighten;
     const auto all = [&](Blend blend) {
         return std::ranges::all_of(members, [&](std::size_t i) {
-            return layers[i].render.blend == blend && !layers[i].render.holdout;
+            return layers[i].render.blend == blend && !layers[i].render.holdout && !layers[i].absorbs;
         });
     };
     if (aovs) return FoldKind::general;
@@ -35,7 +35,7 @@ GroupPixel group_pixel(const BlendGroup& group, const TilePlanes& planes, std::s
         p.through[k] = group.kind == FoldKind::over  ? planes.transmittance[0][i]
                        : group.kind == FoldKind::add ? 1.0f
                                                      : planes.transmittance[k][i];
-    if (!group.isolated || group.holdout) return p;
+    if (!group.isolated || group.holdout || group.blend == Blend::absorb) return p;
     float hidden = 0.0f;
     for (int k = 0; k < 3; ++k) {
         hidden += std::min(1.0f, p.color[k]);
@@ -47,6 +47,7 @@ GroupPixel group_pixel(const BlendGroup& group, const TilePlanes& planes, std::s
                    : group.blend == Blend::screen ? 1.0f - hidden / 3.0f
                                                   : 1.0f - p.alpha;
     if (group.blend == Blend::screen) p.alpha = hidden / 3.0f;
+    if (group.blend == Blend::add) p.alpha = 0.0f;
     return p;
 }
 
@@ -59,7 +60,7 @@ std::vector<BlendGroup> make_groups(std::span<const RenderLayer> layers, bool ao
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const LayerRender& render = layers[i].render;
         if (is_isolated(render)) {
-            groups.push_back({{i}, FoldKind::general, true, render.blend, render.holdout});
+            groups.push_back({{i}, FoldKind::general, true, render.blend, render.holdout, layers[i].absorbs});
         } else {
             if (merged.layers.empty()) merged_place = groups.size();
             merged.layers.push_back(i);

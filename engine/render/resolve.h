@@ -19,6 +19,7 @@ struct BlendGroup {
     bool isolated = false;
     Blend blend = Blend::over;  // of an isolated layer: how it is composited
     bool holdout = false;       // of an isolated layer
+    bool absorbs = false;       // some splats absorb, whatever the blend
 };
 
 /// Groups from far to near: isolated layers before the first merged one, the merged ones, the isolated after

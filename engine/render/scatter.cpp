@@ -9,7 +9,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t slab_lines = (std::int64_t{40} << 20) / 64;
+constexpr std::int64_t slab_bytes = std::int64_t{40} << 20;
 constexpr std::int64_t chunk_splats = 8192;  // handed out to a worker
 constexpr std::int64_t step_splats = 512;    // projected before they are written: they stay in cache
 
@@ -26,15 +26,17 @@ bool counts_here(const TileGrid& grid, float y_px) {
 
 }  // namespace
 
-SplatStore::CacheLine* SplatStore::take_lines(std::int64_t lines) {
+std::byte* SplatStore::take_bytes(std::int64_t bytes) {
+    constexpr std::int64_t line = 64;
+    const std::int64_t needed = (bytes + line - 1) / line * line;
     const std::lock_guard lock(mutex_);
-    while (slab_ < slabs_.size() && filled_ + lines > static_cast<std::int64_t>(slabs_[slab_].size())) {
+    while (slab_ < slabs_.size() && filled_ + needed > static_cast<std::int64_t>(slabs_[slab_].size())) {
         ++slab_;
         filled_ = 0;
     }
-    if (slab_ == slabs_.size()) slabs_.emplace_back(static_cast<std::size_t>(std::max(lines, slab_lines)));
-    CacheLine* place = slabs_[slab_].data() + filled_;
-    filled_ += lines;
+    if (slab_ == slabs_.size()) slabs_.emplace_back(static_cast<std::size_t>(std::max(needed, slab_bytes)));
+    std::byte* place = slabs_[slab_].data() + filled_;
+    filled_ += needed;
     return place;
 }
 
@@ -50,8 +52,7 @@ void SplatStore::shrink(std::int64_t limit_bytes) {
 
 std::int64_t SplatStore::bytes() const {
     std::int64_t sum = 0;
-    for (const Buffer<CacheLine>& slab : slabs_)
-        sum += static_cast<std::int64_t>(slab.size() * sizeof(CacheLine));
+    for (const Buffer<std::byte>& slab : slabs_) sum += static_cast<std::int64_t>(slab.size());
     return sum;
 }
 

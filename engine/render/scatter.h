@@ -7,7 +7,6 @@
 // later collects the blocks of the bins above it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -29,9 +28,7 @@ class SplatStore {
     /// Space for `count` things in one piece, at the start of a cache line. Thread-safe.
     template <class T>
     T* take(std::int64_t count) {
-        const std::int64_t bytes = count * static_cast<std::int64_t>(sizeof(T));
-        constexpr auto line = static_cast<std::int64_t>(sizeof(CacheLine));
-        return reinterpret_cast<T*>(take_lines((bytes + line - 1) / line));
+        return reinterpret_cast<T*>(take_bytes(count * static_cast<std::int64_t>(sizeof(T))));
     }
     /// Forgets everything but keeps the memory.
     void clear();
@@ -40,15 +37,12 @@ class SplatStore {
     std::int64_t bytes() const;
 
   private:
-    struct CacheLine {
-        std::array<std::byte, 64> bytes;
-    };
-    CacheLine* take_lines(std::int64_t lines);
+    std::byte* take_bytes(std::int64_t bytes);
 
     std::mutex mutex_;
-    std::vector<Buffer<CacheLine>> slabs_;
+    std::vector<Buffer<std::byte>> slabs_;
     std::size_t slab_ = 0;     // being filled
-    std::int64_t filled_ = 0;  // lines of it in use
+    std::int64_t filled_ = 0;  // bytes of it in use
 };
 
 /// The tiles of the part of the picture being rendered, px of the whole picture.

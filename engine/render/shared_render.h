@@ -15,7 +15,8 @@ namespace {
 }  // namespace
 static_assert(numbered_as<Falloff::Shape>(FALLOFF_CONSTANT, FALLOFF_LINEAR, FALLOFF_TRAPEZOID,
                                           FALLOFF_GAUSSIAN, FALLOFF_EXPONENTIAL));
-static_assert(numbered_as<Blend>(BLEND_OVER, BLEND_ADD, BLEND_SCREEN, BLEND_LIGHTEN, BLEND_HYBRID));
+static_assert(numbered_as<Blend>(BLEND_OVER, BLEND_ADD, BLEND_SCREEN, BLEND_LIGHTEN, BLEND_HYBRID,
+                                 BLEND_ABSORB));
 }  // namespace astrosplat::shared
 
 namespace astrosplat::exact {

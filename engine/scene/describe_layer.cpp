@@ -99,12 +99,16 @@ void describe_structure(const Describer& d, StructureParams& s) {
       "How the picture gets depth: columns extrudes it; disk (galaxies), sheet (nebulae) and walls (shells) "
       "make bodies.");
     bodies(s.height, "height", "Scale height", "scene units",
-           "Thickness; 0: 1.1 % of the picture's longest side.", at_least(0), slider(0, 1));
+           "Thickness; 0: 1.8 % of the picture's longest side for a disk, else 1.1 %.", at_least(0),
+           slider(0, 1));
     d(s.depth, "depth", "Depth", "of the width", "Whole depth of walls, or of the relief of a flat sheet.",
       within(0, 10), slider(0, 0.5), only_with("kind", {"sheet", "walls"}));
     bodies(s.clumps, "clumps", "Clumps", "", "How strongly depths gather in clouds.", within(0, 100),
            slider(0, 3));
     bodies(s.stars, "stars", "Stars apart", "", "Stars are found and become single dots.");
+    bodies(s.dust, "dust", "Dust", "",
+           "Share of the dark details that becomes dust; auto: all in a disk, else none.", or_auto(),
+           range(0, 1));
     bodies(s.opacity, "opacity", "Opacity", "",
            "Power of brightness that opacity grows with; low makes dim parts denser.", within(0.01, 10),
            slider(0.2, 1.5));

@@ -128,6 +128,10 @@ void describe_render(const Describer& d, LayerRender& r) {
            "Hybrid: over up to this angle from the axis.", range(0, 90), only_with("blend", {"hybrid"}));
     mixing(r.hybrid_to_deg, "hybrid.to_deg", "Screen from", "degrees", "Hybrid: screen from this angle on.",
            range(0, 90), only_with("blend", {"hybrid"}));
+    mixing(
+        r.absorb, "absorb", "Absorption", "r, g, b",
+        "Absorb: the layer shines not at all; of each channel it lets (1 - opacity) to this power through.",
+        range(0, 10), slider(0, 3), only_with("blend", {"absorb"}));
     detail(r.lod.max_px, "lod.max_px", "Split above", "px at 1080 lines",
            "Dots that look larger are split; 0: off.", at_least(0), slider(0, 200));
     detail(r.lod.max_children, "lod.max_children", "Most children", "", "Largest number of parts of one dot.",

@@ -20,6 +20,7 @@ ColumnLaw column_law(Blend blend) {
         case Blend::over:
         case Blend::screen:
         case Blend::hybrid:
+        case Blend::absorb:
             return ColumnLaw::transmittance;
     }
     return ColumnLaw::transmittance;

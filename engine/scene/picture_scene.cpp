@@ -44,7 +44,7 @@ name = {name}
 
 [layer.source]
 meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
-structure = {{ kind = {kind}, depth = {depth}, clumps = 1.0, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
+structure = {{ kind = {kind}, depth = {depth}, clumps = 1.0, opacity = {opacity}, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
@@ -133,7 +133,8 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("distance", fmt::format("{:.6g}", distance)), fmt::arg("fov", fmt::format("{:.1f}", fov)),
         fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
-        fmt::arg("depth", scene.structure == StructureKind::walls ? "0.18" : "0.15"));
+        fmt::arg("depth", scene.structure == StructureKind::walls ? "0.18" : "0.15"),
+        fmt::arg("opacity", scene.structure == StructureKind::walls ? "0.3" : "0.55"));
     return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
 }
 

@@ -61,10 +61,11 @@ std::string lattice_lines(const SourceParams& source) {
 
 // Nothing for columns, so that sets made before there was a choice keep their keys.
 std::string structure_lines(const StructureParams& params) {
-    const auto& [kind, height, depth, clumps, stars, opacity, density, border] = params;
+    const auto& [kind, height, depth, clumps, stars, dust, opacity, density, border] = params;
     if (kind == StructureKind::columns) return "";
     return fmt::format("structure {}\nheight {}\ndepth {}\nclumps {}\nstars {}\n", static_cast<int>(kind),
                        height, depth, clumps, stars) +
+           fmt::format("dust {}\n", dust ? fmt::format("{}", *dust) : "auto") +
            fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border);
 }
 

@@ -89,13 +89,15 @@ constexpr auto names_of(StructureKind) {
 
 struct StructureParams {
     StructureKind kind = StructureKind::columns;
-    double height = 0.0;    // scene units, scale height; 0: 1.1 % of the picture's longest side
-    double depth = 0.15;    // of the picture's width: whole depth of walls, or of a flat sheet's relief
-    double clumps = 1.0;    // how strongly depths follow the noise
-    bool stars = true;      // found and made into single dots
-    double opacity = 0.55;  // power of brightness that opacity grows with
-    double density = 0.75;  // opacity of white
-    double border = 0.0;    // of the width, over which light fades towards the picture's edges
+    double height =
+        0.0;  // scene units, scale height; 0: 1.8 % of the picture's longest side for a disk, else 1.1 %
+    double depth = 0.15;         // of the picture's width: whole depth of walls, or of a flat sheet's relief
+    double clumps = 1.0;         // how strongly depths follow the noise
+    bool stars = true;           // found and made into single dots
+    std::optional<double> dust;  // share of the dark details that absorb; empty: 1 in a disk, else 0
+    double opacity = 0.55;       // power of brightness that opacity grows with
+    double density = 0.75;       // opacity of white
+    double border = 0.0;         // of the width, over which light fades towards the picture's edges
     bool operator==(const StructureParams&) const = default;
 };
 

@@ -229,6 +229,7 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
     texture.filter = settings.filter;
     texture.wrap = settings.wrap == Settings::Wrap::automatic ? default_wrap : settings.wrap;
     texture.divided = premultiplied;
+    texture.alpha_from_light = settings.alpha == Settings::Alpha::automatic && alpha == Settings::Alpha::max;
     texture.credit = stored.picture.credit;
     texture.summary =
         fmt::format("{}, {}, {}", stored.picture.summary,

@@ -22,6 +22,8 @@ struct Texture {
     TextureSettings::Wrap wrap = TextureSettings::Wrap::clamp;  // never automatic once loaded
     bool divided =
         false;  // colours were divided by alpha (derived or associated alpha): the look need not do it again
+    bool alpha_from_light =
+        false;  // the file has no alpha, and none was asked for: alpha is the brightest channel
     std::string
         credit;  // from the file's own metadata (XMP/AVM credit, EXIF artist, copyright), may be empty
     std::string summary;  // one line for messages: size, HDU, limits and stretch chosen

@@ -42,7 +42,8 @@ enum Flag : std::uint32_t {
     has_mesh = 16,
     has_radius = 32,
     by_id = 64,
-    has_key = 128
+    has_key = 128,
+    absorbs = 256
 };
 
 struct Header {
@@ -109,7 +110,8 @@ BlockEntry describe_block(std::string_view bytes, std::size_t rows) {
 
 std::uint32_t flags_of(const SplatSet& set, RowOrder order) {
     std::uint32_t flags = (set.key.empty() ? 0u : has_key) | (set.generated ? generated : 0u) |
-                          (set.divided ? divided : 0u) | (order == RowOrder::id ? by_id : 0u);
+                          (set.divided ? divided : 0u) | (set.absorbs ? absorbs : 0u) |
+                          (order == RowOrder::id ? by_id : 0u);
     for_each_column([&](auto column, SplatColumn which) {
         if (!(set.*column).empty()) flags |= flag_of(which);
     });
@@ -235,7 +237,7 @@ Header read_header(const Checker& checker, std::string_view bytes) {
     std::memcpy(&header, bytes.data(), sizeof header);
     if (header.version != version)
         checker.fail("header", fmt::format("version {}", version), std::to_string(header.version));
-    if (header.flags >= has_key * 2)
+    if (header.flags >= absorbs * 2)
         checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
     if (header.block == 0) checker.fail("header", "blocks of at least one splat", "0");
     return header;
@@ -291,6 +293,7 @@ SplatSet empty_set(const Layout& layout, const OptionalColumns& wanted, const st
     set.max_distance = header.max_distance;
     set.generated = header.flags & generated;
     set.divided = header.flags & divided;
+    set.absorbs = header.flags & absorbs;
     set.test_positions = header.test_positions;
     set.zero_alpha = header.zero_alpha;
     set.credit = layout.credit;

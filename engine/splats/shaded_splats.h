@@ -11,7 +11,7 @@ namespace astrosplat {
 
 struct ShadedSplats {
     Buffer<glm::vec3> position;  // scene units, layer space
-    Buffer<glm::vec3> color;     // linear light, straight, >= 0
+    Buffer<glm::vec3> color;     // linear light, straight, >= 0; all below 0: it absorbs, see RenderLayer
     Buffer<float> alpha;         // 0..1
     Buffer<float> radius;        // scene units, where the falloff reaches zero
     Buffer<std::uint64_t> id;

@@ -20,6 +20,7 @@ struct SplatSetFacts {
     bool divided = false;       // colours were divided by alpha by the source
     std::int64_t test_positions = 0;  // lattice positions looked at, 0 for files
     std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
+    bool absorbs = false;             // splats of colours below 0 absorb: see color
     std::string credit;               // from the inputs' metadata
     std::string key;                  // of an entry of the cache: all that made it (sets/cache_key.h)
 };
@@ -28,9 +29,10 @@ struct SplatSetFacts {
 /// always there. Splats are in ascending order of id (see sort_by_id), so an index stands for an id in ties.
 struct SplatSet : SplatSetFacts {
     Buffer<glm::vec3> position;  // scene units, layer space
-    Buffer<glm::vec3> color;     // linear light, straight
-    Buffer<float> alpha;         // 0..1
-    Buffer<float> distance;      // scene units from the mesh surface, >= 0; 0 where a file has none
+    Buffer<glm::vec3>
+        color;               // linear light, straight; below 0 in a set that absorbs: -exponents (blend.glsl)
+    Buffer<float> alpha;     // 0..1
+    Buffer<float> distance;  // scene units from the mesh surface, >= 0; 0 where a file has none
     Buffer<std::uint64_t> id;    // lattice index, or row number of a file
     Buffer<glm::vec2> uv;        // of the closest point
     Buffer<glm::vec3> normal;    // unit normal of the closest face

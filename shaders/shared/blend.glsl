@@ -1,11 +1,13 @@
 // Blending: how one splat hides what lies behind it. Per channel a splat adds s c and multiplies what is behind by
-// B = 1 - min(1, s o), with s its opacity at the pixel, c its colour, o the occlusion colour from here. Needs maths.glsl.
+// B = 1 - min(1, s o), with s its opacity at the pixel, c its colour, o the occlusion colour from here. One that absorbs
+// adds nothing and multiplies by B = (1 - s)^a, with an exponent a a channel. Needs maths.glsl.
 
 const int BLEND_OVER = 0;
 const int BLEND_ADD = 1;
 const int BLEND_SCREEN = 2;
 const int BLEND_LIGHTEN = 3;
 const int BLEND_HYBRID = 4;
+const int BLEND_ABSORB = 5;
 
 // Angle in degrees, 0..90, whose cosine is c in [0, 1]. Abramowitz and Stegun 4.4.46; absolute error below 2e-6 deg.
 float as_acos_deg(float c) {
@@ -36,3 +38,12 @@ float blend_occlusion(int blend, float c, float h) {
     if (blend == BLEND_HYBRID) return mix(1.0f, min(1.0f, c), h);
     return 1.0f;
 }
+
+// Colours below 0 are exponents: a splat of such a colour absorbs, whatever its layer's blend.
+bool blend_absorbs(int blend, float c) { return blend == BLEND_ABSORB || c < 0.0f; }
+
+// The exponent of one channel of a splat that absorbs; `exponent` is its layer's.
+float blend_exponent(int blend, float c, float exponent) { return blend == BLEND_ABSORB ? exponent : -c; }
+
+// 1 - B of a splat that absorbs, s in [0, 1].
+float blend_absorbed(float s, float exponent) { return 1.0f - as_pow(1.0f - s, exponent); }

@@ -237,7 +237,8 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     float vertical_x = u.vertical_reach > 0.0f ? s.from_surface / u.vertical_reach : x;
     float f = look_profile(u.vertical, vertical_x);
     float mean = look_column(u.match, column, reach, radius_factor);
-    result.alpha = clamp(look_matched(u.match, alpha, f, mean) * alpha_factor, 0.0f, 1.0f);
+    bool absorbs = u.absorbs != 0 && s.color.x < 0.0f;
+    result.alpha = absorbs ? s.alpha : clamp(look_matched(u.match, alpha, f, mean) * alpha_factor, 0.0f, 1.0f);
 
     float radius = look_uniform_radius(u.radius_min, u.radius_max, u.seed, s.id_low, s.id_high);
     radius = u.own_radius != 0 ? s.radius : radius;
@@ -247,8 +248,8 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     float g = look_levels(s.color.y * undo * color_factor, u.black) * u.tint.y;
     float b = look_levels(s.color.z * undo * color_factor, u.black) * u.tint.z;
     float luminance = look_luminance(r, g, b);
-    result.color = vec3(look_finish(r, luminance, u.saturation, u.inverse_gamma),
-                        look_finish(g, luminance, u.saturation, u.inverse_gamma),
-                        look_finish(b, luminance, u.saturation, u.inverse_gamma));
+    result.color = vec3(absorbs ? s.color.x : look_finish(r, luminance, u.saturation, u.inverse_gamma),
+                        absorbs ? s.color.y : look_finish(g, luminance, u.saturation, u.inverse_gamma),
+                        absorbs ? s.color.z : look_finish(b, luminance, u.saturation, u.inverse_gamma));
     return result;
 }

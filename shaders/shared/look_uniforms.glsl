@@ -95,7 +95,7 @@ struct LookUniforms {
     float saturation;
 
     float inverse_gamma;
-    int unused_0;
+    int absorbs;  // 1: colours below 0 mean splats that absorb, whose colour and alpha stay
     int unused_1;
     int unused_2;
 

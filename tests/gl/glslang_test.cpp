@@ -36,7 +36,7 @@ TEST_F(ReferenceCompiler, TakesTheSplats) {
     for (const char* kind : {"KIND 0", "KIND 1", "KIND 2", "KIND 3"}) {
         EXPECT_TRUE(takes("vert", {kind}, splat_vertex_files)) << kind;
         EXPECT_TRUE(takes("vert", {kind, "QUADS"}, splat_vertex_files)) << kind;
-        EXPECT_TRUE(takes("frag", {kind}, {"splat_fragment.glsl"})) << kind;
+        EXPECT_TRUE(takes("frag", {kind}, {"maths.glsl", "blend.glsl", "splat_fragment.glsl"})) << kind;
     }
     EXPECT_FALSE(takes("frag", {}, {"splat_fragment.glsl"}));  // the test can fail
 }

@@ -117,6 +117,14 @@ std::vector<LookCase> all_cases() {
         noise_case("jitter", &Noise::jitter, 0.1f),
         noise_case("alpha noise", &Noise::alpha, 0.5f),
         noise_case("brightness", &Noise::brightness, 0.9f),
+        {"splats that absorb",
+         [](SplatSet& set, Look& look, LookInputs&) {
+             set.absorbs = true;
+             for (std::size_t i = 0; i < set.color.size(); i += 3)
+                 set.color[i] = glm::vec3(-0.8f, -1.0f, -1.3f);
+             look.alpha = {1.7f, 0.8f, true, 1.2f};
+             look.grade.gain = 2.0f;
+         }},
         {"horizontal alpha",
          [](SplatSet&, Look& look, LookInputs&) {
              look.alpha = {1.7f, 0.8f, true, 1.2f};

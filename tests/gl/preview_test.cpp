@@ -75,7 +75,8 @@ TEST_F(PreviewPicture, SharpFalloffsAndCores) {
 }
 
 TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
-    for (const auto blend : {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid}) {
+    for (const auto blend :
+         {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid, Blend::absorb}) {
         for (bool isolate : {false, true}) {
             SCOPED_TRACE(static_cast<int>(blend));
             LayerRender render = render_with(Falloff::Shape::gaussian, blend);
@@ -87,6 +88,18 @@ TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
                 test::cloud_layer(500, 7, 0.1f, render_with(Falloff::Shape::constant))};
             expect_like_offline(layers, test::perspective_camera(width, height));
         }
+    }
+}
+
+TEST_F(PreviewPicture, DustAmongLight) {
+    for (const auto blend : {Blend::over, Blend::add}) {
+        PreviewLayer dusty = test::cloud_layer(2000, 5, 0.06f, render_with(Falloff::Shape::gaussian, blend));
+        auto set = std::make_shared<SplatSet>(first_rows(*dusty.set, dusty.set->size()));
+        for (std::size_t i = 0; i < set->color.size(); i += 2) set->color[i] = {-0.5f, -1.0f, -2.0f};
+        set->absorbs = true;
+        dusty.set = set;
+        dusty.layer.absorbs = true;
+        expect_like_offline({dusty}, test::perspective_camera(width, height));
     }
 }
 

@@ -22,7 +22,7 @@ struct RandomScene {
     RandomScene& operator=(const RandomScene&) = delete;
 
     /// The same scene for the same seed on every machine: 1 to 4 layers of `splats` splats, 48x36 px.
-    RandomScene(std::uint32_t seed, int splats) : random_(seed) {
+    RandomScene(std::uint32_t seed, int splats) : random_(seed), dust_(seed + 1000) {
         const std::size_t count = 1 + random_() % 4;
         sets.resize(count);
         for (std::size_t l = 0; l < count; ++l) add_layer(l, splats);
@@ -72,9 +72,19 @@ struct RandomScene {
         layer.world_from_layer = {glm::dvec3(c, 0, -s), glm::dvec3(0, 1, 0), glm::dvec3(s, 0, c)};
         layer.translate = {between(-0.5, 0.5), between(-0.5, 0.5), between(-0.5, 0.5)};
         layer.axis = glm::normalize(glm::dvec3(between(-1, 1), 1.0, between(-1, 1)));
+        if (dust_() % 4 == 0) layer.render.blend = Blend::absorb;
+        layer.render.absorb = exponents();
+        layer.absorbs = layer.render.blend != Blend::lighten && dust_() % 3 == 0;
+        for (std::size_t i = 0; layer.absorbs && i < set.color.size(); i += 3) set.color[i] = -exponents();
     }
 
-    std::mt19937 random_;
+    glm::vec3 exponents() {
+        const auto one = [this] { return 0.2f + 1.8f * static_cast<float>(dust_() >> 8) / 16777216.0f; };
+        const float r = one(), g = one();
+        return {r, g, one()};
+    }
+
+    std::mt19937 random_, dust_;
 };
 
 }  // namespace astrosplat::test

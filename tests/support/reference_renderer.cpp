@@ -5,7 +5,6 @@
 #include "support/reference_renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <tuple>
@@ -18,8 +17,7 @@ constexpr double pi = std::numbers::pi;
 
 /// The profile of a disc over t = distance / radius: w(0) = 1, w(t) = 0 from t = 1 on.
 double profile(const Falloff& falloff, double t) {
-    const double k = falloff.sharpness;
-    const auto shifted = [&](double value) { return (value - std::exp(-k)) / (1.0 - std::exp(-k)); };
+    const double k = falloff.sharpness, edge = std::exp(-k);
     if (t >= 1.0) return 0.0;
     switch (falloff.shape) {
         case Falloff::Shape::constant:
@@ -29,46 +27,24 @@ double profile(const Falloff& falloff, double t) {
         case Falloff::Shape::trapezoid:
             return t <= falloff.core ? 1.0 : (1.0 - t) / (1.0 - falloff.core);
         case Falloff::Shape::gaussian:
-            return shifted(std::exp(-k * t * t));
+            return (std::exp(-k * t * t) - edge) / (1.0 - edge);
         case Falloff::Shape::exponential:
-            return shifted(std::exp(-k * t));
+            return (std::exp(-k * t) - edge) / (1.0 - edge);
     }
     return 0.0;
 }
 
-constexpr int rings = 24, spokes = 48;
-
-/// Of the points on two neighbouring rings: they turn by half a spoke from ring to ring.
-struct Directions {
-    std::array<glm::dvec2, 2 * spokes> at;
-    Directions() {
-        for (int k = 0; k < 2 * spokes; ++k) at[k] = {std::cos(pi * k / spokes), std::sin(pi * k / spokes)};
-    }
-};
-
 /// Integral of f(x, y) over the disc of this radius about the origin.
 template <class Function>
-double integral_over_disc(double radius, const Function& f) {
-    static const Directions directions;
+double integral_over_disc(double radius, int rings, int spokes, const Function& f) {
     double sum = 0.0;
     for (int i = 0; i < rings; ++i)
         for (int k = 0; k < spokes; ++k) {
-            const double r = radius * (i + 0.5) / rings;
-            const glm::dvec2& direction = directions.at[2 * k + i % 2];
-            sum += r * f(r * direction.x, r * direction.y);
+            const double r = radius * (i + 0.5) / rings, angle = 2.0 * pi * (k + 0.5 * (i % 2)) / spokes;
+            sum += r * f(r * std::cos(angle), r * std::sin(angle));
         }
     return sum * (radius / rings) * (2.0 * pi / spokes);
 }
-
-/// Integral of the profile over its unit disc.
-double integral(const Falloff& falloff) {
-    constexpr int steps = 2000;
-    double sum = 0.0;
-    for (int i = 0; i < steps; ++i) sum += (i + 0.5) / steps * profile(falloff, (i + 0.5) / steps);
-    return 2.0 * pi * sum / steps;
-}
-
-double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
 /// A splat on the picture.
 struct Disc {
@@ -84,17 +60,17 @@ struct Disc {
 /// that ends after four standard deviations. The integral runs over the smaller of the two.
 double filtered_profile(const Falloff& falloff, double radius_px, double filter_px, double dx, double dy) {
     const double support = 4.0 * filter_px;
-    if (length(dx, dy) > radius_px + support) return 0.0;
-    const double light = 2.0 * pi * filter_px * filter_px * (1.0 - std::exp(-8.0));
+    if (std::hypot(dx, dy) > radius_px + support) return 0.0;
     const auto filter = [&](double x, double y) {
-        const double d = length(x, y) / filter_px;
-        return d > 4.0 ? 0.0 : std::exp(-0.5 * d * d) / light;
+        const double d = std::hypot(x, y) / filter_px;
+        return d > 4.0 ? 0.0
+                       : std::exp(-0.5 * d * d) / (2.0 * pi * filter_px * filter_px * (1.0 - std::exp(-8.0)));
     };
-    const auto disc = [&](double x, double y) { return profile(falloff, length(x, y) / radius_px); };
+    const auto disc = [&](double x, double y) { return profile(falloff, std::hypot(x, y) / radius_px); };
     if (radius_px < support)
-        return integral_over_disc(radius_px,
+        return integral_over_disc(radius_px, 24, 48,
                                   [&](double x, double y) { return disc(x, y) * filter(dx - x, dy - y); });
-    return integral_over_disc(support,
+    return integral_over_disc(support, 24, 48,
                               [&](double x, double y) { return filter(x, y) * disc(dx - x, dy - y); });
 }
 
@@ -117,7 +93,10 @@ double gain_of(const Falloff& falloff, const Disc& disc, double filter_px) {
             sum += weight;
             change += corrected(falloff, weight, 1.0) - weight;
         }
-    const double light = disc.radius_px * disc.radius_px * integral(falloff);
+    const double light =
+        disc.radius_px * disc.radius_px * integral_over_disc(1.0, 2000, 1, [&](double x, double y) {
+            return profile(falloff, std::hypot(x, y));
+        });
     return change > 0.0 ? (light - sum) / change : 0.0;
 }
 
@@ -165,13 +144,16 @@ std::vector<Disc> project_layer(const RenderLayer& layer, int number, const Came
 /// One splat over what lies behind it, `under` (RGBA).
 void composite(const LayerRender& render, const Disc& disc, double s, glm::dvec4& under) {
     double through = 0.0;  // mean of B: what alpha takes of what lies behind
+    const bool absorbs = (render.blend == Blend::absorb || disc.color[0] < 0.0) && !render.holdout;
     for (int k = 0; k < 3; ++k) {
-        const double sc = s * disc.color[k];
+        const double exponent = render.blend == Blend::absorb ? double(render.absorb[k]) : -disc.color[k];
+        const double sc = absorbs ? 0.0 : s * disc.color[k];
         double b = 1.0 - s;  // over
         if (render.blend == Blend::add) b = 1.0;
         if (render.blend == Blend::screen) b = 1.0 - std::min(1.0, sc);
         if (render.blend == Blend::hybrid) b = 1.0 - s * std::lerp(1.0, std::min(1.0, disc.color[k]), disc.h);
         if (render.holdout) b = 1.0 - s;
+        if (absorbs) b = std::pow(1.0 - s, exponent);
         through += b / 3.0;
         if (render.holdout)
             under[k] = b * under[k];
@@ -233,7 +215,8 @@ Image reference_render(std::span<const RenderLayer> layers, const Camera& camera
                 if (crowd.empty()) continue;
                 const LayerRender& first =
                     layers[static_cast<std::size_t>(std::get<1>(crowd[0].order))].render;
-                const bool alone = (first.isolate || first.blend == Blend::lighten) && !first.holdout;
+                const bool alone = (first.isolate || first.blend == Blend::lighten) && !first.holdout &&
+                                   first.blend != Blend::absorb;
                 glm::dvec4 under = alone ? glm::dvec4(0.0) : pixel;
                 for (const Disc& disc : crowd) {
                     const LayerRender& render =

@@ -13,7 +13,7 @@ namespace {
 std::vector<Image> all_bands(const Image& light) {
     std::vector<Image> images;
     const std::vector<Band> bands = make_bands(light.width);
-    split_bands(light, bands, [&](const Band& band, const Image& image) {
+    split_bands(light, bands, false, [&](const Band& band, const Image& image) {
         EXPECT_EQ(band.index, static_cast<int>(images.size()));
         images.push_back(image);
     });

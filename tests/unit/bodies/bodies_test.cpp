@@ -133,7 +133,7 @@ TEST(FrontFit, GivesAnEvenPictureItsColour) {
     const Placement placement = make_placement(brightest, of_kind(StructureKind::disk), 10.0, true, 1u);
     PictureSplats dots;
     const std::vector<Band> bands = make_bands(light.width);
-    split_bands(light, bands, [&](const Band& band, const Image& image) {
+    split_bands(light, bands, false, [&](const Band& band, const Image& image) {
         add_band(image, band_dots(band, band.index + 1 == static_cast<int>(bands.size()), placement),
                  brightest, {}, placement, {}, dots);
     });
@@ -169,12 +169,14 @@ TEST_P(EveryStructure, MakesAWholeSet) {
         ASSERT_LT(std::fabs(set.position[i].y), 2.5f);
         ASSERT_GT(set.alpha[i], 0.0f);
         ASSERT_LE(set.alpha[i], 1.0f);
-        ASSERT_GE(set.color[i].x, 0.0f);
+        const bool dust = (set.id[i] >> 48 & 255) == 254;
+        ASSERT_EQ(set.color[i].x < 0.0f, dust);
         ASSERT_GT(set.radius[i], 0.0f);
         ASSERT_EQ(set.normal[i], glm::vec3(0, 1, 0));
         farthest = std::max(farthest, static_cast<double>(set.distance[i]));
     }
     EXPECT_EQ(set.max_distance, farthest);
+    EXPECT_EQ(set.absorbs, GetParam() == StructureKind::disk);
 }
 
 TEST_P(EveryStructure, IsTheSameOnOneThread) {

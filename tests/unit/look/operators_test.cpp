@@ -308,6 +308,20 @@ TEST(Grade, BlackGainAndTint) {
     EXPECT_FLOAT_EQ(c.z, 0.25f);
 }
 
+TEST(Grade, SplatsThatAbsorbKeepColourAndAlpha) {
+    SplatSet set = one_splat(0.5f, 0.3f, 0.6f);
+    set.color[0] = {-0.8f, -1.0f, -1.35f};
+    Look look;
+    look.grade.gain = 2.0f;
+    look.alpha.power = 3.0f;
+    look.vertical.shape = VerticalAlpha::Shape::linear;
+    EXPECT_EQ(shade(set, look).color.at(0), glm::vec3(0.0f));  // as in any file
+    set.absorbs = true;
+    const ShadedSplats dust = shade(set, look);
+    EXPECT_EQ(dust.color.at(0), set.color[0]);
+    EXPECT_EQ(dust.alpha.at(0), 0.3f);
+}
+
 TEST(Grade, SaturationTurnsAboutLuminance) {
     SplatSet set = one_splat(0, 1, 0);
     set.color[0] = {1.0f, 0.5f, 0.0f};

@@ -66,7 +66,7 @@ void use_everything(Case& c) {
 }
 
 std::vector<Case> cases() {
-    std::vector<Case> all(4);
+    std::vector<Case> all(5);
     all[0].name = "everything";
     use_everything(all[0]);
     all[1].name = "defaults";
@@ -76,6 +76,10 @@ std::vector<Case> cases() {
     all[2].look.pdf.points = {{0.1f, 0.9f}, {0.5f, 0.2f}, {0.8f, 0.7f}};
     all[2].look.vertical.shape = VerticalAlpha::Shape::s106;
     all[2].look.vertical.match = VerticalAlpha::Match::sum;
+    all[4].name = "everything, and splats that absorb";
+    use_everything(all[4]);
+    all[4].set.absorbs = true;
+    for (std::size_t i = 0; i < std::size_t(count); i += 3) all[4].set.color[i] = {-0.8f, -1.0f, -1.35f};
     all[3].name = "one key, culling noise";
     all[3].look.thickness.keys = {{glm::vec3(1.0f), 0.7f, {}}};
     all[3].look.thickness.keys[0].pdf.shape = DensityCurve::Shape::smooth;

@@ -77,6 +77,56 @@ TEST(Blend, OverAddScreenLightenOfTwo) {
     EXPECT_FLOAT_EQ(middle(lighten.beauty)[3], s1 + (1.0f - s1) * s2);
 }
 
+// The near splat has no light and lets (1 - s)^a of each channel through.
+void expect_absorbed(const RenderedFrame& frame, const glm::vec3& exponents, const Pair& pair) {
+    const double s1 = pair.near_splat.alpha, s2 = pair.far_splat.alpha;
+    double hidden = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        const double through = std::pow(1.0 - s1, double(exponents[k]));
+        EXPECT_NEAR(middle(frame.beauty)[k], through * s2 * pair.far_splat.color[k], 1e-6) << k;
+        hidden += (1.0 - through) / 3.0;
+    }
+    EXPECT_NEAR(middle(frame.beauty)[3], hidden + (1.0 - hidden) * s2, 1e-6);
+}
+
+TEST(Blend, AbsorbLetsAPowerOfEachChannelThrough) {
+    const Pair pair;
+    const ShadedSplats dust = make_splats({pair.near_splat}), light = make_splats({pair.far_splat});
+    RenderLayer absorbing = layer_of("dust", dust, Blend::absorb);
+    expect_absorbed(render_layers({absorbing, layer_of("light", light, Blend::over)}), {0.8f, 1.0f, 1.35f},
+                    pair);
+    absorbing.render.absorb = {2.0f, 0.0f, 0.5f};
+    for (const bool isolated : {false, true}) {
+        absorbing.render.isolate = isolated;
+        expect_absorbed(render_layers({layer_of("light", light, Blend::over), absorbing}), {2.0f, 0.0f, 0.5f},
+                        pair);
+    }
+}
+
+TEST(Blend, ColoursBelowZeroAbsorbInAnyLayer) {
+    Pair pair;
+    pair.near_splat.color = {-0.5f, -1.0f, -1.5f};
+    const ShadedSplats splats = make_splats({pair.near_splat, pair.far_splat});
+    RenderLayer layer = layer_of("both", splats, Blend::over);
+    layer.absorbs = true;
+    expect_absorbed(render_layers({layer}), {0.5f, 1.0f, 1.5f}, pair);
+    layer.render.blend = Blend::add;
+    const RenderedFrame added = render_layers({layer});
+    for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(middle(added.beauty)[k],
+                    std::pow(0.75, 0.5 * (k + 1)) * pair.far_splat.alpha * pair.far_splat.color[k], 1e-6);
+}
+
+TEST(Blend, OpaqueAbsorbersLetNothingThrough) {
+    Pair pair;
+    pair.near_splat.alpha = 1.0f;
+    const ShadedSplats dust = make_splats({pair.near_splat}), light = make_splats({pair.far_splat});
+    const RenderedFrame frame =
+        render_layers({layer_of("dust", dust, Blend::absorb), layer_of("light", light, Blend::over)});
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(middle(frame.beauty)[k], 0.0f, 1e-6);
+    EXPECT_NEAR(middle(frame.beauty)[3], 1.0f, 1e-6);
+}
+
 TEST(Blend, ScreenOfBrightColoursStaysPositive) {
     Pair pair;
     pair.near_splat.color = {8.0f, 2.0f, 0.5f};

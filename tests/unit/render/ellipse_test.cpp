@@ -36,15 +36,15 @@ void PrintTo(const EllipseCase& e, std::ostream* out) {
 }
 
 /// One ellipse of alpha 1/2 in an orthographic picture of one unit a pixel.
-Image ellipse_picture(const EllipseCase& e, const Falloff& falloff, std::int64_t size_px,
-                      RenderCache* cache = nullptr) {
+Image ellipse_picture(const EllipseCase& e, const Falloff& falloff, std::int64_t size_px, int tile_px = 0) {
     ShadedSplats splats = make_splats({{glm::vec3(e.offset_px.x, e.offset_px.y, 0.0f), 1.0f, 0.5f}});
     splats.stretch.push_back(ellipsoid(e.larger_px, e.smaller_px, e.degrees));
     RenderLayer layer = layer_of("ellipse", splats);
     layer.render.falloff = falloff;
+    RenderSettings settings = settings_of(size_px, size_px);
+    settings.tile_px = tile_px;
     const auto size = static_cast<double>(size_px);
-    return render({&layer, 1}, pixel_camera(size, size), nullptr, settings_of(size_px, size_px), {}, cache)
-        .beauty;
+    return render({&layer, 1}, pixel_camera(size, size), nullptr, settings).beauty;
 }
 
 class EllipseLight : public ::testing::TestWithParam<Falloff::Shape> {};
@@ -53,7 +53,6 @@ TEST_P(EllipseLight, IsConservedAtEverySizePlaceAndOrientation) {
     const Falloff falloff{GetParam(), 0.5f, 4.5f};
     const double integral = falloff_integral(falloff);
     double worst = 0.0;
-    RenderCache cache;
     for (const auto& [larger, smaller] : std::vector<std::pair<double, double>>{{0.02, 0.004},
                                                                                 {0.3, 0.02},
                                                                                 {0.7, 0.7},
@@ -73,7 +72,7 @@ TEST_P(EllipseLight, IsConservedAtEverySizePlaceAndOrientation) {
                 if (larger > 100.0 && degrees != 3.0) continue;
                 const EllipseCase e{larger, smaller, degrees, offset};
                 const double wanted = 0.5 * integral * larger * smaller;
-                const double error = total(ellipse_picture(e, falloff, size, &cache), 3) / wanted - 1.0;
+                const double error = total(ellipse_picture(e, falloff, size), 3) / wanted - 1.0;
                 worst = std::max(worst, std::fabs(error));
                 EXPECT_NEAR(error, 0.0, 0.005) << ::testing::PrintToString(e);
             }
@@ -173,8 +172,8 @@ struct EllipseScene {
         camera.center_x_px = 90.5;
         camera.center_y_px = 60.5;
     }
-    Image picture(RenderSettings settings = settings_of(181, 121), RenderCache* cache = nullptr) const {
-        return render(layers, camera, nullptr, settings, {}, cache).beauty;
+    Image picture(RenderSettings settings = settings_of(181, 121)) const {
+        return render(layers, camera, nullptr, settings).beauty;
     }
 };
 
@@ -191,18 +190,16 @@ TEST_P(EllipseBits, DoNotDependOnThreadsTilesTargetsOrMemory) {
     }
     set_thread_count(before);
     RenderSettings settings = settings_of(181, 121);
-    RenderCache cache;
     for (const int tile : {16, 48, 128}) {
         settings.tile_px = tile;
-        EXPECT_EQ(expected.pixels, scene.picture(settings, &cache).pixels) << "tiles of " << tile;
+        EXPECT_EQ(expected.pixels, scene.picture(settings).pixels) << "tiles of " << tile;
     }
     settings.tile_px = 0;
     settings.memory_limit_bytes = 60000;
-    EXPECT_EQ(expected.pixels, scene.picture(settings, &cache).pixels) << "in bands";
-    settings.memory_limit_bytes = 0;
+    EXPECT_EQ(expected.pixels, scene.picture(settings).pixels) << "in bands";
     for (const std::string& target : vector_targets()) {
         set_vector_target(target);
-        EXPECT_EQ(expected.pixels, scene.picture(settings, &cache).pixels) << target;
+        EXPECT_EQ(expected.pixels, scene.picture().pixels) << target;
     }
     set_vector_target("best");
 }
@@ -215,8 +212,6 @@ INSTANTIATE_TEST_SUITE_P(SomeBlends, EllipseBits,
 
 // The light of round splats beside black ones that are not, too faint to hide anything.
 TEST(Ellipse, RoundSplatsKeepTheirBitsBesideOthers) {
-    const RenderSettings settings = settings_of(181, 121);
-    RenderCache cache;
     for (const Falloff::Shape shape : all_shapes)
         for (const Blend blend : {Blend::over, Blend::add, Blend::screen}) {
             EllipseScene scene(blend, Falloff::Shape::gaussian);
@@ -224,9 +219,9 @@ TEST(Ellipse, RoundSplatsKeepTheirBitsBesideOthers) {
             scene.layers[0].render.blend = blend;
             scene.layers[1].render.opacity = 1e-30f;
             for (glm::vec3& color : scene.stretched.color) color = glm::vec3(0.0f);
-            const Image both = scene.picture(settings, &cache);
+            const Image both = scene.picture();
             scene.layers.pop_back();
-            const Image alone = scene.picture(settings, &cache);
+            const Image alone = scene.picture();
             for (std::size_t i = 0; i < alone.pixels.size(); i += 4)
                 for (std::size_t k = i; k < i + 3; ++k) ASSERT_EQ(both.pixels[k], alone.pixels[k]) << k;
         }

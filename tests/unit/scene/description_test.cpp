@@ -71,7 +71,7 @@ TEST(DescriptionTest, ARateHasAnEffectOnlyOnAnExponential) {
 TEST(DescriptionTest, ChoicesAreTheNamesOfTheEnum) {
     EXPECT_EQ(name_of(DensityCurve::Shape::gaussian), "gaussian");
     EXPECT_EQ(spec_of("layer.render.blend").choices,
-              (std::vector<std::string>{"over", "add", "screen", "lighten", "hybrid"}));
+              (std::vector<std::string>{"over", "add", "screen", "lighten", "hybrid", "absorb"}));
     EXPECT_EQ(spec_of("layer.look.vertical.shape").choices, all_names<VerticalAlpha::Shape>());
     EXPECT_EQ(spec_of("output.depth").choices[4], "8");
 }

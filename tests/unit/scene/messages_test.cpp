@@ -87,10 +87,12 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"[layer.look]\nradius.min = 0.2\nradius.max = 0.1\n",
              "7: layer.stars.look.radius.max: expected min not above max, found 0.2 and 0.1"},
         Case{"[layer.render]\nblend = \"ovr\"\n",
-             "6: layer.render.blend: expected over, add, screen, lighten or hybrid, found 'ovr'; did you "
+             "6: layer.render.blend: expected over, add, screen, lighten, hybrid or absorb, found 'ovr'; did "
+             "you "
              "mean 'over'?"},
         Case{"[layer.render]\nblend = [1]\n",
-             "6: layer.render.blend: expected over, add, screen, lighten or hybrid, found a list of 1"},
+             "6: layer.render.blend: expected over, add, screen, lighten, hybrid or absorb, found a list of "
+             "1"},
         Case{"[layer.render]\nhybrid = { from_deg = 60, to_deg = 40 }\n",
              "6: layer.stars.render.hybrid.to_deg: expected from_deg below to_deg, found 60 and 40"},
         Case{"[layer.source]\n", "5: duplicate key 'layer.source'"},

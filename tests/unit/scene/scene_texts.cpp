@@ -77,7 +77,7 @@ max_distance = 0.0
 filter = "bilinear"
 wrap = "auto"
 uv = "mesh"
-structure = { kind = "columns", height = 0.0, depth = 0.15, clumps = 1.0, stars = true, opacity = 0.55, density = 0.75, border = 0.0 }
+structure = { kind = "columns", height = 0.0, depth = 0.15, clumps = 1.0, stars = true, dust = "auto", opacity = 0.55, density = 0.75, border = 0.0 }
 seed = 0
 plane = 0
 voxel_size = 0.0
@@ -108,6 +108,7 @@ sharpness = 4.5
 blend = "over"
 opacity = 1.0
 hybrid = { from_deg = 30.0, to_deg = 80.0 }
+absorb = [0.8, 1.0, 1.35]
 lod = { max_px = 0.0, max_children = 4096, noise = 0.0 }
 holdout = false
 isolate = false

@@ -121,6 +121,7 @@ inline void expect_same_set(const SplatSet& a, const SplatSet& b) {
     EXPECT_EQ(a.spacing, b.spacing);
     EXPECT_EQ(a.generated, b.generated);
     EXPECT_EQ(a.divided, b.divided);
+    EXPECT_EQ(a.absorbs, b.absorbs);
     EXPECT_EQ(a.test_positions, b.test_positions);
     EXPECT_EQ(a.zero_alpha, b.zero_alpha);
     EXPECT_EQ(a.credit, b.credit);

@@ -26,6 +26,7 @@ SplatSet full_set(std::uint32_t rows) {
     set.max_distance = 0.7;
     set.generated = true;
     set.divided = true;
+    set.absorbs = true;
     set.test_positions = 1ll << 40;
     set.zero_alpha = 12;
     set.credit = "ESA/Hubble & NASA, \xc3\xa9 \n second line";
@@ -81,6 +82,7 @@ TEST_F(Native, OptionalArraysStayUnknown) {
         if (!(present & 8)) set.radius.clear();
         set.generated = present & 1;
         set.divided = present & 2;
+        set.absorbs = present & 4;
         write_native(path("a.splats"), set);
         SplatSet got = read_native(path("a.splats"));
         sort_by_id(got);
@@ -201,7 +203,7 @@ TEST_F(Native, Messages) {
     EXPECT_EQ(error("ply" + whole.substr(3)),
               "a.splats: expected an astrosplat .splats file, found another format");
     EXPECT_EQ(error(forged(whole, 8, 2u)), "a.splats:header: expected version 1, found 2");
-    EXPECT_EQ(error(forged(whole, 12, 0x100u)), "a.splats:header: expected known flags, found 0x100");
+    EXPECT_EQ(error(forged(whole, 12, 0x200u)), "a.splats:header: expected known flags, found 0x200");
     std::uint32_t flags;
     std::memcpy(&flags, &whole[12], sizeof flags);
     EXPECT_EQ(error(forged(whole, 12, flags | 0x80u)),

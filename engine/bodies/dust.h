@@ -1,0 +1,21 @@
+// The dark details of a picture as dust that absorbs (DEPTH 2, 5). In: the picture's light and its bands'
+// sum, and the dots that shine. Out: dots of colours below 0 on a torn sheet before the middle of the disk.
+#pragma once
+
+#include "bodies/picture_splats.h"
+#include "core/image.h"
+
+namespace astrosplat {
+
+/// Exponents of what dust lets through, r, g, b: more blue is lost.
+inline constexpr glm::vec3 dust_exponents{0.8f, 1.0f, 1.35f};
+
+/// What reaches the viewer of a disk that shines as `emission`, so that `light` is seen: the ratio of their
+/// brightest channels, .1 to 1; 1 where both are dark. One channel.
+Image transmittance_of(const Image& light, const Image& emission);
+
+/// Adds the dust that, with the light of `out` partly before it and partly behind, leaves `transmittance`
+/// of the whole. `amount`: share of its optical depth, 0 to 1.
+void add_dust(const Image& transmittance, double amount, const Placement& placement, PictureSplats& out);
+
+}  // namespace astrosplat
