@@ -139,7 +139,8 @@ void describe_source(const Describer& d, SourceParams& s) {
             slider(0, 10));
     files.only_with("kind", {"mesh"})(s.uv, "uv", "Picture coordinates", "",
                                       "The mesh's own, or projected along an axis.");
-    describe_structure(lattice.in("structure", false), s.structure);
+    describe_structure(d.shown_in("Source", "Structure").only_with("kind", {"mesh"}).in("structure", false),
+                       s.structure);
     splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",
            slider(0, 1000));
     files(s.file, "file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.",

@@ -47,6 +47,7 @@ std::vector<std::string> telling_scenes() {
               "1], [1, 0]] },"
               "{ shape = \"exponential\" }, { shape = \"gaussian\" } ] }",
               "", "[camera]\nprojection = \"orthographic\"\nposition = [0, 0, 9]\n"),
+        layer(mesh + "\nstructure = { kind = \"walls\" }", "", "blend = \"absorb\""),
         layer("kind = \"splats\"\nfile = \"a.ply\"",
               "pdf = { shape = \"gaussian\" }\nradius = { min = 0.1, max = 0.2 }", "",
               "[camera]\nprojection = \"fisheye\"\n"),

@@ -32,7 +32,7 @@ std::string value_of(const Context& context) {
     const Parameter* parameter = find(context, context.layer_key() / key);
     return parameter ? in_words(parameter->spec, parameter->get()) : "";
 }
-constexpr char falloff[] = "render.falloff", blend[] = "render.blend";
+constexpr char falloff[] = "render.falloff", blend[] = "render.blend", structure[] = "source.structure.kind";
 
 std::string files_state(const Context& context) {
     const SourceParams& source = context.layer().source;
@@ -147,6 +147,7 @@ const TabSection sections[] = {
      picture_state,
      {"layer.source.black", "layer.source.white", "layer.source.stretch", "layer.source.softening",
       "layer.source.hdu", "layer.source.plane"}},
+    {"Source", "Structure", unfolded, value_of<structure>},
     {"Source",
      "Splats",
      unfolded,
