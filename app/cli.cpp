@@ -22,6 +22,7 @@
 #include "new.h"
 #include "parameters.h"
 #include "places.h"
+#include "prepare.h"
 #include "splat_commands.h"
 #include "viewer/run_viewer.h"
 #include "viewer/screenshot.h"
@@ -44,6 +45,7 @@ struct Invocation {
     BatchOptions batch_options;
     ScreenshotOptions screenshot;  // when its output is given
     NewOptions create;
+    PrepareOptions prepare;
     GenerateOptions generate;
     ConvertOptions convert;
     InfoOptions info;
@@ -148,6 +150,26 @@ void add_new(CLI::App& app, Invocation& call) {
     command.add_flag("--overwrite", call.create.overwrite, "Replaces the scene file");
 }
 
+void add_prepare(CLI::App& app, Invocation& call) {
+    PrepareOptions& prepare = call.prepare;
+    CLI::App& command = add_command(app, call, "prepare", "Makes a picture ready for a scene",
+                                    [&call] { return run_prepare(call.prepare); });
+    add_value(command, "IN", prepare.image, "IN", "The picture, also in FITS")->required();
+    add_value(command, "-o,--output", prepare.folder, "FOLDER",
+              "Gets picture.exr, the picture without its stars in linear light, and stars.csv")
+        ->required();
+    command.add_flag("--keep-stars", prepare.keep_stars, "Leaves the stars in the picture");
+    add_value(command, "--threshold", prepare.threshold, "X",
+              "Least height of a star over the local noise (default: 5)");
+    add_value(command, "--saturation", prepare.saturation, "X",
+              "Linear light at which the picture saturates (default: 0.98 of 8 and 16 bit pictures, none of "
+              "others)");
+    add_value(command, "--stretch", prepare.stretch, "auto|linear|asinh|log",
+              "Of FITS, after the stars are taken away (default: auto, asinh)");
+    command.add_flag("--overwrite", prepare.overwrite, "Replaces the files in the folder");
+    add_progress(command, prepare.progress);
+}
+
 void add_generate(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "generate", "Generates a layer's splats into a file",
                                     [&call] { return run_generate(call.generate); });
@@ -223,7 +245,7 @@ SetCache cache_of(const CommonOptions& common) {
 /// Of every command, unless a mode was asked for.
 void silence_progress(Invocation& call) {
     for (ProgressMode* mode : {&call.batch_options.progress, &call.generate.progress, &call.convert.progress,
-                               &call.fidelity.progress})
+                               &call.fidelity.progress, &call.prepare.progress})
         if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
 }
 
@@ -288,6 +310,7 @@ int run_command_line(int argc, char** argv) {
     add_batch(app, call);
     add_screenshot(app, call);
     add_new(app, call);
+    add_prepare(app, call);
     add_generate(app, call);
     add_convert(app, call);
     add_reports(app, call);

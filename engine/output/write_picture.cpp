@@ -18,6 +18,19 @@ void write_picture(const std::filesystem::path& file, std::int64_t width, std::i
     picture.commit();
 }
 
+void write_linear_picture(const std::filesystem::path& file, const Image& image, const std::string& credit,
+                          Existing existing) {
+    assert(image.channels == 3 || image.channels == 4);
+    OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), image.channels,
+                         OIIO::TypeDesc::FLOAT);
+    spec.attribute("compression", "zip");
+    spec.attribute("DateTime", "");
+    if (!credit.empty()) spec.attribute("Copyright", credit);
+    PictureFile picture(file, "exr", spec, existing);
+    picture.write_all(OIIO::TypeDesc::FLOAT, image.pixels.data());
+    picture.commit();
+}
+
 std::string png_bytes(std::int64_t width, std::int64_t height, std::span<const unsigned char> rgb) {
     assert(static_cast<std::int64_t>(rgb.size()) == width * height * 3);
     OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);

@@ -74,6 +74,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
         {"core", {"core"}},
         {"image", {"core", "image"}},
         {"fidelity", {"core", "image", "fidelity"}},
+        {"prepare", {"core", "image", "prepare"}},
         {"source", {"core", "source"}},
         {"splats", {"core", "splats"}},
         {"splat_files", {"core", "splats", "splat_files"}},

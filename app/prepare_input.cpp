@@ -1,0 +1,83 @@
+// FITS keeps its values until stars are taken away: a stretch would change their profiles and cut them off.
+#include "prepare_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/color.h"
+#include "core/parallel.h"
+#include "source/fits.h"
+#include "source/picture.h"
+#include "source/stretch.h"
+#include "source/texture.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double saturated_integer = 0.98;  // of linear light, in pictures of integers
+
+PrepareInput read_fits_input(const std::filesystem::path& file, const TextureSettings& settings,
+                             const Progress& progress) {
+    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
+    const Limits limits = choose_limits(value_range(plane.values), settings, file.string());
+    PrepareInput input;
+    input.image = make_image(plane.width, plane.height, 4);
+    input.empty = make_mask(plane.width, plane.height);
+    for (std::size_t i = 0; i < plane.values.size(); ++i) {
+        const double value = (plane.values[i] - limits.black) / (limits.white - limits.black);
+        float* const p = input.image.pixels.data() + 4 * i;
+        input.empty.pixels[i] = std::isfinite(value) ? 0 : 1;
+        std::fill_n(p, 3, std::isfinite(value) ? static_cast<float>(value) : 0.0f);
+        p[3] = std::isfinite(value) ? 1.0f : 0.0f;
+    }
+    using Stretch = TextureSettings::Stretch;
+    input.stretch = settings.stretch == Stretch::automatic ? Stretch::asinh : settings.stretch;
+    input.saturation = std::numeric_limits<double>::infinity();
+    input.credit = plane.credit;
+    return input;
+}
+
+PrepareInput read_picture_input(const std::filesystem::path& file, const TextureSettings& settings,
+                                const Progress& progress) {
+    if (settings.stretch != TextureSettings::Stretch::automatic &&
+        settings.stretch != TextureSettings::Stretch::linear)
+        bad_input("--stretch", "", "a FITS picture", "'" + file.string() + "'");
+    const Picture stored = read_picture(file, progress);
+    PrepareInput input;
+    input.image = load_linear_image(file, progress);
+    input.empty = make_mask(input.image.width, input.image.height);
+    for (std::size_t i = 0; i < input.empty.pixels.size(); ++i) {
+        float* const p = input.image.pixels.data() + 4 * i;
+        const bool finite = std::all_of(p, p + 4, [](float value) { return std::isfinite(value); });
+        input.empty.pixels[i] = finite && p[3] > 0.0f ? 0 : 1;
+        if (!finite) std::fill_n(p, 4, 0.0f);
+    }
+    input.saturation = stored.max_integer > 0.0 ? saturated_integer : std::numeric_limits<double>::infinity();
+    input.credit = stored.credit;
+    return input;
+}
+
+}  // namespace
+
+PrepareInput read_prepare_input(const std::filesystem::path& file, const TextureSettings& settings,
+                                const Progress& progress) {
+    PrepareInput input = is_fits(file) ? read_fits_input(file, settings, progress)
+                                       : read_picture_input(file, settings, progress);
+    fill(input.image, input.empty, FillKind::membrane, progress);
+    return input;
+}
+
+void apply_stretch(Image& image, TextureSettings::Stretch stretch, double softening) {
+    if (stretch == TextureSettings::Stretch::linear) return;
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                float& value = image.at(x, y)[c];
+                value = static_cast<float>(real::srgb_to_linear(
+                    stretched(static_cast<double>(value), {0.0, 1.0}, stretch, softening)));
+            }
+    });
+}
+
+}  // namespace astrosplat

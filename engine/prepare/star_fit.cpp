@@ -1,0 +1,238 @@
+// Seven numbers a star: height, place, logarithm of the width, and a plane as background.
+#include "prepare/star_fit.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "core/real.h"
+#include "prepare/least_squares.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int most_steps = 12;
+constexpr double damping = 1e-3;          // of the diagonal
+constexpr double farthest_step_px = 0.5;  // in one step
+constexpr double farthest_move_px = 1.2;  // from where the star was seen
+constexpr double faintest_share = 0.1;    // of the noise: add_star ends there
+
+// A usable pixel near a star: its place and the light of r, g, b.
+struct Sample {
+    double x, y;
+    std::array<double, 3> light;
+
+    double mean() const { return (light[0] + light[1] + light[2]) / 3.0; }
+};
+
+std::vector<Sample> samples_near(const Image& image, const PixelMask& unusable, double x, double y,
+                                 double radius) {
+    std::vector<Sample> samples;
+    const auto first = [&](double at) {
+        return std::max<std::int64_t>(0, static_cast<std::int64_t>(at - radius));
+    };
+    const auto last = [&](double at, std::int64_t n) {
+        return std::min(n - 1, static_cast<std::int64_t>(at + radius));
+    };
+    for (std::int64_t j = first(y); j <= last(y, image.height); ++j) {
+        for (std::int64_t i = first(x); i <= last(x, image.width); ++i) {
+            const double dx = static_cast<double>(i) + 0.5 - x, dy = static_cast<double>(j) + 0.5 - y;
+            if (dx * dx + dy * dy > radius * radius || unusable.at(i, j)) continue;
+            const float* const p = image.at(i, j);
+            samples.push_back(
+                {static_cast<double>(i) + 0.5, static_cast<double>(j) + 0.5, {p[0], p[1], p[2]}});
+        }
+    }
+    return samples;
+}
+
+double fit_radius(const StarProfile& profile, double core) {
+    return std::clamp(2.0 * profile.fwhm_px + 1.0, 4.0, 12.0) + 2.0 * core;
+}
+
+// The star's shape as the fit moves it, with the background under it.
+struct Trial {
+    PictureStar star;
+    double height = 0.0;
+    Vector<3> plane{};  // light at the star, and its slopes in x and y
+};
+
+struct Row {
+    Vector<7> design;  // by height, x, y, log width, plane
+    double model;
+};
+
+Row row_at(const Trial& trial, double unit, const Sample& sample) {
+    const double dx = sample.x - trial.star.x, dy = sample.y - trial.star.y;
+    const double u = unit * (dx * dx + dy * dy);
+    const ProfileValue p = profile_at(trial.star.profile.shape, u);
+    const double moved = -2.0 * unit * trial.height * p.slope;
+    return {{p.value, moved * dx, moved * dy, -2.0 * u * trial.height * p.slope, 1.0, dx, dy},
+            trial.height * p.value + trial.plane[0] + trial.plane[1] * dx + trial.plane[2] * dy};
+}
+
+std::optional<Vector<7>> next_step(const Trial& trial, const std::vector<Sample>& samples,
+                                   const StarWidths& widths, double pixel_noise) {
+    LeastSquares<7> sums;
+    const double unit = unit_of(trial.star.profile);
+    for (const Sample& sample : samples) {
+        const Row row = row_at(trial, unit, sample);
+        sums.add(row.design, sample.mean() - row.model);
+    }
+    const double weight = pixel_noise / widths.log_spread;
+    const double away = real::log(trial.star.profile.fwhm_px / widths.fwhm_px);
+    sums.add({0.0, 0.0, 0.0, weight, 0.0, 0.0, 0.0}, -weight * away);
+    for (std::size_t i = 0; i < 7; ++i) sums.squares[i][i] *= 1.0 + damping;
+    return solved(sums.squares, sums.products);
+}
+
+// Applies a step, held to what is sensible; returns whether it was small.
+bool take_step(Trial& trial, const Vector<7>& step) {
+    const double dx = std::clamp(step[1], -farthest_step_px, farthest_step_px);
+    const double dy = std::clamp(step[2], -farthest_step_px, farthest_step_px);
+    const double wider = std::clamp(step[3], -0.3, 0.3);
+    trial.height += step[0];
+    trial.star.x += dx;
+    trial.star.y += dy;
+    trial.star.profile.fwhm_px = std::max(narrowest_fwhm_px, trial.star.profile.fwhm_px * real::exp(wider));
+    for (std::size_t i = 0; i < 3; ++i) trial.plane[i] += step[4 + i];
+    return std::fabs(dx) + std::fabs(dy) + std::fabs(wider) < 1e-4;
+}
+
+// The height in each channel, and the misfit of their mean.
+bool fit_heights(PictureStar& star, const std::vector<Sample>& samples) {
+    std::array<LeastSquares<4>, 3> sums;
+    std::vector<Vector<4>> rows;
+    const double unit = unit_of(star.profile);
+    for (const Sample& sample : samples) {
+        const double dx = sample.x - star.x, dy = sample.y - star.y;
+        rows.push_back({profile_at(star.profile.shape, unit * (dx * dx + dy * dy)).value, 1.0, dx, dy});
+        for (std::size_t c = 0; c < 3; ++c) sums[c].add(rows.back(), sample.light[c]);
+    }
+    Vector<4> mean{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto solution = solved(sums[c].squares, sums[c].products);
+        if (!solution) return false;
+        star.amplitude[c] = (*solution)[0];
+        for (std::size_t i = 0; i < 4; ++i) mean[i] += (*solution)[i] / 3.0;
+    }
+    double squares = 0.0, count = 0.0;
+    const double near = star.profile.fwhm_px + star.core_px;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const double dx = rows[k][2], dy = rows[k][3];
+        if (dx * dx + dy * dy > near * near) continue;
+        const double d = samples[k].mean() - (rows[k][0] * mean[0] + mean[1] + dx * mean[2] + dy * mean[3]);
+        squares += d * d;
+        count += 1.0;
+    }
+    star.misfit = count > 0.0 ? std::sqrt(squares / count) : 0.0;
+    return true;
+}
+
+// Height and background by themselves, to begin with.
+bool start_trial(Trial& trial, const std::vector<Sample>& samples) {
+    LeastSquares<4> sums;
+    const double unit = unit_of(trial.star.profile);
+    for (const Sample& sample : samples) {
+        const double dx = sample.x - trial.star.x, dy = sample.y - trial.star.y;
+        sums.add({profile_at(trial.star.profile.shape, unit * (dx * dx + dy * dy)).value, 1.0, dx, dy},
+                 sample.mean());
+    }
+    const auto solution = solved(sums.squares, sums.products);
+    if (!solution || !((*solution)[0] > 0.0)) return false;
+    trial.height = (*solution)[0];
+    trial.plane = {(*solution)[1], (*solution)[2], (*solution)[3]};
+    return true;
+}
+
+}  // namespace
+
+bool fit_star(const Image& image, const PixelMask& unusable, const StarWidths& widths, PictureStar& star) {
+    assert(image.channels >= 3);
+    Trial trial{star};
+    const double radius = fit_radius(star.profile, star.core_px);
+    const std::vector<Sample> samples = samples_near(image, unusable, star.x, star.y, radius);
+    if (samples.size() < 12 || !start_trial(trial, samples)) return false;
+    const double widest = 4.0 * (widths.fwhm_px + 2.0 * star.core_px);
+    for (int step = 0; step < most_steps; ++step) {
+        const auto found = next_step(trial, samples, widths, star.pixel_noise);
+        if (!found) return false;
+        const bool done = take_step(trial, *found);
+        const double moved = std::hypot(trial.star.x - star.seen_x, trial.star.y - star.seen_y);
+        if (moved > farthest_move_px + 0.5 * star.core_px || trial.star.profile.fwhm_px > widest)
+            return false;
+        if (done) break;
+    }
+    if (!(trial.height > 0.0) || !fit_heights(trial.star, samples)) return false;
+    if (!(trial.star.mean_amplitude() > 0.0)) return false;
+    star = trial.star;
+    return true;
+}
+
+namespace {
+
+double squares_left(const std::vector<Sample>& samples, const PictureStar& star) {
+    Trial trial{star};
+    if (!start_trial(trial, samples)) return 1e30;
+    double squares = 0.0;
+    const double unit = unit_of(star.profile);
+    for (const Sample& sample : samples) {
+        const double d = sample.mean() - row_at(trial, unit, sample).model;
+        squares += d * d;
+    }
+    return squares / (star.pixel_noise * star.pixel_noise);
+}
+
+}  // namespace
+
+double shape_misfit(const Image& image, const PixelMask& unusable, const PictureStar& star,
+                    const StarProfile& window) {
+    const double radius = fit_radius(window, star.core_px);
+    return squares_left(samples_near(image, unusable, star.x, star.y, radius), star);
+}
+
+double shape_misfit_of_taken(const Image& image, const PixelMask& unusable, const PictureStar& star,
+                             const StarProfile& profile) {
+    std::vector<Sample> samples =
+        samples_near(image, unusable, star.x, star.y, fit_radius(star.profile, star.core_px));
+    const double unit = unit_of(star.profile);
+    for (Sample& sample : samples) {
+        const double dx = sample.x - star.x, dy = sample.y - star.y;
+        const double value = profile_at(star.profile.shape, unit * (dx * dx + dy * dy)).value;
+        for (std::size_t c = 0; c < 3; ++c) sample.light[c] += star.amplitude[c] * value;
+    }
+    PictureStar other = star;
+    other.profile = profile;
+    return squares_left(samples, other);
+}
+
+double reach_px(const PictureStar& star) {
+    const double height = *std::max_element(star.amplitude.begin(), star.amplitude.end());
+    if (!(height > 0.0)) return 0.0;
+    const double reach = reach_of(star.profile, faintest_share * star.noise / height);
+    return std::min(reach, widest_reach_px + 8.0 * star.core_px);
+}
+
+void add_star(Image& image, const PictureStar& star, float sign) {
+    const double reach = reach_px(star), unit = unit_of(star.profile);
+    const auto begin = [&](double at) {
+        return std::max<std::int64_t>(0, static_cast<std::int64_t>(at - reach));
+    };
+    const auto end = [&](double at, std::int64_t n) {
+        return std::min(n, static_cast<std::int64_t>(at + reach) + 1);
+    };
+    for (std::int64_t j = begin(star.y); j < end(star.y, image.height); ++j) {
+        for (std::int64_t i = begin(star.x); i < end(star.x, image.width); ++i) {
+            const double dx = static_cast<double>(i) + 0.5 - star.x,
+                         dy = static_cast<double>(j) + 0.5 - star.y;
+            if (dx * dx + dy * dy > reach * reach) continue;
+            const double value = profile_at(star.profile.shape, unit * (dx * dx + dy * dy)).value;
+            float* const p = image.at(i, j);
+            for (std::size_t c = 0; c < 3; ++c) p[c] += sign * static_cast<float>(star.amplitude[c] * value);
+        }
+    }
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,126 @@
+// prepare: what it writes for pictures and FITS, and every refusal.
+#include <cmath>
+#include <cstring>
+
+#include "scene_fixture.h"
+
+namespace astrosplat::test {
+namespace {
+
+// Nine stars on a slope, as a portable pixmap of 96x64 pixels.
+std::string starry_picture() {
+    std::string text = "P6\n96 64\n255\n";
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 96; ++x) {
+            const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 21.0) - 10.0;
+            const double light =
+                60.0 + 0.3 * x + 2.0 * ((x * 7 + y * 13) % 5) + 120.0 * std::exp(-(u * u + v * v) / 3.0);
+            text.append(3, static_cast<char>(static_cast<int>(light)));
+        }
+    }
+    return text;
+}
+
+// A card of a FITS header.
+std::string card(const std::string& text) { return text + std::string(80 - text.size(), ' '); }
+
+// The same stars as 32-bit floats, on a level far from 0, with one pixel undefined.
+std::string starry_fits() {
+    std::string file = card("SIMPLE  =                    T") + card("BITPIX  =                  -32") +
+                       card("NAXIS   =                    2") + card("NAXIS1  =                   96") +
+                       card("NAXIS2  =                   64") + card("END");
+    file.resize(2880, ' ');
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 96; ++x) {
+            const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 21.0) - 10.0;
+            const bool undefined = x == 3 && y == 3;
+            const auto value = undefined ? std::nanf("")
+                                         : static_cast<float>(1000.0 + (x * 7 + y * 13) % 5 +
+                                                              900.0 * std::exp(-(u * u + v * v) / 3.0));
+            std::uint32_t bits;
+            std::memcpy(&bits, &value, 4);
+            for (int shift = 24; shift >= 0; shift -= 8) file += static_cast<char>(bits >> shift & 255u);
+        }
+    }
+    file.resize((file.size() + 2879) / 2880 * 2880, '\0');
+    return file;
+}
+
+class PrepareCommand : public SceneTest {
+  protected:
+    PrepareCommand() {
+        write_text(folder / "stars.ppm", starry_picture());
+        write_text(folder / "stars.fits", starry_fits());
+    }
+    RunResult prepare(std::vector<std::string> more) const {
+        more.insert(more.begin(), {"prepare", "stars.ppm"});
+        return run(more);
+    }
+    // Lines of a table, its names among them.
+    std::size_t lines(const std::string& file) const {
+        const std::string text = text_of(folder / file);
+        return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    }
+};
+
+TEST_F(PrepareCommand, WritesAPictureAndATableOfItsStars) {
+    const RunResult result = prepare({"-o", "ready"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 5) << result.out;
+    EXPECT_NE(result.out.find("96x64 px"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("9 taken away, 0 of them saturated"), std::string::npos) << result.out;
+    EXPECT_EQ(
+        text_of(folder / "ready/stars.csv").rfind("x,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n", 0),
+        0u);
+    EXPECT_EQ(lines("ready/stars.csv"), 10u);
+    EXPECT_EQ(run({"prepare", "ready/picture.exr", "-o", "again"}).code, 0);
+    EXPECT_EQ(lines("again/stars.csv"), 1u) << "no star is left";
+    EXPECT_EQ(run({"new", "ready/picture.exr", "-o", "ready.toml"}).code, 0);
+}
+
+TEST_F(PrepareCommand, KeepsWhatIsNotAsked) {
+    ASSERT_EQ(prepare({"-o", "kept", "--keep-stars"}).code, 0);
+    EXPECT_FALSE(fs::exists(folder / "kept/stars.csv"));
+    EXPECT_EQ(run({"compare", "stars.ppm", "kept/picture.exr", "--max-difference", "0"}).code, 0);
+}
+
+TEST_F(PrepareCommand, TakesStarsFromFitsBeforeItIsStretched) {
+    const RunResult result = run({"prepare", "stars.fits", "-o", "ready"});
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.out.find("9 taken away"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("linear light, alpha"), std::string::npos)
+        << "a pixel has no value: " << result.out;
+    ASSERT_EQ(run({"prepare", "stars.fits", "-o", "kept", "--keep-stars", "--stretch", "linear"}).code, 0);
+    ASSERT_EQ(run({"prepare", "stars.fits", "-o", "log", "--keep-stars", "--stretch", "log"}).code, 0);
+    EXPECT_EQ(run({"compare", "kept/picture.exr", "log/picture.exr", "--max-difference", "0.01"}).code, 3);
+}
+
+TEST_F(PrepareCommand, SaturationAndThresholdAct) {
+    ASSERT_EQ(prepare({"-o", "saturated", "--saturation", "0.2"}).code, 0);
+    EXPECT_NE(text_of(folder / "saturated/stars.csv").find(",1\n"), std::string::npos);
+    ASSERT_EQ(prepare({"-o", "none", "--threshold", "1e6"}).code, 0);
+    EXPECT_EQ(lines("none/stars.csv"), 1u);
+}
+
+TEST_F(PrepareCommand, RefusesWhatItShould) {
+    const auto refused = [&](std::vector<std::string> more, const std::string& message) {
+        more.insert(more.end(), {"-o", "out", "--progress", "none"});
+        expect_one_line(prepare(more), 2, message);
+    };
+    refused({"--threshold", "0"}, "--threshold: expected a number above 0, found '0'");
+    refused({"--saturation", "much"}, "--saturation: expected a number above 0, found 'much'");
+    refused({"--stretch", "sqrt"}, "--stretch: expected auto, linear, asinh or log, found 'sqrt'");
+    refused({"--stretch", "log"}, "--stretch: expected a FITS picture, found 'stars.ppm'");
+    expect_one_line(run({"prepare", "missing.png", "-o", "out"}), 2, "missing.png");
+    expect_one_line(run({"prepare", "stars.pda", "-o", "out"}), 2, "stars.pda");
+    EXPECT_FALSE(fs::exists(folder / "out/picture.exr"));
+    write_text(folder / "mine/stars.csv", "mine");
+    expect_one_line(prepare({"-o", "mine"}), 2, "--overwrite");
+    EXPECT_EQ(text_of(folder / "mine/stars.csv"), "mine");
+    EXPECT_EQ(prepare({"-o", "mine", "--overwrite"}).code, 0);
+    EXPECT_EQ(lines("mine/stars.csv"), 10u);
+    EXPECT_EQ(prepare({"-o", "/proc/astrosplat"}).code, 4);
+}
+
+}  // namespace
+}  // namespace astrosplat::test
