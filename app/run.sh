@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# From a fresh clone to pictures: installs what is missing, builds the Release program, renders the demo scene's still
-# and a short fly-through into renders/. Run again, it renders only what has changed.
+# From a fresh clone to pictures: installs what is missing, builds the Release program, makes bodies of the demo's one
+# picture and renders a still and a short flight into renders/. Run again, it renders only what has changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-scene=assets/scenes/whirlpool.toml
+scene=assets/scenes/spiral.toml
 
 bash third_party/install.sh build
 cmake --preset release -DASTROSPLAT_TESTS=OFF >/dev/null
 cmake --build --preset release --target astrosplat
 
 program=build/release/astrosplat
-"$program" --batch "$scene" --frames 96 --resolution 1920x1080 --output renders/whirlpool.png --resume --overwrite
-"$program" --batch "$scene" --frames 1-231x10 --resolution 960x540 --output renders/flight/whirlpool.####.png --resume --overwrite
+"$program" --batch "$scene" --frames 80 --resolution 1600x1200 --output renders/spiral.png --resume --overwrite
+"$program" --batch "$scene" --frames 1-231x10 --resolution 800x600 --output renders/flight/spiral.####.png --resume --overwrite
 
-echo "The pictures are in $PWD/renders: whirlpool.png and flight/"
+echo "The pictures are in $PWD/renders: spiral.png and flight/"

@@ -1,6 +1,6 @@
-// astrosplat_make_assets FOLDER [whirlpool | deep_field | butterfly]: writes the demo textures and meshes
-// into FOLDER/textures and FOLDER/meshes. Everything is computed from hashes; the same build writes the same
-// bytes.
+// astrosplat_make_assets FOLDER [whirlpool | spiral | deep_field | butterfly]: writes the demo textures and
+// meshes into FOLDER/textures and FOLDER/meshes. Everything is computed from hashes; the same build writes
+// the same bytes.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -12,7 +12,8 @@
 int main(int argc, char** argv) {
     using namespace astrosplat::assets;
     if (argc < 2 || argc > 3) {
-        fmt::print(stderr, "usage: astrosplat_make_assets FOLDER [whirlpool | deep_field | butterfly]\n");
+        fmt::print(stderr,
+                   "usage: astrosplat_make_assets FOLDER [whirlpool | spiral | deep_field | butterfly]\n");
         return 2;
     }
     try {
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
         std::filesystem::create_directories(folder / "textures");
         std::filesystem::create_directories(folder / "meshes");
         if (only.empty() || only == "whirlpool") make_whirlpool(folder);
+        if (only.empty() || only == "spiral") make_spiral(folder);
         if (only.empty() || only == "deep_field") make_deep_field(folder);
         if (only.empty() || only == "butterfly") make_butterfly(folder);
     } catch (const std::exception& error) {

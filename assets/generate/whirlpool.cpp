@@ -133,17 +133,24 @@ SheetMesh disk_mesh() {
     });
 }
 
-// Single bright stars and clusters as a splat file: in a picture they would be drawn out into columns through
-// the thickness of the layer. Luminosity is a power law, shown as size and opacity.
-void save_clusters(const std::filesystem::path& file) {
-    std::vector<SplatRow> rows;
+// Calls each(place, light, tint, random index) for the bright young stars. Luminosity is a power law.
+template <class Each>
+void strew_clusters(Each each) {
     const auto chance = [](glm::vec2 p, const DiskPlace& place) {
         const float lumps = smoothstep(-0.2f, 0.6f, fbm(p * 13.0f, 411, 4, 0.6f));
         return rim(p) * place.young * lumps * smoothstep(0.05f, 0.2f, place.r);
     };
     strew(421, 330000, chance, [&](glm::vec2 p, const DiskPlace&, unsigned i) {
-        const float light = power_law(uniform(421, i, 4), 1.15f, 40.0f);
-        const glm::vec3 tint = shared::mix(young_color, glm::vec3(0.95f, 0.95f, 1.0f), uniform(421, i, 5));
+        each(p, power_law(uniform(421, i, 4), 1.15f, 40.0f),
+             glm::vec3(shared::mix(young_color, glm::vec3(0.95f, 0.95f, 1.0f), uniform(421, i, 5))), i);
+    });
+}
+
+// Single bright stars and clusters as a splat file: in a picture they would be drawn out into columns through
+// the thickness of the layer. Luminosity is a power law, shown as size and opacity.
+void save_clusters(const std::filesystem::path& file) {
+    std::vector<SplatRow> rows;
+    strew_clusters([&](glm::vec2 p, float light, glm::vec3 tint, unsigned i) {
         const glm::vec3 place(5.0f * p.x, warp(p) + 0.035f * normal(421, i, 6), -5.0f * p.y);
         rows.push_back(
             {place, tint, std::min(1.0f, 0.30f + 0.06f * light), 0.011f * std::sqrt(std::sqrt(light))});
@@ -180,6 +187,16 @@ void add_region(Canvas& canvas, glm::vec2 p, float flux, unsigned i) {
                  std::max(0.8f, size * 0.12f * picture_px));
 }
 
+// Calls each(place, random index) for the glowing regions of the arms.
+template <class Each>
+void strew_regions(Each each) {
+    const auto chance = [](glm::vec2 p, const DiskPlace& place) {
+        const float lumps = smoothstep(-0.05f, 0.5f, fbm(p * 12.0f, 541, 4, 0.7f));
+        return 0.9f * place.ridge * place.ridge * lumps * smoothstep(0.07f, 0.2f, place.r);
+    };
+    strew(501, 190000, chance, [&](glm::vec2 p, const DiskPlace&, unsigned i) { each(p, i); });
+}
+
 Canvas nebulae_picture() {
     Canvas canvas = make_canvas(picture_px, picture_px);
     paint(canvas, [](float u, float v) {
@@ -191,11 +208,7 @@ Canvas nebulae_picture() {
             0.022f * place.ridge * patches * (0.3f + threads) * smoothstep(0.06f, 0.2f, place.r);
         return glm::vec4(glow * glm::vec3(1.0f, 0.18f, 0.28f), 1.0f);
     });
-    const auto chance = [](glm::vec2 p, const DiskPlace& place) {
-        const float lumps = smoothstep(-0.05f, 0.5f, fbm(p * 12.0f, 541, 4, 0.7f));
-        return 0.9f * place.ridge * place.ridge * lumps * smoothstep(0.07f, 0.2f, place.r);
-    };
-    strew(501, 190000, chance, [&](glm::vec2 p, const DiskPlace&, unsigned i) {
+    strew_regions([&](glm::vec2 p, unsigned i) {
         add_region(canvas, p, 1.3f * power_law(uniform(501, i, 4), 1.05f, 26.0f), i);
     });
     Canvas out = make_canvas(picture_px, picture_px);
@@ -206,6 +219,46 @@ Canvas nebulae_picture() {
         const float wisps = shared::as_exp(1.6f * fbm(p * 70.0f, 551, 4, 0.65f));
         return glm::vec4(asinh_curve(glm::vec3(c) * (rim(p) * wisps), 0.22f, 2.6f), 1.0f);
     });
+    return out;
+}
+
+// Of stars of our own galaxy before it: few bright ones, many faint.
+void add_foreground_stars(Canvas& canvas, unsigned count) {
+    for (unsigned i = 0; i < count; ++i) {
+        const glm::vec2 place(uniform(431, i, 1) * static_cast<float>(canvas.width),
+                              uniform(431, i, 2) * static_cast<float>(canvas.height));
+        const float warmth = uniform(431, i, 4);
+        const glm::vec3 tint(0.75f + 0.25f * warmth, 0.9f, 1.1f - 0.5f * warmth);
+        add_glow(canvas, place, 1.2f * power_law(uniform(431, i, 3), 0.9f, 60.0f) * tint, 0.95f);
+    }
+}
+
+// All of it as a telescope would see it from above, on one flat picture, cut to 4:3.
+Canvas telescope_picture() {
+    Canvas canvas = make_canvas(picture_px, picture_px);
+    add_field_stars(canvas);
+    strew_clusters([&](glm::vec2 p, float light, glm::vec3 tint, unsigned) {
+        add_glow(canvas, in_pixels(p), 0.55f * light * tint, 0.85f);
+    });
+    strew_regions([&](glm::vec2 p, unsigned i) {
+        add_region(canvas, p, 0.8f * power_law(uniform(501, i, 4), 1.05f, 26.0f), i);
+    });
+    Canvas out = make_canvas(picture_px, 3 * picture_px / 4);
+    const int top = (picture_px - out.height) / 2;
+    paint(out, [&](float u, float v) {
+        const glm::vec2 p(2.0f * u - 1.0f, 1.5f * v - 0.75f);
+        const DiskPlace place = disk_place(p);
+        const glm::vec3 points(
+            canvas.at(static_cast<int>(u * picture_px),
+                      top + static_cast<int>((1.0f - v) * static_cast<float>(out.height))));
+        const float wisps = shared::as_exp(1.2f * fbm(p * 70.0f, 551, 4, 0.65f));
+        const glm::vec3 glow = 0.02f * place.ridge * wisps * glm::vec3(1.0f, 0.18f, 0.28f);
+        const glm::vec3 light = (old_light(p, place) + young_light(p, place) + glow) * rim(p);
+        const float depth = dust_depth(p, place) * rim(p);
+        return glm::vec4(extinct(light, depth) + extinct(points, 0.4f * depth), 1.0f);
+    });
+    add_foreground_stars(out, 260);
+    develop(out, 0.28f, 3.0f);
     return out;
 }
 
@@ -246,6 +299,10 @@ void make_whirlpool(const std::filesystem::path& folder) {
     save_png(thickness_picture(), folder / "textures/whirlpool_thickness.png", 3);
     save_obj(disk_mesh(), folder / "meshes/whirlpool_disk.obj", "a gently warped disk, radius 5");
     save_clusters(folder / "meshes/whirlpool_clusters.ply");
+}
+
+void make_spiral(const std::filesystem::path& folder) {
+    save_jpeg(telescope_picture(), folder / "textures/spiral.jpg", 90);
 }
 
 }  // namespace astrosplat::assets

@@ -11,3 +11,9 @@ for picture in whirlpool:96 nebula:1; do
         --output "$work/$name.png"
     oiiotool --nosoftwareattrib "$work/$name.png" --eraseattrib ".*" --quality 88 -o "$here/$name.jpg"
 done
+
+# Four frames of the flight on one picture.
+"$program" --batch "$here/../scenes/spiral.toml" --frames 1,80,140,240 --resolution 800x600 --no-cache \
+    --output "$work/spiral.####.png"
+oiiotool --nosoftwareattrib "$work/spiral.0001.png" "$work/spiral.0080.png" "$work/spiral.0140.png" \
+    "$work/spiral.0240.png" --mosaic 2x2 --eraseattrib ".*" --quality 90 -o "$here/spiral.jpg"

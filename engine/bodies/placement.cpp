@@ -14,12 +14,11 @@ namespace {
 
 using shared::as_hash, shared::as_log, shared::as_mix, shared::as_uniform;
 
-constexpr float least_sigma = 0.45f;         // texels; .62 as published ends 2 dB below
-constexpr double widest_sigma_share = 0.45;  // of H; larger dots are a fog of their own
-constexpr double shortest_wave = 5.0;        // texels at a width of 1920
-constexpr float knot_depth = 0.6f;           // scale height of a knot, of its sigma
-constexpr float widest_in_knots = 5.0f;      // texels, sigma of the largest dots that follow their knot
-constexpr double widest_filament = 30.0;     // texels at a width of 1920; what is wider is glow
+constexpr float least_sigma = 0.45f;      // texels; .62 as published ends 2 dB below
+constexpr double shortest_wave = 5.0;     // texels at a width of 1920
+constexpr float knot_depth = 0.6f;        // scale height of a knot, of its sigma
+constexpr float widest_in_knots = 5.0f;   // texels, sigma of the largest dots that follow their knot
+constexpr double widest_filament = 30.0;  // texels at a width of 1920; what is wider is glow
 
 // Values for features of 2, 4, 8 ... texels at a width of 1920; between them linear in the logarithm.
 double by_feature(const double (&values)[8], double feature) {
@@ -156,8 +155,10 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
     Placement placement;
     placement.kind = params.kind;
     placement.scale = static_cast<double>(brightest.width) / 1920.0;
-    placement.height = params.height > 0.0 ? params.height * texels_per_unit
-                                           : (params.kind == StructureKind::disk ? 0.018 : 0.011) * longest;
+    placement.height =
+        params.height > 0.0
+            ? params.height * texels_per_unit
+            : (params.kind == StructureKind::disk ? disk_thickness : sheet_thickness) * longest;
     placement.depth = 0.5 * params.depth * static_cast<double>(brightest.width);
     placement.clumps = params.clumps;
     placement.seed = seed;

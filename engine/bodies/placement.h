@@ -13,6 +13,11 @@
 
 namespace astrosplat {
 
+/// Scale heights by themselves, of a picture's longest side.
+inline constexpr double disk_thickness = 0.018, sheet_thickness = 0.011;
+/// Sigma of the widest dots, of the scale height; larger ones would be a fog of their own.
+inline constexpr double widest_sigma_share = 0.45;
+
 /// What depths depend on beside a dot's own place and band.
 struct Placement {
     StructureKind kind = StructureKind::disk;

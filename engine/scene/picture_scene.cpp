@@ -10,6 +10,7 @@
 
 #include "bodies/choose.h"
 #include "bodies/picture_light.h"
+#include "bodies/picture_splats.h"
 #include "core/real.h"
 #include "scene/new_scene.h"
 #include "scene/value.h"
@@ -55,6 +56,7 @@ grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 
 
 [layer.render]
 opacity = 1.0                     # of the whole layer
+lod     = {{ max_px = {split}, noise = 0.75 }}  # dots that look larger, close by, become clouds
 )";
 
 struct CameraKey {
@@ -100,6 +102,13 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
         2, 2 * std::llround(static_cast<double>(longest_px * side) / (2.0 * static_cast<double>(longest))));
 }
 
+// Pixels at 1080 lines that the widest dots have from the front, and a little more: there they stay whole.
+double split_above_px(StructureKind structure, double longest_over_height) {
+    const double thickness = structure == StructureKind::disk ? disk_thickness : sheet_thickness;
+    return 1.1 * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma_share * thickness *
+           longest_over_height * 1080.0;
+}
+
 }  // namespace
 
 PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
@@ -133,6 +142,7 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("distance", fmt::format("{:.6g}", distance)), fmt::arg("fov", fmt::format("{:.1f}", fov)),
         fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
+        fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height))),
         fmt::arg("depth", scene.structure == StructureKind::walls ? "0.18" : "0.15"),
         fmt::arg("opacity", scene.structure == StructureKind::walls ? "0.3" : "0.55"));
     return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
