@@ -11,11 +11,22 @@
 
 #include <type_traits>
 
+#include "core/glsl.h"
 #include "render/fold_batch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+namespace lane_maths {  // the shared maths, compiled for this instruction set
+namespace {
+using namespace astrosplat::glsl;
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include "maths.glsl"
+#pragma GCC diagnostic pop
+}  // namespace
+}  // namespace lane_maths
 
 using D = hn::CappedTag<float, TilePlanes::block_pixels>;
 using DI = hn::RebindToSigned<D>;
@@ -249,12 +260,16 @@ struct LightenPixels {
     }
 };
 
-/// 1 - (1 - s)^exponent lane by lane, s in [0, 1].
-HWY_INLINE V absorbed(V s, float exponent) {
-    alignas(64) float at[lanes];
-    store(s, at);
-    for (int i = 0; i < lanes; ++i) at[i] = shared::blend_absorbed(at[i], exponent);
-    return load(at);
+/// blend_absorbed() of r, g and b with one logarithm, s in [0, 1]. Plain loops, which become vectors.
+HWY_FLATTEN inline void absorb(const SplatBatch& batch, int i, V s, V (&hidden)[4]) {
+    alignas(64) float rest[lanes], log[lanes], through[lanes];
+    store(hn::Sub(all(1.0f), s), rest);
+    for (int n = 0; n < lanes; ++n) log[n] = lane_maths::as_log(rest[n]);
+    for (int k = 0; k < 3; ++k) {
+        const float exponent = batch.occlusion[k][i];
+        for (int n = 0; n < lanes; ++n) through[n] = lane_maths::as_exp(exponent * log[n]);
+        hidden[k] = hn::Sub(all(1.0f), load(exponent == 1.0f ? rest : through));
+    }
 }
 
 /// Any mix of the affine blends. kHolds: there are holdouts, whose alpha is taken away.
@@ -287,10 +302,8 @@ struct GeneralPixels {
         for (int k = 0; k < 4; ++k) hidden[k] = hn::Mul(s, all(step.batch.occlusion[k][step.i]));
         const Hiding hiding = step.batch.hiding[step.i];
         if (hiding != Hiding::proportional) {  // else s and the occlusions are at most 1
-            for (int k = 0; k < 3; ++k)
-                hidden[k] = hiding == Hiding::absorbing
-                                ? absorbed(clamp_one(s), step.batch.occlusion[k][step.i])
-                                : clamp_one(hidden[k]);
+            for (int k = 0; k < 3; ++k) hidden[k] = clamp_one(hidden[k]);
+            if (hiding == Hiding::absorbing) absorb(step.batch, step.i, clamp_one(s), hidden);
             hidden[3] = hn::Div(hn::Add(hn::Add(hidden[0], hidden[1]), hidden[2]), all(3.0f));
         }
         for (int k = 0; k < 3; ++k) {
