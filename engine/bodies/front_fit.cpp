@@ -89,10 +89,8 @@ double FrontView::psnr_db() const {
                 double sum = 0.0;
                 for (std::int64_t x = 0; x < target_.width; ++x) {
                     for (int c = 0; c < 3; ++c) {
-                        const double seen =
-                            real::linear_to_srgb(std::clamp(frame_.beauty.at(x, y)[c], 0.0f, 1.0f));
-                        const double wanted =
-                            real::linear_to_srgb(std::clamp(target_.at(x, y)[c], 0.0f, 1.0f));
+                        const double seen = static_cast<double>(display_srgb(frame_.beauty.at(x, y)[c]));
+                        const double wanted = static_cast<double>(display_srgb(target_.at(x, y)[c]));
                         sum += (seen - wanted) * (seen - wanted);
                     }
                 }
