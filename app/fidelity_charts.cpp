@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/color.h"
+#include "fidelity/signed_difference.h"
 #include "fidelity_table.h"
 #include "output/encode.h"
 #include "output/write_picture.h"
@@ -15,7 +15,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr double full_colour = 0.1;  // difference, or share of light, that is shown in full colour
+constexpr double full_colour = 0.1;  // share of light that is shown in full colour
 
 std::string base64(const std::string& bytes) {  // RFC 4648
     constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -43,12 +43,8 @@ Image opaque(const Image& linear) {
     return image;
 }
 
-float displayed_mean(const float* p) {
-    return (display_srgb(p[0]) + display_srgb(p[1]) + display_srgb(p[2])) / 3.0f;
-}
-
-/// -1 .. 1: how far a difference is from none to full colour.
-double strength(double difference) { return std::clamp(difference / full_colour, -1.0, 1.0); }
+/// -1 .. 1: how far light that is amiss is from none to full colour.
+double strength(double amiss) { return std::clamp(amiss / full_colour, -1.0, 1.0); }
 
 constexpr double chart_width = 440, chart_height = 250, chart_left = 44, chart_top = 14, chart_bottom = 40;
 
@@ -88,17 +84,12 @@ std::string picture_url(const Image& linear) {
 }
 
 std::string difference_url(const Image& a, const Image& b) {
-    constexpr double none[3] = {18, 18, 22}, more[3] = {255, 150, 40}, less[3] = {70, 160, 255};
+    const Image shown = signed_difference(a, b);
     std::vector<unsigned char> rgb;
     rgb.reserve(static_cast<std::size_t>(a.width * a.height * 3));
-    for (std::int64_t y = 0; y < a.height; ++y)
-        for (std::int64_t x = 0; x < a.width; ++x) {
-            const double t =
-                strength(static_cast<double>(displayed_mean(a.at(x, y)) - displayed_mean(b.at(x, y))));
-            const double* const end = t > 0.0 ? more : less;
-            for (int c = 0; c < 3; ++c)
-                rgb.push_back(static_cast<unsigned char>(none[c] + (end[c] - none[c]) * std::fabs(t) + 0.5));
-        }
+    for (std::size_t i = 0; i < shown.pixels.size(); i += 4)
+        for (std::size_t c = 0; c < 3; ++c)
+            rgb.push_back(static_cast<unsigned char>(shown.pixels[i + c] * 255.0f + 0.5f));
     return png_url(a, rgb);
 }
 

@@ -46,20 +46,27 @@ void require_proportions(const FidelityReference& reference) {
                   fmt::format("{} x {} px", reference.picture.width, reference.picture.height));
 }
 
+using LayerSets = std::vector<std::shared_ptr<const SplatSet>>;
+
+LayerSets load_sets(const Scene& now, const SetCache& cache, const Progress& progress) {
+    LayerSets sets;
+    for (const LayerParams& layer : now.layers) {
+        OptionalColumns wanted{false, false, false};
+        wanted.uv = !layer.look.thickness.map.empty();
+        sets.push_back(nullptr);
+        if (!layer.visible) continue;
+        LoadedSet loaded = load_source(cache, layer.source, layer.name, progress, nullptr, wanted);
+        sets.back() = std::make_shared<const SplatSet>(std::move(loaded.set));
+    }
+    return sets;
+}
+
 // The scene's sets and a pipeline that renders it from one camera after the other.
 class FidelityViews {
   public:
-    FidelityViews(const Scene& now, const SetCache& cache, const Progress& progress) : scene_(now) {
+    FidelityViews(const Scene& now, LayerSets sets) : scene_(now), sets_(std::move(sets)) {
         scene_.animation.clear();
         scene_.environment = {};
-        for (const LayerParams& layer : now.layers) {
-            OptionalColumns wanted{false, false, false};
-            wanted.uv = !layer.look.thickness.map.empty();
-            sets_.push_back(nullptr);
-            if (!layer.visible) continue;
-            LoadedSet loaded = load_source(cache, layer.source, layer.name, progress, nullptr, wanted);
-            sets_.back() = std::make_shared<const SplatSet>(std::move(loaded.set));
-        }
     }
 
     Image render(const FrontFrame& frame, JudgingView view, std::int64_t width_px, std::int64_t height_px,
@@ -76,9 +83,21 @@ class FidelityViews {
 
   private:
     Scene scene_;
-    std::vector<std::shared_ptr<const SplatSet>> sets_;
+    LayerSets sets_;
     Pipeline pipeline_;
 };
+
+FrontComparison compare_front(FidelityViews& views, const FidelityReference& reference, double pixel_filter,
+                              std::int64_t width_px, const Progress& progress) {
+    const std::int64_t height_px = reference.height_px(width_px);
+    FrontComparison front;
+    front.seen = views.render(reference.frame, JudgingView::front, width_px, height_px, progress);
+    front.picture = resampled(reference.picture, map_to_width(reference.picture, width_px, height_px),
+                              width_px, height_px, pixel_filter);
+    progress.check();
+    front.fidelity = front_fidelity(front.seen, front.picture, reference.border);
+    return front;
+}
 
 }  // namespace
 
@@ -92,6 +111,8 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<std::
     const LayerParams& layer = layer_with_picture(now);
     FidelityReference reference;
     reference.layer = layer.name;
+    const StructureParams& structure = layer.source.structure;
+    if (structure.kind != StructureKind::columns) reference.border = structure.border;
     if (file) reference.file = *file;
     if (file) reference.picture = load_linear_image(*file, progress);
     try {
@@ -124,20 +145,18 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
     const auto step = [&](const std::string& name) {
         return settings.begin_step ? settings.begin_step(name) : Progress{};
     };
-    FidelityViews views(now, settings.cache, step("preparing"));
+    FidelityViews views(now, load_sets(now, settings.cache, step("preparing")));
     FidelityReport report;
     report.layer = reference.layer;
     report.reference = reference.file;
-    const auto measure_front = [&](std::int64_t width_px, Image& seen, Image& picture) {
-        const std::int64_t height_px = reference.height_px(width_px);
-        const Progress progress = step(fmt::format("front at {} px", width_px));
-        seen = views.render(reference.frame, JudgingView::front, width_px, height_px, progress);
-        picture = resampled(reference.picture, map_to_width(reference.picture, width_px, height_px), width_px,
-                            height_px, now.output.pixel_filter);
-        progress.check();
-        return front_fidelity(seen, picture);  // a border in which the light fades is to be left out here
+    const auto front_at = [&](std::int64_t width_px) {
+        return compare_front(views, reference, now.output.pixel_filter, width_px,
+                             step(fmt::format("front at {} px", width_px)));
     };
-    report.front = measure_front(settings.width_px, report.front_view, report.front_reference);
+    FrontComparison front = front_at(settings.width_px);
+    report.front = std::move(front.fidelity);
+    report.front_view = std::move(front.seen);
+    report.front_reference = std::move(front.picture);
     const auto render = [&](JudgingView view, const std::int64_t(&aspect)[2], const char* name) {
         return views.render(reference.frame, view, settings.width_px,
                             settings.width_px * aspect[1] / aspect[0], step(name));
@@ -146,11 +165,15 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
     report.needles = needles(report.side_view);
     report.edge_view = render(JudgingView::edge, edge_aspect, "edge-on");
     report.edge = edge_on_profile(report.edge_view);
-    Image seen, picture;
-    report.full = reference.picture.width == settings.width_px
-                      ? report.front
-                      : measure_front(reference.picture.width, seen, picture);
+    report.full = reference.picture.width == settings.width_px ? report.front
+                                                               : front_at(reference.picture.width).fidelity;
     return report;
+}
+
+FrontComparison compare_front(const Scene& now, LayerSets sets, const FidelityReference& reference,
+                              std::int64_t width_px, const Progress& progress) {
+    FidelityViews views(now, std::move(sets));
+    return compare_front(views, reference, now.output.pixel_filter, width_px, progress);
 }
 
 }  // namespace astrosplat

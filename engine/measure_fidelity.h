@@ -5,8 +5,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/image.h"
 #include "core/progress.h"
@@ -16,6 +18,7 @@
 #include "scene/front_frame.h"
 #include "scene/scene.h"
 #include "sets/set_cache.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 
@@ -25,6 +28,7 @@ struct FidelityReference {
     std::filesystem::path file;  // empty: the layer's own picture
     FrontFrame frame;            // world space
     Image picture;               // linear light on black, in its own resolution
+    double border = 0.0;         // share of its width along every edge where light fades: not compared
 
     /// Height in px of a front view so wide.
     std::int64_t height_px(std::int64_t width_px) const;
@@ -56,6 +60,18 @@ struct FidelitySettings {
 
 /// Bytes of pictures and measures at their peak, about: what comes on top of the splats.
 std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySettings& settings = {});
+
+/// A front view beside what it is compared with, both as linear light on black.
+struct FrontComparison {
+    FrontFidelity fidelity;
+    Image seen, picture;
+};
+
+/// The front view alone, of sets that are there already, one a layer; null: the layer is left out. Throws
+/// InputError, Cancelled.
+FrontComparison compare_front(const Scene& now, std::vector<std::shared_ptr<const SplatSet>> sets,
+                              const FidelityReference& reference, std::int64_t width_px,
+                              const Progress& progress = {});
 
 /// Renders the scene as it stands, with its looks and without its environment, and measures. Throws
 /// InputError, Cancelled.

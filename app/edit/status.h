@@ -54,6 +54,17 @@ struct PictureStatus {
     int width = 0, height = 0;  // px of the whole picture, also where a part of it is shown
 };
 
+/// How true the view from the front is to the picture that the splats were made of.
+struct FrontStatus {
+    bool changed_by_look = false;  // then it is not meant to be, and is compared only where that is asked for
+    bool working = false;
+    bool measured = false;
+    double psnr_db = 0.0, ssim = 0.0;
+    double light = 1.0;         // over the picture's
+    std::int64_t width_px = 0;  // of the view that was compared
+    std::string error;          // why there is nothing to compare with, one line
+};
+
 struct PixelProbe {
     int x = 0, y = 0;
     float rgba[4] = {0, 0, 0, 0};  // linear, premultiplied
@@ -88,8 +99,9 @@ struct Message {
 
 struct Status {
     PictureStatus picture;
-    std::vector<LayerStatus> layers;  // as in the scene
-    Bounds box;                       // of all visible layers, world space
+    std::optional<FrontStatus> front;  // none: no layer has a picture
+    std::vector<LayerStatus> layers;   // as in the scene
+    Bounds box;                        // of all visible layers, world space
     std::optional<PixelProbe> probe;
     std::vector<Snapshot> snapshots;
     int b_snapshot = -1;

@@ -16,7 +16,14 @@ namespace astrosplat {
 
 enum class ViewKind { camera, free, front, top, side };
 enum class SizeMode { fit, one_to_one };  // the viewport's size, or the output's resolution
-enum class CompareMode { a, wipe, b, reference, difference };
+enum class CompareMode {
+    a,
+    wipe,
+    b,
+    reference,
+    difference,
+    front  // where the view from the front differs from the layer's own picture
+};
 enum class PanelTab { source, look, render, camera, output };
 enum class PreviewEngine { automatic, opengl, processor };
 

@@ -75,6 +75,9 @@ void set_compare(GuiFrame& f, CompareMode mode) {
     if (needs_reference && f.view.reference.empty()) request(f, Command::Kind::set_reference);
     f.view.compare = mode;
 }
+void toggle_front(GuiFrame& f) { f.view.compare = shows_front(f) ? CompareMode::a : CompareMode::front; }
+bool has_front(const GuiFrame& f) { return f.status.front.has_value(); }
+bool shows_front(const GuiFrame& f) { return f.view.compare == CompareMode::front; }
 void swap_a_b(GuiFrame& f) {
     f.view.compare = f.view.compare == CompareMode::b ? CompareMode::a : CompareMode::b;
 }

@@ -27,6 +27,9 @@ void three_quarter(GuiFrame& f);
 void toggle_one_to_one(GuiFrame& f);
 bool is_one_to_one(const GuiFrame& f);
 void set_compare(GuiFrame& f, CompareMode mode);  // asks for a reference where there is none yet
+void toggle_front(GuiFrame& f);
+bool has_front(const GuiFrame& f);
+bool shows_front(const GuiFrame& f);
 void swap_a_b(GuiFrame& f);
 
 void duplicate_selected_layer(GuiFrame& f);

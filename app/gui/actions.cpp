@@ -103,6 +103,7 @@ const Action table[] = {
     compare<CompareMode::wipe>("Wipe A | B"),
     compare<CompareMode::reference>("Reference"),
     compare<CompareMode::difference>("Difference"),
+    {"View", "Front against its picture", plain('D'), toggle_front, has_front, shows_front},
     {"View", "Load reference...", {}, ask<Kind::set_reference>},
     below_line(flip<&ViewState::gate>("View", "Gate", plain('G'))),
     flip<&ViewState::safe_areas>("View", "Safe areas"),

@@ -81,7 +81,7 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
             little ? "less than a tenth of the splats" : "", color::accent, little};
 }
 
-void draw_badge(GuiFrame& frame, const Rect& area) {
+float draw_badge(GuiFrame& frame, const Rect& area) {
     BadgeText badge = badge_text(frame.document.scene(), frame.status);
     const char* word = button_word(frame.status);
     ImGui::PushFont(small_font());
@@ -116,6 +116,42 @@ void draw_badge(GuiFrame& frame, const Rect& area) {
         press_button(frame);
     if (badge.text != whole && ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))
         ImGui::SetTooltip("%s", whole.c_str());
+    ImGui::PopFont();
+    return x + width;
+}
+
+std::string front_text(const FrontStatus& front) {
+    if (front.measured) {
+        const double light = std::round((front.light - 1.0) * 1000.0) / 10.0 + 0.0;  // %; -0 becomes 0
+        return fmt::format("Front {:.1f} dB, SSIM {:.3f}, light {:+.1f} %", front.psnr_db, front.ssim, light);
+    }
+    if (!front.error.empty()) return "Front cannot be compared: " + front.error;
+    if (front.working) return "Comparing the front";
+    return front.changed_by_look ? "Front changed by look" : "";
+}
+
+void draw_front_badge(GuiFrame& frame, const Rect& area, float left) {
+    if (!frame.status.front) return;
+    const FrontStatus& front = *frame.status.front;
+    const std::string whole = front_text(front);
+    if (whole.empty()) return;
+    ImGui::PushFont(small_font());
+    const float x = left + px(gap), room = area.x + area.width - px(inset) - x - 2 * px(padding);
+    const std::string text = front.error.empty() ? whole : fitting(whole, room);
+    const float width = ImGui::CalcTextSize(text.c_str()).x + 2 * px(padding);
+    if (width <= room + 2 * px(padding)) {
+        const float y = area.y + area.height - px(inset) - px(height);
+        ImDrawList* list = ImGui::GetWindowDrawList();
+        list->AddRectFilled({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f),
+                            px(3));
+        list->AddText({x + px(padding), y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f)},
+                      front.measured && !front.changed_by_look ? color::text : color::dim, text.c_str());
+        if (ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))
+            ImGui::SetTooltip("%s\n%s", whole.c_str(),
+                              front.changed_by_look
+                                  ? "The look or the mixing differs from what shows a picture as it is"
+                                  : "The view from the front against its picture; D shows where they differ");
+    }
     ImGui::PopFont();
 }
 

@@ -131,7 +131,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     draw_gate(frame, area, picture);
     draw_wipe(frame, area, picture);
     draw_view_line(frame, area, picture);
-    draw_badge(frame, area);
+    draw_front_badge(frame, area, draw_badge(frame, area));
     ImGui::PopClipRect();
 }
 

@@ -61,7 +61,7 @@ void shadowed(ImDrawList* list, ImVec2 at, ImU32 c, const std::string& text) {
 void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& picture) {
     const ViewState& view = frame.view;
     const bool through_camera = view.view == ViewKind::camera;
-    if (!through_camera || frame.status.picture.width <= 0) return;
+    if (!through_camera || frame.status.picture.width <= 0 || view.compare == CompareMode::front) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Rect gate = gate_of(frame.document.scene(), picture);
     const ImU32 grey = color::with_opacity(color::dim, 0.7f);
@@ -103,6 +103,7 @@ void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& picture) {
 
 void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& picture) {
     const OutputParams& output = frame.document.scene().output;
+    const bool difference = frame.view.compare == CompareMode::front;
     std::string text = view_names[static_cast<std::size_t>(frame.view.view)];
     text += fmt::format("   frame {:g}", frame.view.frame);
     if (frame.view.view == ViewKind::camera && frame.view.gate)
@@ -110,9 +111,11 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& picture
     if (frame.view.lock_to_camera) text += "   locked to the camera";
     if (frame.view.size == SizeMode::one_to_one)
         text += fmt::format("   {}x{} at {:.0f} %", output.width, output.height, frame.view.zoom * 100.0);
+    if (difference)
+        text = "Front view: orange where it is brighter than the picture, blue where it is darker";
     ImGui::PushFont(small_font());
     // Inside the gate, clear of its line.
-    const bool gated = frame.view.view == ViewKind::camera && frame.view.gate;
+    const bool gated = frame.view.view == ViewKind::camera && frame.view.gate && !difference;
     const Rect gate = gated ? gate_of(frame.document.scene(), picture) : area;
     const float left = std::max(area.x, gate.x), top = std::max(area.y, gate.y);
     shadowed(ImGui::GetWindowDrawList(), {left + px(inset), top + px(inset)}, color::dim, text);

@@ -84,7 +84,7 @@ void Comparison::load_reference(const std::filesystem::path& file) {
 void Comparison::show(const Scene& scene, const ViewState& view, const PictureOfB& how,
                       DisplaySettings& shown) {
     using Mode = DisplaySettings::Mode;
-    comparing_ = view.compare != CompareMode::a;
+    comparing_ = view.compare != CompareMode::a && view.compare != CompareMode::front;
     if (!comparing_) return;
     const bool has_reference = reference_.handle() != 0;
     const bool with_reference = view.compare == CompareMode::reference ||

@@ -32,7 +32,8 @@ void wait_for_picture(Session& session, bool final, const DrawFrame& draw_frame)
             throw InputError(session.status.picture.error);
         for (const LayerStatus& layer : session.status.layers)
             if (!layer.error.empty()) throw InputError(layer.error);
-        if (session.sets.loaded(session.document) && (final ? settled(session) : preview_exact(session)))
+        if (session.sets.loaded(session.document) &&
+            (final ? settled(session) && !session.front.working() : preview_exact(session)))
             return;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }

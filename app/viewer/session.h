@@ -19,10 +19,12 @@
 #include "edit/view_state.h"
 #include "gl/context.h"
 #include "gl/display.h"
+#include "gl/picture_texture.h"
 #include "gui/gui.h"
 #include "viewer/camera_overlay.h"
 #include "viewer/comparison.h"
 #include "viewer/disk_watch.h"
+#include "viewer/front_check.h"
 #include "viewer/jobs.h"
 #include "viewer/navigator.h"
 #include "viewer/picture.h"
@@ -47,6 +49,10 @@ struct Session {
     std::shared_ptr<PictureFiles> files = std::make_shared<PictureFiles>();
     ViewPicture picture{files};  // A
     Comparison comparison{files};
+    FrontCheck front;
+    std::shared_ptr<const FrontFound> front_shown;  // whose difference is in the texture
+    PictureTexture front_texture;
+    std::uint64_t fronts_shown = 0;  // how many were in the texture
     Display display;
     CameraOverlay overlay;
     Navigator navigator;

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "edit/view_camera.h"
 #include "scene/animate.h"
@@ -115,6 +118,56 @@ DisplaySettings display_settings(const Session& session, const OutputParams& out
     return shown;
 }
 
+/// Compares the front with its picture while A is at rest; null: nothing is found yet.
+std::shared_ptr<const FrontFound> check_front(Session& session, const Scene& now) {
+    std::optional<FrontStatus>& status = session.status.front;
+    const bool at_rest = session.picture.status().state == PictureState::final;
+    const bool shown = session.view.compare == CompareMode::front;
+    status.reset();
+    if (!at_rest) session.front.cancel();
+    if (session.viewport_is_picture || !has_front_picture(now) || !(at_rest || shown)) return {};
+    status.emplace();
+    status->changed_by_look = front_changed_by_look(now);
+    if (status->changed_by_look && !shown) return {};
+    std::vector<std::shared_ptr<const SplatSet>> sets;
+    for (const LayerParams& layer : now.layers) {
+        const auto loaded = session.sets.loader().layer(layer.name);
+        sets.push_back(loaded && layer.visible ? loaded->set : nullptr);
+    }
+    const FrontRequest request = front_request(now, std::move(sets), session.disk.changes());
+    if (at_rest) session.front.want(request);
+    const std::shared_ptr<const FrontFound> found = session.front.found(request);
+    status->working = session.front.working();
+    if (!found) return {};
+    status->error = found->error;
+    if (!found->error.empty()) return {};
+    status->measured = true;
+    status->psnr_db = found->fidelity.psnr_db;
+    status->ssim = found->fidelity.ssim;
+    status->light = found->fidelity.flux.frame;
+    return found;
+}
+
+/// The signed difference in place of all else, as large as the viewport has room for it.
+void show_front(Session& session, const std::shared_ptr<const FrontFound>& found, DisplaySettings& shown) {
+    if (session.front_shown != found) {
+        session.front_texture.upload(found->difference);
+        session.front_shown = found;
+        ++session.fronts_shown;
+    }
+    const glm::vec2 port(session.viewport_px);
+    const auto width = static_cast<float>(found->difference.width),
+               height = static_cast<float>(found->difference.height);
+    const float scale = std::min(port.x / width, port.y / height);
+    shown.b = session.front_texture.handle();
+    shown.b_is_display = true;
+    shown.mode = DisplaySettings::Mode::b;
+    shown.width = std::round(scale * width);
+    shown.height = std::round(scale * height);
+    shown.x = std::round(0.5f * (port.x - shown.width));
+    shown.y = std::round(0.5f * (port.y - shown.height));
+}
+
 }  // namespace
 
 Scene evaluated(const Scene& scene, const ViewState& view) {
@@ -166,7 +219,9 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     };
     session.comparison.show(session.document.scene(), session.view,
                             {request_for, choice, may_settle && a_is_done, now}, shown);
-    shown.content = 1 + session.picture.version() + session.comparison.version();
+    const std::shared_ptr<const FrontFound> front = check_front(session, scene);
+    if (front && session.view.compare == CompareMode::front) show_front(session, front, shown);
+    shown.content = 1 + session.picture.version() + session.comparison.version() + session.fronts_shown;
     session.status.picture_texture =
         to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));
 }

@@ -121,6 +121,39 @@ TEST(Picture, TheBadgeSaysHowFinalItIs) {
     EXPECT_EQ(badge_text(document.scene(), status).beside, "");
 }
 
+TEST(Picture, TheFrontIsMeasuredBesideTheBadge) {
+    FrontStatus front;
+    EXPECT_EQ(front_text(front), "");
+    front.working = true;
+    EXPECT_EQ(front_text(front), "Comparing the front");
+    front.working = false;
+    front.changed_by_look = true;
+    EXPECT_EQ(front_text(front), "Front changed by look");
+    front.measured = true;
+    front.psnr_db = 39.62;
+    front.ssim = 0.9756;
+    front.light = 0.9969;
+    EXPECT_EQ(front_text(front), "Front 39.6 dB, SSIM 0.976, light -0.3 %");
+    front.light = 0.99996;
+    EXPECT_EQ(front_text(front), "Front 39.6 dB, SSIM 0.976, light +0.0 %");
+    front = {};
+    front.error = "no picture";
+    EXPECT_EQ(front_text(front), "Front cannot be compared: no picture");
+}
+
+TEST(Picture, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
+    TestWindow window(example_document());
+    window.frame();
+    window.key('D');
+    EXPECT_EQ(window.view.compare, CompareMode::a);
+    window.status.front.emplace();
+    window.frame();
+    window.key('D');
+    EXPECT_EQ(window.view.compare, CompareMode::front);
+    window.key('D');
+    EXPECT_EQ(window.view.compare, CompareMode::a);
+}
+
 TEST(Picture, TheBadgesButtons) {
     TestWindow window(example_document());
     window.status.picture.state = PictureState::failed;

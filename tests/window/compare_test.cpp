@@ -23,6 +23,18 @@ TEST_F(WindowCompare, TabShowsTheStoredLookAndTheOneAtHand) {
     expect_title("scene.toml - edited");
 }
 
+/// The ground of a signed difference is what no picture of the scene has.
+TEST_F(WindowCompare, DShowsWhereTheFrontDiffersAndThePictureAgain) {
+    start();
+    const Pixels before = settled_picture();
+    constexpr std::uint32_t ground = IM_COL32(18, 18, 22, 255);
+    ASSERT_EQ(count_of(before, ground), 0);
+    person->key("d");
+    EXPECT_TRUE(comes_true([&] { return count_of(picture(), ground) > 1000; })) << program->err_so_far();
+    person->key("d");
+    expect_settled(before);
+}
+
 /// Of a picture larger than the viewport its middle, pixel by pixel as it will be in the file.
 TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
     std::string text = text_of(scene_file);
