@@ -68,7 +68,7 @@ struct FrontStatus {
 struct PixelProbe {
     int x = 0, y = 0;
     float rgba[4] = {0, 0, 0, 0};  // linear, premultiplied
-    std::optional<float> depth;    // scene units
+    std::optional<float> depth;    // scene units; of final pictures of scenes that write depth
 };
 
 struct Snapshot {

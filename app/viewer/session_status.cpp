@@ -66,13 +66,21 @@ void probe(Session& session, glm::dvec2 mouse_px) {
         static_cast<std::int64_t>(std::floor((mouse_px.y - place.y) / place.height * request.height));
     const Image* pixels = session.picture.pixels();
     if (!pixels) return;
-    const std::int64_t px = x - request.region.x, py = y - request.region.y;
-    if (px < 0 || py < 0 || px >= pixels->width || py >= pixels->height) return;
+    const std::shared_ptr<const RenderedFrame> final = session.picture.final_frame();
+    session.status.probe = probe_of(*pixels, final ? &final->depth : nullptr, request.region, x, y);
+}
+
+std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, const Region& region,
+                                   std::int64_t x, std::int64_t y) {
+    const std::int64_t px = x - region.x, py = y - region.y;
+    if (px < 0 || py < 0 || px >= pixels.width || py >= pixels.height) return std::nullopt;
     PixelProbe found;
     found.x = static_cast<int>(x);
     found.y = static_cast<int>(y);
-    std::copy_n(pixels->at(px, py), 4, found.rgba);
-    session.status.probe = found;
+    std::copy_n(pixels.at(px, py), 4, found.rgba);
+    const bool has_depth = depth && depth->width == pixels.width && depth->height == pixels.height;
+    if (has_depth && *depth->at(px, py) != 0.0f) found.depth = *depth->at(px, py);
+    return found;
 }
 
 }  // namespace astrosplat

@@ -1,6 +1,8 @@
 // What the widgets are told: layers, picture, machine, the pixel under the mouse.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -17,5 +19,10 @@ void say_new_errors(Status& status, std::set<std::string>& said);
 
 /// Fills Status::probe with the linear pixel under the mouse, px of the viewport.
 void probe(Session& session, glm::dvec2 mouse_px);
+
+/// The pixel x, y of a whole picture of which `pixels` is the region. The depth is that of `depth`, the final
+/// frame's, where there is one and the pixel holds something. None outside of the region.
+std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, const Region& region,
+                                   std::int64_t x, std::int64_t y);
 
 }  // namespace astrosplat
