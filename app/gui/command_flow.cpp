@@ -38,7 +38,7 @@ const char* before_what(Kind kind) {
 }  // namespace
 
 bool CommandFlow::busy() const {
-    return dialog_.is_open() || question_ || conflict_ || after_save_ || !asked_.empty() || answer_.done;
+    return dialog_.is_open() || question_ || after_save_ || !asked_.empty() || answer_.done;
 }
 
 void CommandFlow::take(GuiFrame& frame, Command command, Commands& out) {
