@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "source/open_picture.h"
 
 namespace astrosplat {
 
@@ -52,6 +53,7 @@ void PictureFile::check(bool done) {
     if (done && !sink_.failure) return;
     std::string reason = out_ ? out_->geterror() : OIIO::geterror();
     if (out_) {
+        const QuietStderr quiet;  // libpng says that pixels are missing
         out_->close();
         (void)out_->geterror();  // a message left behind would be printed
     }

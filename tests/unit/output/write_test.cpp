@@ -391,7 +391,9 @@ TEST_F(WriteTest, AFullDiskIsAnErrorInEveryFormatAndKeepsTheOldFrame) {
         for (const std::size_t room :
              {std::size_t{0}, std::size_t{100}, before.size() / 2, before.size() - 1}) {
             const FileLimit full(room);
+            testing::internal::CaptureStderr();
             const std::string message = message_of<OutputError>([&] { write(name, {}, frame); });
+            EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "a library's own line";
             EXPECT_EQ(message, file.string() + ": cannot be written: File too large") << room;
         }
         EXPECT_TRUE(bytes_of(file) == before) << name;
