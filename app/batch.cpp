@@ -98,7 +98,7 @@ void BatchRun::prepare() {
                          plan_.scene.output.width, plan_.scene.output.height,
                          human_count(job.splats, "splat"), human_bytes(static_cast<double>(job.bytes))));
     pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache);
-    check_unchanged(plan_.inputs);
+    check_unchanged(plan_.inputs, Progress{{}, &interrupted()});
 }
 
 RenderSettings BatchRun::settings(const FramePlan& frame) const {

@@ -197,14 +197,14 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache&
 Pipeline::~Pipeline() = default;
 
 void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets,
-                         const Environment* loaded) {
+                         const Environment* loaded, const Progress& progress) {
     assert(sets.size() == scene.layers.size());
     State& state = *state_;
     check_supported(scene.camera);
     if (!same_pictures(scene.environment, state.scene.environment)) {
         std::optional<Environment> environment;
         if (has_environment(scene.environment))
-            environment = loaded ? *loaded : load_environment(scene.environment);
+            environment = loaded ? *loaded : load_environment(scene.environment, {{}, progress.cancelled});
         state.environment = std::move(environment);
     }
     std::vector<LayerState> layers;

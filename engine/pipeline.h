@@ -38,9 +38,9 @@ class Pipeline {
     /// out. What did not change is kept: environment pictures of the same files, and the thickness map and
     /// shaded splats of a set that was in use, so that the next frame pays only for what changed. `loaded`:
     /// the environment of the scene where the caller has it, which is copied instead of loaded. Throws
-    /// InputError and then keeps the scene it had.
+    /// InputError or Cancelled and then keeps the scene it had; reports no fractions.
     void set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets,
-                   const Environment* loaded = nullptr);
+                   const Environment* loaded = nullptr, const Progress& progress = {});
 
     /// Renders one frame of the scene. `tile_done` as in render().
     RenderedFrame frame(double frame, const RenderSettings& settings, const Progress& progress = {},

@@ -51,7 +51,9 @@ void copy_tile(const Image& from, const Region& tile, Image& to) {
 void render_run(Pipeline& pipeline, Run& run) {
     const auto start = Clock::now();
     const FinalRequest& request = run.request;
-    pipeline.set_scene(request.scene, request.sets, request.environment.get());
+    Progress progress;
+    progress.cancelled = &run.cancelled;
+    pipeline.set_scene(request.scene, request.sets, request.environment.get(), progress);
     RenderSettings settings = pipeline.settings(request.frame);
     settings.width = request.width;
     settings.height = request.height;
@@ -59,8 +61,6 @@ void render_run(Pipeline& pipeline, Run& run) {
     settings.aov_depth = request.depth;
     settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
     const Region region = whole_region(request);
-    Progress progress;
-    progress.cancelled = &run.cancelled;
     progress.report = [&run](double fraction) { run.progress = static_cast<float>(fraction); };
     const TileDone tile_done = [&run, region](const Region& tile, const RenderedFrame& frame) {
         const Region here{tile.x - region.x, tile.y - region.y, tile.width, tile.height};

@@ -69,11 +69,11 @@ std::string FrameHasher::own_pictures(const LayerParams& layer) {
     return text;
 }
 
-void check_unchanged(const HashedFiles& files) {
+void check_unchanged(const HashedFiles& files, const Progress& progress) {
     for (const auto& [file, hashed] : files) {
         if (stamp_of(file) == hashed.stamp) continue;
         std::error_code ignored;
-        if (fs::is_regular_file(file, ignored) && sha256_of_file(file) == hashed.hash) continue;
+        if (fs::is_regular_file(file, ignored) && sha256_of_file(file, progress) == hashed.hash) continue;
         bad_input(file.string(), "", "the file that the frames were planned with",
                   "a change since; start again");
     }

@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "core/image.h"
+#include "core/progress.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -24,8 +25,8 @@ struct HashedFile {
 using HashedFiles = std::map<std::filesystem::path, HashedFile>;
 
 /// To be called once the files are loaded. Throws InputError where one has other bytes now: what was loaded
-/// may not be what was hashed.
-void check_unchanged(const HashedFiles& files);
+/// may not be what was hashed; Cancelled.
+void check_unchanged(const HashedFiles& files, const Progress& progress = {});
 
 /// Hashes frames of one scene; input files are hashed by content, once each.
 class FrameHasher {

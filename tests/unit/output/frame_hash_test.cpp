@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <fstream>
 #include <functional>
 
@@ -75,6 +76,9 @@ TEST_F(FrameHashTest, FilesThatChangedSinceAreRefused) {
     EXPECT_NO_THROW(check_unchanged(hasher.files()));
     put("dust.pda", "two");
     EXPECT_NO_THROW(check_unchanged(hasher.files())) << "the same bytes";
+    const std::atomic<bool> cancelled{true};
+    EXPECT_THROW(check_unchanged(hasher.files(), {{}, &cancelled}), Cancelled)
+        << "before they are hashed again";
     put("dust.pda", "2!!");
     EXPECT_EQ(message_of<InputError>([&] { check_unchanged(hasher.files()); }),
               (folder_ / "dust.pda").string() +

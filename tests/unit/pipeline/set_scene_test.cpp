@@ -117,6 +117,17 @@ TEST_F(SetScene, ARefusedSceneLeavesTheOldOne) {
     EXPECT_EQ(picture(pipeline), before);
 }
 
+TEST_F(SetScene, StopsBeforeThePicturesOfTheEnvironment) {
+    Pipeline pipeline;
+    pipeline.set_scene(small.scene, sets);
+    const std::string before = picture(pipeline);
+    Scene other = small.scene;
+    other.environment.image = small.folder / "picture.ppm";
+    const std::atomic<bool> cancelled{true};
+    EXPECT_THROW(pipeline.set_scene(other, sets, nullptr, {{}, &cancelled}), Cancelled);
+    EXPECT_EQ(picture(pipeline), before);
+}
+
 TEST_F(SetScene, AMissingThicknessMapIsRefusedEveryTime) {
     Pipeline pipeline;
     small.scene.layers[0].look.thickness.map = small.folder / "missing.png";
