@@ -25,14 +25,6 @@ Rect shrunk(const Rect& r, float share) {
     return {r.x + (r.width - w) * 0.5f, r.y + (r.height - h) * 0.5f, w, h};
 }
 
-// "16:9" where the numbers are small, else "2.39:1".
-std::string aspect_text(std::int64_t width, std::int64_t height) {
-    const std::int64_t divisor = std::gcd(width, height);
-    if (divisor > 0 && width / divisor < 30 && height / divisor < 30)
-        return fmt::format("{}:{}", width / divisor, height / divisor);
-    return fmt::format("{:.2f}:1", static_cast<double>(width) / static_cast<double>(height));
-}
-
 // By ViewKind.
 constexpr const char* view_names[] = {"Camera", "Free view, 0 returns to the camera", "Front", "Top", "Side"};
 
@@ -57,6 +49,13 @@ void shadowed(ImDrawList* list, ImVec2 at, ImU32 c, const std::string& text) {
 }
 
 }  // namespace
+
+std::string aspect_text(std::int64_t width, std::int64_t height) {
+    const std::int64_t divisor = std::gcd(width, height);
+    if (divisor > 0 && width / divisor < 30 && height / divisor < 30)
+        return fmt::format("{}:{}", width / divisor, height / divisor);
+    return fmt::format("{:.2f}:1", static_cast<double>(width) / static_cast<double>(height));
+}
 
 void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& picture) {
     const ViewState& view = frame.view;

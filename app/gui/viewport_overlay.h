@@ -2,9 +2,15 @@
 // the view.
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "gui/gui_frame.h"
 
 namespace astrosplat {
+
+/// "16:9" where both numbers are below 30, else "2.39:1".
+std::string aspect_text(std::int64_t width, std::int64_t height);
 
 void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& picture);
 void draw_overlay_lines(const GuiFrame& frame, const Rect& area);

@@ -8,8 +8,20 @@
 namespace astrosplat {
 namespace {
 
-/// An 8-bit picture (RGBA, top row first) as a float one of at most `width` px, by averaging boxes.
-Image shrink(const std::vector<unsigned char>& rgba, int width, int height, int most) {
+/// A file's pixels as display values, grey ones in all three channels.
+Image read_reference(const std::filesystem::path& file) {
+    const Image raw = load_raw_image(file);
+    Image rgba = make_image(raw.width, raw.height, 4, 1.0f);
+    for (std::int64_t y = 0; y < raw.height; ++y)
+        for (std::int64_t x = 0; x < raw.width; ++x)
+            for (int c = 0; c < 3; ++c)
+                rgba.at(x, y)[c] = raw.at(x, y)[std::min(c, raw.channels >= 3 ? 2 : 0)];
+    return rgba;
+}
+
+}  // namespace
+
+Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height, int most) {
     const int factor = std::max(1, (width + most - 1) / most);
     Image small = make_image(std::max(1, width / factor), std::max(1, height / factor), 4, 0.0f);
     for (std::int64_t y = 0; y < small.height; ++y)
@@ -25,26 +37,13 @@ Image shrink(const std::vector<unsigned char>& rgba, int width, int height, int 
     return small;
 }
 
-/// A file's pixels as display values, grey ones in all three channels.
-Image read_reference(const std::filesystem::path& file) {
-    const Image raw = load_raw_image(file);
-    Image rgba = make_image(raw.width, raw.height, 4, 1.0f);
-    for (std::int64_t y = 0; y < raw.height; ++y)
-        for (std::int64_t x = 0; x < raw.width; ++x)
-            for (int c = 0; c < 3; ++c)
-                rgba.at(x, y)[c] = raw.at(x, y)[std::min(c, raw.channels >= 3 ? 2 : 0)];
-    return rgba;
-}
-
-}  // namespace
-
 void Comparison::take_snapshot(const Document& document, const ViewState& view, const Display& display,
                                glm::ivec2 size_px, const PictureStatus& picture) {
     constexpr std::size_t most = 24;
     constexpr int thumbnail_px = 192;
     StoredPicture stored;
     stored.look = store_look("Look " + std::to_string(++snapshots_taken_), document, view);
-    const Image small = shrink(display.read(), size_px.x, size_px.y, thumbnail_px);
+    const Image small = thumbnail_of(display.read(), size_px.x, size_px.y, thumbnail_px);
     stored.thumbnail.upload(small);
     stored.aspect = static_cast<float>(small.width) / static_cast<float>(small.height);
     const bool final = picture.state == PictureState::final;

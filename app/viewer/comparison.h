@@ -17,6 +17,9 @@
 
 namespace astrosplat {
 
+/// An 8-bit picture (RGBA, top row first) as a float one of at most `most` px width, by averaging boxes.
+Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height, int most);
+
 class Comparison {
   public:
     explicit Comparison(std::shared_ptr<PictureFiles> files) : b_(std::move(files)) {}

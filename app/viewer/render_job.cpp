@@ -15,8 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The share of a line such as "astrosplat: frame 12 (3/10) 37% eta 00:04:10"; nothing for other lines.
-std::optional<float> share_of(const std::string& line) {
+std::string without_prefix(const std::string& line) {
+    constexpr std::string_view prefix = "astrosplat: ";
+    return line.rfind(prefix, 0) == 0 ? line.substr(prefix.size()) : line;
+}
+
+}  // namespace
+
+std::optional<float> share_of_line(const std::string& line) {
     const std::size_t percent = line.find("% ");
     if (percent == std::string::npos) return std::nullopt;
     const std::size_t blank = line.rfind(' ', percent);
@@ -33,13 +39,6 @@ std::optional<float> share_of(const std::string& line) {
         done = (static_cast<double>(*index - 1) + done) / static_cast<double>(*count);
     return static_cast<float>(std::clamp(done, 0.0, 1.0));
 }
-
-std::string without_prefix(const std::string& line) {
-    constexpr std::string_view prefix = "astrosplat: ";
-    return line.rfind(prefix, 0) == 0 ? line.substr(prefix.size()) : line;
-}
-
-}  // namespace
 
 struct RenderJob::Impl {
     State state = State::none;
@@ -59,7 +58,7 @@ struct RenderJob::Impl {
         if (trim(line).empty()) return;
         last_line = without_prefix(line);
         if (last_line.rfind("saved ", 0) == 0) ++saved;
-        if (const auto share = share_of(line)) progress = *share;
+        if (const auto share = share_of_line(line)) progress = *share;
         // Short frames are saved faster than progress is reported.
         if (frames > 0) progress = std::max(progress, static_cast<float>(saved) / static_cast<float>(frames));
     }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ struct ProcessStep {
     std::string name;                    // "Rendering", "Writing the movie"
     std::vector<std::string> arguments;  // [0] is the program
 };
+
+/// How much of all frames is done, 0..1, by a line of --progress plain such as
+/// "astrosplat: frame 12 (3/10) 37% eta 00:04:10"; nothing for other lines.
+std::optional<float> share_of_line(const std::string& line);
 
 class RenderJob {
   public:

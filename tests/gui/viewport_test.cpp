@@ -13,6 +13,14 @@ namespace {
 
 using Kind = Command::Kind;
 
+TEST(Picture, ItsShapeIsInSmallNumbersOrToOne) {
+    EXPECT_EQ(aspect_text(1920, 1080), "16:9");
+    EXPECT_EQ(aspect_text(2900, 1900), "29:19");
+    EXPECT_EQ(aspect_text(3000, 1900), "1.58:1");
+    EXPECT_EQ(aspect_text(1900, 3000), "0.63:1");
+    EXPECT_EQ(aspect_text(1000, 1000), "1:1");
+}
+
 TEST(Picture, MouseButtonsMeanDrags) {
     using Drag = ViewportInput::Drag;
     EXPECT_EQ(drag_of(0, false, false), Drag::orbit);

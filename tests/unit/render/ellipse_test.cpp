@@ -114,6 +114,24 @@ double largest_difference(const EllipseCase& e, const Falloff& falloff) {
     return worst;
 }
 
+// Scaling the edge alone would take more light from it than it has.
+TEST(Ellipse, WithoutAFlatCoreIsScaledAsAWhole) {
+    const Falloff constant{Falloff::Shape::constant, 0.5f, 4.5f};
+    int as_a_whole = 0;
+    for (float smaller = 0.3f; smaller < 4.0f; smaller *= 1.05f)
+        for (const float ratio : {1.0f, 1.5f, 3.0f, 10.0f}) {
+            const Shape shape{smaller * ratio, 0.0f, 0.0f, smaller};
+            FootprintTable table = begin_footprint_table(constant, 0.5f);
+            const NodeRange nodes = node_range(shape);
+            make_footprint_nodes(table, nodes.least_px, nodes.largest_px);
+            const ShapedFootprint f = shaped_footprint_at(table, shape, 0.25f, 0.5f);
+            EXPECT_TRUE(f.round.edge_gain == 0.0f || f.round.amplitude == 1.0f);
+            if (f.round.amplitude < 1.0f) ++as_a_whole;
+            EXPECT_TRUE(f.round.lo > 0.0f || f.round.edge_gain >= 0.0f) << smaller << " x " << ratio;
+        }
+    EXPECT_GT(as_a_whole, 0);
+}
+
 // A gaussian stays one under the filter; the profile of the others is softer at the tips.
 TEST(Ellipse, IsTheConvolution) {
     const Falloff gaussian{Falloff::Shape::gaussian, 0.5f, 4.5f}, linear{Falloff::Shape::linear, 0.5f, 4.5f};

@@ -79,6 +79,30 @@ TEST_F(SetListTest, WhatComesLaterWaitsForAllSetsAndWhileItIsHeld) {
     EXPECT_TRUE(list.resting());
 }
 
+TEST_F(SetListTest, AGrowingSetIsShownBesideAnOldOneFromHalfOnwards) {
+    add_layer("gas");
+    list.want(scene);
+    begun();
+    const auto keep_one = [&] {
+        job->growing.begins({}, {});
+        const KeptSplat splat{};
+        const KeptStore::Run run{&splat, 1};
+        job->growing.keeps({&run, 1});
+    };
+    EXPECT_FALSE(list.growing_job()) << "nothing is kept yet";
+    keep_one();
+    EXPECT_EQ(list.growing_job(), job) << "there is no old one";
+    keep(false);
+    scene.layers[0].source.seed = 7;
+    list.want(scene);
+    EXPECT_EQ(begun(), "load gas");
+    keep_one();
+    job->progress = 0.49f;
+    EXPECT_FALSE(list.growing_job());
+    job->progress = 0.5f;
+    EXPECT_EQ(list.growing_job(), job);
+}
+
 TEST_F(SetListTest, AJobKeepsWhatItBeganWithWhateverBecomesOfItsLayer) {
     add_layer("gas");
     list.want(scene);
