@@ -2,6 +2,7 @@
 #include "splats/spatial_order.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/memory.h"
 #include "core/morton.h"
@@ -21,9 +22,18 @@ std::uint32_t cell_along(double offset, double edge) {
     return cell < cells_per_axis - 1 ? static_cast<std::uint32_t>(cell) : cells_per_axis - 1;
 }
 
+/// spread_bits of every cell's number: looking it up takes a third of the instructions.
+constexpr auto spread_cell = [] {
+    std::array<std::uint32_t, cells_per_axis> table{};
+    for (std::uint32_t cell = 0; cell < cells_per_axis; ++cell)
+        table[cell] = static_cast<std::uint32_t>(spread_bits(cell));
+    return table;
+}();
+
+/// morton_place of the cell.
 std::uint32_t morton_cell(const glm::dvec3& offset, double edge) {
-    return static_cast<std::uint32_t>(
-        morton_place(cell_along(offset.x, edge), cell_along(offset.y, edge), cell_along(offset.z, edge)));
+    return spread_cell[cell_along(offset.x, edge)] | spread_cell[cell_along(offset.y, edge)] << 1 |
+           spread_cell[cell_along(offset.z, edge)] << 2;
 }
 
 Buffer<std::uint32_t> cells_of(const SplatSet& set) {
