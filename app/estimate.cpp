@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bodies/bodies.h"
 #include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"
@@ -28,8 +29,10 @@ std::int64_t splats_of(const SourceParams& source) {
         const auto size = std::filesystem::file_size(source.file, ignored);
         return ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat;
     }
-    if (!source.voxels && source.voxel_size <= 0.0) return source.count;
+    const bool bodies = source.structure.kind != StructureKind::columns;
+    if (!bodies && !source.voxels && source.voxel_size <= 0.0) return source.count;
     const std::vector<TexturedMesh> meshes = load_meshes(source, Progress{{}, &interrupted()});
+    if (bodies) return expected_dots(meshes);
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
     const double max_distance = resolved_max_distance(source, box);

@@ -19,6 +19,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "image/blur.h"
 
 namespace astrosplat {
 namespace {
@@ -33,6 +34,8 @@ struct PictureOnMesh {
     std::uint32_t mesh_index = 0, material = 0;
     const Texture& texture() const { return mesh->textures[material]; }
 };
+
+std::int64_t texels_of(const Texture& texture) { return texture.image.width * texture.image.height; }
 
 std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
     std::vector<PictureOnMesh> pictures;
@@ -157,19 +160,42 @@ void append(const PictureSplats& dots, const UvSurface& surface, const PictureOn
 
 }  // namespace
 
+std::int64_t expected_dots(std::span<const TexturedMesh> meshes) {
+    std::int64_t texels = 0;
+    for (const PictureOnMesh& picture : pictures_of(meshes)) texels += texels_of(picture.texture());
+    return texels * 3 / 2;
+}
+
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes) {
-    std::int64_t largest = 0, dots = 0;
-    for (const PictureOnMesh& picture : pictures_of(meshes)) {
-        const std::int64_t pixels = picture.texture().image.width * picture.texture().image.height;
-        largest = std::max(largest, pixels);
-        dots += pixels * 3 / 2;
+    constexpr std::int64_t bytes_per_texel = 285, bytes_per_dot = 160;  // measured
+    std::int64_t largest = 0;
+    for (const PictureOnMesh& picture : pictures_of(meshes))
+        largest = std::max(largest, texels_of(picture.texture()));
+    return largest * bytes_per_texel + expected_dots(meshes) * bytes_per_dot;
+}
+
+void reduce_pictures(std::vector<TexturedMesh>& meshes, std::int64_t room_bytes,
+                     const std::string& layer_name) {
+    constexpr std::int64_t smallest_px = 64;
+    while (bodies_memory_bytes(meshes) > room_bytes) {
+        Texture* largest = nullptr;
+        for (TexturedMesh& mesh : meshes)
+            for (Texture& texture : mesh.textures)
+                if (!largest || texels_of(texture) > texels_of(*largest)) largest = &texture;
+        if (!largest || std::min(largest->image.width, largest->image.height) < 2 * smallest_px) return;
+        const std::int64_t width = largest->image.width, height = largest->image.height;
+        largest->image = halved(largest->image);
+        log_warning(
+            fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies would "
+                        "not fit into {} of memory",
+                        layer_name, width, height, largest->image.width, largest->image.height,
+                        human_bytes(static_cast<double>(room_bytes))));
     }
-    constexpr std::int64_t bytes_per_pixel = 160, bytes_per_dot = 84 + 44;
-    return largest * bytes_per_pixel + dots * bytes_per_dot;
 }
 
 SplatSet make_bodies(std::span<const TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
                      const std::string& layer_name, const Progress& progress) {
+    claim_memory(bodies_memory_bytes(meshes), fmt::format("making bodies for layer '{}'", layer_name));
     SplatSet set;
     const std::vector<PictureOnMesh> pictures = pictures_of(meshes);
     for (std::size_t i = 0; i < pictures.size(); ++i) {

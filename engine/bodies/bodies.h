@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "source/source.h"
@@ -15,11 +16,19 @@
 
 namespace astrosplat {
 
-/// Bytes that make_bodies() will take at its peak beside the meshes and pictures, about.
+/// Dots that make_bodies() will make, about: 1.2 to 1.8 a texel were seen.
+std::int64_t expected_dots(std::span<const TexturedMesh> meshes);
+
+/// Bytes that make_bodies() will take at its peak beside the meshes and pictures, within about 15 %.
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes);
 
-/// Every picture of every mesh by itself. `params.kind` is not columns. Announces memory before taking it and
-/// says at detail level what was found. The same bits with any number of threads. Throws InputError,
+/// Halves the largest picture, again and again, until make_bodies() takes at most `room_bytes`; a warning
+/// says so.
+void reduce_pictures(std::vector<TexturedMesh>& meshes, std::int64_t room_bytes,
+                     const std::string& layer_name);
+
+/// Every picture of every mesh by itself. `params.kind` is not columns. Announces its memory before taking it
+/// and says at detail level what was found. The same bits with any number of threads. Throws InputError,
 /// Cancelled.
 SplatSet make_bodies(std::span<const TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
                      const std::string& layer_name, const Progress& progress = {});

@@ -31,7 +31,7 @@ Progress cancel_only(const Progress& progress) { return {{}, progress.cancelled}
 
 SplatSet generate_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
                          KeptWatcher* watcher) {
-    const std::vector<TexturedMesh> meshes = load_meshes(source, cancel_only(progress));
+    std::vector<TexturedMesh> meshes = load_meshes(source, cancel_only(progress));
     for (const TexturedMesh& m : meshes) {
         for (const Texture& texture : m.textures) {
             if (!texture.summary.empty())
@@ -39,8 +39,10 @@ SplatSet generate_source(const SourceParams& source, const std::string& layer_na
         }
     }
     const std::uint32_t seed = resolved_seed(source.seed, layer_name);
-    if (source.structure.kind != StructureKind::columns)
+    if (source.structure.kind != StructureKind::columns) {
+        reduce_pictures(meshes, available_memory_bytes() / 10 * 9, layer_name);
         return make_bodies(meshes, source.structure, seed, layer_name, progress);
+    }
     const double max_distance = resolved_max_distance(source, bounds(meshes));
     const Lattice lattice = make_lattice(source, meshes, max_distance);
     const std::int64_t bytes = generate_memory_bytes(meshes, lattice, max_distance);

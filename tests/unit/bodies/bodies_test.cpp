@@ -34,6 +34,12 @@ TexturedMesh on_plane(const Image& rgb) {
     return result;
 }
 
+double sum_of(const Image& image) {
+    double sum = 0.0;
+    for (const float value : image.pixels) sum += static_cast<double>(value);
+    return sum;
+}
+
 StructureParams of_kind(StructureKind kind) {
     StructureParams params;
     params.kind = kind;
@@ -44,6 +50,24 @@ std::vector<SurfacePlace> places(const UvSurface& surface, glm::vec2 uv) {
     std::vector<SurfacePlace> found;
     surface.at(uv, [&](const SurfacePlace& place) { found.push_back(place); });
     return found;
+}
+
+TEST(Bodies, PicturesThatDoNotFitAreHalved) {
+    std::vector<TexturedMesh> small{on_plane(painted::nebula(256, 160))};
+    const std::int64_t room = bodies_memory_bytes(small);
+    std::vector<TexturedMesh> meshes{on_plane(painted::nebula(1024, 640)),
+                                     on_plane(painted::nebula(256, 160))};
+    const double before = sum_of(meshes[0].textures[0].image) / (1024.0 * 640.0);
+    reduce_pictures(meshes, bodies_memory_bytes(meshes), "gas");
+    EXPECT_EQ(meshes[0].textures[0].image.width, 1024);  // it fits
+    reduce_pictures(meshes, 2 * room, "gas");
+    const Image& reduced = meshes[0].textures[0].image;
+    EXPECT_EQ(reduced.width, 256);
+    EXPECT_EQ(reduced.height, 160);
+    EXPECT_NEAR(sum_of(reduced) / (256.0 * 160.0), before, 0.003 * before);
+    EXPECT_EQ(meshes[1].textures[0].image.width, 256);
+    reduce_pictures(meshes, 1, "gas");  // to no less than 64 px
+    EXPECT_EQ(meshes[0].textures[0].image.height, 80);
 }
 
 TEST(UvSurface, ThePlaneIsThePicture) {
