@@ -150,14 +150,26 @@ void add_new(CLI::App& app, Invocation& call) {
     command.add_flag("--overwrite", call.create.overwrite, "Replaces the scene file");
 }
 
+void add_three_filters(CLI::App& command, PrepareOptions& prepare) {
+    add_value(command, "--r", prepare.red, "FILE",
+              "With --g and --b in place of IN: three filters, brought onto the grid of the first where FITS "
+              "headers tell the sky, and shown with one asinh for all (Lupton)");
+    add_value(command, "--g", prepare.green, "FILE", "The filter shown as green");
+    add_value(command, "--b", prepare.blue, "FILE", "The filter shown as blue");
+    add_value(command, "--q", prepare.q, "X", "How early that asinh bends (default: 8)");
+    add_value(command, "--lupton-stretch", prepare.lupton, "X",
+              "Intensity it shows at a tenth of white, of the white point (default: 0.1)");
+}
+
 void add_prepare(CLI::App& app, Invocation& call) {
     PrepareOptions& prepare = call.prepare;
     CLI::App& command = add_command(app, call, "prepare", "Makes a picture ready for a scene",
                                     [&call] { return run_prepare(call.prepare); });
-    add_value(command, "IN", prepare.image, "IN", "The picture, also in FITS")->required();
+    add_value(command, "IN", prepare.image, "IN", "The picture, also in FITS");
     add_value(command, "-o,--output", prepare.folder, "FOLDER",
-              "Gets picture.exr, the picture without its stars in linear light, and stars.csv")
+              "Gets picture.exr in linear light, stars.csv, background.json, front.exr and back.exr")
         ->required();
+    add_three_filters(command, prepare);
     command.add_flag("--keep-stars", prepare.keep_stars, "Leaves the stars in the picture");
     add_value(command, "--threshold", prepare.threshold, "X",
               "Least height of a star over the local noise (default: 5)");
@@ -166,6 +178,20 @@ void add_prepare(CLI::App& app, Invocation& call) {
               "others)");
     add_value(command, "--stretch", prepare.stretch, "auto|linear|asinh|log",
               "Of FITS, after the stars are taken away (default: auto, asinh)");
+    add_value(command, "--background", prepare.background, "level|plane|curved",
+              "Takes the sky off: a level, a slope, or a slope that bends");
+    add_value(command, "--ellipse", prepare.ellipse, "X,Y,RX,RY[,ANGLE]",
+              "Cuts off what lies outside of an ellipse, in pixels from the top left and degrees clockwise");
+    add_value(command, "--feather", prepare.feather, "X",
+              "Share of its radii over which it fades (default: 0.1)");
+    add_value(command, "--mask", prepare.mask, "FILE",
+              "Cuts off what is black in a picture of the same size");
+    add_value(command, "--alpha", prepare.alpha, "LOW,HIGH", "Alpha from luminance, 0 at LOW and 1 at HIGH");
+    add_value(command, "--fill", prepare.holes, "FILE",
+              "Fills what is not black in a picture of the same size from its surroundings");
+    add_value(
+        command, "--split", prepare.split, "FILE",
+        "Writes front.exr, what is not black in that picture, and back.exr, the rest with that part filled");
     command.add_flag("--overwrite", prepare.overwrite, "Replaces the files in the folder");
     add_progress(command, prepare.progress);
 }

@@ -1,12 +1,16 @@
 // FITS keeps its values until stars are taken away: a stretch would change their profiles and cut them off.
 #include "prepare_input.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/color.h"
+#include "core/error.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "source/fits.h"
 #include "source/picture.h"
 #include "source/stretch.h"
@@ -35,6 +39,8 @@ PrepareInput read_fits_input(const std::filesystem::path& file, const TextureSet
     input.stretch = settings.stretch == Stretch::automatic ? Stretch::asinh : settings.stretch;
     input.saturation = std::numeric_limits<double>::infinity();
     input.credit = plane.credit;
+    if (const std::optional<FitsSky>& sky = plane.sky)
+        input.grid = TanGrid{{sky->crpix[0], sky->crpix[1]}, {sky->crval[0], sky->crval[1]}, sky->cd};
     return input;
 }
 
@@ -58,7 +64,51 @@ PrepareInput read_picture_input(const std::filesystem::path& file, const Texture
     return input;
 }
 
+bool same_grid(const TanGrid& a, const TanGrid& b) {
+    return a.reference_px == b.reference_px && a.reference_deg == b.reference_deg &&
+           a.deg_per_px == b.deg_per_px;
+}
+
+// On the grid of the first filter.
+void put_on_grid(PrepareInput& filter, const PrepareInput& first) {
+    PixelMask outside;
+    filter.image =
+        regridded(filter.image, *filter.grid, *first.grid, first.image.width, first.image.height, outside);
+    filter.empty = std::move(outside);
+}
+
+// The mean of a filter's channels becomes one channel of the picture.
+void put_channel(const PrepareInput& filter, int channel, PrepareInput& rgb) {
+    for (std::size_t i = 0; i < rgb.empty.pixels.size(); ++i) {
+        const float* const p = filter.image.pixels.data() + 4 * i;
+        rgb.image.pixels[4 * i + static_cast<std::size_t>(channel)] = (p[0] + p[1] + p[2]) / 3.0f;
+        if (filter.empty.pixels[i]) rgb.empty.pixels[i] = 1;
+    }
+}
+
 }  // namespace
+
+PrepareInput read_three_filters(const std::array<std::filesystem::path, 3>& files,
+                                const TextureSettings& settings, const Progress& progress) {
+    const PrepareInput first = read_prepare_input(files[0], settings, progress);
+    PrepareInput rgb = first;
+    put_channel(first, 0, rgb);
+    for (std::size_t c = 1; c < 3; ++c) {
+        PrepareInput filter = read_prepare_input(files[c], settings, progress);
+        const bool same_size =
+            filter.image.width == rgb.image.width && filter.image.height == rgb.image.height;
+        const bool known = filter.grid && first.grid;
+        if (!same_size && !known)
+            bad_input(files[c].string(), "",
+                      fmt::format("{}x{} px like {}, or where the sky is on both", rgb.image.width,
+                                  rgb.image.height, files[0].string()),
+                      fmt::format("{}x{} px", filter.image.width, filter.image.height));
+        if (known && !(same_size && same_grid(*filter.grid, *first.grid))) put_on_grid(filter, first);
+        put_channel(filter, static_cast<int>(c), rgb);
+        rgb.credit = joined_once({rgb.credit, filter.credit});
+    }
+    return rgb;
+}
 
 PrepareInput read_prepare_input(const std::filesystem::path& file, const TextureSettings& settings,
                                 const Progress& progress) {

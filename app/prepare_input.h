@@ -2,12 +2,15 @@
 // and what is to be done with it in the end.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/image.h"
 #include "core/progress.h"
 #include "prepare/fill.h"
+#include "prepare/sky_grid.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -18,11 +21,17 @@ struct PrepareInput {
     double saturation = 0.0;  // linear light from which a channel tells nothing more; infinite where unknown
     TextureSettings::Stretch stretch = TextureSettings::Stretch::linear;  // still to come
     std::string credit;
+    std::optional<TanGrid> grid;  // how the sky lies on it, where that is known
 };
 
 /// Throws InputError, Cancelled.
 PrepareInput read_prepare_input(const std::filesystem::path& file, const TextureSettings& settings,
                                 const Progress& progress);
+
+/// Three filters as red, green and blue. Where the sky is known on all of them (FITS) and their grids differ,
+/// green and blue are sampled on red's; else they must have one size. Throws InputError, Cancelled.
+PrepareInput read_three_filters(const std::array<std::filesystem::path, 3>& files,
+                                const TextureSettings& settings, const Progress& progress);
 
 /// The stretch that was still to come, as the texture of a scene would have had it: the result is linear
 /// light.

@@ -15,6 +15,7 @@
 #include "core/file.h"
 #include "core/file_format.h"
 #include "core/memory.h"
+#include "core/real.h"
 #include "core/text.h"
 #include "source/fits_headers.h"
 #include "source/fits_tiles.h"
@@ -152,6 +153,50 @@ void swap_rows(FitsPlane& plane) {
         std::swap_ranges(row(y), row(y + 1), row(plane.height - 1 - y));
 }
 
+std::optional<double> number_key(fitsfile* in, const char* key) {
+    double value = 0.0;
+    int status = 0;
+    fits_read_key(in, TDOUBLE, key, &value, nullptr, &status);
+    fits_clear_errmsg();
+    if (status != 0 || !std::isfinite(value)) return {};
+    return value;
+}
+
+// CD, or CDELT with PC or CROTA2 (Greisen and Calabretta 2002, A&A 395, 1061).
+std::optional<std::array<double, 4>> degrees_per_pixel(fitsfile* in) {
+    const std::array<const char*, 4> cd_keys{"CD1_1", "CD1_2", "CD2_1", "CD2_2"};
+    const std::array<const char*, 4> pc_keys{"PC1_1", "PC1_2", "PC2_1", "PC2_2"};
+    std::array<double, 4> cd{};
+    bool any = false;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::optional<double> value = number_key(in, cd_keys[i]);
+        any = any || value;
+        cd[i] = value.value_or(0.0);
+    }
+    if (any) return cd;
+    const auto across = number_key(in, "CDELT1"), up = number_key(in, "CDELT2");
+    if (!across || !up || *across == 0.0 || *up == 0.0) return {};
+    const double turn = real::radians(number_key(in, "CROTA2").value_or(0.0));
+    const std::array<double, 4> turned{real::cos(turn), -real::sin(turn) * *up / *across,
+                                       real::sin(turn) * *across / *up, real::cos(turn)};
+    for (std::size_t i = 0; i < 4; ++i)
+        cd[i] = (i < 2 ? *across : *up) * number_key(in, pc_keys[i]).value_or(turned[i]);
+    return cd;
+}
+
+std::optional<FitsSky> sky_of(fitsfile* in) {
+    if (text_key(in, "CTYPE1").substr(0, 8) != "RA---TAN" ||
+        text_key(in, "CTYPE2").substr(0, 8) != "DEC--TAN")
+        return {};
+    const auto x = number_key(in, "CRPIX1"), y = number_key(in, "CRPIX2");
+    const auto ra = number_key(in, "CRVAL1"), dec = number_key(in, "CRVAL2");
+    const auto cd = degrees_per_pixel(in);
+    if (!x || !y || !ra || !dec || !cd) return {};
+    const double whole = (*cd)[0] * (*cd)[3] - (*cd)[1] * (*cd)[2];
+    if (!(std::fabs(whole) > 0.0)) return {};
+    return FitsSky{{*x, *y}, {*ra, *dec}, *cd};
+}
+
 }  // namespace
 
 bool is_fits(const fs::path& file) {
@@ -197,6 +242,7 @@ FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, con
     result.name = found.name;
     result.credit = text_key(in.get(), "AUTHOR");
     if (result.credit.empty()) result.credit = text_key(in.get(), "ORIGIN");
+    result.sky = sky_of(in.get());
     swap_rows(result);
     return result;
 }

@@ -2,8 +2,10 @@
 // own FITS reader shifts the rows and forgets BSCALE.)
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,12 +35,21 @@ std::vector<FitsHdu> describe_fits(const std::filesystem::path& file, const Prog
 /// Throws InputError unless one of the HDUs holds a picture.
 void require_fits_picture(const std::filesystem::path& file);
 
+/// How the sky lies on a picture: the keys CRPIX, CRVAL and CD of a tangent plane (CTYPE RA---TAN, DEC--TAN,
+/// of which distortions are left out); CDELT with PC or CROTA2 make a CD.
+struct FitsSky {
+    std::array<double, 2> crpix{};  // px, from 1 at the middle of the lower left pixel
+    std::array<double, 2> crval{};  // degrees: right ascension, declination
+    std::array<double, 4> cd{};     // degrees a pixel: 1_1, 1_2, 2_1, 2_2; not singular
+};
+
 struct FitsPlane {
     std::int64_t width = 0, height = 0;  // px
     Buffer<double> values;  // physical (BSCALE, BZERO applied), row 0 on top; NaN where undefined
     int hdu = 0;
-    std::string name;    // EXTNAME
-    std::string credit;  // AUTHOR or ORIGIN
+    std::string name;            // EXTNAME
+    std::string credit;          // AUTHOR or ORIGIN
+    std::optional<FitsSky> sky;  // where the header tells it
 };
 
 /// `hdu`: "auto" (the first with a picture), a number from 0 (the primary HDU), or an EXTNAME in any case.

@@ -24,11 +24,23 @@ std::string starry_picture() {
 // A card of a FITS header.
 std::string card(const std::string& text) { return text + std::string(80 - text.size(), ' '); }
 
-// The same stars as 32-bit floats, on a level far from 0, with one pixel undefined.
-std::string starry_fits() {
+// The same stars as 32-bit floats, on a level far from 0, with one pixel undefined. With a scale (degrees a
+// pixel) the header tells the sky.
+std::string starry_fits(double scale = 0.0) {
     std::string file = card("SIMPLE  =                    T") + card("BITPIX  =                  -32") +
                        card("NAXIS   =                    2") + card("NAXIS1  =                   96") +
-                       card("NAXIS2  =                   64") + card("END");
+                       card("NAXIS2  =                   64");
+    if (scale > 0.0) {
+        file += card("CTYPE1  = 'RA---TAN'") + card("CTYPE2  = 'DEC--TAN'");
+        for (const auto& [key, value] : {std::pair{"CRPIX1", 48.5},
+                                         {"CRPIX2", 32.5},
+                                         {"CRVAL1", 10.0},
+                                         {"CRVAL2", 41.0},
+                                         {"CDELT1", -scale},
+                                         {"CDELT2", scale}})
+            file += card(fmt::format("{:8}= {:20.8f}", key, value));
+    }
+    file += card("END");
     file.resize(2880, ' ');
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 96; ++x) {
@@ -102,6 +114,57 @@ TEST_F(PrepareCommand, SaturationAndThresholdAct) {
     EXPECT_EQ(lines("none/stars.csv"), 1u);
 }
 
+TEST_F(PrepareCommand, TakesTheSkyOffAndSaysSo) {
+    ASSERT_EQ(prepare({"-o", "plane", "--background", "plane", "--keep-stars"}).code, 0);
+    const nlohmann::json sky = json("plane/background.json");
+    EXPECT_GT(sky.at("red").at(0).get<double>(), 0.04);
+    EXPECT_GT(sky.at("red").at(1).get<double>(), 0.005) << "it is brighter at the right";
+    EXPECT_EQ(sky.at("red").at(3).get<double>(), 0.0);
+    EXPECT_EQ(run({"compare", "stars.ppm", "plane/picture.exr", "--max-difference", "0.03"}).code, 3);
+}
+
+TEST_F(PrepareCommand, CutsAndSplits) {
+    std::string mask = "P5\n96 64\n255\n" + std::string(96 * 64, '\0');
+    for (int y = 20; y < 40; ++y)
+        for (int x = 6; x < 26; ++x) mask[mask.size() - 96 * 64 + y * 96 + x] = '\xff';
+    write_text(folder / "mask.pgm", mask);
+    const RunResult cut = prepare({"-o", "cut", "--ellipse", "48,32,20,20,30", "--feather", "0.5", "--alpha",
+                                   "0,0.05", "--keep-stars"});
+    ASSERT_EQ(cut.code, 0) << cut.err;
+    EXPECT_NE(cut.out.find("linear light, alpha"), std::string::npos) << cut.out;
+    ASSERT_EQ(prepare({"-o", "masked", "--mask", "mask.pgm", "--keep-stars"}).code, 0);
+    ASSERT_EQ(prepare({"-o", "split", "--split", "mask.pgm", "--keep-stars"}).code, 0);
+    EXPECT_EQ(run({"compare", "masked/picture.exr", "split/front.exr", "--max-difference", "0"}).code, 0);
+    EXPECT_EQ(run({"compare", "split/picture.exr", "split/back.exr", "--max-difference", "0.05"}).code, 3);
+    ASSERT_EQ(prepare({"-o", "filled", "--fill", "mask.pgm", "--keep-stars"}).code, 0);
+    const RunResult same =
+        run({"compare", "filled/picture.exr", "split/back.exr", "--max-difference", "1e-6"});
+    EXPECT_EQ(same.code, 0) << same.out;
+}
+
+TEST_F(PrepareCommand, BringsThreeFiltersTogether) {
+    write_text(folder / "r.fits", starry_fits(0.001));
+    write_text(folder / "g.fits", starry_fits(0.003));
+    write_text(folder / "small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
+    const auto three = [&](const std::string& g, const std::string& b, std::vector<std::string> more) {
+        more.insert(more.begin(), {"prepare", "--r", "r.fits", "--g", g, "--b", b, "--progress", "none"});
+        return run(more);
+    };
+    ASSERT_EQ(three("r.fits", "r.fits", {"-o", "gray", "--keep-stars"}).code, 0);
+    ASSERT_EQ(three("g.fits", "r.fits", {"-o", "scaled", "--keep-stars"}).code, 0);
+    EXPECT_EQ(run({"compare", "gray/picture.exr", "scaled/picture.exr", "--max-difference", "0.05"}).code, 3);
+    ASSERT_EQ(
+        three("r.fits", "r.fits", {"-o", "bent", "--keep-stars", "--q", "20", "--lupton-stretch", "0.5"})
+            .code,
+        0);
+    EXPECT_EQ(run({"compare", "gray/picture.exr", "bent/picture.exr", "--max-difference", "0.01"}).code, 3);
+    expect_one_line(three("small.ppm", "r.fits", {"-o", "out"}), 2, "expected 96x64 px like r.fits");
+    expect_one_line(three("r.fits", "r.fits", {"r.fits", "-o", "out"}), 2, "all three and no other picture");
+    expect_one_line(run({"prepare", "--r", "r.fits", "-o", "out"}), 2,
+                    "all three and no other picture, found 1 of");
+    expect_one_line(run({"prepare", "-o", "out"}), 2, "expected a picture, or --r, --g and --b");
+}
+
 TEST_F(PrepareCommand, RefusesWhatItShould) {
     const auto refused = [&](std::vector<std::string> more, const std::string& message) {
         more.insert(more.end(), {"-o", "out", "--progress", "none"});
@@ -111,6 +174,17 @@ TEST_F(PrepareCommand, RefusesWhatItShould) {
     refused({"--saturation", "much"}, "--saturation: expected a number above 0, found 'much'");
     refused({"--stretch", "sqrt"}, "--stretch: expected auto, linear, asinh or log, found 'sqrt'");
     refused({"--stretch", "log"}, "--stretch: expected a FITS picture, found 'stars.ppm'");
+    refused({"--background", "steep"}, "--background: expected level, plane or curved, found 'steep'");
+    refused({"--ellipse", "1,2,3"}, "--ellipse: expected X,Y,RX,RY");
+    refused({"--ellipse", "1,2,0,4"}, "with radii above 0, found '1,2,0,4'");
+    refused({"--ellipse", "1,2,3,4", "--feather", "2"},
+            "--feather: expected a number from 0 to 1, found '2'");
+    refused({"--feather", "0.1"}, "--feather: expected --ellipse beside it");
+    refused({"--alpha", "0.5,0.5"}, "--alpha: expected LOW,HIGH with LOW below HIGH");
+    refused({"--q", "-1"}, "--q: expected a number above 0");
+    write_text(folder / "small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
+    for (const char* option : {"--mask", "--fill", "--split"})
+        refused({option, "small.ppm"}, "expected 96x64 px like the picture, found 16x16 px");
     expect_one_line(run({"prepare", "missing.png", "-o", "out"}), 2, "missing.png");
     expect_one_line(run({"prepare", "stars.pda", "-o", "out"}), 2, "stars.pda");
     EXPECT_FALSE(fs::exists(folder / "out/picture.exr"));

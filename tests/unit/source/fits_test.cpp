@@ -6,7 +6,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <atomic>
+#include <cmath>
+#include <optional>
+#include <vector>
 
 #include "core/error.h"
 #include "source/picture.h"
@@ -201,6 +205,60 @@ TEST(Fits, PipesAreRefusedAndReadingStopsWhenAsked) {
     const std::atomic<bool> stop{true};
     EXPECT_THROW(read_fits(file, "auto", 0, Progress{{}, &stop}), Cancelled);
     EXPECT_THROW(describe_fits(file, Progress{{}, &stop}), Cancelled);
+}
+
+// A picture of 4x4 with these keys.
+std::optional<FitsSky> sky_with(const std::vector<std::pair<const char*, double>>& keys,
+                                const char* type = "RA---TAN") {
+    const TempFolder folder;
+    fitsfile* out = nullptr;
+    int status = 0;
+    long axes[] = {4, 4};
+    std::vector<float> values(16, 1.0f);
+    fits_create_diskfile(&out, (folder / "sky.fits").c_str(), &status);
+    fits_create_img(out, FLOAT_IMG, 2, axes, &status);
+    fits_write_key_str(out, "CTYPE1", type, nullptr, &status);
+    fits_write_key_str(out, "CTYPE2", "DEC--TAN", nullptr, &status);
+    for (auto [key, value] : keys) fits_write_key(out, TDOUBLE, key, &value, nullptr, &status);
+    fits_write_img(out, TFLOAT, 1, 16, values.data(), &status);
+    fits_close_file(out, &status);
+    EXPECT_EQ(status, 0);
+    return read_fits(folder / "sky.fits", "auto", 0).sky;
+}
+
+TEST(FitsSky, IsReadFromAllThreeKindsOfKeys) {
+    using Keys = std::vector<std::pair<const char*, double>>;
+    const auto with = [](Keys more) {
+        more.insert(more.begin(), {{"CRPIX1", 2.5}, {"CRPIX2", 3.5}, {"CRVAL1", 83.8}, {"CRVAL2", -5.4}});
+        return more;
+    };
+    const auto expect_cd = [](const std::optional<FitsSky>& sky, const std::array<double, 4>& cd) {
+        ASSERT_TRUE(sky);
+        EXPECT_EQ(sky->crpix[1], 3.5);
+        EXPECT_EQ(sky->crval[0], 83.8);
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(sky->cd[i], cd[i], 1e-15) << i;
+    };
+    expect_cd(sky_with(with({{"CD1_1", -0.01}, {"CD1_2", 0.002}, {"CD2_1", 0.003}, {"CD2_2", 0.01}})),
+              {-0.01, 0.002, 0.003, 0.01});
+    expect_cd(sky_with(with({{"CDELT1", -0.02}, {"CDELT2", 0.01}})), {-0.02, 0.0, 0.0, 0.01});
+    expect_cd(sky_with(with({{"CDELT1", -0.02}, {"CDELT2", 0.01}, {"PC1_2", 0.5}, {"PC2_1", -0.25}})),
+              {-0.02, -0.01, -0.0025, 0.01});
+    const double c = std::sqrt(0.75), s = 0.5;  // AIPS: CD1_2 = -CDELT2 sin, CD2_1 = CDELT1 sin
+    expect_cd(sky_with(with({{"CDELT1", -0.02}, {"CDELT2", 0.01}, {"CROTA2", 30.0}})),
+              {-0.02 * c, -0.01 * s, -0.02 * s, 0.01 * c});
+}
+
+TEST(FitsSky, IsUnknownWithoutItsKeys) {
+    EXPECT_FALSE(sky_with({}));
+    const std::vector<std::pair<const char*, double>> place = {
+        {"CRPIX1", 2.5}, {"CRPIX2", 3.5}, {"CRVAL1", 83.8}, {"CRVAL2", -5.4}};
+    EXPECT_FALSE(sky_with(place));
+    auto flat = place, whole = place;
+    flat.insert(flat.end(), {{"CD1_1", 0.01}, {"CD1_2", 0.01}, {"CD2_1", 0.01}, {"CD2_2", 0.01}});
+    EXPECT_FALSE(sky_with(flat));
+    whole.insert(whole.end(), {{"CDELT1", -0.01}, {"CDELT2", 0.01}});
+    EXPECT_TRUE(sky_with(whole));
+    EXPECT_FALSE(sky_with(whole, "GLON-CAR"));
 }
 
 }  // namespace

@@ -1,0 +1,115 @@
+// Least squares over cells, and a clip that forgets what stands above the sky.
+#include "prepare/sky.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+#include "core/parallel.h"
+#include "image/percentile.h"
+#include "prepare/cells.h"
+#include "prepare/least_squares.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t most_cells_a_side = 48;
+constexpr int most_sky_clips = 20;
+constexpr double above = 1.5, below = 4.0;  // times the scatter of the cells, that are left out
+constexpr double sigma_of_sky_deviation = 1.4826;
+
+Vector<6> terms(double u, double v) { return {1.0, u, v, u * u, u * v, v * v}; }
+
+// The level of a cell in a channel, and where it is.
+struct SkyCell {
+    double u, v, level;
+};
+
+// -1 .. 1 over n px.
+double across(double px, std::int64_t n) { return 2.0 * px / static_cast<double>(n) - 1.0; }
+
+std::vector<SkyCell> sky_cells(const Image& image, const Cells& cells, int channel) {
+    std::vector<SkyCell> found;
+    const auto half = 0.5 * static_cast<double>(cells.cell_px);
+    for (std::int64_t j = 0; j < cells.level.height; ++j)
+        for (std::int64_t i = 0; i < cells.level.width; ++i)
+            found.push_back({across(static_cast<double>(i * cells.cell_px) + half, image.width),
+                             across(static_cast<double>(j * cells.cell_px) + half, image.height),
+                             static_cast<double>(cells.level.at(i, j)[channel])});
+    return found;
+}
+
+// Terms above the degree are held at 0.
+Vector<6> surface_through(const std::vector<SkyCell>& cells, int degree) {
+    LeastSquares<6> sums;
+    const std::size_t used = degree == 0 ? 1 : degree == 1 ? 3 : 6;
+    for (const SkyCell& cell : cells) {
+        Vector<6> row = terms(cell.u, cell.v);
+        std::fill(row.begin() + used, row.end(), 0.0);
+        sums.add(row, cell.level);
+    }
+    for (std::size_t i = 0; i < 6; ++i) sums.squares[i][i] += i < used ? 1e-9 : 1.0;
+    return solved(sums.squares, sums.products).value_or(Vector<6>{});
+}
+
+double value_of(const Vector<6>& surface, double u, double v) {
+    const Vector<6> t = terms(u, v);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 6; ++i) sum += surface[i] * t[i];
+    return sum;
+}
+
+// The scatter of the sky is that of the cells below the surface: nothing but noise is darker.
+double scatter_below(const std::vector<double>& away) {
+    std::vector<double> sizes;
+    for (const double d : away)
+        if (d <= 0.0) sizes.push_back(-d);
+    return sigma_of_sky_deviation * percentile(std::move(sizes), 0.5);
+}
+
+Vector<6> fit_channel(std::vector<SkyCell> cells, int degree) {
+    Vector<6> surface = surface_through(cells, degree);
+    for (int i = 0; i < most_sky_clips; ++i) {
+        std::vector<double> away;
+        for (const SkyCell& cell : cells) away.push_back(cell.level - value_of(surface, cell.u, cell.v));
+        const double scatter = scatter_below(away);
+        std::vector<SkyCell> left;
+        for (std::size_t k = 0; k < cells.size(); ++k)
+            if (away[k] <= above * scatter && away[k] >= -below * scatter) left.push_back(cells[k]);
+        if (left.size() == cells.size() || left.size() < 12) break;
+        cells = std::move(left);
+        surface = surface_through(cells, degree);
+    }
+    return surface;
+}
+
+}  // namespace
+
+double SkySurface::at(double u, double v, int channel) const {
+    return value_of(coefficients[static_cast<std::size_t>(channel)], u, v);
+}
+
+SkySurface fit_sky(const Image& image, int degree) {
+    assert(image.channels >= 3 && degree >= 0 && degree <= 2);
+    const std::int64_t longest = std::max(image.width, image.height);
+    const Cells cells = measure_cells(image, std::max<std::int64_t>(8, longest / most_cells_a_side));
+    SkySurface sky;
+    for (int c = 0; c < 3; ++c)
+        sky.coefficients[static_cast<std::size_t>(c)] = fit_channel(sky_cells(image, cells, c), degree);
+    return sky;
+}
+
+void subtract_sky(Image& image, const SkySurface& sky) {
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            float* const p = image.at(x, y);
+            const double u = across(static_cast<double>(x) + 0.5, image.width);
+            const double v = across(static_cast<double>(y) + 0.5, image.height);
+            const float alpha = image.channels > 3 ? p[3] : 1.0f;
+            for (int c = 0; c < 3; ++c) p[c] -= alpha * static_cast<float>(sky.at(u, v, c));
+        }
+    });
+}
+
+}  // namespace astrosplat
