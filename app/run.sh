@@ -10,7 +10,7 @@ cmake --preset release -DASTROSPLAT_TESTS=OFF >/dev/null
 cmake --build --preset release --target astrosplat
 
 program=build/release/astrosplat
-"$program" --batch "$scene" --frames 80 --resolution 1600x1200 --output renders/spiral.png --resume --overwrite
+"$program" --batch "$scene" --frames 100 --resolution 1600x1200 --output renders/spiral.png --resume --overwrite
 "$program" --batch "$scene" --frames 1-231x10 --resolution 800x600 --output renders/flight/spiral.####.png --resume --overwrite
 
 echo "The pictures are in $PWD/renders: spiral.png and flight/"

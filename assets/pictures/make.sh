@@ -13,7 +13,7 @@ for picture in whirlpool:96 nebula:1; do
 done
 
 # Four frames of the flight on one picture.
-"$program" --batch "$here/../scenes/spiral.toml" --frames 1,80,140,240 --resolution 800x600 --no-cache \
+"$program" --batch "$here/../scenes/spiral.toml" --frames 1,100,140,240 --resolution 800x600 --no-cache \
     --output "$work/spiral.####.png"
-oiiotool --nosoftwareattrib "$work/spiral.0001.png" "$work/spiral.0080.png" "$work/spiral.0140.png" \
+oiiotool --nosoftwareattrib "$work/spiral.0001.png" "$work/spiral.0100.png" "$work/spiral.0140.png" \
     "$work/spiral.0240.png" --mosaic 2x2 --eraseattrib ".*" --quality 90 -o "$here/spiral.jpg"

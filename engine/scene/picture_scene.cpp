@@ -21,7 +21,9 @@ namespace {
 
 constexpr double longest_side = 10.0;  // scene units, of the built-in plane
 constexpr std::int64_t longest_px = 1920;
-constexpr double fov = 40.0;  // degrees
+// Degrees. A telescope's is so small that what stands out of the picture does not move against it: the front
+// view is the picture to 40 dB at 3 degrees, to 29 dB at 40.
+constexpr double telescope_fov = 3.0, flight_fov = 40.0;
 
 constexpr const char* text_format =
     R"(# {title}: a picture as bodies in depth. 'astrosplat parameters' lists every key.
@@ -38,7 +40,7 @@ exposure   = 0.0                  # stops; acts in .png and .tif, exr holds scen
 position = [0, {distance}, 0]
 target   = [0, 0, 0]
 up       = [0, 0, -1]
-fov      = {fov}                   # degrees, vertical
+fov      = {fov}                    # degrees, vertical
 
 [[layer]]
 name = {name}
@@ -62,38 +64,65 @@ lod     = {{ max_px = {split}, noise = 0.75 }}  # dots that look larger, close b
 struct CameraKey {
     int frame;
     glm::dvec3 position, target, up;
+    double fov;  // degrees
 };
+
+// The camera comes from where the telescope stood, so far away that depth does not show, to where it does,
+// and tilts by 45 degrees meanwhile; the picture keeps its size. Eight frames are between two keys.
+void come_near(double half_height, std::vector<CameraKey>& keys) {
+    constexpr int first = 36, last = 100, step = 8;
+    const double far_tangent = real::tan(real::radians(0.5 * telescope_fov)),
+                 near_tangent = real::tan(real::radians(0.5 * flight_fov));
+    for (int frame = first; frame <= last; frame += step) {
+        const double t = static_cast<double>(frame - first) / (last - first), eased = t * t * (3.0 - 2.0 * t);
+        const double tangent = far_tangent * real::pow(near_tangent / far_tangent, eased);
+        const double tilt = real::radians(45.0 * eased),
+                     distance = (1.0 - 0.12 * eased) * half_height / tangent;
+        keys.push_back({frame,
+                        distance * glm::dvec3(0.06 * eased, real::cos(tilt), real::sin(tilt)),
+                        glm::dvec3(0.0),
+                        {0.0, eased, -1.0 + 0.5 * eased},
+                        2.0 * real::degrees(real::atan2(tangent, 1.0))});
+    }
+}
 
 // Ten seconds at 24 frames/s: the front, a slow tilt, a close pass, and on: to the edge of a disk, else up
 // and away.
-std::vector<CameraKey> flight(double distance, StructureKind kind) {
-    const glm::dvec3 middle(0.0), front(0.0, distance, 0.0);
+std::vector<CameraKey> flight(double half_height, StructureKind kind) {
     const bool disk = kind == StructureKind::disk;
-    const glm::dvec3 north(0.0, 0.0, -1.0), above(0.0, 1.0, 0.0);
-    return {{1, front, middle, north},
-            {36, front, middle, north},
-            {100, {0.6, 0.62 * distance, 0.62 * distance}, middle, {0.0, 1.0, -0.5}},
-            {160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above},
-            {205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above},
-            {240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above}};
+    const double distance = half_height / real::tan(real::radians(0.5 * flight_fov));
+    const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
+    std::vector<CameraKey> keys;
+    come_near(half_height, keys);
+    keys.insert(keys.begin(), keys.front());
+    keys.front().frame = 1;
+    keys.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above, flight_fov});
+    keys.push_back({205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above, flight_fov});
+    keys.push_back({240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above, flight_fov});
+    return keys;
 }
 
-std::string vector_text(const glm::dvec3& v) {
-    return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x, v.y, v.z);
-}
+std::string text_of(const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
+std::string text_of(double v) { return fmt::format("{:.6g}", v); }
 
-std::string track_text(const char* key, const std::vector<CameraKey>& keys, glm::dvec3 CameraKey::*value) {
+// Leaves out keys that are like both of their neighbours.
+template <class Value>
+std::string track_text(const char* key, const std::vector<CameraKey>& keys, Value CameraKey::*value) {
     std::string text;
-    for (const CameraKey& k : keys)
-        text += fmt::format("{}    [{}, {}]", text.empty() ? "" : ",\n", k.frame, vector_text(k.*value));
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const Value& here = keys[i].*value;
+        const bool inside = i > 0 && i + 1 < keys.size();
+        if (inside && here == keys[i - 1].*value && here == keys[i + 1].*value) continue;
+        text += fmt::format("{}    [{}, {}]", text.empty() ? "" : ",\n", keys[i].frame, text_of(here));
+    }
     return fmt::format("\"{}\" = {{ interpolation = \"smooth\", keys = [\n{}\n] }}\n", key, text);
 }
 
 std::string animation_text(const std::vector<CameraKey>& keys) {
-    return "\n[animation]                       # [frame, [x, y, z]]\n" +
+    return "\n[animation]                       # [frame, value]\n" +
            track_text("camera.position", keys, &CameraKey::position) +
            track_text("camera.target", keys, &CameraKey::target) +
-           track_text("camera.up", keys, &CameraKey::up);
+           track_text("camera.up", keys, &CameraKey::up) + track_text("camera.fov", keys, &CameraKey::fov);
 }
 
 // Even, as films want it.
@@ -130,7 +159,7 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
     const std::string name = layer_name_of(scene.image.stem().string(), "picture");
     const std::int64_t longest = std::max(scene.width_px, scene.height_px);
     const double height = longest_side * static_cast<double>(scene.height_px) / static_cast<double>(longest);
-    const double distance = 0.5 * height / real::tan(real::radians(0.5 * fov));
+    const double distance = 0.5 * height / real::tan(real::radians(0.5 * telescope_fov));
     std::string text = fmt::format(
         text_format, fmt::arg("title", name), fmt::arg("name", to_toml(name)),
         fmt::arg("width", side_px(scene.width_px, longest)),
@@ -139,13 +168,14 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
                                ? "\"1-240\""
                                : "\"1\"                  # such as \"1-240\" or \"1-100,120,200-300x2\""),
         fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
-        fmt::arg("distance", fmt::format("{:.6g}", distance)), fmt::arg("fov", fmt::format("{:.1f}", fov)),
+        fmt::arg("distance", fmt::format("{:.6g}", distance)),
+        fmt::arg("fov", fmt::format("{:.1f}", telescope_fov)),
         fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height))),
         fmt::arg("depth", scene.structure == StructureKind::walls ? "0.18" : "0.15"),
         fmt::arg("opacity", scene.structure == StructureKind::walls ? "0.3" : "0.55"));
-    return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
+    return scene.film ? text + animation_text(flight(0.5 * height, scene.structure)) : text;
 }
 
 }  // namespace astrosplat

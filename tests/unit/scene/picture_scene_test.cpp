@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "scene/animate.h"
 #include "scene/load.h"
@@ -51,8 +52,17 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
             EXPECT_NEAR(now.camera.position->x, 0.0, 1e-6) << frame;
             EXPECT_EQ(now.camera.up, still.camera.up) << frame;
         }
+        // It comes near without the picture's shrinking or growing, which the tilt hides 12 % of.
+        for (double frame = 1.0; frame <= 100.0; ++frame) {
+            const CameraParams camera = scene_at(film, frame).camera;
+            const double half_height =
+                glm::length(*camera.position) * std::tan(0.5 * camera.fov * 3.14159265358979 / 180.0);
+            EXPECT_GT(half_height, 0.86 * 3.125) << frame;
+            EXPECT_LT(half_height, 1.02 * 3.125) << frame;
+        }
+        EXPECT_NEAR(scene_at(film, 100.0).camera.fov, 40.0, 0.01);
         const auto height_over_plane = [&](double frame) { return scene_at(film, frame).camera.position->y; };
-        EXPECT_LT(height_over_plane(160.0), 0.25 * height_over_plane(1.0)) << "a close pass";
+        EXPECT_LT(height_over_plane(160.0), 2.0) << "a close pass";
         if (kind == StructureKind::disk) {
             EXPECT_LT(height_over_plane(240.0), 0.5) << "ends at the edge";
         } else {
