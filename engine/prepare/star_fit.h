@@ -43,9 +43,8 @@ struct StarWidths {
 /// Returns false, and leaves the star, where that ends nowhere: the star is lost.
 bool fit_star(const Image& image, const PixelMask& unusable, const StarWidths& widths, PictureStar& star);
 
-/// The sum of squares that a star of this place leaves, over the squared noise
-/// of a pixel: tells profiles apart that are compared in one
-/// `window`, the pixels which a fit of that profile looks at.
+/// The sum of squares that a star of this place leaves, over the squared noise of a pixel: tells profiles
+/// apart that are compared in one `window`, the pixels which a fit of that profile looks at.
 double shape_misfit(const Image& image, const PixelMask& unusable, const PictureStar& star,
                     const StarProfile& window);
 

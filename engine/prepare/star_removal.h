@@ -2,8 +2,6 @@
 // stars were, and the stars as a list. Whatever is in one is not in the other.
 #pragma once
 
-#include <filesystem>
-
 #include "prepare/star_field.h"
 
 namespace astrosplat {
