@@ -81,9 +81,11 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
     shapes.push_back(shape);
 }
 
-/// How much structure children get. Light that screen saturates has no room for it, and would be lost.
+/// How much structure children get: dust half of it. Light that screen saturates has no room for it, and
+/// would be lost.
 float structure_of(const LayerProjection& layer, const CameraSplat& splat) {
     const Blend blend = layer.render.blend;
+    if (shared::blend_absorbs(static_cast<int>(blend), splat.color.x)) return 0.5f * layer.render.lod.noise;
     if (blend != Blend::screen && blend != Blend::hybrid) return layer.render.lod.noise;
     const float screened =
         blend == Blend::screen ? 1.0f : static_cast<float>(hybrid_of(layer, splat.position)) / 65535.0f;

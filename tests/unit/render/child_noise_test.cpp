@@ -140,6 +140,32 @@ TEST(ChildNoise, KeepsTheLightOfFiveThousandParents) {
             }
 }
 
+/// Dust before a white sheet: a splat's colour below 0 is its exponents, which its children's noise varies.
+TEST(ChildNoise, DustGetsHalfOfItAndTakesAwayAsMuch) {
+    ShadedSplats dust = grid_of_parents(10.0f, 0.6f);
+    for (glm::vec3& color : dust.color) color = {-0.8f, -1.0f, -1.35f};
+    const ShadedSplats sheet = make_splats({{{0.0f, 0.0f, -50.0f}, 1000.0f, 1.0f, glm::vec3(1.0f)}});
+    RenderLayer layers[] = {layer_of("sheet", sheet),
+                            layer_of("dust", dust, Blend::over, Falloff::Shape::gaussian)};
+    layers[1].absorbs = true;
+    layers[1].render.lod.max_px = limit_px * 1080.0f / side_px;
+    const auto picture = [&](float noise) {
+        layers[1].render.lod.noise = noise;
+        return render(layers, pixel_camera(side_px, side_px), nullptr, settings_of(side_px, side_px)).beauty;
+    };
+    const Image plain = picture(0.0f), found = picture(0.75f);
+    for (int k = 0; k < 3; ++k) {
+        const double white = double(side_px) * side_px;
+        EXPECT_NEAR((white - total(found, k)) / (white - total(plain, k)), 1.0, 0.01) << k;
+    }
+    double change = 0.0;
+    for (std::size_t i = 0; i < plain.pixels.size(); ++i)
+        change += std::fabs(double(found.pixels[i]) - double(plain.pixels[i]));
+    const double taken = 3.0 * side_px * side_px - total(plain, 0) - total(plain, 1) - total(plain, 2);
+    EXPECT_GT(change / taken, 0.05);
+    EXPECT_LT(change / taken, 0.25);
+}
+
 TEST(ChildNoise, StarsOfPicturesStayWhole) {
     ShadedSplats star = make_splats({{{0.0f, 0.0f, 0.0f}, 20.0f, 0.7f, {1.0f, 0.8f, 0.6f}}});
     const auto picture = [&](std::uint64_t id, float max_px, float noise) {
