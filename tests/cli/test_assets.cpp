@@ -1,5 +1,8 @@
 // The demo scenes and presets load as they are committed: nothing they name is missing, every key is known.
+#include <nlohmann/json.hpp>
+
 #include "scene_fixture.h"
+#include "support/test_data.h"
 
 namespace astrosplat::test {
 namespace {
@@ -31,6 +34,37 @@ TEST_F(Assets, PresetsAreLooks) {
         EXPECT_EQ(result.code, 0) << result.err;
         EXPECT_TRUE(fs::exists(folder / (std::string(name) + ".png")));
     }
+}
+
+/// Fidelity of a picture on a plane under a shipped look.
+class ShippedLook : public SceneTest {
+  protected:
+    void expect_true(const std::string& look, const fs::path& picture, const std::string& keys) {
+        write_text(
+            folder / "look.toml",
+            fmt::format("astrosplat = 1\n[[layer]]\nname = \"gas\"\npreset = \"{0}/assets/looks/{1}\"\n"
+                        "[layer.source]\nmeshes = [ {{ mesh = \"plane\", texture = \"{2}\" }} ]\n"
+                        "count = 400000\nmax_distance = 0.3\n{3}",
+                        ASTROSPLAT_SOURCE_DIR, look, picture.string(), keys));
+        const RunResult result = run({"fidelity", "look.toml", "-o", "look.json"});
+        ASSERT_EQ(result.code, 0) << result.err;
+        const auto front = nlohmann::json::parse(text_of(folder / "look.json"))["front"];
+        EXPECT_NEAR(front["flux_ratio"]["frame"].get<double>(), 1.0, 0.08);
+        EXPECT_GT(front["psnr_db"].get<double>(), 20.0);
+    }
+};
+
+TEST_F(ShippedLook, S106ShowsARealNebulaAsItIs) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(nebula, "images/red_spider_heic0109a.jpg");
+    expect_true("s106.toml", nebula, "");
+}
+
+TEST_F(ShippedLook, M51ShowsARealGalaxyAsItIs) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(galaxy, "images/m101_heic0602a.jpg");
+    expect_true(
+        "m51.toml", galaxy,
+        fmt::format("[layer.look]\nthickness = {{ map = \"{}/assets/textures/whirlpool_thickness.png\" }}\n",
+                    ASTROSPLAT_SOURCE_DIR));
 }
 
 }  // namespace
