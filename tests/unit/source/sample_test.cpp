@@ -1,9 +1,8 @@
 // Lookup on pictures of a few texels whose filtered values can be worked out by hand.
 #include <gtest/gtest.h>
 
-#include <glm/geometric.hpp>
-
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "source/relief.h"
