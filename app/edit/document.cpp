@@ -71,11 +71,10 @@ Parameter parameter_for(Scene& scene, const ParameterKey& key) {
     Description description = describe(scene);
     if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
     try {
-        extend_lists(description, key);
+        while (extend_lists(description, key)) description = describe(scene);
     } catch (const ValueError& error) {
         throw InputError(fmt::format("{}: {}", key, error.what()));
     }
-    description = describe(scene);
     if (const Parameter* parameter = find_parameter(description, key)) return *parameter;
     fail_unknown(scene, key);
 }

@@ -61,6 +61,27 @@ void check_look(const Look& look, const ParameterKey& at, const Checker& check) 
         fmt::format("expected min not above max, found {} and {}", look.radius.min, look.radius.max));
 }
 
+void check_mask_terms(const MaskTerms& mask, const ParameterKey& at, const Checker& check) {
+    const auto ordered = [&](const std::optional<glm::dvec2>& range, const char* name) {
+        check.require(!range || range->x < range->y, {at / name},
+                      range ? fmt::format("expected the lower end first, found {} and {}", range->x, range->y)
+                            : "");
+    };
+    ordered(mask.luminance, "luminance");
+    ordered(mask.saturation, "saturation");
+    const glm::dvec4 ellipse = mask.ellipse.value_or(glm::dvec4(1.0));
+    check.require(ellipse.z > 0.0 && ellipse.w > 0.0, {at / "ellipse"},
+                  fmt::format("expected half axes above 0, found {} and {}", ellipse.z, ellipse.w));
+}
+
+void check_masks(const std::vector<MaskParams>& masks, const ParameterKey& at, const Checker& check) {
+    for (std::size_t i = 0; i < masks.size(); ++i) {
+        check_mask_terms(masks[i], at / i, check);
+        for (std::size_t k = 0; k < masks[i].any.size(); ++k)
+            check_mask_terms(masks[i].any[k], at / i / "any" / k, check);
+    }
+}
+
 void check_source(const SourceParams& source, const ParameterKey& at, const Checker& check) {
     check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at / "meshes", at / "kind"},
                   "expected at least one mesh, found none");
@@ -78,6 +99,7 @@ void check_source(const SourceParams& source, const ParameterKey& at, const Chec
     check.require(!source.voxels || source.voxel_size == 0.0, {at / "voxels", at / "voxel_size"},
                   "expected voxels or voxel_size, found both");
     const TextureSettings& t = source.texture;
+    check_masks(t.mask, at / "mask", check);
     check.require(!t.black || !t.white || *t.black < *t.white, {at / "black", at / "white"},
                   "expected black below white, found " +
                       (t.black && t.white ? short_number(*t.black) + " and " + short_number(*t.white) : ""));

@@ -152,7 +152,8 @@ ParameterKey full_key(const Description& description, const ParameterKey& key) {
     for (const ParameterList& list : description.lists) {
         if (!key.is_below(list.key)) continue;
         const std::string_view rest = key.below(list.key);
-        return is_list_index(rest.substr(0, rest.find('.'))) ? key : list.key / 0 / rest;
+        if (!is_list_index(rest.substr(0, rest.find('.'))))
+            return full_key(description, list.key / 0 / rest);
     }
     return key;
 }
@@ -177,6 +178,8 @@ const std::vector<ParameterRow>& parameter_rows() {
         Scene scene;
         scene.layers.resize(1);
         scene.layers[0].source.meshes.resize(1);
+        scene.layers[0].source.texture.mask.resize(1);
+        scene.layers[0].source.texture.mask[0].any.resize(1);
         scene.layers[0].look.thickness.keys.resize(1);
         scene.layers[0].look.noise.resize(1);
         std::vector<ParameterRow> result;

@@ -61,6 +61,38 @@ void describe_texture(const Describer& d, TextureSettings& t) {
       "What lies beyond 0..1; auto: clamp for built-in and planar, repeat for the mesh's own uv.");
 }
 
+void describe_mask_terms(const Describer& d, MaskTerms& m) {
+    d(m.luminance, "luminance", "Luminance", "",
+      "From, to: displayed brightness, 0 to 1, or the map's value with derive; []: all.", range(0, 1));
+    d(m.hue, "hue", "Hue", "degrees", "From, to: red 0, green 120, blue 240; may pass 360; []: all.",
+      range(0, 360));
+    d(m.saturation, "saturation", "Saturation", "", "From, to: 0 grey, 1 pure; []: all.", range(0, 1));
+    d(m.ellipse, "ellipse", "Ellipse", "u, v, widths",
+      "Centre (u, v from the bottom left) and half axes in picture widths; []: everywhere.",
+      within(-100, 100), slider(0, 1));
+    d(m.turn, "turn", "Turn", "degrees", "Turns the ellipse counter-clockwise.", slider(-180, 180),
+      never_with("ellipse", {Value()}));
+    d(m.image, "image", "Mask picture", "",
+      "Grey picture that covers the texture: white shows, black hides.");
+    d(m.derive, "derive", "Map", "", "Weighs by a map made of the picture: dust, H-alpha, young stars.");
+    d(m.feather, "feather", "Feather", "",
+      "Width of soft edges: share of the range, of all hues, of the picture's width.", range(0, 1));
+    d(m.invert, "invert", "Invert", "", "Shows what it would hide.");
+}
+
+void describe_mask(const Describer& d, MaskParams& mask) {
+    describe_mask_terms(d, mask);
+    d.list("any", mask.any, describe_mask_terms);
+}
+
+void describe_rework(const Describer& d, TextureSettings& t) {
+    d(t.derive, "derive", "Map", "", "Shows a map made of the picture: dust, H-alpha, young stars.");
+    d(t.smooth, "smooth", "Smooth", "of the width", "Blurs the picture; standard deviation.", range(0, 0.2));
+    d(t.detail, "detail", "Detail", "of the width",
+      "Leaves only what a blur of this width takes away; 0: everything.", range(0, 0.2));
+    d.list("mask", t.mask, describe_mask);
+}
+
 /// One number stands for the same on every axis.
 void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
     d.custom(
@@ -123,6 +155,7 @@ void describe_source(const Describer& d, SourceParams& s) {
     files(s.kind, "kind", "Kind", "", "What the splats are made of.");
     files.list("meshes", s.meshes, describe_mesh);
     describe_texture(d.shown_in("Source", "Picture").only_with("kind", {"mesh"}), s.texture);
+    describe_rework(d.shown_in("Source", "Masks").only_with("kind", {"mesh"}), s.texture);
     describe_buffer(lattice, s.buffer);
     lattice(s.voxels, "voxels", "Voxels", "", "Test positions per axis; auto: cubic, from count.", or_auto(),
             range(1, 1e6));

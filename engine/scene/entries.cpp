@@ -42,8 +42,9 @@ std::string shown_key(const Entry& entry, const EntryOrigin& origin) {
 }
 
 const ParameterList* list_at(const Description& description, const ParameterKey& key) {
+    const ParameterKey full = full_key(description, key);
     for (const ParameterList& list : description.lists)
-        if (list.key == key) return &list;
+        if (list.key == full) return &list;
     return nullptr;
 }
 
@@ -55,21 +56,27 @@ bool is_group(const Description& description, const ParameterKey& key) {
            std::ranges::any_of(description.lists, [&](const ParameterList& l) { return below(l.key); });
 }
 
-void set_list_length(const Description& description, const Entry& entry, const EntryOrigin& origin) {
+/// Sets the length that a list, or an element of one, asks for. What lies within is there to be described
+/// after that, so `description` is made again.
+void set_list_length(Description& description, const Entry& entry, const EntryOrigin& origin,
+                     const std::function<Description()>& describe_target) {
     const ParameterList* list = list_at(description, entry.key);
     if (list && entry.kind == Entry::Kind::list) {
         list->resize(0);  // a list replaces what a preset said
         list->resize(entry.node->as_array()->size());
+        description = describe_target();
     } else if (list && entry.kind == Entry::Kind::leaf) {
         const toml::array* array = entry.node->as_array();
         if (!array || !array->empty())
             fail_value(entry, origin,
                        fmt::format("expected a table or a list of tables, found {}", kind_of(*entry.node)));
         list->resize(0);
+        description = describe_target();
     } else if (entry.kind != Entry::Kind::list) {
+        // A single table in place of a list is its first element.
+        const ParameterKey key = entry.kind == Entry::Kind::table ? entry.key / 0 : entry.key;
         try {
-            // A single table in place of a list is its first element.
-            extend_lists(description, entry.kind == Entry::Kind::table ? entry.key / 0 : entry.key);
+            while (extend_lists(description, key)) description = describe_target();
         } catch (const ValueError& error) {
             fail_value(entry, origin, error.what());
         }
@@ -203,7 +210,7 @@ void flatten(const toml::node& node, const ParameterKey& key, const ParameterKey
         flatten(element, key / index++, generic_key, origin, element.source(), entries);
 }
 
-void extend_lists(const Description& description, const ParameterKey& key) {
+bool extend_lists(const Description& description, const ParameterKey& key) {
     const ParameterKey full = full_key(description, key);
     for (const ParameterList& list : description.lists) {
         if (!full.is_below(list.key)) continue;
@@ -213,8 +220,11 @@ void extend_lists(const Description& description, const ParameterKey& key) {
         if (problem != std::errc() || index > list.size())
             throw ValueError(fmt::format("expected an index of at most {} in {}, found {}", list.size(),
                                          list.generic_key, std::string(rest.data(), end)));
-        if (index == list.size()) list.resize(index + 1);
+        if (index < list.size()) continue;
+        list.resize(index + 1);
+        return true;
     }
+    return false;
 }
 
 void apply_entries(std::vector<Entry> entries, const EntryOrigin& origin,
@@ -222,9 +232,8 @@ void apply_entries(std::vector<Entry> entries, const EntryOrigin& origin,
     std::ranges::stable_sort(entries, [](const Entry& a, const Entry& b) {
         return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
     });
-    const Description lists = describe_target();
-    for (const Entry& entry : entries) set_list_length(lists, entry, origin);
-    const Description description = describe_target();
+    Description description = describe_target();
+    for (const Entry& entry : entries) set_list_length(description, entry, origin, describe_target);
     for (const Entry& entry : entries) {
         const bool list = list_at(description, entry.key) != nullptr;
         if (entry.kind == Entry::Kind::leaf && !list) set_leaf(description, entry, origin);

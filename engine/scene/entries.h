@@ -40,8 +40,9 @@ void flatten(const toml::node& node, const ParameterKey& key, const ParameterKey
 void apply_entries(std::vector<Entry> entries, const EntryOrigin& origin,
                    const std::function<Description()>& describe_target, Places& places);
 
-/// Makes every list long enough for `key` by one element at most. Throws ValueError for an index beyond that.
-void extend_lists(const Description& description, const ParameterKey& key);
+/// Makes the first list that is too short for `key` longer by one element, and says so: `description` is then
+/// out of date. Throws ValueError for an index beyond that.
+bool extend_lists(const Description& description, const ParameterKey& key);
 
 /// "unknown key 'x'; did you mean 'y'?" for a key that no parameter has. `shown` is as the person wrote it.
 std::string unknown_key(const std::string& shown, const ParameterKey& key, const ParameterKey& layer_group);

@@ -15,6 +15,11 @@ std::vector<fs::path> named_files(const SourceParams& source) {
         if (!is_builtin_mesh(input.mesh)) files.push_back(input.mesh);
         files.insert(files.end(), input.texture.begin(), input.texture.end());
     }
+    for (const MaskParams& mask : source.texture.mask) {
+        if (!mask.image.empty()) files.push_back(mask.image);
+        for (const MaskTerms& terms : mask.any)
+            if (!terms.image.empty()) files.push_back(terms.image);
+    }
     return files;
 }
 

@@ -96,22 +96,33 @@ class Saver {
     std::string list_text(const ParameterList& list, const Description& description) const {
         std::string text;
         for (std::size_t i = 0; i < list.size(); ++i) {
-            const ParameterKey element = list.key / i;
-            std::string pairs;
-            for (const Parameter& parameter : description.parameters) {
-                const ParameterSpec& spec = parameter.spec;
-                if (!spec.key.is_below(element)) continue;
-                const Value value = parameter.get();
-                const bool of_preset = !spec.generic_key.is_below("layer");
-                if (value ==
-                    standard_value(of_preset ? ParameterKey("layer") / spec.generic_key : spec.generic_key))
-                    continue;
-                pairs += fmt::format("{}{} = {}", pairs.empty() ? "" : ", ", spec.key.below(element),
-                                     to_toml(unresolve_paths(value, spec, folder_)));
-            }
+            const std::string pairs = element_pairs(list.key / i, description);
             text += (text.empty() ? "" : ", ") + (pairs.empty() ? "{}" : "{ " + pairs + " }");
         }
         return "[" + text + "]";
+    }
+
+    /// What an element of a list has that is not the default: "luminance = [0.1, 1.0], any = [{ ... }]".
+    std::string element_pairs(const ParameterKey& element, const Description& description) const {
+        std::string pairs;
+        const auto add = [&](std::string_view name, const std::string& text) {
+            pairs += fmt::format("{}{} = {}", pairs.empty() ? "" : ", ", name, text);
+        };
+        std::vector<const ParameterList*> inner;
+        for (const ParameterList& list : description.lists)
+            if (list.key.is_below(element) && list.size() > 0) inner.push_back(&list);
+        for (const Parameter& parameter : description.parameters) {
+            const ParameterSpec& spec = parameter.spec;
+            const auto holds = [&](const ParameterList* list) { return spec.key.is_below(list->key); };
+            if (!spec.key.is_below(element) || std::ranges::any_of(inner, holds)) continue;
+            const Value value = parameter.get();
+            const bool of_preset = !spec.generic_key.is_below("layer");
+            if (!(value ==
+                  standard_value(of_preset ? ParameterKey("layer") / spec.generic_key : spec.generic_key)))
+                add(spec.key.below(element), to_toml(unresolve_paths(value, spec, folder_)));
+        }
+        for (const ParameterList* list : inner) add(list->key.below(element), list_text(*list, description));
+        return pairs;
     }
 
     TomlText text_;

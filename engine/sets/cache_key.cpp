@@ -37,9 +37,37 @@ std::string mesh_lines(const MeshInput& input, const Progress& progress) {
     return text;
 }
 
+std::string range_text(const std::optional<glm::dvec2>& range) {
+    return range ? fmt::format("{} {}", range->x, range->y) : "-";
+}
+
+std::string mask_line(const char* what, const MaskTerms& terms, const Progress& progress) {
+    const auto& [luminance, hue, saturation, ellipse, turn, image, derive, feather, invert] = terms;
+    std::string text = fmt::format("{} luminance {} hue {} saturation {} derive {} feather {} invert {}",
+                                   what, range_text(luminance), range_text(hue), range_text(saturation),
+                                   static_cast<int>(derive), feather, invert);
+    if (ellipse)
+        text += fmt::format(" ellipse {} {} {} {} {}", ellipse->x, ellipse->y, ellipse->z, ellipse->w, turn);
+    return text + "\n" + (image.empty() ? "" : file_line("mask picture", image, progress));
+}
+
+// Nothing where nothing is used, so that sets made before there was a choice keep their names.
+std::string rework_lines(const TextureSettings& settings, const Progress& progress) {
+    std::string text;
+    if (settings.derive != Derived::none)
+        text += fmt::format("derive {}\n", static_cast<int>(settings.derive));
+    if (settings.smooth > 0.0) text += fmt::format("smooth {}\n", settings.smooth);
+    if (settings.detail > 0.0) text += fmt::format("detail {}\n", settings.detail);
+    for (const MaskParams& mask : settings.mask) {
+        text += mask_line("mask", mask, progress);
+        for (const MaskTerms& terms : mask.any) text += mask_line("or", terms, progress);
+    }
+    return text;
+}
+
 std::string texture_lines(const TextureSettings& settings) {
-    const auto& [colorspace, alpha, unpremultiply, hdu, plane, stretch, black, white, softening, filter,
-                 wrap] = settings;
+    [[maybe_unused]] const auto& [colorspace, alpha, unpremultiply, hdu, plane, stretch, black, white,
+                                  softening, filter, wrap, derive, smooth, detail, mask] = settings;
     const auto limit = [](const std::optional<double>& v) { return v ? fmt::format("{}", *v) : "auto"; };
     return fmt::format("colorspace {}\nalpha {}\nunpremultiply {}\nhdu {}\nplane {}\nstretch {}\n",
                        static_cast<int>(colorspace), static_cast<int>(alpha), static_cast<int>(unpremultiply),
@@ -79,7 +107,7 @@ std::string cache_key_text(const SourceParams& source, const std::string& layer_
                                   max_distance, uv, structure, seed, file, stars] = source;
     std::string text = fmt::format("set {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
     for (const MeshInput& input : meshes) text += mesh_lines(input, progress);
-    text += texture_lines(texture) + lattice_lines(source);
+    text += texture_lines(texture) + rework_lines(texture, progress) + lattice_lines(source);
     text += structure_lines(structure);
     return text + fmt::format("jitter {}\nmax_distance {}\nuv {}\nseed {}\n", jitter, max_distance,
                               static_cast<int>(uv), resolved_seed(seed, layer_name));

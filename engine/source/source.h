@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +16,32 @@ namespace astrosplat {
 
 enum class SourceKind { mesh, splats, stars };
 constexpr auto names_of(SourceKind) { return names_up_to<SourceKind::stars>("mesh", "splats", "stars"); }
+
+/// A map made of a picture's own light, 0..1: see derived_picture.h.
+enum class Derived { none, dust, h_alpha, young_stars };
+constexpr auto names_of(Derived) {
+    return names_up_to<Derived::young_stars>("none", "dust", "h_alpha", "young_stars");
+}
+
+/// Where a mask shows a picture: everywhere that all of its terms hold; empty terms hold everywhere.
+struct MaskTerms {
+    std::optional<glm::dvec2> luminance;   // [lo, hi] of the displayed luminance; 0 and 1 have no edge
+    std::optional<glm::dvec2> hue;         // degrees, [from, to] of the displayed colour; may pass 360
+    std::optional<glm::dvec2> saturation;  // [lo, hi] of the displayed colour's (HSV)
+    std::optional<glm::dvec4> ellipse;     // u, v of its centre and its half axes in picture widths
+    double turn = 0.0;                     // degrees that the ellipse is turned, counter-clockwise
+    std::filesystem::path image;           // grey picture over the whole texture, as stored
+    Derived derive = Derived::none;        // weighs by this map; `luminance` is then of its values
+    double feather = 0.0;                  // width of a soft edge: 0..1 of the range, turns, picture widths
+    bool invert = false;
+    bool operator==(const MaskTerms&) const = default;
+};
+
+/// Its own terms, and at least one of the alternatives where there are any.
+struct MaskParams : MaskTerms {
+    std::vector<MaskTerms> any;
+    bool operator==(const MaskParams&) const = default;
+};
 
 /// How a picture file becomes linear, premultiplied colour.
 struct TextureSettings {
@@ -52,6 +80,10 @@ struct TextureSettings {
     double softening = 0.1;       // asinh(x/s)/asinh(1/s)
     Filter filter = Filter::bilinear;
     Wrap wrap = Wrap::automatic;
+    Derived derive = Derived::none;  // shows this map instead of the picture
+    double smooth = 0.0;             // standard deviation of a blur, of the picture's width
+    double detail = 0.0;             // leaves what a blur of that width takes away; 0: everything
+    std::vector<MaskParams> mask;    // multiply alpha
     bool operator==(const TextureSettings&) const = default;
 };
 

@@ -13,7 +13,10 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "image/blur.h"
+#include "source/derived_picture.h"
 #include "source/fits.h"
+#include "source/mask.h"
 #include "source/picture.h"
 
 namespace astrosplat {
@@ -186,6 +189,48 @@ Image apply_alpha(const Image& stored, Settings::Alpha alpha, bool premultiplied
     return image;
 }
 
+// Alpha that was made of the light follows what became of it; a file's alpha stays.
+void retake_alpha(Image& image, Settings::Alpha alpha) {
+    if (alpha != Settings::Alpha::max && alpha != Settings::Alpha::luminance) return;
+    for_each_pixel(image, [&](float* p) { p[3] = std::clamp(alpha_of(p, alpha), 0.0f, 1.0f); });
+}
+
+// The map as a grey picture, under the alpha rules of a picture from a file.
+void show_derived(Image& image, Derived kind, Settings::Alpha alpha, bool premultiplied) {
+    const Image map = derived_picture(image, kind);
+    parallel_each(image.height, rows_per_chunk, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            float* const p = image.at(x, y);
+            const bool made = alpha == Settings::Alpha::max || alpha == Settings::Alpha::luminance;
+            if (made) p[3] = *map.at(x, y);
+            std::fill_n(p, 3, made && premultiplied ? *map.at(x, y) : *map.at(x, y) * p[3]);
+        }
+    });
+}
+
+// Leaves what a blur takes away; where that is negative, nothing.
+void keep_detail(Image& image, const Image& blurred) {
+    parallel_each(image.height, rows_per_chunk, [&](std::int64_t y) {
+        for (std::int64_t x = 0; x < image.width; ++x)
+            for (int c = 0; c < 3; ++c)
+                image.at(x, y)[c] = std::max(0.0f, image.at(x, y)[c] - blurred.at(x, y)[c]);
+    });
+}
+
+// Masks look at the picture as it was; what it shows is derived, then smoothed, then reduced to detail.
+void rework(Texture& texture, const Settings& settings, Settings::Alpha alpha) {
+    Image& image = texture.image;
+    if (!settings.mask.empty()) texture.mask = mask_weights(image, settings.mask);
+    if (settings.derive != Derived::none) show_derived(image, settings.derive, alpha, texture.divided);
+    if (settings.smooth == 0.0 && settings.detail == 0.0) return;
+    const auto width = static_cast<double>(image.width);
+    Image blurred;
+    if (settings.detail > 0.0) blurred = gaussian_blur(image, settings.detail * width);
+    if (settings.smooth > 0.0) image = gaussian_blur(image, settings.smooth * width);
+    if (settings.detail > 0.0) keep_detail(image, blurred);
+    if (texture.divided) retake_alpha(image, alpha);
+}
+
 const char* alpha_name(Settings::Alpha alpha) {
     switch (alpha) {
         case Settings::Alpha::file:
@@ -230,11 +275,21 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
     texture.wrap = settings.wrap == Settings::Wrap::automatic ? default_wrap : settings.wrap;
     texture.divided = premultiplied;
     texture.alpha_from_light = settings.alpha == Settings::Alpha::automatic && alpha == Settings::Alpha::max;
+    rework(texture, settings, alpha);
     texture.credit = stored.picture.credit;
     texture.summary =
         fmt::format("{}, {}, {}", stored.picture.summary,
                     is_encoded(stored, settings.colorspace) ? "sRGB" : "linear", alpha_name(alpha));
     return texture;
+}
+
+void apply_mask(Texture& texture) {
+    if (texture.mask.pixels.empty()) return;
+    const std::int64_t pixels = texture.image.width * texture.image.height;
+    parallel_each(pixels, 1 << 16, [&](std::int64_t i) {
+        for (int c = 0; c < 4; ++c) texture.image.pixels[4 * i + c] *= texture.mask.pixels[i];
+    });
+    texture.mask = {};
 }
 
 Image load_raw_image(const fs::path& file) {

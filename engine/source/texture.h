@@ -26,12 +26,17 @@ struct Texture {
         false;  // the file has no alpha, and none was asked for: alpha is the brightest channel
     std::string
         credit;  // from the file's own metadata (XMP/AVM credit, EXIF artist, copyright), may be empty
+    Image mask;  // one channel, what apply_mask() multiplies by; without pixels where there is none
     std::string summary;  // one line for messages: size, HDU, limits and stretch chosen
 };
 
-/// `default_wrap` is what Wrap::automatic means here. Throws InputError, Cancelled.
+/// `default_wrap` is what Wrap::automatic means here. Masks are weighed but not yet applied: shapes that are
+/// made of a picture's brightness see all of it. Throws InputError, Cancelled.
 Texture load_texture(const std::vector<std::filesystem::path>& files, const TextureSettings& settings,
                      TextureSettings::Wrap default_wrap, const Progress& progress = {});
+
+/// Multiplies the picture by its mask, and forgets the mask.
+void apply_mask(Texture& texture);
 
 /// Reads a picture without any colour or alpha treatment, for thickness maps: RGB as stored (0..1 for
 /// integers), row 0 on top. Throws InputError.

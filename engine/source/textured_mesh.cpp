@@ -68,7 +68,10 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress
                                                      : load_file(input, source, progress));
     }
     const Bounds box = bounds(meshes);
-    for (TexturedMesh& m : meshes) apply_uv(m.mesh, source.uv, box);
+    for (TexturedMesh& m : meshes) {
+        apply_uv(m.mesh, source.uv, box);
+        for (Texture& texture : m.textures) apply_mask(texture);
+    }
     return meshes;
 }
 

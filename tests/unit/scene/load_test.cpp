@@ -42,6 +42,8 @@ Scene defaults() {
     layer.name = "stars";
     layer.source.meshes.resize(1);
     layer.source.meshes[0].mesh = "disk.obj";
+    layer.source.texture.mask.resize(1);
+    layer.source.texture.mask[0].any.resize(1);
     layer.look.thickness.keys.resize(1);
     layer.look.noise.resize(1);
     scene.file = "scene.toml";

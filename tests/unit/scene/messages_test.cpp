@@ -86,6 +86,23 @@ INSTANTIATE_TEST_SUITE_P(
              "6: layer.stars.look.thickness.keys: expected a thickness.map for several keys, found none"},
         Case{"[layer.look]\nradius.min = 0.2\nradius.max = 0.1\n",
              "7: layer.stars.look.radius.max: expected min not above max, found 0.2 and 0.1"},
+        Case{"[layer.source]\nmask = { luminance = [0.5, 0.5] }\n",
+             "6: layer.stars.source.mask.0.luminance: expected the lower end first, found 0.5 and 0.5"},
+        Case{"[layer.source]\nmask = [{ hue = [10, 20] }, { saturation = [0.5, 0.1] }]\n",
+             "6: layer.stars.source.mask.1.saturation: expected the lower end first, found 0.5 and 0.1"},
+        Case{"[layer.source]\nmask = { any = [{}, { ellipse = [0.5, 0.5, 0, 1] }] }\n",
+             "6: layer.stars.source.mask.0.any.1.ellipse: expected half axes above 0, found 0 and 1"},
+        Case{"[layer.source]\nmask = { hue = [0, 400] }\n",
+             "6: layer.source.mask.hue: expected 2 numbers from 0 to 360, found 400"},
+        Case{"[layer.source]\nmask = { any = { lumnance = [0, 1] } }\n",
+             "6: unknown key 'mask.any.lumnance'; did you mean 'layer.source.mask.any.luminance'?"},
+        Case{"[layer.source]\nmask = \"spot.png\"\n",
+             "6: layer.source.mask: expected a table or a list of tables, found a string"},
+        Case{"[layer.source]\nderive = \"dst\"\n",
+             "6: layer.source.derive: expected none, dust, h_alpha or young_stars, found 'dst'; did you mean "
+             "'dust'?"},
+        Case{"[layer.source]\nsmooth = 0.5\n",
+             "6: layer.source.smooth: expected a number from 0 to 0.2, found 0.5"},
         Case{"[layer.render]\nblend = \"ovr\"\n",
              "6: layer.render.blend: expected over, add, screen, lighten, hybrid or absorb, found 'ovr'; did "
              "you "

@@ -76,6 +76,10 @@ jitter = 1.0
 max_distance = 0.0
 filter = "bilinear"
 wrap = "auto"
+derive = "none"
+smooth = 0.0
+detail = 0.0
+mask = [ { luminance = [], hue = [], saturation = [], ellipse = [], turn = 0.0, image = "", derive = "none", feather = 0.0, invert = false, any = [ { luminance = [], hue = [], saturation = [], ellipse = [], turn = 0.0, image = "", derive = "none", feather = 0.0, invert = false } ] } ]
 uv = "mesh"
 structure = { kind = "columns", height = 0.0, depth = 0.15, clumps = 1.0, stars = true, dust = "auto", opacity = 0.55, density = 0.75, border = 0.0 }
 seed = 0

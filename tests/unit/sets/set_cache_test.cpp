@@ -156,6 +156,39 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
         [](SourceParams& s) { s.texture.softening = 0.2; },
         [](SourceParams& s) { s.texture.filter = Settings::Filter::area; },
         [](SourceParams& s) { s.texture.wrap = Settings::Wrap::black; },
+        [](SourceParams& s) { s.texture.derive = Derived::dust; },
+        [](SourceParams& s) { s.texture.smooth = 0.1; },
+        [](SourceParams& s) { s.texture.detail = 0.1; },
+        [](SourceParams& s) { s.texture.mask.resize(1); },
+        [](SourceParams& s) { s.texture.mask.resize(2); },
+        [](SourceParams& s) { s.texture.mask.resize(1), s.texture.mask[0].any.resize(1); },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.luminance = glm::dvec2(0.1, 0.2)}, {}}};
+        },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.hue = glm::dvec2(0.1, 0.2)}, {}}};
+        },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.saturation = glm::dvec2(0.1, 0.2)}, {}}};
+        },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.ellipse = glm::dvec4(0.1)}, {}}};
+        },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.ellipse = glm::dvec4(0.1), .turn = 3.0}, {}}};
+        },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.image = s.meshes[0].texture[0]}, {}}};
+        },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.derive = Derived::dust}, {}}};
+        },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.feather = 0.5}, {}}};
+        },
+        [](SourceParams& s) {
+            s.texture.mask = {{{.invert = true}, {}}};
+        },
         [](SourceParams& s) { s.buffer = glm::dvec3(0.1, 0.2, 0.3); },
         [](SourceParams& s) { s.buffer = glm::dvec3(0.1, 0.2, 0.4); },
         [](SourceParams& s) { s.voxels = glm::i64vec3(9, 8, 7); },
