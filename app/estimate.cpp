@@ -30,7 +30,8 @@ std::int64_t splats_of(const SourceParams& source) {
         return ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat;
     }
     const bool bodies = source.structure.kind != StructureKind::columns;
-    if (!bodies && !source.voxels && source.voxel_size <= 0.0) return source.count;
+    if (!bodies && !source.voxels && source.voxel_size <= 0.0)
+        return source.splats > 0 ? source.splats : source.count;
     const std::vector<TexturedMesh> meshes = load_meshes(source, Progress{{}, &interrupted()});
     if (bodies) return expected_dots(meshes);
     Bounds box;

@@ -33,6 +33,7 @@ struct LayerState {
     std::shared_ptr<SplatSet> to_use_up;  // the same where nobody reads its splats after the first shading
     Bounds box;                           // of the set, layer space
     std::filesystem::path thickness_file;
+    Derived thickness_derived = Derived::none;
     Image thickness_map;
     std::optional<ShadingInputs> shaded_with;  // what `shaded` was made with
     ShadedSplats shaded;
@@ -56,12 +57,14 @@ bool shaded_alike(const Scene& scene, const std::string& name) {
     });
 }
 
-/// Keeps the map that the layer has where it is of this file.
-void load_map(LayerState& layer, const std::filesystem::path& file) {
-    if (layer.thickness_file == file) return;
+/// Keeps the map that the layer has where it is this one.
+void load_thickness_map(LayerState& layer, const Thickness& thickness) {
+    const auto& [file, derived, keys] = thickness;
+    if (layer.thickness_file == file && layer.thickness_derived == derived) return;
     layer.thickness_file.clear();  // should the next line throw
-    layer.thickness_map = file.empty() ? Image{} : load_raw_image(file);
+    layer.thickness_map = file.empty() ? Image{} : load_map(file, derived);
     layer.thickness_file = file;
+    layer.thickness_derived = derived;
 }
 
 }  // namespace
@@ -99,7 +102,7 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     if (shaded_alike(scene, params.name)) layer.to_use_up = set;
     layer.box = bounds(*layer.set);
     check_extent(layer.box, params.name);
-    load_map(layer, params.look.thickness.map);
+    load_thickness_map(layer, params.look.thickness);
     count_set(*layer.set, counts);
     counts.cached = loaded.cached;
     counts.generate_seconds = seconds_since(start);
@@ -128,7 +131,7 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
     const ShadingInputs shading{params.look, inputs.axis, inputs.seed, inputs.falloff_integral,
                                 inputs.column};
     if (layer.shaded_with == shading) return;
-    load_map(layer, params.look.thickness.map);
+    load_thickness_map(layer, params.look.thickness);
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
     layer.shaded_with.reset();  // should an exception below leave old splats
     LookStatistics counts;

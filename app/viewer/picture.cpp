@@ -59,7 +59,8 @@ std::vector<PreviewLayer> ViewPicture::preview_layers() {
         layer.look = params.look;
         layer.inputs = look_inputs(params);
         if (!params.look.thickness.map.empty())
-            layer.inputs.thickness_map = &files_->map(params.look.thickness.map);
+            layer.inputs.thickness_map =
+                &files_->map(params.look.thickness.map, params.look.thickness.derive);
         status_.total += loaded->splats;
         sizes.push_back(loaded->splats);
         places_.push_back(i);

@@ -7,9 +7,9 @@
 namespace astrosplat {
 namespace fs = std::filesystem;
 
-const Image& PictureFiles::map(const fs::path& file) {
-    std::unique_ptr<Image>& image = maps_[file];
-    if (!image) image = std::make_unique<Image>(load_raw_image(file));
+const Image& PictureFiles::map(const fs::path& file, Derived derive) {
+    std::unique_ptr<Image>& image = maps_[{file, derive}];
+    if (!image) image = std::make_unique<Image>(load_map(file, derive));
     return *image;
 }
 
@@ -49,8 +49,11 @@ void PictureFiles::forget(const std::vector<fs::path>& files) {
         return std::find(files.begin(), files.end(), file) != files.end();
     };
     old_maps_.clear();
-    for (const fs::path& file : files)
-        if (auto map = maps_.extract(file)) old_maps_.push_back(std::move(map.mapped()));
+    std::erase_if(maps_, [&](auto& map) {
+        const bool changed = is_changed(map.first.first);
+        if (changed) old_maps_.push_back(std::move(map.second));
+        return changed;
+    });
     {
         const auto held = worker_.lock();
         for (auto& [of, sky] : skies_)

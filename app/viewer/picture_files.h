@@ -19,8 +19,8 @@ namespace astrosplat {
 
 class PictureFiles {
   public:
-    /// Throws InputError.
-    const Image& map(const std::filesystem::path& file);
+    /// Of load_map(). Throws InputError.
+    const Image& map(const std::filesystem::path& file, Derived derive);
     /// With gain and rotation of `params`; null where there is none to be seen, and while it is being loaded.
     /// Throws InputError where it cannot be.
     std::shared_ptr<const Environment> environment(const EnvironmentParams& params);
@@ -42,7 +42,7 @@ class PictureFiles {
     Worker::Task next_sky();
     void load(const Files& files);
 
-    std::map<std::filesystem::path, std::unique_ptr<Image>> maps_;
+    std::map<std::pair<std::filesystem::path, Derived>, std::unique_ptr<Image>> maps_;
     std::vector<std::unique_ptr<Image>> old_maps_;  // so that new ones do not get their addresses
     std::map<Files, Sky> skies_;   // what is compared may have another one; with the worker's lock
     std::optional<Files> wanted_;  // asked for last; with the lock

@@ -157,6 +157,18 @@ class BlockRun {
     std::atomic<std::size_t> done_{0};  // blocks, each once for either kind
 };
 
+// Adds what is kept to the set.
+void run_cull(std::span<const TexturedMesh> meshes, const Lattice& lattice, const CullSettings& settings,
+              const Progress& progress, KeptWatcher* watcher, SplatSet& set) {
+    std::vector<const Mesh*> shapes;
+    for (const TexturedMesh& m : meshes) shapes.push_back(&m.mesh);
+    const TriangleTree tree = make_triangle_tree(shapes);
+    const Buffer<SurfaceTriangle> surface = surface_triangles(meshes, lattice.spacing());
+    const std::vector<LatticeBlock> blocks = blocks_near(tree, lattice, settings, progress);
+    reserve(set, blocks.size() * 2 * block_positions);
+    BlockRun(tree, surface, lattice, settings, progress, watcher).run(blocks, set);
+}
+
 void describe_set(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
                   SplatSet& set) {
     set.spacing = lattice.spacing();
@@ -187,21 +199,19 @@ std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const L
     return static_cast<std::int64_t>(std::min(bytes, 9e18));
 }
 
+KeptCounts count_kept(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance) {
+    SplatSet set;
+    run_cull(meshes, lattice, {max_distance, 1.0, 1}, {}, nullptr, set);
+    return {set.size() + set.zero_alpha, set.size()};
+}
+
 SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
                   double jitter, std::uint32_t seed, const Progress& progress, KeptWatcher* watcher) {
     claim_memory(generate_memory_bytes(meshes, lattice, max_distance), "generating splats");
-    std::vector<const Mesh*> shapes;
-    for (const TexturedMesh& m : meshes) shapes.push_back(&m.mesh);
-    const TriangleTree tree = make_triangle_tree(shapes);
-    const Buffer<SurfaceTriangle> surface = surface_triangles(meshes, lattice.spacing());
-    const CullSettings settings{max_distance, jitter, seed};
-    const std::vector<LatticeBlock> blocks = blocks_near(tree, lattice, settings, progress);
-
     SplatSet set;
     describe_set(meshes, lattice, max_distance, set);
     if (watcher) watcher->begins(set, lattice.box);
-    reserve(set, blocks.size() * 2 * block_positions);
-    BlockRun(tree, surface, lattice, settings, progress, watcher).run(blocks, set);
+    run_cull(meshes, lattice, {max_distance, jitter, seed}, progress, watcher, set);
     check_consistent(set);
     return set;
 }

@@ -19,6 +19,13 @@ class KeptWatcher;
 std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
                                    double max_distance);
 
+/// Positions of a lattice with full jitter.
+struct KeptCounts {
+    std::int64_t kept = 0;  // within max_distance of a surface
+    std::int64_t lit = 0;   // those whose alpha is not 0
+};
+KeptCounts count_kept(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance);
+
 /// Runs the cull over the whole lattice, block by block; cost follows what is kept. Deterministic for any
 /// thread count. Announces memory before taking it. `progress` may cancel; `watcher`, where there is one,
 /// sees the splats as they are kept.

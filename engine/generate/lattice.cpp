@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
+#include "generate/neighbourhood.h"
 
 namespace astrosplat {
 namespace {
@@ -63,14 +64,30 @@ Lattice cubes(Bounds box, double size, const char* key) {
     return lattice;
 }
 
-// With two positions in each voxel and a band of 2 * max_distance around the surface, kept = 4 area distance
-// / edge^3.
-double automatic_size(const SourceParams& source, std::span<const TexturedMesh> meshes, double max_distance) {
+// With two positions in each voxel, `count` of them fill a volume.
+double cube_side(double volume, std::int64_t count) {
+    return real::pow(2.0 * volume / static_cast<double>(count), 1.0 / 3.0);
+}
+
+// Whether volumes are alike enough for `count` to mean what it says.
+bool about(double volume, double expected) { return std::fabs(volume - expected) <= 0.14 * expected; }
+
+Lattice automatic_lattice(const SourceParams& source, std::span<const TexturedMesh> meshes,
+                          double max_distance, const Bounds& box) {
     if (source.count < 1) bad_key("count", "at least 1", fmt::format("{}", source.count));
     const double area = total_area(meshes);
     if (!(area > 0.0))
         bad_key("voxels", "numbers, because the meshes have no area to choose them by", "\"auto\"");
-    return real::pow(4.0 * area * max_distance / static_cast<double>(source.count), 1.0 / 3.0);
+    const double band = 2.0 * area * max_distance;
+    Neighbourhood near = measure_neighbourhood(meshes, box, max_distance);
+    if (near.volume == 0.0) near = {band, band};
+    if (source.splats > 0 && near.lit == 0.0)
+        bad_key("splats", "a picture and masks that leave something", "nothing that is not transparent");
+    const double volume = source.splats > 0 ? near.lit : about(near.volume, band) ? band : near.volume;
+    Lattice lattice = source.splats > 0 ? cubes(box, cube_side(volume, source.splats), "splats")
+                                        : cubes(box, cube_side(volume, source.count), "count");
+    if (!about(near.lit, band)) lattice.filling = near.lit / band;
+    return lattice;
 }
 
 }  // namespace
@@ -108,12 +125,13 @@ Lattice make_lattice(const SourceParams& source, std::span<const TexturedMesh> m
         bad_key("voxel_size", "a number above 0", fmt::format("{}", source.voxel_size));
     }
     if (source.voxel_size > 0.0) return cubes(box, source.voxel_size, "voxel_size");
-    return cubes(box, automatic_size(source, meshes, max_distance), "count");
+    return automatic_lattice(source, meshes, max_distance, box);
 }
 
 double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance) {
     const glm::dvec3 voxel = lattice.spacing();
-    const double band = 4.0 * total_area(meshes) * max_distance / (voxel.x * voxel.y * voxel.z);
+    const double band =
+        4.0 * total_area(meshes) * max_distance / (voxel.x * voxel.y * voxel.z) * lattice.filling;
     return std::min(static_cast<double>(lattice.positions()), band);  // also where band is 0 / 0
 }
 

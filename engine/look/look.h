@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/enum_names.h"
+#include "source/source.h"
 
 namespace astrosplat {
 
@@ -36,7 +37,8 @@ struct ThicknessKey {
 };
 
 struct Thickness {
-    std::filesystem::path map;  // empty: none
+    std::filesystem::path map;       // empty: none
+    Derived derive = Derived::none;  // reads this map of the picture, as grey, in its place
     std::vector<ThicknessKey> keys;
     bool operator==(const Thickness&) const = default;
 };

@@ -8,6 +8,7 @@
 #include "core/file_format.h"
 #include "scene/animate.h"
 #include "scene/frames.h"
+#include "source/mesh.h"
 
 namespace astrosplat {
 namespace {
@@ -63,9 +64,9 @@ void check_look(const Look& look, const ParameterKey& at, const Checker& check) 
 
 void check_mask_terms(const MaskTerms& mask, const ParameterKey& at, const Checker& check) {
     const auto ordered = [&](const std::optional<glm::dvec2>& range, const char* name) {
-        check.require(!range || range->x < range->y, {at / name},
-                      range ? fmt::format("expected the lower end first, found {} and {}", range->x, range->y)
-                            : "");
+        check.require(
+            !range || range->x < range->y, {at / name},
+            range ? fmt::format("expected the lower end first, found {} and {}", range->x, range->y) : "");
     };
     ordered(mask.luminance, "luminance");
     ordered(mask.saturation, "saturation");
@@ -88,7 +89,13 @@ void check_source(const SourceParams& source, const ParameterKey& at, const Chec
     for (std::size_t i = 0; i < source.meshes.size(); ++i) {
         const ParameterKey mesh = at / "meshes" / i;
         check.require(!source.meshes[i].mesh.empty(), {mesh / "mesh"},
-                      "expected a file or plane, relief, disk, sphere, found none");
+                      fmt::format("expected a file or {}, found none", fmt::join(builtin_meshes, ", ")));
+        const ShapeParams& shape = source.meshes[i].shape;
+        check.require(source.meshes[i].mesh != "revolution" || shape.outline.size() >= 2,
+                      {mesh / "outline", mesh / "mesh"},
+                      "expected at least 2 points for mesh \"revolution\", found none");
+        check.require(std::ranges::all_of(shape.outline, [](const glm::vec2& p) { return p.x >= 0.0f; }),
+                      {mesh / "outline"}, "expected points [r, y] with r of at least 0, found one below");
         const std::size_t pictures = source.meshes[i].texture.size();
         check.require(
             pictures <= 1 || pictures == 3, {mesh / "texture"},
@@ -98,6 +105,11 @@ void check_source(const SourceParams& source, const ParameterKey& at, const Chec
                   "expected a splat file for kind \"splats\", found none");
     check.require(!source.voxels || source.voxel_size == 0.0, {at / "voxels", at / "voxel_size"},
                   "expected voxels or voxel_size, found both");
+    check.require(source.splats == 0 || source.count == SourceParams().count, {at / "count", at / "splats"},
+                  "expected count or splats, found both");
+    check.require(source.splats == 0 || (!source.voxels && source.voxel_size == 0.0),
+                  {at / "voxels", at / "voxel_size", at / "splats"},
+                  "expected voxels, voxel_size or splats, found two of them");
     const TextureSettings& t = source.texture;
     check_masks(t.mask, at / "mask", check);
     check.require(!t.black || !t.white || *t.black < *t.white, {at / "black", at / "white"},

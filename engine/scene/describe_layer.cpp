@@ -3,6 +3,7 @@
 #include "scene/describe_layer.h"
 
 #include "scene/describe_look.h"
+#include "source/mesh.h"
 
 namespace astrosplat {
 namespace {
@@ -19,13 +20,43 @@ void describe_transform(const Describer& d, LayerTransform& t) {
       within(1e-9, 1e9), slider(0.01, 100), logarithmic());
 }
 
+/// Each measure is of one shape only.
+void describe_shape(const Describer& d, ShapeParams& s) {
+    const auto of = [](const char* shape) { return only_with("mesh", {shape}); };
+    d(s.outline, "outline", "Outline", "scene units",
+      "Points [r, y] from end to end, turned about the y axis.", within(-1e6, 1e6), in_any_order(),
+      of("revolution"));
+    d(s.width, "width", "Width", "of half the length", "Width of the lobes.", within(0.001, 100),
+      slider(0.1, 1), of("hourglass"));
+    d(s.waist, "waist", "Waist", "", "From a figure eight, 0, to a spheroid, 1.", range(0.01, 1),
+      of("hourglass"));
+    d(s.thickness, "thickness", "Thickness", "of the radius", "Between the outer and the inner wall.",
+      range(0.001, 0.99), of("shell"));
+    d(s.opening, "opening", "Opening", "degrees", "From the axis to the rim.", range(0, 170), of("bubble"));
+    d(s.flattening, "flattening", "Flattening", "", "1 - height / width.", within(-10, 0.99), slider(0, 0.9),
+      of("spheroid"));
+    d(s.shells, "shells", "Shells", "", "How many shells are nested; more fill the inside.", range(1, 64),
+      of("spheroid"));
+    d(s.concentration, "concentration", "Concentration", "",
+      "Shells gather towards the middle: their density falls as e^(-this r / R).", range(0, 20),
+      of("spheroid"), never_with("shells", {std::int64_t(1)}));
+    d(s.tube, "tube", "Tube", "of the radius", "Radius of the ring's tube.", range(0.001, 0.5), of("ring"));
+    d(s.depth_map, "depth_map", "Depth map", "",
+      "Grey picture of depths, black farthest; empty: the picture's brightness.", of("sheet"));
+    d(s.depth, "depth", "Depth", "of the width", "From the farthest to the nearest place.", within(0, 1e6),
+      slider(0, 1), of("sheet"));
+    d(s.blur, "blur", "Blur", "of the longer side", "Smooths the depths; standard deviation.", range(0, 0.2),
+      of("sheet"));
+}
+
 void describe_mesh(const Describer& d, MeshInput& mesh) {
     d(mesh.mesh, "mesh", "Mesh", "", "Mesh file, or a built-in shape.",
-      one_of({"plane", "relief", "disk", "sphere"}));
+      one_of({builtin_meshes.begin(), builtin_meshes.end()}));
     d(mesh.texture, "texture", "Picture", "",
       "Picture on the mesh: empty for the mesh's own, three for red, green and blue.", or_no_text());
     d(mesh.relief, "relief", "Relief", "of the width", "Height of the built-in relief.", within(-1e6, 1e6),
       slider(0, 1), only_with("mesh", {"relief"}));
+    describe_shape(d, mesh.shape);
 }
 
 void describe_texture(const Describer& d, TextureSettings& t) {
@@ -164,7 +195,11 @@ void describe_source(const Describer& d, SourceParams& s) {
             only_with("voxels", {"auto"}));
     splats(s.count, "count", "Count", "", "About how many positions voxels = \"auto\" keeps.", range(1, 1e15),
            slider(1e4, 1e9), logarithmic(), never_with("kind", {"splats"}), only_with("voxels", {"auto"}),
-           only_with("voxel_size", {0.0}));
+           only_with("voxel_size", {0.0}), only_with("splats", {std::int64_t(0)}));
+    lattice(s.splats, "splats", "Splats", "",
+            "In place of count: positions left after the picture's alpha and masks; 0: count.",
+            range(0, 1e15), slider(1e4, 1e9), logarithmic(), only_with("voxels", {"auto"}),
+            only_with("voxel_size", {0.0}));
     lattice(s.jitter, "jitter", "Jitter", "of half a voxel", "How far positions leave the lattice.",
             range(0, 1));
     lattice(s.max_distance, "max_distance", "Largest distance", "scene units",
@@ -172,6 +207,15 @@ void describe_source(const Describer& d, SourceParams& s) {
             slider(0, 10));
     files.only_with("kind", {"mesh"})(s.uv, "uv", "Picture coordinates", "",
                                       "The mesh's own, or projected along an axis.");
+    const Describer planar =
+        files.only_with("kind", {"mesh"}).only_with("uv", {"planar-xy", "planar-xz", "planar-yz"});
+    planar(s.uv_width, "uv_width", "Picture width", "scene units",
+           "What the picture's width covers; 0: it is stretched over the meshes' box.", at_least(0),
+           slider(0, 100));
+    planar(s.uv_center, "uv_center", "Picture centre", "scene units", "Where the picture's middle lies.",
+           as(Type::position), slider(-10, 10), never_with("uv_width", {0.0}));
+    planar(s.back, "back", "Back wall", "",
+           "What lies behind the middle shows: the same, the picture mirrored, or displaced by noise.");
     describe_structure(d.shown_in("Source", "Structure").only_with("kind", {"mesh"}).in("structure", false),
                        s.structure);
     splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",

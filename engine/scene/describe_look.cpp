@@ -104,6 +104,9 @@ void describe_look(const Describer& d, Look& look) {
     describe_curve(density.in("pdf", true), look.pdf);
     thickness(look.thickness.map, "thickness.map", "Thickness map", "",
               "Picture whose colours choose among the keys.", shown_as("Picture"));
+    thickness.in("thickness", false)(look.thickness.derive, "derive", "Map of it", "",
+                                     "Reads the picture as a grey map of it: dust, H-alpha, young stars.",
+                                     never_with("map", {""}));
     thickness.list("thickness.keys", look.thickness.keys, describe_thickness_key);
     section("Noise").list("noise", look.noise, describe_noise);
     describe_alpha(section("Opacity at soft edges").in("alpha", true), look.alpha);

@@ -37,6 +37,8 @@ inline auto one_of(std::vector<std::string> names) { return sets(&ParameterSpec:
 /// How nothing is written.
 inline auto or_auto() { return sets(&ParameterSpec::nothing, Value("auto")); }
 inline auto or_no_text() { return sets(&ParameterSpec::nothing, Value("")); }
+/// Points that need not ascend.
+inline auto in_any_order() { return sets(&ParameterSpec::any_order, true); }
 inline auto shown_as(std::string short_label) {
     return sets(&ParameterSpec::row_label, std::move(short_label));
 }

@@ -123,7 +123,7 @@ std::vector<glm::vec2> curve_of(const Value& value, const ParameterSpec& spec) {
     for (const Value& element : list_of(value, spec)) {
         if (!element.list() || element.list()->size() != 2) refuse(expectation(spec), kind_of(element));
         points.push_back(Field<glm::vec2>::set(element, coordinate));
-        if (points.size() > 1 && points.back().x <= points[points.size() - 2].x)
+        if (!spec.any_order && points.size() > 1 && points.back().x <= points[points.size() - 2].x)
             refuse("points with ascending x", short_number(widen(points.back().x)) + " after " +
                                                   short_number(widen(points[points.size() - 2].x)));
     }

@@ -14,6 +14,7 @@ std::vector<fs::path> named_files(const SourceParams& source) {
     for (const MeshInput& input : source.meshes) {
         if (!is_builtin_mesh(input.mesh)) files.push_back(input.mesh);
         files.insert(files.end(), input.texture.begin(), input.texture.end());
+        if (!input.shape.depth_map.empty()) files.push_back(input.shape.depth_map);
     }
     for (const MaskParams& mask : source.texture.mask) {
         if (!mask.image.empty()) files.push_back(mask.image);

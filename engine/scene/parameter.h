@@ -28,7 +28,7 @@ enum class ParameterType {
     position,  // a vector that moves along a curve when animated
     color,     // linear r, g, b
     rotation,  // quaternion x, y, z, w
-    curve      // [[x, y], ...] with x ascending
+    curve      // [[x, y], ...] with x ascending, or in any order
 };
 
 constexpr auto names_of(ParameterType) {
@@ -68,6 +68,7 @@ struct ParameterSpec {
     double min = -largest_number, max = largest_number;  // hard range, of every component
     bool below_max = false;                              // max itself is not allowed
     double slider_min = 0.0, slider_max = 1.0;
+    bool any_order = false;  // a curve's x need not ascend
     Scale scale = Scale::linear;
     Animation animation = Animation::no;
     std::vector<std::string> choices;

@@ -21,12 +21,31 @@ std::string file_line(const char* what, const fs::path& file, const Progress& pr
     return fmt::format("{} {} {}\n", what, sha256_of_file(file, progress), file.extension().string());
 }
 
+// What the shape of that name is made of.
+std::string shape_lines(const fs::path& name, const ShapeParams& shape, const Progress& progress) {
+    const auto& [outline, width, waist, thickness, opening, flattening, shells, concentration, tube,
+                 depth_map, depth, blur] = shape;
+    std::string text;
+    if (name == "revolution")
+        for (const glm::vec2& p : outline) text += fmt::format("outline {} {}\n", p.x, p.y);
+    if (name == "hourglass") text = fmt::format("width {} waist {}\n", width, waist);
+    if (name == "shell") text = fmt::format("thickness {}\n", thickness);
+    if (name == "bubble") text = fmt::format("opening {}\n", opening);
+    if (name == "spheroid")
+        text = fmt::format("flattening {} shells {} concentration {}\n", flattening, shells, concentration);
+    if (name == "ring") text = fmt::format("tube {}\n", tube);
+    if (name != "sheet") return text;
+    text = fmt::format("depth {} blur {}\n", depth, blur);
+    return text + (depth_map.empty() ? "" : file_line("depth map", depth_map, progress));
+}
+
 std::string mesh_lines(const MeshInput& input, const Progress& progress) {
-    const auto& [mesh, texture, relief] = input;
+    const auto& [mesh, texture, relief, shape] = input;
     std::string text;
     if (is_builtin_mesh(mesh)) {
         text = fmt::format("built-in {}\n", mesh.string());
         if (mesh == "relief") text += fmt::format("relief {}\n", relief);
+        text += shape_lines(mesh, shape, progress);
     } else {
         text = file_line("mesh", mesh, progress);
         if (texture.empty())
@@ -80,6 +99,7 @@ std::string lattice_lines(const SourceParams& source) {
     const std::string size =
         source.voxels ? fmt::format("voxels {} {} {}", source.voxels->x, source.voxels->y, source.voxels->z)
         : source.voxel_size != 0 ? fmt::format("voxel_size {}", source.voxel_size)
+        : source.splats > 0      ? fmt::format("splats {}", source.splats)
                                  : fmt::format("count {}", source.count);
     const std::string buffer =
         source.buffer ? fmt::format("{} {} {}", source.buffer->x, source.buffer->y, source.buffer->z)
@@ -97,18 +117,30 @@ std::string structure_lines(const StructureParams& params) {
            fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border);
 }
 
+// Nothing for a picture that is stretched over the meshes and the same in front and behind.
+std::string projection_lines(const SourceParams& source) {
+    if (source.uv == UvMode::mesh) return "";
+    const glm::dvec3& center = source.uv_center;
+    std::string text;
+    if (source.uv_width > 0.0)
+        text = fmt::format("uv width {} center {} {} {}\n", source.uv_width, center.x, center.y, center.z);
+    if (source.back != BackWall::same) text += fmt::format("back {}\n", static_cast<int>(source.back));
+    return text;
+}
+
 }  // namespace
 
 std::string cache_key_text(const SourceParams& source, const std::string& layer_name,
                            const Progress& progress) try {
     assert(source.kind == SourceKind::mesh);
     // Names all fields, so that a new one cannot be forgotten: either it belongs below, or among the unused.
-    [[maybe_unused]] const auto& [kind, meshes, texture, buffer, voxels, voxel_size, count, jitter,
-                                  max_distance, uv, structure, seed, file, stars] = source;
+    [[maybe_unused]] const auto& [kind, meshes, texture, buffer, voxels, voxel_size, count, splats, jitter,
+                                  max_distance, uv, uv_width, uv_center, back, structure, seed, file, stars] =
+        source;
     std::string text = fmt::format("set {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
     for (const MeshInput& input : meshes) text += mesh_lines(input, progress);
     text += texture_lines(texture) + rework_lines(texture, progress) + lattice_lines(source);
-    text += structure_lines(structure);
+    text += structure_lines(structure) + projection_lines(source);
     return text + fmt::format("jitter {}\nmax_distance {}\nuv {}\nseed {}\n", jitter, max_distance,
                               static_cast<int>(uv), resolved_seed(seed, layer_name));
 } catch (const InputError&) {

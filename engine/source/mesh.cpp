@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -72,32 +73,16 @@ Mesh disk_mesh(double aspect) {
     return mesh;
 }
 
-// A grid over uv, so that the seam has two vertices and each pole a whole row of them.
 Mesh sphere_mesh() {
-    constexpr std::uint32_t columns = 128, rows = 64;
-    Mesh mesh;
-    for (std::uint32_t j = 0; j <= rows; ++j) {
-        const double v = static_cast<double>(j) / rows;
-        const double y = -real::cos(v * real::pi), ring = j == 0 || j == rows ? 0.0 : real::sin(v * real::pi);
-        for (std::uint32_t i = 0; i <= columns; ++i) {
-            const double u = static_cast<double>(i) / columns;
-            const double longitude =
-                (u - 0.5) * 2.0 * real::pi;  // the map's centre looks to +z, its right to +x
-            const bool seam = i == 0 || i == columns;
-            const double x = seam ? 0.0 : ring * real::sin(longitude);
-            mesh.positions.emplace_back(builtin_radius * x, builtin_radius * y,
-                                        builtin_radius * ring * real::cos(longitude));
-            mesh.uvs.emplace_back(u, v);
-        }
+    constexpr int rows = 64;
+    std::vector<glm::dvec2> outline;
+    std::vector<double> v;
+    for (int j = 0; j <= rows; ++j) {
+        v.push_back(static_cast<double>(j) / rows);
+        const double y = -real::cos(v.back() * real::pi);
+        outline.emplace_back(j == 0 || j == rows ? 0.0 : real::sin(v.back() * real::pi), y);
     }
-    for (std::uint32_t j = 0; j < rows; ++j) {
-        for (std::uint32_t i = 0; i < columns; ++i) {
-            const std::uint32_t a = j * (columns + 1) + i, d = a + columns + 1;
-            if (j > 0) mesh.triangles.push_back({{a, a + 1, d + 1}, {a, a + 1, d + 1}, 0});
-            if (j + 1 < rows) mesh.triangles.push_back({{a, d + 1, d}, {a, d + 1, d}, 0});
-        }
-    }
-    return mesh;
+    return revolved(outline, v, builtin_radius);
 }
 
 }  // namespace
@@ -127,8 +112,32 @@ void apply_uv(Mesh& mesh, UvMode mode, const Bounds& box) {
     for (Mesh::Triangle& triangle : mesh.triangles) triangle.uv = triangle.position;
 }
 
+Mesh revolved(std::span<const glm::dvec2> outline, std::span<const double> v, double scale) {
+    constexpr std::uint32_t columns = 128;
+    Mesh mesh;
+    for (std::size_t j = 0; j < outline.size(); ++j) {
+        const double r = outline[j].x, y = outline[j].y;
+        for (std::uint32_t i = 0; i <= columns; ++i) {
+            const double u = static_cast<double>(i) / columns;
+            const double longitude = (u - 0.5) * 2.0 * real::pi;
+            const bool seam = i == 0 || i == columns;
+            const double x = seam ? 0.0 : r * real::sin(longitude);
+            mesh.positions.emplace_back(scale * x, scale * y, scale * r * real::cos(longitude));
+            mesh.uvs.emplace_back(u, v[j]);
+        }
+    }
+    for (std::size_t j = 0; j + 1 < outline.size(); ++j) {
+        for (std::uint32_t i = 0; i < columns; ++i) {
+            const auto a = static_cast<std::uint32_t>(j) * (columns + 1) + i, d = a + columns + 1;
+            if (outline[j].x > 0.0) mesh.triangles.push_back({{a, a + 1, d + 1}, {a, a + 1, d + 1}, 0});
+            if (outline[j + 1].x > 0.0) mesh.triangles.push_back({{a, d + 1, d}, {a, d + 1, d}, 0});
+        }
+    }
+    return mesh;
+}
+
 bool is_builtin_mesh(const std::filesystem::path& name) {
-    return name == "plane" || name == "relief" || name == "disk" || name == "sphere";
+    return std::ranges::find(builtin_meshes, name.string()) != builtin_meshes.end();
 }
 
 Mesh builtin_mesh(const std::string& name, double aspect) {

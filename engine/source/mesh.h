@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/bounds.h"
@@ -42,12 +44,22 @@ double surface_area(const Mesh& mesh);
 /// naming the mesh when a triangle has no uv.
 void apply_uv(Mesh& mesh, UvMode mode, const Bounds& box);
 
+/// Turns an outline of (r, y), r >= 0, about the y axis: u runs once around, its middle to +z and growing to
+/// +x there; `v` has a value for each point. Lengths are multiplied by `scale`. Where r is 0 the faces
+/// without area are left out. An outline that goes up has its faces outward. 128 columns; the seam has its
+/// vertices twice.
+Mesh revolved(std::span<const glm::dvec2> outline, std::span<const double> v, double scale);
+
+/// Names that stand for shapes instead of files.
+inline constexpr std::array<std::string_view, 11> builtin_meshes = {
+    "plane", "relief", "sheet",     "disk", "sphere",    "spheroid",
+    "shell", "bubble", "hourglass", "ring", "revolution"};
 bool is_builtin_mesh(const std::filesystem::path& name);
 
 /// "plane": in xz, centred, longer side 10, `aspect` = width / height of the picture, u to +x, v to -z.
 /// "disk": radius 5 in xz, uv as the plane's, and the largest circle around the middle of the picture.
-/// "sphere": radius 5, equirectangular uv, seen from outside right way round. ("relief" needs a picture: see
-/// relief.h.)
+/// "sphere": radius 5, equirectangular uv, seen from outside right way round. (The others are
+/// in relief.h and shapes.h.)
 Mesh builtin_mesh(const std::string& name, double aspect);
 
 }  // namespace astrosplat

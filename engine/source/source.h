@@ -87,12 +87,30 @@ struct TextureSettings {
     bool operator==(const TextureSettings&) const = default;
 };
 
-/// One mesh of a layer with its picture. `mesh` is a file or "plane", "relief", "disk", "sphere".
+/// Measures of the built-in shapes (shapes.h, relief.h), each of the shapes it names.
+struct ShapeParams {
+    std::vector<glm::vec2> outline;   // revolution: (r, y) from end to end, scene units
+    double width = 0.5;               // hourglass: radius of a lobe without its share of the waist, of 5
+    double waist = 0.3;               // hourglass: 0 figure eight .. 1 spheroid
+    double thickness = 0.2;           // shell: between its walls, of the radius
+    double opening = 60.0;            // bubble: degrees from the axis to its rim
+    double flattening = 0.0;          // spheroid: 1 - height / width
+    int shells = 1;                   // spheroid: how many are nested
+    double concentration = 3.0;       // spheroid: their number per length falls as e^(-this r / R)
+    double tube = 0.2;                // ring: radius of the tube, of the whole
+    std::filesystem::path depth_map;  // sheet: grey picture, black farthest; empty: the picture's brightness
+    double depth = 0.15;              // sheet: from farthest to nearest, of the width
+    double blur = 0.01;               // sheet: standard deviation, of the longer side
+    bool operator==(const ShapeParams&) const = default;
+};
+
+/// One mesh of a layer with its picture. `mesh` is a file or one of mesh.h's builtin_meshes.
 struct MeshInput {
     std::filesystem::path mesh;
     std::vector<std::filesystem::path>
         texture;           // empty: the mesh's own map_Kd; three: one picture from r, g, b
     double relief = 0.15;  // "relief": height as a fraction of the plane's width
+    ShapeParams shape = {};
     bool operator==(const MeshInput&) const = default;
 };
 
@@ -133,6 +151,10 @@ struct StructureParams {
     bool operator==(const StructureParams&) const = default;
 };
 
+/// Planar uv: what the half of a mesh that lies behind its middle shows.
+enum class BackWall { same, mirrored, varied };
+constexpr auto names_of(BackWall) { return names_up_to<BackWall::varied>("same", "mirrored", "varied"); }
+
 struct SourceParams {
     SourceKind kind = SourceKind::mesh;
     std::vector<MeshInput> meshes;
@@ -141,9 +163,13 @@ struct SourceParams {
     std::optional<glm::i64vec3> voxels;  // empty: from voxel_size, or automatic
     double voxel_size = 0.0;             // scene units; 0: from voxels, or automatic
     std::int64_t count = 2000000;        // positions kept by automatic voxels, about
+    std::int64_t splats = 0;             // in place of count: positions left after alpha and masks; 0: count
     double jitter = 1.0;                 // 0..1 of half a voxel
     double max_distance = 0.0;           // scene units; 0: 2 % of the longest side of the meshes' box
     UvMode uv = UvMode::mesh;
+    double uv_width = 0.0;           // planar: scene units that a picture's width covers; 0: the meshes' box
+    glm::dvec3 uv_center{0.0};       // planar with uv_width: where the picture's middle lies
+    BackWall back = BackWall::same;  // planar
     StructureParams structure;
     std::uint32_t seed = 0;      // 0: derived from the layer's name
     std::filesystem::path file;  // kind splats

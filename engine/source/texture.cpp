@@ -330,6 +330,14 @@ Image load_linear_image(const fs::path& file, const Progress& progress) {
     return linear_image(read_stored(file, Settings{}, progress));
 }
 
+Image load_map(const fs::path& file, Derived derive) {
+    if (derive == Derived::none) return load_raw_image(file);
+    const Image map = derived_picture(load_linear_image(file), derive);
+    Image grey = make_image(map.width, map.height, 3);
+    for (std::size_t i = 0; i < grey.pixels.size(); ++i) grey.pixels[i] = map.pixels[i / 3];
+    return grey;
+}
+
 std::vector<Image> load_environment_pictures(const fs::path& file, const Progress& progress) {
     Stored stored = read_stored(file, Settings{}, progress);
     const bool cube = stored.picture.cube;

@@ -41,6 +41,8 @@ void apply_mask(Texture& texture);
 /// Reads a picture without any colour or alpha treatment, for thickness maps: RGB as stored (0..1 for
 /// integers), row 0 on top. Throws InputError.
 Image load_raw_image(const std::filesystem::path& file);
+/// The same, or in its place the map made of the picture's light (derived_picture.h), grey.
+Image load_map(const std::filesystem::path& file, Derived derive);
 
 /// Reads a picture as linear light, premultiplied RGBA, for comparisons. Throws InputError, Cancelled.
 Image load_linear_image(const std::filesystem::path& file, const Progress& progress = {});

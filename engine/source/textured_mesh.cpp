@@ -4,22 +4,44 @@
 
 #include "core/error.h"
 #include "source/obj.h"
+#include "source/planar_uv.h"
 #include "source/relief.h"
+#include "source/shapes.h"
 
 namespace astrosplat {
 namespace {
 
 using Wrap = TextureSettings::Wrap;
 
+// Beyond a picture of a given width lies nothing; one that is stretched over the mesh has no beyond.
+Wrap default_wrap(const SourceParams& source, Wrap of_own_uv) {
+    if (source.uv == UvMode::mesh) return of_own_uv;
+    return source.uv_width > 0.0 ? Wrap::black : Wrap::clamp;
+}
+
+double aspect_of(const Image& image) {
+    return static_cast<double>(image.width) / static_cast<double>(image.height);
+}
+
+// Of the first of its pictures that it uses.
+double aspect_of(const TexturedMesh& mesh) {
+    for (const Texture& texture : mesh.textures)
+        if (texture.image.height > 0) return aspect_of(texture.image);
+    return 1.0;
+}
+
 TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, const Progress& progress) {
     const std::string name = input.mesh.string();
     if (input.texture.empty()) bad_input(name, "texture", "a picture, which built-in meshes need", "none");
     TexturedMesh loaded;
-    loaded.textures.push_back(load_texture(input.texture, source.texture, Wrap::clamp, progress));
+    loaded.textures.push_back(
+        load_texture(input.texture, source.texture, default_wrap(source, Wrap::clamp), progress));
     const Texture& texture = loaded.textures.front();
-    const double aspect =
-        static_cast<double>(texture.image.width) / static_cast<double>(texture.image.height);
-    loaded.mesh = name == "relief" ? relief_mesh(texture, input.relief) : builtin_mesh(name, aspect);
+    const double aspect = aspect_of(texture.image);
+    loaded.mesh = name == "relief"        ? relief_mesh(texture, input.relief)
+                  : name == "sheet"       ? sheet_mesh(texture, input.shape)
+                  : is_turned_shape(name) ? turned_shape(name, input.shape)
+                                          : builtin_mesh(name, aspect);
     return loaded;
 }
 
@@ -41,7 +63,7 @@ std::vector<Texture> load_maps(const Mesh& mesh, const TextureSettings& settings
 }
 
 TexturedMesh load_file(const MeshInput& input, const SourceParams& source, const Progress& progress) {
-    const Wrap wrap = source.uv == UvMode::mesh ? Wrap::repeat : Wrap::clamp;
+    const Wrap wrap = default_wrap(source, Wrap::repeat);
     TexturedMesh loaded;
     loaded.mesh = load_obj(input.mesh, progress);
     if (input.texture.empty()) {
@@ -69,7 +91,7 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress
     }
     const Bounds box = bounds(meshes);
     for (TexturedMesh& m : meshes) {
-        apply_uv(m.mesh, source.uv, box);
+        apply_source_uv(m.mesh, source, box, aspect_of(m));
         for (Texture& texture : m.textures) apply_mask(texture);
     }
     return meshes;

@@ -16,7 +16,8 @@ struct TexturedMesh {
 };
 
 /// Loads the meshes and pictures of a mesh source (paths already resolved). Wrap::automatic is clamp for
-/// built-in meshes and planar uv, repeat for a mesh's own uv. Throws InputError.
+/// built-in meshes and planar uv, black for planar uv with a width, repeat for a mesh's own uv. Throws
+/// InputError.
 std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress = {});
 
 /// Bounds of all vertices of all meshes.

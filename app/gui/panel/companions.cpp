@@ -54,6 +54,8 @@ Result of_source(const SourceParams& params, const ParameterKey& source, const P
                  const Value& value) {
     if (key == source / "voxels" && value.list() && params.voxel_size > 0.0)
         return {{source / "voxel_size", 0.0}};
+    if (key == source / "splats" && value.is_number() && value.number() > 0.0)
+        return {{source / "count", SourceParams().count}};
     if (key == source / "kind" && value == Value("mesh") && params.meshes.empty())
         return {{source / "meshes.0.mesh", "plane"}};
     return {};

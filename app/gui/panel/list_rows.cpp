@@ -28,6 +28,16 @@ bool can_take_thickness_key(const LayerParams& layer) {
     return thickness.keys.empty() || (!thickness.map.empty() && thickness.keys.size() < 8);
 }
 
+std::vector<MaskParams>& masks_of(LayerParams& layer) { return layer.source.texture.mask; }
+
+const InnerRows mask_alternatives = {
+    .key = "any",
+    .title = "Or",
+    .element = "alternative",
+    .size = [](const LayerParams& layer, std::size_t i) { return layer.source.texture.mask[i].any.size(); },
+    .add = [](LayerParams& layer, std::size_t i) { masks_of(layer)[i].any.emplace_back(); },
+    .remove = [](LayerParams& layer, std::size_t i, std::size_t k) { erase_at(masks_of(layer)[i].any, k); }};
+
 const ListRows lists[] = {
     {.key = "layer.source.meshes",
      .section = "Files",
@@ -42,6 +52,17 @@ const ListRows lists[] = {
          },
      .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.source.meshes, i); },
      .is_shown = [](const LayerParams& layer) { return layer.source.kind == SourceKind::mesh; }},
+    {.key = "layer.source.mask",
+     .section = "Masks",
+     .after = "layer.source.detail",
+     .title = "Mask",
+     .element = "mask",
+     .least = 0,
+     .size = [](const LayerParams& layer) { return layer.source.texture.mask.size(); },
+     .add = [](LayerParams& layer) { masks_of(layer).emplace_back(); },
+     .remove = [](LayerParams& layer, std::size_t i) { erase_at(masks_of(layer), i); },
+     .is_shown = [](const LayerParams& layer) { return layer.source.kind == SourceKind::mesh; },
+     .inner = &mask_alternatives},
     {.key = "layer.look.noise",
      .section = "Noise",
      .after = "",
@@ -80,6 +101,23 @@ const ListRows* list_of(const ParameterSpec& spec) {
 bool list_element_head(Context& context, const ListRows& list, std::size_t index) {
     if (list.size(context.layer()) <= list.least) return false;
     return element_head(fmt::format("{} {}", list.title, index + 1).c_str());
+}
+
+bool inner_element_head(const InnerRows& list, std::size_t index) {
+    return element_head(fmt::format("{} {}", list.title, index + 1).c_str());
+}
+
+void remove_inner_element(Context& context, const InnerRows& list, std::size_t outer, std::size_t index) {
+    const std::size_t layer = context.view.layer;
+    edit(context, context.layer_key(), std::string("Remove ") + list.element,
+         [&](Scene& scene) { list.remove(scene.layers[layer], outer, index); });
+}
+
+void inner_add_line(Context& context, const InnerRows& list, std::size_t outer) {
+    if (!add_line((std::string("Add ") + list.element).c_str())) return;
+    const std::size_t layer = context.view.layer;
+    edit(context, context.layer_key(), std::string("Add ") + list.element,
+         [&](Scene& scene) { list.add(scene.layers[layer], outer); });
 }
 
 void remove_element(Context& context, const ListRows& list, std::size_t index) {

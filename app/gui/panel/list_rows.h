@@ -8,6 +8,16 @@
 
 namespace astrosplat::panel {
 
+/// A list within each element of a list.
+struct InnerRows {
+    const char* key;      // below the element
+    const char* title;    // of an element, before its number
+    const char* element;  // in the names of edits
+    std::size_t (*size)(const LayerParams&, std::size_t outer);
+    void (*add)(LayerParams&, std::size_t outer);
+    void (*remove)(LayerParams&, std::size_t outer, std::size_t index);
+};
+
 struct ListRows {
     ParameterKey key;     // generic: "layer.look.noise"
     std::string section;  // that shows it
@@ -20,6 +30,7 @@ struct ListRows {
     void (*remove)(LayerParams&, std::size_t index);
     bool (*can_grow)(const LayerParams&) = nullptr;  // nullptr: always
     bool (*is_shown)(const LayerParams&) = nullptr;  // likewise
+    const InnerRows* inner = nullptr;                // nullptr: none
 };
 
 std::span<const ListRows> list_rows();
@@ -31,6 +42,10 @@ const ListRows* list_of(const ParameterSpec& spec);
 /// The line above an element; true when its cross was clicked.
 bool list_element_head(Context& context, const ListRows& list, std::size_t index);
 void remove_element(Context& context, const ListRows& list, std::size_t index);
+/// The same for an inner list, in the element `outer`.
+bool inner_element_head(const InnerRows& list, std::size_t index);
+void remove_inner_element(Context& context, const InnerRows& list, std::size_t outer, std::size_t index);
+void inner_add_line(Context& context, const InnerRows& list, std::size_t outer);
 /// The line below the last element that adds another.
 void list_add_line(Context& context, const ListRows& list);
 

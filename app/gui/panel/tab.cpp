@@ -38,13 +38,33 @@ void draw_row(Context& context, const Parameter& parameter) {
     draw_below(context, parameter.spec);
 }
 
+void draw_rows_below(Context& context, const ParameterKey& element, const Rows& tab_rows,
+                     const ParameterKey& left_out) {
+    for (const Parameter* row : tab_rows)
+        if (row->spec.key.is_below(element) && !(!left_out.empty() && row->spec.key.is_below(left_out)) &&
+            is_shown(context, row->spec))
+            draw_row(context, *row);
+}
+
+void draw_inner_list(Context& context, const InnerRows& list, const ParameterKey& element, std::size_t outer,
+                     const Rows& tab_rows) {
+    for (std::size_t i = 0; i < list.size(context.layer(), outer); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        const bool removed = inner_element_head(list, i);
+        draw_rows_below(context, element / list.key / i, tab_rows, {});
+        ImGui::PopID();
+        if (removed) remove_inner_element(context, list, outer, i);
+    }
+    inner_add_line(context, list, outer);
+}
+
 void draw_list(Context& context, const ListRows& list, const Rows& tab_rows) {
     for (std::size_t i = 0; i < list.size(context.layer()); ++i) {
         ImGui::PushID(static_cast<int>(i));
         const bool removed = list_element_head(context, list, i);
         const ParameterKey element = list.key.moved("layer", context.layer_key()) / i;
-        for (const Parameter* row : tab_rows)
-            if (row->spec.key.is_below(element) && is_shown(context, row->spec)) draw_row(context, *row);
+        draw_rows_below(context, element, tab_rows, list.inner ? element / list.inner->key : ParameterKey());
+        if (list.inner) draw_inner_list(context, *list.inner, element, i, tab_rows);
         ImGui::PopID();
         if (removed) remove_element(context, list, i);
     }

@@ -43,6 +43,14 @@ std::string files_state(const Context& context) {
 
 std::string picture_state(const Context& context) { return is_fits(context) ? "FITS" : ""; }
 
+std::string masks_state(const Context& context) {
+    const TextureSettings& texture = context.layer().source.texture;
+    const std::size_t masks = texture.mask.size();
+    if (masks > 0) return fmt::format("{} mask{}", masks, masks == 1 ? "" : "s");
+    const bool changed = texture.derive != Derived::none || texture.smooth > 0.0 || texture.detail > 0.0;
+    return changed ? "changed" : "none";
+}
+
 std::string splats_state(const Context& context) {
     const std::int64_t splats = context.layer_status().splats;
     return splats > 0 ? short_count(splats) : "";
@@ -147,6 +155,7 @@ const TabSection sections[] = {
      picture_state,
      {"layer.source.black", "layer.source.white", "layer.source.stretch", "layer.source.softening",
       "layer.source.hdu", "layer.source.plane"}},
+    {"Source", "Masks", nullptr, masks_state},
     {"Source", "Structure", unfolded, value_of<structure>},
     {"Source",
      "Splats",

@@ -204,6 +204,29 @@ TEST(Load, SetReachesEveryParameter) {
     }
 }
 
+TEST(Load, ListsWithinLists) {
+    const std::string head = small_scene();
+    const auto masks = [&](const std::string& line, std::vector<std::string> assignments = {}) {
+        return parse(head + line + "\n", std::move(assignments)).layers[0].source.texture.mask;
+    };
+    const std::vector<MaskParams> both =
+        masks("mask = [{ feather = 0.1 }, { any = [{ invert = true }, { turn = 5 }] }]");
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0].feather, 0.1);
+    ASSERT_EQ(both[1].any.size(), 2u);
+    EXPECT_TRUE(both[1].any[0].invert);
+    EXPECT_EQ(both[1].any[1].turn, 5.0);
+    const std::vector<MaskParams> bare = masks("mask = { any = { turn = 5 } }");
+    ASSERT_EQ(bare.size(), 1u);
+    ASSERT_EQ(bare[0].any.size(), 1u);
+    EXPECT_EQ(bare[0].any[0].turn, 5.0);
+    const std::vector<MaskParams> set =
+        masks("", {"layer.stars.source.mask.0.any.0.turn=3", "layer.stars.source.mask.0.any.1.turn=4"});
+    ASSERT_EQ(set.size(), 1u);
+    ASSERT_EQ(set[0].any.size(), 2u);
+    EXPECT_EQ(set[0].any[1].turn, 4.0);
+}
+
 TEST(Load, SetWinsOverAnimation) {
     const std::string text = small_scene() + "[animation]\n\"camera.fov\" = { keys = [[1, 20], [9, 40]] }\n";
     EXPECT_EQ(parse(text).animation.size(), 1u);

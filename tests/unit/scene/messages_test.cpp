@@ -98,6 +98,22 @@ INSTANTIATE_TEST_SUITE_P(
              "6: unknown key 'mask.any.lumnance'; did you mean 'layer.source.mask.any.luminance'?"},
         Case{"[layer.source]\nmask = \"spot.png\"\n",
              "6: layer.source.mask: expected a table or a list of tables, found a string"},
+        Case{"[layer.source]\ncount = 100000\nsplats = 1000\n",
+             "7: layer.stars.source.splats: expected count or splats, found both"},
+        Case{"[layer.source]\nvoxel_size = 0.1\nsplats = 1000\n",
+             "7: layer.stars.source.splats: expected voxels, voxel_size or splats, found two of them"},
+        Case{"[layer.source]\nmeshes = { mesh = \"revolution\" }\n",
+             "6: layer.stars.source.meshes.0.mesh: expected at least 2 points for mesh \"revolution\", found "
+             "none"},
+        Case{"[layer.source]\nmeshes = { mesh = \"revolution\", outline = [[1, 0], [-1, 2]] }\n",
+             "6: layer.stars.source.meshes.0.outline: expected points [r, y] with r of at least 0, found one "
+             "below"},
+        Case{"[layer.source]\nmeshes = { mesh = \"ring\", tube = 0.7 }\n",
+             "6: layer.source.meshes.tube: expected a number from 0.001 to 0.5, found 0.7"},
+        Case{"[layer.source]\nback = \"front\"\n",
+             "6: layer.source.back: expected same, mirrored or varied, found 'front'"},
+        Case{"[layer.source]\nuv_width = -1\n",
+             "6: layer.source.uv_width: expected a number of at least 0, found -1"},
         Case{"[layer.source]\nderive = \"dst\"\n",
              "6: layer.source.derive: expected none, dust, h_alpha or young_stars, found 'dst'; did you mean "
              "'dust'?"},
@@ -131,7 +147,8 @@ INSTANTIATE_TEST_SUITE_P(
              "6: layer.name: expected letters, digits and _ beginning with a letter, found '2nd'"},
         Case{"[[layer]]\nname = \"b\"\n", "5: layer.b.source.meshes: expected at least one mesh, found none"},
         Case{"[[layer]]\nname = \"b\"\nsource.meshes = [{ texture = \"a.png\" }]\n",
-             "7: layer.b.source.meshes.0.mesh: expected a file or plane, relief, disk, sphere, found none"},
+             "7: layer.b.source.meshes.0.mesh: expected a file or plane, relief, sheet, disk, sphere, "
+             "spheroid, shell, bubble, hourglass, ring, revolution, found none"},
         Case{"[[layer]]\nname = \"b\"\nsource.meshes = [{ mesh = \"disk\", texture = [\"a\", \"b\"] }]\n",
              "7: layer.b.source.meshes.0.texture: expected one picture, or three for red, green and blue, "
              "found 2"},

@@ -279,6 +279,28 @@ TEST(Save, RandomEditsOneAfterAnother) {
         EXPECT_NE(text.find(comment), std::string::npos) << comment;
 }
 
+TEST(Save, ListsWithinLists) {
+    Scene scene = parse(small_scene());
+    std::string text = small_scene();
+    std::vector<MaskParams>& masks = scene.layers[0].source.texture.mask;
+    masks.resize(2);
+    masks[0].hue = {330.0, 30.0};
+    masks[1].any.resize(2);
+    masks[1].any[0].ellipse = {0.5, 0.5, 0.25, 0.2};
+    masks[1].any[1].invert = true;
+    text = saved(scene, text);
+    EXPECT_NE(text.find("mask = [{ hue = [330.0, 30.0] }, { any = [{ ellipse = [0.5, 0.5, 0.25, 0.2] }, { "
+                        "invert = true }] }]"),
+              std::string::npos)
+        << text;
+    masks[1].any.pop_back();
+    masks[0].any.resize(1);
+    masks[0].any[0].derive = Derived::dust;
+    text = saved(scene, text);
+    masks.erase(masks.begin());
+    saved(scene, text);
+}
+
 TEST(Save, PresetsGiveBackLookAndRender) {
     Scene scene = parse(commented);
     Look& look = scene.layers[1].look;

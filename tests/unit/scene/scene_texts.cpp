@@ -59,7 +59,7 @@ scale = 1.0
 
 [layer.source]
 kind = "mesh"
-meshes = [ { mesh = "disk.obj", texture = "", relief = 0.15 } ]
+meshes = [ { mesh = "disk.obj", texture = "", relief = 0.15, outline = [], width = 0.5, waist = 0.3, thickness = 0.2, opening = 60.0, flattening = 0.0, shells = 1, concentration = 3.0, tube = 0.2, depth_map = "", depth = 0.15, blur = 0.01 } ]
 
 colorspace = "auto"
 alpha = "auto"
@@ -72,6 +72,7 @@ softening = 0.1
 buffer = "auto"
 voxels = "auto"
 count = 2000000
+splats = 0
 jitter = 1.0
 max_distance = 0.0
 filter = "bilinear"
@@ -81,6 +82,9 @@ smooth = 0.0
 detail = 0.0
 mask = [ { luminance = [], hue = [], saturation = [], ellipse = [], turn = 0.0, image = "", derive = "none", feather = 0.0, invert = false, any = [ { luminance = [], hue = [], saturation = [], ellipse = [], turn = 0.0, image = "", derive = "none", feather = 0.0, invert = false } ] } ]
 uv = "mesh"
+uv_width = 0.0
+uv_center = [0.0, 0.0, 0.0]
+back = "same"
 structure = { kind = "columns", height = 0.0, depth = 0.15, clumps = 1.0, stars = true, dust = "auto", opacity = 0.55, density = 0.75, border = 0.0 }
 seed = 0
 plane = 0
@@ -98,7 +102,7 @@ psf = 1.0
 density = 1.0
 reach = 0.0
 pdf = { shape = "constant", rate = 3.0, sigma = 0.35, points = [] }
-thickness = { map = "", keys = [ { color = [1.0, 1.0, 1.0], scale = 1.0, shape = "constant", rate = 3.0, sigma = 0.35, points = [] } ] }
+thickness = { map = "", derive = "none", keys = [ { color = [1.0, 1.0, 1.0], scale = 1.0, shape = "constant", rate = 3.0, sigma = 0.35, points = [] } ] }
 noise = { frequency = 1.0, octaves = 4, lacunarity = 2.0, gain = 0.5, seed = 1, cull = 0.0, silhouette = 0.0, jitter = 0.0, alpha = 0.0, brightness = 0.0 }
 alpha = { power = 1.0, threshold = 0.95, unpremultiply = false, gain = 1.0 }
 vertical = { shape = "none", rate = 3.0, points = [], reach = 0.0, match = "auto" }

@@ -137,6 +137,11 @@ TEST_F(SetCacheTest, SplatFilesPassBy) {
 
 // ---- the key
 
+MaskParams& one_mask(SourceParams& source) {
+    source.texture.mask.resize(1);
+    return source.texture.mask[0];
+}
+
 TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
     using Settings = TextureSettings;
     const std::vector<std::function<void(SourceParams&)>> changes = {
@@ -162,43 +167,54 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
         [](SourceParams& s) { s.texture.mask.resize(1); },
         [](SourceParams& s) { s.texture.mask.resize(2); },
         [](SourceParams& s) { s.texture.mask.resize(1), s.texture.mask[0].any.resize(1); },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.luminance = glm::dvec2(0.1, 0.2)}, {}}};
-        },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.hue = glm::dvec2(0.1, 0.2)}, {}}};
-        },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.saturation = glm::dvec2(0.1, 0.2)}, {}}};
-        },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.ellipse = glm::dvec4(0.1)}, {}}};
-        },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.ellipse = glm::dvec4(0.1), .turn = 3.0}, {}}};
-        },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.image = s.meshes[0].texture[0]}, {}}};
-        },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.derive = Derived::dust}, {}}};
-        },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.feather = 0.5}, {}}};
-        },
-        [](SourceParams& s) {
-            s.texture.mask = {{{.invert = true}, {}}};
-        },
+        [](SourceParams& s) { one_mask(s).luminance = glm::dvec2(0.1, 0.2); },
+        [](SourceParams& s) { one_mask(s).hue = glm::dvec2(0.1, 0.2); },
+        [](SourceParams& s) { one_mask(s).saturation = glm::dvec2(0.1, 0.2); },
+        [](SourceParams& s) { one_mask(s).ellipse = glm::dvec4(0.1); },
+        [](SourceParams& s) { one_mask(s).ellipse = glm::dvec4(0.1), s.texture.mask[0].turn = 3.0; },
+        [](SourceParams& s) { one_mask(s).image = s.meshes[0].texture[0]; },
+        [](SourceParams& s) { one_mask(s).derive = Derived::dust; },
+        [](SourceParams& s) { one_mask(s).feather = 0.5; },
+        [](SourceParams& s) { one_mask(s).invert = true; },
         [](SourceParams& s) { s.buffer = glm::dvec3(0.1, 0.2, 0.3); },
         [](SourceParams& s) { s.buffer = glm::dvec3(0.1, 0.2, 0.4); },
         [](SourceParams& s) { s.voxels = glm::i64vec3(9, 8, 7); },
         [](SourceParams& s) { s.voxels = glm::i64vec3(9, 8, 6); },
         [](SourceParams& s) { s.voxel_size = 0.1; },
         [](SourceParams& s) { s.count = 3001; },
+        [](SourceParams& s) { s.splats = 3000; },
         [](SourceParams& s) { s.jitter = 0.1; },
         [](SourceParams& s) { s.jitter = 0.1 + 1e-16 * 2; },
         [](SourceParams& s) { s.max_distance = 0.3; },
         [](SourceParams& s) { s.uv = UvMode::planar_xz; },
+        [](SourceParams& s) { s.uv = UvMode::planar_xz, s.uv_width = 4.0; },
+        [](SourceParams& s) { s.uv = UvMode::planar_xz, s.uv_width = 4.0, s.uv_center.x = 1.0; },
+        [](SourceParams& s) { s.uv = UvMode::planar_xz, s.back = BackWall::mirrored; },
+        [](SourceParams& s) { s.uv = UvMode::planar_xz, s.back = BackWall::varied; },
+        [](SourceParams& s) { s.meshes[0].mesh = "hourglass"; },
+        [](SourceParams& s) { s.meshes[0].mesh = "hourglass", s.meshes[0].shape.waist = 0.5; },
+        [](SourceParams& s) { s.meshes[0].mesh = "hourglass", s.meshes[0].shape.width = 0.6; },
+        [](SourceParams& s) { s.meshes[0].mesh = "shell"; },
+        [](SourceParams& s) { s.meshes[0].mesh = "shell", s.meshes[0].shape.thickness = 0.5; },
+        [](SourceParams& s) { s.meshes[0].mesh = "bubble", s.meshes[0].shape.opening = 50.0; },
+        [](SourceParams& s) { s.meshes[0].mesh = "bubble", s.meshes[0].shape.opening = 51.0; },
+        [](SourceParams& s) { s.meshes[0].mesh = "spheroid", s.meshes[0].shape.flattening = 0.5; },
+        [](SourceParams& s) { s.meshes[0].mesh = "spheroid", s.meshes[0].shape.shells = 2; },
+        [](SourceParams& s) { s.meshes[0].mesh = "spheroid", s.meshes[0].shape.concentration = 2; },
+        [](SourceParams& s) { s.meshes[0].mesh = "ring", s.meshes[0].shape.tube = 0.1; },
+        [](SourceParams& s) { s.meshes[0].mesh = "ring", s.meshes[0].shape.tube = 0.3; },
+        [](SourceParams& s) {
+            s.meshes[0].mesh = "revolution", s.meshes[0].shape.outline = {{1, 2}};
+        },
+        [](SourceParams& s) {
+            s.meshes[0].mesh = "revolution", s.meshes[0].shape.outline = {{2, 1}};
+        },
+        [](SourceParams& s) { s.meshes[0].mesh = "sheet"; },
+        [](SourceParams& s) { s.meshes[0].mesh = "sheet", s.meshes[0].shape.depth = 0.5; },
+        [](SourceParams& s) { s.meshes[0].mesh = "sheet", s.meshes[0].shape.blur = 0.05; },
+        [](SourceParams& s) {
+            s.meshes[0].mesh = "sheet", s.meshes[0].shape.depth_map = s.meshes[0].texture[0];
+        },
         [](SourceParams& s) { s.seed = 5; },
     };
     std::vector<std::string> keys = {cache_key(source_, "dust").name, cache_key(source_, "stars").name};
@@ -220,6 +236,9 @@ TEST_F(SetCacheTest, WhatDoesNotReachTheSetStaysOutOfTheKey) {
     const std::string key = cache_key(sized, "dust").name;
     sized.count = 7;
     sized.meshes[0].relief = 0.7;
+    sized.meshes[0].shape.waist = 0.7;
+    sized.uv_width = 3.0;
+    sized.back = BackWall::varied;
     EXPECT_EQ(cache_key(sized, "dust").name, key);
     fs::copy_file(folder_ / "p.ppm", folder_ / "other.ppm");
     moved.meshes[0].texture = {folder_ / "other.ppm"};
