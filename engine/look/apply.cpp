@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "look/kernel.h"
+#include "look/normalise.h"
 #include "look/prepare.h"
 
 namespace astrosplat {
@@ -79,6 +80,18 @@ void shade_all(const LookRun& run, std::int64_t count, const Progress& progress)
     close_gaps(run.out, kept);
 }
 
+// What match = "picture" multiplies alphas by; empty for others. Before the set's arrays are written over.
+std::vector<float> factors_of(const LookRun& run, const SplatSet& set, const Look& look) {
+    const bool wanted = look.vertical.match == VerticalAlpha::Match::picture;
+    return wanted && run.uniforms.match != shared_types::MATCH_NONE ? picture_factors(run, set)
+                                                                    : std::vector<float>();
+}
+
+void multiply_alpha(ShadedSplats& shaded, const std::vector<float>& factors) {
+    parallel_each(factors.size(), chunk_size,
+                  [&](std::size_t i) { shaded.alpha[i] = std::min(1.0f, shaded.alpha[i] * factors[i]); });
+}
+
 // Fills the statistics, if any, of a look that began at `start`.
 void finish(const ShadedSplats& shaded, Clock::time_point start, LookStatistics* statistics) {
     if (!statistics) return;
@@ -93,7 +106,10 @@ void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
     const auto start = Clock::now();
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     make_room(shaded, set.size());
-    shade_all({LookColumns(set), uniforms, inputs.thickness_map, shaded}, set.size(), progress);
+    const LookRun run{LookColumns(set), uniforms, inputs.thickness_map, shaded};
+    const std::vector<float> factors = factors_of(run, set, look);
+    shade_all(run, set.size(), progress);
+    multiply_alpha(shaded, factors);
     finish(shaded, start, statistics);
 }
 
@@ -104,8 +120,12 @@ ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInpu
     progress.check();
     const std::int64_t count = set.size();
     const LookColumns columns(set);  // where the arrays are does not change when they are handed over
-    ShadedSplats shaded = take_arrays(set);
-    shade_all({columns, uniforms, inputs.thickness_map, shaded}, count, Progress{progress.report, nullptr});
+    ShadedSplats shaded;
+    const LookRun run{columns, uniforms, inputs.thickness_map, shaded};
+    const std::vector<float> factors = factors_of(run, set, look);
+    shaded = take_arrays(set);
+    shade_all(run, count, Progress{progress.report, nullptr});
+    multiply_alpha(shaded, factors);
     drop_splats(set);
     trim(shaded);
     finish(shaded, start, statistics);

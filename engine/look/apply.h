@@ -15,7 +15,7 @@
 namespace astrosplat {
 
 /// How a column of splats adds up, so that vertical matching can undo it: the blend, as a plain number.
-enum class ColumnLaw { transmittance, sum, maximum };  // over, screen, hybrid | add | lighten
+enum class ColumnLaw { transmittance, screen, sum, maximum };  // over, hybrid | screen | add | lighten
 
 /// What the look needs from elsewhere, as plain values.
 struct LookInputs {

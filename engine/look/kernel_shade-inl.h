@@ -62,6 +62,7 @@ void alphas(const LookUniforms& u, Block& b, float* out) {
     if (u.match == MATCH_PLANES) matched<MATCH_PLANES>(b);
     if (u.match == MATCH_LIGHT) matched<MATCH_LIGHT>(b);
     if (u.match == MATCH_TRANSMITTANCE) matched<MATCH_TRANSMITTANCE>(b);
+    if (u.match == MATCH_SCREEN) matched<MATCH_SCREEN>(b);
     fill(b.alpha_factor, 1.0f, b.count);
     for (int j = 0; j < u.noise_count; ++j)
         if (u.noises[j].alpha != 0.0f) vary(u.noises[j].alpha, b.n[j], b.alpha_factor, b.count);
@@ -120,6 +121,16 @@ ASTROSPLAT_LOOP saturate_and_bend(Block& b, float saturation, float inverse_gamm
     }
 }
 
+// Of alphas before step 4.
+ASTROSPLAT_LOOP screened(Block& b, float threshold, float power, float gain) {
+    for (int i = 0; i < b.count; ++i) {
+        const float alpha = look_horizontal(b.alpha[i], threshold, power, gain);
+        b.r[i] = look_screened(alpha, b.r[i]);
+        b.g[i] = look_screened(alpha, b.g[i]);
+        b.b[i] = look_screened(alpha, b.b[i]);
+    }
+}
+
 ASTROSPLAT_LOOP write_colors(const Block& b, glm::vec3* HWY_RESTRICT out) {
     for (int i = 0; i < b.count; ++i) {
         out[i].x = b.r[i];
@@ -171,6 +182,7 @@ void colors(const LookUniforms& u, Block& b, glm::vec3* out) {
         if (u.noises[j].brightness != 0.0f) vary(u.noises[j].brightness, b.n[j], b.color_factor, b.count);
     levels(b, u.black, u.tint);
     if (u.saturation != 1.0f || u.inverse_gamma != 1.0f) saturate_and_bend(b, u.saturation, u.inverse_gamma);
+    if (u.match == MATCH_SCREEN) screened(b, u.alpha_threshold, u.alpha_power, u.alpha_gain);
     write_colors(b, out);
 }
 

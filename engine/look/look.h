@@ -73,14 +73,16 @@ struct HorizontalAlpha {
 /// sum: the alphas of a column, one splat a lattice plane, add up to alpha; planes lie one lattice step apart
 /// along the axis, and the sum is the mean over all places the surface may have between two of them, 2 reach
 /// / step * Integral p f. Both count only where there are splats: up to max_distance, should reach go beyond.
+/// picture: coverage, where screen shows the picture's light too, and where every small cell of the picture
+/// has its due light from the splats that it happens to have (normalise.h).
 struct VerticalAlpha {
     enum class Shape { none, constant, linear, exponential, s106, curve };
     friend constexpr auto names_of(Shape) {
         return names_up_to<Shape::curve>("none", "constant", "linear", "exponential", "s106", "curve");
     }
-    enum class Match { automatic, none, sum, coverage };
+    enum class Match { automatic, none, sum, coverage, picture };
     friend constexpr auto names_of(Match) {
-        return names_up_to<Match::coverage>("auto", "none", "sum", "coverage");
+        return names_up_to<Match::picture>("auto", "none", "sum", "coverage", "picture");
     }
     Shape shape = Shape::none;
     float rate = 3.0f;              // exponential: e^(-rate x)

@@ -162,6 +162,7 @@ int match_kind(Match match, ColumnLaw law) {
     if (match == Match::none) return MATCH_NONE;
     if (match == Match::sum) return MATCH_PLANES;
     if (law == ColumnLaw::maximum) return MATCH_NONE;
+    if (law == ColumnLaw::screen && match == Match::picture) return MATCH_SCREEN;
     return law == ColumnLaw::sum ? MATCH_LIGHT : MATCH_TRANSMITTANCE;
 }
 

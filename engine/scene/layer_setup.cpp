@@ -17,8 +17,9 @@ ColumnLaw column_law(Blend blend) {
             return ColumnLaw::sum;
         case Blend::lighten:
             return ColumnLaw::maximum;
-        case Blend::over:
         case Blend::screen:
+            return ColumnLaw::screen;
+        case Blend::over:
         case Blend::hybrid:
         case Blend::absorb:
             return ColumnLaw::transmittance;

@@ -128,7 +128,7 @@ float look_column(int match, float column, float reach, float horizontal_radius)
 
 // Alpha after matching: the column of all such splats, seen along the normal, shows `alpha`.
 float look_matched(int match, float alpha, float f, float column) {
-    float a = match == MATCH_TRANSMITTANCE ? look_depth(alpha) : alpha;
+    float a = match >= MATCH_TRANSMITTANCE ? look_depth(alpha) : alpha;
     float y = column > 0.0f ? min(1.0f, a * f / column) : 0.0f;
     return match == MATCH_NONE ? alpha * f : y;
 }
@@ -153,6 +153,12 @@ float look_finish(float c, float luminance, float saturation, float inverse_gamm
     return as_pow(max(0.0f, c * saturation + luminance * (1.0f - saturation)), inverse_gamma);
 }
 
+// One channel of splats whose column is to show light `alpha` c when screened: 1 - e^(-depth c') = alpha c.
+float look_screened(float alpha, float c) {
+    float depth = look_depth(alpha);
+    return depth > 0.0f ? look_depth(alpha * c) / depth : c;
+}
+
 // --- the whole ---
 
 struct LookInput {
@@ -168,6 +174,7 @@ struct LookInput {
 
 struct LookOutput {
     bool keep;
+    float probability;  // of being kept
     vec3 position;
     vec3 color;
     float alpha;
@@ -228,7 +235,9 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     }
 
     LookOutput result;
-    result.keep = look_keep(x, u.density * density * culled, u.seed, s.id_low, s.id_high);
+    float probability = u.density * density * culled;
+    result.keep = look_keep(x, probability, u.seed, s.id_low, s.id_high);
+    result.probability = x <= 1.0f ? clamp(probability, 0.0f, 1.0f) : 0.0f;
     result.position = s.position + u.axis * along;
 
     float undo = u.unpremultiply != 0 ? look_unpremultiply(s.alpha, u.alpha_threshold) : 1.0f;
@@ -251,5 +260,8 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     result.color = vec3(absorbs ? s.color.x : look_finish(r, luminance, u.saturation, u.inverse_gamma),
                         absorbs ? s.color.y : look_finish(g, luminance, u.saturation, u.inverse_gamma),
                         absorbs ? s.color.z : look_finish(b, luminance, u.saturation, u.inverse_gamma));
+    if (u.match == MATCH_SCREEN && !absorbs)
+        result.color = vec3(look_screened(alpha, result.color.x), look_screened(alpha, result.color.y),
+                            look_screened(alpha, result.color.z));
     return result;
 }

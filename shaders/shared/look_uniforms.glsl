@@ -22,6 +22,7 @@ const int MATCH_NONE = 0;
 const int MATCH_PLANES = 1;         // the sum over lattice planes
 const int MATCH_LIGHT = 2;          // coverage, for blends that add
 const int MATCH_TRANSMITTANCE = 3;  // coverage, for blends that cover
+const int MATCH_SCREEN = 4;         // the same, and colours whose screened column shows the picture's light
 
 // Monotone cubic through points; constant outside.
 struct LookCurve {

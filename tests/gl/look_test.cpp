@@ -143,6 +143,7 @@ std::vector<LookCase> all_cases() {
         match_case("sum", Match::sum, ColumnLaw::transmittance),
         match_case("coverage", Match::coverage, ColumnLaw::transmittance),
         match_case("coverage of light", Match::coverage, ColumnLaw::sum),
+        match_case("light under screen", Match::picture, ColumnLaw::screen),
         {"own radii", [](SplatSet&, Look& look, LookInputs&) { look.radius = {}; }},
         {"grade",
          [](SplatSet&, Look& look, LookInputs&) {
