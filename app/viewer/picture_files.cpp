@@ -49,11 +49,14 @@ void PictureFiles::forget(const std::vector<fs::path>& files) {
         return std::find(files.begin(), files.end(), file) != files.end();
     };
     old_maps_.clear();
-    std::erase_if(maps_, [&](auto& map) {
-        const bool changed = is_changed(map.first.first);
-        if (changed) old_maps_.push_back(std::move(map.second));
-        return changed;
-    });
+    for (auto map = maps_.begin(); map != maps_.end();) {
+        if (is_changed(map->first.first)) {
+            old_maps_.push_back(std::move(map->second));
+            map = maps_.erase(map);
+        } else {
+            ++map;
+        }
+    }
     {
         const auto held = worker_.lock();
         for (auto& [of, sky] : skies_)

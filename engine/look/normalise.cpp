@@ -11,7 +11,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr double positions_per_cell = 32.0;
+constexpr double splats_per_cell = 8.0;      // fewer, and some cells would have none
+constexpr std::int64_t most_sampled = 8192;  // positions, for how many are kept
 constexpr double most_cells_a_side = 4096.0;
 constexpr double whole_light = 1048576.0;  // 2^20: light is counted in whole steps, whose sum has no order
 constexpr double least_factor = 0.25, most_factor = 4.0;
@@ -37,12 +38,6 @@ struct Cells {
         return (mesh * side + along(uv.y)) * side + along(uv.x);
     }
 };
-
-Cells cells_of(const SplatSet& set) {
-    const std::uint32_t meshes = set.mesh.empty() ? 1 : *std::ranges::max_element(set.mesh) + 1;
-    const double each = static_cast<double>(set.size()) / positions_per_cell / meshes;
-    return {static_cast<std::uint32_t>(std::clamp(std::sqrt(each), 1.0, most_cells_a_side)), meshes};
-}
 
 // A map's value as the kernel and the preview read it.
 glm::vec3 map_value(const Image& map, const glm::vec2& uv) {
@@ -73,6 +68,17 @@ shared::LookOutput look_at(const LookRun& run, std::int64_t i) {
     return shared::look_splat(run.uniforms, s);
 }
 
+// So many that about `splats_per_cell` are kept in each, by a sample of the set.
+Cells cells_for(const LookRun& run, const SplatSet& set) {
+    const std::uint32_t meshes = set.mesh.empty() ? 1 : *std::ranges::max_element(set.mesh) + 1;
+    const std::int64_t step = std::max<std::int64_t>(1, set.size() / most_sampled);
+    double kept = 0.0;
+    for (std::int64_t i = 0; i < set.size(); i += step)
+        kept += static_cast<double>(look_at(run, i).probability) * static_cast<double>(step);
+    const double side = std::sqrt(kept / splats_per_cell / meshes);
+    return {static_cast<std::uint32_t>(std::clamp(side, 1.0, most_cells_a_side)), meshes};
+}
+
 // Of radius 1 and alpha 1 at most.
 double light_of(const shared::LookOutput& look, double largest_radius) {
     const double r = std::min(1.0, static_cast<double>(look.radius) / largest_radius);
@@ -97,7 +103,7 @@ double factor_of(const CellLight& cell) {
 std::vector<float> picture_factors(const LookRun& run, const SplatSet& set) {
     std::vector<float> factors;
     if (set.uv.empty() || set.size() == 0) return factors;
-    const Cells cells = cells_of(set);
+    const Cells cells = cells_for(run, set);
     const std::size_t count = std::size_t(cells.meshes) * cells.side * cells.side;
     const auto lights = std::make_unique<CellLight[]>(count);
     std::vector<std::uint32_t> cell_of_kept(static_cast<std::size_t>(set.size()), dropped);

@@ -8,7 +8,7 @@
 
 namespace astrosplat {
 
-/// Cells are squares of uv, apart for each mesh, of about 32 positions. The factor of a cell is what its
+/// Cells are squares of uv, apart for each mesh, of about 8 splats. The factor of a cell is what its
 /// positions would show on average, the sum of probability * alpha * radius^2, over what those that are kept
 /// show; from 1/4 to 4. One factor for each splat that shade_run keeps, in order of the set. Empty for a set
 /// without uv. Reads the set before its arrays are written over. The same bits with any number of threads.

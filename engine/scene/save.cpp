@@ -59,7 +59,9 @@ class Saver {
         for (const ParameterList& list : wanted.lists) {
             const auto old = std::ranges::find(base.lists, list.key, &ParameterList::key);
             const bool written = text_.contains(path_of(list.key, wanted));
-            const bool same_length = old != base.lists.end() && old->size() == list.size();
+            const bool is_new = old == base.lists.end();  // within an element that was just written
+            if (is_new && (written || list.size() == 0)) continue;
+            const bool same_length = !is_new && old->size() == list.size();
             if (same_length && (written || same_elements(list.key, base, wanted))) continue;
             const TomlPath path = path_of(list.key, wanted);
             if (!text_.is_value(path)) text_.remove(path);

@@ -48,6 +48,12 @@ std::vector<std::string> telling_scenes() {
               "{ shape = \"exponential\" }, { shape = \"gaussian\" } ] }",
               "", "[camera]\nprojection = \"orthographic\"\nposition = [0, 0, 9]\n"),
         layer(mesh + "\nstructure = { kind = \"walls\" }", "", "blend = \"absorb\""),
+        layer("meshes = [ { mesh = \"sheet\" }, { mesh = \"hourglass\" }, { mesh = \"shell\" }, { mesh = "
+              "\"bubble\" },"
+              "{ mesh = \"spheroid\", shells = 3 }, { mesh = \"ring\" },"
+              "{ mesh = \"revolution\", outline = [[0, 0], [1, 1]] } ]\nuv = \"planar-xy\"\nuv_width = 5\n"
+              "mask = [ { ellipse = [0.5, 0.5, 0.2, 0.2], any = [ { ellipse = [0.5, 0.5, 0.2, 0.2] } ] } ]",
+              "", ""),
         layer("kind = \"splats\"\nfile = \"a.ply\"",
               "pdf = { shape = \"gaussian\" }\nradius = { min = 0.1, max = 0.2 }", "",
               "[camera]\nprojection = \"fisheye\"\n"),

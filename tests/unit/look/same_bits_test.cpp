@@ -86,6 +86,8 @@ std::vector<Case> cases() {
     all[3].look.noise = {{2.0f, 3, 2.0f, 0.5f, 1, 0.7f, 0.0f, 0.0f, 0.0f, 0.0f}};
     all[4].name = "picture under screen";
     use_everything(all[4]);
+    all[4].look.thickness = {};
+    all[4].set.uv.clear();  // and with it the cells of the picture
     all[4].look.vertical.match = VerticalAlpha::Match::picture;
     all[4].inputs.column = ColumnLaw::screen;
     return all;

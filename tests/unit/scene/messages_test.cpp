@@ -24,6 +24,50 @@ TEST_P(WrongKeys, SayWhatIsExpected) {
     EXPECT_EQ(message(head + GetParam().lines), std::string("scene.toml:") + GetParam().message);
 }
 
+class WrongSources : public testing::TestWithParam<Case> {};
+
+TEST_P(WrongSources, SayWhatIsExpected) {
+    const std::string source = "astrosplat = 1\n[[layer]]\nname = \"stars\"\n[layer.source]\n";  // 4 lines
+    EXPECT_EQ(message(source + GetParam().lines), std::string("scene.toml:") + GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, WrongSources,
+    testing::Values(
+        Case{"meshes = { mesh = \"disk\" }\nmask = { luminance = [0.5, 0.5] }\n",
+             "6: layer.stars.source.mask.0.luminance: expected the lower end first, found 0.5 and 0.5"},
+        Case{"meshes = { mesh = \"disk\" }\nmask = [{ hue = [10, 20] }, { saturation = [0.5, 0.1] }]\n",
+             "6: layer.stars.source.mask.1.saturation: expected the lower end first, found 0.5 and 0.1"},
+        Case{"meshes = { mesh = \"disk\" }\nmask = { any = [{}, { ellipse = [0.5, 0.5, 0, 1] }] }\n",
+             "6: layer.stars.source.mask.0.any.1.ellipse: expected half axes above 0, found 0 and 1"},
+        Case{"meshes = { mesh = \"disk\" }\nmask = { hue = [0, 400] }\n",
+             "6: layer.source.mask.hue: expected 2 numbers from 0 to 360, found 400"},
+        Case{"meshes = { mesh = \"disk\" }\nmask = { any = { lumnance = [0, 1] } }\n",
+             "6: unknown key 'mask.any.lumnance'; did you mean 'layer.source.mask.any.luminance'?"},
+        Case{"meshes = { mesh = \"disk\" }\nmask = \"spot.png\"\n",
+             "6: layer.source.mask: expected a table or a list of tables, found a string"},
+        Case{"meshes = { mesh = \"disk\" }\ncount = 100000\nsplats = 1000\n",
+             "7: layer.stars.source.splats: expected count or splats, found both"},
+        Case{"meshes = { mesh = \"disk\" }\nvoxel_size = 0.1\nsplats = 1000\n",
+             "7: layer.stars.source.splats: expected voxels, voxel_size or splats, found two of them"},
+        Case{"seed = 1\nmeshes = { mesh = \"revolution\" }\n",
+             "6: layer.stars.source.meshes.0.mesh: expected at least 2 points for mesh \"revolution\", found "
+             "none"},
+        Case{"seed = 1\nmeshes = { mesh = \"revolution\", outline = [[1, 0], [-1, 2]] }\n",
+             "6: layer.stars.source.meshes.0.outline: expected points [r, y] with r of at least 0, found one "
+             "below"},
+        Case{"seed = 1\nmeshes = { mesh = \"ring\", tube = 0.7 }\n",
+             "6: layer.source.meshes.tube: expected a number from 0.001 to 0.5, found 0.7"},
+        Case{"meshes = { mesh = \"disk\" }\nback = \"front\"\n",
+             "6: layer.source.back: expected same, mirrored or varied, found 'front'"},
+        Case{"meshes = { mesh = \"disk\" }\nuv_width = -1\n",
+             "6: layer.source.uv_width: expected a number of at least 0, found -1"},
+        Case{"meshes = { mesh = \"disk\" }\nderive = \"dst\"\n",
+             "6: layer.source.derive: expected none, dust, h_alpha or young_stars, found 'dst'; did you mean "
+             "'dust'?"},
+        Case{"meshes = { mesh = \"disk\" }\nsmooth = 0.5\n",
+             "6: layer.source.smooth: expected a number from 0 to 0.2, found 0.5"}));
+
 INSTANTIATE_TEST_SUITE_P(
     Keys, WrongKeys,
     testing::Values(
@@ -86,39 +130,6 @@ INSTANTIATE_TEST_SUITE_P(
              "6: layer.stars.look.thickness.keys: expected a thickness.map for several keys, found none"},
         Case{"[layer.look]\nradius.min = 0.2\nradius.max = 0.1\n",
              "7: layer.stars.look.radius.max: expected min not above max, found 0.2 and 0.1"},
-        Case{"[layer.source]\nmask = { luminance = [0.5, 0.5] }\n",
-             "6: layer.stars.source.mask.0.luminance: expected the lower end first, found 0.5 and 0.5"},
-        Case{"[layer.source]\nmask = [{ hue = [10, 20] }, { saturation = [0.5, 0.1] }]\n",
-             "6: layer.stars.source.mask.1.saturation: expected the lower end first, found 0.5 and 0.1"},
-        Case{"[layer.source]\nmask = { any = [{}, { ellipse = [0.5, 0.5, 0, 1] }] }\n",
-             "6: layer.stars.source.mask.0.any.1.ellipse: expected half axes above 0, found 0 and 1"},
-        Case{"[layer.source]\nmask = { hue = [0, 400] }\n",
-             "6: layer.source.mask.hue: expected 2 numbers from 0 to 360, found 400"},
-        Case{"[layer.source]\nmask = { any = { lumnance = [0, 1] } }\n",
-             "6: unknown key 'mask.any.lumnance'; did you mean 'layer.source.mask.any.luminance'?"},
-        Case{"[layer.source]\nmask = \"spot.png\"\n",
-             "6: layer.source.mask: expected a table or a list of tables, found a string"},
-        Case{"[layer.source]\ncount = 100000\nsplats = 1000\n",
-             "7: layer.stars.source.splats: expected count or splats, found both"},
-        Case{"[layer.source]\nvoxel_size = 0.1\nsplats = 1000\n",
-             "7: layer.stars.source.splats: expected voxels, voxel_size or splats, found two of them"},
-        Case{"[layer.source]\nmeshes = { mesh = \"revolution\" }\n",
-             "6: layer.stars.source.meshes.0.mesh: expected at least 2 points for mesh \"revolution\", found "
-             "none"},
-        Case{"[layer.source]\nmeshes = { mesh = \"revolution\", outline = [[1, 0], [-1, 2]] }\n",
-             "6: layer.stars.source.meshes.0.outline: expected points [r, y] with r of at least 0, found one "
-             "below"},
-        Case{"[layer.source]\nmeshes = { mesh = \"ring\", tube = 0.7 }\n",
-             "6: layer.source.meshes.tube: expected a number from 0.001 to 0.5, found 0.7"},
-        Case{"[layer.source]\nback = \"front\"\n",
-             "6: layer.source.back: expected same, mirrored or varied, found 'front'"},
-        Case{"[layer.source]\nuv_width = -1\n",
-             "6: layer.source.uv_width: expected a number of at least 0, found -1"},
-        Case{"[layer.source]\nderive = \"dst\"\n",
-             "6: layer.source.derive: expected none, dust, h_alpha or young_stars, found 'dst'; did you mean "
-             "'dust'?"},
-        Case{"[layer.source]\nsmooth = 0.5\n",
-             "6: layer.source.smooth: expected a number from 0 to 0.2, found 0.5"},
         Case{"[layer.render]\nblend = \"ovr\"\n",
              "6: layer.render.blend: expected over, add, screen, lighten, hybrid or absorb, found 'ovr'; did "
              "you "
