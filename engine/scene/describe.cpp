@@ -152,8 +152,7 @@ ParameterKey full_key(const Description& description, const ParameterKey& key) {
     for (const ParameterList& list : description.lists) {
         if (!key.is_below(list.key)) continue;
         const std::string_view rest = key.below(list.key);
-        if (!is_list_index(rest.substr(0, rest.find('.'))))
-            return full_key(description, list.key / 0 / rest);
+        if (!is_list_index(rest.substr(0, rest.find('.')))) return full_key(description, list.key / 0 / rest);
     }
     return key;
 }
