@@ -153,10 +153,16 @@ float look_finish(float c, float luminance, float saturation, float inverse_gamm
     return as_pow(max(0.0f, c * saturation + luminance * (1.0f - saturation)), inverse_gamma);
 }
 
+// look_depth by its series where it is small: shader compilers may cancel 1 - (1 - m), which costs its last digits.
+float look_small_depth(float alpha) {
+    float series = alpha * (1.0f + alpha * (0.5f + alpha * (0.33333333f + alpha * 0.25f)));
+    return alpha < 0.03f ? series : look_depth(alpha);
+}
+
 // One channel of splats whose column is to show light `alpha` c when screened: 1 - e^(-depth c') = alpha c.
 float look_screened(float alpha, float c) {
-    float depth = look_depth(alpha);
-    return depth > 0.0f ? look_depth(alpha * c) / depth : c;
+    float depth = look_small_depth(alpha);
+    return depth > 0.0f ? look_small_depth(alpha * c) / depth : c;
 }
 
 // --- the whole ---
