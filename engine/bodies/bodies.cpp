@@ -24,7 +24,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr int most_pictures = 255;  // ids hold 8 bits of their number
+constexpr double dust_of_disks = 0.4;  // all of it makes lanes edge-on that are deeper than real ones
+constexpr int most_pictures = 255;     // ids hold 8 bits of their number
 constexpr int picture_bit = 56, instance_bit = 42;
 constexpr std::uint64_t most_instances = 63;
 
@@ -66,7 +67,7 @@ PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const St
     const Opacity opacity{static_cast<float>(params.opacity), static_cast<float>(params.density)};
     const Image brightest = brightest_channel(picture.light);
     const std::vector<Band> bands = make_bands(picture.light.width);
-    const double dust = params.dust ? *params.dust : params.kind == StructureKind::disk ? 1.0 : 0.0;
+    const double dust = params.dust ? *params.dust : params.kind == StructureKind::disk ? dust_of_disks : 0.0;
     Image emission = make_image(dust > 0.0 ? picture.light.width : 0, picture.light.height, 3);
     PictureSplats dots;
     split_bands(without_stars, bands, dust > 0.0, [&](const Band& band, const Image& light) {

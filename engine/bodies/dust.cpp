@@ -9,6 +9,7 @@
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/blur.h"
+#include "splats/star_id.h"
 
 namespace astrosplat {
 namespace {
@@ -23,7 +24,6 @@ constexpr std::int64_t share_cell_px = 8;
 constexpr double share_blur_cells = 4.0;
 constexpr float dot_sigma = 1.3f, dots_each_texel = 0.6f;
 constexpr float certain_depth = 0.1f;  // optical depth from which no dot is left out
-constexpr std::int64_t dust_band = 254;
 
 // Optical depth of the sheet's middle line, and how far that stands out, bent by waves of its own so that
 // edge-on it is torn and not ruled.
@@ -168,9 +168,7 @@ void add_dust(const Image& transmittance, double amount, const Placement& placem
         for (std::int64_t row = begin; row < end; ++row)
             for (std::int64_t column = 0; column < columns; ++column)
                 dust.add_cell(column, row,
-                              static_cast<std::uint64_t>(dust_band) << 48 |
-                                  static_cast<std::uint64_t>(row * columns + column),
-                              chunk);
+                              dust_band << 48 | static_cast<std::uint64_t>(row * columns + column), chunk);
         dust.flush(chunk);
     });
     append_dots(chunks, dot_sigma, out);

@@ -19,8 +19,8 @@ namespace {
 
 constexpr double filter_px = 0.5;  // of the output's pixels, as scenes have it
 constexpr float sky = 0.002f;      // added to both sides of a ratio
-constexpr int most_steps = 5, fast_steps = 2;
-constexpr float fast_exponent = 1.7f;  // of the first steps
+constexpr int most_steps = 6, fast_steps = 5;
+constexpr float fast_exponent = 2.2f;  // of the first steps
 constexpr double least_gain_db = 0.1;
 constexpr std::int64_t cell_px = 32;
 constexpr double seen_share = 0.25;        // of a footprint's variance through which a dot sees the ratio

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
+#include "splats/star_id.h"
 
 namespace astrosplat {
 namespace {
@@ -17,7 +18,6 @@ constexpr float cell_jitter = 0.5f;         // of the lattice's spacing
 constexpr float least_brightness = 0.002f;  // below which opacity falls to 0: empty sky hides nothing
 constexpr float greatest_opacity = 0.985f;
 constexpr float star_opacity = 0.25f;  // of a star's own
-constexpr std::int64_t star_band = 255;
 
 // What a dot is before it has a depth.
 struct Candidate {
@@ -190,7 +190,8 @@ void add_stars(const std::vector<Star>& stars, const Placement& placement, const
         const Star& star = stars[i];
         const std::size_t at = static_cast<std::size_t>(begin) + i;
         const auto low = static_cast<std::uint32_t>(i);
-        const float u = as_uniform(as_hash(placement.seed, low, star_band, shared::PURPOSE_DEPTH));
+        const float u = as_uniform(
+            as_hash(placement.seed, low, static_cast<std::uint32_t>(star_band), shared::PURPOSE_DEPTH));
         const float inside = std::clamp(u, 1e-5f, 1.0f - 1e-5f);
         const float spread =
             placement.kind == StructureKind::disk
@@ -203,7 +204,7 @@ void add_stars(const std::vector<Star>& stars, const Placement& placement, const
         out.splats.color[at] = star.peak / alpha;
         out.splats.alpha[at] = alpha;
         out.splats.radius[at] = radius_sigmas * star.sigma;
-        out.splats.id[at] = static_cast<std::uint64_t>(star_band) << 48 | low;
+        out.splats.id[at] = star_band << 48 | low;
         out.distance[at] = std::fabs(spread);
         sigmas += static_cast<double>(star.sigma);
     }

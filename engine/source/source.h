@@ -144,7 +144,7 @@ struct StructureParams {
     double depth = 0.15;         // of the picture's width: whole depth of walls, or of a flat sheet's relief
     double clumps = 1.0;         // how strongly depths follow the noise
     bool stars = true;           // found and made into single dots
-    std::optional<double> dust;  // share of the dark details that absorb; empty: 1 in a disk, else 0
+    std::optional<double> dust;  // share of the dark details that absorb; empty: half in a disk, else 0
     double opacity = 0.55;       // power of brightness that opacity grows with
     double density = 0.75;       // opacity of white
     double border = 0.0;         // of the width, over which light fades towards the picture's edges
