@@ -20,6 +20,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "image/blur.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {

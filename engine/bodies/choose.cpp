@@ -10,6 +10,7 @@
 #include "bodies/picture_light.h"
 #include "bodies/stars.h"
 #include "image/blur.h"
+#include "image/channels.h"
 #include "image/percentile.h"
 #include "image/resample.h"
 

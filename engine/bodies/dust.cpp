@@ -9,6 +9,7 @@
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/blur.h"
+#include "image/channels.h"
 #include "splats/star_id.h"
 
 namespace astrosplat {

@@ -12,6 +12,7 @@
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/blur.h"
+#include "image/channels.h"
 #include "render/render.h"
 
 namespace astrosplat {

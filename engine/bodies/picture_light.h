@@ -14,11 +14,4 @@ struct PictureLight {
 /// `border`: share of the width over which light and alpha fade to 0 towards the picture's edges, 0..0.5.
 PictureLight picture_light(const Texture& texture, double border);
 
-/// max(R, G, B) of every pixel.
-Image brightest_channel(const Image& light);
-
-/// Value of a channel at (x, y) px from the top left corner, linear between pixel centres, clamped at the
-/// edges.
-float bilinear(const Image& image, int channel, float x, float y);
-
 }  // namespace astrosplat

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
+#include "image/channels.h"
 #include "splats/star_id.h"
 
 namespace astrosplat {

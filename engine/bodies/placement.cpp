@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {

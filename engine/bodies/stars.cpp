@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {

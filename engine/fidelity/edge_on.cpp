@@ -6,6 +6,7 @@
 
 #include "core/color.h"
 #include "image/blur.h"
+#include "image/channels.h"
 #include "image/percentile.h"
 #include "image/row_sums.h"
 
@@ -13,15 +14,6 @@ namespace astrosplat {
 namespace {
 
 using Profile = std::vector<double>;
-
-Image brightest_channel(const Image& linear) {
-    Image image = make_image(linear.width, linear.height, 1);
-    for (std::int64_t i = 0; i < linear.width * linear.height; ++i) {
-        const float* const p = linear.pixels.data() + i * linear.channels;
-        image.pixels[static_cast<std::size_t>(i)] = std::max({p[0], p[1], p[2]});
-    }
-    return image;
-}
 
 struct Profiles {
     Profile rows, columns;  // mean light of each

@@ -13,6 +13,7 @@
 #include "bodies/picture_splats.h"
 #include "bodies/uv_surface.h"
 #include "core/parallel.h"
+#include "image/channels.h"
 #include "support/painted_picture.h"
 #include "support/printing.h"
 

@@ -12,6 +12,7 @@
 #include "bodies/placement.h"
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
+#include "image/channels.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {

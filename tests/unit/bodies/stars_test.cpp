@@ -8,6 +8,7 @@
 #include "bodies/knots.h"
 #include "bodies/picture_light.h"
 #include "core/parallel.h"
+#include "image/channels.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {
