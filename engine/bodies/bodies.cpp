@@ -29,6 +29,7 @@ constexpr double dust_of_disks = 0.4;  // all of it makes lanes edge-on that are
 constexpr int most_pictures = 255;     // ids hold 8 bits of their number
 constexpr int picture_bit = 56, instance_bit = 42;
 constexpr std::uint64_t most_instances = 63;
+constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a dot comes at most
 
 // A picture of a mesh's material, where a face shows it.
 struct PictureOnMesh {
@@ -130,17 +131,19 @@ void write_dot(const PictureSplats& dots, const PlacedDots& chunk, std::size_t i
     const SurfacePlace& place = chunk.place[i];
     const Image& image = picture.texture().image;
     const glm::vec3 p = dots.splats.position[dot];
-    set.position[at] = place.position + place.normal * (p.z * place.units_per_texel);
+    const float z = place.approach > 0.0f ? std::min(p.z, nearest_approach / place.approach) : p.z;
+    const float scale = place.units_per_texel * (1.0f - place.approach * z);  // nearer dots are smaller
+    set.position[at] = place.position + place.rise * (z * place.units_per_texel);
     set.color[at] = dots.splats.color[dot];
     set.alpha[at] = dots.splats.alpha[dot];
-    set.distance[at] = dots.distance[dot] * place.units_per_texel;
+    set.distance[at] = dots.distance[dot] * scale;
     set.id[at] = number << picture_bit | static_cast<std::uint64_t>(chunk.instance[i]) << instance_bit |
                  dots.splats.id[dot];
     set.uv[at] = {p.x / static_cast<float>(image.width) + 0.5f,
                   p.y / static_cast<float>(image.height) + 0.5f};
     set.normal[at] = place.normal;
     set.mesh[at] = picture.mesh_index;
-    set.radius[at] = dots.splats.radius[dot] * place.units_per_texel;
+    set.radius[at] = dots.splats.radius[dot] * scale;
 }
 
 // Puts the dots onto the mesh and behind those that are there.
@@ -204,7 +207,8 @@ SplatSet make_bodies(std::span<const TexturedMesh> meshes, const StructureParams
         const PictureOnMesh& picture = pictures[i];
         const Texture& texture = picture.texture();
         const UvSurface surface(picture.mesh->mesh, picture.material, texture.image.width,
-                                texture.image.height, texture.wrap == TextureSettings::Wrap::repeat);
+                                texture.image.height, texture.wrap == TextureSettings::Wrap::repeat,
+                                picture.mesh->camera ? &*picture.mesh->camera : nullptr);
         const PictureSplats dots =
             dots_of(texture, surface, params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
         append(dots, surface, picture, i, set);

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <utility>
+
+#include "source/picture_camera.h"
 
 namespace astrosplat {
 namespace {
@@ -28,15 +31,19 @@ bool inside(double area, double orientation, glm::dvec2 a, glm::dvec2 b) {
     return signed_area > 0.0 || (signed_area == 0.0 && (orientation > 0.0 ? owns(a, b) : owns(b, a)));
 }
 
+bool shows(const Mesh::Triangle& triangle, const Mesh& mesh, std::uint32_t material) {
+    return (mesh.maps.empty() || triangle.material == material) && triangle.uv[0] != Mesh::no_uv;
+}
+
 }  // namespace
 
 UvSurface::UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height,
-                     bool repeats)
-    : mesh_(mesh) {
+                     bool repeats, const Camera* camera)
+    : mesh_(mesh), camera_(camera), height_(static_cast<double>(height)) {
     measure(mesh, material, {static_cast<double>(width), static_cast<double>(height)});
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const Mesh::Triangle& triangle = mesh.triangles[i];
-        if (!mesh.maps.empty() && triangle.material != material) continue;
+        if (!shows(triangle, mesh, material)) continue;
         Face face{{}, i};
         for (int k = 0; k < 3; ++k)
             face.uv[k] = glm::dvec2(mesh.uvs[triangle.uv[static_cast<std::size_t>(k)]]);
@@ -68,7 +75,7 @@ void UvSurface::measure(const Mesh& mesh, std::uint32_t material, glm::dvec2 tex
     glm::dvec3 total(0.0);
     Bounds box;
     for (const Mesh::Triangle& triangle : mesh.triangles) {
-        if (!mesh.maps.empty() && triangle.material != material) continue;
+        if (!shows(triangle, mesh, material)) continue;
         glm::dvec3 p[3];
         glm::dvec2 t[3];
         for (std::size_t k = 0; k < 3; ++k) {
@@ -137,6 +144,7 @@ void UvSurface::at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>&
     const glm::dvec2 p(uv);
     const auto cell = [&](double v) { return static_cast<int>(std::clamp(v * cells_, 0.0, cells_ - 1.0)); };
     const auto here = static_cast<std::size_t>(cell(p.y) * cells_ + cell(p.x));
+    std::optional<SurfacePlace> nearest;
     for (std::uint32_t i = first_face_[here]; i < first_face_[here + 1]; ++i) {
         const Face& face = faces_[cell_faces_[i]];
         const glm::dvec2 &a = face.uv[0], &b = face.uv[1], &c = face.uv[2];
@@ -146,18 +154,54 @@ void UvSurface::at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>&
         if (!inside(of_a, whole, b, c) || !inside(of_b, whole, c, a) || !inside(of_c, whole, a, b)) continue;
         const double sum = of_a + of_b + of_c;
         const double weights[3] = {of_a / sum, of_b / sum, of_c / sum};
-        glm::dvec3 position(0.0), normal(0.0);
-        double scale = 0.0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t vertex = mesh_.triangles[face.triangle].position[k];
-            position += weights[k] * glm::dvec3(mesh_.positions[vertex]);
-            normal += weights[k] * glm::dvec3(normals_[vertex]);
-            scale += weights[k] * static_cast<double>(units_per_texel_[vertex]);
+        if (!camera_) {
+            visit(place_on(face, weights));
+            continue;
         }
-        const double length = glm::length(normal);
-        visit({glm::vec3(position), length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0, 1, 0),
-               static_cast<float>(scale)});
+        const SurfacePlace place = seen_on(face, weights);
+        if (!nearest || place.depth < nearest->depth) nearest = place;
     }
+    if (nearest) visit(*nearest);
+}
+
+SurfacePlace UvSurface::place_on(const Face& face, const double (&weights)[3]) const {
+    glm::dvec3 position(0.0), normal(0.0);
+    double scale = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = mesh_.triangles[face.triangle].position[k];
+        position += weights[k] * glm::dvec3(mesh_.positions[vertex]);
+        normal += weights[k] * glm::dvec3(normals_[vertex]);
+        scale += weights[k] * static_cast<double>(units_per_texel_[vertex]);
+    }
+    const double length = glm::length(normal);
+    SurfacePlace place;
+    place.position = glm::vec3(position);
+    place.normal = length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0, 1, 0);
+    place.units_per_texel = static_cast<float>(scale);
+    place.rise = place.normal;
+    return place;
+}
+
+// What is in the middle of two corners in the picture is nearer to the nearer one of them on the face.
+SurfacePlace UvSurface::seen_on(const Face& face, const double (&weights)[3]) const {
+    const bool parallel = camera_->projection == Projection::orthographic;
+    const glm::dvec3& back = camera_->world_from_camera[2];
+    double on_face[3], sum = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec3 corner(mesh_.positions[mesh_.triangles[face.triangle].position[k]]);
+        on_face[k] = parallel ? weights[k] : weights[k] / glm::dot(back, camera_->eye - corner);
+        sum += on_face[k];
+    }
+    for (double& weight : on_face) weight /= sum;
+    SurfacePlace place = place_on(face, on_face);
+    const glm::dvec3 to_eye = camera_->eye - glm::dvec3(place.position);
+    const double depth = glm::dot(back, to_eye),
+                 units_per_texel = picture_height_at(*camera_, depth) / height_;
+    place.depth = static_cast<float>(depth);
+    place.units_per_texel = static_cast<float>(units_per_texel);
+    place.rise = glm::vec3(parallel ? back : to_eye / depth);
+    place.approach = parallel ? 0.0f : static_cast<float>(units_per_texel / depth);
+    return place;
 }
 
 }  // namespace astrosplat

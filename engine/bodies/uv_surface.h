@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "camera/camera.h"
 #include "source/mesh.h"
 
 namespace astrosplat {
@@ -16,17 +17,23 @@ struct SurfacePlace {
     glm::vec3 position;         // scene units
     glm::vec3 normal;           // unit, smooth over the mesh
     float units_per_texel = 0;  // scene units
+    /// Where heights go: the normal, or along the ray to the camera, as long as brings it nearer by 1.
+    glm::vec3 rise{0.0f};
+    float approach = 0.0f;  // share of `depth` by which a texel of height is nearer where rays meet; else 0
+    float depth = 0.0f;     // scene units before the camera, if there is one
 };
 
 class UvSurface {
   public:
     /// The faces of one material under a picture of width x height texels. `repeats`: the picture goes on
-    /// beyond 0..1; else places beyond it belong to no texel.
-    UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height,
-              bool repeats);
+    /// beyond 0..1; else places beyond it belong to no texel. `camera`: that took the picture, by which the
+    /// mesh has its coordinates (picture_camera.h).
+    UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height, bool repeats,
+              const Camera* camera = nullptr);
 
     /// Calls visit for every face over this place of the picture, in the order of the faces: none where the
-    /// mesh does not show it, several where it does more than once. An edge belongs to one of its two faces.
+    /// mesh does not show it, several where it does more than once; with a camera only for the face nearest
+    /// to it, so that it sees its picture once. An edge belongs to one of its two faces.
     void at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>& visit) const;
 
     /// Texels over scene units, by the areas of all faces; 0 for a mesh without area.
@@ -45,7 +52,12 @@ class UvSurface {
     template <class Visit>
     void for_each_cell(const Face& face, Visit visit) const;
 
+    SurfacePlace place_on(const Face& face, const double (&weights)[3]) const;
+    SurfacePlace seen_on(const Face& face, const double (&weights)[3]) const;
+
     const Mesh& mesh_;
+    const Camera* camera_;
+    double height_;                       // texels
     std::vector<glm::vec3> normals_;      // of the mesh's positions
     std::vector<float> units_per_texel_;  // of the same
     double texels_per_unit_ = 0.0;

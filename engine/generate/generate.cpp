@@ -127,16 +127,18 @@ class BlockRun {
 
     void keep(const BlockAnswers& answers, std::size_t slot, std::uint64_t id, Worker& worker) const {
         const SurfaceTriangle& surface = surface_[answers.triangle[slot]];
-        const glm::vec2 uv = uv_at(surface, {answers.v[slot], answers.w[slot]});
-        const TextureSample picture = sample(*surface.texture, uv, surface.box_texels);
+        const glm::dvec3 place(answers.x[slot], answers.y[slot], answers.z[slot]);
+        const std::optional<glm::vec2> uv = uv_of(surface, {answers.v[slot], answers.w[slot]}, place);
+        const TextureSample picture =
+            uv ? sample(*surface.texture, *uv, surface.box_texels) : TextureSample{};
         if (picture.alpha == 0.0f) {
             ++worker.zero_alpha;
             return;
         }
-        const glm::vec3 position(glm::dvec3(answers.x[slot], answers.y[slot], answers.z[slot]));
+        const glm::vec3 position(place);
         const auto distance = static_cast<float>(std::sqrt(answers.distance_squared[slot]));
         worker.kept.add(
-            {position, picture.color, picture.alpha, distance, id, uv, surface.normal, surface.mesh});
+            {position, picture.color, picture.alpha, distance, id, *uv, surface.normal, surface.mesh});
     }
 
     void append_kept(SplatSet& set) {

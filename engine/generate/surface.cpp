@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/parallel.h"
+#include "source/picture_camera.h"
 
 namespace astrosplat {
 namespace {
@@ -25,6 +26,18 @@ glm::vec2 texels_per_voxel(const SurfaceTriangle& t, const TriangleShape& s, con
                      std::sqrt(glm::dot(along_v, along_v)) * static_cast<double>(t.texture->image.height));
 }
 
+// The same for a picture that is seen through a camera, at the face's own depth.
+glm::vec2 texels_per_voxel(const TexturedMesh& m, const SurfaceTriangle& t, const TriangleShape& s,
+                           const glm::dvec3& spacing) {
+    const std::optional<PicturePlace> seen = place_in_picture(*m.camera, s.a + (s.ab + s.ac) / 3.0);
+    if (!seen) return glm::vec2(0.0f);
+    const double texels_per_unit =
+        static_cast<double>(t.texture->image.height) / picture_height_at(*m.camera, seen->depth);
+    const glm::dmat3& axes = m.camera->world_from_camera;
+    return glm::vec2(glm::length(axes[0] * spacing), glm::length(axes[1] * spacing)) *
+           static_cast<float>(texels_per_unit);
+}
+
 glm::vec3 face_normal(const TriangleShape& s) {
     const glm::dvec3 n = glm::cross(s.ab, s.ac);
     const double length = std::sqrt(glm::dot(n, n));
@@ -38,8 +51,15 @@ SurfaceTriangle surface_triangle(const TexturedMesh& m, const Mesh::Triangle& fa
     };
     const std::size_t texture = m.textures.size() == 1 ? 0 : face.material;
     assert(texture < m.textures.size());
-    SurfaceTriangle t{uv(0), uv(1), uv(2), face_normal(shape), {}, 0, &m.textures[texture]};
-    t.box_texels = texels_per_voxel(t, shape, spacing);
+    SurfaceTriangle t{uv(0),
+                      uv(1),
+                      uv(2),
+                      face_normal(shape),
+                      {},
+                      0,
+                      &m.textures[texture],
+                      m.camera ? &*m.camera : nullptr};
+    t.box_texels = m.camera ? texels_per_voxel(m, t, shape, spacing) : texels_per_voxel(t, shape, spacing);
     return t;
 }
 
@@ -63,6 +83,18 @@ Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, 
         first += m.mesh.triangles.size();
     }
     return triangles;
+}
+
+std::optional<glm::vec2> uv_of(const SurfaceTriangle& triangle, const glm::dvec2& barycentric,
+                               const glm::dvec3& position) {
+    if (!triangle.camera) {
+        const glm::dvec2 a(triangle.uv_a), ab = glm::dvec2(triangle.uv_b) - a,
+                                           ac = glm::dvec2(triangle.uv_c) - a;
+        return glm::vec2(a + ab * barycentric.x + ac * barycentric.y);
+    }
+    const std::optional<PicturePlace> seen = place_in_picture(*triangle.camera, position);
+    if (!seen) return std::nullopt;
+    return glm::vec2(seen->uv);
 }
 
 }  // namespace astrosplat

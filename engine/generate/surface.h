@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 
 #include "core/buffer.h"
@@ -19,15 +20,16 @@ struct SurfaceTriangle {
     glm::vec2 box_texels;        // side of Filter::area's box: a voxel's side times the local texels per unit
     std::uint32_t mesh;
     const Texture* texture;
+    const Camera* camera;  // uv = "camera"; null: the face's own (u,v)
 };
 
 /// One entry for each triangle of all meshes in order. `spacing` is the voxel's sides in scene units. The
 /// result points into `meshes`.
 Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, const glm::dvec3& spacing);
 
-inline glm::vec2 uv_at(const SurfaceTriangle& triangle, const glm::dvec2& barycentric) {
-    const glm::dvec2 a(triangle.uv_a), ab = glm::dvec2(triangle.uv_b) - a, ac = glm::dvec2(triangle.uv_c) - a;
-    return glm::vec2(a + ab * barycentric.x + ac * barycentric.y);
-}
+/// (u,v) of a position whose closest point is there: that point's, or, where a camera took the picture, the
+/// position's own; empty behind that camera.
+std::optional<glm::vec2> uv_of(const SurfaceTriangle& triangle, const glm::dvec2& barycentric,
+                               const glm::dvec3& position);
 
 }  // namespace astrosplat

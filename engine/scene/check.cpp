@@ -83,6 +83,15 @@ void check_masks(const std::vector<MaskParams>& masks, const ParameterKey& at, c
     }
 }
 
+void check_uv_camera(const UvCamera& camera, const ParameterKey& at, const Checker& check) {
+    const ParameterKey own = at / "uv_camera";
+    check.require(camera.position.has_value(), {own / "position", at / "uv"},
+                  "expected the place of the camera for uv \"camera\", found none");
+    check.require(camera.position != camera.target, {own / "target", own / "position"},
+                  "expected target and position apart, found the same point");
+    check.require(camera.up != glm::dvec3(0.0), {own / "up"}, "expected a direction, found 0, 0, 0");
+}
+
 void check_source(const SourceParams& source, const ParameterKey& at, const Checker& check) {
     check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at / "meshes", at / "kind"},
                   "expected at least one mesh, found none");
@@ -110,6 +119,7 @@ void check_source(const SourceParams& source, const ParameterKey& at, const Chec
     check.require(source.splats == 0 || (!source.voxels && source.voxel_size == 0.0),
                   {at / "voxels", at / "voxel_size", at / "splats"},
                   "expected voxels, voxel_size or splats, found two of them");
+    if (source.uv == UvMode::camera) check_uv_camera(source.uv_camera, at, check);
     const TextureSettings& t = source.texture;
     check_masks(t.mask, at / "mask", check);
     check.require(!t.black || !t.white || *t.black < *t.white, {at / "black", at / "white"},

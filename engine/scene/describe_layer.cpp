@@ -180,6 +180,19 @@ void describe_structure(const Describer& d, StructureParams& s) {
            "Light fades over this share towards the picture's edges.", within(0, 0.5), slider(0, 0.2));
 }
 
+void describe_uv_camera(const Describer& d, UvCamera& c) {
+    d(c.position, "position", "Picture's camera", "scene units",
+      "Where the camera stood that took the picture, in the meshes' space.", as(Type::position),
+      slider(-100, 100));
+    d(c.target, "target", "Its target", "scene units", "The point in the middle of the picture.",
+      as(Type::position), slider(-100, 100));
+    d(c.up, "up", "Its up", "", "The direction that is up in the picture.", slider(-1, 1));
+    d(c.fov, "fov", "Its field of view", "degrees", "From the picture's bottom to its top.", at_least(0.001),
+      below(180), slider(1, 120), only_with("height", {0.0}));
+    d(c.height, "height", "Its height", "scene units",
+      "From the picture's bottom to its top, with parallel rays; 0: fov.", at_least(0), slider(0, 100));
+}
+
 void describe_source(const Describer& d, SourceParams& s) {
     const Describer files = d.shown_in("Source", "Files"), splats = d.shown_in("Source", "Splats");
     const Describer lattice = splats.only_with("kind", {"mesh"});
@@ -206,7 +219,7 @@ void describe_source(const Describer& d, SourceParams& s) {
             "Positions farther from the meshes are dropped; 0: 2 % of the longest side.", at_least(0),
             slider(0, 10));
     files.only_with("kind", {"mesh"})(s.uv, "uv", "Picture coordinates", "",
-                                      "The mesh's own, or projected along an axis.");
+                                      "The mesh's own, or projected along an axis or from a camera.");
     const Describer planar =
         files.only_with("kind", {"mesh"}).only_with("uv", {"planar-xy", "planar-xz", "planar-yz"});
     planar(s.uv_width, "uv_width", "Picture width", "scene units",
@@ -216,6 +229,8 @@ void describe_source(const Describer& d, SourceParams& s) {
            as(Type::position), slider(-10, 10), never_with("uv_width", {0.0}));
     planar(s.back, "back", "Back wall", "",
            "What lies behind the middle shows: the same, the picture mirrored, or displaced by noise.");
+    describe_uv_camera(files.only_with("kind", {"mesh"}).only_with("uv", {"camera"}).in("uv_camera", false),
+                       s.uv_camera);
     describe_structure(d.shown_in("Source", "Structure").only_with("kind", {"mesh"}).in("structure", false),
                        s.structure);
     splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",

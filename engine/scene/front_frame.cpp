@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
+#include "source/picture_camera.h"
 
 namespace astrosplat {
 namespace {
@@ -75,7 +76,6 @@ void turn_upright(FrontFrame& frame, const PictureDirections& picture) {
 
 }  // namespace
 
-// A scene that names the camera of its picture (uv_camera) is to answer here, before the box is asked.
 FrontFrame front_frame(std::span<const TexturedMesh> meshes) {
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
@@ -90,6 +90,8 @@ FrontFrame front_frame(std::span<const TexturedMesh> meshes) {
     frame.height = std::fabs(glm::dot(box.extent(), frame.up));
     if (!(frame.width > 0.0 && frame.height > 0.0))
         throw InputError("expected a mesh with an area to be seen from the front, found a line or a point");
+    frame.camera = meshes.front().camera;
+    if (frame.camera) frame.height = frame.width / frame.camera->aspect;
     return frame;
 }
 
@@ -101,10 +103,16 @@ FrontFrame in_world(const FrontFrame& frame, const RenderLayer& layer) {
     world.toward = layer.world_from_layer * frame.toward;
     world.width = layer.scale * frame.width;
     world.height = layer.scale * frame.height;
+    if (!frame.camera) return world;
+    world.camera->eye = layer.world_from_layer * (layer.scale * frame.camera->eye) + layer.translate;
+    world.camera->world_from_camera = layer.world_from_layer * frame.camera->world_from_camera;
+    world.camera->near *= layer.scale;
+    if (frame.camera->projection == Projection::orthographic) world.camera->focal_px /= layer.scale;
     return world;
 }
 
 CameraParams judging_camera(const FrontFrame& frame, JudgingView view, double aspect) {
+    if (view == JudgingView::front && frame.camera) return params_of(*frame.camera);
     constexpr double distance = 2.0;  // widths
     const double half_root_3 = std::sqrt(0.75);
     const glm::dvec3 from = view == JudgingView::front  ? frame.toward

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "source/picture_camera.h"
 #include "source/sample.h"
 
 namespace astrosplat {
@@ -29,7 +32,17 @@ struct SeenFace {
     double twice_area() const { return ab.x * ac.y - ab.y * ac.x; }
 };
 
+// The same through a camera; faces stay flat where nearness is the inverse of depth.
+glm::dvec3 seen_through(const Camera& camera, const glm::dvec3& point) {
+    const std::optional<PicturePlace> place = place_in_picture(camera, point);
+    assert(place);  // the face has texture coordinates
+    const bool parallel = camera.projection == Projection::orthographic;
+    return {place->uv.x - 0.5, (0.5 - place->uv.y) / camera.aspect,
+            parallel ? -place->depth : 1.0 / place->depth};
+}
+
 glm::dvec3 seen_from_front(const FrontFrame& frame, const glm::vec3& position) {
+    if (frame.camera) return seen_through(*frame.camera, glm::dvec3(position));
     const glm::dvec3 p = (glm::dvec3(position) - frame.center) / frame.width;
     return {glm::dot(p, frame.right), -glm::dot(p, frame.up), glm::dot(p, frame.toward)};
 }

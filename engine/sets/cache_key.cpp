@@ -117,9 +117,18 @@ std::string structure_lines(const StructureParams& params) {
            fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border);
 }
 
+std::string camera_line(const UvCamera& camera) {
+    const auto& [position, target, up, fov, height] = camera;
+    const auto text = [](const glm::dvec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); };
+    return fmt::format("uv camera {} target {} up {} ", position ? text(*position) : "-", text(target),
+                       text(up)) +
+           (height > 0.0 ? fmt::format("height {}\n", height) : fmt::format("fov {}\n", fov));
+}
+
 // Nothing for a picture that is stretched over the meshes and the same in front and behind.
 std::string projection_lines(const SourceParams& source) {
     if (source.uv == UvMode::mesh) return "";
+    if (source.uv == UvMode::camera) return camera_line(source.uv_camera);
     const glm::dvec3& center = source.uv_center;
     std::string text;
     if (source.uv_width > 0.0)
@@ -135,8 +144,8 @@ std::string cache_key_text(const SourceParams& source, const std::string& layer_
     assert(source.kind == SourceKind::mesh);
     // Names all fields, so that a new one cannot be forgotten: either it belongs below, or among the unused.
     [[maybe_unused]] const auto& [kind, meshes, texture, buffer, voxels, voxel_size, count, splats, jitter,
-                                  max_distance, uv, uv_width, uv_center, back, structure, seed, file, stars] =
-        source;
+                                  max_distance, uv, uv_width, uv_center, back, uv_camera, structure, seed,
+                                  file, stars] = source;
     std::string text = fmt::format("set {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
     for (const MeshInput& input : meshes) text += mesh_lines(input, progress);
     text += texture_lines(texture) + rework_lines(texture, progress) + lattice_lines(source);

@@ -126,10 +126,20 @@ struct StarsParams {
     bool operator==(const StarsParams&) const = default;
 };
 
-enum class UvMode { mesh, planar_xy, planar_xz, planar_yz };
+enum class UvMode { mesh, planar_xy, planar_xz, planar_yz, camera };
 constexpr auto names_of(UvMode) {
-    return names_up_to<UvMode::planar_yz>("mesh", "planar-xy", "planar-xz", "planar-yz");
+    return names_up_to<UvMode::camera>("mesh", "planar-xy", "planar-xz", "planar-yz", "camera");
 }
+
+/// The camera that took a picture (uv = "camera"), in the meshes' own space.
+struct UvCamera {
+    std::optional<glm::dvec3> position;  // scene units; has to be given
+    glm::dvec3 target{0.0};
+    glm::dvec3 up{0.0, 1.0, 0.0};
+    double fov = 45.0;    // degrees, from the picture's bottom to its top
+    double height = 0.0;  // scene units, the same where rays are parallel; 0: they meet, under fov
+    bool operator==(const UvCamera&) const = default;
+};
 
 /// How a picture fills the neighbourhood of its mesh (DEPTH 7): columns extrudes it, the others make bodies.
 enum class StructureKind { columns, disk, sheet, walls };
@@ -170,6 +180,7 @@ struct SourceParams {
     double uv_width = 0.0;           // planar: scene units that a picture's width covers; 0: the meshes' box
     glm::dvec3 uv_center{0.0};       // planar with uv_width: where the picture's middle lies
     BackWall back = BackWall::same;  // planar
+    UvCamera uv_camera;
     StructureParams structure;
     std::uint32_t seed = 0;      // 0: derived from the layer's name
     std::filesystem::path file;  // kind splats

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "source/obj.h"
+#include "source/picture_camera.h"
 #include "source/planar_uv.h"
 #include "source/relief.h"
 #include "source/shapes.h"
@@ -16,7 +17,7 @@ using Wrap = TextureSettings::Wrap;
 // Beyond a picture of a given width lies nothing; one that is stretched over the mesh has no beyond.
 Wrap default_wrap(const SourceParams& source, Wrap of_own_uv) {
     if (source.uv == UvMode::mesh) return of_own_uv;
-    return source.uv_width > 0.0 ? Wrap::black : Wrap::clamp;
+    return source.uv == UvMode::camera || source.uv_width > 0.0 ? Wrap::black : Wrap::clamp;
 }
 
 double aspect_of(const Image& image) {
@@ -91,7 +92,12 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress
     }
     const Bounds box = bounds(meshes);
     for (TexturedMesh& m : meshes) {
-        apply_source_uv(m.mesh, source, box, aspect_of(m));
+        if (source.uv == UvMode::camera) {
+            m.camera = picture_camera(source.uv_camera, aspect_of(m));
+            apply_camera_uv(m.mesh, *m.camera);
+        } else {
+            apply_source_uv(m.mesh, source, box, aspect_of(m));
+        }
         for (Texture& texture : m.textures) apply_mask(texture);
     }
     return meshes;

@@ -1,9 +1,11 @@
 // A mesh together with the pictures that colour it: what generation reads.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "camera/camera.h"
 #include "source/mesh.h"
 #include "source/texture.h"
 
@@ -13,11 +15,12 @@ namespace astrosplat {
 struct TexturedMesh {
     Mesh mesh;
     std::vector<Texture> textures;
+    std::optional<Camera> camera;  // uv = "camera": that took the pictures (picture_camera.h)
 };
 
 /// Loads the meshes and pictures of a mesh source (paths already resolved). Wrap::automatic is clamp for
-/// built-in meshes and planar uv, black for planar uv with a width, repeat for a mesh's own uv. Throws
-/// InputError.
+/// built-in meshes and planar uv, black for planar uv with a width and for a camera's, repeat for a mesh's
+/// own uv. Throws InputError.
 std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress = {});
 
 /// Bounds of all vertices of all meshes.

@@ -13,7 +13,9 @@
 #include "bodies/picture_splats.h"
 #include "bodies/uv_surface.h"
 #include "core/parallel.h"
+#include "core/real.h"
 #include "image/channels.h"
+#include "source/picture_camera.h"
 #include "support/painted_picture.h"
 #include "support/printing.h"
 
@@ -117,6 +119,82 @@ TEST(UvSurface, OverlapsAndRepetitionsAreAllVisited) {
     mesh.uvs = {{0, 0}, {2, 0}, {0, 2}};  // the picture twice along each side
     EXPECT_EQ(places(UvSurface(mesh, 0, 100, 100, true), {0.25f, 0.25f}).size(), 3u);
     EXPECT_EQ(places(UvSurface(mesh, 0, 100, 100, false), {0.25f, 0.25f}).size(), 1u);
+}
+
+// Looks at a plane of 16 x 10 texels from the side of its edge.
+TexturedMesh seen_obliquely(double parallel_height) {
+    TexturedMesh mesh = on_plane(painted::nebula(160, 100));
+    UvCamera params;
+    params.position = glm::dvec3(1.0, 9.0, 6.0);
+    params.fov = 50.0;
+    params.height = parallel_height;
+    mesh.camera = picture_camera(params, 1.6);
+    apply_camera_uv(mesh.mesh, *mesh.camera);
+    return mesh;
+}
+
+TEST(UvSurface, APlaceSeenByACameraIsOnItsRay) {
+    for (const double parallel_height : {0.0, 4.0}) {
+        const TexturedMesh mesh = seen_obliquely(parallel_height);
+        const Camera& camera = *mesh.camera;
+        const UvSurface surface(mesh.mesh, 0, 160, 100, false, &camera);
+        for (const glm::vec2 uv : {glm::vec2(0.5f, 0.5f), {0.4f, 0.6f}, {0.61f, 0.43f}}) {
+            const auto found = places(surface, uv);
+            ASSERT_EQ(found.size(), 1u);
+            EXPECT_NEAR(found[0].position.y, 0.0f, 1e-5f);
+            for (const float texels : {0.0f, 20.0f, -30.0f}) {
+                const float z = texels * found[0].units_per_texel;
+                const auto seen = place_in_picture(camera, glm::dvec3(found[0].position + found[0].rise * z));
+                ASSERT_TRUE(seen);
+                EXPECT_LT(glm::distance(seen->uv, glm::dvec2(uv)), 1e-6);
+                EXPECT_NEAR(seen->depth, static_cast<double>(found[0].depth - z), 1e-5);
+                // A texel there covers a hundredth of the picture's height.
+                const double scale =
+                    static_cast<double>(found[0].units_per_texel * (1.0f - found[0].approach * texels));
+                EXPECT_NEAR(100.0 * scale, picture_height_at(camera, seen->depth), 1e-5);
+            }
+        }
+    }
+}
+
+TEST(UvSurface, ACameraSeesTheNearestFace) {
+    TexturedMesh mesh;
+    mesh.mesh = builtin_mesh("sphere", 1.0);
+    UvCamera params;
+    params.position = glm::dvec3(0.0, 0.0, 20.0);
+    mesh.camera = picture_camera(params, 1.0);
+    apply_camera_uv(mesh.mesh, *mesh.camera);
+    const auto found =
+        places(UvSurface(mesh.mesh, 0, 100, 100, false, &*mesh.camera), glm::vec2(0.52f, 0.47f));
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_GT(found[0].position.z, 4.8f);
+}
+
+// What the camera sees of the set is what the fit saw: every dot where it is in the picture, and as large.
+TEST(Bodies, KeepTheirPlaceInThePictureOfTheirCamera) {
+    TexturedMesh front = on_plane(painted::nebula(160, 100));
+    const SplatSet plain = make_bodies({&front, 1}, of_kind(StructureKind::sheet), 3u, "gas");
+    UvCamera params;
+    params.position = glm::dvec3(0.0, 8.0, 0.0);
+    params.up = glm::dvec3(0.0, 0.0, -1.0);
+    params.fov = 2.0 * real::degrees(real::atan2(3.125, 8.0));
+    front.camera = picture_camera(params, 1.6);
+    apply_camera_uv(front.mesh, *front.camera);
+    const SplatSet seen = make_bodies({&front, 1}, of_kind(StructureKind::sheet), 3u, "gas");
+    ASSERT_GT(seen.size(), plain.size() * 99 / 100);  // uv that is rounded loses some at the edges
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < seen.id.size(); ++i) {
+        while (plain.id[k] < seen.id[i]) ++k;
+        ASSERT_EQ(plain.id[k], seen.id[i]);
+        const glm::vec3 p = plain.position[k];  // the picture's plane is 8 from the camera
+        const auto place = place_in_picture(*front.camera, glm::dvec3(seen.position[i]));
+        ASSERT_TRUE(place);
+        ASSERT_NEAR(place->uv.x, 0.5 + static_cast<double>(p.x) / 10.0, 2e-6);
+        ASSERT_NEAR(place->uv.y, 0.5 - static_cast<double>(p.z) / 6.25, 2e-6);
+        ASSERT_NEAR(place->depth, 8.0 - static_cast<double>(p.y), 1e-5);
+        ASSERT_NEAR(seen.radius[i], plain.radius[k] * static_cast<float>(place->depth) / 8.0f, 1e-5f);
+        ASSERT_EQ(seen.color[i], plain.color[k]);
+    }
 }
 
 TEST(Opacity, FollowsBrightnessAndNeverExceedsThePicturesAlpha) {

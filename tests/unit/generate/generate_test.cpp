@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "source/picture_camera.h"
 #include "source/sample.h"
 #include "unit/generate/generate_support.h"
 #include "unit/generate/lattice_positions.h"
@@ -269,6 +270,31 @@ TEST_F(GenerateTest, EmptySpaceCostsNothing) {
     const SplatSet set = generate(meshes, make_lattice(source, meshes, 0.002), 0.002, 0.0, 1);
     EXPECT_GT(set.size(), 30);
     EXPECT_LT(set.size(), 200);
+}
+
+// With a camera's picture a position shows what the camera sees there, not what its closest point shows.
+TEST_F(GenerateTest, ACamerasPictureIsSeenAtThePositionsThemselves) {
+    TexturedMesh mesh = textured(builtin_mesh("plane", 1.0), flat_texture({0.25f, 0.5f, 1.0f, 1.0f}));
+    UvCamera params;
+    params.position = dvec3(0.0, 0.5, 0.0);  // amid the positions: some are behind it
+    params.up = dvec3(0.0, 0.0, -1.0);
+    params.fov = 120.0;
+    mesh.camera = picture_camera(params, 1.0);
+    apply_camera_uv(mesh.mesh, *mesh.camera);
+    mesh.textures[0].wrap = TextureSettings::Wrap::black;
+    SourceParams source;
+    source.voxels = i64vec3(40, 10, 40);
+    const Lattice lattice = make_lattice(source, {&mesh, 1}, 1.0);
+    const SplatSet set = generate({&mesh, 1}, lattice, 1.0, 1.0, 9u);
+    ASSERT_GT(set.size(), 1000);
+    EXPECT_GT(set.zero_alpha, 1000);
+    for (std::size_t i = 0; i < set.id.size(); ++i) {
+        const auto seen = place_in_picture(*mesh.camera, dvec3(set.position[i]));
+        ASSERT_TRUE(seen);
+        ASSERT_LT(glm::distance(seen->uv, glm::dvec2(set.uv[i])), 1e-4);
+        ASSERT_GE(std::min(set.uv[i].x, set.uv[i].y), -0.0625f);  // half a texel is filtered beyond the edge
+        ASSERT_LE(std::max(set.uv[i].x, set.uv[i].y), 1.0625f);
+    }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "scene/front_picture.h"
+#include "source/picture_camera.h"
 #include "support/errors.h"
 
 namespace astrosplat {
@@ -119,6 +120,52 @@ TEST(FrontPicture, OfAPlaneIsItsPicture) {
                 ASSERT_NEAR(picture.at(i, j)[0], static_cast<float>(i), 1e-3f) << i << " " << j;
                 ASSERT_NEAR(picture.at(i, j)[1], static_cast<float>(j), 1e-3f) << i << " " << j;
             }
+    }
+}
+
+// A camera sees its picture wherever it stands and whatever the mesh that it is projected onto.
+TEST(FrontPicture, ThroughItsCameraIsThePicture) {
+    for (const double height : {0.0, 3.0}) {
+        std::vector<TexturedMesh> plane = builtin("plane", 40, 20);
+        UvCamera params;
+        params.position = glm::dvec3(0.0, 6.0, 2.5);
+        params.fov = 25.0;
+        params.height = height;
+        plane[0].camera = picture_camera(params, 2.0);
+        apply_camera_uv(plane[0].mesh, *plane[0].camera);
+        const FrontFrame frame = front_frame(plane);
+        EXPECT_NEAR(frame.height, 0.5 * frame.width, 1e-9);
+        const Image picture = front_picture(plane, frame);
+        ASSERT_EQ(picture.width, 40);
+        ASSERT_EQ(picture.height, 20);
+        for (std::int64_t j = 0; j < 20; ++j)
+            for (std::int64_t i = 0; i < 40; ++i) {
+                ASSERT_NEAR(picture.at(i, j)[0], static_cast<float>(i), 2e-3f) << i << " " << j;
+                ASSERT_NEAR(picture.at(i, j)[1], static_cast<float>(j), 2e-3f) << i << " " << j;
+            }
+    }
+}
+
+TEST(FrontFrame, ItsCameraFollowsTheLayersTransform) {
+    std::vector<TexturedMesh> plane = builtin("plane", 32, 16);
+    for (const double height : {0.0, 3.0}) {
+        UvCamera params;
+        params.position = glm::dvec3(2.0, 6.0, 3.0);
+        params.height = height;
+        plane[0].camera = picture_camera(params, 2.0);
+        RenderLayer layer;
+        layer.translate = {7.0, -3.0, 2.0};
+        layer.scale = 3.0;
+        layer.world_from_layer = rotation_from_degrees({20.0, 40.0, -70.0});
+        const CameraParams front =
+            judging_camera(in_world(front_frame(plane), layer), JudgingView::front, 2.0);
+        const Camera in_world = make_camera(front, 2.0, 1.0, {});
+        const glm::dvec3 point(1.0, 0.5, -1.0);
+        const auto own = place_in_picture(*plane[0].camera, point),
+                   world = place_in_picture(in_world,
+                                            layer.world_from_layer * (layer.scale * point) + layer.translate);
+        ASSERT_TRUE(own && world);
+        EXPECT_LT(glm::distance(own->uv, world->uv), 1e-9);
     }
 }
 

@@ -62,6 +62,25 @@ INSTANTIATE_TEST_SUITE_P(
              "6: layer.source.back: expected same, mirrored or varied, found 'front'"},
         Case{"meshes = { mesh = \"disk\" }\nuv_width = -1\n",
              "6: layer.source.uv_width: expected a number of at least 0, found -1"},
+        Case{"meshes = { mesh = \"disk\" }\nuv = \"camera\"\n",
+             "6: layer.stars.source.uv: expected the place of the camera for uv \"camera\", found none"},
+        Case{"uv = \"camera\"\nmeshes = { mesh = \"disk\" }\nuv_camera = { fov = 30 }\n",
+             "5: layer.stars.source.uv: expected the place of the camera for uv \"camera\", found none"},
+        Case{"meshes = { mesh = \"disk\" }\nuv = \"camera\"\nuv_camera = { position = [0, 1, 0], target = "
+             "[0, 1, "
+             "0] }\n",
+             "7: layer.stars.source.uv_camera.position: expected target and position apart, found the same "
+             "point"},
+        Case{"meshes = { mesh = \"disk\" }\nuv = \"camera\"\nuv_camera = { position = [0, 1, 0], up = [0, 0, "
+             "0] "
+             "}\n",
+             "7: layer.stars.source.uv_camera.up: expected a direction, found 0, 0, 0"},
+        Case{"meshes = { mesh = \"disk\" }\nuv_camera = { fov = 180 }\n",
+             "6: layer.source.uv_camera.fov: expected a number of at least 0.001 and below 180, found 180"},
+        Case{"meshes = { mesh = \"disk\" }\nuv_camera = { height = -1 }\n",
+             "6: layer.source.uv_camera.height: expected a number of at least 0, found -1"},
+        Case{"meshes = { mesh = \"disk\" }\nuv_camera = { fow = 40 }\n",
+             "6: unknown key 'uv_camera.fow'; did you mean 'layer.source.uv_camera.fov'?"},
         Case{"meshes = { mesh = \"disk\" }\nderive = \"dst\"\n",
              "6: layer.source.derive: expected none, dust, h_alpha or young_stars, found 'dst'; did you mean "
              "'dust'?"},

@@ -142,6 +142,12 @@ MaskParams& one_mask(SourceParams& source) {
     return source.texture.mask[0];
 }
 
+UvCamera& seen_from(SourceParams& source, double y) {
+    source.uv = UvMode::camera;
+    source.uv_camera.position = glm::dvec3(0.0, y, 0.0);
+    return source.uv_camera;
+}
+
 TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
     using Settings = TextureSettings;
     const std::vector<std::function<void(SourceParams&)>> changes = {
@@ -191,6 +197,13 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
         [](SourceParams& s) { s.uv = UvMode::planar_xz, s.uv_width = 4.0, s.uv_center.x = 1.0; },
         [](SourceParams& s) { s.uv = UvMode::planar_xz, s.back = BackWall::mirrored; },
         [](SourceParams& s) { s.uv = UvMode::planar_xz, s.back = BackWall::varied; },
+        [](SourceParams& s) { seen_from(s, 3.0); },
+        [](SourceParams& s) { seen_from(s, 4.0); },
+        [](SourceParams& s) { seen_from(s, 3.0).target.x = 1.0; },
+        [](SourceParams& s) { seen_from(s, 3.0).up.x = 1.0; },
+        [](SourceParams& s) { seen_from(s, 3.0).fov = 30.0; },
+        [](SourceParams& s) { seen_from(s, 3.0).height = 5.0; },
+        [](SourceParams& s) { seen_from(s, 3.0).height = 6.0; },
         [](SourceParams& s) { s.meshes[0].mesh = "hourglass"; },
         [](SourceParams& s) { s.meshes[0].mesh = "hourglass", s.meshes[0].shape.waist = 0.5; },
         [](SourceParams& s) { s.meshes[0].mesh = "hourglass", s.meshes[0].shape.width = 0.6; },
@@ -238,6 +251,7 @@ TEST_F(SetCacheTest, WhatDoesNotReachTheSetStaysOutOfTheKey) {
     sized.meshes[0].relief = 0.7;
     sized.meshes[0].shape.waist = 0.7;
     sized.uv_width = 3.0;
+    sized.uv_camera.fov = 3.0;
     sized.back = BackWall::varied;
     EXPECT_EQ(cache_key(sized, "dust").name, key);
     fs::copy_file(folder_ / "p.ppm", folder_ / "other.ppm");

@@ -75,7 +75,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
         {"image", {"core", "image"}},
         {"fidelity", {"core", "image", "fidelity"}},
         {"prepare", {"core", "image", "prepare"}},
-        {"source", {"core", "image", "source"}},
+        {"source", {"core", "image", "camera", "source"}},
         {"splats", {"core", "splats"}},
         {"splat_files", {"core", "splats", "splat_files"}},
         {"generate", {"core", "source", "splats", "splat_files", "generate"}},
