@@ -21,9 +21,7 @@ namespace {
 
 constexpr double longest_side = 10.0;  // scene units, of the built-in plane
 constexpr std::int64_t longest_px = 1920;
-// Degrees. A telescope's is so small that what stands out of the picture does not move against it: the front
-// view is the picture to 40 dB at 3 degrees, to 29 dB at 40.
-constexpr double telescope_fov = 3.0, flight_fov = 40.0;
+constexpr double field_of_view = 40.0;  // degrees
 
 constexpr const char* text_format =
     R"(# {title}: a picture as bodies in depth. 'astrosplat parameters' lists every key.
@@ -36,17 +34,19 @@ fps        = 24
 path       = {path}  # the ending chooses the format: .exr .tif .png
 exposure   = 0.0                  # stops; acts in .png and .tif, exr holds scene light
 
-[camera]                          # as the telescope saw it
+[camera]                          # that of the picture, see uv_camera below
 position = [0, {distance}, 0]
 target   = [0, 0, 0]
 up       = [0, 0, -1]
-fov      = {fov}                    # degrees, vertical
+fov      = {fov}                     # degrees, vertical
 
 [[layer]]
 name = {name}
 
 [layer.source]
 meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
+uv        = "camera"              # depth goes along the rays to this camera, so that from there one sees the picture:
+uv_camera = {{ position = [0, {distance}, 0], up = [0, 0, -1], fov = {fov} }}
 structure = {{ kind = {kind}, depth = {depth}, clumps = 1.0, opacity = {opacity}, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
@@ -64,53 +64,45 @@ lod     = {{ max_px = {split}, noise = 0.75 }}  # dots that look larger, close b
 struct CameraKey {
     int frame;
     glm::dvec3 position, target, up;
-    double fov;  // degrees
 };
 
-// The camera comes from where the telescope stood, so far away that depth does not show, to where it does,
-// and tilts by 45 degrees meanwhile; the picture keeps its size. Eight frames are between two keys.
-void come_near(double half_height, std::vector<CameraKey>& keys) {
+// From where the picture is seen as it is, the camera tilts by 45 degrees and comes a little nearer. Eight
+// frames are between two keys.
+void tilt(double distance, std::vector<CameraKey>& keys) {
     constexpr int first = 36, last = 100, step = 8;
-    const double far_tangent = real::tan(real::radians(0.5 * telescope_fov)),
-                 near_tangent = real::tan(real::radians(0.5 * flight_fov));
     for (int frame = first; frame <= last; frame += step) {
         const double t = static_cast<double>(frame - first) / (last - first), eased = t * t * (3.0 - 2.0 * t);
-        const double tangent = far_tangent * real::pow(near_tangent / far_tangent, eased);
-        const double tilt = real::radians(45.0 * eased),
-                     distance = (1.0 - 0.12 * eased) * half_height / tangent;
-        keys.push_back({frame,
-                        distance * glm::dvec3(0.06 * eased, real::cos(tilt), real::sin(tilt)),
-                        glm::dvec3(0.0),
-                        {0.0, eased, -1.0 + 0.5 * eased},
-                        2.0 * real::degrees(real::atan2(tangent, 1.0))});
+        const double angle = real::radians(45.0 * eased);
+        keys.push_back(
+            {frame,
+             (1.0 - 0.12 * eased) * distance * glm::dvec3(0.06 * eased, real::cos(angle), real::sin(angle)),
+             glm::dvec3(0.0),
+             {0.0, eased, -1.0 + 0.5 * eased}});
     }
 }
 
 // Ten seconds at 24 frames/s: the front, a slow tilt, a close pass, and on: to the edge of a disk, else up
 // and away.
-std::vector<CameraKey> flight(double half_height, StructureKind kind) {
+std::vector<CameraKey> flight(double distance, StructureKind kind) {
     const bool disk = kind == StructureKind::disk;
-    const double distance = half_height / real::tan(real::radians(0.5 * flight_fov));
     const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
     std::vector<CameraKey> keys;
-    come_near(half_height, keys);
+    tilt(distance, keys);
     keys.insert(keys.begin(), keys.front());
     keys.front().frame = 1;
-    keys.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above, flight_fov});
-    keys.push_back({205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above, flight_fov});
-    keys.push_back({240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above, flight_fov});
+    keys.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above});
+    keys.push_back({205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above});
+    keys.push_back({240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above});
     return keys;
 }
 
 std::string text_of(const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
-std::string text_of(double v) { return fmt::format("{:.6g}", v); }
 
 // Leaves out keys that are like both of their neighbours.
-template <class Value>
-std::string track_text(const char* key, const std::vector<CameraKey>& keys, Value CameraKey::*value) {
+std::string track_text(const char* key, const std::vector<CameraKey>& keys, glm::dvec3 CameraKey::*value) {
     std::string text;
     for (std::size_t i = 0; i < keys.size(); ++i) {
-        const Value& here = keys[i].*value;
+        const glm::dvec3& here = keys[i].*value;
         const bool inside = i > 0 && i + 1 < keys.size();
         if (inside && here == keys[i - 1].*value && here == keys[i + 1].*value) continue;
         text += fmt::format("{}    [{}, {}]", text.empty() ? "" : ",\n", keys[i].frame, text_of(here));
@@ -122,7 +114,7 @@ std::string animation_text(const std::vector<CameraKey>& keys) {
     return "\n[animation]                       # [frame, value]\n" +
            track_text("camera.position", keys, &CameraKey::position) +
            track_text("camera.target", keys, &CameraKey::target) +
-           track_text("camera.up", keys, &CameraKey::up) + track_text("camera.fov", keys, &CameraKey::fov);
+           track_text("camera.up", keys, &CameraKey::up);
 }
 
 // Even, as films want it.
@@ -159,7 +151,7 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
     const std::string name = layer_name_of(scene.image.stem().string(), "picture");
     const std::int64_t longest = std::max(scene.width_px, scene.height_px);
     const double height = longest_side * static_cast<double>(scene.height_px) / static_cast<double>(longest);
-    const double distance = 0.5 * height / real::tan(real::radians(0.5 * telescope_fov));
+    const double distance = 0.5 * height / real::tan(real::radians(0.5 * field_of_view));
     std::string text = fmt::format(
         text_format, fmt::arg("title", name), fmt::arg("name", to_toml(name)),
         fmt::arg("width", side_px(scene.width_px, longest)),
@@ -169,13 +161,13 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
                                : "\"1\"                  # such as \"1-240\" or \"1-100,120,200-300x2\""),
         fmt::arg("path", to_toml("frames/" + name + ".####.exr")),
         fmt::arg("distance", fmt::format("{:.6g}", distance)),
-        fmt::arg("fov", fmt::format("{:.1f}", telescope_fov)),
+        fmt::arg("fov", fmt::format("{:.1f}", field_of_view)),
         fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height))),
         fmt::arg("depth", scene.structure == StructureKind::walls ? "0.18" : "0.15"),
         fmt::arg("opacity", scene.structure == StructureKind::walls ? "0.3" : "0.55"));
-    return scene.film ? text + animation_text(flight(0.5 * height, scene.structure)) : text;
+    return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
 }
 
 }  // namespace astrosplat
