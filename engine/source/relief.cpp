@@ -94,8 +94,8 @@ Grid grid_over(const Image& image, std::int64_t cells_of_longer) {
     assert(image.width > 0 && image.height > 0);
     const double aspect = static_cast<double>(image.width) / static_cast<double>(image.height);
     const auto along = [&](double part_of_longer) {
-        const double cells = std::floor(static_cast<double>(cells_of_longer) * part_of_longer + 0.5);
-        return std::max<std::int64_t>(1, static_cast<std::int64_t>(cells)) + 1;
+        const double rounded = std::floor(static_cast<double>(cells_of_longer) * part_of_longer + 0.5);
+        return std::max<std::int64_t>(1, static_cast<std::int64_t>(rounded)) + 1;
     };
     const double width = aspect >= 1.0 ? 10.0 : 10.0 * aspect;
     return {width, width / aspect, along(std::min(1.0, aspect)), along(std::min(1.0, 1.0 / aspect))};
