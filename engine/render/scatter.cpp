@@ -9,7 +9,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t slab_bytes = std::int64_t{40} << 20;
+constexpr std::int64_t slab_bytes = std::int64_t{40} << 20, line_bytes = 64;
 constexpr std::int64_t chunk_splats = 8192;  // handed out to a worker
 constexpr std::int64_t step_splats = 512;    // projected before they are written: they stay in cache
 
@@ -27,15 +27,15 @@ bool counts_here(const TileGrid& grid, float y_px) {
 }  // namespace
 
 std::byte* SplatStore::take_bytes(std::int64_t bytes) {
-    constexpr std::int64_t line = 64;
-    const std::int64_t needed = (bytes + line - 1) / line * line;
+    const std::int64_t needed = (bytes + line_bytes - 1) / line_bytes;
     const std::lock_guard lock(mutex_);
-    while (slab_ < slabs_.size() && filled_ + needed > static_cast<std::int64_t>(slabs_[slab_].size())) {
+    while (slab_ < slabs_.size() && filled_ + needed > std::ssize(slabs_[slab_])) {
         ++slab_;
         filled_ = 0;
     }
-    if (slab_ == slabs_.size()) slabs_.emplace_back(static_cast<std::size_t>(std::max(needed, slab_bytes)));
-    std::byte* place = slabs_[slab_].data() + filled_;
+    if (slab_ == slabs_.size())
+        slabs_.emplace_back(static_cast<std::size_t>(std::max(needed, slab_bytes / line_bytes)));
+    std::byte* place = slabs_[slab_][static_cast<std::size_t>(filled_)].bytes;
     filled_ += needed;
     return place;
 }
@@ -52,7 +52,7 @@ void SplatStore::shrink(std::int64_t limit_bytes) {
 
 std::int64_t SplatStore::bytes() const {
     std::int64_t sum = 0;
-    for (const Buffer<std::byte>& slab : slabs_) sum += static_cast<std::int64_t>(slab.size());
+    for (const Buffer<CacheLine>& slab : slabs_) sum += std::ssize(slab) * line_bytes;
     return sum;
 }
 

@@ -40,9 +40,13 @@ class SplatStore {
     std::byte* take_bytes(std::int64_t bytes);
 
     std::mutex mutex_;
-    std::vector<Buffer<std::byte>> slabs_;
-    std::size_t slab_ = 0;     // being filled
-    std::int64_t filled_ = 0;  // bytes of it in use
+    struct alignas(64) CacheLine {
+        std::byte bytes[64];
+    };
+
+    std::vector<Buffer<CacheLine>> slabs_;  // of lines: a debug build visits every element of a buffer
+    std::size_t slab_ = 0;                  // being filled
+    std::int64_t filled_ = 0;               // lines of it in use
 };
 
 /// The tiles of the part of the picture being rendered, px of the whole picture.
