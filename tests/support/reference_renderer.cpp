@@ -38,10 +38,13 @@ double profile(const Falloff& falloff, double t) {
 template <class Function>
 double integral_over_disc(double radius, int rings, int spokes, const Function& f) {
     double sum = 0.0;
+    std::vector<glm::dvec2> directions;  // every other one belongs to the odd rings
+    for (int k = 0; k < 2 * spokes; ++k)
+        directions.push_back({std::cos(pi * k / spokes), std::sin(pi * k / spokes)});
     for (int i = 0; i < rings; ++i)
-        for (int k = 0; k < spokes; ++k) {
-            const double r = radius * (i + 0.5) / rings, angle = 2.0 * pi * (k + 0.5 * (i % 2)) / spokes;
-            sum += r * f(r * std::cos(angle), r * std::sin(angle));
+        for (std::size_t k = i % 2; k < directions.size(); k += 2) {
+            const double r = radius * (i + 0.5) / rings;
+            sum += r * f(r * directions[k].x, r * directions[k].y);
         }
     return sum * (radius / rings) * (2.0 * pi / spokes);
 }
@@ -62,15 +65,19 @@ double filtered_profile(const Falloff& falloff, double radius_px, double filter_
     const double support = 4.0 * filter_px;
     if (std::hypot(dx, dy) > radius_px + support) return 0.0;
     const auto filter = [&](double x, double y) {
-        const double d = std::hypot(x, y) / filter_px;
-        return d > 4.0 ? 0.0
-                       : std::exp(-0.5 * d * d) / (2.0 * pi * filter_px * filter_px * (1.0 - std::exp(-8.0)));
+        const double d2 = (x * x + y * y) / (filter_px * filter_px);
+        return d2 > 16.0 ? 0.0
+                         : std::exp(-0.5 * d2) / (2.0 * pi * filter_px * filter_px * (1.0 - std::exp(-8.0)));
     };
-    const auto disc = [&](double x, double y) { return profile(falloff, std::hypot(x, y) / radius_px); };
+    const auto disc = [&](double x, double y) {
+        return profile(falloff, std::sqrt(x * x + y * y) / radius_px);
+    };
+    const bool rim = falloff.shape == Falloff::Shape::constant || falloff.shape == Falloff::Shape::trapezoid;
+    const int rings = rim ? 64 : 24;  // a rim's place within the filter is known no better than to a ring
     if (radius_px < support)
-        return integral_over_disc(radius_px, 24, 48,
+        return integral_over_disc(radius_px, rings, 2 * rings,
                                   [&](double x, double y) { return disc(x, y) * filter(dx - x, dy - y); });
-    return integral_over_disc(support, 24, 48,
+    return integral_over_disc(support, rings, 2 * rings,
                               [&](double x, double y) { return filter(x, y) * disc(dx - x, dy - y); });
 }
 
