@@ -263,10 +263,11 @@ Canvas telescope_picture() {
 }
 
 // Red: the bulge, as high as it is wide. Green: the inner disk. Blue: the thin outer disk.
-Canvas thickness_picture() {
-    Canvas canvas = make_canvas(512, 512);
-    paint(canvas, [](float u, float v) {
-        const glm::vec2 p = on_disk(u, v);
+// `height` of its middle, in widths.
+Canvas thickness_picture(float height) {
+    Canvas canvas = make_canvas(512, static_cast<int>(512.0f * height));
+    paint(canvas, [&](float u, float v) {
+        const glm::vec2 p = on_disk(u, 0.5f + (v - 0.5f) * height);
         const float r = std::sqrt(p.x * p.x + p.y * p.y) * (1.0f + 0.1f * fbm(p * 4.0f, 601, 3));
         const float bulge = 1.0f - smoothstep(0.02f, 0.24f, r), outer = smoothstep(0.25f, 0.85f, r);
         return glm::vec4(bulge, (1.0f - bulge) * (1.0f - outer), (1.0f - bulge) * outer, 1.0f);
@@ -296,13 +297,14 @@ void make_whirlpool(const std::filesystem::path& folder) {
     save_png(dust_picture(), folder / "textures/whirlpool_dust.png", 4);
     save_jpeg(nebulae_picture(), folder / "textures/whirlpool_nebulae.jpg", 88);
     save_png(bulge_picture(), folder / "textures/whirlpool_bulge.png", 3);
-    save_png(thickness_picture(), folder / "textures/whirlpool_thickness.png", 3);
+    save_png(thickness_picture(1.0f), folder / "textures/whirlpool_thickness.png", 3);
     save_obj(disk_mesh(), folder / "meshes/whirlpool_disk.obj", "a gently warped disk, radius 5");
     save_clusters(folder / "meshes/whirlpool_clusters.ply");
 }
 
 void make_spiral(const std::filesystem::path& folder) {
     save_jpeg(telescope_picture(), folder / "textures/spiral.jpg", 90);
+    save_png(thickness_picture(0.75f), folder / "textures/spiral_thickness.png", 3);
 }
 
 }  // namespace astrosplat::assets

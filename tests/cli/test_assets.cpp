@@ -10,11 +10,16 @@ namespace {
 class Assets : public SceneTest {};
 
 TEST_F(Assets, DemoScenesListTheirFrames) {
-    for (const char* name : {"whirlpool", "nebula"}) {
-        const std::string scene = std::string(ASTROSPLAT_SOURCE_DIR) + "/assets/scenes/" + name + ".toml";
+    for (const auto& [name, last] : {std::pair{"whirlpool", "0240"},
+                                     {"spiral", "0240"},
+                                     {"nebula", "0240"},
+                                     {"layers", "0120"},
+                                     {"m51", "0096"},
+                                     {"s106", "0096"}}) {
+        const std::string scene = fmt::format("{}/assets/scenes/{}.toml", ASTROSPLAT_SOURCE_DIR, name);
         const RunResult result = run({"--batch", scene, "--dry-run", "--output", "shot.####.png"});
         EXPECT_EQ(result.code, 0) << result.err;
-        EXPECT_NE(result.out.find("shot.0240.png"), std::string::npos) << result.out;
+        EXPECT_NE(result.out.find(fmt::format("shot.{}.png", last)), std::string::npos) << result.out;
     }
 }
 
