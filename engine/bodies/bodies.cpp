@@ -25,7 +25,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr double dust_of_disks = 0.4;  // all of it makes lanes edge-on that are deeper than real ones
+constexpr double dust_of_disks = 0.8;  // all of it makes lanes edge-on that are deeper than real ones
 constexpr int most_pictures = 255;     // ids hold 8 bits of their number
 constexpr int picture_bit = 56, instance_bit = 42;
 constexpr std::uint64_t most_instances = 63;
@@ -76,10 +76,10 @@ PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const St
         progress.check();
         if (dust > 0.0) add(light, emission);
         const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
-        add_band(light, band_dots(band, coarsest, placement), brightest, picture.alpha, placement, opacity,
-                 dots);
+        for (const BandDots& size : band_dots(band, coarsest, placement))
+            add_band(light, size, brightest, picture.alpha, placement, opacity, dots);
     });
-    if (dust > 0.0) add_dust(transmittance_of(without_stars, emission), dust, placement, dots);
+    if (dust > 0.0) add_dust(transmittance_of(without_stars, emission, picture.alpha), dust, placement, dots);
     add_stars(stars, placement, opacity, dots);
     const FrontFit fit = fit_front(dots, picture.light, progress);
     log_detail(fmt::format(

@@ -68,9 +68,9 @@ ASTROSPLAT_DEPTH_LOOP fine_places(const DepthBlock& block, float longest, int ca
     }
 }
 
-ASTROSPLAT_DEPTH_LOOP weights(float* HWY_RESTRICT energy, float* HWY_RESTRICT sum, int count) {
-    for (int i = 0; i < count; ++i) {
-        energy[i] = as_exp(energy[i]);
+ASTROSPLAT_DEPTH_LOOP weights(const DepthBlock& block, float* HWY_RESTRICT energy, float* HWY_RESTRICT sum) {
+    for (int i = 0; i < block.count; ++i) {
+        energy[i] = as_exp(block.clumping[i] * energy[i]);
         sum[i] = sum[i] + energy[i];
     }
 }
@@ -99,7 +99,7 @@ void draw(const NoiseStack& noise, int first, int end, int which, DepthBlock& bl
         clear(weight[candidate], block.count);
         for (int octave = first; octave < end; ++octave)
             add_octave(noise, octave, block, place[candidate], weight[candidate]);
-        weights(weight[candidate], rest, block.count);
+        weights(block, weight[candidate], rest);
     }
     start_choice(block, which, rest);
     for (int candidate = 0; candidate < candidates; ++candidate)

@@ -21,12 +21,13 @@ struct DepthBlock {
     int count = 0;
     float x[size], y[size];
     float height[size];          // scale height H_k of the envelope
+    float clumping[size];        // disks: how much of the noise counts
     std::uint32_t random[size];  // a hash for each dot; all of its choices follow from it
     float z[size];               // out
 };
 
-/// z drawn from sech^2(z / H_k) exp(sum of gain N(x, y, z)), normalised in every column: 24 stratified
-/// candidates by the first three octaves, then eight about the one chosen by the others.
+/// z drawn from sech^2(z / H_k) exp(clumping * sum of gain N(x, y, z)), normalised in every column: 24
+/// stratified candidates by the first three octaves, then eight about the one chosen by the others.
 void disk_depths(const NoiseStack& noise, DepthBlock& block);
 
 /// z = sum of gain N(x, y, 0), at most 2 H_k from 0, and a draw from sech^2(z / spread) with the spread at

@@ -134,6 +134,7 @@ class DustRow {
         block_.x[block_.count] = x;
         block_.y[block_.count] = y;
         block_.height[block_.count] = sheet_thickness * bilinear(placement_.thickness, 0, x, y);
+        block_.clumping[block_.count] = 1.0f;
         block_.random[block_.count++] = random;
     }
 
@@ -146,12 +147,14 @@ class DustRow {
 
 }  // namespace
 
-Image transmittance_of(const Image& light, const Image& emission) {
+Image transmittance_of(const Image& light, const Image& emission, const Image& alpha) {
     Image ratio = brightest_channel(light);
     const Image whole = brightest_channel(emission);
     for (std::size_t i = 0; i < ratio.pixels.size(); ++i)
         ratio.pixels[i] = std::clamp((ratio.pixels[i] + dark_sky) / (whole.pixels[i] + dark_sky),
                                      least_transmittance, 1.0f);
+    for (std::size_t i = 0; i < alpha.pixels.size(); ++i)
+        ratio.pixels[i] = 1.0f - (1.0f - ratio.pixels[i]) * alpha.pixels[i];
     return ratio;
 }
 

@@ -71,8 +71,9 @@ Image thickness_field(const Image& brightest, double height) {
     Image field = gaussian_blur(brightest, scaled(40.0, brightest));
     const double bright = std::max(1e-12, field_percentile(field, 0.995));
     change_each(field, [&](double v) {
-        return height * std::clamp(0.55 + 1.6 * real::pow(std::max(0.0, v / bright), 1.5), 0.55, 2.2);
+        return height * std::min(0.55 + 1.65 * real::pow(std::max(0.0, v / bright), 2.5), 2.2);
     });
+    limit_slope(field, 0.3);
     return field;
 }
 

@@ -7,7 +7,9 @@
 namespace astrosplat {
 
 /// The scale height at every pixel of a layer whose typical one is `height`: .55 to 2.2 times it, more where
-/// the picture is bright over a wide area: H clamp(.55 + 1.6 (G_40 * m / its 99.5 %)^1.5, .55, 2.2).
+/// the picture is bright over a wide area: H min(.55 + 1.65 (G_40 * m / its 99.5 %)^2.5, 2.2), rising by at
+/// most .3 a px, so that a bulge is no taller than it is wide. (DEPTH 4 has 1.6 and the power 1.5, which made
+/// a slab of whole inner disks and a tower of a small bulge.)
 Image thickness_field(const Image& brightest, double height);
 
 /// How far a body stands out, 0 to `depth`: the root of the picture's brightness over wide areas, 0 on empty

@@ -26,13 +26,18 @@ struct Candidate {
     float amplitude;      // the brightest of it
     float brightest;      // of the picture there
     float opacity_limit;  // the picture's alpha
+    float hiding;         // share of the column's optical depth
     std::uint64_t id;
 };
+
+// A bulge glows: seen from the side, light comes from all of its depth, not from a surface as a cloud's
+// would.
+float hiding_at(float thickness) { return 1.0f / std::max(1.0f, thickness * thickness); }
 
 // The optical depth a dot adds to its column is its share of the column's light.
 void shade(const Candidate& dot, float footprint, const Opacity& opacity, ChunkDots& out) {
     const float brightest = std::max(least_brightness, dot.brightest);
-    const float tau = opacity.depth_of(dot.brightest, dot.opacity_limit);
+    const float tau = dot.hiding * opacity.depth_of(dot.brightest, dot.opacity_limit);
     const float alpha = std::clamp(tau * (dot.amplitude / brightest) / footprint, 1e-4f, 1.0f);
     const float boost = tau > 1e-4f ? tau / (1.0f - as_exp(-tau)) : 1.0f;  // what lies before it takes away
     out.alpha.push_back(alpha);
@@ -66,6 +71,8 @@ class BandChunk {
         const float x = place_in(column, shared::PURPOSE_JITTER_X),
                     y = place_in(row, shared::PURPOSE_JITTER_Y);
         if (x >= static_cast<float>(band_.width) || y >= static_cast<float>(band_.height)) return;
+        const float thickness = placement_.thickness_at(x, y);
+        if (thickness < dots_.thickness_from || thickness >= dots_.thickness_to) return;
         Candidate dot;
         dot.light = {bilinear(band_, 0, x, y), bilinear(band_, 1, x, y), bilinear(band_, 2, x, y)};
         dot.amplitude = std::max({dot.light.x, dot.light.y, dot.light.z});
@@ -78,6 +85,7 @@ class BandChunk {
         const float gain = dots_.spacing * dots_.spacing / kept;
         dot.light *= gain;
         dot.amplitude *= gain;
+        dot.hiding = placement_.kind == StructureKind::disk ? hiding_at(thickness) : 1.0f;
         dot.id = id;
         push(dot, x, y, as_hash(placement_.seed, low, high, shared::PURPOSE_DEPTH));
     }
@@ -168,7 +176,8 @@ void add_band(const Image& band, const BandDots& dots, const Image& brightest, c
     std::vector<ChunkDots> chunks(static_cast<std::size_t>((rows + rows_per_chunk - 1) / rows_per_chunk));
     parallel_chunks(rows, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         BandChunk chunk(band, dots, brightest, alpha, placement, opacity);
-        const std::uint64_t first = static_cast<std::uint64_t>(dots.index) << 48;
+        const std::uint64_t first =
+            static_cast<std::uint64_t>(dots.index) << 48 | static_cast<std::uint64_t>(dots.size) << 40;
         for (std::int64_t row = begin; row < end; ++row)
             for (std::int64_t column = 0; column < columns; ++column)
                 chunk.add_cell(column, row, first + static_cast<std::uint64_t>(row * columns + column));

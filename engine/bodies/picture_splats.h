@@ -29,7 +29,8 @@ struct ChunkDots {
 };
 
 struct PictureSplats {
-    ShadedSplats splats;  // id: band, 254 for dust or 255 for stars from bit 48 on, and cell of its lattice
+    ShadedSplats
+        splats;  // id: band, 254 for dust or 255 for stars from bit 48 on, size from 40, lattice cell
     Buffer<float> distance;        // texels from the middle of the layer
     std::vector<DotRange> ranges;  // of those that shine
     bool absorbs = false;          // there is dust: dots of colours below 0 (blend.glsl)

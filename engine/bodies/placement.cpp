@@ -63,9 +63,11 @@ void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& b
     const float fine = std::min(1.0f, static_cast<float>(dots.index) / 5.0f);
     const float share = placement.kind == StructureKind::disk ? 0.45f + 0.55f * fine : 0.6f + 0.4f * fine;
     const float own = dots.index > 2 ? 1.2f * dots.sigma * dots.sigma : 0.0f;
+    const float typical = static_cast<float>(placement.height);
     for (int i = 0; i < block.count; ++i) {
         const float height = bilinear(placement.thickness, 0, block.x[i], block.y[i]);
-        const float h = height * share;
+        const float h = height * share, flat = std::min(1.0f, typical / height);
+        block.clumping[i] = flat * flat * flat * flat;  // a bulge is smooth
         block.height[i] = std::sqrt(std::max(h * h - own, 0.09f * height * height));
     }
 }
@@ -116,7 +118,10 @@ void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock&
 }
 
 void set_knot_depths(Placement& placement) {
-    const BandDots like{1, 1.0f, 1.0f, 0.0f, static_cast<float>(4.0 * placement.scale)};
+    BandDots like;
+    like.index = 1;
+    like.sigma = like.spacing = 1.0f;
+    like.feature = static_cast<float>(4.0 * placement.scale);
     const auto count = static_cast<std::int64_t>(placement.knots.knots.size());
     placement.knot_z.resize(static_cast<std::size_t>(count));
     parallel_chunks(count, DepthBlock::size, [&](std::int64_t begin, std::int64_t end, int) {
@@ -172,19 +177,36 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
     return placement;
 }
 
-BandDots band_dots(const Band& band, bool coarsest, const Placement& placement) {
-    BandDots dots;
-    dots.index = band.index;
-    dots.feature = static_cast<float>(band.feature);
+float Placement::thickness_at(float x, float y) const {
+    return bilinear(thickness, 0, x, y) / static_cast<float>(height);
+}
+
+std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement) {
     const double widest = widest_sigma_share * placement.height;
-    const double natural = coarsest ? widest : std::min(band.feature / 4.0, widest);
-    dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, static_cast<float>(natural));
+    const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
     const double each =
         by_feature(dots_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
-    const double area = 2.0 * real::pi * static_cast<double>(dots.sigma) * static_cast<double>(dots.sigma);
-    dots.spacing = static_cast<float>(std::sqrt(std::max(1.0, area / each)));
-    dots.threshold = static_cast<float>(band.index <= 1 ? 0.05 : 0.25 / each);
-    return dots;
+    const auto of_size = [&](double sigma) {
+        BandDots dots;
+        dots.index = band.index;
+        dots.feature = static_cast<float>(band.feature);
+        dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, static_cast<float>(sigma));
+        const double s = static_cast<double>(dots.sigma), area = 2.0 * real::pi * s * s;
+        dots.spacing = static_cast<float>(std::sqrt(std::max(1.0, area / each)));
+        dots.threshold = static_cast<float>(band.index <= 1 ? 0.05 : 0.25 / each);
+        return dots;
+    };
+    std::vector<BandDots> sizes{of_size(std::min(natural, widest))};
+    if (placement.kind != StructureKind::disk) return sizes;
+    for (const float thickness : wider_in_bulges) {
+        const double sigma = std::min(natural, static_cast<double>(thickness) * widest);
+        if (static_cast<float>(sigma) <= sizes.back().sigma) break;
+        sizes.back().thickness_to = thickness;
+        sizes.push_back(of_size(sigma));
+        sizes.back().thickness_from = thickness;
+        sizes.back().size = static_cast<int>(sizes.size()) - 1;
+    }
+    return sizes;
 }
 
 void place(const Placement& placement, const BandDots& dots, PlacedBlock& block) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "bodies/bands.h"
@@ -17,6 +18,8 @@ namespace astrosplat {
 inline constexpr double disk_thickness = 0.018, sheet_thickness = 0.011;
 /// Sigma of the widest dots, of the scale height; larger ones would be a fog of their own.
 inline constexpr double widest_sigma_share = 0.45;
+/// Where a disk is so many times as thick, those are as much wider.
+inline constexpr float wider_in_bulges[] = {1.3f, 1.7f};
 
 /// What depths depend on beside a dot's own place and band.
 struct Placement {
@@ -30,6 +33,9 @@ struct Placement {
     Image relief;     // how far the middle of a sheet or a wall stands out, texels; empty: not at all
     Knots knots;      // each at one depth
     std::vector<float> knot_z;  // theirs, texels
+
+    /// H(x, y) over H: more than 1 where a disk is a bulge.
+    float thickness_at(float x, float y) const;
 };
 
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
@@ -39,13 +45,17 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
 
 /// How the dots of one band are made (DEPTH 3), lengths in texels.
 struct BandDots {
-    int index = 0;
-    float sigma = 0.0f;      // of a dot
-    float spacing = 0.0f;    // of the lattice they are drawn on
-    float threshold = 0.0f;  // amplitude over brightness below which they are thinned out
+    int index = 0, size = 0;  // of the band; of its sizes
+    float sigma = 0.0f;       // of a dot
+    float spacing = 0.0f;     // of the lattice they are drawn on
+    float threshold = 0.0f;   // amplitude over brightness below which they are thinned out
     float feature = 0.0f;
+    float thickness_from = 0.0f,
+          thickness_to = std::numeric_limits<float>::infinity();  // H(x, y) / H where such dots belong
 };
-BandDots band_dots(const Band& band, bool coarsest, const Placement& placement);
+/// One size for each thickness: the widest dots of a disk grow with it, or those high up in a bulge would
+/// stand alone, as smoke.
+std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement);
 
 /// A block's dots with their distances from the middle of what they belong to.
 struct PlacedBlock : DepthBlock {

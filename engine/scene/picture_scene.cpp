@@ -125,7 +125,9 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
 
 // Pixels at 1080 lines that the widest dots have from the front, and a little more: there they stay whole.
 double split_above_px(StructureKind structure, double longest_over_height) {
-    const double thickness = structure == StructureKind::disk ? disk_thickness : sheet_thickness;
+    const double thickness = structure == StructureKind::disk
+                                 ? disk_thickness * static_cast<double>(wider_in_bulges[1])
+                                 : sheet_thickness;
     return 1.1 * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma_share * thickness *
            longest_over_height * 1080.0;
 }

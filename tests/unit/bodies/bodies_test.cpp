@@ -237,12 +237,56 @@ TEST(FrontFit, GivesAnEvenPictureItsColour) {
     PictureSplats dots;
     const std::vector<Band> bands = make_bands(light.width);
     split_bands(light, bands, false, [&](const Band& band, const Image& image) {
-        add_band(image, band_dots(band, band.index + 1 == static_cast<int>(bands.size()), placement),
-                 brightest, {}, placement, {}, dots);
+        for (const BandDots& size :
+             band_dots(band, band.index + 1 == static_cast<int>(bands.size()), placement))
+            add_band(image, size, brightest, {}, placement, {}, dots);
     });
     const FrontFit fit = fit_front(dots, light);
     EXPECT_GT(fit.psnr_db, fit.first_psnr_db);
     EXPECT_GT(fit.psnr_db, 30.0);
+}
+
+// A disk whose right half is twice as thick, under an even light.
+struct HalfBulge {
+    Image light = make_image(640, 200, 3, 0.3f);
+    Image brightest = brightest_channel(light);
+    Placement placement = make_placement(brightest, of_kind(StructureKind::disk), 64.0, true, 1u);
+    HalfBulge() {
+        for (std::int64_t i = 0; i < 640 * 200; ++i)
+            placement.thickness.pixels[static_cast<std::size_t>(i)] =
+                static_cast<float>(placement.height) * (i % 640 < 320 ? 1.0f : 2.0f);
+    }
+    PictureSplats dots(const Band& band, bool coarsest) const {
+        PictureSplats result;
+        for (const BandDots& size : band_dots(band, coarsest, placement))
+            add_band(light, size, brightest, {}, placement, {}, result);
+        return result;
+    }
+};
+
+TEST(Bulge, HasWiderDotsOfTheSameLightAndAQuarterOfTheOpacity) {
+    const HalfBulge disk;
+    const PictureSplats dots = disk.dots(make_bands(640).back(), true);
+    double light[2] = {0.0, 0.0}, depth[2] = {0.0, 0.0}, radius[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
+    for (std::size_t i = 0; i < dots.splats.position.size(); ++i) {
+        const float x = dots.splats.position[i].x;
+        if (std::fabs(x) < 20.0f || std::fabs(x) > 300.0f) continue;
+        const double r = static_cast<double>(dots.splats.radius[i]), covers = r * r;
+        const double opacity = static_cast<double>(dots.splats.alpha[i]) * covers;
+        light[x > 0.0f] += opacity * static_cast<double>(dots.splats.color[i].y);
+        depth[x > 0.0f] += opacity;
+        radius[x > 0.0f] += r;
+        ++count[x > 0.0f];
+    }
+    EXPECT_NEAR(radius[1] / count[1] / (radius[0] / count[0]), 1.7, 0.01);
+    EXPECT_NEAR(depth[1] / depth[0], 0.25, 0.02);
+    // What lies before it takes less away, for which the colours of the disk are raised: tau / (1 - e^-tau).
+    const double tau = static_cast<double>(Opacity{}.depth_of(0.3f, 1.0f));
+    const auto raised = [](double t) { return t / (1.0 - std::exp(-t)); };
+    EXPECT_NEAR(light[1] / light[0], raised(0.25 * tau) / raised(tau), 0.03);
+    std::vector<std::uint64_t> ids(dots.splats.id.begin(), dots.splats.id.end());
+    std::sort(ids.begin(), ids.end());
+    EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
 }
 
 class EveryStructure : public testing::TestWithParam<StructureKind> {};
@@ -322,6 +366,26 @@ TEST(Bodies, EveryKeyCounts) {
     const auto usual_alphas = alphas(usual);
     EXPECT_NE(alphas(changed([](StructureParams& p) { p.opacity = 0.9; })), usual_alphas);
     EXPECT_NE(alphas(changed([](StructureParams& p) { p.density = 0.3; })), usual_alphas);
+}
+
+// Light that fades towards the border is darker than what is around it, as dust would be.
+TEST(Bodies, AFadingBorderIsNoDust) {
+    const auto hidden = [](double border) {
+        StructureParams params = of_kind(StructureKind::disk);
+        params.border = border;
+        params.dust = 1.0;
+        const TexturedMesh meshes[] = {on_plane(make_image(320, 200, 3, 0.3f))};
+        const SplatSet set = make_bodies(meshes, params, 1u, "even");
+        double sum = 0.0, most = 0.0;
+        for (std::size_t i = 0; i < set.color.size(); ++i) {
+            if (set.color[i].x >= 0.0f) continue;
+            sum += static_cast<double>(set.alpha[i]);
+            most = std::max(most, static_cast<double>(set.alpha[i]));
+        }
+        return std::pair(sum, most);
+    };
+    EXPECT_LT(hidden(0.0).first, 1.0);
+    EXPECT_LT(hidden(0.1).second, 0.2);
 }
 
 TEST(Bodies, WhereThePictureIsTransparentThereIsNothing) {

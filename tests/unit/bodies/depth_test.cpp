@@ -29,6 +29,7 @@ std::vector<std::unique_ptr<PlacedBlock>> scattered(int blocks, float height) {
             block->x[i] = 1000.0f * shared::as_uniform(shared::as_hash(1u, id, 0u, 1u));
             block->y[i] = 1000.0f * shared::as_uniform(shared::as_hash(1u, id, 0u, 2u));
             block->height[i] = height;
+            block->clumping[i] = 1.0f;
             block->random[i] = shared::as_hash(1u, id, 0u, 3u);
         }
         result.push_back(std::move(block));
@@ -49,8 +50,11 @@ NoiseStack octaves(int count, float gain, float longest = 80.0f) {
 
 TEST(Depths, WithoutClumpsFollowTheEnvelope) {
     std::vector<double> z;
+    int number = 0;
     for (auto& block : scattered(80, 20.0f)) {
-        disk_depths(octaves(2, 0.0f), *block);
+        const bool evenly = ++number % 2 == 0;  // no noise; or all of it, of which nothing counts
+        if (!evenly) std::fill_n(block->clumping, block->count, 0.0f);
+        disk_depths(octaves(2, evenly ? 0.0f : 3.0f), *block);
         z.insert(z.end(), block->z, block->z + block->count);
     }
     std::sort(z.begin(), z.end());
@@ -131,7 +135,7 @@ TEST(Depths, AreTheSameOnEveryInstructionSet) {
 }
 
 TEST(Fields, ThicknessIsBoundedAndLargestInBrightParts) {
-    const Image brightest = brightest_channel(painted::galaxy(240, 150));
+    const Image brightest = brightest_channel(painted::galaxy(720, 450));
     const Image field = thickness_field(brightest, 10.0);
     float lo = 1e9f, hi = 0.0f;
     for (const float v : field.pixels) {
@@ -142,7 +146,22 @@ TEST(Fields, ThicknessIsBoundedAndLargestInBrightParts) {
     EXPECT_LT(lo, 6.5f);
     EXPECT_GT(hi, 15.0f);
     EXPECT_LE(hi, 22.01f);
-    EXPECT_GT(*field.at(120, 75), 15.0f);
+    EXPECT_GT(*field.at(360, 225), 15.0f);
+}
+
+// A small bulge is less tall than a large one of the same light.
+TEST(Fields, ThicknessRisesNowhereSteeply) {
+    for (const double sigma : {15.0, 120.0}) {
+        Image light = make_image(960, 600, 3, 0.001f);
+        painted::add_point(light, 480.0, 300.0, sigma, 1.0, 1.0, 1.0);
+        const Image field = thickness_field(brightest_channel(light), 40.0);
+        float slope = 0.0f;
+        for (std::int64_t x = 0; x + 1 < field.width; ++x)
+            slope = std::max(slope, std::fabs(*field.at(x + 1, 300) - *field.at(x, 300)));
+        EXPECT_LE(slope, 0.3001f);
+        if (sigma < 20.0) EXPECT_LT(*field.at(480, 300), 60.0f);
+        if (sigma > 20.0) EXPECT_GT(*field.at(480, 300), 70.0f);
+    }
 }
 
 TEST(Fields, ReliefIsNowhereTooSteepAndNothingOnEmptySky) {
@@ -174,7 +193,7 @@ TEST(Placement, AKnotIsABall) {
     params.kind = StructureKind::disk;
     const Placement placement = make_placement(brightest_channel(light), params, 32.0, true, 9u);
     ASSERT_EQ(placement.knots.knots.size(), 1u);
-    const BandDots dots = band_dots(make_bands(320)[0], false, placement);
+    const BandDots dots = band_dots(make_bands(320)[0], false, placement)[0];
     const auto spread = [&](float cx, float cy) {
         PlacedBlock block;
         block.count = 200;
@@ -203,7 +222,7 @@ TEST(Placement, WallsLieOnBothSidesAndASheetOnOne) {
         params.kind = kind;
         params.stars = false;
         const Placement placement = make_placement(brightest, params, 32.0, true, 9u);
-        const BandDots dots = band_dots(make_bands(320)[1], false, placement);
+        const BandDots dots = band_dots(make_bands(320)[1], false, placement)[0];
         int front = 0, back = 0;
         for (int repeat = 0; repeat < 20; ++repeat) {
             PlacedBlock block;
