@@ -10,7 +10,7 @@
 #include "fidelity/signed_difference.h"
 #include "fidelity_table.h"
 #include "output/encode.h"
-#include "output/write_picture.h"
+#include "source/write_picture.h"
 
 namespace astrosplat {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/text.h"
 #include "exit_code.h"
 #include "output/write.h"
-#include "output/write_picture.h"
+#include "source/write_picture.h"
 #include "viewer/session.h"
 #include "viewer/session_picture.h"
 #include "viewer/widget_target.h"

@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "edit/new_from_file.h"
-#include "output/write_picture.h"
+#include "source/write_picture.h"
 #include "viewer/child_process.h"
 #include "viewer/session_commands.h"
 #include "viewer/session_status.h"

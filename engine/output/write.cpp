@@ -19,7 +19,7 @@
 #include "output/encode.h"
 #include "output/format.h"
 #include "output/metadata.h"
-#include "output/picture_file.h"
+#include "source/picture_file.h"
 
 namespace astrosplat {
 namespace {

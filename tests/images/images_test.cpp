@@ -12,8 +12,8 @@
 
 #include "analytic/support.h"
 #include "output/write.h"
-#include "output/write_picture.h"
 #include "scene/load.h"
+#include "source/write_picture.h"
 
 namespace astrosplat {
 namespace {

@@ -2,7 +2,7 @@
 #include <thread>
 
 #include "gui/theme.h"
-#include "output/write_picture.h"
+#include "source/write_picture.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {

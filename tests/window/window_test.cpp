@@ -4,7 +4,7 @@
 
 #include "edit/preferences.h"
 #include "gui/theme.h"
-#include "output/write_picture.h"
+#include "source/write_picture.h"
 
 namespace astrosplat::test {
 namespace {

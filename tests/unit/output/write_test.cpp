@@ -20,7 +20,7 @@
 #include "core/parallel.h"
 #include "output/encode.h"
 #include "output/metadata.h"
-#include "output/write_picture.h"
+#include "source/write_picture.h"
 #include "support/errors.h"
 #include "support/file_limit.h"
 

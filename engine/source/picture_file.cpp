@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 // fmt first: OpenImageIO brings a copy of it with other settings.
-#include "output/picture_file.h"
+#include "source/picture_file.h"
 
 #include <algorithm>
 #include <string>

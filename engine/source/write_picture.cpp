@@ -1,8 +1,8 @@
-#include "output/write_picture.h"
+#include "source/write_picture.h"
 
 #include <fmt/format.h>
 // fmt first: OpenImageIO brings a copy of it with other settings.
-#include "output/picture_file.h"
+#include "source/picture_file.h"
 
 #include <cassert>
 
