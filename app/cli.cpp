@@ -23,6 +23,7 @@
 #include "parameters.h"
 #include "places.h"
 #include "prepare.h"
+#include "prepare_settings.h"
 #include "splat_commands.h"
 #include "viewer/run_viewer.h"
 #include "viewer/screenshot.h"
@@ -92,7 +93,8 @@ void add_common(CLI::App& app, CommonOptions& common) {
     app.set_version_flag("--version", version_line, "Prints the version");
     add_value(app, "-t,--threads", common.threads, "N", "Threads (default: the cores this process may use)");
     add_value(app, "--cache", common.cache, "DIR",
-              "Folder that keeps generated sets (default: $ASTROSPLAT_CACHE, $XDG_CACHE_HOME/astrosplat or "
+              "Folder that keeps generated sets and prepared pictures (default: $ASTROSPLAT_CACHE, "
+              "$XDG_CACHE_HOME/astrosplat or "
               "~/.cache/astrosplat); at most 20 GiB or a tenth of the disk, the least recently used go");
     app.add_flag("--no-cache", common.no_cache, "Neither reads nor writes generated sets");
     app.add_flag("-v,--verbose", common.verbose, "Says more");
@@ -156,9 +158,6 @@ void add_three_filters(CLI::App& command, PrepareOptions& prepare) {
               "headers tell the sky, and shown with one asinh for all (Lupton)");
     add_value(command, "--g", prepare.green, "FILE", "The filter shown as green");
     add_value(command, "--b", prepare.blue, "FILE", "The filter shown as blue");
-    add_value(command, "--q", prepare.q, "X", "How early that asinh bends (default: 8)");
-    add_value(command, "--lupton-stretch", prepare.lupton, "X",
-              "Intensity it shows at a tenth of white, of the white point (default: 0.1)");
 }
 
 void add_prepare(CLI::App& app, Invocation& call) {
@@ -170,25 +169,13 @@ void add_prepare(CLI::App& app, Invocation& call) {
               "Gets picture.exr in linear light, stars.csv, background.json, front.exr and back.exr")
         ->required();
     add_three_filters(command, prepare);
-    command.add_flag("--keep-stars", prepare.keep_stars, "Leaves the stars in the picture");
-    add_value(command, "--threshold", prepare.threshold, "X",
-              "Least height of a star over the local noise (default: 5)");
-    add_value(command, "--saturation", prepare.saturation, "X",
-              "Linear light at which the picture saturates (default: 0.98 of 8 and 16 bit pictures, none of "
-              "others)");
-    add_value(command, "--stretch", prepare.stretch, "auto|linear|asinh|log",
-              "Of FITS, after the stars are taken away (default: auto, asinh)");
-    add_value(command, "--background", prepare.background, "level|plane|curved",
-              "Takes the sky off: a level, a slope, or a slope that bends");
-    add_value(command, "--ellipse", prepare.ellipse, "X,Y,RX,RY[,ANGLE]",
-              "Cuts off what lies outside of an ellipse, in pixels from the top left and degrees clockwise");
-    add_value(command, "--feather", prepare.feather, "X",
-              "Share of its radii over which it fades (default: 0.1)");
-    add_value(command, "--mask", prepare.mask, "FILE",
-              "Cuts off what is black in a picture of the same size");
-    add_value(command, "--alpha", prepare.alpha, "LOW,HIGH", "Alpha from luminance, 0 at LOW and 1 at HIGH");
-    add_value(command, "--fill", prepare.holes, "FILE",
-              "Fills what is not black in a picture of the same size from its surroundings");
+    for (const PrepareOption& option : prepare_options()) {
+        const auto set = [&prepare, key = option.key](const std::string& text) {
+            prepare.settings[key] = text;
+        };
+        command.add_option_function<std::string>(option.option, set, option.help)
+            ->option_text(option.placeholder);
+    }
     add_value(
         command, "--split", prepare.split, "FILE",
         "Writes front.exr, what is not black in that picture, and back.exr, the rest with that part filled");

@@ -8,7 +8,7 @@
 #include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"
-#include "sets/load_source.h"
+#include "sets/prepared_cache.h"
 
 namespace astrosplat {
 namespace {
@@ -23,7 +23,7 @@ constexpr std::int64_t file_bytes_per_splat =
 // More than any machine holds, few enough that bytes of many layers still fit 63 bits.
 constexpr std::int64_t most_splats = 1'000'000'000'000'000;
 
-std::int64_t splats_of(const SourceParams& source) {
+std::int64_t splats_of(const SetCache& cache, const SourceParams& source) {
     if (source.kind == SourceKind::splats) {
         std::error_code ignored;
         const auto size = std::filesystem::file_size(source.file, ignored);
@@ -32,7 +32,7 @@ std::int64_t splats_of(const SourceParams& source) {
     const bool bodies = source.structure.kind != StructureKind::columns;
     if (!bodies && !source.voxels && source.voxel_size <= 0.0)
         return source.splats > 0 ? source.splats : source.count;
-    const std::vector<TexturedMesh> meshes = load_meshes(source, Progress{{}, &interrupted()});
+    const std::vector<TexturedMesh> meshes = load_meshes(cache, source, Progress{{}, &interrupted()});
     if (bodies) return expected_dots(meshes);
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
@@ -56,7 +56,7 @@ JobEstimate estimate(const BatchPlan& plan) {
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
         const auto cached = cached_splats(plan.cache, layer.source, layer.name);
-        const std::int64_t splats = cached ? *cached : splats_of(layer.source);
+        const std::int64_t splats = cached ? *cached : splats_of(plan.cache, layer.source);
         job.layers.push_back({layer.name, std::min(splats, most_splats)});
         job.splats += job.layers.back().splats;
     }

@@ -98,7 +98,7 @@ int run_fidelity(const FidelityOptions& options) {
     prove_writable(folder_of(options.output));
     ProgressReport progress(options.progress);
     const FidelityReference reference =
-        fidelity_reference(now, options.reference, progress.begin_step("reading the picture"));
+        fidelity_reference(now, options.reference, progress.begin_step("reading the picture"), options.cache);
     warn_of_other_layers(now, reference);
     FidelitySettings settings;
     settings.cache = options.cache;

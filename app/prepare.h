@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -11,18 +12,12 @@
 
 namespace astrosplat {
 
-/// As typed; numbers and lists of them are checked before any work.
+/// As typed; values are checked before any work.
 struct PrepareOptions {
     std::filesystem::path image, folder;
-    std::filesystem::path red, green, blue;  // three filters in place of the image
-    std::optional<std::string> threshold, saturation;
-    std::optional<std::string> stretch;           // of FITS
-    std::optional<std::string> q, lupton;         // of three filters: Lupton's Q and stretch
-    std::optional<std::string> background;        // level, plane or curved
-    std::optional<std::string> ellipse, feather;  // X,Y,RX,RY[,ANGLE] in px and degrees; share of the radii
-    std::optional<std::string> alpha;             // LOW,HIGH luminance
-    std::optional<std::filesystem::path> mask, holes, split;
-    bool keep_stars = false;
+    std::filesystem::path red, green, blue;       // three filters in place of the image
+    std::map<std::string, std::string> settings;  // by key of describe_preparation()
+    std::optional<std::filesystem::path> split;
     bool overwrite = false;
     ProgressMode progress = ProgressMode::automatic;
 };

@@ -1,77 +1,80 @@
-// Words to numbers, a message for each that is none.
 #include "prepare_settings.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
 
 #include "core/error.h"
-#include "core/text.h"
+#include "scene/check.h"
+#include "scene/describe.h"
+#include "scene/describe_prepare.h"
+#include "scene/load.h"
+#include "source/fits.h"
 
 namespace astrosplat {
 namespace {
 
-double number_above_zero(const char* option, const std::string& text) {
-    const std::optional<double> value = parse_double(text);
-    if (!value || !(*value > 0.0) || !std::isfinite(*value))
-        bad_input(option, "", "a number above 0", "'" + text + "'");
-    return *value;
-}
-
-void set_above_zero(const char* option, const std::optional<std::string>& text, double& value) {
-    if (text) value = number_above_zero(option, *text);
-}
-
-// Numbers with commas between them; empty where one is none.
-std::vector<double> numbers(const std::string& text) {
-    std::vector<double> values;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::optional<double> value = parse_double(text.substr(begin, end - begin));
-        if (!value || !std::isfinite(*value)) return {};
-        values.push_back(*value);
-        begin = end + 1;
+std::string placeholder_of(const ParameterSpec& spec) {
+    switch (spec.type) {
+        case ParameterType::choice:
+            return fmt::format("{}", fmt::join(spec.choices, "|"));
+        case ParameterType::boolean:
+            return "true|false";
+        case ParameterType::file:
+            return "FILE";
+        case ParameterType::vector:
+            return spec.components == 2 ? "LOW,HIGH" : "X,Y,RX,RY";
+        default:
+            return "X";
     }
-    return values;
 }
 
-TextureSettings::Stretch stretch_named(const std::string& name) {
-    const std::vector<std::string> names = all_names<TextureSettings::Stretch>();
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) bad_input("--stretch", "", alternatives(names), "'" + name + "'");
-    return static_cast<TextureSettings::Stretch>(found - names.begin());
+std::string default_text(const Parameter& parameter) {
+    const Value value = parameter.get();
+    const std::string text = value.text() ? *value.text() : to_toml(value);
+    return text.empty() || text == "[]" ? "" : fmt::format(" (default: {})", text);
 }
 
-int degree_named(const std::string& name) {
-    const std::vector<std::string> names = {"level", "plane", "curved"};
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) bad_input("--background", "", alternatives(names), "'" + name + "'");
-    return static_cast<int>(found - names.begin());
+// Words as they are typed: no quotes around text, no brackets around lists.
+Value value_typed(const std::string& text, const ParameterSpec& spec) {
+    if (spec.type == ParameterType::file) return text;
+    const bool list = spec.type == ParameterType::vector && !text.starts_with('[');
+    return typed_value(list ? "[" + text + "]" : text);
 }
 
-CutEllipse ellipse_of(const PrepareOptions& options) {
-    const std::vector<double> n = numbers(*options.ellipse);
-    if (n.size() < 4 || n.size() > 5 || !(n[2] > 0.0) || !(n[3] > 0.0))
-        bad_input("--ellipse", "", "X,Y,RX,RY or X,Y,RX,RY,ANGLE with radii above 0",
-                  "'" + *options.ellipse + "'");
-    CutEllipse ellipse{{n[0], n[1]}, {n[2], n[3]}, n.size() > 4 ? n[4] : 0.0};
-    if (!options.feather) return ellipse;
-    const std::optional<double> feather = parse_double(*options.feather);
-    if (!feather || !(*feather >= 0.0) || !(*feather <= 1.0))
-        bad_input("--feather", "", "a number from 0 to 1", "'" + *options.feather + "'");
-    ellipse.feather = *feather;
-    return ellipse;
+// An option that does nothing by itself was meant to do something.
+void require_effect(const Parameter& parameter, const Description& description) {
+    const auto find = [&](const ParameterKey& key) { return find_parameter(description, key); };
+    if (has_effect(parameter.spec, find)) return;
+    const Condition& condition = parameter.spec.conditions.front();
+    const std::string value = condition.wanted ? " " + to_toml(condition.values.front()) : "";
+    bad_input(prepare_option(parameter.spec.key), "", prepare_option(condition.key) + value + " beside it",
+              "none");
 }
 
-std::pair<double, double> luminances_of(const std::string& text) {
-    const std::vector<double> n = numbers(text);
-    if (n.size() != 2 || !(n[0] < n[1]))
-        bad_input("--alpha", "", "LOW,HIGH with LOW below HIGH", "'" + text + "'");
-    return {n[0], n[1]};
+}  // namespace
+
+TextureSettings default_prepare_settings(bool three_filters) {
+    TextureSettings settings;
+    settings.prepare.stars = PrepareParams::Stars::remove;
+    settings.prepare.lupton = three_filters;
+    return settings;
 }
 
-bool three_filters(const PrepareOptions& options) {
+std::vector<PrepareOption> prepare_options() {
+    TextureSettings settings = default_prepare_settings(false);
+    std::vector<PrepareOption> options;
+    for (const Parameter& parameter : describe_preparation(settings).parameters) {
+        const ParameterSpec& spec = parameter.spec;
+        const std::string unit = spec.unit.empty() ? "" : fmt::format(" [{}]", spec.unit);
+        options.push_back({spec.key.text(), prepare_option(spec.key), placeholder_of(spec),
+                           spec.help + unit + default_text(parameter)});
+    }
+    return options;
+}
+
+bool has_three_filters(const PrepareOptions& options) {
     const int given = !options.red.empty() + !options.green.empty() + !options.blue.empty();
     if (given != 0 && (given != 3 || !options.image.empty()))
         bad_input(
@@ -82,23 +85,23 @@ bool three_filters(const PrepareOptions& options) {
     return given == 3;
 }
 
-}  // namespace
-
-PrepareSettings prepare_settings(const PrepareOptions& options) {
-    PrepareSettings settings;
-    settings.three_filters = three_filters(options);
-    if (options.stretch) settings.texture.stretch = stretch_named(*options.stretch);
-    if (options.stretch && settings.three_filters)
-        bad_input("--stretch", "", "--q and --lupton-stretch for three filters",
-                  "'" + *options.stretch + "'");
-    set_above_zero("--threshold", options.threshold, settings.stars.threshold);
-    set_above_zero("--saturation", options.saturation, settings.stars.saturation);
-    set_above_zero("--q", options.q, settings.lupton.q);
-    set_above_zero("--lupton-stretch", options.lupton, settings.lupton.stretch);
-    if (options.background) settings.sky_degree = degree_named(*options.background);
-    if (options.feather && !options.ellipse) bad_input("--feather", "", "--ellipse beside it", "none");
-    if (options.ellipse) settings.ellipse = ellipse_of(options);
-    if (options.alpha) settings.alpha = luminances_of(*options.alpha);
+TextureSettings prepare_settings(const PrepareOptions& options) {
+    TextureSettings settings = default_prepare_settings(has_three_filters(options));
+    const Description description = describe_preparation(settings);
+    for (const auto& [key, text] : options.settings) {
+        const Parameter* const parameter = find_parameter(description, key);
+        try {
+            parameter->set(value_typed(text, parameter->spec));
+        } catch (const ValueError& error) {
+            throw InputError(prepare_option(key) + ": " + error.what());
+        }
+    }
+    for (const auto& [key, text] : options.settings)
+        require_effect(*find_parameter(description, key), description);
+    if (const std::optional<KeyProblem> problem = problem_of(settings.prepare))
+        throw InputError(prepare_option(problem->key) + ": " + problem->message);
+    if (options.settings.contains("stretch") && settings.prepare.lupton)
+        bad_input("--stretch", "", "--lupton false beside it", "none");
     return settings;
 }
 

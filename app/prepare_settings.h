@@ -1,27 +1,29 @@
-// What the options of `prepare` mean. In: words as typed. Out: numbers and pictures of masks, checked.
+// The options of `prepare` that are also keys of a source: from their one description. In: words as typed.
+// Out: settings, checked.
 #pragma once
 
-#include <optional>
+#include <string>
+#include <vector>
 
 #include "prepare.h"
-#include "prepare/cut.h"
-#include "prepare/lupton.h"
-#include "prepare/star_field.h"
 #include "source/source.h"
 
 namespace astrosplat {
 
-struct PrepareSettings {
-    TextureSettings texture;  // how FITS is read
-    StarSettings stars;       // saturation: infinite unless it was given
-    bool three_filters = false;
-    LuptonSettings lupton;
-    std::optional<int> sky_degree;
-    std::optional<CutEllipse> ellipse;
-    std::optional<std::pair<double, double>> alpha;  // luminance of alpha 0 and 1
-};
+/// What the command does unless told otherwise: it takes the stars away, and shows three filters with one
+/// asinh.
+TextureSettings default_prepare_settings(bool three_filters);
 
-/// Throws InputError for what cannot be.
-PrepareSettings prepare_settings(const PrepareOptions& options);
+/// For --help.
+struct PrepareOption {
+    std::string key, option, placeholder, help;
+};
+std::vector<PrepareOption> prepare_options();
+
+/// Whether three filters are given. Throws InputError unless that is so or one picture is given.
+bool has_three_filters(const PrepareOptions& options);
+
+/// Throws InputError for what cannot be or would do nothing.
+TextureSettings prepare_settings(const PrepareOptions& options);
 
 }  // namespace astrosplat

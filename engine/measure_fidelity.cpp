@@ -13,8 +13,8 @@
 #include "pipeline.h"
 #include "scene/front_picture.h"
 #include "scene/layer_setup.h"
+#include "sets/prepared_cache.h"
 #include "source/texture.h"
-#include "source/textured_mesh.h"
 
 namespace astrosplat {
 namespace {
@@ -107,7 +107,7 @@ std::int64_t FidelityReference::height_px(std::int64_t width_px) const {
 }
 
 FidelityReference fidelity_reference(const Scene& now, const std::optional<std::filesystem::path>& file,
-                                     const Progress& progress) {
+                                     const Progress& progress, const SetCache& cache) {
     const LayerParams& layer = layer_with_picture(now);
     FidelityReference reference;
     reference.layer = layer.name;
@@ -116,7 +116,7 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<std::
     if (file) reference.file = *file;
     if (file) reference.picture = load_linear_image(*file, progress);
     try {
-        const std::vector<TexturedMesh> meshes = load_meshes(layer.source, progress);
+        const std::vector<TexturedMesh> meshes = load_meshes(cache, layer.source, progress);
         const FrontFrame frame = front_frame(meshes);
         reference.frame = in_world(frame, render_layer(layer));
         if (!file) reference.picture = front_picture(meshes, frame, progress);

@@ -39,7 +39,7 @@ struct FidelityReference {
 /// not its place; its proportions are to be the frame's within 1 %. `now`: the scene at one frame. Throws
 /// InputError, Cancelled.
 FidelityReference fidelity_reference(const Scene& now, const std::optional<std::filesystem::path>& file,
-                                     const Progress& progress = {});
+                                     const Progress& progress = {}, const SetCache& cache = {});
 
 struct FidelityReport {
     std::string layer;

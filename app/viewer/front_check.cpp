@@ -35,7 +35,8 @@ bool front_changed_by_look(const Scene& now) {
     });
 }
 
-FrontCheck::FrontCheck(std::int64_t width_px) : width_px_(width_px) {}
+FrontCheck::FrontCheck(std::int64_t width_px, SetCache cache)
+    : width_px_(width_px), cache_(std::move(cache)) {}
 FrontCheck::~FrontCheck() { cancel(); }
 
 void FrontCheck::want(const FrontRequest& request) {
@@ -78,7 +79,7 @@ void FrontCheck::work(const FrontRequest& request, const std::shared_ptr<std::at
     try {
         Progress progress;
         progress.cancelled = cancelled.get();
-        const FidelityReference reference = fidelity_reference(request.scene, {}, progress);
+        const FidelityReference reference = fidelity_reference(request.scene, {}, progress, cache_);
         const std::int64_t width_px = std::min(width_px_, reference.picture.width);
         FrontComparison front = compare_front(request.scene, request.sets, reference, width_px, progress);
         found->difference = signed_difference(front.seen, front.picture);

@@ -11,6 +11,7 @@
 #include "core/worker.h"
 #include "fidelity/front.h"
 #include "scene/scene.h"
+#include "sets/cache_folder.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -39,8 +40,9 @@ struct FrontFound {
 
 class FrontCheck {
   public:
-    /// Views are at most so wide; pictures that are smaller are compared at their own size.
-    explicit FrontCheck(std::int64_t width_px = 1280);
+    /// Views are at most so wide; pictures that are smaller are compared at their own size. Prepared ones are
+    /// kept in the cache.
+    explicit FrontCheck(std::int64_t width_px = 1280, SetCache cache = {});
     ~FrontCheck();  // cancels and waits
 
     /// Begins, unless this was the last request. Returns at once.
@@ -56,6 +58,7 @@ class FrontCheck {
     void work(const FrontRequest& request, const std::shared_ptr<std::atomic<bool>>& cancelled);
 
     std::int64_t width_px_;
+    SetCache cache_;
     FrontRequest request_;
     bool asked_ = false, pending_ = false;
     std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);

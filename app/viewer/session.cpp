@@ -93,6 +93,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       document(options.input.empty() ? demo_document(options.assignments)
                                      : document_for(options.input, options.assignments)),
       sets(options.cache, preview_limit(gl_info)),
+      front(1280, options.cache),
       jobs(options.cache),
       fresh_demo(options.input.empty()) {
     view.hint_open = fresh_demo;

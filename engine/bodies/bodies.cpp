@@ -62,7 +62,8 @@ PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const St
                       std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
     const PictureLight picture = picture_light(texture, params.border);
     Image without_stars = picture.light;
-    const std::vector<Star> stars = params.stars ? take_stars(without_stars) : std::vector<Star>{};
+    const std::vector<Star> stars =
+        params.stars != StructureParams::Stars::no ? take_stars(without_stars) : std::vector<Star>{};
     progress.check();
     const Placement placement = make_placement(brightest_channel(without_stars), params,
                                                surface.texels_per_unit(), surface.flat(), seed);

@@ -92,6 +92,11 @@ void check_uv_camera(const UvCamera& camera, const ParameterKey& at, const Check
     check.require(camera.up != glm::dvec3(0.0), {own / "up"}, "expected a direction, found 0, 0, 0");
 }
 
+void check_prepare(const PrepareParams& prepare, const ParameterKey& at, const Checker& check) {
+    const std::optional<KeyProblem> problem = problem_of(prepare);
+    if (problem) check.require(false, {at / problem->key}, problem->message);
+}
+
 void check_source(const SourceParams& source, const ParameterKey& at, const Checker& check) {
     check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at / "meshes", at / "kind"},
                   "expected at least one mesh, found none");
@@ -121,6 +126,7 @@ void check_source(const SourceParams& source, const ParameterKey& at, const Chec
                   "expected voxels, voxel_size or splats, found two of them");
     if (source.uv == UvMode::camera) check_uv_camera(source.uv_camera, at, check);
     const TextureSettings& t = source.texture;
+    check_prepare(t.prepare, at / "prepare", check);
     check_masks(t.mask, at / "mask", check);
     check.require(!t.black || !t.white || *t.black < *t.white, {at / "black", at / "white"},
                   "expected black below white, found " +
@@ -139,6 +145,16 @@ void check_layer(const LayerParams& layer, const Checker& check) {
 }
 
 }  // namespace
+
+std::optional<KeyProblem> problem_of(const PrepareParams& prepare) {
+    if (prepare.ellipse && !(prepare.ellipse->z > 0.0 && prepare.ellipse->w > 0.0))
+        return KeyProblem{"ellipse", fmt::format("expected half axes above 0, found {} and {}",
+                                                 prepare.ellipse->z, prepare.ellipse->w)};
+    if (prepare.alpha && !(prepare.alpha->x < prepare.alpha->y))
+        return KeyProblem{"alpha", fmt::format("expected the lower end first, found {} and {}",
+                                               prepare.alpha->x, prepare.alpha->y)};
+    return {};
+}
 
 void check_renderable(const Scene& scene, const Places& places) {
     const Checker check{scene.file.string(), places};

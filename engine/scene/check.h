@@ -1,6 +1,9 @@
 // What one parameter's own range cannot say: rules between parameters.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "scene/parameter_key.h"
 #include "scene/scene.h"
 
@@ -13,6 +16,13 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
 /// stars, other projections, camera files, splat files of other kinds. Layers that are never visible are left
 /// out.
 void check_renderable(const Scene& scene, const Places& places);
+
+/// A key of a group whose value cannot stand, and "expected ..., found ...".
+struct KeyProblem {
+    std::string key, message;
+};
+/// What a scene and the command `prepare` both refuse.
+std::optional<KeyProblem> problem_of(const PrepareParams& prepare);
 
 /// Throws InputError unless the name is [A-Za-z][A-Za-z0-9_]*.
 void check_layer_name(const std::string& name, const std::string& place);

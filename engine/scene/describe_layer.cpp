@@ -3,6 +3,7 @@
 #include "scene/describe_layer.h"
 
 #include "scene/describe_look.h"
+#include "scene/describe_prepare.h"
 #include "source/mesh.h"
 
 namespace astrosplat {
@@ -66,27 +67,7 @@ void describe_texture(const Describer& d, TextureSettings& t) {
       "Where opacity comes from; auto: the file's, else the largest channel.");
     d(t.unpremultiply, "unpremultiply", "Divide by alpha", "",
       "Stored colours are matted on black and are divided by alpha.");
-    d.custom(
-        spec("hdu", "FITS HDU", "", "Number or EXTNAME of the HDU; auto: the first with a picture.",
-             as(Type::text)),
-        [&t](const ParameterSpec&) {
-            const bool number =
-                is_list_index(t.hdu) && t.hdu.size() < 10 && (t.hdu[0] != '0' || t.hdu == "0");
-            return number ? Value(static_cast<std::int64_t>(std::stol(t.hdu))) : Value(t.hdu);
-        },
-        [&t](const Value& value, const ParameterSpec& s) {
-            const bool number = std::holds_alternative<std::int64_t>(value.data);
-            t.hdu = number ? to_toml(value) : text_of(value, s);
-        });
-    d(t.plane, "plane", "FITS plane", "", "Plane of a FITS cube, from 0.", at_least(0), slider(0, 100));
-    d(t.stretch, "stretch", "Stretch", "",
-      "Curve from data values to display values; auto: asinh for FITS, linear else.");
-    d(t.black, "black", "Black point", "data values", "Data value shown as 0; auto: the 0.25 percentile.",
-      or_auto(), within(-1e30, 1e30), slider(0, 1));
-    d(t.white, "white", "White point", "data values", "Data value shown as 1; auto: the 99.75 percentile.",
-      or_auto(), within(-1e30, 1e30), slider(0, 1));
-    d(t.softening, "softening", "Softening", "", "Where the asinh stretch turns from linear to logarithmic.",
-      within(1e-9, 1e9), slider(0.001, 1), logarithmic());
+    describe_fits(d, t);
     d(t.filter, "filter", "Filter", "", "How the picture is read between its pixels.");
     d(t.wrap, "wrap", "Outside the picture", "",
       "What lies beyond 0..1; auto: clamp for built-in and planar, repeat for the mesh's own uv.");
@@ -168,7 +149,8 @@ void describe_structure(const Describer& d, StructureParams& s) {
       within(0, 10), slider(0, 0.5), only_with("kind", {"sheet", "walls"}));
     bodies(s.clumps, "clumps", "Clumps", "", "How strongly depths gather in clouds.", within(0, 100),
            slider(0, 3));
-    bodies(s.stars, "stars", "Stars apart", "", "Stars are found and become single dots.");
+    bodies(s.stars, "stars", "Stars apart", "",
+           "Stars are found and become single dots; auto: unless prepare removes them.");
     bodies(s.dust, "dust", "Dust", "",
            "Share of the dark details that becomes dust; auto: half in a disk, else none.", or_auto(),
            range(0, 1));
@@ -199,6 +181,8 @@ void describe_source(const Describer& d, SourceParams& s) {
     files(s.kind, "kind", "Kind", "", "What the splats are made of.");
     files.list("meshes", s.meshes, describe_mesh);
     describe_texture(d.shown_in("Source", "Picture").only_with("kind", {"mesh"}), s.texture);
+    describe_prepare(d.shown_in("Source", "Prepare").only_with("kind", {"mesh"}).in("prepare", false),
+                     s.texture.prepare);
     describe_rework(d.shown_in("Source", "Masks").only_with("kind", {"mesh"}), s.texture);
     describe_buffer(lattice, s.buffer);
     lattice(s.voxels, "voxels", "Voxels", "", "Test positions per axis; auto: cubic, from count.", or_auto(),

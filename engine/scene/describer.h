@@ -90,10 +90,13 @@ class Describer {
     }
 
     /// The same place, where nothing has an effect unless the neighbour `name` has one of these values.
-    Describer only_with(std::string name, std::vector<Value> values) const {
-        Describer limited = *this;
-        limited.conditions_.push_back({group_ / name, std::move(values), true});
-        return limited;
+    Describer only_with(const std::string& name, std::vector<Value> values) const {
+        return limited({group_ / name, std::move(values), true});
+    }
+
+    /// The same place, where nothing has an effect while the neighbour `name` has one of these values.
+    Describer never_with(const std::string& name, std::vector<Value> values) const {
+        return limited({group_ / name, std::move(values), false});
     }
 
     /// The same place, where parameters are animated whatever the group says.
@@ -131,6 +134,12 @@ class Describer {
     }
 
   private:
+    Describer limited(Condition condition) const {
+        Describer result = *this;
+        result.conditions_.push_back(std::move(condition));
+        return result;
+    }
+
     Description* description_;
     ParameterKey group_;
     std::string_view tab_, section_;  // literals

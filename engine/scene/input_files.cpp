@@ -16,6 +16,9 @@ std::vector<fs::path> named_files(const SourceParams& source) {
         files.insert(files.end(), input.texture.begin(), input.texture.end());
         if (!input.shape.depth_map.empty()) files.push_back(input.shape.depth_map);
     }
+    const PrepareParams& prepare = source.texture.prepare;
+    for (const fs::path& file : {prepare.align, prepare.fill, prepare.mask})
+        if (!file.empty()) files.push_back(file);
     for (const MaskParams& mask : source.texture.mask) {
         if (!mask.image.empty()) files.push_back(mask.image);
         for (const MaskTerms& terms : mask.any)

@@ -84,9 +84,29 @@ std::string rework_lines(const TextureSettings& settings, const Progress& progre
     return text;
 }
 
+// Nothing where nothing is prepared, likewise.
+std::string prepare_lines(const PrepareParams& params, const Progress& progress) {
+    const auto& [align, fill, stars, threshold, saturation, background, lupton, q, lupton_stretch, ellipse,
+                 turn, feather, mask, alpha] = params;
+    if (!prepares(params)) return "";
+    std::string text = fmt::format("prepare {}\n", prepare_version);
+    if (!align.empty()) text += file_line("align", align, progress);
+    if (!fill.empty()) text += file_line("fill", fill, progress);
+    if (stars == PrepareParams::Stars::remove)
+        text += fmt::format("stars removed {} {}\n", threshold,
+                            saturation ? fmt::format("{}", *saturation) : "auto");
+    text += fmt::format("background {}\n", static_cast<int>(background));
+    if (lupton) text += fmt::format("lupton {} {}\n", q, lupton_stretch);
+    if (ellipse)
+        text += fmt::format("ellipse {} {} {} {} {} {}\n", ellipse->x, ellipse->y, ellipse->z, ellipse->w,
+                            turn, feather);
+    if (!mask.empty()) text += file_line("cut", mask, progress);
+    return text + fmt::format("alpha from {}\n", range_text(alpha));
+}
+
 std::string texture_lines(const TextureSettings& settings) {
     [[maybe_unused]] const auto& [colorspace, alpha, unpremultiply, hdu, plane, stretch, black, white,
-                                  softening, filter, wrap, derive, smooth, detail, mask] = settings;
+                                  softening, filter, wrap, derive, smooth, detail, mask, prepare] = settings;
     const auto limit = [](const std::optional<double>& v) { return v ? fmt::format("{}", *v) : "auto"; };
     return fmt::format("colorspace {}\nalpha {}\nunpremultiply {}\nhdu {}\nplane {}\nstretch {}\n",
                        static_cast<int>(colorspace), static_cast<int>(alpha), static_cast<int>(unpremultiply),
@@ -108,11 +128,11 @@ std::string lattice_lines(const SourceParams& source) {
 }
 
 // Nothing for columns, so that sets made before there was a choice keep their keys.
-std::string structure_lines(const StructureParams& params) {
-    const auto& [kind, height, depth, clumps, stars, dust, opacity, density, border] = params;
+std::string structure_lines(const SourceParams& source) {
+    const auto& [kind, height, depth, clumps, stars, dust, opacity, density, border] = source.structure;
     if (kind == StructureKind::columns) return "";
     return fmt::format("structure {}\nheight {}\ndepth {}\nclumps {}\nstars {}\n", static_cast<int>(kind),
-                       height, depth, clumps, stars) +
+                       height, depth, clumps, finds_stars(source)) +
            fmt::format("dust {}\n", dust ? fmt::format("{}", *dust) : "auto") +
            fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border);
 }
@@ -148,10 +168,20 @@ std::string cache_key_text(const SourceParams& source, const std::string& layer_
                                   file, stars] = source;
     std::string text = fmt::format("set {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
     for (const MeshInput& input : meshes) text += mesh_lines(input, progress);
-    text += texture_lines(texture) + rework_lines(texture, progress) + lattice_lines(source);
-    text += structure_lines(structure) + projection_lines(source);
+    text += texture_lines(texture) + rework_lines(texture, progress) +
+            prepare_lines(texture.prepare, progress) + lattice_lines(source);
+    text += structure_lines(source) + projection_lines(source);
     return text + fmt::format("jitter {}\nmax_distance {}\nuv {}\nseed {}\n", jitter, max_distance,
                               static_cast<int>(uv), resolved_seed(seed, layer_name));
+} catch (const InputError&) {
+    return {};
+}
+
+std::string prepared_key_text(const std::vector<fs::path>& files, const TextureSettings& settings,
+                              const Progress& progress) try {
+    std::string text = fmt::format("picture of astrosplat {}\n", ASTROSPLAT_VERSION);
+    for (const fs::path& file : files) text += file_line("texture", file, progress);
+    return text + texture_lines(settings) + prepare_lines(settings.prepare, progress);
 } catch (const InputError&) {
     return {};
 }

@@ -2,7 +2,9 @@
 // else. In: a source and its layer's name. Out: 64 hex digits.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "source/source.h"
@@ -12,12 +14,19 @@ namespace astrosplat {
 /// Raised whenever generation, or the reading of meshes and pictures, gives other bits than before.
 inline constexpr int set_version = 2;
 
+/// The same of the preparation of pictures.
+inline constexpr int prepare_version = 1;
+
 /// What is hashed, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
 /// picture also its material libraries and their pictures), and the parameters in use, with the seed
 /// resolved. Names of files stay out, except for their endings. Empty where an input cannot be read: then the
 /// loader says why. For kind mesh. Throws Cancelled.
 std::string cache_key_text(const SourceParams& source, const std::string& layer_name,
                            const Progress& progress = {});
+
+/// The same of one prepared picture: its files, how they are read and settings.prepare.
+std::string prepared_key_text(const std::vector<std::filesystem::path>& files,
+                              const TextureSettings& settings, const Progress& progress = {});
 
 /// That text, and its hash, which names the entry; both empty where an input cannot be read.
 struct CacheKey {

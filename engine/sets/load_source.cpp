@@ -30,8 +30,8 @@ std::string describe_lattice(const Lattice& lattice, double max_distance, std::i
 Progress cancel_only(const Progress& progress) { return {{}, progress.cancelled}; }
 
 SplatSet generate_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
-                         KeptWatcher* watcher) {
-    std::vector<TexturedMesh> meshes = load_meshes(source, cancel_only(progress));
+                         KeptWatcher* watcher, const PictureMaker& prepared) {
+    std::vector<TexturedMesh> meshes = load_meshes(source, cancel_only(progress), prepared);
     for (const TexturedMesh& m : meshes) {
         for (const Texture& texture : m.textures) {
             if (!texture.summary.empty())
@@ -41,7 +41,9 @@ SplatSet generate_source(const SourceParams& source, const std::string& layer_na
     const std::uint32_t seed = resolved_seed(source.seed, layer_name);
     if (source.structure.kind != StructureKind::columns) {
         reduce_pictures(meshes, available_memory_bytes() / 10 * 9, layer_name);
-        return make_bodies(meshes, source.structure, seed, layer_name, progress);
+        StructureParams structure = source.structure;
+        structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
+        return make_bodies(meshes, structure, seed, layer_name, progress);
     }
     const double max_distance = resolved_max_distance(source, bounds(meshes));
     const Lattice lattice = make_lattice(source, meshes, max_distance);
@@ -65,10 +67,10 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
 }  // namespace
 
 SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
-                     KeptWatcher* watcher) try {
+                     KeptWatcher* watcher, const PictureMaker& prepared) try {
     switch (source.kind) {
         case SourceKind::mesh:
-            return generate_source(source, layer_name, progress, watcher);
+            return generate_source(source, layer_name, progress, watcher, prepared);
         case SourceKind::splats:
             return read_source(source, progress);
         case SourceKind::stars:

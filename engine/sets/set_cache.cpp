@@ -20,6 +20,7 @@
 #include "core/memory.h"
 #include "sets/cache_key.h"
 #include "sets/load_source.h"
+#include "sets/prepared_cache.h"
 #include "splat_files/native.h"
 
 namespace astrosplat {
@@ -27,7 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t largest_limit = std::int64_t{20} << 30;  // bytes
 constexpr auto poll_interval = std::chrono::milliseconds(50);
 
 fs::path entry_file(const SetCache& cache, const std::string& key) {
@@ -37,15 +37,6 @@ fs::path lock_file(const fs::path& folder, const std::string& key) { return fold
 
 bool serves(const SetCache& cache, const SourceParams& source) {
     return !cache.folder.empty() && source.kind == SourceKind::mesh;
-}
-
-/// All names in a folder; empty where it cannot be read.
-std::vector<fs::path> files_in(const fs::path& folder) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-        files.push_back(at->path());
-    return files;
 }
 
 // ---- reading
@@ -86,59 +77,21 @@ void remove_leftovers(const fs::path& folder, const std::string& own_key) {
     }
 }
 
-std::int64_t limit_of(const SetCache& cache) {
-    if (cache.limit_bytes > 0) return cache.limit_bytes;
-    std::error_code error;
-    const fs::space_info disk = fs::space(cache.folder, error);
-    if (error) return largest_limit;
-    return static_cast<std::int64_t>(std::min<std::uintmax_t>(disk.capacity / 10, largest_limit));
-}
-
-/// Removes entries, least recently used first, until they take at most `bytes` together.
-void shrink_to(const fs::path& folder, std::int64_t bytes) {
-    struct Entry {
-        fs::file_time_type used;
-        fs::path file;
-        std::int64_t bytes;
-    };
-    std::vector<Entry> entries;
-    std::int64_t total = 0;
-    std::error_code error;
-    for (const fs::path& file : files_in(folder)) {
-        if (file.extension() != ".splats" || file.filename().string().front() == '.') continue;
-        entries.push_back({fs::last_write_time(file, error), file, 0});
-        const std::uintmax_t size = fs::file_size(file, error);
-        if (!error)
-            entries.back().bytes = static_cast<std::int64_t>(size);  // else another process removed it
-        total += entries.back().bytes;
-    }
-    std::ranges::sort(entries, {}, [](const Entry& entry) { return std::tie(entry.used, entry.file); });
-    for (const Entry& entry : entries) {
-        if (total <= bytes) return;
-        if (fs::remove(entry.file, error)) log_detail(entry.file.string() + ": removed from the cache");
-        total -= entry.bytes;
-    }
-}
-
-void warn_unwritable(const SetCache& cache, const std::string& why) {
-    log_warning(fmt::format("cache {}: {}; the generated set is not kept", cache.folder.string(), why));
-}
-
 /// Where the cache has room for it.
 void write_entry(const SetCache& cache, const std::string& name, const SplatSet& set,
                  const Progress& progress) {
-    const std::int64_t bytes = native_file_bytes(set), limit = limit_of(cache);
+    const std::int64_t bytes = native_file_bytes(set), limit = limit_bytes(cache);
     if (bytes > limit) {
         log_info(fmt::format("a set of {} is not kept: the cache may hold {}",
                              human_bytes(static_cast<double>(bytes)),
                              human_bytes(static_cast<double>(limit))));
         return;
     }
-    shrink_to(cache.folder, limit - bytes);
+    shrink_cache(cache, limit - bytes);
     try {
         write_native(entry_file(cache, name), set, Progress{{}, progress.cancelled}, RowOrder::id);
     } catch (const OutputError& error) {
-        warn_unwritable(cache, error.what());
+        warn_unkept(cache, error.what());
     }
 }
 
@@ -173,38 +126,26 @@ std::optional<SplatSet> find(const SetCache& cache, const CacheKey& key, const s
 LoadedSet find_or_load(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                        const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {
     const CacheKey key = serves(cache, source) ? cache_key(source, layer_name, progress) : CacheKey();
-    if (key.name.empty()) return {load_source(source, layer_name, progress, watcher), false};
+    if (key.name.empty())
+        return {load_source(source, layer_name, progress, watcher, kept_pictures(cache)), false};
     if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
     std::error_code error;
     fs::create_directories(cache.folder, error);
     if (error) {
-        warn_unwritable(cache, "cannot be made: " + error.message());
-        return {load_source(source, layer_name, progress, watcher), false};
+        warn_unkept(cache, "cannot be made: " + error.message());
+        return {load_source(source, layer_name, progress, watcher, kept_pictures(cache)), false};
     }
     FileLock lock(lock_file(cache.folder, key.name));
     const bool locked = wait_for(lock, layer_name, progress) == FileLock::State::held;
     if (auto set = find(cache, key, layer_name, progress, wanted)) return {std::move(*set), true};
     if (locked) remove_leftovers(cache.folder, key.name);
-    LoadedSet loaded{load_source(source, layer_name, progress, watcher), false};
+    LoadedSet loaded{load_source(source, layer_name, progress, watcher, kept_pictures(cache)), false};
     if (cache_key_text(source, layer_name, progress) == key.text)
         keep(cache, key, loaded.set, progress);  // else a file changed
     return loaded;
 }
 
-std::string environment(const char* name) {
-    const char* value = std::getenv(name);
-    return value ? value : "";
-}
-
 }  // namespace
-
-fs::path default_cache_folder() {
-    if (const std::string folder = environment("ASTROSPLAT_CACHE"); !folder.empty()) return folder;
-    const fs::path caches = environment("XDG_CACHE_HOME");
-    if (caches.is_absolute()) return caches / "astrosplat";  // its specification: relative ones are ignored
-    const fs::path home = environment("HOME");
-    return home.is_absolute() ? home / ".cache" / "astrosplat" : fs::path();
-}
 
 LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                       const Progress& progress, KeptWatcher* watcher, const OptionalColumns& wanted) {

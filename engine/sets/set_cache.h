@@ -9,27 +9,17 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "core/progress.h"
+#include "sets/cache_folder.h"
 #include "source/source.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
 
 class KeptWatcher;
-
-struct SetCache {
-    std::filesystem::path folder;  // made when a set is kept; empty: no cache
-    /// Bytes of all entries; the least recently used go first. 0: 20 GiB or a tenth of the disk, whichever is
-    /// less.
-    std::int64_t limit_bytes = 0;
-};
-
-/// $ASTROSPLAT_CACHE, else $XDG_CACHE_HOME/astrosplat, else ~/.cache/astrosplat; empty without a home.
-std::filesystem::path default_cache_folder();
 
 struct LoadedSet {
     SplatSet set;

@@ -43,6 +43,38 @@ struct MaskParams : MaskTerms {
     bool operator==(const MaskParams&) const = default;
 };
 
+/// How a picture is made ready before anything else is made of it: the command `prepare`, in this order.
+struct PrepareParams {
+    enum class Stars { keep, remove };
+    friend constexpr auto names_of(Stars) { return names_up_to<Stars::remove>("keep", "remove"); }
+    enum class Background { keep, level, plane, curved };
+    friend constexpr auto names_of(Background) {
+        return names_up_to<Background::curved>("keep", "level", "plane", "curved");
+    }
+    std::filesystem::path align;  // FITS picture on whose grid of the sky it is put; empty: as it is
+    std::filesystem::path fill;   // picture of its size: what is not black is filled from around it
+    Stars stars = Stars::keep;
+    double threshold = 5.0;            // least height of a star over the local noise
+    std::optional<double> saturation;  // linear light; empty: 0.98 of pictures of integers, none of others
+    Background background = Background::keep;  // taken off as a level, a slope or one that bends
+    bool lupton = false;                       // one asinh for all three channels in place of the stretch
+    double q = 8.0;                            // lupton: how early it bends
+    double lupton_stretch = 0.1;               // lupton: intensity shown at a tenth of white
+    std::optional<glm::dvec4> ellipse;         // px from the top left: centre and half axes of what stays
+    double turn = 0.0;                         // degrees that the ellipse is turned, counter-clockwise
+    double feather = 0.1;                      // share of its half axes over which it fades
+    std::filesystem::path mask;                // picture of its size: what is black is cut off
+    std::optional<glm::dvec2> alpha;           // luminance where alpha becomes 0 and 1
+    bool operator==(const PrepareParams&) const = default;
+};
+
+/// Whether any of it is asked for.
+inline bool prepares(const PrepareParams& p) {
+    return !p.align.empty() || !p.fill.empty() || p.stars == PrepareParams::Stars::remove ||
+           p.background != PrepareParams::Background::keep || p.lupton || p.ellipse || !p.mask.empty() ||
+           p.alpha;
+}
+
 /// How a picture file becomes linear, premultiplied colour.
 struct TextureSettings {
     enum class Colorspace { automatic, srgb, linear };
@@ -84,6 +116,7 @@ struct TextureSettings {
     double smooth = 0.0;             // standard deviation of a blur, of the picture's width
     double detail = 0.0;             // leaves what a blur of that width takes away; 0: everything
     std::vector<MaskParams> mask;    // multiply alpha
+    PrepareParams prepare;           // comes before all that the picture's own values do not need
     bool operator==(const TextureSettings&) const = default;
 };
 
@@ -148,12 +181,15 @@ constexpr auto names_of(StructureKind) {
 }
 
 struct StructureParams {
+    enum class Stars { automatic, yes, no };
+    friend constexpr auto names_of(Stars) { return names_up_to<Stars::no>("auto", "true", "false"); }
     StructureKind kind = StructureKind::columns;
     double height =
         0.0;  // scene units, scale height; 0: 1.8 % of the picture's longest side for a disk, else 1.1 %
-    double depth = 0.15;         // of the picture's width: whole depth of walls, or of a flat sheet's relief
-    double clumps = 1.0;         // how strongly depths follow the noise
-    bool stars = true;           // found and made into single dots
+    double depth = 0.15;  // of the picture's width: whole depth of walls, or of a flat sheet's relief
+    double clumps = 1.0;  // how strongly depths follow the noise
+    Stars stars =
+        Stars::automatic;        // found and made into single dots; automatic: unless prepare removes them
     std::optional<double> dust;  // share of the dark details that absorb; empty: half in a disk, else 0
     double opacity = 0.55;       // power of brightness that opacity grows with
     double density = 0.75;       // opacity of white
@@ -187,5 +223,12 @@ struct SourceParams {
     StarsParams stars;           // kind stars
     bool operator==(const SourceParams&) const = default;
 };
+
+/// Whether bodies are to look for stars: by themselves, not where the picture was rid of them before.
+inline bool finds_stars(const SourceParams& source) {
+    if (source.structure.stars != StructureParams::Stars::automatic)
+        return source.structure.stars == StructureParams::Stars::yes;
+    return source.texture.prepare.stars != PrepareParams::Stars::remove;
+}
 
 }  // namespace astrosplat

@@ -18,6 +18,7 @@
 #include "source/fits.h"
 #include "source/mask.h"
 #include "source/picture.h"
+#include "source/stored_picture.h"
 
 namespace astrosplat {
 namespace {
@@ -33,42 +34,6 @@ void for_each_pixel(Image& image, const PerPixel& change) {
     parallel_chunks(image.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         for (float* p = image.at(0, begin); p != image.at(0, end); p += image.channels) change(p);
     });
-}
-
-// A picture as stored, with what is known about its values.
-struct Stored {
-    Picture picture;
-    bool display_values = false;  // sRGB, when the settings leave the colour space open
-};
-
-Settings::Stretch stretch_of(const Settings& settings) {
-    return settings.stretch == Settings::Stretch::automatic ? Settings::Stretch::asinh : settings.stretch;
-}
-
-Stored read_fits_picture(const fs::path& file, const Settings& settings, const Progress& progress) {
-    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
-    const Limits limits = choose_limits(value_range(plane.values), settings, file.string());
-    const Settings::Stretch stretch = stretch_of(settings);
-    Stored stored;
-    stored.display_values = stretch != Settings::Stretch::linear;
-    stored.picture.credit = plane.credit;
-    stored.picture.image = make_image(plane.width, plane.height, 3);
-    parallel_each(plane.values.size(), 1 << 16, [&](std::size_t i) {
-        const double value = stretched(plane.values[i], limits, stretch, settings.softening);
-        std::fill_n(stored.picture.image.pixels.data() + 3 * i, 3, static_cast<float>(value));
-    });
-    stored.picture.summary = fmt::format("{}x{} px, HDU {}{}{}, {} stretch, black {:.6g}, white {:.6g}",
-                                         plane.width, plane.height, plane.hdu, plane.name.empty() ? "" : " ",
-                                         plane.name, name_of(stretch), limits.black, limits.white);
-    return stored;
-}
-
-Stored read_stored(const fs::path& file, const Settings& settings, const Progress& progress) {
-    if (is_fits(file)) return read_fits_picture(file, settings, progress);
-    Stored stored;
-    stored.picture = read_picture(file, progress);
-    stored.display_values = stored.picture.max_integer > 0.0;
-    return stored;
 }
 
 // Red of the first, green of the second, blue of the third.
@@ -93,39 +58,6 @@ Stored combine(const std::vector<fs::path>& files, const Settings& settings, con
     first.picture.max_integer = 0.0;
     first.picture.associated = false;
     return first;
-}
-
-// Linear light of each of an integer file's values.
-std::vector<float> linear_table(double max_integer) {
-    std::vector<float> table(static_cast<std::size_t>(max_integer) + 1);
-    for (std::size_t i = 0; i < table.size(); ++i)
-        table[i] = static_cast<float>(real::srgb_to_linear(static_cast<double>(i) / max_integer));
-    return table;
-}
-
-// Decodes the sRGB curve of colours that are not multiplied by alpha.
-void linearise(Image& image, double max_integer) {
-    const bool tabled = max_integer > 0.0 && max_integer <= 65535.0;
-    const std::vector<float> table = tabled ? linear_table(max_integer) : std::vector<float>();
-    const float scale = static_cast<float>(max_integer);
-    for_each_pixel(image, [&](float* p) {
-        for (int c = 0; c < 3; ++c) {
-            if (tabled)
-                p[c] = table[static_cast<std::size_t>(std::clamp(p[c], 0.0f, 1.0f) * scale + 0.5f)];
-            else
-                p[c] = static_cast<float>(real::srgb_to_linear(p[c]));
-        }
-    });
-}
-
-// Files with associated alpha and encoded colours multiplied the encoded values: undo that before decoding,
-// redo it in linear light. (Dividing linear values instead darkens soft edges.)
-void linearise_associated(Image& image) {
-    for_each_pixel(image, [](float* p) {
-        const float a = p[3];
-        if (!(a > 0.0f)) return;
-        for (int c = 0; c < 3; ++c) p[c] = a * static_cast<float>(real::srgb_to_linear(p[c] / a));
-    });
 }
 
 // NaN anywhere makes a pixel empty (returns false); light is not negative and not infinite.
@@ -244,28 +176,37 @@ const char* alpha_name(Settings::Alpha alpha) {
     }
 }
 
-bool is_encoded(const Stored& stored, Settings::Colorspace colorspace) {
-    if (colorspace == Settings::Colorspace::automatic) return stored.display_values;
-    return colorspace == Settings::Colorspace::srgb;
+// A prepared picture as if it came from a file of linear light.
+Stored as_stored(PreparedPicture prepared) {
+    Stored stored;
+    stored.picture.image = without_plain_alpha(std::move(prepared.image));
+    stored.picture.associated = stored.picture.has_alpha();
+    stored.picture.credit = std::move(prepared.credit);
+    stored.picture.summary =
+        fmt::format("{}x{} px, prepared", stored.picture.image.width, stored.picture.image.height);
+    return stored;
 }
 
-void make_linear(Stored& stored, Settings::Colorspace colorspace, bool premultiplied) {
-    if (!is_encoded(stored, colorspace)) return;
-    if (premultiplied && stored.picture.associated)
-        linearise_associated(stored.picture.image);
-    else
-        linearise(stored.picture.image, stored.picture.max_integer);
+// How the file is read was seen to before: what comes out is linear, and premultiplied.
+Settings settings_after_preparation(Settings settings) {
+    settings.colorspace = Settings::Colorspace::linear;
+    settings.unpremultiply = Settings::Unpremultiply::automatic;
+    return settings;
 }
 
 }  // namespace
 
-Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& settings,
-                     TextureSettings::Wrap default_wrap, const Progress& progress) {
+Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& asked,
+                     TextureSettings::Wrap default_wrap, const Progress& progress,
+                     const PictureMaker& prepared) {
     if (files.size() != 1 && files.size() != 3)
         throw InputError(
             fmt::format("expected one texture, or three for red, green and blue, found {}", files.size()));
-    Stored stored =
-        files.size() == 1 ? read_stored(files[0], settings, progress) : combine(files, settings, progress);
+    const bool is_prepared = prepares(asked.prepare);
+    const TextureSettings settings = is_prepared ? settings_after_preparation(asked) : asked;
+    Stored stored = is_prepared         ? as_stored(prepared(files, asked, progress))
+                    : files.size() == 1 ? read_stored(files[0], settings, progress)
+                                        : combine(files, settings, progress);
     const Settings::Alpha alpha = choose_alpha(files[0], stored.picture, settings.alpha);
     const bool premultiplied = colors_are_premultiplied(stored.picture, settings, alpha);
     make_linear(stored, settings.colorspace, premultiplied);
@@ -310,24 +251,8 @@ Image load_raw_image(const fs::path& file) {
     return image;
 }
 
-// Linear light, premultiplied RGBA.
-static Image linear_image(Stored stored) {
-    const bool alpha = stored.picture.has_alpha();
-    const bool premultiplied = alpha && stored.picture.associated;
-    make_linear(stored, Settings::Colorspace::automatic, premultiplied);
-    const Image& from = stored.picture.image;
-    Image image = make_image(from.width, from.height, 4, 1.0f);
-    for (std::int64_t i = 0; i < image.width * image.height; ++i) {
-        const float* p = from.pixels.data() + i * from.channels;
-        float* to = image.pixels.data() + i * 4;
-        to[3] = alpha ? p[3] : 1.0f;
-        for (int c = 0; c < 3; ++c) to[c] = alpha && !premultiplied ? p[c] * p[3] : p[c];
-    }
-    return image;
-}
-
 Image load_linear_image(const fs::path& file, const Progress& progress) {
-    return linear_image(read_stored(file, Settings{}, progress));
+    return linear_image(read_stored(file, Settings{}, progress), {});
 }
 
 Image load_map(const fs::path& file, Derived derive) {
@@ -341,7 +266,7 @@ Image load_map(const fs::path& file, Derived derive) {
 std::vector<Image> load_environment_pictures(const fs::path& file, const Progress& progress) {
     Stored stored = read_stored(file, Settings{}, progress);
     const bool cube = stored.picture.cube;
-    Image all = linear_image(std::move(stored));
+    Image all = linear_image(std::move(stored), {});
     std::vector<Image> pictures;
     if (!cube) {
         pictures.push_back(std::move(all));

@@ -12,6 +12,7 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "source/mesh.h"
+#include "source/prepared_picture.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -31,9 +32,11 @@ struct Texture {
 };
 
 /// `default_wrap` is what Wrap::automatic means here. Masks are weighed but not yet applied: shapes that are
-/// made of a picture's brightness see all of it. Throws InputError, Cancelled.
+/// made of a picture's brightness see all of it. `prepared` is asked where settings.prepare wants something.
+/// Throws InputError, Cancelled.
 Texture load_texture(const std::vector<std::filesystem::path>& files, const TextureSettings& settings,
-                     TextureSettings::Wrap default_wrap, const Progress& progress = {});
+                     TextureSettings::Wrap default_wrap, const Progress& progress = {},
+                     const PictureMaker& prepared = make_prepared);
 
 /// Multiplies the picture by its mask, and forgets the mask.
 void apply_mask(Texture& texture);

@@ -1,5 +1,6 @@
 #include "source/textured_mesh.h"
 
+#include <functional>
 #include <utility>
 
 #include "core/error.h"
@@ -31,12 +32,14 @@ double aspect_of(const TexturedMesh& mesh) {
     return 1.0;
 }
 
-TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, const Progress& progress) {
+// Pictures of a source, wrapped as its settings or else its mesh wants it.
+using PictureLoader = std::function<Texture(const std::vector<std::filesystem::path>& files, Wrap)>;
+
+TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, const PictureLoader& load) {
     const std::string name = input.mesh.string();
     if (input.texture.empty()) bad_input(name, "texture", "a picture, which built-in meshes need", "none");
     TexturedMesh loaded;
-    loaded.textures.push_back(
-        load_texture(input.texture, source.texture, default_wrap(source, Wrap::clamp), progress));
+    loaded.textures.push_back(load(input.texture, default_wrap(source, Wrap::clamp)));
     const Texture& texture = loaded.textures.front();
     const double aspect = aspect_of(texture.image);
     loaded.mesh = name == "relief"        ? relief_mesh(texture, input.relief)
@@ -47,8 +50,7 @@ TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, co
 }
 
 // One picture per material that a face uses; others get an empty one, so that indices stay.
-std::vector<Texture> load_maps(const Mesh& mesh, const TextureSettings& settings, Wrap wrap,
-                               const Progress& progress) {
+std::vector<Texture> load_maps(const Mesh& mesh, Wrap wrap, const PictureLoader& load) {
     std::vector<bool> used(std::max<std::size_t>(1, mesh.maps.size()), false);
     for (const Mesh::Triangle& face : mesh.triangles) used[mesh.maps.empty() ? 0 : face.material] = true;
     std::vector<Texture> textures(used.size());
@@ -58,19 +60,20 @@ std::vector<Texture> load_maps(const Mesh& mesh, const TextureSettings& settings
             bad_input(mesh.name, "", "a texture in the scene, or a material with map_Kd for every face",
                       "neither");
         }
-        textures[i] = load_texture({mesh.maps[i]}, settings, wrap, progress);
+        textures[i] = load({mesh.maps[i]}, wrap);
     }
     return textures;
 }
 
-TexturedMesh load_file(const MeshInput& input, const SourceParams& source, const Progress& progress) {
+TexturedMesh load_file(const MeshInput& input, const SourceParams& source, const PictureLoader& load,
+                       const Progress& progress) {
     const Wrap wrap = default_wrap(source, Wrap::repeat);
     TexturedMesh loaded;
     loaded.mesh = load_obj(input.mesh, progress);
     if (input.texture.empty()) {
-        loaded.textures = load_maps(loaded.mesh, source.texture, wrap, progress);
+        loaded.textures = load_maps(loaded.mesh, wrap, load);
     } else {
-        loaded.textures.push_back(load_texture(input.texture, source.texture, wrap, progress));
+        loaded.textures.push_back(load(input.texture, wrap));
     }
     return loaded;
 }
@@ -83,12 +86,16 @@ Bounds bounds(std::span<const TexturedMesh> meshes) {
     return box;
 }
 
-std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress) {
+std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress,
+                                      const PictureMaker& prepared) {
     if (source.meshes.empty()) bad_input("source.meshes", "", "at least one mesh", "none");
+    const PictureLoader load = [&](const std::vector<std::filesystem::path>& files, Wrap wrap) {
+        return load_texture(files, source.texture, wrap, progress, prepared);
+    };
     std::vector<TexturedMesh> meshes;
     for (const MeshInput& input : source.meshes) {
-        meshes.push_back(is_builtin_mesh(input.mesh) ? load_builtin(input, source, progress)
-                                                     : load_file(input, source, progress));
+        meshes.push_back(is_builtin_mesh(input.mesh) ? load_builtin(input, source, load)
+                                                     : load_file(input, source, load, progress));
     }
     const Bounds box = bounds(meshes);
     for (TexturedMesh& m : meshes) {

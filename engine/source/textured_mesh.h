@@ -20,8 +20,9 @@ struct TexturedMesh {
 
 /// Loads the meshes and pictures of a mesh source (paths already resolved). Wrap::automatic is clamp for
 /// built-in meshes and planar uv, black for planar uv with a width and for a camera's, repeat for a mesh's
-/// own uv. Throws InputError.
-std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress = {});
+/// own uv. Throws InputError. `prepared` is load_texture's.
+std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress = {},
+                                      const PictureMaker& prepared = make_prepared);
 
 /// Bounds of all vertices of all meshes.
 Bounds bounds(std::span<const TexturedMesh> meshes);

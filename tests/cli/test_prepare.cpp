@@ -91,7 +91,7 @@ TEST_F(PrepareCommand, WritesAPictureAndATableOfItsStars) {
 }
 
 TEST_F(PrepareCommand, KeepsWhatIsNotAsked) {
-    ASSERT_EQ(prepare({"-o", "kept", "--keep-stars"}).code, 0);
+    ASSERT_EQ(prepare({"-o", "kept", "--stars", "keep"}).code, 0);
     EXPECT_FALSE(fs::exists(folder / "kept/stars.csv"));
     EXPECT_EQ(run({"compare", "stars.ppm", "kept/picture.exr", "--max-difference", "0"}).code, 0);
 }
@@ -102,8 +102,8 @@ TEST_F(PrepareCommand, TakesStarsFromFitsBeforeItIsStretched) {
     EXPECT_NE(result.out.find("9 taken away"), std::string::npos) << result.out;
     EXPECT_NE(result.out.find("linear light, alpha"), std::string::npos)
         << "a pixel has no value: " << result.out;
-    ASSERT_EQ(run({"prepare", "stars.fits", "-o", "kept", "--keep-stars", "--stretch", "linear"}).code, 0);
-    ASSERT_EQ(run({"prepare", "stars.fits", "-o", "log", "--keep-stars", "--stretch", "log"}).code, 0);
+    ASSERT_EQ(run({"prepare", "stars.fits", "-o", "kept", "--stars", "keep", "--stretch", "linear"}).code, 0);
+    ASSERT_EQ(run({"prepare", "stars.fits", "-o", "log", "--stars", "keep", "--stretch", "log"}).code, 0);
     EXPECT_EQ(run({"compare", "kept/picture.exr", "log/picture.exr", "--max-difference", "0.01"}).code, 3);
 }
 
@@ -115,7 +115,7 @@ TEST_F(PrepareCommand, SaturationAndThresholdAct) {
 }
 
 TEST_F(PrepareCommand, TakesTheSkyOffAndSaysSo) {
-    ASSERT_EQ(prepare({"-o", "plane", "--background", "plane", "--keep-stars"}).code, 0);
+    ASSERT_EQ(prepare({"-o", "plane", "--background", "plane", "--stars", "keep"}).code, 0);
     const nlohmann::json sky = json("plane/background.json");
     EXPECT_GT(sky.at("red").at(0).get<double>(), 0.04);
     EXPECT_GT(sky.at("red").at(1).get<double>(), 0.005) << "it is brighter at the right";
@@ -128,15 +128,15 @@ TEST_F(PrepareCommand, CutsAndSplits) {
     for (int y = 20; y < 40; ++y)
         for (int x = 6; x < 26; ++x) mask[mask.size() - 96 * 64 + y * 96 + x] = '\xff';
     write_text(folder / "mask.pgm", mask);
-    const RunResult cut = prepare({"-o", "cut", "--ellipse", "48,32,20,20,30", "--feather", "0.5", "--alpha",
-                                   "0,0.05", "--keep-stars"});
+    const RunResult cut = prepare({"-o", "cut", "--ellipse", "48,32,20,20", "--turn", "30", "--feather",
+                                   "0.5", "--alpha", "0,0.05", "--stars", "keep"});
     ASSERT_EQ(cut.code, 0) << cut.err;
     EXPECT_NE(cut.out.find("linear light, alpha"), std::string::npos) << cut.out;
-    ASSERT_EQ(prepare({"-o", "masked", "--mask", "mask.pgm", "--keep-stars"}).code, 0);
-    ASSERT_EQ(prepare({"-o", "split", "--split", "mask.pgm", "--keep-stars"}).code, 0);
+    ASSERT_EQ(prepare({"-o", "masked", "--mask", "mask.pgm", "--stars", "keep"}).code, 0);
+    ASSERT_EQ(prepare({"-o", "split", "--split", "mask.pgm", "--stars", "keep"}).code, 0);
     EXPECT_EQ(run({"compare", "masked/picture.exr", "split/front.exr", "--max-difference", "0"}).code, 0);
     EXPECT_EQ(run({"compare", "split/picture.exr", "split/back.exr", "--max-difference", "0.05"}).code, 3);
-    ASSERT_EQ(prepare({"-o", "filled", "--fill", "mask.pgm", "--keep-stars"}).code, 0);
+    ASSERT_EQ(prepare({"-o", "filled", "--fill", "mask.pgm", "--stars", "keep"}).code, 0);
     const RunResult same =
         run({"compare", "filled/picture.exr", "split/back.exr", "--max-difference", "1e-6"});
     EXPECT_EQ(same.code, 0) << same.out;
@@ -150,11 +150,11 @@ TEST_F(PrepareCommand, BringsThreeFiltersTogether) {
         more.insert(more.begin(), {"prepare", "--r", "r.fits", "--g", g, "--b", b, "--progress", "none"});
         return run(more);
     };
-    ASSERT_EQ(three("r.fits", "r.fits", {"-o", "gray", "--keep-stars"}).code, 0);
-    ASSERT_EQ(three("g.fits", "r.fits", {"-o", "scaled", "--keep-stars"}).code, 0);
+    ASSERT_EQ(three("r.fits", "r.fits", {"-o", "gray", "--stars", "keep"}).code, 0);
+    ASSERT_EQ(three("g.fits", "r.fits", {"-o", "scaled", "--stars", "keep"}).code, 0);
     EXPECT_EQ(run({"compare", "gray/picture.exr", "scaled/picture.exr", "--max-difference", "0.05"}).code, 3);
     ASSERT_EQ(
-        three("r.fits", "r.fits", {"-o", "bent", "--keep-stars", "--q", "20", "--lupton-stretch", "0.5"})
+        three("r.fits", "r.fits", {"-o", "bent", "--stars", "keep", "--q", "20", "--lupton-stretch", "0.5"})
             .code,
         0);
     EXPECT_EQ(run({"compare", "gray/picture.exr", "bent/picture.exr", "--max-difference", "0.01"}).code, 3);
@@ -170,18 +170,22 @@ TEST_F(PrepareCommand, RefusesWhatItShould) {
         more.insert(more.end(), {"-o", "out", "--progress", "none"});
         expect_one_line(prepare(more), 2, message);
     };
-    refused({"--threshold", "0"}, "--threshold: expected a number above 0, found '0'");
-    refused({"--saturation", "much"}, "--saturation: expected a number above 0, found 'much'");
+    refused({"--threshold", "0"}, "--threshold: expected a number from 0.01 to 1000000000, found 0");
+    refused({"--saturation", "much"}, "--saturation: expected a number from 1e-09 to 1000000000 or \"auto\"");
+    refused({"--stars", "kept"}, "--stars: expected keep or remove, found 'kept'; did you mean 'keep'?");
     refused({"--stretch", "sqrt"}, "--stretch: expected auto, linear, asinh or log, found 'sqrt'");
     refused({"--stretch", "log"}, "--stretch: expected a FITS picture, found 'stars.ppm'");
-    refused({"--background", "steep"}, "--background: expected level, plane or curved, found 'steep'");
-    refused({"--ellipse", "1,2,3"}, "--ellipse: expected X,Y,RX,RY");
-    refused({"--ellipse", "1,2,0,4"}, "with radii above 0, found '1,2,0,4'");
-    refused({"--ellipse", "1,2,3,4", "--feather", "2"},
-            "--feather: expected a number from 0 to 1, found '2'");
-    refused({"--feather", "0.1"}, "--feather: expected --ellipse beside it");
-    refused({"--alpha", "0.5,0.5"}, "--alpha: expected LOW,HIGH with LOW below HIGH");
-    refused({"--q", "-1"}, "--q: expected a number above 0");
+    refused({"--background", "steep"}, "--background: expected keep, level, plane or curved, found 'steep'");
+    refused({"--ellipse", "1,2,3"}, "--ellipse: expected 4 numbers");
+    refused({"--ellipse", "1,2,0,4"}, "--ellipse: expected half axes above 0, found 0 and 4");
+    refused({"--ellipse", "1,2,3,4", "--feather", "2"}, "--feather: expected a number from 0 to 1, found 2");
+    refused({"--feather", "0.1"}, "--feather: expected --ellipse beside it, found none");
+    refused({"--threshold", "3", "--stars", "keep"},
+            "--threshold: expected --stars \"remove\" beside it, found none");
+    refused({"--alpha", "0.5,0.5"}, "--alpha: expected the lower end first, found 0.5 and 0.5");
+    refused({"--q", "-1"}, "--q: expected a number from 1e-06 to 1000000, found -1");
+    refused({"--q", "1"}, "--q: expected --lupton true beside it, found none");
+    refused({"--align", "stars.ppm"}, "stars.ppm: expected a FITS picture whose header tells the sky");
     write_text(folder / "small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
     for (const char* option : {"--mask", "--fill", "--split"})
         refused({option, "small.ppm"}, "expected 96x64 px like the picture, found 16x16 px");

@@ -361,7 +361,7 @@ TEST(Bodies, EveryKeyCounts) {
     EXPECT_NE(positions(changed([](StructureParams& p) { p.height = 0.3; })), as_usual);
     EXPECT_NE(positions(changed([](StructureParams& p) { p.depth = 0.3; })), as_usual);
     EXPECT_NE(positions(changed([](StructureParams& p) { p.clumps = 0.3; })), as_usual);
-    EXPECT_NE(positions(changed([](StructureParams& p) { p.stars = false; })), as_usual);
+    EXPECT_NE(positions(changed([](StructureParams& p) { p.stars = StructureParams::Stars::no; })), as_usual);
     EXPECT_NE(positions(changed([](StructureParams& p) { p.border = 0.2; })), as_usual);
     const auto usual_alphas = alphas(usual);
     EXPECT_NE(alphas(changed([](StructureParams& p) { p.opacity = 0.9; })), usual_alphas);

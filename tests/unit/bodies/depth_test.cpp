@@ -220,7 +220,7 @@ TEST(Placement, WallsLieOnBothSidesAndASheetOnOne) {
     for (const StructureKind kind : {StructureKind::walls, StructureKind::sheet}) {
         StructureParams params;
         params.kind = kind;
-        params.stars = false;
+        params.stars = StructureParams::Stars::no;
         const Placement placement = make_placement(brightest, params, 32.0, true, 9u);
         const BandDots dots = band_dots(make_bands(320)[1], false, placement)[0];
         int front = 0, back = 0;

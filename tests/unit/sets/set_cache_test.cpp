@@ -397,7 +397,7 @@ TEST_F(SetCacheTest, ThePlaceOfAnEntryTakenByAFolderIsAWarning) {
     fs::create_directories(key_file(".splats"));
     EXPECT_FALSE(load().cached);
     ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_NE(warnings_[0].find("the generated set is not kept"), std::string::npos) << warnings_[0];
+    EXPECT_NE(warnings_[0].find("what was generated is not kept"), std::string::npos) << warnings_[0];
 }
 
 TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
@@ -409,7 +409,7 @@ TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
     EXPECT_FALSE(load(source_, "stars").cached);
     fs::permissions(cache_.folder, fs::perms::owner_all);
     ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_NE(warnings_[0].find("the generated set is not kept"), std::string::npos) << warnings_[0];
+    EXPECT_NE(warnings_[0].find("what was generated is not kept"), std::string::npos) << warnings_[0];
 }
 
 // ---- several processes

@@ -1,5 +1,5 @@
-// A picture as the stages of `prepare` take it. In: a file. Out: linear light that is not cut off anywhere,
-// and what is to be done with it in the end.
+// A picture as the stages of its preparation take it. In: a file. Out: linear light that is not cut off
+// anywhere, and what is to be done with it in the end.
 #pragma once
 
 #include <array>
@@ -22,6 +22,7 @@ struct PrepareInput {
     TextureSettings::Stretch stretch = TextureSettings::Stretch::linear;  // still to come
     std::string credit;
     std::optional<TanGrid> grid;  // how the sky lies on it, where that is known
+    std::string name;             // of its file
 };
 
 /// Throws InputError, Cancelled.
@@ -32,6 +33,11 @@ PrepareInput read_prepare_input(const std::filesystem::path& file, const Texture
 /// green and blue are sampled on red's; else they must have one size. Throws InputError, Cancelled.
 PrepareInput read_three_filters(const std::array<std::filesystem::path, 3>& files,
                                 const TextureSettings& settings, const Progress& progress);
+
+/// Puts a picture on the grid that the FITS picture `reference` has on the sky, with its size. Throws
+/// InputError where the sky is not known on both, Cancelled.
+void align_to(const std::filesystem::path& reference, const TextureSettings& settings, PrepareInput& input,
+              const Progress& progress);
 
 /// The stretch that was still to come, as the texture of a scene would have had it: the result is linear
 /// light.

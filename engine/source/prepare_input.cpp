@@ -1,5 +1,5 @@
 // FITS keeps its values until stars are taken away: a stretch would change their profiles and cut them off.
-#include "prepare_input.h"
+#include "source/prepare_input.h"
 
 #include <fmt/format.h>
 
@@ -13,13 +13,17 @@
 #include "core/text.h"
 #include "source/fits.h"
 #include "source/picture.h"
+#include "source/stored_picture.h"
 #include "source/stretch.h"
-#include "source/texture.h"
 
 namespace astrosplat {
 namespace {
 
 constexpr double saturated_integer = 0.98;  // of linear light, in pictures of integers
+
+TanGrid grid_of(const FitsSky& sky) {
+    return {{sky.crpix[0], sky.crpix[1]}, {sky.crval[0], sky.crval[1]}, sky.cd};
+}
 
 PrepareInput read_fits_input(const std::filesystem::path& file, const TextureSettings& settings,
                              const Progress& progress) {
@@ -35,23 +39,21 @@ PrepareInput read_fits_input(const std::filesystem::path& file, const TextureSet
         std::fill_n(p, 3, std::isfinite(value) ? static_cast<float>(value) : 0.0f);
         p[3] = std::isfinite(value) ? 1.0f : 0.0f;
     }
-    using Stretch = TextureSettings::Stretch;
-    input.stretch = settings.stretch == Stretch::automatic ? Stretch::asinh : settings.stretch;
+    input.stretch = stretch_of(settings);
     input.saturation = std::numeric_limits<double>::infinity();
     input.credit = plane.credit;
-    if (const std::optional<FitsSky>& sky = plane.sky)
-        input.grid = TanGrid{{sky->crpix[0], sky->crpix[1]}, {sky->crval[0], sky->crval[1]}, sky->cd};
+    if (plane.sky) input.grid = grid_of(*plane.sky);
     return input;
 }
 
 PrepareInput read_picture_input(const std::filesystem::path& file, const TextureSettings& settings,
                                 const Progress& progress) {
-    if (settings.stretch != TextureSettings::Stretch::automatic &&
-        settings.stretch != TextureSettings::Stretch::linear)
-        bad_input("--stretch", "", "a FITS picture", "'" + file.string() + "'");
-    const Picture stored = read_picture(file, progress);
+    Stored stored = read_stored(file, settings, progress);
     PrepareInput input;
-    input.image = load_linear_image(file, progress);
+    const bool integers = stored.picture.max_integer > 0.0;
+    input.saturation = integers ? saturated_integer : std::numeric_limits<double>::infinity();
+    input.credit = stored.picture.credit;
+    input.image = linear_image(std::move(stored), settings.colorspace);
     input.empty = make_mask(input.image.width, input.image.height);
     for (std::size_t i = 0; i < input.empty.pixels.size(); ++i) {
         float* const p = input.image.pixels.data() + 4 * i;
@@ -59,8 +61,6 @@ PrepareInput read_picture_input(const std::filesystem::path& file, const Texture
         input.empty.pixels[i] = finite && p[3] > 0.0f ? 0 : 1;
         if (!finite) std::fill_n(p, 4, 0.0f);
     }
-    input.saturation = stored.max_integer > 0.0 ? saturated_integer : std::numeric_limits<double>::infinity();
-    input.credit = stored.credit;
     return input;
 }
 
@@ -69,12 +69,22 @@ bool same_grid(const TanGrid& a, const TanGrid& b) {
            a.deg_per_px == b.deg_per_px;
 }
 
-// On the grid of the first filter.
-void put_on_grid(PrepareInput& filter, const PrepareInput& first) {
+// Pixels as a picture of 0 and 1, so that they can be put on a grid as well.
+Image as_picture(const PixelMask& mask) {
+    Image image = make_image(mask.width, mask.height, 1);
+    std::copy(mask.pixels.begin(), mask.pixels.end(), image.pixels.begin());
+    return image;
+}
+
+// On a grid of width x height pixels; what was mostly empty stays so.
+void put_on_grid(PrepareInput& input, const TanGrid& grid, std::int64_t width, std::int64_t height) {
     PixelMask outside;
-    filter.image =
-        regridded(filter.image, *filter.grid, *first.grid, first.image.width, first.image.height, outside);
-    filter.empty = std::move(outside);
+    const Image emptiness = regridded(as_picture(input.empty), *input.grid, grid, width, height, outside);
+    input.image = regridded(input.image, *input.grid, grid, width, height, outside);
+    for (std::size_t i = 0; i < outside.pixels.size(); ++i)
+        if (emptiness.pixels[i] > 0.5f) outside.pixels[i] = 1;
+    input.empty = std::move(outside);
+    input.grid = grid;
 }
 
 // The mean of a filter's channels becomes one channel of the picture.
@@ -103,7 +113,8 @@ PrepareInput read_three_filters(const std::array<std::filesystem::path, 3>& file
                       fmt::format("{}x{} px like {}, or where the sky is on both", rgb.image.width,
                                   rgb.image.height, files[0].string()),
                       fmt::format("{}x{} px", filter.image.width, filter.image.height));
-        if (known && !(same_size && same_grid(*filter.grid, *first.grid))) put_on_grid(filter, first);
+        if (known && !(same_size && same_grid(*filter.grid, *first.grid)))
+            put_on_grid(filter, *first.grid, rgb.image.width, rgb.image.height);
         put_channel(filter, static_cast<int>(c), rgb);
         rgb.credit = joined_once({rgb.credit, filter.credit});
     }
@@ -115,7 +126,20 @@ PrepareInput read_prepare_input(const std::filesystem::path& file, const Texture
     PrepareInput input = is_fits(file) ? read_fits_input(file, settings, progress)
                                        : read_picture_input(file, settings, progress);
     fill(input.image, input.empty, FillKind::membrane, progress);
+    input.name = file.string();
     return input;
+}
+
+void align_to(const std::filesystem::path& reference, const TextureSettings& settings, PrepareInput& input,
+              const Progress& progress) {
+    const auto require_sky = [](const std::string& name, bool known) {
+        if (!known) bad_input(name, "", "a FITS picture whose header tells the sky (RA---TAN)", "none");
+    };
+    require_sky(input.name, input.grid.has_value());
+    require_sky(reference.string(), is_fits(reference));
+    const FitsPlane plane = read_fits(reference, settings.hdu, settings.plane, progress);
+    require_sky(reference.string(), plane.sky.has_value());
+    put_on_grid(input, grid_of(*plane.sky), plane.width, plane.height);
 }
 
 void apply_stretch(Image& image, TextureSettings::Stretch stretch, double softening) {

@@ -1,0 +1,80 @@
+#include "sets/cache_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <tuple>
+
+#include "core/log.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t largest_limit = std::int64_t{20} << 30;  // bytes
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+}  // namespace
+
+fs::path default_cache_folder() {
+    if (const std::string folder = environment("ASTROSPLAT_CACHE"); !folder.empty()) return folder;
+    const fs::path caches = environment("XDG_CACHE_HOME");
+    if (caches.is_absolute()) return caches / "astrosplat";  // its specification: relative ones are ignored
+    const fs::path home = environment("HOME");
+    return home.is_absolute() ? home / ".cache" / "astrosplat" : fs::path();
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+        files.push_back(at->path());
+    return files;
+}
+
+std::int64_t limit_bytes(const SetCache& cache) {
+    if (cache.limit_bytes > 0) return cache.limit_bytes;
+    std::error_code error;
+    const fs::space_info disk = fs::space(cache.folder, error);
+    if (error) return largest_limit;
+    return static_cast<std::int64_t>(std::min<std::uintmax_t>(disk.capacity / 10, largest_limit));
+}
+
+void shrink_cache(const SetCache& cache, std::int64_t bytes) {
+    struct Entry {
+        fs::file_time_type used;
+        fs::path file;
+        std::int64_t bytes;
+    };
+    std::vector<Entry> entries;
+    std::int64_t total = 0;
+    std::error_code error;
+    for (const fs::path& file : files_in(cache.folder)) {
+        const bool entry = file.extension() == ".splats" || file.extension() == ".exr";
+        if (!entry || file.filename().string().front() == '.') continue;
+        entries.push_back({fs::last_write_time(file, error), file, 0});
+        const std::uintmax_t size = fs::file_size(file, error);
+        if (!error)
+            entries.back().bytes = static_cast<std::int64_t>(size);  // else another process removed it
+        total += entries.back().bytes;
+    }
+    std::ranges::sort(entries, {}, [](const Entry& entry) { return std::tie(entry.used, entry.file); });
+    for (const Entry& entry : entries) {
+        if (total <= bytes) return;
+        if (fs::remove(entry.file, error)) log_detail(entry.file.string() + ": removed from the cache");
+        total -= entry.bytes;
+    }
+}
+
+void warn_unkept(const SetCache& cache, const std::string& why) {
+    log_warning(fmt::format("cache {}: {}; what was generated is not kept", cache.folder.string(), why));
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,34 @@
+// The folder in which sets and prepared pictures are kept from run to run. In: its name and limit. Out: what
+// is in it, and room for more.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace astrosplat {
+
+struct SetCache {
+    std::filesystem::path folder;  // made when something is kept; empty: no cache
+    /// Bytes of all entries; the least recently used go first. 0: 20 GiB or a tenth of the disk, whichever is
+    /// less.
+    std::int64_t limit_bytes = 0;
+};
+
+/// $ASTROSPLAT_CACHE, else $XDG_CACHE_HOME/astrosplat, else ~/.cache/astrosplat; empty without a home.
+std::filesystem::path default_cache_folder();
+
+/// All names in a folder; empty where it cannot be read.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder);
+
+/// What the limit 0 means for this folder, or the limit.
+std::int64_t limit_bytes(const SetCache& cache);
+
+/// Removes entries (.splats, .exr), least recently used first, until they take at most `bytes` together.
+void shrink_cache(const SetCache& cache, std::int64_t bytes);
+
+/// A warning: the run goes on without the cache.
+void warn_unkept(const SetCache& cache, const std::string& why);
+
+}  // namespace astrosplat

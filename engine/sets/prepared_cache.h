@@ -1,0 +1,22 @@
+// Prepared pictures, kept beside the sets: removing stars takes seconds, and a set is made again for every
+// change of its structure. In: what prepare_picture() takes, and the folder. Out: the same picture, to the
+// bit.
+#pragma once
+
+#include <vector>
+
+#include "core/progress.h"
+#include "sets/cache_folder.h"
+#include "source/textured_mesh.h"
+
+namespace astrosplat {
+
+/// Reads prepared pictures where they are kept (as KEY.exr), else prepares and keeps them. A damaged entry is
+/// made again; a folder that cannot be written costs a warning.
+PictureMaker kept_pictures(const SetCache& cache);
+
+/// load_meshes() with them.
+std::vector<TexturedMesh> load_meshes(const SetCache& cache, const SourceParams& source,
+                                      const Progress& progress = {});
+
+}  // namespace astrosplat

@@ -1,0 +1,123 @@
+#include "source/stored_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "core/color.h"
+#include "core/parallel.h"
+#include "core/real.h"
+#include "source/fits.h"
+#include "source/stretch.h"
+
+namespace astrosplat {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Settings = TextureSettings;
+
+constexpr std::int64_t stored_rows_per_chunk = 32;
+
+template <class PerPixel>
+void for_each_stored(Image& image, const PerPixel& change) {
+    parallel_chunks(image.height, stored_rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        for (float* p = image.at(0, begin); p != image.at(0, end); p += image.channels) change(p);
+    });
+}
+
+Stored read_fits_picture(const fs::path& file, const Settings& settings, const Progress& progress) {
+    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
+    const Limits limits = choose_limits(value_range(plane.values), settings, file.string());
+    const Settings::Stretch stretch = stretch_of(settings);
+    Stored stored;
+    stored.display_values = stretch != Settings::Stretch::linear;
+    stored.picture.credit = plane.credit;
+    stored.picture.image = make_image(plane.width, plane.height, 3);
+    parallel_each(plane.values.size(), 1 << 16, [&](std::size_t i) {
+        const double value = stretched(plane.values[i], limits, stretch, settings.softening);
+        std::fill_n(stored.picture.image.pixels.data() + 3 * i, 3, static_cast<float>(value));
+    });
+    stored.picture.summary = fmt::format("{}x{} px, HDU {}{}{}, {} stretch, black {:.6g}, white {:.6g}",
+                                         plane.width, plane.height, plane.hdu, plane.name.empty() ? "" : " ",
+                                         plane.name, name_of(stretch), limits.black, limits.white);
+    return stored;
+}
+
+// Linear light of each of an integer file's values.
+std::vector<float> linear_table(double max_integer) {
+    std::vector<float> table(static_cast<std::size_t>(max_integer) + 1);
+    for (std::size_t i = 0; i < table.size(); ++i)
+        table[i] = static_cast<float>(real::srgb_to_linear(static_cast<double>(i) / max_integer));
+    return table;
+}
+
+// Decodes the sRGB curve of colours that are not multiplied by alpha.
+void linearise(Image& image, double max_integer) {
+    const bool tabled = max_integer > 0.0 && max_integer <= 65535.0;
+    const std::vector<float> table = tabled ? linear_table(max_integer) : std::vector<float>();
+    const float scale = static_cast<float>(max_integer);
+    for_each_stored(image, [&](float* p) {
+        for (int c = 0; c < 3; ++c) {
+            if (tabled)
+                p[c] = table[static_cast<std::size_t>(std::clamp(p[c], 0.0f, 1.0f) * scale + 0.5f)];
+            else
+                p[c] = static_cast<float>(real::srgb_to_linear(p[c]));
+        }
+    });
+}
+
+// Files with associated alpha and encoded colours multiplied the encoded values: undo that before decoding,
+// redo it in linear light. (Dividing linear values instead darkens soft edges.)
+void linearise_associated(Image& image) {
+    for_each_stored(image, [](float* p) {
+        const float a = p[3];
+        if (!(a > 0.0f)) return;
+        for (int c = 0; c < 3; ++c) p[c] = a * static_cast<float>(real::srgb_to_linear(p[c] / a));
+    });
+}
+
+}  // namespace
+
+Settings::Stretch stretch_of(const Settings& settings) {
+    return settings.stretch == Settings::Stretch::automatic ? Settings::Stretch::asinh : settings.stretch;
+}
+
+Stored read_stored(const fs::path& file, const Settings& settings, const Progress& progress) {
+    if (is_fits(file)) return read_fits_picture(file, settings, progress);
+    Stored stored;
+    stored.picture = read_picture(file, progress);
+    stored.display_values = stored.picture.max_integer > 0.0;
+    return stored;
+}
+
+bool is_encoded(const Stored& stored, Settings::Colorspace colorspace) {
+    if (colorspace == Settings::Colorspace::automatic) return stored.display_values;
+    return colorspace == Settings::Colorspace::srgb;
+}
+
+void make_linear(Stored& stored, Settings::Colorspace colorspace, bool premultiplied) {
+    if (!is_encoded(stored, colorspace)) return;
+    if (premultiplied && stored.picture.associated)
+        linearise_associated(stored.picture.image);
+    else
+        linearise(stored.picture.image, stored.picture.max_integer);
+}
+
+Image linear_image(Stored stored, Settings::Colorspace colorspace) {
+    const bool alpha = stored.picture.has_alpha();
+    const bool premultiplied = alpha && stored.picture.associated;
+    make_linear(stored, colorspace, premultiplied);
+    const Image& from = stored.picture.image;
+    Image image = make_image(from.width, from.height, 4, 1.0f);
+    for (std::int64_t i = 0; i < image.width * image.height; ++i) {
+        const float* p = from.pixels.data() + i * from.channels;
+        float* to = image.pixels.data() + i * 4;
+        to[3] = alpha ? p[3] : 1.0f;
+        for (int c = 0; c < 3; ++c) to[c] = alpha && !premultiplied ? p[c] * p[3] : p[c];
+    }
+    return image;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,34 @@
+// A picture file's values on their way to linear light: what load_texture and the preparation of pictures
+// begin with. In: a file. Out: its values, FITS stretched, and then linear ones.
+#pragma once
+
+#include <filesystem>
+
+#include "source/picture.h"
+#include "source/source.h"
+
+namespace astrosplat {
+
+// A picture as stored, with what is known about its values.
+struct Stored {
+    Picture picture;
+    bool display_values = false;  // sRGB, when the settings leave the colour space open
+};
+
+/// What automatic means: asinh.
+TextureSettings::Stretch stretch_of(const TextureSettings& settings);
+
+/// FITS is stretched between its limits. Throws InputError, Cancelled.
+Stored read_stored(const std::filesystem::path& file, const TextureSettings& settings,
+                   const Progress& progress);
+
+bool is_encoded(const Stored& stored, TextureSettings::Colorspace colorspace);
+
+/// Decodes the sRGB curve where there is one. `premultiplied`: colours that the file multiplied by its alpha
+/// are to stay so.
+void make_linear(Stored& stored, TextureSettings::Colorspace colorspace, bool premultiplied);
+
+/// Linear light, premultiplied RGBA; alpha is 1 where the file has none.
+Image linear_image(Stored stored, TextureSettings::Colorspace colorspace);
+
+}  // namespace astrosplat

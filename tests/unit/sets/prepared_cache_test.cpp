@@ -1,0 +1,233 @@
+// source.prepare: a source that prepares its picture is one of the prepared picture, to the bit; the picture
+// is kept beside the sets, and everything that reaches it reaches both names.
+#include "sets/prepared_cache.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "sets/cache_key.h"
+#include "sets/load_source.h"
+#include "sets/set_cache.h"
+#include "source/prepared_picture.h"
+#include "source/write_picture.h"
+#include "support/errors.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Twelve stars on a slope, as a portable pixmap of 128x96 pixels.
+std::string stars_on_a_slope() {
+    std::string text = "P6\n128 96\n255\n";
+    for (int y = 0; y < 96; ++y) {
+        for (int x = 0; x < 128; ++x) {
+            const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 32.0) - 15.0;
+            const double light =
+                60.0 + 0.3 * x + 2.0 * ((x * 7 + y * 13) % 5) + 120.0 * std::exp(-(u * u + v * v) / 3.0);
+            text.append(3, static_cast<char>(static_cast<int>(light)));
+        }
+    }
+    return text;
+}
+
+class PreparedSource : public testing::Test {
+  protected:
+    PreparedSource() {
+        set_log_sink([this](LogLevel level, const std::string& line) {
+            if (level == LogLevel::warning) warnings_.push_back(line);
+        });
+        folder_.file("p.ppm", stars_on_a_slope());
+        source_.meshes = {{"plane", {folder_ / "p.ppm"}, 0.15}};
+        source_.count = 3000;
+        source_.texture.prepare.stars = PrepareParams::Stars::remove;
+        source_.texture.prepare.background = PrepareParams::Background::plane;
+        source_.texture.prepare.ellipse = glm::dvec4(64.0, 48.0, 50.0, 40.0);
+        cache_.folder = folder_ / "sets";
+    }
+    ~PreparedSource() override {
+        flush_warning_counts();
+        set_log_sink(nullptr);
+    }
+
+    std::vector<fs::path> pictures() const {
+        std::vector<fs::path> files = files_in(cache_.folder);
+        std::erase_if(files, [](const fs::path& file) { return file.extension() != ".exr"; });
+        return files;
+    }
+    std::string name(const SourceParams& source) const { return cache_key(source, "dust").name; }
+    /// `source` with the picture that the command would have written.
+    SourceParams by_hand(SourceParams source) const {
+        const PreparedPicture ready = prepare_picture(source.meshes[0].texture, source.texture);
+        EXPECT_EQ(ready.stars.size(), 12u);
+        write_linear_picture(folder_ / "ready.exr", without_plain_alpha(ready.image), "", Existing::replace);
+        source.meshes[0].texture = {folder_ / "ready.exr"};
+        source.texture.prepare = {};
+        return source;
+    }
+    static bool same(const SplatSet& a, const SplatSet& b) {
+        return a.size() == b.size() && a.position == b.position && a.color == b.color && a.alpha == b.alpha;
+    }
+
+    TempFolder folder_;
+    SourceParams source_;
+    SetCache cache_;
+    std::vector<std::string> warnings_;
+};
+
+TEST_F(PreparedSource, IsTheSourceOfThePreparedPicture) {
+    for (const StructureKind kind : {StructureKind::columns, StructureKind::sheet}) {
+        source_.structure.kind = kind;
+        SourceParams hand = by_hand(source_);
+        hand.structure.stars = StructureParams::Stars::no;
+        const SplatSet set = load_source(source_, "dust");
+        ASSERT_GT(set.size(), 500);
+        EXPECT_TRUE(same(set, load_source(hand, "dust")));
+        SourceParams plain = source_;
+        plain.texture.prepare = {};
+        EXPECT_FALSE(same(set, load_source(plain, "dust")));
+    }
+}
+
+TEST_F(PreparedSource, KeepsItsPictureForOtherSets) {
+    source_.structure.kind = StructureKind::sheet;
+    const SplatSet uncached = load_source(source_, "dust");
+    EXPECT_TRUE(same(load_source(cache_, source_, "dust").set, uncached));
+    ASSERT_EQ(pictures().size(), 1u);
+    // Another picture in its place is seen by every other set, not by the one that is kept.
+    PreparedPicture other = prepare_picture(source_.meshes[0].texture, source_.texture);
+    for (float& value : other.image.pixels) value *= 0.5f;
+    write_linear_picture(pictures()[0], other.image, "", Existing::replace);
+    EXPECT_TRUE(same(load_source(cache_, source_, "dust").set, uncached));
+    source_.structure.clumps = 0.5;
+    EXPECT_FALSE(same(load_source(cache_, source_, "dust").set, load_source(source_, "dust")));
+    EXPECT_EQ(pictures().size(), 1u);
+    EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(PreparedSource, DamagedPicturesArePreparedAgainWithAWarning) {
+    load_meshes(cache_, source_);
+    ASSERT_EQ(pictures().size(), 1u);
+    fs::resize_file(pictures()[0], fs::file_size(pictures()[0]) / 2);
+    const SplatSet set = load_source(cache_, source_, "dust").set;
+    EXPECT_TRUE(same(set, load_source(source_, "dust")));
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("; the picture is prepared again"), std::string::npos) << warnings_[0];
+}
+
+TEST_F(PreparedSource, PicturesMakeRoomForOthers) {
+    load_meshes(cache_, source_);
+    ASSERT_EQ(pictures().size(), 1u);
+    const fs::path first = pictures()[0];
+    cache_.limit_bytes = 128 * 96 * 4 * 4 + 1000;  // one of them
+    source_.texture.prepare.threshold = 6.0;
+    load_meshes(cache_, source_);
+    ASSERT_EQ(pictures().size(), 1u);
+    EXPECT_NE(pictures()[0], first);
+    cache_.limit_bytes = 1000;
+    source_.texture.prepare.threshold = 7.0;
+    load_meshes(cache_, source_);
+    EXPECT_EQ(pictures().size(), 1u) << "what is larger than the limit is not kept";
+}
+
+TEST_F(PreparedSource, EveryKeyChangesTheNames) {
+    using P = PrepareParams;
+    const fs::path mask = folder_.file("mask.ppm", "P6\n128 96\n255\n" + std::string(128 * 96 * 3, 'x'));
+    const std::vector<std::function<void(P&)>> changes = {
+        [](P&) {},
+        [](P& p) { p.stars = P::Stars::keep; },
+        [](P& p) { p.threshold = 6.0; },
+        [](P& p) { p.saturation = 0.5; },
+        [](P& p) { p.background = P::Background::level; },
+        [](P& p) { p.lupton = true; },
+        [](P& p) { p.lupton = true, p.q = 3.0; },
+        [](P& p) { p.lupton = true, p.lupton_stretch = 0.3; },
+        [](P& p) { p.ellipse->x = 63.0; },
+        [](P& p) { p.ellipse = std::nullopt; },
+        [](P& p) { p.turn = 5.0; },
+        [](P& p) { p.feather = 0.2; },
+        [](P& p) { p.alpha = glm::dvec2(0.1, 0.2); },
+        [&](P& p) { p.mask = mask; },
+        [&](P& p) { p.fill = mask; },
+        [&](P& p) { p.align = mask; },
+        [](P& p) { p = {}; },
+    };
+    std::vector<std::string> sets, pictures;
+    for (const auto& change : changes) {
+        SourceParams source = source_;
+        change(source.texture.prepare);
+        sets.push_back(name(source));
+        pictures.push_back(prepared_key_text(source.meshes[0].texture, source.texture));
+    }
+    for (std::vector<std::string>* names : {&sets, &pictures}) {
+        std::ranges::sort(*names);
+        EXPECT_EQ(std::ranges::adjacent_find(*names), names->end());
+    }
+    source_.texture.prepare.mask = mask;
+    const std::string before = name(source_);
+    folder_.file("mask.ppm", "P6\n128 96\n255\n" + std::string(128 * 96 * 3, 'y'));
+    EXPECT_NE(name(source_), before) << "the mask's bytes";
+}
+
+TEST_F(PreparedSource, WhatDoesNothingStaysOutOfTheNames) {
+    SourceParams plain = source_;
+    plain.texture.prepare = {};
+    const std::string unprepared = name(plain);
+    plain.texture.prepare.threshold = 7.0;
+    plain.texture.prepare.q = 7.0;
+    plain.texture.prepare.feather = 0.5;
+    EXPECT_EQ(name(plain), unprepared);
+    const std::string prepared = name(source_);
+    source_.texture.prepare.q = 7.0;
+    EXPECT_EQ(name(source_), prepared);
+}
+
+TEST_F(PreparedSource, BodiesLookForStarsUnlessThoseWereRemovedOrTheyAreTold) {
+    using Stars = StructureParams::Stars;
+    source_.structure.kind = StructureKind::disk;
+    const auto finds = [&](PrepareParams::Stars removed, Stars told) {
+        source_.texture.prepare.stars = removed;
+        source_.structure.stars = told;
+        return finds_stars(source_);
+    };
+    EXPECT_TRUE(finds(PrepareParams::Stars::keep, Stars::automatic));
+    EXPECT_FALSE(finds(PrepareParams::Stars::keep, Stars::no));
+    EXPECT_FALSE(finds(PrepareParams::Stars::remove, Stars::automatic));
+    EXPECT_TRUE(finds(PrepareParams::Stars::remove, Stars::yes));
+    const std::string told = name(source_);
+    source_.structure.stars = Stars::automatic;
+    EXPECT_NE(name(source_), told);
+    source_.structure.stars = Stars::no;
+    const std::string off = name(source_);
+    source_.structure.stars = Stars::automatic;
+    EXPECT_EQ(name(source_), off) << "it is the same set";
+}
+
+TEST_F(PreparedSource, RefusesMasksOfAnotherSize) {
+    const fs::path small = folder_.file("small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
+    source_.texture.prepare.mask = small;
+    EXPECT_EQ(message_of<InputError>([&] { load_source(source_, "dust"); }),
+              "layer 'dust': prepare.mask:" + small.string() +
+                  ": expected 128x96 px like the picture, found 16x16 px");
+    source_.texture.prepare.mask.clear();
+    source_.texture.prepare.fill = small;
+    EXPECT_NE(message_of<InputError>([&] { load_source(source_, "dust"); }).find("prepare.fill:"),
+              std::string::npos);
+}
+
+TEST_F(PreparedSource, RefusesToAlignWhatHasNoSky) {
+    source_.texture.prepare.align = folder_ / "p.ppm";
+    EXPECT_EQ(message_of<InputError>([&] { load_source(source_, "dust"); }),
+              "layer 'dust': " + (folder_ / "p.ppm").string() +
+                  ": expected a FITS picture whose header tells the sky (RA---TAN), found none");
+}
+
+}  // namespace
+}  // namespace astrosplat
