@@ -97,8 +97,9 @@ void print_summary(const PrepareOptions& options, const PrepareParams& params, c
 }
 
 // Of all input files, before any of the work.
-void require_inputs(const PrepareOptions& options) {
-    for (const fs::path& file : {options.image, options.red, options.green, options.blue})
+void require_inputs(const PrepareOptions& options, const PrepareParams& params) {
+    for (const fs::path& file : {options.image, options.red, options.green, options.blue, params.align,
+                                 params.fill, params.mask, options.split.value_or(fs::path())})
         if (!file.empty()) require_picture(file);
     if (options.settings.contains("stretch") && !options.image.empty() && !is_fits(options.image))
         bad_input("--stretch", "", "a FITS picture", "'" + options.image.string() + "'");
@@ -109,7 +110,7 @@ void require_inputs(const PrepareOptions& options) {
 int run_prepare(const PrepareOptions& options) {
     const TextureSettings settings = prepare_settings(options);
     const PrepareParams& params = settings.prepare;
-    require_inputs(options);
+    require_inputs(options, params);
     for (const fs::path& file : files_of(options, params)) refuse_to_overwrite(file, options.overwrite);
     prove_writable(options.folder);
     ProgressReport report(options.progress);

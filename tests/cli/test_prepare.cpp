@@ -1,8 +1,8 @@
 // prepare: what it writes for pictures and FITS, and every refusal.
 #include <cmath>
-#include <cstring>
 
 #include "scene_fixture.h"
+#include "support/fits_text.h"
 
 namespace astrosplat::test {
 namespace {
@@ -21,41 +21,15 @@ std::string starry_picture() {
     return text;
 }
 
-// A card of a FITS header.
-std::string card(const std::string& text) { return text + std::string(80 - text.size(), ' '); }
-
 // The same stars as 32-bit floats, on a level far from 0, with one pixel undefined. With a scale (degrees a
 // pixel) the header tells the sky.
 std::string starry_fits(double scale = 0.0) {
-    std::string file = card("SIMPLE  =                    T") + card("BITPIX  =                  -32") +
-                       card("NAXIS   =                    2") + card("NAXIS1  =                   96") +
-                       card("NAXIS2  =                   64");
-    if (scale > 0.0) {
-        file += card("CTYPE1  = 'RA---TAN'") + card("CTYPE2  = 'DEC--TAN'");
-        for (const auto& [key, value] : {std::pair{"CRPIX1", 48.5},
-                                         {"CRPIX2", 32.5},
-                                         {"CRVAL1", 10.0},
-                                         {"CRVAL2", 41.0},
-                                         {"CDELT1", -scale},
-                                         {"CDELT2", scale}})
-            file += card(fmt::format("{:8}= {:20.8f}", key, value));
-    }
-    file += card("END");
-    file.resize(2880, ' ');
-    for (int y = 0; y < 64; ++y) {
-        for (int x = 0; x < 96; ++x) {
-            const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 21.0) - 10.0;
-            const bool undefined = x == 3 && y == 3;
-            const auto value = undefined ? std::nanf("")
-                                         : static_cast<float>(1000.0 + (x * 7 + y * 13) % 5 +
-                                                              900.0 * std::exp(-(u * u + v * v) / 3.0));
-            std::uint32_t bits;
-            std::memcpy(&bits, &value, 4);
-            for (int shift = 24; shift >= 0; shift -= 8) file += static_cast<char>(bits >> shift & 255u);
-        }
-    }
-    file.resize((file.size() + 2879) / 2880 * 2880, '\0');
-    return file;
+    const std::string sky = scale > 0.0 ? fits_sky(48.5, 32.5, 10.0, 41.0, scale, 0.0) : "";
+    return fits_file(96, 64, sky, [](int x, int y) {
+        const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 21.0) - 10.0;
+        const double light = 1000.0 + (x * 7 + y * 13) % 5 + 900.0 * std::exp(-(u * u + v * v) / 3.0);
+        return x == 3 && y == 3 ? std::nan("") : light;
+    });
 }
 
 class PrepareCommand : public SceneTest {
