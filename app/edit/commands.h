@@ -19,16 +19,17 @@ struct Command {
         keep,     // ignore the change on disk
         recover,  // path: an autosave
         discard_recovery,
-        quit,           // unsaved changes already answered for
-        import_file,    // path: as a new layer
-        set_reference,  // path
-        save_look,      // path: of the selected layer
-        apply_look,     // path: to the selected layer
-        regenerate,     // index: layer whose set is stale
-        cancel_load,    // index: layer being generated
-        render_frame,   // path: to this file, the current frame
-        render_range,   // as [output] says
-        render_movie,   // path: through ffmpeg
+        quit,             // unsaved changes already answered for
+        import_file,      // path: as a new layer
+        set_reference,    // path
+        save_look,        // path: of the selected layer
+        apply_look,       // path: to the selected layer
+        regenerate,       // index: layer whose set is stale
+        cancel_load,      // index: layer being generated
+        render_frame,     // path: to this file, the current frame
+        render_range,     // as [output] says
+        render_movie,     // path: through ffmpeg
+        prepare_picture,  // path: folder for the files, index: layer
         cancel_render,
         screenshot,  // path
         store_b,     // the look now becomes B

@@ -65,6 +65,16 @@ struct FrontStatus {
     std::string error;          // why there is nothing to compare with, one line
 };
 
+/// The selected layer's picture before and after its preparation, while the panel shows that.
+struct PrepareStatus {
+    bool working = false;
+    void* before = nullptr;  // texture handles for the widgets, top row first; null: nothing to show yet
+    void* after = nullptr;
+    float aspect = 1.0f;     // width / height
+    std::int64_t stars = 0;  // removed
+    std::string error;       // why it cannot be prepared, one line
+};
+
 struct PixelProbe {
     int x = 0, y = 0;
     float rgba[4] = {0, 0, 0, 0};  // linear, premultiplied
@@ -99,9 +109,10 @@ struct Message {
 
 struct Status {
     PictureStatus picture;
-    std::optional<FrontStatus> front;  // none: no layer has a picture
-    std::vector<LayerStatus> layers;   // as in the scene
-    Bounds box;                        // of all visible layers, world space
+    std::optional<FrontStatus> front;          // none: no layer has a picture
+    std::optional<PrepareStatus> preparation;  // none: nothing to prepare, or not asked for
+    std::vector<LayerStatus> layers;           // as in the scene
+    Bounds box;                                // of all visible layers, world space
     std::optional<PixelProbe> probe;
     std::vector<Snapshot> snapshots;
     int b_snapshot = -1;

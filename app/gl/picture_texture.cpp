@@ -29,6 +29,11 @@ void PictureTexture::upload(const Image& rgba, const Region& part) {
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
+void PictureTexture::upload_smooth(const Image& rgba) {
+    upload(rgba);
+    set_sampling(GL_TEXTURE_2D, GL_LINEAR);
+}
+
 float content_probe(const Image& image) {
     auto sum = static_cast<float>(image.width);
     const std::size_t step = std::max<std::size_t>(1, image.pixels.size() / 97);

@@ -12,6 +12,8 @@ class PictureTexture {
     void upload(const Image& rgba);
     /// Only this part of `rgba` (whose size is that of the last upload).
     void upload(const Image& rgba, const Region& part);
+    /// The same, shown between its pixels where it is drawn at another size.
+    void upload_smooth(const Image& rgba);
     GLuint handle() const { return texture_.name(); }  // 0 before the first upload
 
   private:

@@ -54,6 +54,9 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
         case Kind::render_movie:
             return writing("Render a movie to", "movies", {".mp4", ".mov", ".mkv"}, document,
                            stem(document) + ".mp4");
+        case Kind::prepare_picture:
+            return writing("Write the prepared picture and its stars to a new folder", "files", {}, document,
+                           stem(document) + "-prepared");
         case Kind::screenshot:
             return writing("Save what the window shows", "pictures", {".png", ".exr"}, document,
                            stem(document) + ".png");

@@ -2,17 +2,16 @@
 // as it stands and its sets. Out: measures for the badge, and the picture of where the view differs.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "core/worker.h"
 #include "fidelity/front.h"
 #include "scene/scene.h"
 #include "sets/cache_folder.h"
 #include "splats/splat_set.h"
+#include "viewer/latest_work.h"
 
 namespace astrosplat {
 
@@ -38,32 +37,11 @@ struct FrontFound {
     std::string error;  // one line: there is nothing to compare with
 };
 
-class FrontCheck {
+class FrontCheck : public LatestWork<FrontRequest, FrontFound> {
   public:
     /// Views are at most so wide; pictures that are smaller are compared at their own size. Prepared ones are
     /// kept in the cache.
-    explicit FrontCheck(std::int64_t width_px = 1280, SetCache cache = {});
-    ~FrontCheck();  // cancels and waits
-
-    /// Begins, unless this was the last request. Returns at once.
-    void want(const FrontRequest& request);
-    /// Cancels what is under way; what is found stays. Returns at once.
-    void cancel();
-    bool working() const;
-    /// Null while there is nothing, or where this was not the last request.
-    std::shared_ptr<const FrontFound> found(const FrontRequest& request) const;
-
-  private:
-    Worker::Task next_task();
-    void work(const FrontRequest& request, const std::shared_ptr<std::atomic<bool>>& cancelled);
-
-    std::int64_t width_px_;
-    SetCache cache_;
-    FrontRequest request_;
-    bool asked_ = false, pending_ = false;
-    std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
-    std::shared_ptr<const FrontFound> found_;
-    Worker worker_{[this] { return next_task(); }};
+    explicit FrontCheck(std::int64_t width_px = 1280, const SetCache& cache = {});
 };
 
 }  // namespace astrosplat

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "edit/prepare_command.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
@@ -85,6 +86,11 @@ void Jobs::start_in(const fs::path& folder, const Command& command, const Docume
     target_ = std::move(target);
 }
 
+void Jobs::prepare(const SourceParams& source, const fs::path& folder) {
+    job_.start({"Preparing", prepare_command(source, folder)});
+    target_ = folder;
+}
+
 std::optional<Jobs::News> Jobs::poll(JobStatus& status) {
     job_.poll();
     status = {};
@@ -96,7 +102,7 @@ std::optional<Jobs::News> Jobs::poll(JobStatus& status) {
         case RenderJob::State::failed:
             return News{last, true};
         case RenderJob::State::cancelled:
-            return News{"Rendering cancelled; finished frames are kept"};
+            return News{"Cancelled; finished files are kept"};
         default:
             return std::nullopt;
     }

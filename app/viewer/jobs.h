@@ -21,6 +21,8 @@ class Jobs {
     /// `command`: render_frame, render_range or render_movie; `frame` is the one seen. Throws OutputError,
     /// and InputError while a job runs.
     void start(const Command& command, const Document& document, double frame);
+    /// Writes a layer's prepared picture, as the command `prepare` does. Throws as start() does.
+    void prepare(const SourceParams& source, const std::filesystem::path& folder);
     void cancel() { job_.cancel(); }
     bool running() const { return job_.state() == RenderJob::State::running; }
 

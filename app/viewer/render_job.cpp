@@ -15,6 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* busy_message = "a rendering is under way: cancel it first, or wait";
+
+std::string own_program() { return fs::read_symlink("/proc/self/exe").string(); }
+
 std::string without_prefix(const std::string& line) {
     constexpr std::string_view prefix = "astrosplat: ";
     return line.rfind(prefix, 0) == 0 ? line.substr(prefix.size()) : line;
@@ -90,16 +94,24 @@ RenderJob::~RenderJob() {
     impl_->clean();
 }
 
+void RenderJob::start(ProcessStep step) {
+    if (impl_->process) throw InputError(busy_message);
+    impl_ = std::make_unique<Impl>();
+    step.arguments.insert(step.arguments.begin(), own_program());
+    step.arguments.insert(step.arguments.end(), {"--progress", "plain"});
+    impl_->steps.push_back(std::move(step));
+    impl_->begin_step();
+    impl_->state = State::running;
+}
+
 void RenderJob::start(const fs::path& folder, const std::string& scene_text, std::int64_t frames,
                       const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards) {
-    if (impl_->process) throw InputError("a rendering is under way: cancel it first, or wait");
+    if (impl_->process) throw InputError(busy_message);
     impl_ = std::make_unique<Impl>();
     impl_->folder = folder;
     impl_->frames = frames;
     const fs::path scene = folder / "scene.toml";
-    ProcessStep render{
-        "Rendering",
-        {fs::read_symlink("/proc/self/exe").string(), "--batch", scene.string(), "--progress", "plain"}};
+    ProcessStep render{"Rendering", {own_program(), "--batch", scene.string(), "--progress", "plain"}};
     render.arguments.insert(render.arguments.end(), arguments.begin(), arguments.end());
     impl_->steps.push_back(std::move(render));
     for (ProcessStep& step : afterwards) impl_->steps.push_back(std::move(step));

@@ -32,6 +32,8 @@ class RenderJob {
     /// OutputError, and InputError while a job runs.
     void start(const std::filesystem::path& folder, const std::string& scene_text, std::int64_t frames,
                const std::vector<std::string>& arguments, std::vector<ProcessStep> afterwards = {});
+    /// One step, whose arguments are those of the program itself. Throws as above.
+    void start(ProcessStep step);
     void cancel();
 
     enum class State { none, running, done, failed, cancelled };

@@ -192,7 +192,7 @@ double next_due(const Session& session, double now) {
     const PictureState reached = session.picture.status().state;
     if (reached == PictureState::refining || session.comparison.waiting()) return 0.03;
     if (reached == PictureState::preview && session.view.settle) return session.picture.due(now);
-    if (session.front.working()) return 0.1;
+    if (session.front.working() || session.preparation.working()) return 0.1;
     return 1.0;  // to look at the disk and autosave
 }
 

@@ -29,6 +29,7 @@
 #include "viewer/navigator.h"
 #include "viewer/picture.h"
 #include "viewer/playback.h"
+#include "viewer/prepare_preview.h"
 #include "viewer/run_viewer.h"
 #include "viewer/set_wishes.h"
 
@@ -53,6 +54,9 @@ struct Session {
     std::shared_ptr<const FrontFound> front_shown;  // whose difference is in the texture
     PictureTexture front_texture;
     std::uint64_t fronts_shown = 0;  // how many were in the texture
+    PreparePreview preparation;
+    std::shared_ptr<const PreparedView> preparation_shown;  // in the two textures
+    PictureTexture preparation_before, preparation_after;
     Display display;
     CameraOverlay overlay;
     Navigator navigator;

@@ -101,6 +101,9 @@ void cancel_load(State& s, const Command& c) {
 }
 
 void render_files(State& s, const Command& c) { s.jobs.start(c, s.document, s.view.frame); }
+void prepare_files(State& s, const Command& c) {
+    if (const LayerParams* layer = layer_at(s, c.index)) s.jobs.prepare(layer->source, c.path);
+}
 void cancel_render(State& s, const Command&) { s.jobs.cancel(); }
 void take_screenshot(State& s, const Command& c) { s.screenshot = c.path; }
 
@@ -184,6 +187,7 @@ constexpr Entry entries[] = {{Kind::new_from_file, open_path},
                              {Kind::render_frame, render_files},
                              {Kind::render_range, render_files},
                              {Kind::render_movie, render_files},
+                             {Kind::prepare_picture, prepare_files},
                              {Kind::cancel_render, cancel_render},
                              {Kind::screenshot, take_screenshot},
                              {Kind::store_b, store_b},

@@ -10,6 +10,7 @@
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "viewer/session_prepare.h"
 
 namespace astrosplat {
 namespace {
@@ -221,6 +222,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
                             {request_for, choice, may_settle && a_is_done, now}, shown);
     const std::shared_ptr<const FrontFound> front = check_front(session, scene);
     if (front && session.view.compare == CompareMode::front) show_front(session, front, shown);
+    show_preparation(session);
     shown.content = 1 + session.picture.version() + session.comparison.version() + session.fronts_shown;
     session.status.picture_texture =
         to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));

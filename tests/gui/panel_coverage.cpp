@@ -54,6 +54,7 @@ std::vector<std::string> telling_scenes() {
               "{ mesh = \"revolution\", outline = [[0, 0], [1, 1]] } ]\nuv = \"planar-xy\"\nuv_width = 5\n"
               "mask = [ { ellipse = [0.5, 0.5, 0.2, 0.2], any = [ { ellipse = [0.5, 0.5, 0.2, 0.2] } ] } ]",
               "", ""),
+        layer(mesh + "\nprepare = { stars = \"remove\", lupton = true, ellipse = [9, 9, 5, 5] }", "", ""),
         layer(mesh + "\nuv = \"camera\"\nuv_camera = { position = [0, 9, 0] }", "", ""),
         layer("kind = \"splats\"\nfile = \"a.ply\"",
               "pdf = { shape = \"gaussian\" }\nradius = { min = 0.1, max = 0.2 }", "",

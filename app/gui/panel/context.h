@@ -67,6 +67,7 @@ struct Memory {
     int dragged_layer = -1;
     std::optional<CopiedLook> copied;
     std::vector<NoisePicture> noises;  // by entry of the list
+    float preparation_line = 0.5f;     // between before and after, 0..1 of the width
     float scroll = 0.0f;               // how far the tab can be scrolled
     ParameterKey hovered;              // row under the mouse, and since when: tooltips wait a little
     double hovered_since = 0.0;

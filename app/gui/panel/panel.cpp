@@ -113,6 +113,7 @@ void Panel::draw(Document& document, ViewState& view, const Status& status, Comm
     state_->rows.clear();
     memory.plots.clear();
     memory.touch.seen = false;
+    view.preparation_open = false;
     const std::size_t layers = memory.described.scene->layers.size();
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;
     Context context{document, view, status, commands, memory, state_->rows};

@@ -95,6 +95,7 @@ void draw_section(Context& context, const TabSection& about, Rows rows, const Ro
 
 /// A section whose rows all have no effect is not there.
 void draw_section(Context& context, const TabSection& about, const Rows& tab_rows) {
+    if (about.is_there && !about.is_there(context)) return;
     Rows rows;
     for (const Parameter* row : tab_rows)
         if (row->spec.section == about.title && !list_of(row->spec) && is_shown(context, row->spec))

@@ -7,6 +7,7 @@
 #include "core/file_format.h"
 #include "edit/camera_moves.h"
 #include "edit/keys.h"
+#include "gui/panel/prepare.h"
 #include "gui/panel/section.h"
 #include "gui/panel/whole_look.h"
 #include "gui/panel/words.h"
@@ -42,6 +43,14 @@ std::string files_state(const Context& context) {
 }
 
 std::string picture_state(const Context& context) { return is_fits(context) ? "FITS" : ""; }
+
+bool has_pictures(const Context& context) { return context.layer().source.kind == SourceKind::mesh; }
+
+std::string preparation_state(const Context& context) {
+    const PrepareParams& params = context.layer().source.texture.prepare;
+    if (!prepares(params)) return "none";
+    return params.stars == PrepareParams::Stars::remove ? "stars removed" : "changed";
+}
 
 std::string masks_state(const Context& context) {
     const TextureSettings& texture = context.layer().source.texture;
@@ -155,6 +164,7 @@ const TabSection sections[] = {
      picture_state,
      {"layer.source.black", "layer.source.white", "layer.source.stretch", "layer.source.softening",
       "layer.source.hdu", "layer.source.plane"}},
+    {"Source", "Prepare", nullptr, preparation_state, {}, draw_preparation, has_pictures},
     {"Source", "Masks", nullptr, masks_state},
     {"Source", "Structure", unfolded, value_of<structure>},
     {"Source",

@@ -15,6 +15,7 @@ struct TabSection {
     std::string (*state)(const Context&) = nullptr;  // at the head while it is folded
     std::vector<ParameterKey> first = {};            // generic keys or groups; the others follow as described
     void (*last)(Context&) = nullptr;                // below the rows
+    bool (*is_there)(const Context&) = nullptr;      // nullptr: always
 };
 
 /// In the order of the tabs.

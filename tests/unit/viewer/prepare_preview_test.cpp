@@ -1,0 +1,94 @@
+// Before and after in the panel: what the engine prepares, small, of the last request alone.
+#include "viewer/prepare_preview.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "core/color.h"
+#include "source/prepared_picture.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+// Twelve stars on a grey ground, 256x192 px.
+std::string stars_on_grey() {
+    std::string text = "P6\n256 192\n255\n";
+    for (int y = 0; y < 192; ++y) {
+        for (int x = 0; x < 256; ++x) {
+            const double u = std::fmod(x, 64.0) - 32.0, v = std::fmod(y, 64.0) - 31.0;
+            const double light = 60.0 + (x * 7 + y * 13) % 5 + 150.0 * std::exp(-(u * u + v * v) / 9.0);
+            text.append(3, static_cast<char>(static_cast<int>(light)));
+        }
+    }
+    return text;
+}
+
+class PreparePreviewTest : public testing::Test {
+  protected:
+    PreparePreviewTest() {
+        layer.source.meshes = {{"plane", {folder.file("p.ppm", stars_on_grey())}}};
+        layer.source.texture.prepare.stars = PrepareParams::Stars::remove;
+    }
+    PrepareRequest request(std::uint64_t changes = 0) const {
+        return prepare_request(layer, changes).value();
+    }
+    static void wait(const PreparePreview& preview) {
+        while (preview.working()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+
+    TempFolder folder;
+    LayerParams layer;
+};
+
+TEST_F(PreparePreviewTest, ShowsThePictureBeforeAndAfter) {
+    PreparePreview preview;
+    preview.want(request());
+    wait(preview);
+    const auto found = preview.found(request());
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->error, "");
+    EXPECT_EQ(found->stars, 12);
+    EXPECT_EQ(found->before.width, 256);
+    const float seen = found->before.at(32, 31)[0], removed = found->after.at(32, 31)[0];
+    EXPECT_NEAR(seen, 210.0 / 255.0, 0.02) << "display values";
+    EXPECT_LT(removed, 0.35f);
+    EXPECT_EQ(found->after.at(32, 31)[3], 1.0f);
+    const Image exact = prepare_picture(layer.source.meshes[0].texture, layer.source.texture).image;
+    EXPECT_NEAR(removed, real::linear_to_srgb(static_cast<double>(exact.at(32, 31)[0])), 1e-6);
+}
+
+TEST_F(PreparePreviewTest, IsSmallAndCutsWhereThePictureIsCut) {
+    layer.source.texture.prepare.stars = PrepareParams::Stars::keep;
+    layer.source.texture.prepare.ellipse = glm::dvec4(128.0, 96.0, 64.0, 48.0);
+    const PreparedView view = prepared_view(request(), 100, {});
+    ASSERT_EQ(view.after.width, 64);
+    ASSERT_EQ(view.after.height, 48);
+    EXPECT_EQ(view.after.at(1, 24)[0], 0.0f);
+    EXPECT_EQ(view.after.at(32, 1)[0], 0.0f);
+    EXPECT_GT(view.after.at(32, 24)[0], 0.1f);
+    EXPECT_GT(view.before.at(1, 24)[0], 0.1f);
+}
+
+TEST_F(PreparePreviewTest, SaysWhyNothingCanBeShown) {
+    PreparePreview preview;
+    layer.source.meshes[0].texture = {folder / "missing.png"};
+    preview.want(request());
+    wait(preview);
+    ASSERT_TRUE(preview.found(request()));
+    EXPECT_NE(preview.found(request())->error.find("missing.png"), std::string::npos);
+    EXPECT_FALSE(preview.found(request(1))) << "of another request nothing is known";
+}
+
+TEST_F(PreparePreviewTest, OnlyPicturesOfTheSceneArePrepared) {
+    layer.source.meshes[0].texture.clear();
+    EXPECT_FALSE(prepare_request(layer, 0));
+    layer.source.kind = SourceKind::splats;
+    EXPECT_FALSE(prepare_request(layer, 0));
+}
+
+}  // namespace
+}  // namespace astrosplat
