@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/log.h"
+#include "core/text.h"
 #include "splat_files/native.h"
 #include "splat_files/pda.h"
 #include "splat_files/ply.h"
@@ -23,14 +26,15 @@ struct Functions {
     SplatSet (*read)(const std::filesystem::path&, const Progress&);
     void (*write)(const WriteTarget&, const SplatSet&, const Progress&);
     std::vector<std::string> (*attributes)(const std::filesystem::path&);
+    bool keeps_dust;  // splats that absorb are told from those that shine
 };
 
 constexpr std::array<Functions, 3> functions = {{
-    {"pda", read_pda, write_pda, pda_attributes},
-    {"ply", read_ply, write_ply, ply_attributes},
+    {"pda", read_pda, write_pda, pda_attributes, false},
+    {"ply", read_ply, write_ply, ply_attributes, false},
     {"splats", [](const auto& file, const auto& progress) { return read_native(file, progress); },
      [](const auto& file, const auto& set, const auto& progress) { write_native(file, set, progress); },
-     native_attributes},
+     native_attributes, true},
 }};
 
 const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file) {
@@ -55,7 +59,14 @@ std::vector<std::string> splat_attributes(const std::filesystem::path& file) {
 }
 
 void write_splats(const WriteTarget& target, const SplatSet& set, const Progress& progress) {
-    functions_of(format_by_name(target.file), target.file).write(target, set, progress);
+    const Functions& functions = functions_of(format_by_name(target.file), target.file);
+    const auto dust = std::ranges::count_if(set.color, [](const glm::vec3& c) { return c.x < 0.0f; });
+    if (set.absorbs && dust > 0 && !functions.keeps_dust)
+        log_warning(
+            fmt::format("{}: the dust, {}, absorbs light, which this format cannot say: it becomes grey; "
+                        ".splats keeps it",
+                        target.file.string(), counted(dust, "splat")));
+    functions.write(target, set, progress);
 }
 
 }  // namespace astrosplat

@@ -10,6 +10,7 @@
 #include "pipeline.h"
 #include "scene/describe.h"
 #include "sets/load_source.h"
+#include "support/quiet.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {
@@ -49,6 +50,7 @@ class Extremes : public testing::Test {
         }
     }
 
+    Quiet quiet;
     SmallScene small;
     std::vector<std::shared_ptr<const SplatSet>> sets;
 };

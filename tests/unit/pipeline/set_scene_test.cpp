@@ -8,6 +8,7 @@
 #include "output/write.h"
 #include "pipeline.h"
 #include "sets/load_source.h"
+#include "support/quiet.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {
@@ -31,6 +32,7 @@ class SetScene : public testing::Test {
         return picture(fresh);
     }
 
+    Quiet quiet;
     SmallScene small;
     Sets sets;
 };
