@@ -44,6 +44,17 @@ bool is_peak(const Image& contrast, std::int64_t x, std::int64_t y, std::int64_t
     return true;
 }
 
+// By the curvatures of the contrast along and across: 0 where one is a tenth of the other, 1 from three
+// tenths on.
+float roundness_at(const Image& contrast, std::int64_t x, std::int64_t y, std::int64_t step) {
+    const auto at = [&](std::int64_t i, std::int64_t j) { return *contrast.at(x + i * step, y + j * step); };
+    const float xx = at(1, 0) + at(-1, 0) - 2.0f * at(0, 0), yy = at(0, 1) + at(0, -1) - 2.0f * at(0, 0);
+    const float xy = 0.25f * (at(1, 1) + at(-1, -1) - at(1, -1) - at(-1, 1));
+    const float mean = 0.5f * (xx + yy), apart = std::sqrt(0.25f * (xx - yy) * (xx - yy) + xy * xy);
+    const float ratio = (mean + apart) / std::min(-1e-12f, mean - apart);
+    return std::clamp((ratio - 0.1f) / 0.2f, 0.0f, 1.0f);
+}
+
 // Peaks of one scale, in order of rows.
 std::vector<Peak> peaks(const Image& contrast, double sigma) {
     const Image common = gaussian_blur(magnitude(contrast), 12.0 + 4.0 * sigma);
@@ -56,7 +67,8 @@ std::vector<Peak> peaks(const Image& contrast, double sigma) {
                 if (here < least_contrast || here < prominence * *common.at(x, y)) continue;
                 if (!is_peak(contrast, x, y, reach)) continue;
                 const Knot knot{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
-                                static_cast<float>(sigma)};
+                                static_cast<float>(sigma),
+                                roundness_at(contrast, x, y, std::max<std::int64_t>(1, reach / 2))};
                 rows[static_cast<std::size_t>(y)].push_back({knot, here});
             }
         }

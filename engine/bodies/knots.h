@@ -12,6 +12,7 @@ namespace astrosplat {
 struct Knot {
     float x = 0.0f, y = 0.0f;  // px from the top left corner
     float sigma = 0.0f;        // px
+    float roundness = 1.0f;    // 0 for a piece of a filament, 1 for what is round
 };
 
 struct Knots {

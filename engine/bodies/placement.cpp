@@ -94,11 +94,22 @@ void add_walls(const Placement& placement, bool glow, PlacedBlock& block) {
     }
 }
 
+float relief_at(const Placement& placement, float x, float y) {
+    return 2.0f * bilinear(placement.relief, 0, x, y) - static_cast<float>(placement.depth);
+}
+
+// Under a round knot it is level, but not under a piece of a filament, which would become a flight of steps.
 void add_relief(const Placement& placement, PlacedBlock& block) {
     if (placement.relief.pixels.empty()) return;
-    for (int i = 0; i < block.count; ++i)
-        block.z[i] += 2.0f * bilinear(placement.relief, 0, block.x[i], block.y[i]) -
-                      static_cast<float>(placement.depth);
+    for (int i = 0; i < block.count; ++i) {
+        const float own = relief_at(placement, block.x[i], block.y[i]);
+        if (block.knot[i] < 0) {
+            block.z[i] += own;
+        } else {
+            const Knot& knot = placement.knots.knots[static_cast<std::size_t>(block.knot[i])];
+            block.z[i] += own + knot.roundness * (relief_at(placement, knot.x, knot.y) - own);
+        }
+    }
 }
 
 void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
@@ -109,10 +120,9 @@ void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock&
         disk_depths(stack(placement, 4.0 * h, feature, gain, 0.75), block);
     } else {
         const double gain = 0.22 * 0.26 * 7.0 * h * placement.clumps;
-        sheet_depths(stack(placement, 7.0 * h, feature, gain, 0.5), 0.5f * dots.feature, block);
+        sheet_depths(stack(placement, 7.0 * h, feature, gain, 0.5), dots.spread, block);
     }
     for (int i = 0; i < block.count; ++i) block.distance[i] = std::fabs(block.z[i]);
-    if (placement.kind == StructureKind::sheet) add_relief(placement, block);
     if (placement.kind == StructureKind::walls)
         add_walls(placement, feature > widest_filament * placement.scale, block);
 }
@@ -148,6 +158,7 @@ void follow_knots(const Placement& placement, PlacedBlock& block) {
         const std::uint32_t random = as_mix(block.random[i] ^ 0x2c1b3c6du);
         if (owner < 0 || as_uniform(random) >= placement.knots.weight[at]) continue;
         const auto knot = static_cast<std::size_t>(owner);
+        block.knot[i] = owner;
         block.z[i] = placement.knot_z[knot] +
                      logistic(as_uniform(as_mix(random)), knot_depth * placement.knots.knots[knot].sigma);
     }
@@ -190,6 +201,7 @@ std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement
         BandDots dots;
         dots.index = band.index;
         dots.feature = static_cast<float>(band.feature);
+        dots.spread = 0.5f * dots.feature;
         dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, static_cast<float>(sigma));
         const double s = static_cast<double>(dots.sigma), area = 2.0 * real::pi * s * s;
         dots.spacing = static_cast<float>(std::sqrt(std::max(1.0, area / each)));
@@ -211,7 +223,9 @@ std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement
 
 void place(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
     place_freely(placement, dots, block);
+    std::fill_n(block.knot, block.count, -1);
     if (dots.sigma <= widest_in_knots && !placement.knots.knots.empty()) follow_knots(placement, block);
+    if (placement.kind == StructureKind::sheet) add_relief(placement, block);
 }
 
 }  // namespace astrosplat

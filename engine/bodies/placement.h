@@ -50,6 +50,7 @@ struct BandDots {
     float spacing = 0.0f;     // of the lattice they are drawn on
     float threshold = 0.0f;   // amplitude over brightness below which they are thinned out
     float feature = 0.0f;
+    float spread = 0.0f;  // about a sheet
     float thickness_from = 0.0f,
           thickness_to = std::numeric_limits<float>::infinity();  // H(x, y) / H where such dots belong
 };
@@ -59,7 +60,8 @@ std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement
 
 /// A block's dots with their distances from the middle of what they belong to.
 struct PlacedBlock : DepthBlock {
-    float distance[size];  // texels, >= 0
+    float distance[size];     // texels, >= 0
+    std::int32_t knot[size];  // whose depth it has; or -1
 };
 
 /// Fills z and distance from x, y and random; dots of fine bands that belong to a knot take its depth.

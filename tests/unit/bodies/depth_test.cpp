@@ -218,6 +218,34 @@ TEST(Placement, AKnotIsABall) {
     EXPECT_GT(spread(40.0f, 40.0f), 0.2 * placement.height);
 }
 
+// A round knot is level on a slope, a piece of a filament is not.
+TEST(Placement, KnotsOfAFilamentLieOnTheRelief) {
+    Image light = make_image(320, 200, 3, 0.05f);
+    painted::add_point(light, 160.0, 100.0, 3.0, 0.5, 0.5, 0.5);
+    StructureParams params;
+    params.kind = StructureKind::sheet;
+    Placement placement = make_placement(brightest_channel(light), params, 32.0, true, 9u);
+    ASSERT_EQ(placement.knots.knots.size(), 1u);
+    placement.relief = make_image(320, 200, 1);
+    for (std::int64_t i = 0; i < 320 * 200; ++i)
+        placement.relief.pixels[static_cast<std::size_t>(i)] = 0.5f * static_cast<float>(i % 320);
+    const BandDots dots = band_dots(make_bands(320)[0], false, placement)[0];
+    for (const float roundness : {0.0f, 1.0f}) {
+        placement.knots.knots[0].roundness = roundness;
+        PlacedBlock block;
+        block.count = 200;
+        for (int i = 0; i < block.count; ++i) {
+            block.x[i] = i < 100 ? 158.0f : 162.0f;
+            block.y[i] = 100.0f;
+            block.random[i] = shared::as_hash(3u, static_cast<std::uint32_t>(i % 100), 0u, 4u);
+        }
+        place(placement, dots, block);
+        double rise = 0.0;
+        for (int i = 0; i < 100; ++i) rise += static_cast<double>(block.z[i + 100] - block.z[i]) / 100.0;
+        EXPECT_NEAR(rise, roundness > 0.5f ? 0.0 : 4.0, 1e-4);
+    }
+}
+
 TEST(Placement, WallsLieOnBothSidesAndASheetOnOne) {
     const Image brightest = brightest_channel(painted::remnant(320, 200));
     for (const StructureKind kind : {StructureKind::walls, StructureKind::sheet}) {

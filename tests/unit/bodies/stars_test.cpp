@@ -98,6 +98,25 @@ TEST(Knots, OwnThePixelsAroundThem) {
     EXPECT_EQ(knots.owner[at(200, 100)], -1);
 }
 
+TEST(Knots, ThoseOfAFilamentAreNotRound) {
+    Image light = make_image(320, 200, 3, 0.05f);
+    painted::add_point(light, 60.0, 100.0, 3.0, 0.5, 0.5, 0.5);
+    for (int i = 0; i < 60; ++i)  // slanted, with bright places
+        painted::add_point(light, 130.0 + 2.0 * i, 40.0 + 1.5 * i, 2.5, 0.10 + 0.006 * (i % 10 == 5), 0.1,
+                           0.1);
+    const Knots found = find_knots(brightest_channel(light));
+    int along = 0;
+    for (const Knot& knot : found.knots) {
+        if (knot.x < 100.0f) {
+            EXPECT_GT(knot.roundness, 0.95f);
+        } else if (knot.x > 145.0f && knot.x < 235.0f) {
+            EXPECT_LT(knot.roundness, 0.3f) << knot.x << ", " << knot.y;
+            ++along;
+        }
+    }
+    EXPECT_GE(along, 3);
+}
+
 TEST(Knots, ThereAreNoneInAnEvenSky) {
     EXPECT_TRUE(find_knots(brightest_channel(sky(256, 128))).knots.empty());
 }
