@@ -22,6 +22,7 @@ constexpr double edge_share = 0.06;    // of the width, that counts as the pictu
 constexpr double bright_middle = 2.5;  // times the light at the half-light radius
 constexpr double as_red = 0.8;         // red over blue, of the middle against its surroundings
 constexpr double even_middle = 2.2;
+constexpr double too_lopsided = 0.4;
 constexpr double dark_edge = 0.3;    // of the mean light
 constexpr double alone_edge = 0.45;  // of the same, for what has a glow around it
 
@@ -40,12 +41,20 @@ Image small_copy(const Image& light) {
     return gaussian_blur(of_width(copy, small_width), 1.0);
 }
 
+struct Place {
+    std::int64_t x, y;
+};
+Place brightest_place(const Image& light) {
+    const Image smooth = gaussian_blur(brightest_channel(light), 0.02 * static_cast<double>(light.width));
+    const auto top = std::max_element(smooth.pixels.begin(), smooth.pixels.end()) - smooth.pixels.begin();
+    return {top % light.width, top / light.width};
+}
+
 // The pixels by their distance from the brightest place, px.
 std::vector<Pixel> by_radius(const Image& light) {
     const Image brightest = brightest_channel(light);
-    const Image smooth = gaussian_blur(brightest, 0.02 * static_cast<double>(light.width));
-    const auto top = std::max_element(smooth.pixels.begin(), smooth.pixels.end()) - smooth.pixels.begin();
-    const double cx = static_cast<double>(top % light.width), cy = static_cast<double>(top / light.width);
+    const Place middle = brightest_place(light);
+    const auto cx = static_cast<double>(middle.x), cy = static_cast<double>(middle.y);
     const double sky = percentile({brightest.pixels.begin(), brightest.pixels.end()}, 0.1);
     const auto edge = static_cast<std::int64_t>(edge_share * static_cast<double>(light.width));
     std::vector<Pixel> pixels;
@@ -71,6 +80,35 @@ double half_light_radius(const std::vector<Pixel>& pixels) {
     return 0.0;
 }
 
+bool is_grey(const std::vector<Pixel>& pixels) {
+    return std::all_of(pixels.begin(), pixels.end(), [](const Pixel& p) {
+        return std::fabs(p.red - p.blue) <= 1e-4 + 0.01 * std::max(p.red, p.blue);
+    });
+}
+
+// How far the light around the brightest place differs from that on the opposite side of it: 0 alike .. 1.
+double lopsidedness(const Image& light, double half) {
+    const Image brightest = gaussian_blur(brightest_channel(light), 2.0);
+    const Place middle = brightest_place(light);
+    const double sky = percentile({brightest.pixels.begin(), brightest.pixels.end()}, 0.1);
+    const auto above_sky = [&](std::int64_t x, std::int64_t y) {
+        return std::max(0.0, static_cast<double>(*brightest.at(x, y)) - sky);
+    };
+    double difference = 0.0, sum = 0.0;
+    for (std::int64_t y = 0; y < light.height; ++y) {
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            const std::int64_t u = 2 * middle.x - x, v = 2 * middle.y - y;
+            const double radius =
+                std::hypot(static_cast<double>(x - middle.x), static_cast<double>(y - middle.y));
+            const bool seen = u >= 0 && v >= 0 && u < light.width && v < light.height;
+            if (!seen || radius < 0.35 * half || radius > 1.5 * half) continue;
+            difference += std::fabs(above_sky(x, y) - above_sky(u, v));
+            sum += above_sky(x, y) + above_sky(u, v);
+        }
+    }
+    return sum > 0.0 ? difference / sum : 1.0;
+}
+
 // Means over the pixels for which `wanted` holds.
 struct Part {
     double light = 0.0, redness = 1.0;
@@ -92,7 +130,8 @@ Part part_of(const std::vector<Pixel>& pixels, Wanted wanted) {
 
 StructureChoice choose_structure(const Image& light) {
     if (light.width < 16 || light.height < 16) return {StructureKind::sheet, "it is too small to tell"};
-    const std::vector<Pixel> pixels = by_radius(small_copy(light));
+    const Image small = small_copy(light);
+    const std::vector<Pixel> pixels = by_radius(small);
     const double half = half_light_radius(pixels);
     const Part all = part_of(pixels, [](const Pixel&) { return true; });
     const Part edge = part_of(pixels, [](const Pixel& p) { return p.edge; });
@@ -104,6 +143,10 @@ StructureChoice choose_structure(const Image& light) {
     if (!(all.light > 0.0)) return {StructureKind::sheet, "it is even up to its edges"};
     const double peak = middle.light / std::max(1e-12, ring.light);
     const bool red = middle.redness >= as_red * outside.redness, dark = edge.light <= dark_edge * all.light;
+    // Without colour the shape has to tell: real galaxies have .06 to .20, clouds up to .6.
+    const bool lopsided = is_grey(pixels) && lopsidedness(small, half) > too_lopsided;
+    if (peak >= bright_middle && red && dark && lopsided)
+        return {StructureKind::sheet, "it is grey, and its bright middle has different light on either side"};
     if (peak >= bright_middle && red && dark)
         return {StructureKind::disk,
                 "its light gathers in a middle that is as red as what is around it, or redder"};

@@ -13,8 +13,9 @@ struct StructureChoice {
     std::string why;  // "its light gathers in the middle, which is redder than what is around it"
 };
 
-/// disk for what has a bright middle that is at least as red as its surroundings, walls for what stands alone
-/// on a dark sky and is bright all over or at its rim, sheet for everything else. `light`: RGB, linear, >= 0.
+/// disk for what has a bright middle that is at least as red as its surroundings (in a grey picture: with
+/// light all around it), walls for what stands alone on a dark sky and is bright all over or at its rim,
+/// sheet for everything else. `light`: RGB, linear, >= 0.
 StructureChoice choose_structure(const Image& light);
 
 }  // namespace astrosplat

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "bodies/picture_light.h"
 #include "source/texture.h"
 #include "support/painted_picture.h"
@@ -28,9 +31,36 @@ TEST(ChooseStructure, SaysWhy) {
     EXPECT_NE(choose_structure(make_image(8, 8, 3, 0.3f)).why.find("small"), std::string::npos);
 }
 
+// Grey, with a bright middle and a tail to one side; `sides` 2: to both.
+Image tailed(int sides) {
+    Image light = make_image(400, 250, 3);
+    for (std::int64_t y = 0; y < light.height; ++y) {
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            const auto u = static_cast<float>(x - 200), v = static_cast<float>(y - 125);
+            const bool in_tail = u > 0.0f || sides == 2;
+            const float tail = in_tail ? 0.2f * std::exp(-std::fabs(u) / 50.0f - v * v / 3000.0f) : 0.0f;
+            std::fill_n(light.at(x, y), 3, tail + 0.6f * std::exp(-(u * u + v * v) / 60.0f));
+        }
+    }
+    return light;
+}
+
+TEST(ChooseStructure, InGreyTheShapeTellsAGalaxyFromACloud) {
+    EXPECT_EQ(choose_structure(tailed(2)).kind, StructureKind::disk) << choose_structure(tailed(2)).why;
+    EXPECT_EQ(choose_structure(tailed(1)).kind, StructureKind::sheet);
+    EXPECT_NE(choose_structure(tailed(1)).why.find("grey"), std::string::npos)
+        << choose_structure(tailed(1)).why;
+}
+
 StructureKind chosen(const std::filesystem::path& file) {
     const Texture texture = load_texture({file}, {}, TextureSettings::Wrap::clamp);
     return choose_structure(picture_light(texture, 0.0).light).kind;
+}
+
+TEST(ChooseStructure, TellsRealGreyObjectsApart) {
+    ASTROSPLAT_TEST_DATA_OR_SKIP(fits, "fits");
+    EXPECT_EQ(chosen(fits / "w5_wise.fits"), StructureKind::sheet);
+    EXPECT_EQ(chosen(fits / "m51_b_kpno.fits"), StructureKind::disk);
 }
 
 TEST(ChooseStructure, TellsRealObjectsApart) {
