@@ -38,7 +38,7 @@ exposure   = 0.0                  # stops; acts in .png and .tif, exr holds scen
 position = [0, {distance}, 0]
 target   = [0, 0, 0]
 up       = [0, 0, -1]
-fov      = {fov}                     # degrees, vertical
+fov      = {fov}                   # degrees, vertical
 
 [[layer]]
 name = {name}
