@@ -127,14 +127,22 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<std::
     return reference;
 }
 
+std::int64_t FidelityReference::front_width_px(std::int64_t wanted) const {
+    constexpr std::int64_t tallest = 5120;
+    const std::int64_t fitting = wanted * tallest / height_px(wanted);
+    return std::min(wanted, std::max(fitting, picture.width));
+}
+
 std::int64_t fidelity_bytes(const FidelityReference& reference, const FidelitySettings& settings) {
     const Image& picture = reference.picture;
     const auto views = [&](std::int64_t width) {
         return width * reference.height_px(width) * (4 + picture.channels);
     };
-    const std::int64_t small = settings.width_px, large = std::max(picture.width, small);
+    const std::int64_t small = reference.front_width_px(settings.width_px),
+                       large = std::max(picture.width, small);
     const std::int64_t blurs = 2 * picture.width * picture.height * picture.channels;
-    const std::int64_t sides = 4 * small * small * (side_aspect[1] + edge_aspect[1]) / side_aspect[0];
+    const std::int64_t sides =
+        4 * settings.width_px * settings.width_px * (side_aspect[1] + edge_aspect[1]) / side_aspect[0];
     const std::int64_t floats = blurs + views(small) + sides + views(large);
     return floats * static_cast<std::int64_t>(sizeof(float)) +
            front_fidelity_bytes(large, reference.height_px(large));
@@ -153,7 +161,8 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
         return compare_front(views, reference, now.output.pixel_filter, width_px,
                              step(fmt::format("front at {} px", width_px)));
     };
-    FrontComparison front = front_at(settings.width_px);
+    const std::int64_t small = reference.front_width_px(settings.width_px);
+    FrontComparison front = front_at(small);
     report.front = std::move(front.fidelity);
     report.front_view = std::move(front.seen);
     report.front_reference = std::move(front.picture);
@@ -165,15 +174,16 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
     report.needles = needles(report.side_view);
     report.edge_view = render(JudgingView::edge, edge_aspect, "edge-on");
     report.edge = edge_on_profile(report.edge_view);
-    report.full = reference.picture.width == settings.width_px ? report.front
-                                                               : front_at(reference.picture.width).fidelity;
+    report.full =
+        reference.picture.width == small ? report.front : front_at(reference.picture.width).fidelity;
     return report;
 }
 
 FrontComparison compare_front(const Scene& now, LayerSets sets, const FidelityReference& reference,
                               std::int64_t width_px, const Progress& progress) {
     FidelityViews views(now, std::move(sets));
-    return compare_front(views, reference, now.output.pixel_filter, width_px, progress);
+    return compare_front(views, reference, now.output.pixel_filter, reference.front_width_px(width_px),
+                         progress);
 }
 
 }  // namespace astrosplat

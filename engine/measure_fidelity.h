@@ -32,6 +32,8 @@ struct FidelityReference {
 
     /// Height in px of a front view so wide.
     std::int64_t height_px(std::int64_t width_px) const;
+    /// `wanted`, or less where a strip would become taller than 5120 px, but not less than the picture's own.
+    std::int64_t front_width_px(std::int64_t wanted) const;
 };
 
 /// The picture of the first visible layer made of meshes, or of the first such layer at all, so that a

@@ -111,6 +111,19 @@ TEST_F(Fidelity, ALayerThatIsNotVisibleCanNameThePicture) {
     EXPECT_NE(none.find("a layer of kind \"mesh\""), std::string::npos) << none;
 }
 
+TEST_F(Fidelity, AStripIsNotBlownUpToTheWidthOfAPicture) {
+    FidelityReference strip;
+    strip.frame.width = 3.0;
+    strip.frame.height = 2000.0;
+    strip.picture = make_image(3, 2000, 3);
+    EXPECT_EQ(strip.front_width_px(1280), 7);
+    EXPECT_EQ(strip.front_width_px(3), 3);
+    strip.picture = make_image(10, 6667, 3);
+    EXPECT_EQ(strip.front_width_px(1280), 10);
+    strip.frame.height = 2.0;
+    EXPECT_EQ(strip.front_width_px(1280), 1280);
+}
+
 TEST_F(Fidelity, StopsWhenAsked) {
     const FidelityReference reference = fidelity_reference(scene, std::nullopt);
     const std::atomic<bool> stop{true};
