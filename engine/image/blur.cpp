@@ -1,4 +1,4 @@
-// Separable passes: along rows over contiguous floats, down columns a row at a time.
+// Separable passes over contiguous floats, strip by strip: along the rows of a strip, then down its columns.
 #include "image/blur.h"
 
 #include <algorithm>
@@ -8,13 +8,21 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "image/weighted_rows.h"
 
 namespace astrosplat {
 namespace {
 
 constexpr double widest_direct_px = 4.0;  // above this, halving is quicker and within 1 % of the peak
 constexpr double halving_variance = 1.5;  // px^2 of halving and doubling together
-constexpr std::int64_t rows_per_chunk = 16;
+constexpr std::int64_t rows_per_chunk = 16, rows_per_strip = 64;
+
+// Without a value: whoever writes a pixel first takes its memory.
+Image unfilled_image(std::int64_t width, std::int64_t height, int channels) {
+    Image image{width, height, channels, {}};
+    image.pixels.resize(static_cast<std::size_t>(width * height * channels));
+    return image;
+}
 
 // Index of the mirrored picture: ... 1 0 | 0 1 2 ... n-1 | n-1 n-2 ...
 std::int64_t mirrored(std::int64_t i, std::int64_t n) {
@@ -46,40 +54,34 @@ void mirror_ends(float* middle, std::int64_t width, int channels, std::int64_t m
     }
 }
 
-// out[i] = sum of weights[k] * rows[k][i], terms in ascending k.
-template <class RowOf>
-void weighted_sum(const std::vector<float>& weights, std::int64_t count, float* out, const RowOf& row_of) {
-    for (std::size_t k = 0; k < weights.size(); ++k) {
-        const float w = weights[k];
-        const float* const in = row_of(static_cast<std::int64_t>(k));
-        for (std::int64_t i = 0; i < count; ++i) out[i] += w * in[i];
-    }
-}
-
-Image blurred_rows(const Image& image, const std::vector<float>& weights) {
-    Image out = make_image(image.width, image.height, image.channels);
-    const auto margin = static_cast<std::int64_t>(weights.size() / 2);
-    const std::int64_t count = image.width * image.channels;
-    parallel_each(image.height, rows_per_chunk, [&](std::int64_t y) {
-        std::vector<float> padded(static_cast<std::size_t>(count + 2 * margin * image.channels));
+// Rows of a strip blurred along themselves, those that the columns' kernel reaches beyond it included.
+class BlurredRows {
+  public:
+    BlurredRows(const Image& image, const std::vector<float>& weights, std::int64_t begin, std::int64_t end)
+        : begin_(begin - margin_of(weights)), count_(image.width * image.channels) {
+        const std::int64_t margin = margin_of(weights), rows = end + margin - begin_;
+        values_.resize(static_cast<std::size_t>(rows * count_));
+        Buffer<float> padded(static_cast<std::size_t>(count_ + 2 * margin * image.channels));
         float* const middle = padded.data() + margin * image.channels;
-        std::copy_n(image.at(0, y), count, middle);
-        mirror_ends(middle, image.width, image.channels, margin);
-        weighted_sum(weights, count, out.at(0, y),
-                     [&](std::int64_t k) { return padded.data() + k * image.channels; });
-    });
-    return out;
-}
+        std::vector<const float*> shifted;
+        for (std::size_t k = 0; k < weights.size(); ++k)
+            shifted.push_back(padded.data() + static_cast<std::int64_t>(k) * image.channels);
+        for (std::int64_t row = 0; row < rows; ++row) {
+            std::copy_n(image.at(0, mirrored(begin_ + row, image.height)), count_, middle);
+            mirror_ends(middle, image.width, image.channels, margin);
+            weighted_rows(weights, shifted, count_, values_.data() + row * count_);
+        }
+    }
 
-Image blurred_columns(const Image& image, const std::vector<float>& weights) {
-    Image out = make_image(image.width, image.height, image.channels);
-    const auto margin = static_cast<std::int64_t>(weights.size() / 2);
-    parallel_each(image.height, rows_per_chunk, [&](std::int64_t y) {
-        weighted_sum(weights, image.width * image.channels, out.at(0, y),
-                     [&](std::int64_t k) { return image.at(0, mirrored(y + k - margin, image.height)); });
-    });
-    return out;
-}
+    const float* row(std::int64_t y) const { return values_.data() + (y - begin_) * count_; }
+
+  private:
+    static std::int64_t margin_of(const std::vector<float>& weights) {
+        return static_cast<std::int64_t>(weights.size() / 2);
+    }
+    std::int64_t begin_, count_;
+    Buffer<float> values_;
+};
 
 // The four rows or columns that the pixel at 2 i + 1/2 averages.
 const std::vector<float> binomial{0.125f, 0.375f, 0.375f, 0.125f};
@@ -90,17 +92,29 @@ Image convolved_with_gaussian(const Image& image, double sigma_px) {
     assert(sigma_px >= 0.0);
     if (sigma_px < 0.125 || image.width == 0 || image.height == 0) return image;  // the kernel is one pixel
     const std::vector<float> weights = gaussian_weights(sigma_px);
-    return blurred_columns(blurred_rows(image, weights), weights);
+    const auto margin = static_cast<std::int64_t>(weights.size() / 2);
+    Image out = unfilled_image(image.width, image.height, image.channels);
+    parallel_chunks(image.height, rows_per_strip, [&](std::int64_t begin, std::int64_t end, int) {
+        const BlurredRows blurred(image, weights, begin, end);
+        std::vector<const float*> rows(weights.size());
+        for (std::int64_t y = begin; y < end; ++y) {
+            for (std::size_t k = 0; k < rows.size(); ++k)
+                rows[k] = blurred.row(y - margin + static_cast<std::int64_t>(k));
+            weighted_rows(weights, rows, image.width * image.channels, out.at(0, y));
+        }
+    });
+    return out;
 }
 
 Image halved(const Image& image) {
     const int channels = image.channels;
-    Image out = make_image((image.width + 1) / 2, (image.height + 1) / 2, channels);
+    Image out = unfilled_image((image.width + 1) / 2, (image.height + 1) / 2, channels);
     parallel_each(out.height, rows_per_chunk, [&](std::int64_t y) {
-        std::vector<float> sum(static_cast<std::size_t>((image.width + 4) * channels), 0.0f);
+        std::vector<float> sum(static_cast<std::size_t>((image.width + 4) * channels));
         float* const middle = sum.data() + 2 * channels;
-        weighted_sum(binomial, image.width * channels, middle,
-                     [&](std::int64_t k) { return image.at(0, mirrored(2 * y + k - 1, image.height)); });
+        const float* rows[4];
+        for (std::int64_t k = 0; k < 4; ++k) rows[k] = image.at(0, mirrored(2 * y + k - 1, image.height));
+        weighted_rows(binomial, rows, image.width * channels, middle);
         mirror_ends(middle, image.width, channels, 2);
         float* const row = out.at(0, y);
         for (std::int64_t x = 0; x < out.width; ++x) {
@@ -117,7 +131,7 @@ Image halved(const Image& image) {
 Image doubled(const Image& image, std::int64_t width, std::int64_t height) {
     assert((width + 1) / 2 == image.width && (height + 1) / 2 == image.height);
     const int channels = image.channels;
-    Image out = make_image(width, height, channels);
+    Image out = unfilled_image(width, height, channels);
     parallel_each(height, rows_per_chunk, [&](std::int64_t y) {
         std::vector<float> row(static_cast<std::size_t>((image.width + 2) * channels));
         const float* const near = image.at(0, y / 2);
