@@ -267,8 +267,12 @@ HWY_FLATTEN inline void absorb(const SplatBatch& batch, int i, V s, V (&hidden)[
     for (int n = 0; n < lanes; ++n) log[n] = lane_maths::as_log(rest[n]);
     for (int k = 0; k < 3; ++k) {
         const float exponent = batch.occlusion[k][i];
+        if (exponent == 1.0f) {
+            hidden[k] = hn::Sub(all(1.0f), load(rest));
+            continue;
+        }
         for (int n = 0; n < lanes; ++n) through[n] = lane_maths::as_exp(exponent * log[n]);
-        hidden[k] = hn::Sub(all(1.0f), load(exponent == 1.0f ? rest : through));
+        hidden[k] = hn::Sub(all(1.0f), load(through));
     }
 }
 
