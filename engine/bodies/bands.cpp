@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "image/blur.h"
+#include "image/channels.h"
 
 namespace astrosplat {
 namespace {
@@ -16,41 +17,46 @@ constexpr float contrast_share = 0.5f;                 // of the deviation that 
 constexpr double finest_hole_px = 2.0;
 constexpr float least_share = 0.25f;  // of the mean that the coarser band gets
 
-// r, g, b, the brightest of them and its square: blurred together, they give means and the deviation.
-Image with_moments(const Image& light) {
-    Image out = make_image(light.width, light.height, 5);
-    parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin * light.width; i < end * light.width; ++i) {
-            const float* const in = light.pixels.data() + i * 3;
-            float* const p = out.pixels.data() + i * 5;
-            const float brightest = std::max({in[0], in[1], in[2]});
-            std::copy_n(in, 3, p);
-            p[3] = brightest;
-            p[4] = brightest * brightest;
-        }
+// The brightest channel and its square: blurred together, they give mean and deviation.
+Image moments_of(const Image& light) {
+    Image out = make_image(light.width, light.height, 2);
+    parallel_each(light.width * light.height, 65536, [&](std::int64_t i) {
+        const float* const p = light.pixels.data() + 3 * i;
+        const float brightest = std::max({p[0], p[1], p[2]});
+        out.pixels[static_cast<std::size_t>(2 * i)] = brightest;
+        out.pixels[static_cast<std::size_t>(2 * i + 1)] = brightest * brightest;
     });
     return out;
 }
 
-// Leaves in `light` what the coarser bands share and returns the rest.
-Image take_band(Image& light, double blur, bool fill_holes) {
-    const Image moments = gaussian_blur(with_moments(light), blur);
-    Image band = make_image(light.width, light.height, 3);
-    parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin * light.width; i < end * light.width; ++i) {
-            const float* const p = moments.pixels.data() + i * 5;
-            const float deviation = std::sqrt(std::max(0.0f, p[4] - p[3] * p[3]));
-            const float share =
-                std::clamp(1.0f - contrast_share * deviation / std::max(1e-6f, p[3]), least_share, 1.0f);
-            for (std::int64_t c = 3 * i; c < 3 * i + 3; ++c) {
-                float& here = light.pixels[static_cast<std::size_t>(c)];
-                const float common = std::max(0.0f, p[c - 3 * i] * share);
-                const float coarser = fill_holes ? common : std::min(common, here);
-                band.pixels[static_cast<std::size_t>(c)] = std::max(0.0f, here - coarser);
-                here = coarser;
-            }
-        }
+// The share of the mean that the coarser bands get.
+Image common_share(const Image& light, double blur) {
+    const Image moments = gaussian_blur(moments_of(light), blur);
+    Image share = make_image(light.width, light.height, 1);
+    parallel_each(share.pixels.size(), 65536, [&](std::size_t i) {
+        const float mean = moments.pixels[2 * i], square = moments.pixels[2 * i + 1];
+        const float deviation = std::sqrt(std::max(0.0f, square - mean * mean));
+        share.pixels[i] =
+            std::clamp(1.0f - contrast_share * deviation / std::max(1e-6f, mean), least_share, 1.0f);
     });
+    return share;
+}
+
+// Leaves in `light` what the coarser bands share and returns the rest. A channel at a time: pictures are
+// large.
+Image take_band(Image& light, double blur, bool fill_holes) {
+    const Image share = common_share(light, blur);
+    Image band = make_image(light.width, light.height, 3);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Image mean = gaussian_blur(channel_of(light, static_cast<int>(c)), blur);
+        parallel_each(mean.pixels.size(), 65536, [&](std::size_t i) {
+            float& here = light.pixels[3 * i + c];
+            const float common = std::max(0.0f, mean.pixels[i] * share.pixels[i]);
+            const float coarser = fill_holes ? common : std::min(common, here);
+            band.pixels[3 * i + c] = std::max(0.0f, here - coarser);
+            here = coarser;
+        });
+    }
     return band;
 }
 

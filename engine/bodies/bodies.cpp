@@ -58,22 +58,22 @@ void add(const Image& light, Image& sum) {
     });
 }
 
-PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const StructureParams& params,
-                      std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
-    const PictureLight picture = picture_light(texture, params.border);
-    Image without_stars = picture.light;
+// All dots of a picture, with their colours as they would be if nothing hid anything.
+PictureSplats make_dots(const PictureLight& picture, const UvSurface& surface, const StructureParams& params,
+                        std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
+    Image rest = picture.light;
     const std::vector<Star> stars =
-        params.stars != StructureParams::Stars::no ? take_stars(without_stars) : std::vector<Star>{};
+        params.stars != StructureParams::Stars::no ? take_stars(rest) : std::vector<Star>{};
     progress.check();
-    const Placement placement = make_placement(brightest_channel(without_stars), params,
-                                               surface.texels_per_unit(), surface.flat(), seed);
+    const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
+    const Placement placement =
+        make_placement(without_stars, params, surface.texels_per_unit(), surface.flat(), seed);
     const Opacity opacity{static_cast<float>(params.opacity), static_cast<float>(params.density)};
-    const Image brightest = brightest_channel(picture.light);
-    const std::vector<Band> bands = make_bands(picture.light.width);
+    const std::vector<Band> bands = make_bands(rest.width);
     const double dust = params.dust ? *params.dust : params.kind == StructureKind::disk ? dust_of_disks : 0.0;
-    Image emission = make_image(dust > 0.0 ? picture.light.width : 0, picture.light.height, 3);
+    Image emission = make_image(dust > 0.0 ? rest.width : 0, rest.height, 3);
     PictureSplats dots;
-    split_bands(without_stars, bands, dust > 0.0, [&](const Band& band, const Image& light) {
+    split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
         if (dust > 0.0) add(light, emission);
         const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
@@ -82,12 +82,21 @@ PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const St
     });
     if (dust > 0.0) add_dust(transmittance_of(without_stars, emission, picture.alpha), dust, placement, dots);
     add_stars(stars, placement, opacity, dots);
-    const FrontFit fit = fit_front(dots, picture.light, progress);
-    log_detail(fmt::format(
-        "layer '{}': {} and {} in {}, front view {:.1f} dB after {} steps of the fit, {:.1f} before",
-        layer_name, human_count(static_cast<double>(dots.splats.size())) + " dots",
-        counted(static_cast<std::int64_t>(stars.size()), "star"),
-        counted(static_cast<std::int64_t>(bands.size()), "band"), fit.psnr_db, fit.steps, fit.first_psnr_db));
+    log_detail(fmt::format("layer '{}': {} dots and {} in {}", layer_name,
+                           human_count(static_cast<double>(dots.splats.size())),
+                           counted(static_cast<std::int64_t>(stars.size()), "star"),
+                           counted(static_cast<std::int64_t>(bands.size()), "band")));
+    return dots;
+}
+
+PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const StructureParams& params,
+                      std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
+    PictureLight picture = picture_light(texture, params.border);
+    PictureSplats dots = make_dots(picture, surface, params, seed, layer_name, progress);
+    picture.alpha = {};
+    const FrontFit fit = fit_front(dots, std::move(picture.light), progress);
+    log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit, {:.1f} before",
+                           layer_name, fit.psnr_db, fit.steps, fit.first_psnr_db));
     return dots;
 }
 
@@ -173,7 +182,7 @@ std::int64_t expected_dots(std::span<const TexturedMesh> meshes) {
 }
 
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes) {
-    constexpr std::int64_t bytes_per_texel = 285, bytes_per_dot = 160;  // measured
+    constexpr std::int64_t bytes_per_texel = 175, bytes_per_dot = 140;  // measured
     std::int64_t largest = 0;
     for (const PictureOnMesh& picture : pictures_of(meshes))
         largest = std::max(largest, texels_of(picture.texture()));

@@ -147,8 +147,8 @@ class DustRow {
 
 }  // namespace
 
-Image transmittance_of(const Image& light, const Image& emission, const Image& alpha) {
-    Image ratio = brightest_channel(light);
+Image transmittance_of(const Image& brightest, const Image& emission, const Image& alpha) {
+    Image ratio = brightest;
     const Image whole = brightest_channel(emission);
     for (std::size_t i = 0; i < ratio.pixels.size(); ++i)
         ratio.pixels[i] = std::clamp((ratio.pixels[i] + dark_sky) / (whole.pixels[i] + dark_sky),

@@ -10,10 +10,10 @@ namespace astrosplat {
 /// Exponents of what dust lets through, r, g, b: more blue is lost.
 inline constexpr glm::vec3 dust_exponents{0.8f, 1.0f, 1.35f};
 
-/// What reaches the viewer of a disk that shines as `emission`, so that `light` is seen: the ratio of their
-/// brightest channels, .1 to 1; 1 where both are dark. One channel. The less, the smaller the picture's
-/// `alpha` (one channel, or without pixels): what fades towards an edge is no dust.
-Image transmittance_of(const Image& light, const Image& emission, const Image& alpha = {});
+/// What reaches the viewer of a disk that shines as `emission`, so that at most `brightest` is seen in any
+/// channel: the ratio of the brightest ones, .1 to 1; 1 where both are dark. One channel. The less, the
+/// smaller the picture's `alpha` (one channel, or without pixels): what fades towards an edge is no dust.
+Image transmittance_of(const Image& brightest, const Image& emission, const Image& alpha = {});
 
 /// Adds the dust that, with the light of `out` partly before it and partly behind, leaves `transmittance`
 /// of the whole. `amount`: share of its optical depth, 0 to 1.

@@ -1,16 +1,19 @@
-// Richardson and Lucy's steps with an exponent: they stay positive and undo the dots' own blur as well. Dots
-// of one size see the ratio through their own footprint; wide ones on a coarser grid.
+// Compositing the dots takes long, and what hides what does not change with their colours. So they are
+// rendered twice only; between, the share of all light that reaches the viewer, pixel by pixel, makes the
+// view out of the dots' flat light. Steps are Richardson and Lucy's, which stay positive and undo the dots'
+// own blur as well.
 #include "bodies/front_fit.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
+#include "bodies/flat_light.h"
 #include "camera/camera.h"
 #include "core/color.h"
 #include "core/parallel.h"
 #include "core/real.h"
-#include "core/shared_maths.h"
 #include "image/blur.h"
 #include "image/channels.h"
 #include "render/render.h"
@@ -18,27 +21,59 @@
 namespace astrosplat {
 namespace {
 
-constexpr double filter_px = 0.5;  // of the output's pixels, as scenes have it
-constexpr float sky = 0.002f;      // added to both sides of a ratio
-constexpr int most_steps = 6, fast_steps = 5;
-constexpr float fast_exponent = 2.2f;  // of the first steps
-constexpr double least_gain_db = 0.1;
+constexpr double filter_px = 0.5;               // of the output's pixels, as scenes have it
+constexpr float sky = 0.002f;                   // added to both sides of a ratio
+constexpr int first_steps = 4, last_steps = 2;  // after the first rendering, and after the last
 constexpr std::int64_t cell_px = 32;
-constexpr double seen_share = 0.25;        // of a footprint's variance through which a dot sees the ratio
-constexpr std::int64_t psnr_step = 4;      // rows between those that the PSNR is measured on
-constexpr double finest_grid_sigma = 1.5;  // grid steps below which a blur is not made coarser
+constexpr std::int64_t psnr_step = 4;  // rows between those that the PSNR is measured on
 
-float factor(const Image& grid, int channel, float x, float y) {
-    const float ratio = bilinear(grid, channel, x, y) / bilinear(grid, channel + 3, x, y);
-    return std::clamp(ratio, 0.33f, 3.0f);
+Image quotient(Image image, const Image& divisor) {
+    parallel_each(image.pixels.size(), 65536,
+                  [&](std::size_t i) { image.pixels[i] /= std::max(divisor.pixels[i], 1e-12f); });
+    return image;
+}
+
+void multiply(Image& image, const Image& factor) {
+    parallel_each(image.pixels.size(), 65536, [&](std::size_t i) { image.pixels[i] *= factor.pixels[i]; });
+}
+
+// Channel 0: what is wanted over what is seen, times what is seen; 1: what is seen.
+Image weighted_ratio(const Image& wanted, const Image& seen) {
+    Image out = make_image(seen.width, seen.height, 2);
+    parallel_each(seen.pixels.size(), 65536, [&](std::size_t i) {
+        const float here = seen.pixels[i] + sky;
+        out.pixels[2 * i] = std::clamp((wanted.pixels[i] + sky) / here, 0.25f, 4.0f) * here;
+        out.pixels[2 * i + 1] = here;
+    });
+    return out;
+}
+
+// What is wanted over what is seen, in cells.
+Image cell_ratio(const Image& wanted, const Image& seen) {
+    Image cells = make_image((seen.width + cell_px - 1) / cell_px, (seen.height + cell_px - 1) / cell_px, 1);
+    parallel_each(cells.height, 1, [&](std::int64_t row) {
+        for (std::int64_t column = 0; column < cells.width; ++column) {
+            double wanted_sum = 0.0, seen_sum = 0.0;
+            for (std::int64_t y = row * cell_px; y < std::min((row + 1) * cell_px, seen.height); ++y) {
+                for (std::int64_t x = column * cell_px; x < std::min((column + 1) * cell_px, seen.width);
+                     ++x) {
+                    wanted_sum += static_cast<double>(*wanted.at(x, y));
+                    seen_sum += static_cast<double>(*seen.at(x, y));
+                }
+            }
+            const double ratio = seen_sum > 0.0 ? wanted_sum / seen_sum : 1.0;
+            *cells.at(column, row) = static_cast<float>(std::clamp(ratio, 0.5, 2.0));
+        }
+    });
+    return cells;
 }
 
 class FrontView {
   public:
-    FrontView(PictureSplats& dots, const Image& light)
-        : dots_(dots), target_(gaussian_blur(light, filter_px)) {
-        settings_.width = light.width;
-        settings_.height = light.height;
+    FrontView(PictureSplats& dots, const Image& picture)
+        : target_(gaussian_blur(picture, filter_px)), flat_(dots, picture.width, picture.height, filter_px) {
+        settings_.width = picture.width;
+        settings_.height = picture.height;
         settings_.pixel_filter = static_cast<float>(filter_px);
         layer_.name = "front";
         layer_.splats = &dots.splats;
@@ -48,32 +83,30 @@ class FrontView {
         CameraParams params;
         params.projection = Projection::orthographic;
         params.position =
-            glm::dvec3(0.0, 0.0, 2.0 * static_cast<double>(highest) + static_cast<double>(light.width));
+            glm::dvec3(0.0, 0.0, 2.0 * static_cast<double>(highest) + static_cast<double>(picture.width));
         params.target = glm::dvec3(0.0);
-        params.height = static_cast<double>(light.height);
+        params.height = static_cast<double>(picture.height);
         camera_ =
-            make_camera(params, static_cast<double>(light.width), static_cast<double>(light.height), {});
+            make_camera(params, static_cast<double>(picture.width), static_cast<double>(picture.height), {});
     }
 
     void render_now(const Progress& progress) {
         frame_ = render({&layer_, 1}, camera_, nullptr, settings_, progress, &cache_);
     }
 
-    double psnr_db() const;
-    void step(float exponent);
-    void match_cells();
+    /// Takes a channel so many steps on from the rendering; `settle`: with the last one the light of wide
+    /// areas is right, too, and what is seen then is returned.
+    Image go_on(int channel, int steps, bool settle);
+    /// Takes a channel from what is seen to the picture's flux, cell by cell.
+    void match_cells(int channel, const Image& seen);
+    /// Sum of the squares of what sRGB values differ from the picture's, of some rows.
+    double error(int channel, const Image& seen) const;
+    double rendered_error(int channel) const { return error(channel, channel_of(frame_.beauty, channel)); }
+    double psnr_db(double error_of_all) const;
 
   private:
-    Image weighted_ratio() const;
-    Image cell_flux() const;
-    /// Where a dot is in the picture, px from the top left corner.
-    glm::vec2 texel(const glm::vec3& p) const {
-        return {p.x + 0.5f * static_cast<float>(target_.width),
-                0.5f * static_cast<float>(target_.height) - p.y};
-    }
-
-    PictureSplats& dots_;
-    Image target_;
+    Image target_;  // the picture as the filter shows it
+    FlatLight flat_;
     RenderSettings settings_;
     RenderLayer layer_;
     Camera camera_;
@@ -81,133 +114,70 @@ class FrontView {
     RenderedFrame frame_;
 };
 
-double FrontView::psnr_db() const {
-    std::vector<double> rows(static_cast<std::size_t>((target_.height + psnr_step - 1) / psnr_step), 0.0);
-    parallel_chunks(
-        static_cast<std::int64_t>(rows.size()), 16, [&](std::int64_t begin, std::int64_t end, int) {
-            for (std::int64_t row = begin; row < end; ++row) {
-                const std::int64_t y = row * psnr_step;
-                double sum = 0.0;
-                for (std::int64_t x = 0; x < target_.width; ++x) {
-                    for (int c = 0; c < 3; ++c) {
-                        const double seen = static_cast<double>(display_srgb(frame_.beauty.at(x, y)[c]));
-                        const double wanted = static_cast<double>(display_srgb(target_.at(x, y)[c]));
-                        sum += (seen - wanted) * (seen - wanted);
-                    }
-                }
-                rows[static_cast<std::size_t>(row)] = sum;
-            }
-        });
-    double sum = 0.0;
-    for (const double of_row : rows) sum += of_row;
-    const double mean = sum / (3.0 * static_cast<double>(target_.width) * static_cast<double>(rows.size()));
-    return -10.0 / real::log(10.0) * real::log(std::max(mean, 1e-12));
-}
-
-// Channels 0..2: ratio times what is seen; 3..5: what is seen.
-Image FrontView::weighted_ratio() const {
-    Image out = make_image(target_.width, target_.height, 6);
-    parallel_chunks(target_.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin * target_.width; i < end * target_.width; ++i) {
-            const float* const seen = frame_.beauty.pixels.data() + i * frame_.beauty.channels;
-            const float* const wanted = target_.pixels.data() + i * 3;
-            float* const p = out.pixels.data() + i * 6;
-            for (int c = 0; c < 3; ++c) {
-                const float ratio = std::clamp((wanted[c] + sky) / (seen[c] + sky), 0.25f, 4.0f);
-                p[c] = ratio * (seen[c] + sky);
-                p[c + 3] = seen[c] + sky;
-            }
-        }
-    });
-    return out;
-}
-
-void FrontView::step(float exponent) {
-    Image grid = weighted_ratio();
-    double variance = 0.0, pixel = 1.0;  // of the grid's blur so far, and a grid step, in texels
-    std::vector<DotRange> ranges = dots_.ranges;
-    std::stable_sort(ranges.begin(), ranges.end(),
-                     [](const DotRange& a, const DotRange& b) { return a.sigma < b.sigma; });
-    for (const DotRange& range : ranges) {
-        const double sigma = static_cast<double>(range.sigma);
-        const double wanted = seen_share * (sigma * sigma + filter_px * filter_px);
-        while (std::sqrt(wanted) / pixel > 2.0 * finest_grid_sigma && std::min(grid.width, grid.height) > 8) {
-            grid = halved(grid);
-            variance += 0.75 * pixel * pixel;
-            pixel *= 2.0;
-        }
-        if (wanted > variance) {
-            grid = gaussian_blur(grid, std::sqrt(wanted - variance) / pixel);
-            variance = wanted;
-        }
-        const auto texels_per_step = static_cast<float>(pixel);
-        parallel_chunks(range.end - range.begin, 65536, [&](std::int64_t begin, std::int64_t end, int) {
-            for (std::int64_t i = range.begin + begin; i < range.begin + end; ++i) {
-                const auto at = static_cast<std::size_t>(i);
-                const glm::vec2 p = texel(dots_.splats.position[at]) / texels_per_step;
-                for (int c = 0; c < 3; ++c) {
-                    const float f = factor(grid, c, p.x, p.y);
-                    dots_.splats.color[at][c] *= exponent == 1.0f ? f : shared::as_pow(f, exponent);
-                }
-            }
-        });
+Image FrontView::go_on(int channel, int steps, bool settle) {
+    const Image wanted = channel_of(target_, channel);
+    Image seen = channel_of(frame_.beauty, channel);
+    const Image share = quotient(seen, flat_.sum(channel));
+    const auto seen_now = [&] {
+        Image now = flat_.sum(channel);
+        multiply(now, share);
+        return now;
+    };
+    for (int step = 0; step < steps; ++step) {
+        if (step > 0) seen = seen_now();
+        flat_.correct(channel, weighted_ratio(wanted, seen), !settle || step + 1 < steps);
     }
+    return settle ? seen_now() : Image{};
 }
 
-// The picture's flux over that of the front view in each cell, three channels.
-Image FrontView::cell_flux() const {
-    Image cells =
-        make_image((target_.width + cell_px - 1) / cell_px, (target_.height + cell_px - 1) / cell_px, 3);
-    parallel_for(cells.height, [&](std::int64_t row, int) {
-        for (std::int64_t column = 0; column < cells.width; ++column) {
-            double wanted[3] = {0.0, 0.0, 0.0}, seen[3] = {0.0, 0.0, 0.0};
-            for (std::int64_t y = row * cell_px; y < std::min((row + 1) * cell_px, target_.height); ++y) {
-                for (std::int64_t x = column * cell_px; x < std::min((column + 1) * cell_px, target_.width);
-                     ++x) {
-                    for (int c = 0; c < 3; ++c) {
-                        wanted[c] += static_cast<double>(target_.at(x, y)[c]);
-                        seen[c] += static_cast<double>(frame_.beauty.at(x, y)[c]);
-                    }
-                }
-            }
-            for (int c = 0; c < 3; ++c) {
-                const double ratio = seen[c] > 0.0 ? wanted[c] / seen[c] : 1.0;
-                cells.at(column, row)[c] = static_cast<float>(std::clamp(ratio, 0.5, 2.0));
-            }
-        }
-    });
-    return cells;
+void FrontView::match_cells(int channel, const Image& seen) {
+    const Image cells = cell_ratio(channel_of(target_, channel), seen);
+    flat_.multiply(channel, cells, static_cast<double>(cell_px));
 }
 
-void FrontView::match_cells() {
-    const Image cells = cell_flux();
-    parallel_chunks(dots_.splats.size(), 65536, [&](std::int64_t begin, std::int64_t end, int) {
-        for (std::int64_t i = begin; i < end; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            if (dots_.splats.color[at].x < 0.0f) continue;  // dust
-            const glm::vec2 p = texel(dots_.splats.position[at]) / static_cast<float>(cell_px);
-            for (int c = 0; c < 3; ++c) dots_.splats.color[at][c] *= bilinear(cells, c, p.x, p.y);
+double FrontView::error(int channel, const Image& seen) const {
+    std::vector<double> rows(static_cast<std::size_t>((target_.height + psnr_step - 1) / psnr_step), 0.0);
+    parallel_each(rows.size(), 16, [&](std::size_t row) {
+        const std::int64_t y = static_cast<std::int64_t>(row) * psnr_step;
+        for (std::int64_t x = 0; x < target_.width; ++x) {
+            const double difference = static_cast<double>(display_srgb(*seen.at(x, y))) -
+                                      static_cast<double>(display_srgb(target_.at(x, y)[channel]));
+            rows[row] += difference * difference;
         }
     });
+    return std::accumulate(rows.begin(), rows.end(), 0.0);
+}
+
+double FrontView::psnr_db(double error_of_all) const {
+    const std::int64_t rows = (target_.height + psnr_step - 1) / psnr_step;
+    const double mean = error_of_all / (3.0 * static_cast<double>(target_.width * rows));
+    return -10.0 / real::log(10.0) * real::log(std::max(mean, 1e-12));
 }
 
 }  // namespace
 
-FrontFit fit_front(PictureSplats& dots, const Image& light, const Progress& progress) {
-    FrontFit fit;
+FrontFit fit_front(PictureSplats& dots, Image light, const Progress& progress) {
     FrontView view(dots, light);
+    light = {};
+    const auto each_channel = [&](const auto& change) {
+        for (int channel = 0; channel < 3; ++channel) {
+            progress.check();
+            change(channel);
+        }
+    };
+    double before = 0.0, after = 0.0;
     view.render_now(progress);
-    fit.first_psnr_db = fit.psnr_db = view.psnr_db();
-    while (fit.steps < most_steps) {
-        view.step(fit.steps < fast_steps ? fast_exponent : 1.0f);
-        ++fit.steps;
-        view.render_now(progress);
-        const double gain = view.psnr_db() - fit.psnr_db;
-        fit.psnr_db += gain;
-        if (fit.steps > fast_steps && gain < least_gain_db) break;
-    }
-    view.match_cells();
-    return fit;
+    each_channel([&](int channel) {
+        before += view.rendered_error(channel);
+        view.go_on(channel, first_steps, false);
+    });
+    view.render_now(progress);
+    each_channel([&](int channel) {
+        const Image seen = view.go_on(channel, last_steps, true);
+        after += view.error(channel, seen);
+        view.match_cells(channel, seen);
+    });
+    return {first_steps + last_steps, view.psnr_db(before), view.psnr_db(after)};
 }
 
 }  // namespace astrosplat

@@ -10,13 +10,14 @@ namespace astrosplat {
 
 struct FrontFit {
     int steps = 0;
-    double first_psnr_db = 0.0,
-           psnr_db = 0.0;  // on sRGB values of every fourth row, at the picture's own resolution
+    /// On sRGB values of every fourth row, at the picture's own resolution; the last as it is estimated from
+    /// the last rendering.
+    double first_psnr_db = 0.0, psnr_db = 0.0;
 };
 
-/// Multiplies colours until the orthographic front view is the picture as the default pixel filter shows it,
-/// at most five times and as long as a step gains .1 dB; last, cells of 32 px get the picture's flux. The
-/// same bits with any number of threads. Throws Cancelled; InputError where memory does not suffice.
-FrontFit fit_front(PictureSplats& dots, const Image& light, const Progress& progress = {});
+/// Multiplies colours until the orthographic front view is the picture as the default pixel filter shows it;
+/// last, cells of 32 px get the picture's flux. The same bits with any number of threads. Throws Cancelled;
+/// InputError where memory does not suffice.
+FrontFit fit_front(PictureSplats& dots, Image light, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -46,10 +46,11 @@ struct Opacity {
     float depth_of(float brightest, float alpha) const;
 };
 
-/// Radius of a dot of the default falloff, in its sigmas, and the integral of its footprint over 2 pi
-/// sigma^2.
+/// Radius of a dot of the default falloff, in its sigmas; the integral of its footprint over 2 pi sigma^2;
+/// and its variance along an axis over sigma^2.
 inline constexpr float radius_sigmas = 3.0f;
 inline constexpr float footprint_share = 0.9494f;
+inline constexpr double footprint_variance = 0.8802;
 
 /// Adds a band's dots. `picture` is the whole picture's light, whose brightness decides the opacity.
 void add_band(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,

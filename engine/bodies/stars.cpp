@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int64_t median_reach = 5;  // px: a window of 11 x 11
 constexpr std::int64_t margin = 6;        // px without stars at the picture's edges
-constexpr std::int64_t noise_step = 3;    // px between the places where the noise is measured
+constexpr std::int64_t noise_step = 6;    // px between the places where the noise is measured
 constexpr double noise_blur_px = 12.0;
 constexpr float least_excess = 0.04f;  // of the displayed white
 constexpr float noise_factor = 4.5f;
@@ -40,7 +40,7 @@ float background(const Image& brightest, std::int64_t x, std::int64_t y) {
     return *middle;
 }
 
-// Mean excess over the background around each place, at every third pixel.
+// Mean excess over the background around each place, on the grid of noise_step.
 Image local_noise(const Image& brightest) {
     Image noise = make_image((brightest.width + noise_step - 1) / noise_step,
                              (brightest.height + noise_step - 1) / noise_step, 1);
@@ -66,16 +66,30 @@ bool is_brightest(const Image& brightest, std::int64_t x, std::int64_t y) {
     return true;
 }
 
+// Directions all around.
+struct Direction {
+    double x, y;
+};
+const std::array<Direction, 8>& directions() {
+    static const std::array<Direction, 8> all = [] {
+        std::array<Direction, 8> found;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const double angle = static_cast<double>(i) * real::pi / 4.0;
+            found[i] = {real::cos(angle), real::sin(angle)};
+        }
+        return found;
+    }();
+    return all;
+}
+
 // Its wings are below half of its peak, and even all around.
 bool is_round(const Image& brightest, std::int64_t x, std::int64_t y, float sky, float excess) {
     float lo = 1e30f, hi = -1e30f;
-    for (int direction = 0; direction < 8; ++direction) {
-        const double angle = direction * real::pi / 4.0;
-        const double c = real::cos(angle), s = real::sin(angle);
+    for (const Direction& direction : directions()) {
         float wing = 0.0f;
         for (const double r : {2.0, 2.5, 3.0})
-            wing += bilinear(brightest, 0, static_cast<float>(static_cast<double>(x) + 0.5 + r * c),
-                             static_cast<float>(static_cast<double>(y) + 0.5 + r * s)) /
+            wing += bilinear(brightest, 0, static_cast<float>(static_cast<double>(x) + 0.5 + r * direction.x),
+                             static_cast<float>(static_cast<double>(y) + 0.5 + r * direction.y)) /
                     3.0f;
         lo = std::min(lo, wing - sky);
         hi = std::max(hi, wing - sky);
@@ -97,10 +111,11 @@ float ring_median(const Image& light, std::int64_t x, std::int64_t y, int channe
 
 std::optional<Star> star_at(const Image& light, const Image& brightest, std::int64_t x, std::int64_t y,
                             float noise) {
-    if (*brightest.at(x, y) < least_excess || !is_brightest(brightest, x, y)) return {};
+    const float least = std::max(least_excess, noise_factor * noise);
+    if (*brightest.at(x, y) < least || !is_brightest(brightest, x, y)) return {};
     const float sky = background(brightest, x, y);
     const float excess = *brightest.at(x, y) - sky;
-    if (excess < least_excess || excess < noise_factor * noise) return {};
+    if (excess < least) return {};
     double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
     for (std::int64_t j = -2; j <= 2; ++j) {
         for (std::int64_t i = -2; i <= 2; ++i) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "image/channels.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {
@@ -35,7 +36,7 @@ Image emission_of(const Image& light, bool fill_holes) {
 TEST(Dust, EmissionTimesTransmittanceIsThePicture) {
     for (const Image& light : {with_lane(), painted::galaxy(size_px, size_px)}) {
         const Image emission = emission_of(light, true);
-        const Image transmittance = transmittance_of(light, emission);
+        const Image transmittance = transmittance_of(brightest_channel(light), emission);
         for (std::size_t i = 0; i < transmittance.pixels.size(); ++i) {
             const auto brightest = [&](const Image& image) {
                 const float* const p = image.pixels.data() + 3 * i;
@@ -52,10 +53,10 @@ TEST(Dust, EmissionTimesTransmittanceIsThePicture) {
 
 TEST(Dust, IsTheLaneAndNothingElse) {
     const Image light = with_lane();
-    const Image transmittance = transmittance_of(light, emission_of(light, true));
+    const Image transmittance = transmittance_of(brightest_channel(light), emission_of(light, true));
     EXPECT_LT(*transmittance.at(120, 120), 0.85f);
     EXPECT_GT(*transmittance.at(120, 20), 0.97f);
-    EXPECT_GT(*transmittance_of(light, emission_of(light, false)).at(120, 120),
+    EXPECT_GT(*transmittance_of(brightest_channel(light), emission_of(light, false)).at(120, 120),
               0.9999f);  // bands without dust
 }
 

@@ -1,0 +1,195 @@
+// Dots of one size are one blur: they are spread over the pixels about them, the widest first, on a grid as
+// coarse as their size allows, and blurred together with all wider ones. Corrections go the other way.
+#include "bodies/flat_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/real.h"
+#include "image/blur.h"
+#include "image/channels.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::size_t dots_per_chunk = 4096;
+constexpr std::int64_t rows_per_strip = 32;
+constexpr double coarsest_step = 0.5;  // of the deviation of what is seen on a grid
+constexpr std::int64_t smallest_grid = 8;
+constexpr double spread_variance = 0.25;    // steps^2, of the quadratic B-spline at any offset
+constexpr double doubling_variance = 0.75;  // steps^2 of the finer grid
+constexpr double seen_share = 0.25;         // of a footprint's variance through which a dot sees the ratio
+constexpr float largest_factor = 3.0f;
+constexpr double fine_sigma = 1.5;  // texels, up to which dots are sharpened
+constexpr double around = 16.0;     // times the variance of what a dot sees
+
+// Quadratic B-spline weights of the step that a place >= 0 lies in and of its neighbours.
+struct Spline {
+    std::int64_t middle;
+    float weight[3];
+    explicit Spline(float place) : middle(static_cast<std::int64_t>(place)) {
+        const float t = place - static_cast<float>(middle) - 0.5f;
+        weight[0] = 0.5f * (0.5f - t) * (0.5f - t);
+        weight[1] = 0.75f - t * t;
+        weight[2] = 0.5f * (0.5f + t) * (0.5f + t);
+    }
+};
+
+// Adds to the rows [first_row, end_row); beyond its edges a picture is mirrored.
+void add(float light, const Spline& x, const Spline& y, std::int64_t first_row, std::int64_t end_row,
+         Image& sum) {
+    const bool inside = x.middle > 0 && x.middle + 1 < sum.width;
+    for (std::int64_t j = 0; j < 3; ++j) {
+        const std::int64_t row = std::clamp<std::int64_t>(y.middle + j - 1, 0, sum.height - 1);
+        if (row < first_row || row >= end_row) continue;
+        const float here = light * y.weight[j];
+        float* const steps = sum.at(0, row);
+        for (std::int64_t k = 0; k < 3; ++k) {
+            const std::int64_t column = x.middle + k - 1;
+            steps[inside ? column : std::clamp<std::int64_t>(column, 0, sum.width - 1)] += here * x.weight[k];
+        }
+    }
+}
+
+float ratio_at(const Image& fraction, std::size_t i) {
+    return fraction.pixels[2 * i] / fraction.pixels[2 * i + 1];
+}
+
+float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, largest_factor); }
+
+// What `change` makes of the ratio of each pixel's two channels.
+template <class Change>
+Image factor_of(const Image& fraction, const Change& change) {
+    Image factor = make_image(fraction.width, fraction.height, 1);
+    parallel_each(factor.pixels.size(), 65536,
+                  [&](std::size_t i) { factor.pixels[i] = clamped(change(ratio_at(fraction, i), i)); });
+    return factor;
+}
+
+}  // namespace
+
+FlatLight::FlatLight(PictureSplats& dots, std::int64_t width, std::int64_t height, double filter_px)
+    : dots_(dots), filter_variance_(filter_px * filter_px) {
+    grids_.push_back({width, height, 1.0});
+    while (std::min(grids_.back().width, grids_.back().height) > smallest_grid) {
+        const Grid& finer = grids_.back();
+        grids_.push_back({(finer.width + 1) / 2, (finer.height + 1) / 2, 2.0 * finer.step});
+    }
+    for (const DotRange& range : dots.ranges) add_range(range);
+    std::ranges::stable_sort(ranges_, {}, &Range::sigma);
+}
+
+void FlatLight::add_range(const DotRange& dots) {
+    Range& range = ranges_.emplace_back();
+    range.sigma = static_cast<double>(dots.sigma);
+    const auto end = static_cast<std::size_t>(dots.end);
+    for (auto i = static_cast<std::size_t>(dots.begin); i < end; i += dots_per_chunk)
+        range.chunks.push_back({i, std::min(i + dots_per_chunk, end), texel(i).y, texel(i).y});
+    parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
+        Chunk& chunk = range.chunks[c];
+        for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+            chunk.top = std::min(chunk.top, texel(i).y);
+            chunk.bottom = std::max(chunk.bottom, texel(i).y);
+        }
+    });
+}
+
+// From the top left corner.
+glm::vec2 FlatLight::texel(std::size_t dot) const {
+    const glm::vec3& p = dots_.splats.position[dot];
+    return {p.x + 0.5f * static_cast<float>(grids_[0].width),
+            0.5f * static_cast<float>(grids_[0].height) - p.y};
+}
+
+// The coarsest on which a Gaussian so narrow is still smooth.
+std::size_t FlatLight::grid_for(double variance) const {
+    std::size_t grid = 0;
+    while (grid + 1 < grids_.size() && grids_[grid].step < coarsest_step * std::sqrt(variance)) ++grid;
+    return grid;
+}
+
+void FlatLight::spread(const Range& range, int channel, double step, Image& sum) const {
+    const auto scale = static_cast<float>(1.0 / step);
+    const auto flux = static_cast<float>(static_cast<double>(footprint_share) * 2.0 * real::pi * range.sigma *
+                                         range.sigma / (step * step));
+    parallel_chunks(sum.height, rows_per_strip, [&](std::int64_t first_row, std::int64_t end_row, int) {
+        const auto top = static_cast<float>(static_cast<double>(first_row - 1) * step),
+                   bottom = static_cast<float>(static_cast<double>(end_row + 1) * step);
+        for (const Chunk& chunk : range.chunks) {
+            if (chunk.bottom < top || chunk.top > bottom) continue;
+            for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+                const glm::vec2 at = texel(i) * scale;
+                const float light = flux * dots_.splats.alpha[i] * dots_.splats.color[i][channel];
+                add(light, Spline(at.x), Spline(at.y), first_row, end_row, sum);
+            }
+        }
+    });
+}
+
+Image FlatLight::sum(int channel) const {
+    std::size_t grid = grids_.size() - 1;
+    double missing = 0.0;  // texels^2, of the blur of what is there
+    Image sum = make_image(grids_[grid].width, grids_[grid].height, 1);
+    const auto move_to = [&](std::size_t to, double still_missing) {
+        double now = missing - still_missing;
+        for (std::size_t g = to; g < grid; ++g) now -= doubling_variance * grids_[g].step * grids_[g].step;
+        if (now > 0.0) sum = gaussian_blur(sum, std::sqrt(now) / grids_[grid].step);
+        for (; grid > to; --grid) sum = doubled(sum, grids_[grid - 1].width, grids_[grid - 1].height);
+        missing = still_missing;
+    };
+    for (auto range = ranges_.rbegin(); range != ranges_.rend(); ++range) {
+        const double variance = footprint_variance * range->sigma * range->sigma + filter_variance_;
+        const std::size_t to = grid_for(variance);
+        const double step = grids_[to].step;
+        move_to(to, std::max(0.0, variance - spread_variance * step * step));
+        spread(*range, channel, step, sum);
+    }
+    move_to(0, 0.0);
+    return sum;
+}
+
+void FlatLight::multiply(const Range& range, int channel, const Image& factor, double step) {
+    const auto scale = static_cast<float>(1.0 / step);
+    parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
+        for (std::size_t i = range.chunks[c].begin; i < range.chunks[c].end; ++i) {
+            const glm::vec2 at = texel(i) * scale;
+            dots_.splats.color[i][channel] *= bilinear(factor, 0, at.x, at.y);
+        }
+    });
+}
+
+void FlatLight::multiply(int channel, const Image& factor, double step) {
+    for (const Range& range : ranges_) multiply(range, channel, factor, step);
+}
+
+void FlatLight::correct(int channel, Image fraction, bool overshoot) {
+    std::size_t grid = 0;
+    double variance = 0.0;  // texels^2, of the blur so far
+    for (const Range& range : ranges_) {
+        const double seen = seen_share * (range.sigma * range.sigma + filter_variance_);
+        for (const std::size_t to = grid_for(seen); grid < to; ++grid) {
+            fraction = halved(fraction);
+            variance += doubling_variance * grids_[grid].step * grids_[grid].step;
+        }
+        const auto blurred_to = [&](double wanted) {
+            return gaussian_blur(fraction, std::sqrt(wanted - variance) / grids_[grid].step);
+        };
+        if (seen > variance) {
+            fraction = blurred_to(seen);
+            variance = seen;
+        }
+        const double step = grids_[grid].step;
+        if (!overshoot) {
+            multiply(range, channel, factor_of(fraction, [](float r, std::size_t) { return r; }), step);
+        } else if (range.sigma > fine_sigma) {
+            multiply(range, channel, factor_of(fraction, [](float r, std::size_t) { return r * r; }), step);
+        } else {
+            const Image wide = blurred_to(around * seen);
+            const auto sharpened = [&](float r, std::size_t i) { return r * r * (r / ratio_at(wide, i)); };
+            multiply(range, channel, factor_of(fraction, sharpened), step);
+        }
+    }
+}
+
+}  // namespace astrosplat
