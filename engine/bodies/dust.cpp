@@ -60,7 +60,7 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
             std::clamp<std::int64_t>(static_cast<std::int64_t>(y) / share_cell_px, 0, cells.height - 1);
         float* const cell = cells.at(column, row);
         cell[1] += light;
-        if (p.z > sheet_height * bilinear(field, 0, x, y)) cell[0] += light;
+        if (p.z - middle_plane(placement, x, y) > sheet_height * bilinear(field, 0, x, y)) cell[0] += light;
     }
     return gaussian_blur(cells, share_blur_cells);
 }
@@ -106,7 +106,8 @@ class DustRow {
         const float middle_x = 0.5f * static_cast<float>(transmittance_.width);
         const float middle_y = 0.5f * static_cast<float>(transmittance_.height);
         for (int i = 0; i < block_.count; ++i) {
-            out.position.emplace_back(block_.x[i] - middle_x, middle_y - block_.y[i], block_.z[i]);
+            const float z = block_.z[i] + middle_plane(placement_, block_.x[i], block_.y[i]);
+            out.position.emplace_back(block_.x[i] - middle_x, middle_y - block_.y[i], z);
             out.distance.push_back(std::fabs(block_.z[i]));
         }
         block_.count = 0;

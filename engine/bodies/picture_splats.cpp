@@ -210,7 +210,8 @@ void add_stars(const std::vector<Star>& stars, const Placement& placement, const
         const float peak = std::max({star.peak.x, star.peak.y, star.peak.z, 1e-6f});
         const float alpha =
             std::clamp(star_opacity * opacity.depth_of(peak, 1.0f) / footprint_share, 1e-3f, 1.0f);
-        out.splats.position[at] = {star.x - middle_x, middle_y - star.y, spread};
+        out.splats.position[at] = {star.x - middle_x, middle_y - star.y,
+                                   spread + middle_plane(placement, star.x, star.y)};
         out.splats.color[at] = star.peak / alpha;
         out.splats.alpha[at] = alpha;
         out.splats.radius[at] = radius_sigmas * star.sigma;

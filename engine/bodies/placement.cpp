@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vec2.hpp>
 
 #include "bodies/fields.h"
 #include "bodies/picture_light.h"
@@ -58,6 +59,18 @@ NoiseStack waves(const Placement& placement, std::uint32_t field,
     return noise;
 }
 
+// Of a place, from the middle of the picture, in halves of its longest side.
+glm::vec2 from_middle(const Placement& placement, float x, float y) {
+    const auto w = static_cast<float>(placement.thickness.width),
+               h = static_cast<float>(placement.thickness.height);
+    return glm::vec2(x - 0.5f * w, y - 0.5f * h) * (2.0f / std::max(w, h));
+}
+
+float flare_at(const Placement& placement, float x, float y) {
+    const glm::vec2 p = from_middle(placement, x, y);
+    return 1.0f + static_cast<float>(placement.flare) * (p.x * p.x + p.y * p.y);
+}
+
 // Scale heights of a band's dots: fine bands are thinner, and wide dots bring a thickness of their own.
 void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& block) {
     const float fine = std::min(1.0f, static_cast<float>(dots.index) / 5.0f);
@@ -66,7 +79,8 @@ void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& b
     const float typical = static_cast<float>(placement.height);
     for (int i = 0; i < block.count; ++i) {
         const float height = bilinear(placement.thickness, 0, block.x[i], block.y[i]);
-        const float h = height * share, flat = std::min(1.0f, typical / height);
+        const float disk = typical * flare_at(placement, block.x[i], block.y[i]);
+        const float h = height * share, flat = std::min(1.0f, disk / height);
         block.clumping[i] = flat * flat * flat * flat;  // a bulge is smooth
         block.height[i] = std::sqrt(std::max(h * h - own, 0.09f * height * height));
     }
@@ -123,6 +137,7 @@ void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock&
         sheet_depths(stack(placement, 7.0 * h, feature, gain, 0.5), dots.spread, block);
     }
     for (int i = 0; i < block.count; ++i) block.distance[i] = std::fabs(block.z[i]);
+    for (int i = 0; i < block.count; ++i) block.z[i] += middle_plane(placement, block.x[i], block.y[i]);
     if (placement.kind == StructureKind::walls)
         add_walls(placement, feature > widest_filament * placement.scale, block);
 }
@@ -180,6 +195,16 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
     placement.clumps = params.clumps;
     placement.seed = seed;
     placement.thickness = thickness_field(brightest, placement.height);
+    if (params.kind == StructureKind::disk) {
+        placement.warp = params.warp * static_cast<double>(brightest.width);
+        placement.flare = params.flare;
+        Image& field = placement.thickness;
+        parallel_for(field.height, [&](std::int64_t y, int) {
+            for (std::int64_t x = 0; x < field.width; ++x)
+                *field.at(x, y) *=
+                    flare_at(placement, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        });
+    }
     if (params.kind == StructureKind::walls) placement.relief = relief_field(brightest, placement.depth, 0.7);
     if (params.kind == StructureKind::sheet && flat)
         placement.relief = relief_field(brightest, placement.depth, 0.6);  // counts twice
@@ -189,7 +214,18 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
 }
 
 float Placement::thickness_at(float x, float y) const {
-    return bilinear(thickness, 0, x, y) / static_cast<float>(height);
+    return bilinear(thickness, 0, x, y) / (static_cast<float>(height) * flare_at(*this, x, y));
+}
+
+float middle_plane(const Placement& placement, float x, float y) {
+    constexpr float begins = 0.4f;
+    constexpr glm::vec2 rises(0.866f, 0.5f);  // towards there
+    if (placement.warp == 0.0) return 0.0f;
+    const glm::vec2 p = from_middle(placement, x, y);
+    const float r = std::sqrt(p.x * p.x + p.y * p.y);
+    const float beyond = std::max(0.0f, (r - begins) / (1.0f - begins));
+    return static_cast<float>(placement.warp) * beyond * beyond * (p.x * rises.x - p.y * rises.y) /
+           std::max(r, 1e-6f);
 }
 
 std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement) {

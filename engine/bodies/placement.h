@@ -28,13 +28,15 @@ struct Placement {
     double height = 0.0;  // texels, typical scale height H
     double depth = 0.0;   // texels, from the middle to the front of a relief or a wall
     double clumps = 1.0;
+    double flare = 0.0;  // of a disk: scale height at the rim over that in the middle, less 1
+    double warp = 0.0;   // texels, of a disk's plane at its rim
     std::uint32_t seed = 0;
     Image thickness;  // H(x, y), texels
     Image relief;     // how far the middle of a sheet or a wall stands out, texels; empty: not at all
     Knots knots;      // each at one depth
     std::vector<float> knot_z;  // theirs, texels
 
-    /// H(x, y) over H: more than 1 where a disk is a bulge.
+    /// H(x, y) over H and without its flare: more than 1 where a disk is a bulge.
     float thickness_at(float x, float y) const;
 };
 
@@ -42,6 +44,10 @@ struct Placement {
 /// relief from the picture instead.
 Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
                          bool flat, std::uint32_t seed);
+
+/// Height of a disk's middle plane, texels: bent like an integral sign from .4 of the way to the rim on,
+/// which is half the longest side from the middle. 0 for other kinds.
+float middle_plane(const Placement& placement, float x, float y);
 
 /// How the dots of one band are made (DEPTH 3), lengths in texels.
 struct BandDots {

@@ -149,6 +149,12 @@ void describe_structure(const Describer& d, StructureParams& s) {
       within(0, 10), slider(0, 0.5), only_with("kind", {"sheet", "walls"}));
     bodies(s.clumps, "clumps", "Clumps", "", "How strongly depths gather in clouds.", within(0, 100),
            slider(0, 3));
+    const Describer disk = d.only_with("kind", {"disk"});
+    disk(s.flare, "flare", "Flare", "", "How much thicker the disk is at its rim than in the middle, less 1.",
+         within(-0.9, 10), slider(-0.5, 2));
+    disk(s.warp, "warp", "Warp", "of the width",
+         "How far the disk's plane rises at the rim, and sinks on the other side.", within(-1, 1),
+         slider(-0.1, 0.1));
     bodies(s.stars, "stars", "Stars apart", "",
            "Stars are found and become single dots; auto: unless prepare removes them.");
     bodies(s.dust, "dust", "Dust", "",

@@ -188,6 +188,8 @@ struct StructureParams {
         0.0;  // scene units, scale height; 0: 1.8 % of the picture's longest side for a disk, else 1.1 %
     double depth = 0.15;  // of the picture's width: whole depth of walls, or of a flat sheet's relief
     double clumps = 1.0;  // how strongly depths follow the noise
+    double flare = 0.0;   // disk: scale height at the rim over that in the middle, less 1
+    double warp = 0.0;    // disk: of the width, how far its plane rises at the rim, and sinks opposite
     Stars stars =
         Stars::automatic;        // found and made into single dots; automatic: unless prepare removes them
     std::optional<double> dust;  // share of the dark details that absorb; empty: half in a disk, else 0

@@ -55,7 +55,9 @@ std::vector<std::string> telling_scenes() {
               "mask = [ { ellipse = [0.5, 0.5, 0.2, 0.2], any = [ { ellipse = [0.5, 0.5, 0.2, 0.2] } ] } ]",
               "", ""),
         layer(mesh + "\nprepare = { stars = \"remove\", lupton = true, ellipse = [9, 9, 5, 5] }", "", ""),
-        layer(mesh + "\nuv = \"camera\"\nuv_camera = { position = [0, 9, 0] }", "", ""),
+        layer(
+            mesh + "\nuv = \"camera\"\nuv_camera = { position = [0, 9, 0] }\nstructure = { kind = \"disk\" }",
+            "", ""),
         layer("kind = \"splats\"\nfile = \"a.ply\"",
               "pdf = { shape = \"gaussian\" }\nradius = { min = 0.1, max = 0.2 }", "",
               "[camera]\nprojection = \"fisheye\"\n"),

@@ -388,6 +388,57 @@ TEST(Bodies, AFadingBorderIsNoDust) {
     EXPECT_LT(hidden(0.1).second, 0.2);
 }
 
+// The plane of a warped disk rises on one side as it sinks on the other, and not in the middle; a flared one
+// is thicker at its rim by as much as was asked for.
+TEST(Bodies, DisksWarpAndFlare) {
+    const Image even = make_image(300, 200, 1, 0.3f);
+    const auto of_disk = [&](double flare, double warp) {
+        StructureParams params = of_kind(StructureKind::disk);
+        params.flare = flare;
+        params.warp = warp;
+        return make_placement(even, params, 30.0, true, 1u);
+    };
+    const Placement plain = of_disk(0.0, 0.0), bent = of_disk(0.5, 0.1);
+    EXPECT_EQ(middle_plane(plain, 299.0f, 100.0f), 0.0f);
+    EXPECT_EQ(middle_plane(bent, 150.0f, 100.0f), 0.0f);
+    EXPECT_EQ(middle_plane(bent, 200.0f, 100.0f), 0.0f);  // nearer than .4 of 150
+    EXPECT_NEAR(middle_plane(bent, 300.0f, 100.0f), 0.1f * 300.0f * 0.866f, 1e-3f);
+    EXPECT_NEAR(middle_plane(bent, 0.0f, 100.0f), -0.1f * 300.0f * 0.866f, 1e-3f);
+    EXPECT_NEAR(*bent.thickness.at(149, 99) / *plain.thickness.at(149, 99), 1.0f, 1e-3f);
+    EXPECT_NEAR(*bent.thickness.at(299, 99) / *plain.thickness.at(299, 99), 1.5f, 0.01f);
+}
+
+// Every dot rises with the plane where it is, but for those of a knot, which rises as a whole.
+TEST(Bodies, AWarpMovesDotsStarsAndDustAlike) {
+    const TexturedMesh mesh = on_plane(painted::galaxy(320, 200));
+    StructureParams params = of_kind(StructureKind::disk);
+    const SplatSet flat = make_bodies({&mesh, 1}, params, 3u, "gas");
+    params.warp = 0.08;
+    const SplatSet bent = make_bodies({&mesh, 1}, params, 3u, "gas");
+    const Placement plane = make_placement(make_image(320, 200, 1, 0.3f), params, 32.0, true, 1u);
+    int dots[3] = {0, 0, 0}, exact[3] = {0, 0, 0};  // shining, dust, stars
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < flat.id.size(); ++i) {
+        while (k < bent.id.size() && bent.id[k] < flat.id[i]) ++k;
+        if (k == bent.id.size() || bent.id[k] != flat.id[i]) continue;  // dust may be thinned otherwise
+        const glm::vec3 p = flat.position[i];
+        const float rise = middle_plane(plane, 32.0f * p.x + 160.0f, 100.0f + 32.0f * p.z) / 32.0f;
+        if (std::fabs(rise) < 0.1f) continue;
+        const std::uint64_t band = flat.id[i] >> 48 & 255;
+        const int kind = band == 254 ? 1 : band == 255 ? 2 : 0;
+        const float off = std::fabs(bent.position[k].y - p.y - rise);
+        ASSERT_LT(off, 0.4f);
+        ++dots[kind];
+        exact[kind] += off < 1e-4f;
+    }
+    EXPECT_GT(dots[0], 1000);
+    EXPECT_GT(exact[0], 0.6 * dots[0]);
+    EXPECT_GT(dots[1], 10);
+    EXPECT_EQ(exact[1], dots[1]);
+    EXPECT_GT(dots[2], 5);
+    EXPECT_EQ(exact[2], dots[2]);
+}
+
 TEST(Bodies, WhereThePictureIsTransparentThereIsNothing) {
     TexturedMesh mesh = on_plane(painted::nebula(160, 100));
     Image& image = mesh.textures[0].image;

@@ -81,6 +81,10 @@ INSTANTIATE_TEST_SUITE_P(
              "6: layer.source.uv_camera.height: expected a number of at least 0, found -1"},
         Case{"meshes = { mesh = \"disk\" }\nuv_camera = { fow = 40 }\n",
              "6: unknown key 'uv_camera.fow'; did you mean 'layer.source.uv_camera.fov'?"},
+        Case{"meshes = { mesh = \"disk\" }\nstructure = { flare = -1 }\n",
+             "6: layer.source.structure.flare: expected a number from -0.9 to 10, found -1"},
+        Case{"meshes = { mesh = \"disk\" }\nstructure = { warp = 2 }\n",
+             "6: layer.source.structure.warp: expected a number from -1 to 1, found 2"},
         Case{"meshes = { mesh = \"disk\" }\nderive = \"dst\"\n",
              "6: layer.source.derive: expected none, dust, h_alpha or young_stars, found 'dst'; did you mean "
              "'dust'?"},

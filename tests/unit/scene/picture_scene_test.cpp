@@ -49,6 +49,8 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
     for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet}) {
         PictureScene picture{"a.png", 1600, 1000, kind};
         const Scene still = parsed(picture);
+        EXPECT_EQ(still.layers.at(0).source.structure.warp > 0.0, kind == StructureKind::disk);
+        EXPECT_EQ(still.layers.at(0).source.structure.flare > 0.0, kind == StructureKind::disk);
         picture.film = true;
         const Scene film = parsed(picture);
         EXPECT_EQ(film.output.frames, "1-240");
