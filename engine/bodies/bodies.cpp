@@ -189,10 +189,12 @@ std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes) {
     return largest * bytes_per_texel + expected_dots(meshes) * bytes_per_dot;
 }
 
-void reduce_pictures(std::vector<TexturedMesh>& meshes, std::int64_t room_bytes,
+void reduce_pictures(std::vector<TexturedMesh>& meshes, const BodiesLimit& limit,
                      const std::string& layer_name) {
     constexpr std::int64_t smallest_px = 64;
-    while (bodies_memory_bytes(meshes) > room_bytes) {
+    for (;;) {
+        const bool few = limit.most_dots <= 0 || expected_dots(meshes) <= limit.most_dots;
+        if (few && bodies_memory_bytes(meshes) <= limit.room_bytes) return;
         Texture* largest = nullptr;
         for (TexturedMesh& mesh : meshes)
             for (Texture& texture : mesh.textures)
@@ -200,11 +202,12 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, std::int64_t room_bytes,
         if (!largest || std::min(largest->image.width, largest->image.height) < 2 * smallest_px) return;
         const std::int64_t width = largest->image.width, height = largest->image.height;
         largest->image = halved(largest->image);
-        log_warning(
-            fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies would "
-                        "not fit into {} of memory",
-                        layer_name, width, height, largest->image.width, largest->image.height,
-                        human_bytes(static_cast<double>(room_bytes))));
+        const std::string why =
+            few ? fmt::format("would not fit into {} of memory",
+                              human_bytes(static_cast<double>(limit.room_bytes)))
+                : fmt::format("would be more than {}", human_count(limit.most_dots, "dot"));
+        log_warning(fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies {}",
+                                layer_name, width, height, largest->image.width, largest->image.height, why));
     }
 }
 

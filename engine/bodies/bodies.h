@@ -22,9 +22,14 @@ std::int64_t expected_dots(std::span<const TexturedMesh> meshes);
 /// Bytes that make_bodies() will take at its peak beside the meshes and pictures, within about 15 %.
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes);
 
-/// Halves the largest picture, again and again, until make_bodies() takes at most `room_bytes`; a warning
-/// says so.
-void reduce_pictures(std::vector<TexturedMesh>& meshes, std::int64_t room_bytes,
+struct BodiesLimit {
+    std::int64_t room_bytes = 0;
+    std::int64_t most_dots = 0;  // 0: as many as there are
+};
+
+/// Halves the largest picture, again and again, until make_bodies() keeps to the limit, as far as that can be
+/// told before; a warning says so.
+void reduce_pictures(std::vector<TexturedMesh>& meshes, const BodiesLimit& limit,
                      const std::string& layer_name);
 
 /// Every picture of every mesh by itself. `params.kind` is not columns. Announces its memory before taking it

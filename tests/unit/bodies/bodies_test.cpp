@@ -61,16 +61,26 @@ TEST(Bodies, PicturesThatDoNotFitAreHalved) {
     std::vector<TexturedMesh> meshes{on_plane(painted::nebula(1024, 640)),
                                      on_plane(painted::nebula(256, 160))};
     const double before = sum_of(meshes[0].textures[0].image) / (1024.0 * 640.0);
-    reduce_pictures(meshes, bodies_memory_bytes(meshes), "gas");
+    reduce_pictures(meshes, {bodies_memory_bytes(meshes), 0}, "gas");
     EXPECT_EQ(meshes[0].textures[0].image.width, 1024);  // it fits
-    reduce_pictures(meshes, 2 * room, "gas");
+    reduce_pictures(meshes, {2 * room, 0}, "gas");
     const Image& reduced = meshes[0].textures[0].image;
     EXPECT_EQ(reduced.width, 256);
     EXPECT_EQ(reduced.height, 160);
     EXPECT_NEAR(sum_of(reduced) / (256.0 * 160.0), before, 0.003 * before);
     EXPECT_EQ(meshes[1].textures[0].image.width, 256);
-    reduce_pictures(meshes, 1, "gas");  // to no less than 64 px
+    reduce_pictures(meshes, {1, 0}, "gas");  // to no less than 64 px
     EXPECT_EQ(meshes[0].textures[0].image.height, 80);
+}
+
+TEST(Bodies, PicturesOfMoreDotsThanAskedForAreHalved) {
+    std::vector<TexturedMesh> meshes{on_plane(painted::nebula(512, 320))};
+    const std::int64_t room = 2 * bodies_memory_bytes(meshes), dots = expected_dots(meshes);
+    reduce_pictures(meshes, {room, dots}, "gas");
+    EXPECT_EQ(meshes[0].textures[0].image.width, 512);
+    reduce_pictures(meshes, {room, dots - 1}, "gas");
+    EXPECT_EQ(meshes[0].textures[0].image.width, 256);
+    EXPECT_LT(make_bodies(meshes, of_kind(StructureKind::sheet), 3u, "gas").size(), dots);
 }
 
 TEST(UvSurface, ThePlaneIsThePicture) {
