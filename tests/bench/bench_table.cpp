@@ -91,6 +91,14 @@ Row generate_row(const Results& r, const std::string& work, const std::string& t
                     traffic(r, figure("GB/s")))};
 }
 
+Row bodies_row(const Results& r, const std::string& work, const std::string& target, int width) {
+    const std::string name = fmt::format("bodies/{}", width);
+    const auto figure = [&](const char* field) { return r.median("bodies", 2, name, field); };
+    return {work, target, seconds(figure("real_time")),
+            fmt::format("{:.1f} M dots, {:.0f} B a texel ({:.0f} told before)", figure("Mdots"),
+                        figure("texel_B"), figure("told_B"))};
+}
+
 Row file_row(const Results& r, const std::string& work, const std::string& target, const std::string& name) {
     const auto rate = [&](const char* action) {
         return 1e-6 * r.median("files", 2, name + "_" + action, "bytes_per_second");
@@ -161,6 +169,8 @@ std::vector<Row> rows(const Results& r) {
         dense_row(r),
         generate_row(r, "generate: 61 M positions on a two-triangle plane, 40 % kept and stored", "<= 2.5 s",
                      "plane_40_percent"),
+        bodies_row(r, "bodies of a painted galaxy, 1920x1200, fitted", "<= 4 s", 1920),
+        bodies_row(r, "the same at 3840x2400", "<= 4 times as long", 3840),
         file_row(r, "PDA read / write, 10 M splats", ">= 900 / >= 500 MB/s", "pda"),
         file_row(r, "PLY read / write", "memory or disk speed", "ply"),
         file_row(r, "`.splats` read / write", "memory or disk speed", "splats"),

@@ -24,6 +24,7 @@ measure 2 "$cpus" memory
 measure 2 "$cpus" render
 measure 2 "$cpus" look
 measure 2 "$cpus" generate
+measure 2 "$cpus" bodies
 measure 2 "$cpus" files
 measure 2 "$cpus" sequence
 measure 1 "${cpus%%,*}" memory --benchmark_filter='copy'

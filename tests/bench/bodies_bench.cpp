@@ -1,0 +1,46 @@
+// A picture -> bodies fitted to it: stars, bands, depths, dust and the front fit, the reading of a file
+// apart.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "bodies/bodies.h"
+#include "core/buffer.h"
+#include "measure.h"
+#include "support/painted_picture.h"
+
+namespace astrosplat::bench {
+namespace {
+
+TexturedMesh painted_galaxy(std::int64_t width, std::int64_t height) {
+    const Image light = painted::galaxy(width, height);
+    TexturedMesh result;
+    result.mesh = builtin_mesh("plane", static_cast<double>(width) / static_cast<double>(height));
+    result.textures.emplace_back().image = make_image(width, height, 4, 1.0f);
+    float* const pixels = result.textures[0].image.pixels.data();
+    for (std::int64_t i = 0; i < width * height; ++i) std::copy_n(&light.pixels[3 * i], 3, pixels + 4 * i);
+    return result;
+}
+
+void bodies(benchmark::State& state) {
+    const std::int64_t width = state.range(0), height = width * 5 / 8;
+    const TexturedMesh meshes[] = {painted_galaxy(width, height)};
+    StructureParams params;
+    params.kind = StructureKind::disk;
+    release_spare_pages();
+    const std::int64_t before = resident_bytes();
+    forget_peak();
+    std::int64_t dots = 0;
+    for (auto _ : state) dots = make_bodies(meshes, params, 1, "galaxy").size();
+    const auto texels = static_cast<double>(width * height);
+    state.counters["texel_B"] = static_cast<double>(peak_bytes() - before) / texels;
+    state.counters["told_B"] = static_cast<double>(bodies_memory_bytes(meshes)) / texels;
+    state.counters["Mdots"] = 1e-6 * static_cast<double>(dots);
+}
+
+BENCHMARK(bodies)->Arg(1920)->Arg(3840)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
+
+}  // namespace
+}  // namespace astrosplat::bench
+
+BENCHMARK_MAIN();
