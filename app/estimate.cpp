@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bodies/bodies.h"
+#include "generate/lattice.h"
 #include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"
