@@ -34,9 +34,9 @@ constexpr Target of_most{39.0, 0.98}, of_remnants{36.0, 0.97};
 class TableTest : public SceneTest {
   protected:
     void expect_targets(const std::string& picture, const Target& target) {
-        const RunResult made = run({"new", picture, "-o", "picture.toml"});
+        const RunResult made = run({"new", picture, "-o", "picture.toml", "--overwrite"});
         ASSERT_EQ(made.code, 0) << made.err;
-        const RunResult measured = run({"fidelity", "picture.toml", "-o", "report.json"});
+        const RunResult measured = run({"fidelity", "picture.toml", "-o", "report.json", "--overwrite"});
         ASSERT_EQ(measured.code, 0) << measured.err;
         const nlohmann::json report = json("report.json");
         const nlohmann::json &front = report.at("front"), &full = report.at("full_size");
