@@ -158,7 +158,7 @@ void describe_structure(const Describer& d, StructureParams& s) {
     bodies(s.stars, "stars", "Stars apart", "",
            "Stars are found and become single dots; auto: unless prepare removes them.");
     bodies(s.dust, "dust", "Dust", "",
-           "Share of the dark details that becomes dust; auto: half in a disk, else none.", or_auto(),
+           "Share of the dark details that becomes dust; auto: four fifths in a disk, else none.", or_auto(),
            range(0, 1));
     bodies(s.opacity, "opacity", "Opacity", "",
            "Power of brightness that opacity grows with; low makes dim parts denser.", within(0.01, 10),

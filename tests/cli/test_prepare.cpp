@@ -3,23 +3,13 @@
 
 #include "scene_fixture.h"
 #include "support/fits_text.h"
+#include "support/starry_picture.h"
 
 namespace astrosplat::test {
 namespace {
 
-// Nine stars on a slope, as a portable pixmap of 96x64 pixels.
-std::string starry_picture() {
-    std::string text = "P6\n96 64\n255\n";
-    for (int y = 0; y < 64; ++y) {
-        for (int x = 0; x < 96; ++x) {
-            const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 21.0) - 10.0;
-            const double light =
-                60.0 + 0.3 * x + 2.0 * ((x * 7 + y * 13) % 5) + 120.0 * std::exp(-(u * u + v * v) / 3.0);
-            text.append(3, static_cast<char>(static_cast<int>(light)));
-        }
-    }
-    return text;
-}
+// Nine stars on a slope.
+std::string starry_picture() { return starry_pixmap({96, 64, 32, 21, 120.0, 3.0, 0.3, 2.0}); }
 
 // The same stars as 32-bit floats, on a level far from 0, with one pixel undefined. With a scale (degrees a
 // pixel) the header tells the sky.

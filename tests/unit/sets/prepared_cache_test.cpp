@@ -17,6 +17,7 @@
 #include "source/prepared_picture.h"
 #include "source/write_picture.h"
 #include "support/errors.h"
+#include "support/starry_picture.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
@@ -24,19 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Twelve stars on a slope, as a portable pixmap of 128x96 pixels.
-std::string stars_on_a_slope() {
-    std::string text = "P6\n128 96\n255\n";
-    for (int y = 0; y < 96; ++y) {
-        for (int x = 0; x < 128; ++x) {
-            const double u = std::fmod(x, 32.0) - 16.0, v = std::fmod(y, 32.0) - 15.0;
-            const double light =
-                60.0 + 0.3 * x + 2.0 * ((x * 7 + y * 13) % 5) + 120.0 * std::exp(-(u * u + v * v) / 3.0);
-            text.append(3, static_cast<char>(static_cast<int>(light)));
-        }
-    }
-    return text;
-}
+// Twelve stars on a slope.
+std::string stars_on_a_slope() { return test::starry_pixmap({128, 96, 32, 32, 120.0, 3.0, 0.3, 2.0}); }
 
 class PreparedSource : public testing::Test {
   protected:

@@ -4,28 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cmath>
 #include <thread>
 
 #include "core/color.h"
 #include "source/prepared_picture.h"
+#include "support/starry_picture.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
 
-// Twelve stars on a grey ground, 256x192 px.
-std::string stars_on_grey() {
-    std::string text = "P6\n256 192\n255\n";
-    for (int y = 0; y < 192; ++y) {
-        for (int x = 0; x < 256; ++x) {
-            const double u = std::fmod(x, 64.0) - 32.0, v = std::fmod(y, 64.0) - 31.0;
-            const double light = 60.0 + (x * 7 + y * 13) % 5 + 150.0 * std::exp(-(u * u + v * v) / 9.0);
-            text.append(3, static_cast<char>(static_cast<int>(light)));
-        }
-    }
-    return text;
-}
+// Twelve stars on a grey ground.
+std::string stars_on_grey() { return test::starry_pixmap({256, 192, 64, 64, 150.0, 9.0, 0.0, 1.0}); }
 
 class PreparePreviewTest : public testing::Test {
   protected:
