@@ -46,7 +46,7 @@ svg text { font: 12px system-ui, sans-serif; fill: var(--quiet); }
 polyline { fill: none; stroke-width: 2; stroke-linejoin: round; }
 .line0 polyline { stroke: var(--ink); } .line0 circle { fill: var(--ink); }
 .line1 polyline { stroke: var(--less); } .line1 circle { fill: var(--less); }
-.key0 { color: var(--ink); } .key1 { color: var(--less); }
+.mark0 { color: var(--ink); } .mark1 { color: var(--less); }
 .wipe { position: relative; display: none; touch-action: pan-y; cursor: ew-resize; }
 .wipe img + img { position: absolute; top: 0; clip-path: inset(0 0 0 var(--at, 50%)); }
 .wipe i { position: absolute; top: 0; bottom: 1.9rem; left: var(--at, 50%); width: 1px; background: #fff9; }
@@ -126,9 +126,9 @@ std::string front_section(const FidelityReport& report) {
 std::string charts_section(const FidelityReport& report) {
     std::vector<const FrontFidelity*> fronts{&report.front};
     if (report.full.width_px != report.front.width_px) fronts.push_back(&report.full);
-    std::string keys;
+    std::string marks;
     for (std::size_t i = 0; i < fronts.size(); ++i)
-        keys += fmt::format("<span class='key{}'>&#9679;</span> at {} px &nbsp; ", i, fronts[i]->width_px);
+        marks += fmt::format("<span class='mark{}'>&#9679;</span> at {} px &nbsp; ", i, fronts[i]->width_px);
     const double aspect =
         static_cast<double>(report.front.width_px) / static_cast<double>(report.front.height_px);
     return "<h2>Light and detail</h2>\n<div class='columns'>\n<figure class='card'>" +
@@ -136,7 +136,7 @@ std::string charts_section(const FidelityReport& report) {
            "<figcaption>Light of each of 32 x 32 cells: orange more, blue less than the picture, full at 10 "
            "%; grey "
            "cells hold none</figcaption></figure>\n<figure class='card'>" +
-           power_chart(fronts) + "<figcaption>" + keys +
+           power_chart(fronts) + "<figcaption>" + marks +
            "Power of the detail of each size over the picture's: below 1 too smooth, above too "
            "grainy</figcaption></figure>\n</div>\n";
 }

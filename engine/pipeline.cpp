@@ -49,7 +49,7 @@ bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
     return a.image == b.image && a.cube == b.cube;
 }
 
-/// Whether the layer's splats are shaded alike in all frames, as far as the tracks' keys tell.
+/// Whether the layer's splats are shaded alike in all frames, as far as the tracks tell.
 bool shaded_alike(const Scene& scene, const std::string& name) {
     const ParameterKey harmless = layer_key(name) / "visible";
     return std::ranges::none_of(scene.animation, [&](const Track& track) {
@@ -59,7 +59,7 @@ bool shaded_alike(const Scene& scene, const std::string& name) {
 
 /// Keeps the map that the layer has where it is this one.
 void load_thickness_map(LayerState& layer, const Thickness& thickness) {
-    const auto& [file, derived, keys] = thickness;
+    const auto& [file, derived, stops] = thickness;
     if (layer.thickness_file == file && layer.thickness_derived == derived) return;
     layer.thickness_file.clear();  // should the next line throw
     layer.thickness_map = file.empty() ? Image{} : load_map(file, derived);

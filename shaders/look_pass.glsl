@@ -34,7 +34,7 @@ vec3 read_map(vec2 uv) {
 }
 
 void main() {
-    vec3 map_value = look.key_count > 1 ? read_map(raw_uv) : vec3(0.0);
+    vec3 map_value = look.stop_count > 1 ? read_map(raw_uv) : vec3(0.0);
     LookOutput o = look_splat(look, LookInput(raw_position, raw_color, raw_alpha, raw_distance, raw_radius, map_value,
                                               raw_id.x, raw_id.y));
     float alpha = o.keep ? decimated_alpha(o.alpha, share, additive != 0) : 0.0;

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "scene/describe.h"
 #include "scene/load.h"
 #include "scene/tracks.h"
@@ -39,7 +39,7 @@ std::vector<Assignment> assignments_between(Scene saved, Scene shown) {
         const ParameterKey& key = parameter.spec.key;
         const Parameter* old = find_parameter(before, key);
         const Value value = parameter.get();
-        const bool loses_track = is_keyed(saved, key) && !is_keyed(shown, key);
+        const bool loses_track = is_animated(saved, key) && !is_animated(shown, key);
         if (!old || !(old->get() == value) || loses_track) assignments.push_back({key, to_toml(value)});
     }
     for (const Track& track : shown.animation) {

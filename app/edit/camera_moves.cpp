@@ -1,5 +1,5 @@
-// A move is sampled so densely that the smooth curve through its keys is round to 0.1 % of its radius; the
-// easing is in the samples, so keys outside the move keep their own timing.
+// A move is sampled so densely that the smooth curve through its keyframes is round to 0.1 % of its radius;
+// the easing is in the samples, so keyframes outside the move keep their own timing.
 #include "edit/camera_moves.h"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "core/real.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
@@ -40,15 +40,15 @@ void set_lens_and_up(CameraParams& params, const CameraParams& camera) {
     params.roll = camera.roll;
 }
 
-void key_orientation(Scene& scene, const CameraParams& camera, double frame) {
-    const bool turns = scene.camera.rotation || camera.rotation || is_keyed(scene, rotation_key);
+void set_orientation_keyframe(Scene& scene, const CameraParams& camera, double frame) {
+    const bool turns = scene.camera.rotation || camera.rotation || is_animated(scene, rotation_key);
     if (!turns) {
-        set_key(scene, target_key, frame, vector_value(camera.target));
+        set_keyframe(scene, target_key, frame, vector_value(camera.target));
         return;
     }
     const glm::dquat q =
         glm::quat_cast(make_camera(camera, aspect_of(scene.output), 1.0, {}).world_from_camera);
-    set_key(scene, rotation_key, frame, Value::List{q.x, q.y, q.z, q.w});
+    set_keyframe(scene, rotation_key, frame, Value::List{q.x, q.y, q.z, q.w});
 }
 
 /// A place on the way, of the share 0..1 of the move that is done.
@@ -56,19 +56,21 @@ using Path = std::function<glm::dvec3(double)>;
 
 double ease(double t) { return t * t * (3.0 - 2.0 * t); }
 
-void remove_keys_between(Scene& scene, const std::string& key, double first, double last) {
+void remove_keyframes_between(Scene& scene, const std::string& key, double first, double last) {
     for (Track& track : scene.animation)
         if (track.key == key)
-            std::erase_if(track.keys, [&](const auto& k) { return k.frame >= first && k.frame <= last; });
-    std::erase_if(scene.animation, [](const Track& track) { return track.keys.empty(); });
+            std::erase_if(track.keyframes, [&](const auto& keyframe) {
+                return keyframe.frame >= first && keyframe.frame <= last;
+            });
+    std::erase_if(scene.animation, [](const Track& track) { return track.keyframes.empty(); });
 }
 
-void set_smooth_key(Scene& scene, const char* key, double frame, const glm::dvec3& value) {
-    set_key(scene, key, frame, vector_value(value));
+void set_smooth_keyframe(Scene& scene, const char* key, double frame, const glm::dvec3& value) {
+    set_keyframe(scene, key, frame, vector_value(value));
     set_interpolation(scene, key, frame, Interpolation::smooth);
 }
 
-/// The frames to render reach to the end of the move, whose last key is where a loop would begin again.
+/// The frames to render reach to the end of the move, whose last keyframe is where a loop would begin again.
 void extend_frames(Scene& scene, std::int64_t first, std::int64_t last) {
     const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
     if (frames.back() >= last) return;
@@ -84,14 +86,15 @@ void add_path(Scene& scene, const Path& path, const glm::dvec3& target, double f
     const double step = std::fmax(1.0, std::floor(frames / samples_per_move + 0.5));
     remove_track(scene, rotation_key);  // it would replace the target
     scene.camera.rotation.reset();
-    for (const char* key : {position_key, target_key}) remove_keys_between(scene, key, frame, frame + frames);
+    for (const char* key : {position_key, target_key})
+        remove_keyframes_between(scene, key, frame, frame + frames);
     for (double at = 0.0; at < frames + step; at += step) {
         const double done = std::fmin(at, frames);
-        set_smooth_key(scene, position_key, frame + done, path(ease(done / frames)));
+        set_smooth_keyframe(scene, position_key, frame + done, path(ease(done / frames)));
         if (at >= frames) break;
     }
-    set_smooth_key(scene, target_key, frame, target);
-    set_smooth_key(scene, target_key, frame + frames, target);
+    set_smooth_keyframe(scene, target_key, frame, target);
+    set_smooth_keyframe(scene, target_key, frame + frames, target);
     for (Track& track : scene.animation)
         if (track.key == position_key) track.constant_speed = false;  // the samples carry the speed
     extend_frames(scene, std::llround(frame), std::llround(frame + frames) - 1);
@@ -146,24 +149,24 @@ Path face_on_path(const Scene& scene, const Bounds& box, const glm::dvec3& start
 
 }  // namespace
 
-void key_camera(Scene& scene, const CameraParams& camera, double frame) {
+void set_camera_keyframe(Scene& scene, const CameraParams& camera, double frame) {
     const bool moves = std::any_of(scene.animation.begin(), scene.animation.end(),
                                    [](const Track& track) { return track.key.is_below("camera"); });
     if (!moves) set_lens_and_up(scene.camera, camera);
-    if (camera.position) set_key(scene, position_key, frame, vector_value(*camera.position));
-    key_orientation(scene, camera, frame);
+    if (camera.position) set_keyframe(scene, position_key, frame, vector_value(*camera.position));
+    set_orientation_keyframe(scene, camera, frame);
     Scene source = scene;
     source.camera = camera;
     for (const Parameter& parameter : describe(source).parameters) {
         const ParameterKey& key = parameter.spec.key;
         if (!key.is_below("camera") || key == position_key || key == target_key || key == rotation_key)
             continue;
-        if (is_keyed(scene, key)) set_key(scene, key, frame, parameter.get());
+        if (is_animated(scene, key)) set_keyframe(scene, key, frame, parameter.get());
     }
 }
 
-void key_seen_camera(Scene& scene, const ViewState& view, const Status& status) {
-    key_camera(scene, seen_camera(scene, view, status), std::round(view.frame));
+void set_keyframe_of_seen_camera(Scene& scene, const ViewState& view, const Status& status) {
+    set_camera_keyframe(scene, seen_camera(scene, view, status), std::round(view.frame));
 }
 
 void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame) {

@@ -1,5 +1,5 @@
-// Keys of the camera: what is seen, and whole moves, as rows of keys. In: a scene and a camera or a box. Out:
-// the scene's tracks.
+// Keyframes of the camera: what is seen, and whole moves, as rows of them. In: a scene and a camera or a box.
+// Out: the scene's tracks.
 #pragma once
 
 #include <array>
@@ -11,13 +11,14 @@
 
 namespace astrosplat {
 
-/// Keys position, target and whatever else of the camera is animated at `frame` to those of `camera`. The
-/// first key of a camera that did not move takes its lens and its up as well: there is no other time at which
-/// they could be wrong.
-void key_camera(Scene& scene, const CameraParams& camera, double frame);
+/// Sets keyframes of position, target and whatever else of the camera is animated at `frame` to those of
+/// `camera`. The first keyframe of a camera that did not move takes its lens and its up as well: there is no
+/// other time at which they could be wrong.
+void set_camera_keyframe(Scene& scene, const CameraParams& camera, double frame);
 
-/// "Key camera here": keys seen_camera (view_camera.h) at the view's frame, rounded. Throws as that does.
-void key_seen_camera(Scene& scene, const ViewState& view, const Status& status);
+/// "Key camera here": sets those of seen_camera (view_camera.h) at the view's frame, rounded. Throws as that
+/// does.
+void set_keyframe_of_seen_camera(Scene& scene, const ViewState& view, const Status& status);
 
 enum class CameraMove { orbit, fly_in, face_on_to_edge_on };
 inline constexpr std::array<const char*, 3> camera_move_names{"Orbit", "Fly in", "Face-on to edge-on"};

@@ -53,18 +53,18 @@ void check_track(const Track& track, const Parameter& parameter) {
         throw InputError(fmt::format("{}: {}", track.key, message));
     };
     if (parameter.spec.animation == Animation::no) fail("this parameter cannot be animated");
-    if (track.keys.empty()) fail("expected at least one key, found none");
+    if (track.keyframes.empty()) fail("expected at least one keyframe, found none");
     const Value value = parameter.get();
-    for (std::size_t i = 0; i < track.keys.size(); ++i) {
-        const auto& key = track.keys[i];
-        if (!std::isfinite(key.frame)) fail("expected a finite frame number, found another");
-        if (i > 0 && !(track.keys[i - 1].frame < key.frame))
+    for (std::size_t i = 0; i < track.keyframes.size(); ++i) {
+        const auto& keyframe = track.keyframes[i];
+        if (!std::isfinite(keyframe.frame)) fail("expected a finite frame number, found another");
+        if (i > 0 && !(track.keyframes[i - 1].frame < keyframe.frame))
             fail("expected ascending frames, each once, found others");
-        if (key.value.size() != track.keys[0].value.size() || key.value.empty())
-            fail("expected as many numbers in every key, found another number");
-        for (const double x : key.value)
-            if (!std::isfinite(x)) fail("expected finite numbers in every key, found another");
-        set_checked(parameter, from_numbers(parameter.spec, key.value));
+        if (keyframe.value.size() != track.keyframes[0].value.size() || keyframe.value.empty())
+            fail("expected as many numbers in every keyframe, found another number");
+        for (const double x : keyframe.value)
+            if (!std::isfinite(x)) fail("expected finite numbers in every keyframe, found another");
+        set_checked(parameter, from_numbers(parameter.spec, keyframe.value));
     }
     parameter.set(value);
 }

@@ -1,4 +1,4 @@
-// What an edit may leave behind: every value in its range, every key of the animation fitting its parameter,
+// What an edit may leave behind: every value in its range, every keyframe fitting its parameter,
 // the rules between parameters. In: a scene as an edit made it. Out: the scene, or an error in one line.
 #pragma once
 

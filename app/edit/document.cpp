@@ -12,7 +12,7 @@
 #include "core/file.h"
 #include "edit/check_edit.h"
 #include "edit/disk_file.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "edit/layers.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
@@ -251,8 +251,8 @@ void Document::set(const std::string& key, const Value& value, double frame, Ges
     const ParameterSpec& spec = parameter.spec;
     if (spec.generic_key == "layer.name" && value.text())
         rename_layer(edited, layer_index(edited, spec.key), *value.text());
-    else if (is_keyed(edited, spec.key))
-        set_key(edited, spec.key, frame, value);
+    else if (is_animated(edited, spec.key))
+        set_keyframe(edited, spec.key, frame, value);
     else
         set_value(parameter, value, edited.file.parent_path());
     take(std::move(edited), edit_name(spec), gesture);

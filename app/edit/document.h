@@ -57,9 +57,9 @@ class Document {
     /// go with it. The last 500 steps can be undone.
     void edit(const std::string& name, const std::function<void(Scene&)>& change, Gesture gesture = 0);
 
-    /// Sets one parameter by its full key. A keyed parameter gets (or changes) the key at `frame`, any other
-    /// its value. A file's path may be relative to the scene's folder; the list a key names grows by one
-    /// element where that is missing. Throws InputError as edit() does.
+    /// Sets one parameter by its full key. An animated parameter gets (or changes) the keyframe at `frame`,
+    /// any other its value. A file's path may be relative to the scene's folder; the list a key names grows
+    /// by one element where that is missing. Throws InputError as edit() does.
     void set(const std::string& key, const Value& value, double frame, Gesture gesture = 0);
     /// Back to the default, animation of it removed.
     void reset(const std::string& key);

@@ -17,14 +17,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void read(const Json& json, const char* key, bool& value) {
-    if (json.contains(key) && json[key].is_boolean()) value = json[key].get<bool>();
+void read(const Json& json, const char* name, bool& value) {
+    if (json.contains(name) && json[name].is_boolean()) value = json[name].get<bool>();
 }
 
 template <class Number>
-void read(const Json& json, const char* key, Number& value, double lo, double hi) {
-    if (!json.contains(key) || !json[key].is_number()) return;
-    const double number = json[key].get<double>();
+void read(const Json& json, const char* name, Number& value, double lo, double hi) {
+    if (!json.contains(name) || !json[name].is_number()) return;
+    const double number = json[name].get<double>();
     if (number >= lo && number <= hi) value = static_cast<Number>(number);
 }
 

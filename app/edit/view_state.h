@@ -73,8 +73,8 @@ struct ViewState : PanelSizes {
 
     bool panels = true;  // F11
     bool graph_open = false;
-    std::string graph_key;          // parameter shown in the timeline's graph
-    std::string hovered_key;        // of the panel's row under the mouse, set every frame; K keys it
+    std::string graph_parameter;    // parameter shown in the timeline's graph
+    std::string hovered_parameter;  // of the panel's row under the mouse, set every frame; K sets a keyframe
     bool preparation_open = false;  // the panel shows before and after; set every frame
     bool snapshots_open = false;
     bool help_open = false, log_open = false;

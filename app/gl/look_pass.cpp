@@ -18,10 +18,10 @@ int step_up(int value, std::initializer_list<int> steps) {
 LookLimits limits_for(const LookUniforms& look) {
     using namespace shared_types;
     bool curve = look.vertical.shape == PROFILE_CURVE;
-    for (int k = 0; k < look.key_count; ++k) curve = curve || look.keys[k].pdf.shape == PROFILE_CURVE;
+    for (int k = 0; k < look.stop_count; ++k) curve = curve || look.stops[k].pdf.shape == PROFILE_CURVE;
     int octaves = 0;
     for (int k = 0; k < look.noise_count; ++k) octaves = std::max(octaves, look.noises[k].octaves);
-    return {step_up(look.key_count, {1, 3, LOOK_MAX_KEYS}),
+    return {step_up(look.stop_count, {1, 3, LOOK_MAX_STOPS}),
             step_up(look.noise_count, {1, 2, LOOK_MAX_NOISES}), curve ? LOOK_MAX_POINTS : 1,
             step_up(octaves, {0, 4, 6, 16})};
 }
@@ -32,7 +32,7 @@ ProgramSource LookPass::source_for(const LookLimits& limits) {
         {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "decimate.glsl", "look_pass.glsl"},
         {},
         {"shaded_place", "shaded_color"},
-        {{"LOOK_KEYS", limits.keys},
+        {{"LOOK_STOPS", limits.stops},
          {"LOOK_NOISES", limits.noises},
          {"LOOK_POINTS", limits.points},
          {"AS_NOISE_MAX_OCTAVES", limits.octaves}}};
@@ -76,7 +76,7 @@ void LookPass::run(const RawSplats& raw, const LookPassInput& input, ShadedBuffe
     glBufferData(GL_UNIFORM_BUFFER, sizeof(LookUniforms), &input.look, GL_STREAM_DRAW);
     glUniform1f(program.uniform("share"), input.share);
     glUniform1i(program.uniform("additive"), input.additive ? 1 : 0);
-    if (input.map && input.look.key_count > 1) upload_map(*input.map);
+    if (input.map && input.look.stop_count > 1) upload_map(*input.map);
     bind_texture(0, GL_TEXTURE_2D, map_.name());
     const auto offset = static_cast<GLintptr>(sizeof(glm::vec4)) * first;
     const auto size = static_cast<GLsizeiptr>(sizeof(glm::vec4)) * input.count;

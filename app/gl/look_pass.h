@@ -17,7 +17,7 @@ namespace astrosplat {
 
 /// What the loops of a shader run to that is made for the look at hand; by default what any look needs.
 struct LookLimits {
-    int keys = shared_types::LOOK_MAX_KEYS;
+    int stops = shared_types::LOOK_MAX_STOPS;
     int noises = shared_types::LOOK_MAX_NOISES;
     int points = shared_types::LOOK_MAX_POINTS;
     int octaves = 16;  // of a noise
@@ -29,7 +29,7 @@ LookLimits limits_for(const LookUniforms& look);
 
 struct LookPassInput {
     const LookUniforms& look;
-    const Image* map = nullptr;  // raw values; read where there are several keys
+    const Image* map = nullptr;  // raw values; read where there are several stops
     std::int64_t count = 0;      // the first so many splats of the set
     float share = 1.0f;          // of the layer that these are; alpha and radius make up for the rest
     bool additive = false;       // the layer's blend adds

@@ -12,22 +12,22 @@ namespace astrosplat {
 namespace {
 
 /// ~depth in the upper half, so that ascending is far to near; the splat's index below.
-using Key = std::uint64_t;
+using Code = std::uint64_t;
 
 std::uint32_t depth_bits(const OrderLayer& layer, const glm::vec4& place, const Lens& lens) {
     const glm::vec3 p(layer.camera_from_layer * glm::dvec3(place) + layer.origin_in_camera);
-    const float key = shared::sort_key(lens, p);
-    return key > 0.0f ? std::bit_cast<std::uint32_t>(key) : 0u;
+    const float code = shared::sort_depth(lens, p);
+    return code > 0.0f ? std::bit_cast<std::uint32_t>(code) : 0u;
 }
 
-void make_keys(const OrderJob& job, Buffer<Key>& keys) {
-    keys.clear();
-    keys.reserve(job.places->size());
+void make_codes(const OrderJob& job, Buffer<Code>& codes) {
+    codes.clear();
+    codes.reserve(job.places->size());
     for (const OrderLayer& layer : job.layers) {
         for (std::int64_t i = layer.first; i < layer.first + layer.count; ++i) {
             const glm::vec4& place = (*job.places)[static_cast<std::size_t>(i)];
             if (place.w < 0.0f) continue;
-            keys.push_back(Key{~depth_bits(layer, place, job.lens)} << 32 | Key(i));
+            codes.push_back(Code{~depth_bits(layer, place, job.lens)} << 32 | Code(i));
         }
     }
 }
@@ -35,21 +35,21 @@ void make_keys(const OrderJob& job, Buffer<Key>& keys) {
 /// Layer and id of a splat: larger is farther at equal depth.
 struct TieBreak {
     const OrderJob& job;
-    std::pair<std::size_t, std::uint64_t> of(Key key) const {
-        const auto i = static_cast<std::int64_t>(key & 0xffffffffu);
+    std::pair<std::size_t, std::uint64_t> of(Code code) const {
+        const auto i = static_cast<std::int64_t>(code & 0xffffffffu);
         std::size_t l = job.layers.size() - 1;
         while (l > 0 && i < job.layers[l].first) --l;
         return {l, job.layers[l].set->id[static_cast<std::size_t>(i - job.layers[l].first)]};
     }
-    bool operator()(Key a, Key b) const { return of(a) > of(b); }
+    bool operator()(Code a, Code b) const { return of(a) > of(b); }
 };
 
-void break_ties(const OrderJob& job, Buffer<Key>& keys) {
-    for (std::size_t i = 0; i < keys.size();) {
+void break_ties(const OrderJob& job, Buffer<Code>& codes) {
+    for (std::size_t i = 0; i < codes.size();) {
         std::size_t end = i + 1;
-        while (end < keys.size() && keys[end] >> 32 == keys[i] >> 32) ++end;
+        while (end < codes.size() && codes[end] >> 32 == codes[i] >> 32) ++end;
         if (end - i > 1)
-            std::sort(keys.begin() + std::ptrdiff_t(i), keys.begin() + std::ptrdiff_t(end), TieBreak{job});
+            std::sort(codes.begin() + std::ptrdiff_t(i), codes.begin() + std::ptrdiff_t(end), TieBreak{job});
         i = end;
     }
 }
@@ -57,20 +57,20 @@ void break_ties(const OrderJob& job, Buffer<Key>& keys) {
 }  // namespace
 
 Order sort_far_to_near(const OrderJob& job, OrderScratch& scratch) {
-    Buffer<Key>& keys = scratch.keys;
-    make_keys(job, keys);
-    scratch.other.resize(keys.size());
-    const Key* const sorted = radix_sort<11>(
-        keys.data(), scratch.other.data(), keys.size(), 32, 64, [](Key key) { return key; }, [] {});
-    if (sorted != keys.data()) keys.swap(scratch.other);
-    break_ties(job, keys);
+    Buffer<Code>& codes = scratch.codes;
+    make_codes(job, codes);
+    scratch.other.resize(codes.size());
+    const Code* const sorted = radix_sort<11>(
+        codes.data(), scratch.other.data(), codes.size(), 32, 64, [](Code code) { return code; }, [] {});
+    if (sorted != codes.data()) codes.swap(scratch.other);
+    break_ties(job, codes);
     Order order;
     order.version = job.version;
-    order.splats.resize(keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) order.splats[i] = static_cast<std::uint32_t>(keys[i]);
-    const float limit = shared::key_of_distance(job.lens, static_cast<float>(job.far_from));
-    const Key nearest_far = Key{~std::bit_cast<std::uint32_t>(std::max(limit, 0.0f))} << 32;
-    order.far_count = std::lower_bound(keys.begin(), keys.end(), nearest_far) - keys.begin();
+    order.splats.resize(codes.size());
+    for (std::size_t i = 0; i < codes.size(); ++i) order.splats[i] = static_cast<std::uint32_t>(codes[i]);
+    const float limit = shared::sort_depth_of(job.lens, static_cast<float>(job.far_from));
+    const Code nearest_far = Code{~std::bit_cast<std::uint32_t>(std::max(limit, 0.0f))} << 32;
+    order.far_count = std::lower_bound(codes.begin(), codes.end(), nearest_far) - codes.begin();
     return order;
 }
 

@@ -30,8 +30,8 @@ struct OrderLayer {
 struct OrderJob {
     std::shared_ptr<const Buffer<glm::vec4>> places;  // layer space; w < 0: not drawn
     std::vector<OrderLayer> layers;
-    Lens lens;  // by whose sort_key they are ordered
-    /// Distance, as the sort key measures it, beyond which `far_count` counts; scene units.
+    Lens lens;  // by whose sort_depth they are ordered
+    /// Distance, as the sort depth measures it, beyond which `far_count` counts; scene units.
     double far_from = 0.0;
     std::uint64_t version = 0;  // the caller's number for this job
 };
@@ -44,7 +44,7 @@ struct Order {
 
 /// Memory that sorting uses again; page faults cost as much as sorting.
 struct OrderScratch {
-    Buffer<std::uint64_t> keys, other;
+    Buffer<std::uint64_t> codes, other;
 };
 
 /// With the bits the offline renderer sorts by.

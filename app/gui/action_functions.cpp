@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "edit/camera_moves.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "edit/layers.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
@@ -121,38 +121,42 @@ bool layer_stale(const GuiFrame& f) {
 }
 
 bool in_free_view(const GuiFrame& f) { return f.view.view == ViewKind::free; }
-void key_camera_here(GuiFrame& f) {
-    edit(f, "Key camera", [&](Scene& scene) { key_seen_camera(scene, f.view, f.status); });
+void set_camera_keyframe_here(GuiFrame& f) {
+    edit(f, "Set camera keyframe",
+         [&](Scene& scene) { set_keyframe_of_seen_camera(scene, f.view, f.status); });
 }
 void camera_from_view(GuiFrame& f) {
     const std::vector<Track>& tracks = f.document.scene().animation;
     const bool animated = std::any_of(tracks.begin(), tracks.end(),
                                       [](const Track& track) { return track.key.is_below("camera"); });
-    if (animated) return key_camera_here(f);
+    if (animated) return set_camera_keyframe_here(f);
     edit(f, "Camera from view", [&](Scene& scene) { scene.camera = seen_camera(scene, f.view, f.status); });
 }
 
 void next_frame(GuiFrame& f) { go_to(f, std::floor(f.view.frame) + 1.0); }
 void previous_frame(GuiFrame& f) { go_to(f, std::ceil(f.view.frame) - 1.0); }
-void next_key(GuiFrame& f) { f.view.frame = next_key_frame(f.document.scene(), f.view.frame); }
-void previous_key(GuiFrame& f) { f.view.frame = previous_key_frame(f.document.scene(), f.view.frame); }
+void next_keyframe(GuiFrame& f) { f.view.frame = frame_of_next_keyframe(f.document.scene(), f.view.frame); }
+void previous_keyframe(GuiFrame& f) {
+    f.view.frame = frame_of_previous_keyframe(f.document.scene(), f.view.frame);
+}
 void first_frame(GuiFrame& f) { f.view.frame = frame_range(f.document.scene()).first; }
 void last_frame(GuiFrame& f) { f.view.frame = frame_range(f.document.scene()).last; }
 
-void key_here(GuiFrame& f) {
-    const std::string key = f.view.hovered_key;
-    if (key.empty()) return key_camera_here(f);
+void set_keyframe_here(GuiFrame& f) {
+    const std::string key = f.view.hovered_parameter;
+    if (key.empty()) return set_camera_keyframe_here(f);
     const Value value = value_now(f, key);
-    edit(f, "Key " + key, [&](Scene& scene) { set_key(scene, key, f.view.frame, value); });
+    edit(f, "Set keyframe of " + key, [&](Scene& scene) { set_keyframe(scene, key, f.view.frame, value); });
 }
-void remove_key_here(GuiFrame& f) {
-    const std::string key = f.view.hovered_key;
-    edit(f, key.empty() ? "Remove camera key" : "Remove key of " + key, [&](Scene& scene) {
-        std::vector<std::string> keys;
+void remove_keyframe_here(GuiFrame& f) {
+    const std::string key = f.view.hovered_parameter;
+    edit(f, key.empty() ? "Remove camera keyframes" : "Remove keyframe of " + key, [&](Scene& scene) {
+        std::vector<std::string> found;
         for (const Track& track : scene.animation)
-            if (key.empty() ? track.key.is_below("camera") : track.key == key) keys.push_back(track.key);
-        for (const std::string& k : keys)
-            if (has_key_at(scene, k, f.view.frame)) remove_key(scene, k, f.view.frame);
+            if (key.empty() ? track.key.is_below("camera") : track.key == key) found.push_back(track.key);
+        for (const std::string& animated : found)
+            if (has_keyframe_at(scene, animated, f.view.frame))
+                remove_keyframe(scene, animated, f.view.frame);
     });
 }
 void cancel(GuiFrame& f) {

@@ -45,17 +45,17 @@ bool can_move_down(const GuiFrame& f);
 bool layer_stale(const GuiFrame& f);
 
 bool in_free_view(const GuiFrame& f);
-void key_camera_here(GuiFrame& f);  // what is seen, as the panel's button does
+void set_camera_keyframe_here(GuiFrame& f);  // what is seen, as the panel's button does
 void camera_from_view(GuiFrame& f);
 
 void next_frame(GuiFrame& f);
 void previous_frame(GuiFrame& f);
-void next_key(GuiFrame& f);
-void previous_key(GuiFrame& f);
+void next_keyframe(GuiFrame& f);
+void previous_keyframe(GuiFrame& f);
 void first_frame(GuiFrame& f);
 void last_frame(GuiFrame& f);
-void key_here(GuiFrame& f);
-void remove_key_here(GuiFrame& f);
+void set_keyframe_here(GuiFrame& f);
+void remove_keyframe_here(GuiFrame& f);
 void cancel(GuiFrame& f);
 
 }  // namespace astrosplat

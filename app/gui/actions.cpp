@@ -1,4 +1,4 @@
-// The table of actions and the loop that finds the one a key means.
+// The table of actions and the loop that finds the one a shortcut means.
 #include "gui/actions.h"
 
 #include <imgui.h>
@@ -23,10 +23,10 @@ void ask_for_layer(F f) {
     request(f, kind, f.view.layer);
 }
 
-constexpr Shortcut plain(int key) { return {key, false, false}; }
-constexpr Shortcut shift(int key) { return {key, false, true}; }
-constexpr Shortcut ctrl(int key) { return {key, true, false}; }
-constexpr Shortcut ctrl_shift(int key) { return {key, true, true}; }
+constexpr Shortcut plain(int code) { return {code, false, false}; }
+constexpr Shortcut shift(int code) { return {code, false, true}; }
+constexpr Shortcut ctrl(int code) { return {code, true, false}; }
+constexpr Shortcut ctrl_shift(int code) { return {code, true, true}; }
 
 /// The first of a group of a menu.
 Action below_line(Action action) {
@@ -34,9 +34,9 @@ Action below_line(Action action) {
     return action;
 }
 
-/// Only the keys do it; again and again while they are held.
-Action repeated(const char* label, int key, void (*run)(F)) {
-    return {.menu = "", .label = label, .shortcut = plain(key), .run = run, .repeats = true};
+/// Only the shortcut does it; again and again while it is held.
+Action repeated(const char* label, int code, void (*run)(F)) {
+    return {.menu = "", .label = label, .shortcut = plain(code), .run = run, .repeats = true};
 }
 
 /// Turns a flag of the view on and off.
@@ -122,7 +122,7 @@ const Action table[] = {
     {"Layer", "Move down", {}, move_layer_down, can_move_down},
     below_line({"Layer", "Regenerate", {}, ask_for_layer<Kind::regenerate>, layer_stale}),
 
-    {"Camera", "Key camera here", {}, key_camera_here},
+    {"Camera", "Key camera here", {}, set_camera_keyframe_here},
     {"Camera", "Camera from this view", {}, camera_from_view, in_free_view},
     add_move<CameraMove::orbit>(),
     add_move<CameraMove::fly_in>(),
@@ -135,26 +135,26 @@ const Action table[] = {
     {"Render", "Cancel", {}, ask<Kind::cancel_render>, has_job},
     below_line({"Render", "Copy batch command", {}, ask<Kind::copy_batch_command>}),
 
-    flip<&ViewState::help_open>("Help", "Keys", plain(key_code::f1)),
+    flip<&ViewState::help_open>("Help", "Shortcuts", plain(key_code::f1)),
     flip<&ViewState::log_open>("Help", "Log"),
 
     flip<&ViewState::playing>("", "Play or pause", plain(key_code::space)),
     repeated("Next frame", key_code::right, next_frame),
     repeated("Previous frame", key_code::left, previous_frame),
-    repeated("Next key", key_code::up, next_key),
-    repeated("Previous key", key_code::down, previous_key),
+    repeated("Next keyframe", key_code::up, next_keyframe),
+    repeated("Previous keyframe", key_code::down, previous_keyframe),
     {"", "First frame", ctrl(key_code::left), first_frame},
     {"", "Last frame", ctrl(key_code::right), last_frame},
-    {"", "Key the row under the mouse, or the camera", plain('K'), key_here},
-    {"", "Remove that key", shift('K'), remove_key_here},
+    {"", "Keyframe of the hovered row, or the camera", plain('K'), set_keyframe_here},
+    {"", "Remove that keyframe", shift('K'), remove_keyframe_here},
     {"", "Cancel what runs, close what is open", plain(key_code::escape), cancel},
 };
 
 bool pressed(const Action& action) {
     const ImGuiIO& io = ImGui::GetIO();
     const Shortcut& s = action.shortcut;
-    if (s.key == 0 || io.KeyAlt || io.KeyCtrl != s.ctrl || io.KeyShift != s.shift) return false;
-    return ImGui::IsKeyPressed(s.key, action.repeats);
+    if (s.code == 0 || io.KeyAlt || io.KeyCtrl != s.ctrl || io.KeyShift != s.shift) return false;
+    return ImGui::IsKeyPressed(s.code, action.repeats);
 }
 
 }  // namespace
@@ -162,7 +162,7 @@ bool pressed(const Action& action) {
 std::span<const Action> actions() { return table; }
 
 std::string shortcut_text(const Shortcut& s) {
-    return std::string(s.ctrl ? "Ctrl+" : "") + (s.shift ? "Shift+" : "") + key_name(s.key);
+    return std::string(s.ctrl ? "Ctrl+" : "") + (s.shift ? "Shift+" : "") + key_name(s.code);
 }
 
 void run_shortcuts(GuiFrame& frame) {

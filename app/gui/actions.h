@@ -1,5 +1,5 @@
-// Everything a menu or a key does, once: the menus, the shortcuts and the sheet of keys are loops over this
-// table.
+// Everything a menu or a shortcut does, once: the menus, the shortcuts and the sheet of shortcuts are loops
+// over this table.
 #pragma once
 
 #include <span>
@@ -10,12 +10,12 @@
 namespace astrosplat {
 
 struct Shortcut {
-    int key = 0;  // key_codes.h; 0: none
+    int code = 0;  // key_codes.h; 0: none
     bool ctrl = false, shift = false;
 };
 
 struct Action {
-    const char* menu;  // "File"; "Camera/Add move" for a submenu; "" where only the key does it
+    const char* menu;  // "File"; "Camera/Add move" for a submenu; "" where only the shortcut does it
     const char* label;
     Shortcut shortcut = {};
     void (*run)(GuiFrame&);
@@ -23,7 +23,7 @@ struct Action {
     bool (*checked)(const GuiFrame&) = nullptr;           // nullptr: not a switch
     std::string (*label_now)(const GuiFrame&) = nullptr;  // in place of label where it says more
     bool line_above = false;
-    bool repeats = false;  // while the key is held
+    bool repeats = false;  // while it is held
 };
 
 /// In the order of the menus.
@@ -32,7 +32,7 @@ std::span<const Action> actions();
 /// "Ctrl+Shift+S"; "" for none.
 std::string shortcut_text(const Shortcut& shortcut);
 
-/// Runs what the keys pressed this frame mean. Call it only while no text is typed and nothing is dragged.
+/// Runs the shortcuts pressed this frame. Call it only while no text is typed and nothing is dragged.
 void run_shortcuts(GuiFrame& frame);
 
 }  // namespace astrosplat

@@ -66,7 +66,7 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
         case PictureState::loading:
             return {"Loading", "", color::accent};
         case PictureState::refining:
-            return {fmt::format("Refining {:.0f} %", picture.progress * 100.0f), total, color::key};
+            return {fmt::format("Refining {:.0f} %", picture.progress * 100.0f), total, color::attention};
         case PictureState::final:
             return {fmt::format("Final {:.1f} s", picture.seconds), total, color::good};
         case PictureState::failed:
@@ -107,10 +107,10 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
     if (beside_width > 0) {
         float at = x + left + text_width + px(gap) * 1.5f;
         if (badge.warns) {
-            draw_icon(list, Icon::warning, {at + px(7), y + px(height) * 0.5f}, px(12), color::key);
+            draw_icon(list, Icon::warning, {at + px(7), y + px(height) * 0.5f}, px(12), color::attention);
             at += sign;
         }
-        list->AddText({at, text_y}, badge.warns ? color::key : color::dim, badge.beside.c_str());
+        list->AddText({at, text_y}, badge.warns ? color::attention : color::dim, badge.beside.c_str());
     }
     if (word && word_button(frame, word, x + width - px(padding) - word_width + px(gap) * 2, y))
         press_button(frame);

@@ -18,8 +18,8 @@ float button_width(const char* label) {
     return std::max(px(least_button), ImGui::CalcTextSize(label).x + px(24));
 }
 
-// The key that opened a dialog does not answer it.
-bool pressed(int key) { return !ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(key, false); }
+// The key press that opened a dialog does not answer it.
+bool pressed(int code) { return !ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(code, false); }
 
 }  // namespace
 

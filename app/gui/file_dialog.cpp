@@ -172,7 +172,7 @@ FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
     ImGui::Dummy({0, px(4)});
     const float y = ImGui::GetCursorPosY();
     if (!complaint_.empty())
-        row_text(fitting(complaint_, px(400)), px(28), color::key);
+        row_text(fitting(complaint_, px(400)), px(28), color::attention);
     else if (!query_.extensions.empty()) {
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(4), px(4)));
         if (ImGui::Checkbox("All files", &all_files_))

@@ -39,8 +39,8 @@ void begin_host() {
     ImGui::PopStyleVar(3);
 }
 
-// The parameter that K keys: of the panel's row that the mouse is on.
-std::string key_under_mouse(const Panel& panel, const Rect& area) {
+// The parameter that K sets a keyframe of: of the panel's row that the mouse is on.
+std::string parameter_under_mouse(const Panel& panel, const Rect& area) {
     constexpr float half_row = 13;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const ImVec2 end{area.x + area.width, area.y + area.height};
@@ -50,7 +50,7 @@ std::string key_under_mouse(const Panel& panel, const Rect& area) {
     return "";
 }
 
-bool keys_are_free() {
+bool keyboard_is_free() {
     return !ImGui::GetIO().WantTextInput && !ImGui::IsAnyItemActive() &&
            !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
@@ -84,13 +84,13 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
         panel.draw(frame.document, frame.view, frame.status, frame.requested);
         ImGui::EndChild();
     }
-    frame.view.hovered_key = key_under_mouse(panel, layout.panel);
+    frame.view.hovered_parameter = parameter_under_mouse(panel, layout.panel);
     if (begin_part("status", layout.status, still)) {
         status_bar.draw(frame, layout.status);
         ImGui::EndChild();
     }
     draw_splitters(frame, layout);
-    draw_key_sheet(frame);
+    draw_shortcut_sheet(frame);
     draw_log(frame);
     flow.run(frame, panel, commands);
 }
@@ -106,7 +106,7 @@ void Gui::draw(Document& document, ViewState& view, const Status& status, Comman
     GuiFrame frame{document, view, status, requested, state.drawn};
     view.changed_on_disk = status.changed_on_disk;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    if (keys_are_free()) run_shortcuts(frame);
+    if (keyboard_is_free()) run_shortcuts(frame);
     begin_host();
     const Layout layout = make_layout(view, size.x, size.y, px(1));
     state.draw_parts(frame, layout, commands);

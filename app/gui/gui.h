@@ -23,7 +23,7 @@ namespace astrosplat {
 /// Fonts, colours, spacing: once after ImGui::CreateContext. `content_scale`: of the monitor.
 void apply_theme(float content_scale);
 
-/// What mouse and keys did over the viewport this frame. px are relative to the viewport's upper left.
+/// What mouse and keyboard did over the viewport this frame. px are relative to the viewport's upper left.
 struct ViewportInput {
     bool hovered = false;
     glm::dvec2 mouse_px{0.0}, delta_px{0.0};
@@ -38,7 +38,7 @@ struct ViewportInput {
 /// A control of the last frame and the middle of it, px of the window: for tests and for a driver that wants
 /// to reach one by its name.
 struct DrawnItem {
-    std::string name;  // "File/Open...", "play", "key camera.position 12"
+    std::string name;  // "File/Open...", "play", "keyframe camera.position 12"
     glm::vec2 middle;
 };
 

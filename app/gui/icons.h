@@ -8,8 +8,8 @@ namespace astrosplat {
 enum class Icon {
     eye,
     eye_closed,
-    diamond,        // a key is here
-    diamond_empty,  // animated, no key here; or can be keyed
+    diamond,        // a keyframe is here
+    diamond_empty,  // animated, no keyframe here; or can be
     play,
     pause,
     chevron_right,

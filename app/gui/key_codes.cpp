@@ -1,18 +1,18 @@
-// Key numbers to the words on keycaps.
+// Key codes to the words on keycaps.
 #include "gui/key_codes.h"
 
 #include <map>
 
 namespace astrosplat {
 
-std::string key_name(int key) {
+std::string key_name(int code) {
     using namespace key_code;
     static const std::map<int, std::string> words = {
         {0, ""},          {space, "Space"}, {escape, "Esc"}, {tab, "Tab"}, {del, "Del"},
         {right, "Right"}, {left, "Left"},   {down, "Down"},  {up, "Up"},   {home, "Home"},
         {end, "End"},     {f1, "F1"},       {f11, "F11"},    {f12, "F12"}};
-    if (const auto word = words.find(key); word != words.end()) return word->second;
-    return key > 0 && key < 128 ? std::string(1, static_cast<char>(key)) : "";  // letters and digits
+    if (const auto word = words.find(code); word != words.end()) return word->second;
+    return code > 0 && code < 128 ? std::string(1, static_cast<char>(code)) : "";  // letters and digits
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
-// Numbers of the keys that ImGui does not name itself, as they index ImGuiIO::KeysDown. They are GLFW's:
-// letters and digits are their ASCII codes. Written out so that the widgets need no window library.
+// Codes of the keyboard's keys that ImGui does not name itself, as they index ImGuiIO::KeysDown. They are
+// GLFW's: letters and digits are their ASCII codes. Written out so that the widgets need no window library.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ inline constexpr int f1 = 290, f11 = 300, f12 = 301;
 inline constexpr int pad_enter = 335;
 }  // namespace key_code
 
-/// What is written on the key, for menus and the sheet of keys; "" for key 0.
-std::string key_name(int key);
+/// What is written on the key, for menus and the sheet of shortcuts; "" for 0.
+std::string key_name(int code);
 
 }  // namespace astrosplat

@@ -20,7 +20,7 @@ bool small_button(GuiFrame& frame, const char* label, const char* tooltip) {
 }
 
 void draw_disk_notice(GuiFrame& frame, const Rect& area) {
-    row_text(frame.document.name() + " changed on disk", area.height, color::key);
+    row_text(frame.document.name() + " changed on disk", area.height, color::attention);
     for (const bool reloads : {true, false}) {
         ImGui::SameLine(0, px(reloads ? 16 : 8));
         ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x, area.y + (area.height - px(22)) * 0.5f});

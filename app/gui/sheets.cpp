@@ -1,4 +1,4 @@
-// Keys from the table of actions, the mouse from a table here; the log as it is.
+// Shortcuts from the table of actions, the mouse from a table here; the log as it is.
 #include "gui/sheets.h"
 
 #include <imgui.h>
@@ -19,7 +19,7 @@ namespace {
 constexpr float row_height = 20;
 
 struct Row {
-    std::string does, keys;
+    std::string does, shortcut;
 };
 struct Group {
     std::string title;
@@ -45,15 +45,15 @@ const Group& value_group() {
                              {{"Change", "Drag"},
                               {"Coarse, fine", "Shift, Alt"},
                               {"Type", "Double click"},
-                              {"Reset, key, copy, paste", "Right click"}}};
+                              {"Reset, keyframe, copy, paste", "Right click"}}};
     return group;
 }
 const Group& timeline_group() {
     static const Group group{"Timeline",
-                             {{"Move keys", "Drag"},
-                              {"Copy keys", "Ctrl+drag"},
+                             {{"Move keyframes", "Drag"},
+                              {"Copy keyframes", "Ctrl+drag"},
                               {"Select more", "Shift+click, box"},
-                              {"Remove keys", "Del"},
+                              {"Remove keyframes", "Del"},
                               {"Zoom", "Wheel on the ruler"}}};
     return group;
 }
@@ -62,7 +62,7 @@ Group group_of(const char* title, std::initializer_list<std::string_view> menus)
     Group group{title, {}};
     for (const Action& action : actions())
         for (const std::string_view menu : menus)
-            if (menu == action.menu && action.shortcut.key != 0)
+            if (menu == action.menu && action.shortcut.code != 0)
                 group.rows.push_back({action.label, shortcut_text(action.shortcut)});
     return group;
 }
@@ -75,9 +75,9 @@ void draw_group(const Group& group) {
     for (const Row& row : group.rows) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         ImDrawList* list = ImGui::GetWindowDrawList();
-        const float keys_width = ImGui::CalcTextSize(row.keys.c_str()).x;
-        list->AddText(at, color::dim, fitting(row.does, room - keys_width - px(12)).c_str());
-        list->AddText({at.x + room - keys_width, at.y}, color::text, row.keys.c_str());
+        const float shortcut_width = ImGui::CalcTextSize(row.shortcut.c_str()).x;
+        list->AddText(at, color::dim, fitting(row.does, room - shortcut_width - px(12)).c_str());
+        list->AddText({at.x + room - shortcut_width, at.y}, color::text, row.shortcut.c_str());
         ImGui::Dummy({room, px(row_height)});
     }
     ImGui::Dummy({0, px(8)});
@@ -85,9 +85,9 @@ void draw_group(const Group& group) {
 
 }  // namespace
 
-void draw_key_sheet(GuiFrame& frame) {
+void draw_shortcut_sheet(GuiFrame& frame) {
     bool& open = frame.view.help_open;
-    if (!begin_dialog("keys", "Keys and mouse", open, 1040, 592)) return;
+    if (!begin_dialog("shortcuts", "Shortcuts and mouse", open, 1040, 592)) return;
     const float bottom = px(40);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(28), 0));
     ImGui::BeginChild("groups", {0, ImGui::GetContentRegionAvail().y - bottom}, false,
@@ -108,7 +108,7 @@ void draw_key_sheet(GuiFrame& frame) {
     ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::SetCursorPosY(ImGui::GetWindowHeight() - px(44));
-    if (dialog_buttons(frame, "keys", {"Close"}, true) == 0 || dialog_escape() ||
+    if (dialog_buttons(frame, "shortcuts", {"Close"}, true) == 0 || dialog_escape() ||
         (ImGui::IsKeyPressed(key_code::f1, false) && !ImGui::IsWindowAppearing())) {
         open = false;
         ImGui::CloseCurrentPopup();

@@ -16,7 +16,8 @@ inline constexpr ImU32 line = IM_COL32(0x15, 0x17, 0x1A, 255);
 inline constexpr ImU32 text = IM_COL32(0xD6, 0xD8, 0xDB, 255);
 inline constexpr ImU32 dim = IM_COL32(0x8D, 0x92, 0x98, 255);
 inline constexpr ImU32 accent = IM_COL32(0x5B, 0x8F, 0xC9, 255);
-inline constexpr ImU32 key = IM_COL32(0xD9, 0xA4, 0x41, 255);  // keys of an animation, and what is unusual
+inline constexpr ImU32 attention =
+    IM_COL32(0xD9, 0xA4, 0x41, 255);  // keyframes of an animation, and what is unusual
 inline constexpr ImU32 good = IM_COL32(0x6A, 0xA8, 0x7A, 255);
 inline constexpr ImU32 error = IM_COL32(0xCF, 0x6B, 0x5B, 255);
 inline constexpr ImU32 none = IM_COL32(0, 0, 0, 0);

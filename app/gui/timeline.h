@@ -1,5 +1,5 @@
-// The timeline: ruler and playhead, the keys of every animated parameter, the graph of one of them. In: the
-// scene's tracks. Out: the frame looked at, and edits of the tracks.
+// The timeline: ruler and playhead, the keyframes of every animated parameter, the graph of one of them. In:
+// the scene's tracks. Out: the frame looked at, and edits of the tracks.
 #pragma once
 
 #include "gui/timeline_state.h"
@@ -15,7 +15,7 @@ std::string track_label(const std::string& key, const ParameterSpec& spec);
 class Timeline {
   public:
     void draw(GuiFrame& frame, const Rect& area);
-    /// A key or the playhead is being dragged.
+    /// A keyframe or the playhead is being dragged.
     bool busy() const { return state_.drag != TimelineState::Drag::none; }
 
   private:

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/animate.h"
@@ -39,9 +39,9 @@ void sample_graph(TimelineState& t, const Track& track, const ParameterSpec& spe
     t.graph.key = track.key;
     t.graph.revision = revision;
     t.graph.scale = t.scale;
-    t.graph.samples.assign(track.keys.front().value.size(), {});
+    t.graph.samples.assign(track.keyframes.front().value.size(), {});
     const int count = std::max(2, static_cast<int>((t.scale.x1 - t.scale.x0) / px(sample_px)));
-    double low = track.keys.front().value.front(), high = low;
+    double low = track.keyframes.front().value.front(), high = low;
     for (int i = 0; i <= count; ++i) {
         const double frame = t.scale.first + (t.scale.last - t.scale.first) * i / count;
         const std::vector<double> numbers = track_at(track, spec, frame);
@@ -65,40 +65,40 @@ void drag_value(TimelineState& t, GuiFrame& frame, const Track& track, const Rec
     const ParameterSpec& spec = t.specs.at(track.key);
     try_edit([&] {
         frame.document.edit(
-            "Key of " + spec.label,
+            "Keyframe of " + spec.label,
             [&](Scene& scene) {
-                for (const auto& key : track.keys) {
-                    if (key.frame != t.graph.grabbed_key) continue;
-                    std::vector<double> numbers = key.value;
+                for (const auto& keyframe : track.keyframes) {
+                    if (keyframe.frame != t.graph.grabbed_keyframe) continue;
+                    std::vector<double> numbers = keyframe.value;
                     numbers[t.graph.component] = value;
-                    set_key(scene, track.key, key.frame, from_numbers(spec, numbers));
+                    set_keyframe(scene, track.key, keyframe.frame, from_numbers(spec, numbers));
                 }
             },
             t.gesture);
     });
 }
 
-void draw_graph_keys(TimelineState& t, GuiFrame& frame, const Track& track, const Rect& area) {
+void draw_graph_keyframes(TimelineState& t, GuiFrame& frame, const Track& track, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const bool hovered = ImGui::IsItemHovered();
-    for (const auto& key : track.keys)
-        for (std::size_t c = 0; c < key.value.size(); ++c) {
-            const ImVec2 at{t.scale.x_of(key.frame), y_of(t, key.value[c], area)};
-            const bool held = t.drag == TimelineState::Drag::value && t.graph.grabbed_key == key.frame &&
-                              t.graph.component == c;
+    for (const auto& keyframe : track.keyframes)
+        for (std::size_t c = 0; c < keyframe.value.size(); ++c) {
+            const ImVec2 at{t.scale.x_of(keyframe.frame), y_of(t, keyframe.value[c], area)};
+            const bool held = t.drag == TimelineState::Drag::value &&
+                              t.graph.grabbed_keyframe == keyframe.frame && t.graph.component == c;
             const bool near = hovered && std::hypot(at.x - mouse.x, at.y - mouse.y) <= px(point_reach);
             if (near && t.drag == TimelineState::Drag::none && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
                 t.drag = TimelineState::Drag::value;
                 t.gesture = new_gesture();
-                t.graph.grabbed_key = key.frame;
+                t.graph.grabbed_keyframe = keyframe.frame;
                 t.graph.component = c;
             }
             list->AddCircleFilled(at, px(held || near ? 5.5f : 4.5f), color::line, 16);
-            list->AddCircleFilled(at, px(held || near ? 4.5f : 3.5f), color::key, 16);
-            note_item(frame, fmt::format("graph {} {:g} {}", track.key, key.frame, c), {at.x, at.y});
+            list->AddCircleFilled(at, px(held || near ? 4.5f : 3.5f), color::attention, 16);
+            note_item(frame, fmt::format("graph {} {:g} {}", track.key, keyframe.frame, c), {at.x, at.y});
             if (near && t.drag == TimelineState::Drag::none)
-                tooltip(fmt::format("Frame {:g}: {:.4g}", key.frame, key.value[c]).c_str());
+                tooltip(fmt::format("Frame {:g}: {:.4g}", keyframe.frame, keyframe.value[c]).c_str());
         }
 }
 
@@ -106,8 +106,9 @@ void draw_graph_keys(TimelineState& t, GuiFrame& frame, const Track& track, cons
 
 void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     const Scene& scene = frame.document.scene();
-    if (!find_track(scene, frame.view.graph_key)) frame.view.graph_key = scene.animation.front().key;
-    const Track track = *find_track(scene, frame.view.graph_key);
+    if (!find_track(scene, frame.view.graph_parameter))
+        frame.view.graph_parameter = scene.animation.front().key;
+    const Track track = *find_track(scene, frame.view.graph_parameter);
     const auto spec = t.specs.find(track.key);
     if (spec == t.specs.end()) return;
     sample_graph(t, track, spec->second, frame.document.revision());
@@ -134,7 +135,7 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
                               y_of(t, samples[i], area)});
         list->PathStroke(component_color(c, t.graph.samples.size()), ImDrawFlags_None, px(1.5f));
     }
-    draw_graph_keys(t, frame, track, area);
+    draw_graph_keyframes(t, frame, track, area);
     ImGui::PopClipRect();
     if (t.drag == TimelineState::Drag::value) drag_value(t, frame, track, area);
 }

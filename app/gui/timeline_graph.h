@@ -5,7 +5,7 @@
 
 namespace astrosplat {
 
-/// Of the parameter ViewState::graph_key, else of the first one animated.
+/// Of the parameter ViewState::graph_parameter, else of the first one animated.
 void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area);
 
 }  // namespace astrosplat

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
@@ -19,10 +19,10 @@
 namespace astrosplat {
 namespace {
 
-constexpr float row_height = 26, key_reach = 7, name_width = 160, value_gutter = 56;
+constexpr float row_height = 26, keyframe_reach = 7, name_width = 160, value_gutter = 56;
 
 // Diamond: linear; disc: smooth; square: step.
-void draw_key_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation, bool selected) {
+void draw_keyframe_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation, bool selected) {
     const float half = px(5);
     const auto mark = [&](float size, ImU32 c) {
         if (interpolation == Interpolation::smooth)
@@ -36,7 +36,7 @@ void draw_key_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation, boo
     };
     if (selected) mark(half + px(2.5f), color::text);
     mark(half + px(0.5f), color::line);
-    mark(half - px(0.5f), color::key);
+    mark(half - px(0.5f), color::attention);
 }
 
 std::string value_text(const std::vector<double>& numbers) {
@@ -45,27 +45,27 @@ std::string value_text(const std::vector<double>& numbers) {
     return text;
 }
 
-bool is_selected(const TimelineState& t, const KeyPlace& place) {
+bool is_selected(const TimelineState& t, const KeyframePlace& place) {
     return std::find(t.selected.begin(), t.selected.end(), place) != t.selected.end();
 }
 
-std::optional<KeyPlace> key_under_mouse(const TimelineState& t, const Scene& scene, float rows_y) {
+std::optional<KeyframePlace> keyframe_under_mouse(const TimelineState& t, const Scene& scene, float rows_y) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const int row = static_cast<int>(std::floor((mouse.y - rows_y) / px(row_height)));
     if (row < 0 || row >= static_cast<int>(scene.animation.size())) return std::nullopt;
     const Track& track = scene.animation[static_cast<std::size_t>(row)];
-    float nearest = px(key_reach);
-    std::optional<KeyPlace> found;
-    for (const auto& key : track.keys) {
-        const float distance = std::fabs(t.scale.x_of(key.frame) - mouse.x);
+    float nearest = px(keyframe_reach);
+    std::optional<KeyframePlace> found;
+    for (const auto& keyframe : track.keyframes) {
+        const float distance = std::fabs(t.scale.x_of(keyframe.frame) - mouse.x);
         if (distance > nearest) continue;
         nearest = distance;
-        found = KeyPlace{track.key, key.frame};
+        found = KeyframePlace{track.key, keyframe.frame};
     }
     return found;
 }
 
-void press_key(TimelineState& t, GuiFrame& frame, const KeyPlace& place) {
+void press_keyframe(TimelineState& t, GuiFrame& frame, const KeyframePlace& place) {
     if (ImGui::GetIO().KeyShift) {
         if (is_selected(t, place))
             std::erase(t.selected, place);
@@ -74,8 +74,8 @@ void press_key(TimelineState& t, GuiFrame& frame, const KeyPlace& place) {
     } else if (!is_selected(t, place)) {
         t.selected = {place};
     }
-    frame.view.graph_key = place.key;
-    t.drag = TimelineState::Drag::keys;
+    frame.view.graph_parameter = place.key;
+    t.drag = TimelineState::Drag::keyframes;
     t.gesture = new_gesture();
     t.before = frame.document.scene().animation;
     t.picked = t.selected;
@@ -83,29 +83,30 @@ void press_key(TimelineState& t, GuiFrame& frame, const KeyPlace& place) {
     t.moved = 0.0;
 }
 
-void drag_keys(TimelineState& t, GuiFrame& frame) {
+void drag_keyframes(TimelineState& t, GuiFrame& frame) {
     const double delta = std::round(t.scale.frame_at(ImGui::GetIO().MousePos.x) - t.grabbed_frame);
     if (delta == t.moved) return;
     t.moved = delta;
     const bool copies = ImGui::GetIO().KeyCtrl;
-    // The leading key goes first, so that none lands on one that has still to move.
-    std::vector<KeyPlace> order = t.picked;
-    std::sort(order.begin(), order.end(), [&](const KeyPlace& a, const KeyPlace& b) {
+    // The leading keyframe goes first, so that none lands on one that has still to move.
+    std::vector<KeyframePlace> order = t.picked;
+    std::sort(order.begin(), order.end(), [&](const KeyframePlace& a, const KeyframePlace& b) {
         return delta > 0 ? a.frame > b.frame : a.frame < b.frame;
     });
     try_edit([&] {
         frame.document.edit(
-            copies ? "Copy keys" : "Move keys",
+            copies ? "Copy keyframes" : "Move keyframes",
             [&](Scene& scene) {
                 scene.animation = t.before;
                 if (delta == 0.0) return;
-                for (const KeyPlace& place : order)
-                    (copies ? copy_key : move_key)(scene, place.key, place.frame, place.frame + delta);
+                for (const KeyframePlace& place : order)
+                    (copies ? copy_keyframe : move_keyframe)(scene, place.key, place.frame,
+                                                             place.frame + delta);
             },
             t.gesture);
     });
     t.selected = t.picked;
-    for (KeyPlace& place : t.selected) place.frame += delta;
+    for (KeyframePlace& place : t.selected) place.frame += delta;
 }
 
 void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
@@ -116,9 +117,9 @@ void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
     for (std::size_t row = 0; row < scene.animation.size(); ++row) {
         const float y = rows_y + (static_cast<float>(row) + 0.5f) * px(row_height);
         if (y < low.y || y > high.y) continue;
-        for (const auto& key : scene.animation[row].keys) {
-            const float x = t.scale.x_of(key.frame);
-            if (x >= low.x && x <= high.x) t.selected.push_back({scene.animation[row].key, key.frame});
+        for (const auto& keyframe : scene.animation[row].keyframes) {
+            const float x = t.scale.x_of(keyframe.frame);
+            if (x >= low.x && x <= high.x) t.selected.push_back({scene.animation[row].key, keyframe.frame});
         }
     }
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -129,11 +130,11 @@ void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
 void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, float y, float width) {
     ImGui::PushID(track.key.text().c_str());
     ImGui::SetCursorScreenPos({x, y});
-    if (ImGui::InvisibleButton("name", {width, px(row_height)})) frame.view.graph_key = track.key;
+    if (ImGui::InvisibleButton("name", {width, px(row_height)})) frame.view.graph_parameter = track.key;
     note_item(frame, "track " + track.key.text());
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 low{x, y}, high{x + width, y + px(row_height)};
-    const bool chosen = frame.view.graph_key == track.key;
+    const bool chosen = frame.view.graph_parameter == track.key;
     if (chosen)
         list->AddRectFilled(low, high, color::selection);
     else if (ImGui::IsItemHovered())
@@ -147,30 +148,31 @@ void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, f
     ImGui::PopID();
 }
 
-void draw_keys(TimelineState& t, GuiFrame& frame, const Track& track, float y) {
+void draw_keyframes(TimelineState& t, GuiFrame& frame, const Track& track, float y) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float middle = std::floor(y + px(row_height) * 0.5f) + 0.5f;
-    if (track.keys.size() > 1)
-        list->AddLine({t.scale.x_of(track.keys.front().frame), middle},
-                      {t.scale.x_of(track.keys.back().frame), middle}, color::with_opacity(color::key, 0.35f),
-                      px(2));
-    for (const auto& key : track.keys) {
-        const ImVec2 at{t.scale.x_of(key.frame), middle};
-        draw_key_mark(list, at, key.interpolation, is_selected(t, {track.key, key.frame}));
-        note_item(frame, fmt::format("key {} {:g}", track.key, key.frame), {at.x, at.y});
+    if (track.keyframes.size() > 1)
+        list->AddLine({t.scale.x_of(track.keyframes.front().frame), middle},
+                      {t.scale.x_of(track.keyframes.back().frame), middle},
+                      color::with_opacity(color::attention, 0.35f), px(2));
+    for (const auto& keyframe : track.keyframes) {
+        const ImVec2 at{t.scale.x_of(keyframe.frame), middle};
+        draw_keyframe_mark(list, at, keyframe.interpolation, is_selected(t, {track.key, keyframe.frame}));
+        note_item(frame, fmt::format("keyframe {} {:g}", track.key, keyframe.frame), {at.x, at.y});
     }
 }
 
-void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& keys) {
+void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
     const Scene& scene = frame.document.scene();
-    ImGui::SetCursorScreenPos({keys.x, keys.y});
-    ImGui::InvisibleButton("keys", {std::max(keys.width, 1.0f), std::max(keys.height, 1.0f)},
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::InvisibleButton("keyframes", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
-    const std::optional<KeyPlace> under = hovered ? key_under_mouse(t, scene, keys.y) : std::nullopt;
+    const std::optional<KeyframePlace> under =
+        hovered ? keyframe_under_mouse(t, scene, area.y) : std::nullopt;
     if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         if (under) {
-            press_key(t, frame, *under);
+            press_keyframe(t, frame, *under);
         } else {
             t.selected.clear();
             t.drag = TimelineState::Drag::box;
@@ -180,17 +182,17 @@ void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& keys) {
     }
     if (hovered && under && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
         if (!is_selected(t, *under)) t.selected = {*under};
-        ImGui::OpenPopup("key menu");
+        ImGui::OpenPopup("keyframe menu");
     }
-    if (t.drag == TimelineState::Drag::keys) drag_keys(t, frame);
-    if (t.drag == TimelineState::Drag::box) select_in_box(t, scene, keys.y);
+    if (t.drag == TimelineState::Drag::keyframes) drag_keyframes(t, frame);
+    if (t.drag == TimelineState::Drag::box) select_in_box(t, scene, area.y);
     if (under && t.drag == TimelineState::Drag::none) {
         ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
         const Track* track = find_track(scene, under->key);
-        for (const auto& key : track->keys)
-            if (key.frame == under->frame)
-                tooltip(fmt::format("Frame {:g}, {}: {}", key.frame, name_of(key.interpolation),
-                                    value_text(key.value))
+        for (const auto& keyframe : track->keyframes)
+            if (keyframe.frame == under->frame)
+                tooltip(fmt::format("Frame {:g}, {}: {}", keyframe.frame, name_of(keyframe.interpolation),
+                                    value_text(keyframe.value))
                             .c_str());
     }
 }
@@ -217,13 +219,15 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (tracks.empty()) {
         ImGui::SetCursorScreenPos({origin.x + px(12), origin.y + px(4)});
-        row_text("Nothing moves yet. The diamond beside a value keys it at this frame; K keys the camera.",
-                 px(row_height), color::dim);
+        row_text(
+            "Nothing moves yet. The diamond beside a value sets a keyframe at this frame; K sets the "
+            "camera's.",
+            px(row_height), color::dim);
     } else if (frame.view.graph_open) {
         draw_graph(t, frame, {origin.x + names, area.y, area.width - names, area.height});
     } else {
-        const Rect keys{origin.x + names, origin.y, area.width - names, std::max(height, area.height)};
-        handle_rows_mouse(t, frame, keys);
+        const Rect keyframes{origin.x + names, origin.y, area.width - names, std::max(height, area.height)};
+        handle_rows_mouse(t, frame, keyframes);
     }
     float y = origin.y;
     for (const Track& track : tracks) {
@@ -234,7 +238,7 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
                           color::with_opacity(color::line, 0.6f));
             ImGui::PushClipRect({origin.x + names, area.y}, {area.x + area.width, area.y + area.height},
                                 true);
-            draw_keys(t, frame, track, y);
+            draw_keyframes(t, frame, track, y);
             ImGui::PopClipRect();
         }
         y += px(row_height);
@@ -243,7 +247,7 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     const bool here = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
     if (here && !ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(key_code::del, false))
         remove_selected(t, frame);
-    draw_key_menu(t, frame);
+    draw_keyframe_menu(t, frame);
     ImGui::EndChild();
 }
 

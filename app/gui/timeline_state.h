@@ -1,5 +1,5 @@
-// What the timeline remembers from frame to frame: the frames it shows, the selected keys, the drag at hand.
-// Its parts (header and ruler, rows, graph, menu) all work on it.
+// What the timeline remembers from frame to frame: the frames it shows, the selected keyframes, the drag at
+// hand. Its parts (header and ruler, rows, graph, menu) all work on it.
 #pragma once
 
 #include <map>
@@ -25,11 +25,11 @@ struct TimeScale {
 
 inline constexpr float timeline_margin = 16;  // px at scale 1, at both ends of the frames
 
-/// One key of a track.
-struct KeyPlace {
+/// One keyframe of a track.
+struct KeyframePlace {
     std::string key;
     double frame = 0.0;
-    bool operator==(const KeyPlace&) const = default;
+    bool operator==(const KeyframePlace&) const = default;
 };
 
 struct TimelineState {
@@ -39,14 +39,14 @@ struct TimelineState {
     std::uint64_t revision = 0;                  // of specs
     std::map<std::string, ParameterSpec> specs;  // of the tracks' parameters
 
-    std::vector<KeyPlace> selected;
-    enum class Drag { none, scrub, keys, box, value } drag = Drag::none;
+    std::vector<KeyframePlace> selected;
+    enum class Drag { none, scrub, keyframes, box, value } drag = Drag::none;
     Gesture gesture = 0;
-    std::vector<Track> before;         // animation when the drag began
-    std::vector<KeyPlace> picked;      // selection then
-    double grabbed_frame = 0.0;        // under the mouse then
-    double moved = 0.0;                // frames so far
-    float box_x = 0.0f, box_y = 0.0f;  // corner where the selecting box began
+    std::vector<Track> before;          // animation when the drag began
+    std::vector<KeyframePlace> picked;  // selection then
+    double grabbed_frame = 0.0;         // under the mouse then
+    double moved = 0.0;                 // frames so far
+    float box_x = 0.0f, box_y = 0.0f;   // corner where the selecting box began
 
     struct Graph {
         std::string key;
@@ -54,7 +54,7 @@ struct TimelineState {
         TimeScale scale;
         std::vector<std::vector<double>> samples;  // [component][sample], evenly from scale.x0 to scale.x1
         double low = 0.0, high = 1.0;              // of the plot
-        double grabbed_key = 0.0;                  // frame of the dragged key
+        double grabbed_keyframe = 0.0;             // frame of the dragged keyframe
         std::size_t component = 0;
     };
     Graph graph;

@@ -91,7 +91,8 @@ void display_control(GuiFrame& frame) {
 
 void exposure_control(GuiFrame& frame) {
     float& stops = frame.view.inspect_exposure;
-    drag_field("##exposure", stops, 0.02f, -20, 20, "%+.1f EV", px(72), stops != 0 ? color::key : color::dim);
+    drag_field("##exposure", stops, 0.02f, -20, 20, "%+.1f EV", px(72),
+               stops != 0 ? color::attention : color::dim);
     note_item(frame, "exposure");
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) stops = 0.0f;
     tooltip("Exposure of this window only, to look into dark and bright parts. Never saved. Right click: 0");

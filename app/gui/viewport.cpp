@@ -34,7 +34,7 @@ void draw_picture(const GuiFrame& frame, const Rect& area) {
                    {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
 }
 
-glm::dvec3 fly_keys() {
+glm::dvec3 fly_direction() {
     const auto axis = [](int plus, int minus) {
         return (ImGui::IsKeyDown(plus) ? 1.0 : 0.0) - (ImGui::IsKeyDown(minus) ? 1.0 : 0.0);
     };
@@ -107,7 +107,7 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& picture
         moves_picture_ = false;
     }
     if (input_.drag == ViewportInput::Drag::look) {
-        input_.fly = fly_keys();
+        input_.fly = fly_direction();
         input_.speed = io.KeyShift ? 10.0 : io.KeyAlt ? 0.1 : 1.0;
     }
     const bool wiping = input_.drag == ViewportInput::Drag::wipe;

@@ -80,7 +80,7 @@ void draw_overlay_lines(const GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     for (const auto& line : frame.status.overlay_lines) {
         for (const glm::vec2& p : line) list->PathLineTo({area.x + p.x, area.y + p.y});
-        list->PathStroke(color::with_opacity(color::key, 0.75f), ImDrawFlags_None, px(1.2f));
+        list->PathStroke(color::with_opacity(color::attention, 0.75f), ImDrawFlags_None, px(1.2f));
     }
 }
 

@@ -10,15 +10,15 @@ namespace astrosplat {
 struct InputEvent {
     enum class Kind { move, press, release, wheel, key_down, key_up, character };
     Kind kind = Kind::move;
-    int code = 0;             // mouse button, key, or character
+    int code = 0;             // mouse button, key code, or character
     int modifiers = 0;        // with a key
     double x = 0.0, y = 0.0;  // position, or notches of the wheel
     double time_s = 0.0;      // when it was seen
     bool operator==(const InputEvent&) const = default;
 };
 
-/// Dear ImGui looks at mouse and keys once a frame. Where a frame takes long, a click, a drag or a word falls
-/// between two frames: what it cannot tell apart waits for the frame after.
+/// Dear ImGui looks at mouse and keyboard once a frame. Where a frame takes long, a click, a drag or a word
+/// falls between two frames: what it cannot tell apart waits for the frame after.
 class InputQueue {
   public:
     void push(const InputEvent& event) { events_.push_back(event); }

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/real.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "edit/navigate.h"
 #include "edit/view_camera.h"
 #include "scene/describe.h"
@@ -30,7 +30,7 @@ FreeCamera in_perspective(FreeCamera camera) {
     return camera;
 }
 
-/// Sets what differs between two cameras: keys where a parameter is keyed.
+/// Sets what differs between two cameras: keyframes where a parameter is animated.
 void edit_camera(Document& document, const CameraParams& before, const CameraParams& after, double frame,
                  Gesture gesture) {
     Scene old_scene, new_scene;
@@ -44,8 +44,8 @@ void edit_camera(Document& document, const CameraParams& before, const CameraPar
             for (const Parameter& parameter : new_values.parameters) {
                 const std::string& key = parameter.spec.key;
                 if (parameter.get() == find_parameter(old_values, key)->get()) continue;
-                if (is_keyed(scene, key))
-                    set_key(scene, key, frame, parameter.get());
+                if (is_animated(scene, key))
+                    set_keyframe(scene, key, frame, parameter.get());
                 else
                     find_parameter(parameters, key)->set(parameter.get());
             }

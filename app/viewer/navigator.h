@@ -21,7 +21,7 @@ struct ShownPicture {
 
 class Navigator {
   public:
-    /// One frame of mouse and keys; `now` in seconds. True: the view left the scene's camera. Throws
+    /// One frame of mouse and keyboard; `now` in seconds. True: the view left the scene's camera. Throws
     /// InputError where that cannot be edited.
     bool navigate(const ViewportInput& input, const ShownPicture& shown, double now, Document& document,
                   ViewState& view);

@@ -82,7 +82,7 @@ struct Session {
 
 /// Loads what the scene needs and takes what jobs have to say. `now` in seconds.
 void advance(Session& session, double now);
-/// What mouse and keys did over the viewport, after the widgets drew.
+/// What mouse and keyboard did over the viewport, after the widgets drew.
 void navigate(Session& session, const ViewportInput& input, double now);
 /// Carries them out and empties the list; errors become the message line.
 void carry_out(Session& session, Commands& commands);

@@ -1,4 +1,4 @@
-// What the menus and keys ask of a session: a table from commands to what they do.
+// What the menus and shortcuts ask of a session: a table from commands to what they do.
 #pragma once
 
 #include "viewer/session.h"

@@ -160,10 +160,10 @@ void Window::listen() {
     glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
         self(window)->push({Kind::wheel, 0, 0, x, y, 0.0});
     });
-    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
-        if (action != GLFW_REPEAT && key >= 0)
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int code, int, int action, int modifiers) {
+        if (action != GLFW_REPEAT && code >= 0)
             self(window)->push(
-                {action == GLFW_PRESS ? Kind::key_down : Kind::key_up, key, modifiers, 0, 0, 0.0});
+                {action == GLFW_PRESS ? Kind::key_down : Kind::key_up, code, modifiers, 0, 0, 0.0});
     });
     glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) {
         self(window)->push({Kind::character, static_cast<int>(character), 0, 0, 0, 0.0});

@@ -1,6 +1,7 @@
-// Interpolation of keys. A smooth position or rotation separates the way from the timing: the way is a curve
-// through the keys with a travelled parameter (knots, or degrees turned), the timing a monotone cubic of that
-// parameter over frames, so that speed is continuous at the keys and nothing runs backwards.
+// Interpolation of keyframes. A smooth position or rotation separates the way from the timing: the way is a
+// curve through the keyframes with a travelled parameter (knots, or degrees turned), the timing a monotone
+// cubic of that parameter over frames, so that speed is continuous at the keyframes and nothing runs
+// backwards.
 #include "camera/path.h"
 
 #include <algorithm>
@@ -19,27 +20,27 @@ namespace {
 constexpr double ramp = 0.1;
 constexpr int pieces_per_segment = 32;  // of the arc length's quadrature
 
-// The key at or before `frame`, with 0 <= result < size - 1.
+// The keyframe at or before `frame`, with 0 <= result < size - 1.
 template <class T>
-std::size_t segment_of(std::span<const Keyframe<T>> keys, double frame) {
-    auto after = std::ranges::upper_bound(keys, frame, {}, &Keyframe<T>::frame);
-    auto index = static_cast<std::size_t>(after - keys.begin());
-    return std::min(index > 0 ? index - 1 : 0, keys.size() - 2);
+std::size_t segment_of(std::span<const Keyframe<T>> keyframes, double frame) {
+    auto after = std::ranges::upper_bound(keyframes, frame, {}, &Keyframe<T>::frame);
+    auto index = static_cast<std::size_t>(after - keyframes.begin());
+    return std::min(index > 0 ? index - 1 : 0, keyframes.size() - 2);
 }
 
 template <class T>
-double fraction_in(std::span<const Keyframe<T>> keys, std::size_t i, double frame) {
-    return (frame - keys[i].frame) / (keys[i + 1].frame - keys[i].frame);
+double fraction_in(std::span<const Keyframe<T>> keyframes, std::size_t i, double frame) {
+    return (frame - keyframes[i].frame) / (keyframes[i + 1].frame - keyframes[i].frame);
 }
 
 template <class T>
-bool outside(std::span<const Keyframe<T>> keys, double frame) {
-    return frame <= keys.front().frame || frame >= keys.back().frame;
+bool outside(std::span<const Keyframe<T>> keyframes, double frame) {
+    return frame <= keyframes.front().frame || frame >= keyframes.back().frame;
 }
 
 template <class T>
-const T& held(std::span<const Keyframe<T>> keys, double frame) {
-    return frame <= keys.front().frame ? keys.front().value : keys.back().value;
+const T& held(std::span<const Keyframe<T>> keyframes, double frame) {
+    return frame <= keyframes.front().frame ? keyframes.front().value : keyframes.back().value;
 }
 
 // Cubic Hermite on [0, 1]; tangents per unit of u.
@@ -50,56 +51,57 @@ T hermite(const T& a, const T& tangent_a, const T& b, const T& tangent_b, double
            tangent_b * (u3 - u2);
 }
 
-// Tangent per frame at key i of the values value(0), value(1), ...
+// Tangent per frame at keyframe i of the values value(0), value(1), ...
 template <class T, class Value>
-double tangent(std::span<const Keyframe<T>> keys, const Value& value, std::size_t i, Ends ends) {
-    bool end = i == 0 || i + 1 == keys.size();
+double tangent(std::span<const Keyframe<T>> keyframes, const Value& value, std::size_t i, Ends ends) {
+    bool end = i == 0 || i + 1 == keyframes.size();
     if (end && ends == Ends::ease) return 0.0;
-    std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, keys.size() - 1);
-    return (value(after) - value(before)) / (keys[after].frame - keys[before].frame);
+    std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, keyframes.size() - 1);
+    return (value(after) - value(before)) / (keyframes[after].frame - keyframes[before].frame);
 }
 
 // Travelled parameter at `frame`, within [0, 1] of segment i, for ascending travelled(0), travelled(1), ...:
 // a cubic with the tangents above, limited to three times the neighbouring slopes so that it stays monotone
 // (Fritsch and Carlson, 1980).
 template <class T, class Travelled>
-double smooth_fraction(std::span<const Keyframe<T>> keys, const Travelled& travelled, std::size_t i,
+double smooth_fraction(std::span<const Keyframe<T>> keyframes, const Travelled& travelled, std::size_t i,
                        double frame, Ends ends) {
     double length = travelled(i + 1) - travelled(i);
-    if (!(length > 0.0)) return fraction_in(keys, i, frame);
+    if (!(length > 0.0)) return fraction_in(keyframes, i, frame);
     auto slope = [&](std::size_t k) {
-        return (travelled(k + 1) - travelled(k)) / (keys[k + 1].frame - keys[k].frame);
+        return (travelled(k + 1) - travelled(k)) / (keyframes[k + 1].frame - keyframes[k].frame);
     };
     auto limited = [&](std::size_t k) {
-        double m = tangent(keys, travelled, k, ends);
+        double m = tangent(keyframes, travelled, k, ends);
         if (k > 0) m = std::fmin(m, 3.0 * slope(k - 1));
-        if (k + 1 < keys.size()) m = std::fmin(m, 3.0 * slope(k));
-        return m * (keys[i + 1].frame - keys[i].frame) / length;
+        if (k + 1 < keyframes.size()) m = std::fmin(m, 3.0 * slope(k));
+        return m * (keyframes[i + 1].frame - keyframes[i].frame) / length;
     };
-    return hermite(0.0, limited(i), 1.0, limited(i + 1), fraction_in(keys, i, frame));
+    return hermite(0.0, limited(i), 1.0, limited(i + 1), fraction_in(keyframes, i, frame));
 }
 
-// Positions as a curve: key i lies at knot[i]; centripetal, so a knot interval is the square root of
+// Positions as a curve: keyframe i lies at knot[i]; centripetal, so a knot interval is the square root of
 // the distance.
 struct Curve {
-    std::span<const Keyframe<glm::dvec3>> keys;
+    std::span<const Keyframe<glm::dvec3>> keyframes;
     std::vector<double> knot;
 
     double interval(std::size_t i) const { return knot[i + 1] - knot[i]; }
-    const glm::dvec3& point(std::size_t i) const { return keys[i].value; }
+    const glm::dvec3& point(std::size_t i) const { return keyframes[i].value; }
 };
 
-Curve make_curve(std::span<const Keyframe<glm::dvec3>> keys) {
-    Curve curve{keys, std::vector<double>(keys.size(), 0.0)};
-    for (std::size_t i = 0; i + 1 < keys.size(); ++i)
-        curve.knot[i + 1] = curve.knot[i] + std::sqrt(glm::distance(keys[i].value, keys[i + 1].value));
+Curve make_curve(std::span<const Keyframe<glm::dvec3>> keyframes) {
+    Curve curve{keyframes, std::vector<double>(keyframes.size(), 0.0)};
+    for (std::size_t i = 0; i + 1 < keyframes.size(); ++i)
+        curve.knot[i + 1] =
+            curve.knot[i] + std::sqrt(glm::distance(keyframes[i].value, keyframes[i + 1].value));
     return curve;
 }
 
-// dP/dknot at key i. A key whose neighbour coincides with it is an end of the curve: one-sided.
+// dP/dknot at keyframe i. A keyframe whose neighbour coincides with it is an end of the curve: one-sided.
 glm::dvec3 curve_tangent(const Curve& curve, std::size_t i) {
     bool before = i > 0 && curve.interval(i - 1) > 0.0;
-    bool after = i + 1 < curve.keys.size() && curve.interval(i) > 0.0;
+    bool after = i + 1 < curve.keyframes.size() && curve.interval(i) > 0.0;
     glm::dvec3 in(0.0), out(0.0);
     if (before) in = (curve.point(i) - curve.point(i - 1)) / curve.interval(i - 1);
     if (after) out = (curve.point(i + 1) - curve.point(i)) / curve.interval(i);
@@ -109,19 +111,19 @@ glm::dvec3 curve_tangent(const Curve& curve, std::size_t i) {
     return in + out - (curve.point(i + 1) - curve.point(i - 1)) / both;
 }
 
-// Point and derivative of segment i at u in [0, 1]. Step segments stay at their first key.
+// Point and derivative of segment i at u in [0, 1]. Step segments stay at their first keyframe.
 glm::dvec3 curve_point(const Curve& curve, std::size_t i, double u) {
     const glm::dvec3 &a = curve.point(i), &b = curve.point(i + 1);
-    if (curve.keys[i].interpolation == Interpolation::step) return u < 1.0 ? a : b;
-    if (curve.keys[i].interpolation == Interpolation::linear) return a + (b - a) * u;
+    if (curve.keyframes[i].interpolation == Interpolation::step) return u < 1.0 ? a : b;
+    if (curve.keyframes[i].interpolation == Interpolation::linear) return a + (b - a) * u;
     double h = curve.interval(i);
     return hermite(a, curve_tangent(curve, i) * h, b, curve_tangent(curve, i + 1) * h, u);
 }
 
 double curve_speed(const Curve& curve, std::size_t i, double u) {
     const glm::dvec3 &a = curve.point(i), &b = curve.point(i + 1);
-    if (curve.keys[i].interpolation == Interpolation::step) return 0.0;
-    if (curve.keys[i].interpolation == Interpolation::linear) return glm::distance(a, b);
+    if (curve.keyframes[i].interpolation == Interpolation::step) return 0.0;
+    if (curve.keyframes[i].interpolation == Interpolation::linear) return glm::distance(a, b);
     double h = curve.interval(i);
     glm::dvec3 ta = curve_tangent(curve, i) * h, tb = curve_tangent(curve, i + 1) * h;
     double u2 = u * u;
@@ -162,12 +164,12 @@ double solve_length(const Curve& curve, std::size_t i, double u0, double u1, dou
 }
 
 glm::dvec3 at_constant_speed(const Curve& curve, double frame, Ends ends) {
-    std::span<const Keyframe<glm::dvec3>> keys = curve.keys;
-    std::size_t segments = keys.size() - 1;
+    std::span<const Keyframe<glm::dvec3>> keyframes = curve.keyframes;
+    std::size_t segments = keyframes.size() - 1;
     auto eased = [&](std::size_t i) {
-        return ends == Ends::ease && keys[i].interpolation == Interpolation::smooth;
+        return ends == Ends::ease && keyframes[i].interpolation == Interpolation::smooth;
     };
-    double u = (frame - keys.front().frame) / (keys.back().frame - keys.front().frame);
+    double u = (frame - keyframes.front().frame) / (keyframes.back().frame - keyframes.front().frame);
     std::vector<double> length(segments * pieces_per_segment);
     double total = 0.0;
     for (std::size_t k = 0; k < length.size(); ++k) {
@@ -186,7 +188,7 @@ glm::dvec3 at_constant_speed(const Curve& curve, double frame, Ends ends) {
         }
         rest -= length[k];
     }
-    return keys.back().value;  // no length at all, or rounding at the end
+    return keyframes.back().value;  // no length at all, or rounding at the end
 }
 
 glm::dvec4 slerp(const glm::dvec4& a, const glm::dvec4& b, double u) {
@@ -197,8 +199,8 @@ glm::dvec4 slerp(const glm::dvec4& a, const glm::dvec4& b, double u) {
 }
 
 // Unit quaternions, each on the side of the one before, so that every turn takes the shorter way.
-std::vector<Keyframe<glm::dvec4>> aligned(std::span<const Keyframe<glm::dvec4>> keys) {
-    std::vector<Keyframe<glm::dvec4>> result(keys.begin(), keys.end());
+std::vector<Keyframe<glm::dvec4>> aligned(std::span<const Keyframe<glm::dvec4>> keyframes) {
+    std::vector<Keyframe<glm::dvec4>> result(keyframes.begin(), keyframes.end());
     for (std::size_t i = 0; i < result.size(); ++i) {
         result[i].value = glm::normalize(result[i].value);
         if (i > 0 && glm::dot(result[i - 1].value, result[i].value) < 0.0) result[i].value = -result[i].value;
@@ -208,48 +210,48 @@ std::vector<Keyframe<glm::dvec4>> aligned(std::span<const Keyframe<glm::dvec4>> 
 
 }  // namespace
 
-double evaluate_scalar(std::span<const Keyframe<double>> keys, double frame, Ends ends) {
-    assert(!keys.empty());
-    if (outside(keys, frame)) return held(keys, frame);
-    std::size_t i = segment_of(keys, frame);
-    double a = keys[i].value, b = keys[i + 1].value, u = fraction_in(keys, i, frame);
-    if (keys[i].interpolation == Interpolation::step) return a;
-    if (keys[i].interpolation == Interpolation::linear) return a + (b - a) * u;
-    double span = keys[i + 1].frame - keys[i].frame;
-    auto value = [&](std::size_t k) { return keys[k].value; };
-    double smooth =
-        hermite(a, tangent(keys, value, i, ends) * span, b, tangent(keys, value, i + 1, ends) * span, u);
+double evaluate_scalar(std::span<const Keyframe<double>> keyframes, double frame, Ends ends) {
+    assert(!keyframes.empty());
+    if (outside(keyframes, frame)) return held(keyframes, frame);
+    std::size_t i = segment_of(keyframes, frame);
+    double a = keyframes[i].value, b = keyframes[i + 1].value, u = fraction_in(keyframes, i, frame);
+    if (keyframes[i].interpolation == Interpolation::step) return a;
+    if (keyframes[i].interpolation == Interpolation::linear) return a + (b - a) * u;
+    double span = keyframes[i + 1].frame - keyframes[i].frame;
+    auto value = [&](std::size_t k) { return keyframes[k].value; };
+    double smooth = hermite(a, tangent(keyframes, value, i, ends) * span, b,
+                            tangent(keyframes, value, i + 1, ends) * span, u);
     return std::clamp(smooth, std::fmin(a, b), std::fmax(a, b));
 }
 
-glm::dvec3 evaluate_position(std::span<const Keyframe<glm::dvec3>> keys, double frame, Ends ends,
+glm::dvec3 evaluate_position(std::span<const Keyframe<glm::dvec3>> keyframes, double frame, Ends ends,
                              bool constant_speed) {
-    assert(!keys.empty());
-    if (outside(keys, frame)) return held(keys, frame);
-    Curve curve = make_curve(keys);
+    assert(!keyframes.empty());
+    if (outside(keyframes, frame)) return held(keyframes, frame);
+    Curve curve = make_curve(keyframes);
     if (constant_speed) return at_constant_speed(curve, frame, ends);
-    std::size_t i = segment_of(keys, frame);
-    double u = fraction_in(keys, i, frame);
-    if (keys[i].interpolation == Interpolation::smooth) {
+    std::size_t i = segment_of(keyframes, frame);
+    double u = fraction_in(keyframes, i, frame);
+    if (keyframes[i].interpolation == Interpolation::smooth) {
         auto travelled = [&](std::size_t k) { return curve.knot[k]; };
-        u = smooth_fraction(keys, travelled, i, frame, ends);
+        u = smooth_fraction(keyframes, travelled, i, frame, ends);
     }
     return curve_point(curve, i, u);
 }
 
-glm::dvec4 evaluate_rotation(std::span<const Keyframe<glm::dvec4>> keys, double frame, Ends ends) {
-    assert(!keys.empty());
-    if (outside(keys, frame)) return glm::normalize(held(keys, frame));
-    std::vector<Keyframe<glm::dvec4>> turn = aligned(keys);
+glm::dvec4 evaluate_rotation(std::span<const Keyframe<glm::dvec4>> keyframes, double frame, Ends ends) {
+    assert(!keyframes.empty());
+    if (outside(keyframes, frame)) return glm::normalize(held(keyframes, frame));
+    std::vector<Keyframe<glm::dvec4>> turn = aligned(keyframes);
     std::vector<double> angle(turn.size(), 0.0);
     for (std::size_t i = 0; i + 1 < turn.size(); ++i)
         angle[i + 1] = angle[i] + real::acos(glm::dot(turn[i].value, turn[i + 1].value));
-    std::size_t i = segment_of(keys, frame);
-    double u = fraction_in(keys, i, frame);
+    std::size_t i = segment_of(keyframes, frame);
+    double u = fraction_in(keyframes, i, frame);
     if (turn[i].interpolation == Interpolation::step) return turn[i].value;
     if (turn[i].interpolation == Interpolation::smooth) {
         auto travelled = [&](std::size_t k) { return angle[k]; };
-        u = smooth_fraction(keys, travelled, i, frame, ends);
+        u = smooth_fraction(keyframes, travelled, i, frame, ends);
     }
     return slerp(turn[i].value, turn[i + 1].value, u);
 }

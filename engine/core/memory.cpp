@@ -40,9 +40,9 @@ std::string human(double value, double step, const char* const (&units)[5]) {
     return *units[unit] ? text + " " + units[unit] : text;
 }
 
-// Finds "key   123" at the start of a line; -1 without it.
-std::int64_t field(const std::string& text, const std::string& key) {
-    std::size_t at = text.rfind(key, 0) == 0 ? 0 : text.find("\n" + key);
+// Finds "name   123" at the start of a line; -1 without it.
+std::int64_t field(const std::string& text, const std::string& name) {
+    std::size_t at = text.rfind(name, 0) == 0 ? 0 : text.find("\n" + name);
     if (at == std::string::npos) return -1;
     at = text.find_first_of("0123456789", at);
     if (at == std::string::npos) return -1;
@@ -62,14 +62,14 @@ std::int64_t machine_available_bytes() {
 }
 
 // The least room in this group and those above it.
-std::int64_t least_group_room(const char* limit_file, const char* usage_file, const char* cache_key) {
+std::int64_t least_group_room(const char* limit_file, const char* usage_file, const char* cache_field) {
     const auto limits = cgroup_values("memory", limit_file);
     const auto usages = cgroup_values("memory", usage_file);
     const auto stats = cgroup_values("memory", "memory.stat");
     std::int64_t least = unlimited;
     for (std::size_t i = 0; i < std::min(limits.size(), usages.size()); ++i)
         least =
-            std::min(least, group_room(limits[i], usages[i], i < stats.size() ? stats[i] : "", cache_key));
+            std::min(least, group_room(limits[i], usages[i], i < stats.size() ? stats[i] : "", cache_field));
     return least;
 }
 
@@ -83,11 +83,11 @@ std::string human_count(std::int64_t count, const std::string& noun) {
 }
 
 std::int64_t group_room(const std::string& limit_text, const std::string& usage_text, const std::string& stat,
-                        const std::string& cache_key) {
+                        const std::string& cache_field) {
     const std::optional<std::int64_t> limit = parse_int64(trim(limit_text));
     const std::optional<std::int64_t> usage = parse_int64(trim(usage_text));
     if (!limit || !usage) return unlimited;
-    const std::int64_t cache = std::max<std::int64_t>(0, field(stat, cache_key));
+    const std::int64_t cache = std::max<std::int64_t>(0, field(stat, cache_field));
     // memory.stat lags behind the usage, so the cache may be the larger one; and the limit of v1 without a
     // limit is so large that nothing can be added to it.
     return std::max<std::int64_t>(0, *limit - std::max<std::int64_t>(0, *usage - cache));

@@ -14,10 +14,10 @@ std::string human_count(double count);
 std::string human_count(std::int64_t count, const std::string& noun);
 
 /// Bytes that one memory control group leaves its processes, from the text of its files: the limit ("max", or
-/// a very large number, without one), the usage, and memory.stat, whose `cache_key` tells how many of the
+/// a very large number, without one), the usage, and memory.stat, whose `cache_field` tells how many of the
 /// bytes in use are file pages that the kernel gives up on demand. The largest int64 without a limit.
 std::int64_t group_room(const std::string& limit_text, const std::string& usage_text, const std::string& stat,
-                        const std::string& cache_key);
+                        const std::string& cache_field);
 
 /// Bytes this process may still take: free memory of the machine or of its cgroup, whichever is less.
 std::int64_t available_memory_bytes();

@@ -1,5 +1,5 @@
 // SHA-256 (OpenSSL's libcrypto) of bytes and files, as lower-case hex. Pixel hashes, frame
-// hashes, cache keys.
+// hashes, names in the cache.
 #pragma once
 
 #include <cstddef>

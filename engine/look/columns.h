@@ -1,5 +1,5 @@
 // What a front view through a layer adds up to: the integrals behind `match` (DESIGN 5, step 5), which become
-// one number per thickness key.
+// one number per thickness stop.
 #pragma once
 
 #include "look/shared_uniforms.h"

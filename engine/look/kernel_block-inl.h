@@ -41,9 +41,9 @@ struct Block {
     uint id_low[block_size], id_high[block_size];
     Lane px, py, pz;  // position; read where noise is used
     Lane distance, x, reach, column;
-    Lane n[LOOK_MAX_NOISES];          // noise values
-    Lane weight[LOOK_MAX_KEYS], sum;  // of the thickness keys
-    Lane r, g, b;                     // map value, later colour
+    Lane n[LOOK_MAX_NOISES];           // noise values
+    Lane weight[LOOK_MAX_STOPS], sum;  // of the thickness stops
+    Lane r, g, b;                      // map value, later colour
     Lane probability, bites;
     Lane alpha, alpha_factor, color_factor, radius_factor, radius, f;
     int keep[block_size];

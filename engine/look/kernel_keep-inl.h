@@ -37,18 +37,18 @@ ASTROSPLAT_LOOP divide(float* HWY_RESTRICT y, const float* HWY_RESTRICT by, int 
     for (int i = 0; i < count; ++i) y[i] = y[i] / by[i];
 }
 
-void weigh_keys(const LookUniforms& u, Block& b) {
+void weigh_stops(const LookUniforms& u, Block& b) {
     fill(b.sum, 0.0f, b.count);
-    for (int k = 0; k < u.key_count; ++k) {
-        weigh(b, u.keys[k].color, b.weight[k]);
+    for (int k = 0; k < u.stop_count; ++k) {
+        weigh(b, u.stops[k].color, b.weight[k]);
         add(b.weight[k], b.sum, b.count);
     }
     fill(b.reach, 0.0f, b.count);
     fill(b.column, 0.0f, b.count);
-    for (int k = 0; k < u.key_count; ++k) {
+    for (int k = 0; k < u.stop_count; ++k) {
         divide(b.weight[k], b.sum, b.count);
-        add_scaled(u.keys[k].scale, b.weight[k], b.reach, b.count);
-        add_scaled(u.keys[k].column, b.weight[k], b.column, b.count);
+        add_scaled(u.stops[k].scale, b.weight[k], b.reach, b.count);
+        add_scaled(u.stops[k].column, b.weight[k], b.column, b.count);
     }
 }
 
@@ -61,12 +61,12 @@ ASTROSPLAT_LOOP finish_reach(float reach, const float* HWY_RESTRICT bites, Block
 
 void thickness(const LookRun& run, std::int64_t begin, Block& b) {
     const LookUniforms& u = run.uniforms;
-    if (u.key_count > 1) {
+    if (u.stop_count > 1) {
         read_map(*run.map, run.in.uv + begin, b);
-        weigh_keys(u, b);
+        weigh_stops(u, b);
     } else {
-        fill(b.reach, u.keys[0].scale, b.count);
-        fill(b.column, u.keys[0].column, b.count);
+        fill(b.reach, u.stops[0].scale, b.count);
+        fill(b.column, u.stops[0].column, b.count);
     }
     fill(b.bites, 1.0f, b.count);
     for (int j = 0; j < u.noise_count; ++j) {
@@ -83,12 +83,12 @@ void thickness(const LookRun& run, std::int64_t begin, Block& b) {
 // --- 2: density ---
 
 void probabilities(const LookUniforms& u, Block& b) {
-    if (u.key_count == 1) {
-        profile(u.keys[0].pdf, b.x, b.probability, b.count);
+    if (u.stop_count == 1) {
+        profile(u.stops[0].pdf, b.x, b.probability, b.count);
     } else {
         fill(b.probability, 0.0f, b.count);
-        for (int k = 0; k < u.key_count; ++k) {
-            profile(u.keys[k].pdf, b.x, b.f, b.count);
+        for (int k = 0; k < u.stop_count; ++k) {
+            profile(u.stops[k].pdf, b.x, b.f, b.count);
             add_product(b.weight[k], b.f, b.probability, b.count);
         }
     }

@@ -27,19 +27,19 @@ struct DensityCurve {
     bool operator==(const DensityCurve&) const = default;
 };
 
-/// Several keys need a map to choose between them; without one the first is used. Without keys there is one
-/// key of scale 1 with the look's own pdf. At most 8.
-struct ThicknessKey {
-    glm::vec3 color{1.0f};  // raw map value this key stands for
+/// Several stops need a map to choose between them; without one the first is used. Without stops there is one
+/// stop of scale 1 with the look's own pdf. At most 8.
+struct ThicknessStop {
+    glm::vec3 color{1.0f};  // raw map value this stop stands for
     float scale = 1.0f;     // of reach
     DensityCurve pdf;       // shape, rate, sigma, points
-    bool operator==(const ThicknessKey&) const = default;
+    bool operator==(const ThicknessStop&) const = default;
 };
 
 struct Thickness {
-    std::filesystem::path map;       // empty: none
-    Derived derive = Derived::none;  // reads this map of the picture, as grey, in its place
-    std::vector<ThicknessKey> keys;
+    std::filesystem::path map;         // empty: none
+    Derived derive = Derived::none;    // reads this map of the picture, as grey, in its place
+    std::vector<ThicknessStop> stops;  // "keys" in the file
     bool operator==(const Thickness&) const = default;
 };
 

@@ -62,7 +62,7 @@ shared::LookOutput look_at(const LookRun& run, std::int64_t i) {
     s.alpha = in.alpha[i];
     s.from_surface = in.distance[i];
     s.radius = run.uniforms.own_radius ? in.radius[i] : 0.0f;
-    s.map_value = run.uniforms.key_count > 1 ? map_value(*run.map, in.uv[i]) : glm::vec3(0.0f);
+    s.map_value = run.uniforms.stop_count > 1 ? map_value(*run.map, in.uv[i]) : glm::vec3(0.0f);
     s.id_low = static_cast<std::uint32_t>(in.id[i]);
     s.id_high = static_cast<std::uint32_t>(in.id[i] >> 32);
     return shared::look_splat(run.uniforms, s);

@@ -48,30 +48,30 @@ vec3 unit_axis(const glm::vec3& axis) {
     return length > 0.0 ? vec3(a / length) : vec3(0.0f, 1.0f, 0.0f);
 }
 
-// One key with the layer's own pdf unless there is a map whose values can choose between several.
-void prepare_keys(const SplatSet& set, const Look& look, const LookInputs& inputs, LookUniforms& u) {
+// One stop with the layer's own pdf unless there is a map whose values can choose between several.
+void prepare_stops(const SplatSet& set, const Look& look, const LookInputs& inputs, LookUniforms& u) {
     const Thickness& thickness = look.thickness;
-    if (thickness.keys.size() > std::size_t(LOOK_MAX_KEYS))
-        bad_input("look.thickness.keys", "", fmt::format("at most {} keys", LOOK_MAX_KEYS),
-                  fmt::format("{}", thickness.keys.size()));
+    if (thickness.stops.size() > std::size_t(LOOK_MAX_STOPS))
+        bad_input("look.thickness.keys", "", fmt::format("at most {} stops", LOOK_MAX_STOPS),
+                  fmt::format("{}", thickness.stops.size()));
     const bool has_map = !thickness.map.empty();
     if (has_map && set.uv.empty())
         bad_input("look.thickness.map", "", "splats with texture coordinates", "a set without");
     assert(!has_map || inputs.thickness_map);
     (void)inputs;
-    std::vector<ThicknessKey> keys = thickness.keys;
-    if (keys.empty()) keys.push_back({glm::vec3(1.0f), 1.0f, look.pdf});
-    if (!has_map && keys.size() > 1) {
-        log_warning("look.thickness: several keys need a map to choose between them; the first is used");
-        keys.resize(1);
+    std::vector<ThicknessStop> stops = thickness.stops;
+    if (stops.empty()) stops.push_back({glm::vec3(1.0f), 1.0f, look.pdf});
+    if (!has_map && stops.size() > 1) {
+        log_warning("look.thickness: several stops need a map to choose between them; the first is used");
+        stops.resize(1);
     }
-    u.key_count = int(keys.size());
-    for (std::size_t k = 0; k < keys.size(); ++k) {
+    u.stop_count = int(stops.size());
+    for (std::size_t k = 0; k < stops.size(); ++k) {
         const std::string name =
-            thickness.keys.empty() ? "look.pdf" : fmt::format("look.thickness.keys[{}]", k);
-        u.keys[k].color = keys[k].color;
-        u.keys[k].scale = keys[k].scale;
-        u.keys[k].pdf = density_profile(keys[k].pdf, name);
+            thickness.stops.empty() ? "look.pdf" : fmt::format("look.thickness.keys[{}]", k);
+        u.stops[k].color = stops[k].color;
+        u.stops[k].scale = stops[k].scale;
+        u.stops[k].pdf = density_profile(stops[k].pdf, name);
     }
 }
 
@@ -190,13 +190,13 @@ void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inpu
                   std::string(name_of(resolved_match(set, look.vertical))));
     const double factor = column_factor(set, inputs, u);
     const double vertical_scale = u.match == MATCH_PLANES ? 1.0 : double(u.vertical_scale);
-    for (int k = 0; k < u.key_count; ++k) {
-        const double reach = double(u.reach) * double(u.keys[k].scale);
+    for (int k = 0; k < u.stop_count; ++k) {
+        const double reach = double(u.reach) * double(u.stops[k].scale);
         if (!(reach > 0.0)) continue;
-        Column column{u.keys[k].pdf, u.vertical, double(u.density), 1.0, 1.0};
+        Column column{u.stops[k].pdf, u.vertical, double(u.density), 1.0, 1.0};
         column.end = std::min(1.0, set.max_distance / reach);
         if (u.vertical_reach > 0.0f) column.vertical_ratio = reach / double(u.vertical_reach);
-        u.keys[k].column = float(factor * column_integral(column, vertical_scale));
+        u.stops[k].column = float(factor * column_integral(column, vertical_scale));
     }
 }
 
@@ -233,7 +233,7 @@ LookUniforms prepare_look(const SplatSet& set, const Look& look, const LookInput
     u.axis = unit_axis(inputs.axis);
     u.reach = look.reach > 0.0f ? look.reach : float(set.max_distance);
     u.density = look.density;
-    prepare_keys(set, look, inputs, u);
+    prepare_stops(set, look, inputs, u);
     prepare_noises(look, u);
     prepare_alpha(set, look, u);
     prepare_radius(set, look.radius, u);

@@ -1,6 +1,6 @@
 // From the look's keys to the numbers its arithmetic needs: curves become knots, defaults are resolved,
-// matching becomes a factor per thickness key. Costs microseconds, so animation and sliders may call it every
-// frame.
+// matching becomes a factor per thickness stop. Costs microseconds, so animation and sliders may call it
+// every frame.
 #pragma once
 
 #include <string>

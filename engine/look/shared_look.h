@@ -7,7 +7,7 @@
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // weights beyond key_count, which nothing reads
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // weights beyond stop_count, which nothing reads
 
 namespace astrosplat::shared {
 using namespace astrosplat::shared_types;

@@ -40,7 +40,7 @@ class FrameHasher {
     /// What is hashed: lines "key = value" of every parameter that reaches the frame, evaluated there, files
     /// as their content's hash. Left out: where and how often frames go (path, frames, fps, compression),
     /// provenance, presets (their values are in the scene), layers and environments that do not show, and the
-    /// animation's keys.
+    /// animation's keyframes.
     std::string canonical_text(std::int64_t frame);
 
     /// All files that the hashes so far depend on.

@@ -29,8 +29,8 @@ MetadataEntries metadata_entries(const FrameMetadata& metadata) {
         {"astrosplat/frame", std::to_string(metadata.frame)},
         {"astrosplat/fps", shortest(metadata.fps)},
     };
-    auto add = [&](const char* key, const std::string& value) {
-        if (!value.empty()) entries.emplace_back(key, one_line(value));
+    auto add = [&](const char* name, const std::string& value) {
+        if (!value.empty()) entries.emplace_back(name, one_line(value));
     };
     add("astrosplat/title", metadata.provenance.title);
     add("astrosplat/credit", metadata.provenance.credit);
@@ -40,12 +40,12 @@ MetadataEntries metadata_entries(const FrameMetadata& metadata) {
 
 std::string metadata_lines(const MetadataEntries& entries) {
     std::string lines;
-    for (const auto& [key, value] : entries) lines += fmt::format("{}={}\n", key, value);
+    for (const auto& [name, value] : entries) lines += fmt::format("{}={}\n", name, value);
     return lines;
 }
 
-std::string find_metadata_line(const std::string& lines, const std::string& key) {
-    std::string wanted = key + "=";
+std::string find_metadata_line(const std::string& lines, const std::string& name) {
+    std::string wanted = name + "=";
     for (std::size_t begin = 0; begin < lines.size();) {
         std::size_t end = std::min(lines.find('\n', begin), lines.size());
         if (lines.compare(begin, wanted.size(), wanted) == 0)

@@ -15,10 +15,10 @@ using MetadataEntries = std::vector<std::pair<std::string, std::string>>;
 /// "/title", "/credit", "/type".
 MetadataEntries metadata_entries(const FrameMetadata& metadata);
 
-/// The entries as lines "key=value" (line breaks in values become spaces): TIFF's ImageDescription.
+/// The entries as lines "name=value" (line breaks in values become spaces): TIFF's ImageDescription.
 std::string metadata_lines(const MetadataEntries& entries);
-/// The value of `key` in such lines, "" when absent.
-std::string find_metadata_line(const std::string& lines, const std::string& key);
+/// The value of `name` in such lines, "" when absent.
+std::string find_metadata_line(const std::string& lines, const std::string& name);
 
 /// Frames per second as a fraction: 24 is 24/1, 23.976 is 24000/1001; others to a thousandth.
 struct Rational {

@@ -15,10 +15,10 @@
 namespace astrosplat {
 namespace {
 
-std::string entry(const OIIO::ImageSpec& spec, const char* key) {
-    std::string value = spec.get_string_attribute(key);
+std::string entry(const OIIO::ImageSpec& spec, const char* name) {
+    std::string value = spec.get_string_attribute(name);
     if (!value.empty()) return value;
-    return find_metadata_line(spec.get_string_attribute("ImageDescription"), key);
+    return find_metadata_line(spec.get_string_attribute("ImageDescription"), name);
 }
 
 std::unique_ptr<OIIO::ImageInput> open_if_picture(const std::filesystem::path& file) {

@@ -78,8 +78,8 @@ const char* oiio_name(OutputParams::Compression compression) {
 
 void set_text(OIIO::ImageSpec& spec, const FrameFormat& format, const FrameMetadata& metadata) {
     MetadataEntries entries = metadata_entries(metadata);
-    for (const auto& [key, value] : entries)
-        if (format.kind != FrameKind::tif) spec.attribute(key, value);
+    for (const auto& [name, value] : entries)
+        if (format.kind != FrameKind::tif) spec.attribute(name, value);
     if (format.kind == FrameKind::tif) spec.attribute("ImageDescription", metadata_lines(entries));
     if (!metadata.provenance.credit.empty()) spec.attribute("Copyright", metadata.provenance.credit);
     spec.attribute("DateTime", "");

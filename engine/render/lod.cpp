@@ -203,11 +203,11 @@ LodTable::Alphas LodTable::alphas_for_add(const LevelChoice& choice, float a) {
 }
 
 glm::vec3 LodTable::child_offset(int level, std::int64_t child, std::uint32_t seed, std::uint64_t id) const {
-    const std::uint32_t key = shared::as_mix(seed + static_cast<std::uint32_t>(child) * 0x9e3779b9u +
-                                             static_cast<std::uint32_t>(level) * 0x85ebca6bu);
+    const std::uint32_t mixed = shared::as_mix(seed + static_cast<std::uint32_t>(child) * 0x9e3779b9u +
+                                               static_cast<std::uint32_t>(level) * 0x85ebca6bu);
     const auto low = static_cast<std::uint32_t>(id), high = static_cast<std::uint32_t>(id >> 32);
     const auto uniform = [&](std::uint32_t n) {
-        return shared::as_uniform(shared::as_hash(key, low, high, shared::PURPOSE_CHILD + n));
+        return shared::as_uniform(shared::as_hash(mixed, low, high, shared::PURPOSE_CHILD + n));
     };
     const float x = uniform(0) * radius_steps;
     const int i = static_cast<int>(x);

@@ -49,7 +49,7 @@ bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const s
         return false;
     out.opacity = splat.alpha * layer.opacity * shared::near_fade(layer.lens, at.depth, splat.radius);
     set_color(out, splat.color);
-    out.depth = std::bit_cast<std::uint32_t>(shared::sort_key(layer.lens, splat.position));
+    out.depth = std::bit_cast<std::uint32_t>(shared::sort_depth(layer.lens, splat.position));
     out.index = static_cast<std::uint32_t>(index);
     out.layer = layer.layer;
     out.hybrid = hybrid_of(layer, splat.position);

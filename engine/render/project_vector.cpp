@@ -35,7 +35,7 @@ using namespace astrosplat::shared_types;
 struct Projected {
     alignas(64) float x[lanes], y[lanes], z[lanes];  // camera space
     alignas(64) float disc[lanes][4];                // x_px, y_px, radius_px, opacity
-    alignas(64) float key[lanes];
+    alignas(64) float sort_depth[lanes];
 };
 
 /// Row `k` of camera_from_layer times the place, plus the origin; rounded to float last.
@@ -73,7 +73,7 @@ HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_
     hn::Store(p.y.v, D(), c.y);
     hn::Store(p.z.v, D(), c.z);
     hn::StoreInterleaved4(x_px.v, y_px.v, radius_px.v, opacity.v, D(), c.disc[0]);
-    hn::Store(sort_key(layer.lens, p).v, D(), c.key);
+    hn::Store(sort_depth(layer.lens, p).v, D(), c.sort_depth);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(D(), shows.m, bits);
     return bits[0];
@@ -96,7 +96,7 @@ void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64
                      c.disc[i][2],
                      c.disc[i][3],
                      {color.x, color.y, color.z},
-                     std::bit_cast<std::uint32_t>(c.key[i]),
+                     std::bit_cast<std::uint32_t>(c.sort_depth[i]),
                      static_cast<std::uint32_t>(index),
                      layer.layer,
                      hybrid ? hybrid_of(layer, {c.x[i], c.y[i], c.z[i]}) : std::uint16_t{0}};

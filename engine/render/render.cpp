@@ -25,10 +25,10 @@
 namespace astrosplat {
 namespace {
 
-using FalloffKey = std::tuple<int, float, float>;  // shape, core, sharpness
-using TableKey = std::tuple<FalloffKey, float>;    // and pixel filter
+using FalloffNumbers = std::tuple<int, float, float>;    // shape, core, sharpness
+using TableNumbers = std::tuple<FalloffNumbers, float>;  // and pixel filter
 
-FalloffKey key_of(const Falloff& falloff) {
+FalloffNumbers numbers_of(const Falloff& falloff) {
     return {static_cast<int>(falloff.shape), falloff.core, falloff.sharpness};
 }
 
@@ -112,16 +112,16 @@ std::int64_t covered_pixels(const Image& beauty) {
 
 struct RenderCache::State {
     SplatStore store;
-    std::map<TableKey, std::unique_ptr<FootprintTable>> footprints;
-    std::map<FalloffKey, std::unique_ptr<LodTable>> lods;
+    std::map<TableNumbers, std::unique_ptr<FootprintTable>> footprints;
+    std::map<FalloffNumbers, std::unique_ptr<LodTable>> lods;
 
     FootprintTable& footprint(const Falloff& falloff, float pixel_filter) {
-        std::unique_ptr<FootprintTable>& table = footprints[{key_of(falloff), pixel_filter}];
+        std::unique_ptr<FootprintTable>& table = footprints[{numbers_of(falloff), pixel_filter}];
         if (!table) table = std::make_unique<FootprintTable>(begin_footprint_table(falloff, pixel_filter));
         return *table;
     }
     const LodTable& lod(const Falloff& falloff, int finest, const Progress& progress) {
-        std::unique_ptr<LodTable>& table = lods[key_of(falloff)];
+        std::unique_ptr<LodTable>& table = lods[numbers_of(falloff)];
         if (!table) table = std::make_unique<LodTable>(falloff);
         table->prepare(finest, progress);
         return *table;

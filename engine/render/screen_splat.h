@@ -12,7 +12,7 @@ struct ScreenSplat {
     float radius_px;       // where the falloff reaches zero; not round: the number of a shape
     float opacity;         // alpha * layer opacity * near fade; times the footprint's weight it is s
     float color[3];        // linear, straight
-    std::uint32_t depth;   // bits of the projection's sort key: sorts as the distance from the eye does
+    std::uint32_t depth;   // bits of the projection's sort depth: sorts as the distance from the eye does
     std::uint32_t index;   // of the shaded splat in its layer: stands for the id in ties
     std::uint16_t layer;   // index of the layer in file order
     std::uint16_t hybrid;  // h of the hybrid blend, 65535 = 1

@@ -19,12 +19,12 @@ void prefetch(std::span<const ScreenSplat> run) {
 
 }  // namespace
 
-/// Sets keys_ and splats_; returns how many bits of the keys' depths are in use.
+/// Sets codes_ and splats_; returns how many bits of the codes' depths are in use.
 int SplatSorter::read(std::span<const std::span<const ScreenSplat>> runs, const Progress& progress) {
     constexpr std::size_t runs_ahead = 3;
     std::size_t n = 0;
     for (const std::span<const ScreenSplat>& run : runs) n += run.size();
-    keys_.resize(n);
+    codes_.resize(n);
     other_.resize(n);
     splats_.resize(n);
     order_.resize(n);
@@ -35,27 +35,27 @@ int SplatSorter::read(std::span<const std::span<const ScreenSplat>> runs, const 
         if (r + runs_ahead < runs.size()) prefetch(runs[r + runs_ahead]);
         for (const ScreenSplat& splat : runs[r]) {
             splats_[i] = &splat;
-            keys_[i] = std::uint64_t{splat.depth} << 32 | i;
+            codes_[i] = std::uint64_t{splat.depth} << 32 | i;
             least = std::min(least, splat.depth);
             most = std::max(most, splat.depth);
             ++i;
         }
     }
-    for (std::uint64_t& key : keys_) key -= std::uint64_t{least} << 32;
+    for (std::uint64_t& code : codes_) code -= std::uint64_t{least} << 32;
     return n == 0 ? 0 : std::bit_width(most - least);
 }
 
-/// Sets order_ from the sorted keys. Those whose depths differ in their lowest `open_bits` bits at most, by
-/// which the keys are not sorted, are put into total order.
+/// Sets order_ from the sorted codes. Those whose depths differ in their lowest `open_bits` bits at most, by
+/// which the codes are not sorted, are put into total order.
 void SplatSorter::put_in_order(int open_bits, const Progress& progress) {
     const auto before = [](const ScreenSplat* a, const ScreenSplat* b) { return in_front_of(*a, *b); };
     const auto close = [&](std::size_t a, std::size_t b) {
-        return (keys_[a] ^ keys_[b]) >> (32 + open_bits) == 0;
+        return (codes_[a] ^ codes_[b]) >> (32 + open_bits) == 0;
     };
-    for (std::size_t i = 0; i < keys_.size(); ++i) order_[i] = splats_[keys_[i] & 0xffffffffu];
-    for (std::size_t begin = 0, end = 1; end <= keys_.size(); ++end) {
+    for (std::size_t i = 0; i < codes_.size(); ++i) order_[i] = splats_[codes_[i] & 0xffffffffu];
+    for (std::size_t begin = 0, end = 1; end <= codes_.size(); ++end) {
         if (end % check_every == 0) progress.check();
-        if (end < keys_.size() && close(begin, end)) continue;
+        if (end < codes_.size() && close(begin, end)) continue;
         const auto first = order_.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto last = order_.begin() + static_cast<std::ptrdiff_t>(end);
         if (end - begin > 1 && !std::is_sorted(first, last, before)) std::sort(first, last, before);
@@ -69,9 +69,9 @@ std::span<const ScreenSplat* const> SplatSorter::sort(std::span<const std::span<
     // Two digits tell nearly all depths of a tile apart.
     const int open_bits = std::max(0, bits - 2 * digit_bits);
     const auto* const sorted = radix_sort<digit_bits>(
-        keys_.data(), other_.data(), keys_.size(), unsigned(32 + open_bits), unsigned(32 + bits),
-        [](std::uint64_t key) { return key; }, [&] { progress.check(); });
-    if (sorted != keys_.data()) keys_.swap(other_);
+        codes_.data(), other_.data(), codes_.size(), unsigned(32 + open_bits), unsigned(32 + bits),
+        [](std::uint64_t code) { return code; }, [&] { progress.check(); });
+    if (sorted != codes_.data()) codes_.swap(other_);
     put_in_order(open_bits, progress);
     return order_;
 }

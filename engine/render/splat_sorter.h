@@ -22,7 +22,7 @@ class SplatSorter {
     int read(std::span<const std::span<const ScreenSplat>> runs, const Progress& progress);
     void put_in_order(int open_bits, const Progress& progress);
 
-    Buffer<std::uint64_t> keys_, other_;  // depth less the least one above, place of arrival below
+    Buffer<std::uint64_t> codes_, other_;  // depth less the least one above, place of arrival below
     Buffer<const ScreenSplat*> splats_, order_;
 };
 

@@ -12,10 +12,11 @@ namespace astrosplat {
 Scene scene_at(const Scene& scene, double frame);
 
 /// The numbers of one track at `frame`, before they are fitted to the parameter's type and range. The track
-/// has at least one key and belongs to a parameter of this kind.
+/// has at least one keyframe and belongs to a parameter of this kind.
 std::vector<double> track_at(const Track& track, const ParameterSpec& spec, double frame);
 
-/// Whether a layer is drawn in some frame: visible as it stands, or switched on by a key of the animation.
+/// Whether a layer is drawn in some frame: visible as it stands, or switched on by a keyframe of the
+/// animation.
 bool ever_visible(const Scene& scene, const LayerParams& layer);
 
 }  // namespace astrosplat

@@ -48,12 +48,12 @@ void check_curve(const DensityCurve& curve, const ParameterKey& at, const Checke
 
 void check_look(const Look& look, const ParameterKey& at, const Checker& check) {
     check_curve(look.pdf, at / "pdf", check);
-    for (std::size_t i = 0; i < look.thickness.keys.size(); ++i)
-        check_curve(look.thickness.keys[i].pdf, at / "thickness.keys" / i, check);
-    check.require(look.thickness.map.empty() || !look.thickness.keys.empty(), {at / "thickness.map"},
+    for (std::size_t i = 0; i < look.thickness.stops.size(); ++i)
+        check_curve(look.thickness.stops[i].pdf, at / "thickness.keys" / i, check);
+    check.require(look.thickness.map.empty() || !look.thickness.stops.empty(), {at / "thickness.map"},
                   "expected thickness.keys that the map's colours stand for, found none");
-    check.require(!look.thickness.map.empty() || look.thickness.keys.size() <= 1, {at / "thickness.keys"},
-                  "expected a thickness.map for several keys, found none");
+    check.require(!look.thickness.map.empty() || look.thickness.stops.size() <= 1, {at / "thickness.keys"},
+                  "expected a thickness.map for several stops, found none");
     check.require(look.vertical.shape != VerticalAlpha::Shape::curve || look.vertical.points.size() >= 2,
                   {at / "vertical.points", at / "vertical.shape"},
                   "expected at least 2 points for shape \"curve\", found none");

@@ -179,7 +179,7 @@ const std::vector<ParameterRow>& parameter_rows() {
         scene.layers[0].source.meshes.resize(1);
         scene.layers[0].source.texture.mask.resize(1);
         scene.layers[0].source.texture.mask[0].any.resize(1);
-        scene.layers[0].look.thickness.keys.resize(1);
+        scene.layers[0].look.thickness.stops.resize(1);
         scene.layers[0].look.noise.resize(1);
         std::vector<ParameterRow> result;
         for (const Parameter& parameter : describe(scene).parameters) {

@@ -19,12 +19,12 @@ void describe_curve(const Describer& d, DensityCurve& curve) {
       only_with("shape", {"curve"}));
 }
 
-void describe_thickness_key(const Describer& d, ThicknessKey& key) {
-    d(key.color, "color", "Map colour", "", "Colour of the thickness map that this key stands for.",
+void describe_thickness_stop(const Describer& d, ThicknessStop& stop) {
+    d(stop.color, "color", "Map colour", "", "Colour of the thickness map that this stop stands for.",
       as(Type::color), range(0, 1));
-    d(key.scale, "scale", "Thickness", "of reach", "Reach where the map has this colour.", within(0, 1e6),
+    d(stop.scale, "scale", "Thickness", "of reach", "Reach where the map has this colour.", within(0, 1e6),
       slider(0, 4));
-    describe_curve(d, key.pdf);
+    describe_curve(d, stop.pdf);
 }
 
 void describe_noise(const Describer& d, Noise& n) {
@@ -104,11 +104,11 @@ void describe_look(const Describer& d, Look& look) {
             slider(0, 10));
     describe_curve(density.in("pdf", true), look.pdf);
     thickness(look.thickness.map, "thickness.map", "Thickness map", "",
-              "Picture whose colours choose among the keys.", shown_as("Picture"));
+              "Picture whose colours choose among the stops.", shown_as("Picture"));
     thickness.in("thickness", false)(look.thickness.derive, "derive", "Map of it", "",
                                      "Reads the picture as a grey map of it: dust, H-alpha, young stars.",
                                      never_with("map", {""}));
-    thickness.list("thickness.keys", look.thickness.keys, describe_thickness_key);
+    thickness.list("thickness.keys", look.thickness.stops, describe_thickness_stop);
     section("Noise").list("noise", look.noise, describe_noise);
     describe_alpha(section("Opacity at soft edges").in("alpha", true), look.alpha);
     describe_vertical(section("Opacity with distance").in("vertical", true), look.vertical);

@@ -52,7 +52,7 @@ falloff = "gaussian"              # profile of a dot: constant, linear, trapezoi
 blend   = "over"                  # over hides what lies behind; add, screen, lighten glow; hybrid: over face-on, screen edge-on
 opacity = 1.0                     # of the whole layer
 
-# A camera move: give the keys and set output.frames to "1-240".
+# A camera move: give keyframes and set output.frames to "1-240".
 # [animation]
 # "camera.position" = {{ keys = [[1, [0, 12, 12]], [240, [0, 2, 6]]], interpolation = "smooth" }}
 )";

@@ -114,7 +114,7 @@ bool has_effect(const ParameterSpec& spec, const std::function<const Parameter*(
 /// "a number from 0 to 1", "3 numbers", "over, add or screen": completes "expected ...".
 std::string expectation(const ParameterSpec& spec);
 
-/// Keyed values are numbers per component: booleans 0 or 1, choices their index, curves x0 y0 x1 y1 ...
+/// Animated values are numbers per component: booleans 0 or 1, choices their index, curves x0 y0 x1 y1 ...
 std::vector<double> to_numbers(const ParameterSpec& spec, const Value& value);
 /// The value nearest to these numbers that the parameter's type and range allow.
 Value from_numbers(const ParameterSpec& spec, const std::vector<double>& numbers);

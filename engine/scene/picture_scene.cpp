@@ -61,19 +61,19 @@ opacity = 1.0                     # of the whole layer
 lod     = {{ max_px = {split}, noise = 0.75 }}  # dots that look larger, close by, become clouds
 )";
 
-struct CameraKey {
+struct CameraKeyframe {
     int frame;
     glm::dvec3 position, target, up;
 };
 
 // From where the picture is seen as it is, the camera tilts by 45 degrees and comes a little nearer. Eight
-// frames are between two keys.
-void tilt(double distance, std::vector<CameraKey>& keys) {
+// frames are between two keyframes.
+void tilt(double distance, std::vector<CameraKeyframe>& keyframes) {
     constexpr int first = 36, last = 100, step = 8;
     for (int frame = first; frame <= last; frame += step) {
         const double t = static_cast<double>(frame - first) / (last - first), eased = t * t * (3.0 - 2.0 * t);
         const double angle = real::radians(45.0 * eased);
-        keys.push_back(
+        keyframes.push_back(
             {frame,
              (1.0 - 0.12 * eased) * distance * glm::dvec3(0.06 * eased, real::cos(angle), real::sin(angle)),
              glm::dvec3(0.0),
@@ -83,38 +83,39 @@ void tilt(double distance, std::vector<CameraKey>& keys) {
 
 // Ten seconds at 24 frames/s: the front, a slow tilt, a close pass, and on: to the edge of a disk, else up
 // and away.
-std::vector<CameraKey> flight(double distance, StructureKind kind) {
+std::vector<CameraKeyframe> flight(double distance, StructureKind kind) {
     const bool disk = kind == StructureKind::disk;
     const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
-    std::vector<CameraKey> keys;
-    tilt(distance, keys);
-    keys.insert(keys.begin(), keys.front());
-    keys.front().frame = 1;
-    keys.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above});
-    keys.push_back({205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above});
-    keys.push_back({240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above});
-    return keys;
+    std::vector<CameraKeyframe> keyframes;
+    tilt(distance, keyframes);
+    keyframes.insert(keyframes.begin(), keyframes.front());
+    keyframes.front().frame = 1;
+    keyframes.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above});
+    keyframes.push_back({205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above});
+    keyframes.push_back({240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above});
+    return keyframes;
 }
 
 std::string text_of(const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
 
-// Leaves out keys that are like both of their neighbours.
-std::string track_text(const char* key, const std::vector<CameraKey>& keys, glm::dvec3 CameraKey::*value) {
+// Leaves out keyframes that are like both of their neighbours.
+std::string track_text(const char* key, const std::vector<CameraKeyframe>& keyframes,
+                       glm::dvec3 CameraKeyframe::*value) {
     std::string text;
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        const glm::dvec3& here = keys[i].*value;
-        const bool inside = i > 0 && i + 1 < keys.size();
-        if (inside && here == keys[i - 1].*value && here == keys[i + 1].*value) continue;
-        text += fmt::format("{}    [{}, {}]", text.empty() ? "" : ",\n", keys[i].frame, text_of(here));
+    for (std::size_t i = 0; i < keyframes.size(); ++i) {
+        const glm::dvec3& here = keyframes[i].*value;
+        const bool inside = i > 0 && i + 1 < keyframes.size();
+        if (inside && here == keyframes[i - 1].*value && here == keyframes[i + 1].*value) continue;
+        text += fmt::format("{}    [{}, {}]", text.empty() ? "" : ",\n", keyframes[i].frame, text_of(here));
     }
     return fmt::format("\"{}\" = {{ interpolation = \"smooth\", keys = [\n{}\n] }}\n", key, text);
 }
 
-std::string animation_text(const std::vector<CameraKey>& keys) {
+std::string animation_text(const std::vector<CameraKeyframe>& keyframes) {
     return "\n[animation]                       # [frame, value]\n" +
-           track_text("camera.position", keys, &CameraKey::position) +
-           track_text("camera.target", keys, &CameraKey::target) +
-           track_text("camera.up", keys, &CameraKey::up);
+           track_text("camera.position", keyframes, &CameraKeyframe::position) +
+           track_text("camera.target", keyframes, &CameraKeyframe::target) +
+           track_text("camera.up", keyframes, &CameraKeyframe::up);
 }
 
 // Even, as films want it.

@@ -76,12 +76,12 @@ struct LayerParams {
     bool operator==(const LayerParams&) const = default;
 };
 
-/// One animated key path, as in the file. Values are kept as numbers per component: scalars 1, colours and
+/// One animated parameter, as in the file. Values are kept as numbers per component: scalars 1, colours and
 /// vectors 3, rotations 4; booleans 0 or 1; choices by their index.
 struct Track {
     ParameterKey key;  // "camera.position", "layer.stars.render.core"
-    std::vector<Keyframe<std::vector<double>>> keys;
-    Interpolation interpolation = Interpolation::linear;  // the default of keys that do not say
+    std::vector<Keyframe<std::vector<double>>> keyframes;
+    Interpolation interpolation = Interpolation::linear;  // the default of keyframes that do not say
     Ends ends = Ends::ease;
     bool constant_speed = false;
     bool operator==(const Track&) const = default;

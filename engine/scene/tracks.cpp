@@ -36,22 +36,23 @@ E read_name(const toml::node& node, const std::string& what, const Place& at) {
                         text ? did_you_mean(text->get(), names) : ""));
 }
 
-Keyframe<std::vector<double>> read_key(const toml::node& node, const Parameter& parameter, const Track& track,
-                                       const Place& at) {
+Keyframe<std::vector<double>> read_keyframe(const toml::node& node, const Parameter& parameter,
+                                            const Track& track, const Place& at) {
     const toml::array* parts = node.as_array();
     if (!parts || parts->size() < 2 || parts->size() > 3)
-        at.fail(fmt::format("expected keys [frame, value] or [frame, value, \"smooth\"], found {}",
+        at.fail(fmt::format("expected keyframes [frame, value] or [frame, value, \"smooth\"], found {}",
                             kind_of(node)));
     const auto frame = (*parts)[0].value<double>();
     if (!frame || !(*parts)[0].is_number() || !std::isfinite(*frame))
-        at.fail(fmt::format("expected a frame number first in a key, found {}", kind_of((*parts)[0])));
-    Keyframe<std::vector<double>> key{*frame, {}, track.interpolation};
+        at.fail(fmt::format("expected a frame number first in a keyframe, found {}", kind_of((*parts)[0])));
+    Keyframe<std::vector<double>> keyframe{*frame, {}, track.interpolation};
     try {
         const Value value = value_of((*parts)[1]);
         parameter.set(value);
-        key.value = to_numbers(parameter.spec, value);
-        const bool none = key.value.empty() || (value.text() && value == parameter.spec.nothing);
-        const bool zero = std::ranges::count(key.value, 0.0) == static_cast<std::ptrdiff_t>(key.value.size());
+        keyframe.value = to_numbers(parameter.spec, value);
+        const bool none = keyframe.value.empty() || (value.text() && value == parameter.spec.nothing);
+        const bool zero =
+            std::ranges::count(keyframe.value, 0.0) == static_cast<std::ptrdiff_t>(keyframe.value.size());
         if (zero && parameter.spec.type == ParameterType::rotation)
             throw ValueError("expected a quaternion that is not zero, found 0, 0, 0, 0");
         if (none) throw ValueError(fmt::format("expected {}, found none", expectation(parameter.spec)));
@@ -59,20 +60,20 @@ Keyframe<std::vector<double>> read_key(const toml::node& node, const Parameter& 
         at.fail(fmt::format("frame {}: {}", short_number(*frame), error.what()));
     }
     if (parts->size() == 3)
-        key.interpolation = read_name<Interpolation>((*parts)[2], "the way to the next key", at);
-    return key;
+        keyframe.interpolation = read_name<Interpolation>((*parts)[2], "the way to the next keyframe", at);
+    return keyframe;
 }
 
 void check_order(const Track& track, const Place& at) {
-    for (std::size_t i = 1; i < track.keys.size(); ++i) {
-        const double before = track.keys[i - 1].frame, frame = track.keys[i].frame;
+    for (std::size_t i = 1; i < track.keyframes.size(); ++i) {
+        const double before = track.keyframes[i - 1].frame, frame = track.keyframes[i].frame;
         if (frame == before)
             at.fail(fmt::format("expected each frame once, found {} twice", short_number(frame)));
         if (frame < before)
             at.fail(fmt::format("expected ascending frames, found {} after {}", short_number(frame),
                                 short_number(before)));
-        if (track.keys[i].value.size() != track.keys[0].value.size())
-            at.fail("expected as many points in every key, found another number");
+        if (track.keyframes[i].value.size() != track.keyframes[0].value.size())
+            at.fail("expected as many points in every keyframe, found another number");
     }
 }
 
@@ -119,18 +120,20 @@ Track read_track(const ParameterKey& key, const toml::node& node, Scene& scene, 
     } catch (const ValueError& error) {
         at.fail(error.what());
     }
-    Scene scratch = scene;  // keys are checked by setting them
+    Scene scratch = scene;  // keyframes are checked by setting them
     const Description description = describe(scratch);
     const toml::table* table = node.as_table();
-    const toml::array* keys = table && table->contains("keys") ? (*table)["keys"].as_array() : nullptr;
+    const toml::array* keyframes = table && table->contains("keys") ? (*table)["keys"].as_array() : nullptr;
     if (table && !table->contains("keys") && !find_parameter(description, key))
         at.fail("expected the whole key in quotes, such as \"camera.position\", found a table");
     const Parameter& parameter = animated_parameter(description, scene, at);
-    if (!keys || keys->empty()) at.fail("expected { keys = [[frame, value], ...] }, found no keys");
+    if (!keyframes || keyframes->empty())
+        at.fail("expected { keys = [[frame, value], ...] }, found no keyframes");
     Track track;
     track.key = parameter.spec.key;
     read_settings(*table, parameter.spec, track, at);
-    for (const toml::node& element : *keys) track.keys.push_back(read_key(element, parameter, track, at));
+    for (const toml::node& element : *keyframes)
+        track.keyframes.push_back(read_keyframe(element, parameter, track, at));
     check_order(track, at);
     return track;
 }
@@ -158,14 +161,14 @@ std::vector<Track> read_tracks(const toml::table& table, Scene& scene, const std
 }
 
 std::string track_to_toml(const Track& track, const ParameterSpec& spec) {
-    std::string keys;
-    for (const auto& key : track.keys) {
-        keys += fmt::format("{}[{}, {}", keys.empty() ? "" : ", ", short_number(key.frame),
-                            to_toml(from_numbers(spec, key.value)));
-        const bool usual = key.interpolation == track.interpolation;
-        keys += usual ? "]" : fmt::format(", \"{}\"]", name_of(key.interpolation));
+    std::string list;
+    for (const auto& keyframe : track.keyframes) {
+        list += fmt::format("{}[{}, {}", list.empty() ? "" : ", ", short_number(keyframe.frame),
+                            to_toml(from_numbers(spec, keyframe.value)));
+        const bool usual = keyframe.interpolation == track.interpolation;
+        list += usual ? "]" : fmt::format(", \"{}\"]", name_of(keyframe.interpolation));
     }
-    std::string text = "{ keys = [" + keys + "]";
+    std::string text = "{ keys = [" + list + "]";
     if (track.interpolation != Interpolation::linear)
         text += fmt::format(", interpolation = \"{}\"", name_of(track.interpolation));
     if (track.ends != Ends::ease) text += fmt::format(", ends = \"{}\"", name_of(track.ends));

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/sha256.h"
-#include "sets/cache_key.h"
+#include "sets/recipe.h"
 #include "source/picture.h"
 #include "source/prepared_picture.h"
 #include "source/stored_picture.h"
@@ -50,12 +50,12 @@ void keep_picture(const SetCache& cache, const fs::path& file, const PreparedPic
 
 PreparedPicture kept_or_prepared(const SetCache& cache, const std::vector<fs::path>& files,
                                  const TextureSettings& settings, const Progress& progress) {
-    const std::string text = cache.folder.empty() ? "" : prepared_key_text(files, settings, progress);
+    const std::string text = cache.folder.empty() ? "" : prepared_recipe_text(files, settings, progress);
     if (text.empty()) return prepare_picture(files, settings, progress);
     const fs::path file = cache.folder / (Sha256().add(text).hex() + ".exr");
     if (std::optional<PreparedPicture> kept = read_kept(file, progress)) return std::move(*kept);
     PreparedPicture picture = prepare_picture(files, settings, progress);
-    if (prepared_key_text(files, settings, progress) == text) keep_picture(cache, file, picture);
+    if (prepared_recipe_text(files, settings, progress) == text) keep_picture(cache, file, picture);
     return picture;
 }
 

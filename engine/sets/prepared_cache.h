@@ -11,8 +11,8 @@
 
 namespace astrosplat {
 
-/// Reads prepared pictures where they are kept (as KEY.exr), else prepares and keeps them. A damaged entry is
-/// made again; a folder that cannot be written costs a warning.
+/// Reads prepared pictures where they are kept (as NAME.exr), else prepares and keeps them. A damaged entry
+/// is made again; a folder that cannot be written costs a warning.
 PictureMaker kept_pictures(const SetCache& cache);
 
 /// load_meshes() with them.

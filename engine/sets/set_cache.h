@@ -3,8 +3,8 @@
 // that is damaged is generated again, and a folder that cannot be read or written costs a warning, never a
 // run.
 //
-// In the folder: KEY.splats (native.h, rows by id; the key is cache_key.h's, whose text is in the file; its
-// file time says when it was last used), KEY.lock while a process generates that set, .KEY.*.part.splats
+// In the folder: NAME.splats (native.h, rows by id; the name is recipe.h's, whose text is in the file; its
+// file time says when it was last used), NAME.lock while a process generates that set, .NAME.*.part.splats
 // while it is written.
 #pragma once
 

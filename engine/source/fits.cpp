@@ -51,10 +51,10 @@ Handle open_fits(const fs::path& file) {
     return Handle(handle);
 }
 
-std::string text_key(fitsfile* in, const char* key) {
+std::string text_keyword(fitsfile* in, const char* keyword) {
     std::array<char, FLEN_VALUE> value{};
     int status = 0;
-    fits_read_key(in, TSTRING, key, value.data(), nullptr, &status);
+    fits_read_key(in, TSTRING, keyword, value.data(), nullptr, &status);
     fits_clear_errmsg();
     return status == 0 ? std::string(trim(value.data())) : std::string();
 }
@@ -80,7 +80,7 @@ FitsHdu go_to_hdu(const fs::path& file, fitsfile* in, int number) {
     int type = 0, status = 0;
     fits_movabs_hdu(in, number + 1, &type, &status);
     if (status != 0) fail(file, fmt::format("moving to HDU {}", number), status);
-    hdu.name = text_key(in, "EXTNAME");
+    hdu.name = text_keyword(in, "EXTNAME");
     hdu.kind = "table";
     if (type != IMAGE_HDU) return hdu;
     int naxis = 0;
@@ -153,10 +153,10 @@ void swap_rows(FitsPlane& plane) {
         std::swap_ranges(row(y), row(y + 1), row(plane.height - 1 - y));
 }
 
-std::optional<double> number_key(fitsfile* in, const char* key) {
+std::optional<double> number_keyword(fitsfile* in, const char* keyword) {
     double value = 0.0;
     int status = 0;
-    fits_read_key(in, TDOUBLE, key, &value, nullptr, &status);
+    fits_read_key(in, TDOUBLE, keyword, &value, nullptr, &status);
     fits_clear_errmsg();
     if (status != 0 || !std::isfinite(value)) return {};
     return value;
@@ -164,32 +164,32 @@ std::optional<double> number_key(fitsfile* in, const char* key) {
 
 // CD, or CDELT with PC or CROTA2 (Greisen and Calabretta 2002, A&A 395, 1061).
 std::optional<std::array<double, 4>> degrees_per_pixel(fitsfile* in) {
-    const std::array<const char*, 4> cd_keys{"CD1_1", "CD1_2", "CD2_1", "CD2_2"};
-    const std::array<const char*, 4> pc_keys{"PC1_1", "PC1_2", "PC2_1", "PC2_2"};
+    const std::array<const char*, 4> cd_names{"CD1_1", "CD1_2", "CD2_1", "CD2_2"};
+    const std::array<const char*, 4> pc_names{"PC1_1", "PC1_2", "PC2_1", "PC2_2"};
     std::array<double, 4> cd{};
     bool any = false;
     for (std::size_t i = 0; i < 4; ++i) {
-        const std::optional<double> value = number_key(in, cd_keys[i]);
+        const std::optional<double> value = number_keyword(in, cd_names[i]);
         any = any || value;
         cd[i] = value.value_or(0.0);
     }
     if (any) return cd;
-    const auto across = number_key(in, "CDELT1"), up = number_key(in, "CDELT2");
+    const auto across = number_keyword(in, "CDELT1"), up = number_keyword(in, "CDELT2");
     if (!across || !up || *across == 0.0 || *up == 0.0) return {};
-    const double turn = real::radians(number_key(in, "CROTA2").value_or(0.0));
+    const double turn = real::radians(number_keyword(in, "CROTA2").value_or(0.0));
     const std::array<double, 4> turned{real::cos(turn), -real::sin(turn) * *up / *across,
                                        real::sin(turn) * *across / *up, real::cos(turn)};
     for (std::size_t i = 0; i < 4; ++i)
-        cd[i] = (i < 2 ? *across : *up) * number_key(in, pc_keys[i]).value_or(turned[i]);
+        cd[i] = (i < 2 ? *across : *up) * number_keyword(in, pc_names[i]).value_or(turned[i]);
     return cd;
 }
 
 std::optional<FitsSky> sky_of(fitsfile* in) {
-    if (text_key(in, "CTYPE1").substr(0, 8) != "RA---TAN" ||
-        text_key(in, "CTYPE2").substr(0, 8) != "DEC--TAN")
+    if (text_keyword(in, "CTYPE1").substr(0, 8) != "RA---TAN" ||
+        text_keyword(in, "CTYPE2").substr(0, 8) != "DEC--TAN")
         return {};
-    const auto x = number_key(in, "CRPIX1"), y = number_key(in, "CRPIX2");
-    const auto ra = number_key(in, "CRVAL1"), dec = number_key(in, "CRVAL2");
+    const auto x = number_keyword(in, "CRPIX1"), y = number_keyword(in, "CRPIX2");
+    const auto ra = number_keyword(in, "CRVAL1"), dec = number_keyword(in, "CRVAL2");
     const auto cd = degrees_per_pixel(in);
     if (!x || !y || !ra || !dec || !cd) return {};
     const double whole = (*cd)[0] * (*cd)[3] - (*cd)[1] * (*cd)[2];
@@ -240,8 +240,8 @@ FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, con
     result.values = read_values(file, in.get(), pixels * plane, pixels, progress);
     result.hdu = found.number;
     result.name = found.name;
-    result.credit = text_key(in.get(), "AUTHOR");
-    if (result.credit.empty()) result.credit = text_key(in.get(), "ORIGIN");
+    result.credit = text_keyword(in.get(), "AUTHOR");
+    if (result.credit.empty()) result.credit = text_keyword(in.get(), "ORIGIN");
     result.sky = sky_of(in.get());
     swap_rows(result);
     return result;

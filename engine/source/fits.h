@@ -35,8 +35,8 @@ std::vector<FitsHdu> describe_fits(const std::filesystem::path& file, const Prog
 /// Throws InputError unless one of the HDUs holds a picture.
 void require_fits_picture(const std::filesystem::path& file);
 
-/// How the sky lies on a picture: the keys CRPIX, CRVAL and CD of a tangent plane (CTYPE RA---TAN, DEC--TAN,
-/// of which distortions are left out); CDELT with PC or CROTA2 make a CD.
+/// How the sky lies on a picture: the keywords CRPIX, CRVAL and CD of a tangent plane (CTYPE RA---TAN,
+/// DEC--TAN, of which distortions are left out); CDELT with PC or CROTA2 make a CD.
 struct FitsSky {
     std::array<double, 2> crpix{};  // px, from 1 at the middle of the lower left pixel
     std::array<double, 2> crval{};  // degrees: right ascension, declination

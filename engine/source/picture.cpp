@@ -185,8 +185,8 @@ double largest_integer(const ImageSpec& spec) {
 std::string find_credit(const fs::path& file, const ImageSpec& spec) {
     std::string credit = xmp_credit(file);
     if (!credit.empty()) return credit;
-    for (const char* key : {"IPTC:Provider", "Artist", "Exif:Artist", "IPTC:Creator", "Copyright"}) {
-        credit = trim(spec.get_string_attribute(key));
+    for (const char* name : {"IPTC:Provider", "Artist", "Exif:Artist", "IPTC:Creator", "Copyright"}) {
+        credit = trim(spec.get_string_attribute(name));
         if (!credit.empty()) return credit;
     }
     return {};

@@ -42,7 +42,7 @@ enum Flag : std::uint32_t {
     has_mesh = 16,
     has_radius = 32,
     by_id = 64,
-    has_key = 128,
+    has_recipe = 128,
     absorbs = 256
 };
 
@@ -109,7 +109,7 @@ BlockEntry describe_block(std::string_view bytes, std::size_t rows) {
 // ---- writing
 
 std::uint32_t flags_of(const SplatSet& set, RowOrder order) {
-    std::uint32_t flags = (set.key.empty() ? 0u : has_key) | (set.generated ? generated : 0u) |
+    std::uint32_t flags = (set.recipe.empty() ? 0u : has_recipe) | (set.generated ? generated : 0u) |
                           (set.divided ? divided : 0u) | (set.absorbs ? absorbs : 0u) |
                           (order == RowOrder::id ? by_id : 0u);
     for_each_column([&](auto column, SplatColumn which) {
@@ -118,9 +118,9 @@ std::uint32_t flags_of(const SplatSet& set, RowOrder order) {
     return flags;
 }
 
-/// What stands behind the header: the credit, and behind a zero the key.
+/// What stands behind the header: the credit, and behind a zero the recipe.
 std::string text_of(const SplatSet& set) {
-    return set.key.empty() ? set.credit : set.credit + '\0' + set.key;
+    return set.recipe.empty() ? set.credit : set.credit + '\0' + set.recipe;
 }
 
 std::string header_bytes(const SplatSet& set, RowOrder order) {
@@ -201,7 +201,7 @@ void write_in_space(const WriteTarget& target, const SplatSet& set, const Progre
 /// A file whose lengths are known to be right.
 struct Layout {
     Header header;
-    std::string credit, key;
+    std::string credit, recipe;
     std::string_view blocks;
     std::vector<BlockEntry> table;
 };
@@ -259,10 +259,10 @@ Layout read_layout(const Checker& checker, std::string_view bytes) {
     checker.checksum("table", bytes.substr(begin + data, table));
     check_values(checker, header);
     layout.credit = bytes.substr(sizeof(Header), header.credit_bytes);
-    if (header.flags & has_key) {
+    if (header.flags & has_recipe) {
         const std::size_t end = layout.credit.rfind('\0');
-        if (end == std::string::npos) checker.fail("header", "a zero between credit and key", "none");
-        layout.key = layout.credit.substr(end + 1);
+        if (end == std::string::npos) checker.fail("header", "a zero between credit and recipe", "none");
+        layout.recipe = layout.credit.substr(end + 1);
         layout.credit.resize(end);
     }
     layout.blocks = bytes.substr(begin, data);
@@ -297,7 +297,7 @@ SplatSet empty_set(const Layout& layout, const OptionalColumns& wanted, const st
     set.test_positions = header.test_positions;
     set.zero_alpha = header.zero_alpha;
     set.credit = layout.credit;
-    set.key = layout.key;
+    set.recipe = layout.recipe;
     return set;
 }
 

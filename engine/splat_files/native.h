@@ -6,14 +6,14 @@
 //            8  u32      version, 1
 //           12  u32      flags: 1 generated, 2 divided, 4 uv, 8 normal, 16 mesh, 32 radius are present,
 //                    64 the rows are in ascending order of id,
-//                    128 a key is present
+//                    128 a recipe is present
 //           16  u64      splats
 //           24  u32      splats in a block (the last block may hold fewer)
-//           28  u32      bytes of the credit, and of a zero and the key where that is present
+//           28  u32      bytes of the credit, and of a zero and the recipe where that is present
 //           32  3 f64    spacing             56  f64  max_distance
 //           64  i64      test positions      72  i64  positions dropped for zero alpha
-//           80           credit (UTF-8), 0, key, zeros up to 8 bytes before a multiple of 64, u64 checksum of
-//           all before it
+//           80           credit (UTF-8), 0, recipe, zeros up to 8 bytes before a multiple of 64, u64 checksum
+//           of all before it
 //   blocks  one after the other, in each: position 3 f32, colour 3 f32, alpha f32, distance f32, id u64, and
 //   where
 //           present uv 2 f32, normal 3 f32, mesh u32, radius f32, every array whole before the next

@@ -1,4 +1,4 @@
-// A stable counting sort by key, each thread on its own part of the rows; sets are mostly in ascending order
+// A stable counting sort by bin, each thread on its own part of the rows; sets are mostly in ascending order
 // of id already, and then being stable is enough.
 #include "splats/row_order.h"
 
@@ -20,43 +20,43 @@ struct Parts {
     std::int64_t begin(std::int64_t part) const { return std::min(rows, part * size()); }
 };
 
-/// Where each part's first row of each key goes: entry part * key_count + key.
+/// Where each part's first row of each bin goes: entry part * bin_count + bin.
 template <class Row>
-Buffer<Row> part_starts(const Buffer<std::uint32_t>& keys, std::size_t key_count, const Parts& parts) {
-    Buffer<Row> starts(static_cast<std::size_t>(parts.count) * key_count, 0);
+Buffer<Row> part_starts(const Buffer<std::uint32_t>& bins, std::size_t bin_count, const Parts& parts) {
+    Buffer<Row> starts(static_cast<std::size_t>(parts.count) * bin_count, 0);
     parallel_for(parts.count, [&](std::int64_t part, int) {
-        Row* const counts = starts.data() + static_cast<std::size_t>(part) * key_count;
-        for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i) ++counts[keys[i]];
+        Row* const counts = starts.data() + static_cast<std::size_t>(part) * bin_count;
+        for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i) ++counts[bins[i]];
     });
     Row sum = 0;
-    for (std::size_t key = 0; key < key_count; ++key) {
+    for (std::size_t bin = 0; bin < bin_count; ++bin) {
         for (std::size_t part = 0; part < static_cast<std::size_t>(parts.count); ++part) {
-            const Row count = starts[part * key_count + key];
-            starts[part * key_count + key] = sum;
+            const Row count = starts[part * bin_count + bin];
+            starts[part * bin_count + bin] = sum;
             sum += count;
         }
     }
     return starts;
 }
 
-/// Moves each part's starts to where its rows of the key end.
+/// Moves each part's starts to where its rows of the bin end.
 template <class Row>
-Buffer<Row> place_rows(const Buffer<std::uint32_t>& keys, std::size_t key_count, const Parts& parts,
+Buffer<Row> place_rows(const Buffer<std::uint32_t>& bins, std::size_t bin_count, const Parts& parts,
                        Buffer<Row>& starts) {
-    Buffer<Row> order(keys.size());
+    Buffer<Row> order(bins.size());
     parallel_for(parts.count, [&](std::int64_t part, int) {
-        Row* const places = starts.data() + static_cast<std::size_t>(part) * key_count;
+        Row* const places = starts.data() + static_cast<std::size_t>(part) * bin_count;
         for (std::int64_t i = parts.begin(part); i < parts.begin(part + 1); ++i)
-            order[places[keys[i]]++] = static_cast<Row>(i);
+            order[places[bins[i]]++] = static_cast<Row>(i);
     });
     return order;
 }
 
-/// ends: where each key's rows end.
+/// ends: where each bin's rows end.
 template <class Row>
-void sort_keys_by_id(Buffer<Row>& order, std::span<const Row> ends, const Buffer<std::uint64_t>& ids) {
-    parallel_each(ends.size(), 64, [&](std::size_t key) {
-        std::sort(order.data() + (key > 0 ? ends[key - 1] : 0), order.data() + ends[key],
+void sort_bins_by_id(Buffer<Row>& order, std::span<const Row> ends, const Buffer<std::uint64_t>& ids) {
+    parallel_each(ends.size(), 64, [&](std::size_t bin) {
+        std::sort(order.data() + (bin > 0 ? ends[bin - 1] : 0), order.data() + ends[bin],
                   [&](Row a, Row b) { return std::tuple(ids[a], a) < std::tuple(ids[b], b); });
     });
 }
@@ -74,20 +74,20 @@ bool ids_ascend(const Buffer<std::uint64_t>& ids) {
 }
 
 template <class Row>
-Buffer<Row> rows_by_key(const Buffer<std::uint32_t>& keys, std::size_t key_count,
+Buffer<Row> rows_by_bin(const Buffer<std::uint32_t>& bins, std::size_t bin_count,
                         const Buffer<std::uint64_t>& ids) {
-    assert(keys.size() == ids.size() && keys.size() <= std::numeric_limits<Row>::max());
-    if (keys.empty()) return {};
-    const Parts parts{static_cast<std::int64_t>(keys.size()), std::min(8, thread_count())};
-    Buffer<Row> places = part_starts<Row>(keys, key_count, parts);
-    Buffer<Row> order = place_rows(keys, key_count, parts, places);
-    if (!ids_ascend(ids)) sort_keys_by_id<Row>(order, std::span(places).last(key_count), ids);
+    assert(bins.size() == ids.size() && bins.size() <= std::numeric_limits<Row>::max());
+    if (bins.empty()) return {};
+    const Parts parts{static_cast<std::int64_t>(bins.size()), std::min(8, thread_count())};
+    Buffer<Row> places = part_starts<Row>(bins, bin_count, parts);
+    Buffer<Row> order = place_rows(bins, bin_count, parts, places);
+    if (!ids_ascend(ids)) sort_bins_by_id<Row>(order, std::span(places).last(bin_count), ids);
     return order;
 }
 
-template Buffer<std::uint32_t> rows_by_key(const Buffer<std::uint32_t>&, std::size_t,
+template Buffer<std::uint32_t> rows_by_bin(const Buffer<std::uint32_t>&, std::size_t,
                                            const Buffer<std::uint64_t>&);
-template Buffer<std::uint64_t> rows_by_key(const Buffer<std::uint32_t>&, std::size_t,
+template Buffer<std::uint64_t> rows_by_bin(const Buffer<std::uint32_t>&, std::size_t,
                                            const Buffer<std::uint64_t>&);
 
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
-// Rows of a splat set in another order. In: a coarse key for each row, and ids. Out: the rows' numbers in
-// order of key, then id; and arrays gathered in such an order.
+// Rows of a splat set in another order. In: a bin for each row, and ids. Out: the rows' numbers in
+// order of bin, then id; and arrays gathered in such an order.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@ namespace astrosplat {
 /// True when ids ascend; equal ones may follow each other.
 bool ids_ascend(const Buffer<std::uint64_t>& ids);
 
-/// The rows in ascending order of key, those of equal key in ascending order of id, those of equal id in
-/// ascending order. Keys are below `key_count`. The same for any thread count. Row: std::uint32_t, for
+/// The rows in ascending order of bin, those of equal bin in ascending order of id, those of equal id in
+/// ascending order. Bins are below `bin_count`. The same for any thread count. Row: std::uint32_t, for
 /// fewer than 2^32 rows, or std::uint64_t.
 template <class Row>
-Buffer<Row> rows_by_key(const Buffer<std::uint32_t>& keys, std::size_t key_count,
+Buffer<Row> rows_by_bin(const Buffer<std::uint32_t>& bins, std::size_t bin_count,
                         const Buffer<std::uint64_t>& ids);
 
 /// Copies the rows one after the other to `out`, which need not be aligned, and returns its end. They lie

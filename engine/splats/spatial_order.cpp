@@ -1,4 +1,4 @@
-// Cells of the set's box as keys of its rows.
+// Cells of the set's box as bins of its rows.
 #include "splats/spatial_order.h"
 
 #include <algorithm>
@@ -40,10 +40,10 @@ Buffer<std::uint32_t> cells_of(const SplatSet& set) {
     const Bounds box = bounds(set);
     const glm::dvec3 extent = box.extent();
     const double edge = std::max({extent.x, extent.y, extent.z}) / cells_per_axis;
-    Buffer<std::uint32_t> keys(set.position.size());
-    parallel_each(keys.size(), 1 << 14,
-                  [&](std::size_t i) { keys[i] = morton_cell(glm::dvec3(set.position[i]) - box.lo, edge); });
-    return keys;
+    Buffer<std::uint32_t> bins(set.position.size());
+    parallel_each(bins.size(), 1 << 14,
+                  [&](std::size_t i) { bins[i] = morton_cell(glm::dvec3(set.position[i]) - box.lo, edge); });
+    return bins;
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ Buffer<Row> spatial_order(const SplatSet& set) {
     if (set.size() == 0) return {};
     constexpr std::int64_t bytes_per_row = sizeof(Row) + sizeof(std::uint32_t);
     claim_memory(set.size() * bytes_per_row, "the order of a .splats file");
-    return rows_by_key<Row>(cells_of(set), cells, set.id);
+    return rows_by_bin<Row>(cells_of(set), cells, set.id);
 }
 
 template Buffer<std::uint32_t> spatial_order(const SplatSet& set);

@@ -52,11 +52,11 @@ void give_back(Buffer<T>& values) {
 template <class Row>
 void sort_rows(SplatSet& set) {
     const IdSteps steps = steps_of(set.id);
-    Buffer<std::uint32_t> keys(set.id.size());
-    parallel_each(keys.size(), splats_per_chunk, [&](std::size_t i) {
-        keys[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
+    Buffer<std::uint32_t> bins(set.id.size());
+    parallel_each(bins.size(), splats_per_chunk, [&](std::size_t i) {
+        bins[i] = static_cast<std::uint32_t>((set.id[i] - steps.lowest) >> steps.shift);
     });
-    const Buffer<Row> order = rows_by_key<Row>(keys, steps.count, set.id);
+    const Buffer<Row> order = rows_by_bin<Row>(bins, steps.count, set.id);
     for_each_column([&](auto column, SplatColumn) { permute(set.*column, order); });
 }
 

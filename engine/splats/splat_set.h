@@ -22,7 +22,7 @@ struct SplatSetFacts {
     std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
     bool absorbs = false;             // splats of colours below 0 absorb: see color
     std::string credit;               // from the inputs' metadata
-    std::string key;                  // of an entry of the cache: all that made it (sets/cache_key.h)
+    std::string recipe;               // of an entry of the cache: what made it (sets/recipe.h)
 };
 
 /// Arrays either have size() entries or are empty ("not known"); position, color, alpha, distance and id are

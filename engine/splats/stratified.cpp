@@ -1,5 +1,5 @@
-// Morton keys, one scatter by their highest bits, then each of those parts by itself in cache: stable
-// throughout, so that neighbours with equal keys stay in order of id.
+// Morton codes, one scatter by their highest bits, then each of those parts by itself in cache: stable
+// throughout, so that neighbours with equal codes stay in order of id.
 #include "splats/stratified.h"
 
 #include <algorithm>
@@ -20,20 +20,20 @@
 namespace astrosplat {
 namespace {
 
-constexpr unsigned key_bits = 3 * morton_axis_bits;
-constexpr unsigned part_bits = 12;  // of the key, highest first: four levels of halving the box
+constexpr unsigned code_bits = 3 * morton_axis_bits;
+constexpr unsigned part_bits = 12;  // of the code, highest first: four levels of halving the box
 constexpr std::size_t parts = std::size_t{1} << part_bits;
 constexpr std::int64_t rows_at_once = 1 << 16;
 
-struct KeyedRow {
-    std::uint64_t key;
+struct CodedRow {
+    std::uint64_t code;
     std::int64_t row;
 };
 
 /// Cells are cubes, so that a thin disk is sampled evenly over its face before its thickness matters.
-class MortonKeys {
+class MortonCodes {
   public:
-    explicit MortonKeys(const SplatSet& set) : set_(set) {
+    explicit MortonCodes(const SplatSet& set) : set_(set) {
         const Bounds box = bounds(set);
         lo_ = box.lo;
         const glm::dvec3 extent = box.extent();
@@ -41,7 +41,7 @@ class MortonKeys {
         cells_per_unit_ = edge > 0.0 ? static_cast<double>(last_cell) / edge : 0.0;
     }
 
-    KeyedRow operator()(std::int64_t row) const {
+    CodedRow operator()(std::int64_t row) const {
         const glm::dvec3 p = (glm::dvec3(set_.position[row]) - lo_) * cells_per_unit_;
         return {morton_place(cell(p.x), cell(p.y), cell(p.z)), row};
     }
@@ -57,23 +57,23 @@ class MortonKeys {
     double cells_per_unit_ = 0.0;
 };
 
-std::size_t part_of(std::uint64_t key) { return static_cast<std::size_t>(key >> (key_bits - part_bits)); }
+std::size_t part_of(std::uint64_t code) { return static_cast<std::size_t>(code >> (code_bits - part_bits)); }
 
-/// Rows grouped by the highest bits of their key, in order of row inside a part; starts[part] is where it
-/// begins. Keys are made twice: that costs less than the memory to keep them.
-Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
+/// Rows grouped by the highest bits of their code, in order of row inside a part; starts[part] is where it
+/// begins. Codes are made twice: that costs less than the memory to keep them.
+Buffer<CodedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
                                   std::vector<std::int64_t>& starts) {
-    const MortonKeys key_of(set);
+    const MortonCodes coded(set);
     const std::int64_t chunks = (set.size() + rows_at_once - 1) / rows_at_once;
     std::vector<std::array<std::int64_t, parts>> next(static_cast<std::size_t>(chunks));
     const auto each_row = [&](std::int64_t c, const auto& visit) {
         progress.check();
         const std::int64_t end = std::min(set.size(), (c + 1) * rows_at_once);
-        for (std::int64_t row = c * rows_at_once; row < end; ++row) visit(key_of(row), next[c]);
+        for (std::int64_t row = c * rows_at_once; row < end; ++row) visit(coded(row), next[c]);
     };
     parallel_for(chunks, [&](std::int64_t c, int) {
         next[c].fill(0);
-        each_row(c, [](const KeyedRow& r, auto& counts) { ++counts[part_of(r.key)]; });
+        each_row(c, [](const CodedRow& r, auto& counts) { ++counts[part_of(r.code)]; });
     });
     starts.assign(parts + 1, 0);
     std::int64_t sum = 0;
@@ -82,48 +82,49 @@ Buffer<KeyedRow> scatter_to_parts(const SplatSet& set, const Progress& progress,
         for (auto& counts : next) sum += std::exchange(counts[part], sum);
     }
     starts[parts] = sum;
-    Buffer<KeyedRow> sorted(set.position.size());
+    Buffer<CodedRow> sorted(set.position.size());
     parallel_for(chunks, [&](std::int64_t c, int) {
-        each_row(c, [&](const KeyedRow& r, auto& places) { sorted[places[part_of(r.key)]++] = r; });
+        each_row(c, [&](const CodedRow& r, auto& places) { sorted[places[part_of(r.code)]++] = r; });
     });
     return sorted;
 }
 
-void sort_part(KeyedRow* rows, std::size_t count, std::vector<KeyedRow>& scratch) {
+void sort_part(CodedRow* rows, std::size_t count, std::vector<CodedRow>& scratch) {
     constexpr std::size_t few = 512;  // below, counting digits costs more than comparing
     if (count < few || count > std::numeric_limits<std::uint32_t>::max())
-        return std::sort(rows, rows + count, [](const KeyedRow& a, const KeyedRow& b) {
-            return a.key != b.key ? a.key < b.key : a.row < b.row;
+        return std::sort(rows, rows + count, [](const CodedRow& a, const CodedRow& b) {
+            return a.code != b.code ? a.code < b.code : a.row < b.row;
         });
     scratch.resize(count);
-    const KeyedRow* const sorted = radix_sort<8>(
-        rows, scratch.data(), count, 0, key_bits - part_bits, [](const KeyedRow& r) { return r.key; }, [] {});
+    const CodedRow* const sorted = radix_sort<8>(
+        rows, scratch.data(), count, 0, code_bits - part_bits, [](const CodedRow& r) { return r.code; },
+        [] {});
     if (sorted != rows) std::copy_n(sorted, count, rows);
 }
 
-/// Rows of equal keys by id, for sets that are not in that order.
-void order_ties(const SplatSet& set, KeyedRow* rows, std::size_t count) {
-    const auto id = [&](const KeyedRow& r) { return set.id[r.row]; };
+/// Rows of equal codes by id, for sets that are not in that order.
+void order_ties(const SplatSet& set, CodedRow* rows, std::size_t count) {
+    const auto id = [&](const CodedRow& r) { return set.id[r.row]; };
     for (std::size_t i = 0; i < count;) {
         std::size_t end = i + 1;
-        while (end < count && rows[end].key == rows[i].key) ++end;
+        while (end < count && rows[end].code == rows[i].code) ++end;
         std::stable_sort(rows + i, rows + end,
-                         [&](const KeyedRow& a, const KeyedRow& b) { return id(a) < id(b); });
+                         [&](const CodedRow& a, const CodedRow& b) { return id(a) < id(b); });
         i = end;
     }
 }
 
-Buffer<KeyedRow> morton_order(const SplatSet& set, const Progress& progress) {
+Buffer<CodedRow> morton_order(const SplatSet& set, const Progress& progress) {
     std::vector<std::int64_t> starts;
-    Buffer<KeyedRow> rows = scatter_to_parts(set, progress, starts);
+    Buffer<CodedRow> rows = scatter_to_parts(set, progress, starts);
     progress.at(0.4);
     const bool by_id = ids_ascend(set.id);
-    std::vector<std::vector<KeyedRow>> scratch(static_cast<std::size_t>(thread_count()));
+    std::vector<std::vector<CodedRow>> scratch(static_cast<std::size_t>(thread_count()));
     parallel_chunks(
         static_cast<std::int64_t>(parts), 8, [&](std::int64_t begin, std::int64_t end, int worker) {
             progress.check();
             for (auto part = static_cast<std::size_t>(begin); part < static_cast<std::size_t>(end); ++part) {
-                KeyedRow* first = rows.data() + starts[part];
+                CodedRow* first = rows.data() + starts[part];
                 const auto count = static_cast<std::size_t>(starts[part + 1] - starts[part]);
                 sort_part(first, count, scratch[worker]);
                 if (!by_id) order_ties(set, first, count);
@@ -144,7 +145,7 @@ std::uint64_t reversed(std::uint64_t v, unsigned bits) {
 
 /// Runs through j = 0 .. 2^bits - 1 and takes the row of rank reversed(j) where there is one. Blocks of 2^low
 /// successive j have ranks that agree in their lowest bits, so how many of them exist is known beforehand.
-Buffer<std::int64_t> by_reversed_rank(const Buffer<KeyedRow>& sorted, const Progress& progress) {
+Buffer<std::int64_t> by_reversed_rank(const Buffer<CodedRow>& sorted, const Progress& progress) {
     const auto count = static_cast<std::uint64_t>(sorted.size());
     const auto bits = static_cast<unsigned>(std::bit_width(count - 1));
     const unsigned low = std::min(bits, 16u), high = bits - low;
@@ -188,7 +189,7 @@ SplatSet copy_arrays(const SplatSet& set, std::int64_t count, const RowAt& row_a
 
 Buffer<std::int64_t> stratified_order(const SplatSet& set, const Progress& progress) {
     if (set.size() == 0) return {};
-    claim_memory(set.size() * static_cast<std::int64_t>(sizeof(KeyedRow) + sizeof(std::int64_t)),
+    claim_memory(set.size() * static_cast<std::int64_t>(sizeof(CodedRow) + sizeof(std::int64_t)),
                  "the order of a preview");
     Buffer<std::int64_t> order = by_reversed_rank(morton_order(set, progress), progress);
     progress.at(1.0);

@@ -3,7 +3,7 @@
 // maths.glsl, noise.glsl and look_uniforms.glsl.
 
 // What loops run to; a program that is made for one look may need less, and software rasterisers run every step.
-const int LOOK_KEYS = LOOK_MAX_KEYS;
+const int LOOK_STOPS = LOOK_MAX_STOPS;
 const int LOOK_NOISES = LOOK_MAX_NOISES;
 const int LOOK_POINTS = LOOK_MAX_POINTS;
 
@@ -69,11 +69,11 @@ float look_bilinear(float c00, float c10, float c01, float c11, float tx, float 
     return mix(mix(c00, c10, tx), mix(c01, c11, tx), ty);
 }
 
-// Weight of a key before normalisation.
-float look_weight(float r, float g, float b, vec3 key) {
-    float dr = r - key.x;
-    float dg = g - key.y;
-    float db = b - key.z;
+// Weight of a stop before normalisation.
+float look_weight(float r, float g, float b, vec3 color) {
+    float dr = r - color.x;
+    float dg = g - color.y;
+    float db = b - color.z;
     float d = dr * dr + dg * dg + db * db + 1.0e-4f;
     return 1.0f / (d * d);
 }
@@ -173,7 +173,7 @@ struct LookInput {
     float alpha;
     float from_surface;  // scene units, >= 0
     float radius;        // used where own_radius is 1
-    vec3 map_value;      // used where there are several keys
+    vec3 map_value;      // used where there are several stops
     uint id_low;
     uint id_high;
 };
@@ -201,7 +201,7 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     float density = 0.0f;
     float column = 0.0f;
     float weight_sum = 0.0f;
-    float weight[LOOK_KEYS];
+    float weight[LOOK_STOPS];
     float reach = 1.0f;
     float culled = 1.0f;
     float along = 0.0f;
@@ -221,23 +221,23 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
         }
     }
 
-    for (int k = 0; k < LOOK_KEYS; ++k) {
-        if (k < u.key_count) {
-            weight[k] = look_weight(s.map_value.x, s.map_value.y, s.map_value.z, u.keys[k].color);
+    for (int k = 0; k < LOOK_STOPS; ++k) {
+        if (k < u.stop_count) {
+            weight[k] = look_weight(s.map_value.x, s.map_value.y, s.map_value.z, u.stops[k].color);
             weight_sum = weight_sum + weight[k];
         }
     }
-    for (int k = 0; k < LOOK_KEYS; ++k) {
-        if (k < u.key_count) {
-            weight[k] = u.key_count > 1 ? weight[k] / weight_sum : 1.0f;
-            scale = scale + weight[k] * u.keys[k].scale;
-            column = column + weight[k] * u.keys[k].column;
+    for (int k = 0; k < LOOK_STOPS; ++k) {
+        if (k < u.stop_count) {
+            weight[k] = u.stop_count > 1 ? weight[k] / weight_sum : 1.0f;
+            scale = scale + weight[k] * u.stops[k].scale;
+            column = column + weight[k] * u.stops[k].column;
         }
     }
     reach = u.reach * scale * reach;
     float x = look_x(s.from_surface, reach);
-    for (int k = 0; k < LOOK_KEYS; ++k) {
-        if (k < u.key_count) density = density + weight[k] * look_profile(u.keys[k].pdf, x);
+    for (int k = 0; k < LOOK_STOPS; ++k) {
+        if (k < u.stop_count) density = density + weight[k] * look_profile(u.stops[k].pdf, x);
     }
 
     LookOutput result;

@@ -3,7 +3,7 @@
 // four words, vec3 before its float, and every struct is whole rows: so std140 places them as C++ does, and the
 // preview copies the struct as it is. engine/look/shared_uniforms.h checks the rows.
 
-const int LOOK_MAX_KEYS = 8;     // thickness keys
+const int LOOK_MAX_STOPS = 8;     // thickness stops
 const int LOOK_MAX_NOISES = 4;   // entries of the noise list
 const int LOOK_MAX_POINTS = 16;  // points of one curve
 
@@ -41,7 +41,7 @@ struct LookProfile {
     int unused_1;
 };
 
-struct LookKey {
+struct LookStop {
     vec3 color;    // raw map value
     float scale;   // of reach
     LookProfile pdf;
@@ -76,7 +76,7 @@ struct LookUniforms {
     float density;
 
     uint seed;
-    int key_count;  // at least 1; weights come from the map where it is more
+    int stop_count;  // at least 1; weights come from the map where it is more
     int noise_count;
     int unpremultiply;  // 0 or 1
 
@@ -101,6 +101,6 @@ struct LookUniforms {
     int unused_2;
 
     LookProfile vertical;
-    LookKey keys[LOOK_MAX_KEYS];
+    LookStop stops[LOOK_MAX_STOPS];
     LookNoise noises[LOOK_MAX_NOISES];
 };

@@ -15,10 +15,10 @@ Vec3 perspective_point(Lens lens, Float x_px, Float y_px, Float depth) {
     return Vec3(ray.x * depth, ray.y * depth, -depth);
 }
 
-Float perspective_axis_depth(Lens lens, Float x_px, Float y_px, Float key) {
+Float perspective_axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
     Float x = (x_px - lens.center_x_px) / lens.focal_px;
     Float y = (y_px - lens.center_y_px) / lens.focal_px;
-    return sqrt(key / (1.0f + x * x + y * y));
+    return sqrt(depth / (1.0f + x * x + y * y));
 }
 
 Real perspective_spread(Lens lens) { return 1.0f / lens.focal_px; }

@@ -30,13 +30,13 @@ Vec3 point_at_depth(Lens lens, Float x_px, Float y_px, Float depth) {
 // Angle between the rays of neighbouring pixels, radians.
 Real pixel_spread(Lens lens) { return has_parallel_rays(lens) ? 0.0f : perspective_spread(lens); }
 
-// Depth of a splat along the view axis from its place in the picture and its sort key.
-Float axis_depth(Lens lens, Float x_px, Float y_px, Float key) {
-    if (has_parallel_rays(lens)) return key;
-    return perspective_axis_depth(lens, x_px, y_px, key);
+// Depth of a splat along the view axis from its place in the picture and its sort depth.
+Float axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
+    if (has_parallel_rays(lens)) return depth;
+    return perspective_axis_depth(lens, x_px, y_px, depth);
 }
 
-// Distance as sort_key measures it beyond which no ball of `radius` that touches the picture is wider than radius_px;
+// Distance as sort_depth measures it beyond which no ball of `radius` that touches the picture is wider than radius_px;
 // picture_px: no less than the picture's diagonal with the footprint's margin.
 Real small_from(Lens lens, Real radius, Real radius_px, Real picture_px) {
     if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_small_from(lens, radius, radius_px);
@@ -46,8 +46,8 @@ Real small_from(Lens lens, Real radius, Real radius_px, Real picture_px) {
 // What is the same for all of them.
 
 // Sorts as the distance from the eye (parallel rays: from the plane through it) does.
-Float key_of_distance(Lens lens, Float distance) { return has_parallel_rays(lens) ? distance : distance * distance; }
-Float sort_key(Lens lens, Vec3 p) {
+Float sort_depth_of(Lens lens, Float distance) { return has_parallel_rays(lens) ? distance : distance * distance; }
+Float sort_depth(Lens lens, Vec3 p) {
     if (has_parallel_rays(lens)) return -p.z;
     return dot(p, p);
 }

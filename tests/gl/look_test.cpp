@@ -85,16 +85,16 @@ LookCase noise_case(const char* name, float Noise::*amount, float value) {
             }};
 }
 
-void set_keys(SplatSet&, Look& look, LookInputs& inputs) {
+void set_stops(SplatSet&, Look& look, LookInputs& inputs) {
     look.thickness.map = "map.exr";
     inputs.thickness_map = &map_picture();
-    ThicknessKey dark, bright;
+    ThicknessStop dark, bright;
     dark.color = {0.1f, 0.2f, 0.1f};
     dark.pdf.shape = DensityCurve::Shape::exponential;
     bright.scale = 0.6f;
     bright.pdf.shape = DensityCurve::Shape::curve;
     bright.pdf.points = {{0.0f, 1.0f}, {1.0f, 0.3f}};
-    look.thickness.keys = {dark, bright, {{0.5f, 0.1f, 0.9f}, 1.3f, {}}};
+    look.thickness.stops = {dark, bright, {{0.5f, 0.1f, 0.9f}, 1.3f, {}}};
 }
 
 std::vector<LookCase> all_cases() {
@@ -111,7 +111,7 @@ std::vector<LookCase> all_cases() {
         pdf_case("gaussian", Pdf::gaussian),
         pdf_case("smooth", Pdf::smooth),
         pdf_case("curve", Pdf::curve),
-        {"thickness keys", set_keys},
+        {"thickness stops", set_stops},
         noise_case("cull", &Noise::cull, 0.8f),
         noise_case("silhouette", &Noise::silhouette, 0.7f),
         noise_case("jitter", &Noise::jitter, 0.1f),
@@ -255,7 +255,7 @@ std::map<std::string, std::vector<std::uint32_t>> members_of(const LookUniforms&
         put_numbers(names, std::string("look.") + name, member);
     };
     put("seed", u.seed), put("axis", u.axis), put("reach", u.reach), put("density", u.density);
-    put("key_count", u.key_count), put("noise_count", u.noise_count), put("unpremultiply", u.unpremultiply);
+    put("key_count", u.stop_count), put("noise_count", u.noise_count), put("unpremultiply", u.unpremultiply);
     put("alpha_threshold", u.alpha_threshold), put("alpha_power", u.alpha_power),
         put("alpha_gain", u.alpha_gain);
     put("vertical_reach", u.vertical_reach), put("match", u.match), put("own_radius", u.own_radius);
@@ -264,12 +264,12 @@ std::map<std::string, std::vector<std::uint32_t>> members_of(const LookUniforms&
     put("black", u.black), put("tint", u.tint), put("saturation", u.saturation);
     put("inverse_gamma", u.inverse_gamma);
     put_profile(names, "look.vertical", u.vertical);
-    for (int k = 0; k < shared_types::LOOK_MAX_KEYS; ++k) {
-        const std::string key = "keys[" + std::to_string(k) + "]";
-        put((key + ".color").c_str(), u.keys[k].color);
-        put((key + ".scale").c_str(), u.keys[k].scale);
-        put((key + ".column").c_str(), u.keys[k].column);
-        put_profile(names, "look." + key + ".pdf", u.keys[k].pdf);
+    for (int k = 0; k < shared_types::LOOK_MAX_STOPS; ++k) {
+        const std::string stop = "stops[" + std::to_string(k) + "]";
+        put((stop + ".color").c_str(), u.stops[k].color);
+        put((stop + ".scale").c_str(), u.stops[k].scale);
+        put((stop + ".column").c_str(), u.stops[k].column);
+        put_profile(names, "look." + stop + ".pdf", u.stops[k].pdf);
     }
     for (int k = 0; k < shared_types::LOOK_MAX_NOISES; ++k) {
         const auto& n = u.noises[k];
@@ -309,12 +309,12 @@ TEST_F(GpuLook, EveryMemberArrivesWhereOpenGlLooksForIt) {
 
 TEST(LookLimits, HoldTheLook) {
     LookUniforms look{};
-    look.key_count = 1;
+    look.stop_count = 1;
     EXPECT_EQ(limits_for(look), (LookLimits{1, 1, 1, 0}));
-    look.key_count = 4;
+    look.stop_count = 4;
     look.noise_count = 3;
     look.noises[2].octaves = 7;
-    look.keys[3].pdf.shape = shared_types::PROFILE_CURVE;
+    look.stops[3].pdf.shape = shared_types::PROFILE_CURVE;
     EXPECT_EQ(limits_for(look), LookLimits{});
 }
 

@@ -62,7 +62,7 @@ class FileDialogTest : public testing::Test {
         folder.file("scenes/old.toml", "x");
     }
     void type_path(const std::string& path) {
-        window.key('A', true);
+        window.tap('A', true);
         window.type(path);
     }
     TempFolder folder;
@@ -73,8 +73,8 @@ TEST_F(FileDialogTest, TabCompletesAndEnterGoesIntoAFolder) {
     window.choose("File/Open...");
     window.frame(2);
     type_path(folder.path().string() + "/sc");
-    window.key(key_code::tab);
-    window.key(key_code::enter);
+    window.tap(key_code::tab);
+    window.tap(key_code::enter);
     window.frame(2);
     EXPECT_TRUE(window.has("file/old.toml"));
     window.click("file/old.toml");
@@ -90,7 +90,7 @@ TEST_F(FileDialogTest, OtherFilesAreListedWhereAllAreAskedFor) {
     window.choose("File/Open...");
     window.frame(2);
     type_path((folder / "scenes").string());
-    window.key(key_code::enter);
+    window.tap(key_code::enter);
     window.frame(2);
     EXPECT_TRUE(window.has("file/old.toml"));
     EXPECT_FALSE(window.has("file/notes.txt"));
@@ -107,7 +107,7 @@ TEST_F(FileDialogTest, SizesHaveTheUnitThatKeepsThemShort) {
     window.choose("File/Open...");
     window.frame(2);
     type_path((folder / "scenes").string());
-    window.key(key_code::enter);
+    window.tap(key_code::enter);
     window.frame(2);
     const glm::vec2 first = window.at("file/a.toml"), last = window.at("file/e.toml");
     const int top = static_cast<int>(first.y) - 12, bottom = static_cast<int>(last.y) + 12;
@@ -141,7 +141,7 @@ TEST_F(FileDialogTest, TheExtensionIsAdded) {
     window.choose("File/Save as...");
     window.frame(2);
     type_path((folder / "new").string());
-    window.key(key_code::enter);
+    window.tap(key_code::enter);
     window.frame(2);
     const Commands commands = window.take_commands();
     ASSERT_EQ(commands.size(), 1U);

@@ -26,8 +26,8 @@ TEST(Menus, EveryItemCanBeReached) {
             window.frame(30);
         }
         EXPECT_TRUE(window.has(path)) << path;
-        window.key(key_code::escape);
-        window.key(key_code::escape);
+        window.tap(key_code::escape);
+        window.tap(key_code::escape);
         window.frame(2);
     }
 }
@@ -91,7 +91,7 @@ TEST(Menus, LayersMoveAsFarAsTheListGoes) {
           std::tuple("Layer/Move down", 1U, 2U, std::vector{before[1], before[2], before[0]})}) {
         window.view.layer = layer;
         window.choose(item);
-        window.key(key_code::escape);
+        window.tap(key_code::escape);
         window.frame(2);
         EXPECT_EQ(names(), order) << item << " of " << layer;
         EXPECT_EQ(window.view.layer, after);

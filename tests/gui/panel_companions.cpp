@@ -62,13 +62,13 @@ TEST(PanelCompanions, ChoosingCurveInTheListWorks) {
     EXPECT_FALSE(d.document.can_undo());
 }
 
-TEST(PanelCompanions, AThicknessMapBringsItsFirstKeys) {
+TEST(PanelCompanions, AThicknessMapBringsItsFirstStops) {
     PanelDriver d(companions_scene);
     d.panel.answer(look + "thickness.map", "/nowhere/map.png", d.document, d.view);
     const Thickness& thickness = d.document.scene().layers[0].look.thickness;
     EXPECT_EQ(thickness.map, "/nowhere/map.png");
-    ASSERT_EQ(thickness.keys.size(), 3u);
-    EXPECT_EQ(thickness.keys[2].pdf.shape, DensityCurve::Shape::linear);
+    ASSERT_EQ(thickness.stops.size(), 3u);
+    EXPECT_EQ(thickness.stops[2].pdf.shape, DensityCurve::Shape::linear);
     d.document.undo();
     EXPECT_FALSE(d.document.can_undo());
 }

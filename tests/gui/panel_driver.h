@@ -1,5 +1,5 @@
-// Drives the side panel as a person would: mouse and keys frame by frame through ImGui's input, no window.
-// In: a scene's text. Out: the document after what was done.
+// Drives the side panel as a person would: mouse and keyboard frame by frame through ImGui's input, no
+// window. In: a scene's text. Out: the document after what was done.
 #pragma once
 
 #include <imgui.h>

@@ -1,5 +1,5 @@
-// The layers list, driven by mouse and keys: visibility, solo, names, order, additions; and what it asks of
-// the viewer.
+// The layers list, driven by mouse and keyboard: visibility, solo, names, order, additions; and what it asks
+// of the viewer.
 #include <gtest/gtest.h>
 
 #include "gui/panel_driver.h"

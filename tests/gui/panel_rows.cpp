@@ -1,10 +1,10 @@
-// Rows of the side panel, driven by mouse and keys: what is dragged, typed, keyed and reset arrives in the
-// document, as one undo step each.
+// Rows of the side panel, driven by mouse and keyboard: what is dragged, typed, animated and reset arrives in
+// the document, as one undo step each.
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "gui/panel_driver.h"
 
 namespace astrosplat {
@@ -56,15 +56,15 @@ TEST(PanelRows, EverySourceHasItsOwnFiles) {
     EXPECT_TRUE(file.has_row("layer.dust.source.file"));
 }
 
-TEST(PanelRows, TheFirstThicknessKeyChangesNothing) {
+TEST(PanelRows, TheFirstThicknessStopChangesNothing) {
     PanelDriver d(std::string(rows_scene) + "[layer.look]\npdf = { shape = \"gaussian\" }\n");
     d.show(PanelTab::look);
-    const auto keys = [&] { return d.document.scene().layers[0].look.thickness.keys; };
+    const auto stops = [&] { return d.document.scene().layers[0].look.thickness.stops; };
     d.click(d.row("layer.dust.look.thickness.map").label + glm::vec2(-20.0f, 26.0f));  // the line below
-    ASSERT_EQ(keys().size(), 1u);
-    EXPECT_EQ(keys()[0].pdf, d.document.scene().layers[0].look.pdf);
+    ASSERT_EQ(stops().size(), 1u);
+    EXPECT_EQ(stops()[0].pdf, d.document.scene().layers[0].look.pdf);
     d.document.undo();
-    EXPECT_TRUE(keys().empty());
+    EXPECT_TRUE(stops().empty());
 }
 
 TEST(PanelRows, AMeshIsAShapeOrAFile) {
@@ -168,20 +168,20 @@ TEST(PanelRows, ARefusedValueIsSaidAndChangesNothing) {
     EXPECT_EQ(d.panel.message(), "");
 }
 
-TEST(PanelRows, TheDiamondKeysAndUnkeys) {
+TEST(PanelRows, TheDiamondSetsAndRemovesAKeyframe) {
     PanelDriver d(rows_scene);
     d.show(PanelTab::render);
     d.view.frame = 12.0;
     d.frames();
     d.click(d.row(opacity).diamond);
-    EXPECT_TRUE(has_key_at(d.document.scene(), opacity, 12.0));
+    EXPECT_TRUE(has_keyframe_at(d.document.scene(), opacity, 12.0));
     d.view.frame = 24.0;
     d.drag(d.row(opacity).value, {-50.0f, 0.0f});
-    EXPECT_TRUE(has_key_at(d.document.scene(), opacity, 24.0));
-    EXPECT_EQ(find_track(d.document.scene(), opacity)->keys.size(), 2u);
+    EXPECT_TRUE(has_keyframe_at(d.document.scene(), opacity, 24.0));
+    EXPECT_EQ(find_track(d.document.scene(), opacity)->keyframes.size(), 2u);
     d.click(d.row(opacity).diamond);
-    EXPECT_FALSE(has_key_at(d.document.scene(), opacity, 24.0));
-    EXPECT_TRUE(is_keyed(d.document.scene(), opacity));
+    EXPECT_FALSE(has_keyframe_at(d.document.scene(), opacity, 24.0));
+    EXPECT_TRUE(is_animated(d.document.scene(), opacity));
 }
 
 TEST(PanelRows, AKeyedValueIsShownAsItIsAtTheFrame) {
@@ -191,8 +191,8 @@ TEST(PanelRows, AKeyedValueIsShownAsItIsAtTheFrame) {
     d.view.frame = 51.0;
     d.frames();
     d.drag(d.row(opacity).value, {25.0f, 0.0f});
-    ASSERT_TRUE(has_key_at(d.document.scene(), opacity, 51.0));
-    EXPECT_DOUBLE_EQ(find_track(d.document.scene(), opacity)->keys[1].value[0], 0.6);
+    ASSERT_TRUE(has_keyframe_at(d.document.scene(), opacity, 51.0));
+    EXPECT_DOUBLE_EQ(find_track(d.document.scene(), opacity)->keyframes[1].value[0], 0.6);
 }
 
 void choose(PanelDriver& d, const std::string& key, const std::string& item) {

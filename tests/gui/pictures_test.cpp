@@ -28,7 +28,7 @@ class Pictures : public testing::TestWithParam<Size> {
         window.frame(2);
         window.keep_picture(std::string(GetParam().name) + "_" + name);
         for (const DrawnItem& item : window.gui.drawn_items()) {
-            if (item.name.rfind("track ", 0) == 0 || item.name.rfind("key ", 0) == 0)
+            if (item.name.rfind("track ", 0) == 0 || item.name.rfind("keyframe ", 0) == 0)
                 continue;  // may be scrolled away
             EXPECT_GE(item.middle.x, 0) << name << ": " << item.name;
             EXPECT_GE(item.middle.y, 0) << name << ": " << item.name;
@@ -47,7 +47,7 @@ TEST_P(Pictures, Menus) {
     for (const char* menu : {"File", "Edit", "View", "Layer", "Camera", "Render", "Help"}) {
         window.click(menu);
         keep(std::string("menu_") + menu);
-        window.key(key_code::escape);
+        window.tap(key_code::escape);
     }
 }
 TEST_P(Pictures, Graph) {
@@ -67,9 +67,9 @@ TEST_P(Pictures, SnapshotsAndWipe) {
     keep("wipe");
 }
 TEST_P(Pictures, Sheets) {
-    window.key(key_code::f1);
-    keep("keys");
-    window.key(key_code::escape);
+    window.tap(key_code::f1);
+    keep("shortcuts");
+    window.tap(key_code::escape);
     window.view.log_open = true;
     window.status.log.push_back(
         {"whirlpool.toml:12: expected one of over, add or screen, found the text 'plus'", true});
@@ -79,7 +79,7 @@ TEST_P(Pictures, Questions) {
     window.document.edit("Opacity", [](Scene& scene) { scene.layers[0].render.opacity = 0.5; });
     window.choose("File/Quit");
     keep("unsaved");
-    window.key(key_code::escape);
+    window.tap(key_code::escape);
     window.status.recoveries = {
         {"/state/whirlpool-812-3f.toml", "whirlpool.toml", "2026-04-12 18:03:10 UTC"}};
     keep("recovery");
@@ -116,7 +116,7 @@ TEST_P(Pictures, LittleShown) {
     keep("little");
 }
 TEST_P(Pictures, WithoutPanels) {
-    window.key(key_code::f11);
+    window.tap(key_code::f11);
     window.status.picture.state = PictureState::final;
     window.status.picture.seconds = 1.8;
     window.view.safe_areas = true;

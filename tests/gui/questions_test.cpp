@@ -12,7 +12,7 @@ using Kind = Command::Kind;
 
 TEST(Quit, AsksOnlyAboutUnsavedChanges) {
     TestWindow window(example_document());
-    window.key('Q', true);
+    window.tap('Q', true);
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
     make_edited(window);
     window.gui.ask_to_quit(window.document);
@@ -21,7 +21,7 @@ TEST(Quit, AsksOnlyAboutUnsavedChanges) {
     window.click("unsaved/Cancel");
     EXPECT_TRUE(window.take_commands().empty());
     EXPECT_FALSE(window.has("unsaved/Cancel"));
-    window.key('Q', true);
+    window.tap('Q', true);
     window.frame();
     window.click("unsaved/Don't save");
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::quit});
@@ -32,13 +32,13 @@ TEST(Quit, SavesFirstAndLeavesOnlyWhenThatWorked) {
     const auto file = folder.file("a.toml", example_document().text_for(folder / "a.toml"));
     TestWindow window(Document::open(file));
     window.document.edit("Fps", [](Scene& scene) { scene.output.fps = 30; });
-    window.key('Q', true);
+    window.tap('Q', true);
     window.frame();
     window.click("unsaved/Save");
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::save}) << "the save failed: it stays";
     window.frame(5);
     EXPECT_TRUE(window.take_commands().empty());
-    window.key('Q', true);
+    window.tap('Q', true);
     window.frame();
     window.move(window.at("unsaved/Save"));
     window.frame(2);
@@ -54,12 +54,12 @@ TEST(Quit, AnUntitledSceneIsAskedForItsFile) {
     const TempFolder folder;
     TestWindow window(example_document());
     make_edited(window);
-    window.key('Q', true);
+    window.tap('Q', true);
     window.frame();
-    window.key(key_code::enter);  // Save
+    window.tap(key_code::enter);  // Save
     window.frame(2);
     ASSERT_TRUE(window.has("file/path"));
-    window.key('A', true);
+    window.tap('A', true);
     window.type((folder.path() / "new.toml").string());
     window.click("file/Save");
     const Commands commands = window.take_commands();
@@ -123,7 +123,7 @@ class SaveConflict : public testing::Test {
         return kinds(window.take_commands());
     }
     void save() {
-        window.key('S', true);
+        window.tap('S', true);
         window.frame(2);
     }
 };
@@ -148,10 +148,10 @@ TEST_F(SaveConflict, IsAskedAbout) {
 
 TEST_F(SaveConflict, GoesElsewhereByDefault) {
     save();
-    window.key(key_code::enter);
+    window.tap(key_code::enter);
     window.frame(2);
     ASSERT_TRUE(window.has("file/path"));
-    window.key('A', true);
+    window.tap('A', true);
     window.type((folder / "b.toml").string());
     window.click("file/Save");
     const Commands commands = window.take_commands();
@@ -170,7 +170,7 @@ TEST_F(SaveConflict, IsDecidedByKeepUntilTheNextChange) {
 }
 
 TEST_F(SaveConflict, HoldsUpLeaving) {
-    window.key('Q', true);
+    window.tap('Q', true);
     window.frame();
     window.click("unsaved/Save");
     window.frame(5);
@@ -185,7 +185,7 @@ TEST_F(SaveConflict, HoldsUpLeaving) {
 }
 
 TEST_F(SaveConflict, CancelledStays) {
-    window.key('Q', true);
+    window.tap('Q', true);
     window.frame();
     window.click("unsaved/Save");
     window.frame(2);

@@ -51,9 +51,9 @@ TEST_F(References, Log) {
     window.status.log.push_back({"whirlpool.toml:12: expected over, add or screen, found 'plus'", true});
     expect_reference("log");
 }
-TEST_F(References, Keys) {
-    window.key(key_code::f1);
-    expect_reference("keys");
+TEST_F(References, Shortcuts) {
+    window.tap(key_code::f1);
+    expect_reference("shortcuts");
 }
 TEST_F(References, Question) {
     make_edited(window);
@@ -100,7 +100,7 @@ TEST_F(References, FreeViewWithOverlays) {
     expect_reference("free");
 }
 TEST_F(References, WithoutPanels) {
-    window.key(key_code::f11);
+    window.tap(key_code::f11);
     window.status.picture.state = PictureState::final;
     window.status.picture.seconds = 1.8;
     expect_reference("no_panels");

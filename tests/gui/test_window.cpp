@@ -144,7 +144,7 @@ void TestWindow::hold(bool ctrl, bool shift, bool alt) {
     io.KeyShift = shift;
     io.KeyAlt = alt;
 }
-void TestWindow::key(int code, bool ctrl, bool shift) {
+void TestWindow::tap(int code, bool ctrl, bool shift) {
     hold(ctrl, shift, false);
     ImGui::GetIO().KeysDown[code] = true;
     frame();

@@ -1,5 +1,5 @@
-// The window without a screen: widgets drawn frame by frame, mouse and keys given by hand, what they asked
-// for kept.
+// The window without a screen: widgets drawn frame by frame, mouse and keyboard given by hand, what they
+// asked for kept.
 #pragma once
 
 #include <imgui.h>
@@ -28,7 +28,7 @@ class TestWindow {
     void double_click(glm::vec2 at);
     void drag(glm::vec2 from, glm::vec2 by, int button = 0);
     void wheel(float notches);
-    void key(int code, bool ctrl = false, bool shift = false);
+    void tap(int code, bool ctrl = false, bool shift = false);
     void hold(bool ctrl, bool shift, bool alt);
     void type(const std::string& text);
 
@@ -59,7 +59,7 @@ class TestWindow {
     int width_, height_;
 };
 
-/// A document of three layers with keys, untitled; and the status of a window that shows it.
+/// A document of three layers with keyframes, untitled; and the status of a window that shows it.
 Document example_document();
 Status example_status();
 

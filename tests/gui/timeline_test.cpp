@@ -1,7 +1,7 @@
-// The timeline by mouse: playhead, keys, their menu and the graph.
+// The timeline by mouse: playhead, keyframes, their menu and the graph.
 #include <gtest/gtest.h>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "gui/key_codes.h"
 #include "gui/test_window.h"
 
@@ -10,7 +10,8 @@ namespace {
 
 TEST(Timeline, ThePlayheadIsDragged) {
     TestWindow window(example_document());
-    const glm::vec2 first = window.at("key camera.position 1"), later = window.at("key camera.position 90");
+    const glm::vec2 first = window.at("keyframe camera.position 1"),
+                    later = window.at("keyframe camera.position 90");
     const float y = window.at("ruler").y;
     window.view.playing = true;
     window.drag({first.x, y}, {later.x - first.x, 0});
@@ -23,43 +24,44 @@ TEST(Timeline, ThePlayheadIsDragged) {
 TEST(Timeline, AFrameIsTyped) {
     TestWindow window(example_document());
     window.double_click(window.at("frame"));
-    window.key('A', true);
+    window.tap('A', true);
     window.type("137");
-    window.key(key_code::enter);
+    window.tap(key_code::enter);
     EXPECT_EQ(window.view.frame, 137.0);
 }
 
-TEST(Timeline, AKeyMovesWithTheMouse) {
+TEST(Timeline, AKeyframeMovesWithTheMouse) {
     TestWindow window(example_document());
     const std::string power = "layer.dust.look.alpha.power";
-    const glm::vec2 from = window.at("key " + power + " 90"), to = window.at("key camera.position 240");
+    const glm::vec2 from = window.at("keyframe " + power + " 90"),
+                    to = window.at("keyframe camera.position 240");
     const float per_frame = (to.x - from.x) / 150.0f;
     window.drag(from, {20 * per_frame, 0});
-    EXPECT_TRUE(has_key_at(window.document.scene(), power, 110));
-    EXPECT_FALSE(has_key_at(window.document.scene(), power, 90));
-    EXPECT_EQ(find_track(window.document.scene(), power)->keys.size(), 3U);
-    window.key('Z', true);
-    EXPECT_TRUE(has_key_at(window.document.scene(), power, 90)) << "one drag is one step";
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), power, 110));
+    EXPECT_FALSE(has_keyframe_at(window.document.scene(), power, 90));
+    EXPECT_EQ(find_track(window.document.scene(), power)->keyframes.size(), 3U);
+    window.tap('Z', true);
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), power, 90)) << "one drag is one step";
     EXPECT_FALSE(window.document.can_undo());
 }
 
-TEST(Timeline, KeysOfTheFirstAndTheLastRowMoveToo) {
+TEST(Timeline, KeyframesOfTheFirstAndTheLastRowMoveToo) {
     TestWindow window(example_document());
-    const auto at = [&](const char* key) { return window.at(std::string("key ") + key); };
+    const auto at = [&](const char* key) { return window.at(std::string("keyframe ") + key); };
     const float per_frame = (at("camera.position 240").x - at("camera.position 90").x) / 150.0f;
     window.drag(at("camera.position 90"), {20 * per_frame, 0});
     window.drag(at("layer.stars.render.opacity 24"), {20 * per_frame, 0});
-    EXPECT_TRUE(has_key_at(window.document.scene(), "camera.position", 110));
-    EXPECT_TRUE(has_key_at(window.document.scene(), "layer.stars.render.opacity", 44));
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), "camera.position", 110));
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), "layer.stars.render.opacity", 44));
 }
 
 /// The same scene looks the same, whether it was opened so or edited while it was shown.
 TEST(Timeline, ShowsTheSceneAsItIsNow) {
     const auto pictures = [](bool shown_before) {
         const auto edit = [&](Document& document) {
-            document.edit("Key", [](Scene& scene) {
-                set_key(scene, "layer.stars.render.opacity", 120, 0.4);
-                set_key(scene, "layer.nebulae.render.opacity", 60, 0.5);
+            document.edit("Keyframes", [](Scene& scene) {
+                set_keyframe(scene, "layer.stars.render.opacity", 120, 0.4);
+                set_keyframe(scene, "layer.nebulae.render.opacity", 60, 0.5);
             });
         };
         Document document = example_document();
@@ -87,10 +89,10 @@ TEST(Timeline, EveryInterpolationHasAMarkOfItsOwn) {
     for (const int interpolation : {-1, 0, 1, 2}) {
         TestWindow window(example_document());
         const std::string opacity = "layer.stars.render.opacity";
-        const glm::vec2 place = window.at("key " + opacity + " 24");
-        window.document.edit("Key", [&](Scene& scene) {
+        const glm::vec2 place = window.at("keyframe " + opacity + " 24");
+        window.document.edit("Keyframes", [&](Scene& scene) {
             if (interpolation < 0)
-                remove_key(scene, opacity, 24);
+                remove_keyframe(scene, opacity, 24);
             else
                 set_interpolation(scene, opacity, 24, static_cast<Interpolation>(interpolation));
         });
@@ -108,40 +110,41 @@ TEST(Timeline, EveryInterpolationHasAMarkOfItsOwn) {
 TEST(Timeline, CtrlDragCopiesAndDeleteRemoves) {
     TestWindow window(example_document());
     const std::string opacity = "layer.stars.render.opacity";
-    const glm::vec2 from = window.at("key " + opacity + " 120"), to = window.at("key camera.position 240");
+    const glm::vec2 from = window.at("keyframe " + opacity + " 120"),
+                    to = window.at("keyframe camera.position 240");
     window.hold(true, false, false);
     window.drag(from, {to.x - from.x, 0});
     window.hold(false, false, false);
-    EXPECT_TRUE(has_key_at(window.document.scene(), opacity, 120));
-    EXPECT_TRUE(has_key_at(window.document.scene(), opacity, 240));
-    window.key(key_code::del);
-    EXPECT_FALSE(has_key_at(window.document.scene(), opacity, 240)) << "the copy was selected";
-    EXPECT_TRUE(has_key_at(window.document.scene(), opacity, 120));
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), opacity, 120));
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), opacity, 240));
+    window.tap(key_code::del);
+    EXPECT_FALSE(has_keyframe_at(window.document.scene(), opacity, 240)) << "the copy was selected";
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), opacity, 120));
 }
 
 TEST(Timeline, ABoxSelectsAndMovesTogether) {
     TestWindow window(example_document());
-    const glm::vec2 camera = window.at("key camera.position 90");
-    const glm::vec2 opacity = window.at("key layer.stars.render.opacity 120");
+    const glm::vec2 camera = window.at("keyframe camera.position 90");
+    const glm::vec2 opacity = window.at("keyframe layer.stars.render.opacity 120");
     window.drag({camera.x - 20, camera.y - 8},
                 glm::vec2(opacity.x + 20, opacity.y + 8) - glm::vec2(camera.x - 20, camera.y - 8));
-    window.key(key_code::del);
+    window.tap(key_code::del);
     const Scene& scene = window.document.scene();
-    EXPECT_FALSE(has_key_at(scene, "camera.position", 90));
-    EXPECT_FALSE(has_key_at(scene, "layer.dust.look.alpha.power", 90));
-    EXPECT_FALSE(has_key_at(scene, "layer.stars.render.opacity", 120));
-    EXPECT_TRUE(has_key_at(scene, "camera.position", 240));
+    EXPECT_FALSE(has_keyframe_at(scene, "camera.position", 90));
+    EXPECT_FALSE(has_keyframe_at(scene, "layer.dust.look.alpha.power", 90));
+    EXPECT_FALSE(has_keyframe_at(scene, "layer.stars.render.opacity", 120));
+    EXPECT_TRUE(has_keyframe_at(scene, "camera.position", 240));
 }
 
-TEST(Timeline, TheMenuOfAKeyChangesItsInterpolation) {
+TEST(Timeline, TheMenuOfAKeyframeChangesItsInterpolation) {
     TestWindow window(example_document());
-    window.click(window.at("key layer.stars.render.opacity 24"), 1);
+    window.click(window.at("keyframe layer.stars.render.opacity 24"), 1);
     window.frame();
-    window.click("key menu/Step");
+    window.click("keyframe menu/Step");
     const Track* track = find_track(window.document.scene(), "layer.stars.render.opacity");
     ASSERT_NE(track, nullptr);
-    EXPECT_EQ(track->keys[0].interpolation, Interpolation::step);
-    EXPECT_EQ(track->keys[1].interpolation, Interpolation::linear);
+    EXPECT_EQ(track->keyframes[0].interpolation, Interpolation::step);
+    EXPECT_EQ(track->keyframes[1].interpolation, Interpolation::linear);
 }
 
 TEST(Timeline, TheGraphDragsAValue) {
@@ -155,9 +158,9 @@ TEST(Timeline, TheGraphDragsAValue) {
                     low = window.at("graph " + power + " 1 0");
     // Half way down from 2.5 to 1.0.
     window.drag(middle, {0, (low.y - middle.y) * 0.5f});
-    EXPECT_NEAR(find_track(window.document.scene(), power)->keys[1].value[0], 1.75, 0.02);
-    window.key('Z', true);
-    EXPECT_EQ(find_track(window.document.scene(), power)->keys[1].value[0], 2.5);
+    EXPECT_NEAR(find_track(window.document.scene(), power)->keyframes[1].value[0], 1.75, 0.02);
+    window.tap('Z', true);
+    EXPECT_EQ(find_track(window.document.scene(), power)->keyframes[1].value[0], 2.5);
 }
 
 }  // namespace

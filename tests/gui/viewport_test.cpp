@@ -51,7 +51,7 @@ TEST(Picture, ADragBeginsMovesAndEnds) {
     EXPECT_FALSE(window.gui.viewport_input().drag_ends);
 }
 
-TEST(Picture, KeysFlyOnlyWhileLookingAround) {
+TEST(Picture, LettersFlyOnlyWhileLookingAround) {
     TestWindow window(example_document());
     window.move(window.at("picture"));
     window.frame(2);
@@ -152,13 +152,13 @@ TEST(Picture, TheFrontIsMeasuredBesideTheBadge) {
 TEST(Picture, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
     TestWindow window(example_document());
     window.frame();
-    window.key('D');
+    window.tap('D');
     EXPECT_EQ(window.view.compare, CompareMode::a);
     window.status.front.emplace();
     window.frame();
-    window.key('D');
+    window.tap('D');
     EXPECT_EQ(window.view.compare, CompareMode::front);
-    window.key('D');
+    window.tap('D');
     EXPECT_EQ(window.view.compare, CompareMode::a);
 }
 

@@ -13,12 +13,12 @@ class WindowCompare : public WindowTest {};
 TEST_F(WindowCompare, TabShowsTheStoredLookAndTheOneAtHand) {
     start();
     const Pixels stored = settled_picture();
-    person->key("b");
+    person->press("b");
     person->drag(value_box(power), {60.0f, 0.0f});
     const Pixels changed = settled_picture(stored);
-    person->key("Tab");
+    person->press("Tab");
     expect_settled(stored);
-    person->key("Tab");
+    person->press("Tab");
     expect_settled(changed);
     expect_title("scene.toml - edited");
 }
@@ -29,9 +29,9 @@ TEST_F(WindowCompare, DShowsWhereTheFrontDiffersAndThePictureAgain) {
     const Pixels before = settled_picture();
     constexpr std::uint32_t ground = IM_COL32(18, 18, 22, 255);
     ASSERT_EQ(count_of(before, ground), 0);
-    person->key("d");
+    person->press("d");
     EXPECT_TRUE(comes_true([&] { return count_of(picture(), ground) > 1000; })) << program->err_so_far();
-    person->key("d");
+    person->press("d");
     expect_settled(before);
 }
 
@@ -42,7 +42,7 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
     write_text(scene_file, text);
     start();
     const Pixels fitted = settled_picture();
-    person->key("z");
+    person->press("z");
     const Pixels shown = settled_picture(fitted);
     ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
     const Image frame = load_raw_image(folder / "frame.png");
@@ -88,9 +88,9 @@ TEST_F(WindowCompare, AMovieHasTheScenesFramesAndSpeed) {
     same_widgets().frame();
     choose("Render/Movie...");
     same_widgets().frame(2);
-    person->key("ctrl+a");
+    person->press("ctrl+a");
     person->type("film.mp4");
-    person->key("Return");
+    person->press("Return");
     ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "film.mp4"); }));
     EXPECT_NE(text_of(folder / "film.mp4").find("-framerate 24 "), std::string::npos)
         << text_of(folder / "film.mp4");

@@ -16,7 +16,7 @@ TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {
     ASSERT_TRUE(screen->drop({folder / "übrig 2.png"}, middle()));
     expect_title("scene.toml - edited");
     settled_picture(before);
-    person->key("ctrl+s");
+    person->press("ctrl+s");
     expect_title("scene.toml");
     const Scene scene = saved();
     ASSERT_EQ(scene.layers.size(), 2u);
@@ -37,7 +37,7 @@ TEST_F(WindowDrop, ALookIsGivenToTheLayer) {
     ASSERT_TRUE(screen->drop({folder / "look.toml"}, middle()));
     expect_title("scene.toml - edited");
     settled_picture(before);
-    person->key("ctrl+s");
+    person->press("ctrl+s");
     expect_title("scene.toml");
     EXPECT_EQ(saved().layers[0].look.alpha.power, 3.0f);
 }
@@ -47,10 +47,10 @@ TEST_F(WindowDrop, OnTheDemoAPictureBecomesAGalaxy) {
     expect_title("Untitled");
     ASSERT_TRUE(screen->drop({folder / "rings.png"}, middle()));
     settled_picture();
-    person->key("ctrl+s");
-    person->key("ctrl+a");
+    person->press("ctrl+s");
+    person->press("ctrl+a");
     person->type("galaxy.toml");
-    person->key("Return");
+    person->press("Return");
     expect_title("galaxy.toml");
     const Scene scene = load_scene(folder / "galaxy.toml");
     ASSERT_EQ(scene.layers.size(), 1u);

@@ -64,7 +64,7 @@ TEST_F(WindowFiles, WhatWasMissingIsShownWhenItComes) {
     settled_picture();
 }
 
-/// What a key cannot do is a line in the window, not only at the terminal it was started from.
+/// What a shortcut cannot do is a line in the window, not only at the terminal it was started from.
 TEST_F(WindowFiles, WhatCannotBeKeyedIsSaidInTheMessageBar) {
     fs::remove(folder / "rings.png");  // so that there is nothing to frame
     std::string text = text_of(scene_file);
@@ -76,8 +76,8 @@ TEST_F(WindowFiles, WhatCannotBeKeyedIsSaidInTheMessageBar) {
     EXPECT_TRUE(comes_true([&] { return red() > 10; })) << "why the layer failed";
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     const auto before = red();
-    person->key("k");
-    EXPECT_TRUE(comes_true([&] { return red() > 10 && red() != before; })) << "then why there is no key";
+    person->press("k");
+    EXPECT_TRUE(comes_true([&] { return red() > 10 && red() != before; })) << "then why there is no keyframe";
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST_F(WindowGrowth, APartOfTheSetIsSeenBeforeItIsWhole) {
     // Escape gives up what is being generated, and leaves alone what is whole: nothing goes on until it is
     // pressed.
     stop();
-    person->key("Escape");
+    person->press("Escape");
     go_on();
     EXPECT_TRUE(comes_true([&] { return !something_is_seen(); })) << "what was given up stays in the picture";
     EXPECT_TRUE(running());

@@ -12,17 +12,17 @@ TEST_F(WindowLook, AValueIsDraggedSavedAndUndone) {
     person->drag(value_box(power), {60.0f, 0.0f});
     expect_title("scene.toml - edited");
     const Pixels after = settled_picture(before);
-    person->key("ctrl+s");
+    person->press("ctrl+s");
     expect_title("scene.toml");
     EXPECT_GT(saved().layers[0].look.alpha.power, 1.0f);
     const std::string text = text_of(scene_file);
     for (const char* comment : {"# by hand, keep this", "# px", "# the only one"})
         EXPECT_NE(text.find(comment), std::string::npos) << comment;
 
-    person->key("ctrl+z");
+    person->press("ctrl+z");
     expect_title("scene.toml - edited");
     expect_settled(before);
-    person->key("ctrl+shift+z");
+    person->press("ctrl+shift+z");
     expect_title("scene.toml");
     expect_settled(after);
 }
@@ -32,10 +32,10 @@ TEST_F(WindowLook, AValueIsTypedAfterADoubleClick) {
     const Pixels before = settled_picture();
     person->double_click(value_box(power));
     person->type("2.25");
-    person->key("Return");
+    person->press("Return");
     expect_title("scene.toml - edited");
     settled_picture(before);
-    person->key("ctrl+s");
+    person->press("ctrl+s");
     expect_title("scene.toml");
     EXPECT_EQ(saved().layers[0].look.alpha.power, 2.25f);
 }

@@ -61,7 +61,7 @@ void Person::drag(glm::vec2 from, glm::vec2 by) const {
     act(words);
 }
 
-void Person::key(const std::string& key) const {
+void Person::press(const std::string& key) const {
     act({"keydown", key, "sleep", "0.2", "keyup", key, "sleep", "0.15"});
 }
 

@@ -18,7 +18,7 @@ class Person {
     /// With the left button, in steps; rests before letting go.
     void drag(glm::vec2 from, glm::vec2 by) const;
     /// "ctrl+s", "0", "Return", as xdotool names them.
-    void key(const std::string& key) const;
+    void press(const std::string& key) const;
     void type(const std::string& text) const;
 
   private:

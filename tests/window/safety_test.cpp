@@ -42,7 +42,7 @@ TEST_F(WindowSafety, AKilledSessionIsRecovered) {
     offer_recovery();
     click_when_shown("recovery/Recover");
     expect_title("scene.toml - edited");
-    person->key("ctrl+s");
+    person->press("ctrl+s");
     expect_title("scene.toml");
     EXPECT_GT(saved().layers[0].look.alpha.power, 1.0f);
     EXPECT_NE(text_of(scene_file).find("# by hand, keep this"), std::string::npos);
@@ -107,7 +107,7 @@ TEST_F(WindowDisk, AnEnvironmentThatCannotBeReadEndsNothing) {
     click_when_shown("notice/Reload");
     EXPECT_TRUE(comes_true([&] { return picture_failed() || !running(); }));
     ASSERT_TRUE(running()) << program->err_so_far();
-    person->key("ctrl+z");
+    person->press("ctrl+z");
     expect_settled(before);
 }
 

@@ -1,5 +1,5 @@
-// A value is keyed at two frames through panel and timeline; what is saved plays the same again.
-#include "edit/keys.h"
+// A value gets keyframes at two frames through panel and timeline; what is saved plays the same again.
+#include "edit/keyframes.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -11,8 +11,8 @@ class WindowTime : public WindowTest {
     void scrub_to_the_end() {
         TestWindow& widgets = same_widgets();
         const float y = widgets.at("ruler").y;
-        const float first = widgets.at("key camera.position 1").x,
-                    last = widgets.at("key camera.position 24").x;
+        const float first = widgets.at("keyframe camera.position 1").x,
+                    last = widgets.at("keyframe camera.position 24").x;
         person->drag({first, y}, {last - first, 0.0f});
     }
 };
@@ -23,29 +23,30 @@ TEST_F(WindowTime, AValueIsKeyedAtTwoFramesAndPlaysAgain) {
     const Pixels timeline = pixels_of(&Layout::timeline);
     person->click(diamond(power));
     expect_title("scene.toml - edited");
-    EXPECT_TRUE(comes_true([&] { return pixels_of(&Layout::timeline) != timeline; })) << "no row of keys";
+    EXPECT_TRUE(comes_true([&] { return pixels_of(&Layout::timeline) != timeline; }))
+        << "no row of keyframes";
     expect_settled(first);
 
     scrub_to_the_end();
     const Pixels before = settled_picture(first);
     person->double_click(value_box(power));
     person->type("3");
-    person->key("Return");
+    person->press("Return");
     const Pixels last = settled_picture(before);
-    person->key("ctrl+s");
+    person->press("ctrl+s");
     expect_title("scene.toml");
 
     const Scene scene = saved();
     const Track* track = find_track(scene, power);
     ASSERT_NE(track, nullptr);
-    ASSERT_EQ(track->keys.size(), 2u);
-    EXPECT_EQ(track->keys[0].frame, 1.0);
-    EXPECT_EQ(track->keys[0].value, std::vector<double>{1.0});
-    EXPECT_EQ(track->keys[1].frame, 24.0);
-    EXPECT_EQ(track->keys[1].value, std::vector<double>{3.0});
-    EXPECT_EQ(find_track(scene, "camera.position")->keys.size(), 2u);
+    ASSERT_EQ(track->keyframes.size(), 2u);
+    EXPECT_EQ(track->keyframes[0].frame, 1.0);
+    EXPECT_EQ(track->keyframes[0].value, std::vector<double>{1.0});
+    EXPECT_EQ(track->keyframes[1].frame, 24.0);
+    EXPECT_EQ(track->keyframes[1].value, std::vector<double>{3.0});
+    EXPECT_EQ(find_track(scene, "camera.position")->keyframes.size(), 2u);
 
-    person->key("ctrl+q");
+    person->press("ctrl+q");
     EXPECT_EQ(end().code, 0);
     start();
     expect_settled(first);

@@ -17,7 +17,7 @@ TEST_F(WindowView, OrbitGoesToAFreeViewAndZeroReturns) {
     settled_picture(before);
     EXPECT_NE(pixels_of(&Layout::tools), tools) << "the view is still called Camera";
     EXPECT_EQ(title(), "scene.toml - astrosplat") << "looking around is no edit";
-    person->key("0");
+    person->press("0");
     expect_settled(before);
     EXPECT_EQ(pixels_of(&Layout::tools), tools);
 }

@@ -39,10 +39,10 @@ TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
     settled_picture();
     person->move({width - 2.0f, height - 2.0f});
     Pixels shown = screen->pixels({0, 0, width, height});
-    person->key("F12");
-    person->key("ctrl+a");
+    person->press("F12");
+    person->press("ctrl+a");
     person->type("window.png");
-    person->key("Return");
+    person->press("Return");
     ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "window.png"); }));
     Pixels saved = load_pixels(folder / "window.png");
     ASSERT_EQ(saved.width, width);
@@ -58,7 +58,7 @@ TEST_F(WindowWaysOut, AFrameIsRendered) {
     const Pixels before = settled_picture();
     choose("Render/This frame...");
     same_widgets().frame(2);
-    person->key("ctrl+a");
+    person->press("ctrl+a");
     person->type("frame.png");
     person->click(same_widgets().at("file/Save"));
     ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "frame.png"); }));
@@ -77,7 +77,7 @@ TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
     write_text(scene_file, text);
     start();
     settled_picture();
-    person->key("ctrl+shift+r");
+    person->press("ctrl+shift+r");
     ASSERT_TRUE(comes_true([&] { return names_in(folder / "frames").size() > 2; }));
     person->drag(same_widgets().at("picture"), {60.0f, 0.0f});  // usable meanwhile
     same_widgets().status.job = {"Rendering", 0.1f};

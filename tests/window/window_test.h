@@ -29,7 +29,7 @@ bool comes_true(const Condition& condition) {
     return condition();
 }
 
-/// A quick scene of one layer with keys of the camera at frames 1 and 24, and a home for the program.
+/// A quick scene of one layer with keyframes of the camera at frames 1 and 24, and a home for the program.
 class ViewerTest : public FolderTest {
   protected:
     static constexpr int width = 1280, height = 900;  // px of screen and window

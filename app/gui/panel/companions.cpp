@@ -30,7 +30,7 @@ Result points_for_shape(const Look& look, const ParameterKey& key) {
     };
     if (generic == "layer.look.pdf.shape") return of_density(look.pdf);
     if (generic == "layer.look.thickness.keys.shape")
-        return of_density(look.thickness.keys.at(place_in_list(key)).pdf);
+        return of_density(look.thickness.stops.at(place_in_list(key)).pdf);
     if (generic == "layer.look.vertical.shape" && look.vertical.points.size() < 2)
         return {{points, sampled(vertical_profile(look.vertical))}};
     return {};
@@ -90,7 +90,7 @@ std::vector<Companion> companions(const Scene& scene, const ParameterKey& key, c
     return {};
 }
 
-std::vector<ThicknessKey> first_thickness_keys(const Look& look) {
+std::vector<ThicknessStop> first_thickness_stops(const Look& look) {
     return {{{1.0f, 0.0f, 0.0f}, 1.0f, look.pdf},
             {{0.0f, 1.0f, 0.0f}, 0.66f, look.pdf},
             {{0.0f, 0.0f, 1.0f}, 0.33f, look.pdf}};

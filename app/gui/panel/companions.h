@@ -22,8 +22,8 @@ std::vector<Companion> companions(const Scene& scene, const ParameterKey& key, c
 /// The place in its list of the element that a parameter is of: 2 of "look.noise.2.cull".
 std::size_t place_in_list(const ParameterKey& key);
 
-/// Keys for a thickness map that has none: red, green and blue, from thick to thin, all with the look's own
+/// Stops for a thickness map that has none: red, green and blue, from thick to thin, all with the look's own
 /// shape.
-std::vector<ThicknessKey> first_thickness_keys(const Look& look);
+std::vector<ThicknessStop> first_thickness_stops(const Look& look);
 
 }  // namespace astrosplat::panel

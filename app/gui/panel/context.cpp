@@ -67,12 +67,12 @@ void attempt(Context& context, const ParameterKey& key, const std::function<void
 bool set_specially(Context& context, const Parameter& parameter, const Value& value) {
     const ParameterKey& key = parameter.spec.key;
     if (parameter.spec.generic_key == "layer.look.thickness.map" && value.text() && !value.text()->empty() &&
-        context.layer().look.thickness.keys.empty()) {
+        context.layer().look.thickness.stops.empty()) {
         const std::size_t layer = context.view.layer;
         edit(context, key, "Thickness map of " + context.layer().name, [&](Scene& scene) {
             Thickness& thickness = scene.layers[layer].look.thickness;
             thickness.map = *value.text();
-            thickness.keys = first_thickness_keys(scene.layers[layer].look);
+            thickness.stops = first_thickness_stops(scene.layers[layer].look);
         });
         return true;
     }

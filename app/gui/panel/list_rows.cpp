@@ -15,17 +15,17 @@ void erase_at(std::vector<T>& list, std::size_t index) {
     list.erase(list.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-/// The first key changes nothing.
-void add_thickness_key(LayerParams& layer) {
+/// The first stop changes nothing.
+void add_thickness_stop(LayerParams& layer) {
     Look& look = layer.look;
-    ThicknessKey key;
-    if (look.thickness.keys.empty()) key.pdf = look.pdf;
-    look.thickness.keys.push_back(key);
+    ThicknessStop stop;
+    if (look.thickness.stops.empty()) stop.pdf = look.pdf;
+    look.thickness.stops.push_back(stop);
 }
 
-bool can_take_thickness_key(const LayerParams& layer) {
+bool can_take_thickness_stop(const LayerParams& layer) {
     const Thickness& thickness = layer.look.thickness;
-    return thickness.keys.empty() || (!thickness.map.empty() && thickness.keys.size() < 8);
+    return thickness.stops.empty() || (!thickness.map.empty() && thickness.stops.size() < 8);
 }
 
 std::vector<MaskParams>& masks_of(LayerParams& layer) { return layer.source.texture.mask; }
@@ -76,13 +76,13 @@ const ListRows lists[] = {
     {.key = "layer.look.thickness.keys",
      .section = "Thickness map",
      .after = "layer.look.thickness.map",
-     .title = "Key",
-     .element = "thickness key",
+     .title = "Stop",
+     .element = "thickness stop",
      .least = 0,
-     .size = [](const LayerParams& layer) { return layer.look.thickness.keys.size(); },
-     .add = add_thickness_key,
-     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.thickness.keys, i); },
-     .can_grow = can_take_thickness_key}};
+     .size = [](const LayerParams& layer) { return layer.look.thickness.stops.size(); },
+     .add = add_thickness_stop,
+     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.thickness.stops, i); },
+     .can_grow = can_take_thickness_stop}};
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Lists of tables within a layer (meshes, noises, thickness keys): where a tab shows their elements, and how
+// Lists of tables within a layer (meshes, noises, thickness stops): where a tab shows their elements, and how
 // elements come and go.
 #pragma once
 

@@ -24,7 +24,7 @@ namespace astrosplat {
 struct DrawnRow {
     std::string key;           // full: "layer.dust.look.alpha.power"
     glm::vec2 label, value;    // the first box of several
-    glm::vec2 diamond{-1.0f};  // (-1, -1) where it cannot be keyed
+    glm::vec2 diamond{-1.0f};  // (-1, -1) where it cannot be animated
 };
 
 class Panel {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "gui/icons.h"
 #include "gui/panel/fields.h"
 #include "gui/panel/section.h"
@@ -26,7 +26,7 @@ void draw_label(Context& context, const Row& row) {
     if (by_command || !(row.value == default_of(context, spec))) {
         const ImVec2 corner{row.layout.label.corner.x - px(6), row.layout.label.corner.y + px(5)};
         list->AddRectFilled(corner, {corner.x + px(2), corner.y + px(14)},
-                            by_command ? color::key : color::accent);
+                            by_command ? color::attention : color::accent);
     }
     clipped_text(list, row.layout.label, 0.0f, color::text, spec.row_label);
 }
@@ -51,31 +51,31 @@ void show_tooltip(Context& context, const Row& row) {
     ImGui::EndTooltip();
 }
 
-void toggle_key(Context& context, const Row& row) {
+void toggle_keyframe(Context& context, const Row& row) {
     const ParameterKey& key = row.key();
     const double frame = std::round(context.view.frame);
     const Value value = row.value;
-    if (has_key_at(context.document.scene(), key, frame))
-        edit(context, key, "Remove key of " + row.parameter.spec.label,
-             [&](Scene& scene) { remove_key(scene, key, frame); });
+    if (has_keyframe_at(context.document.scene(), key, frame))
+        edit(context, key, "Remove keyframe of " + row.parameter.spec.label,
+             [&](Scene& scene) { remove_keyframe(scene, key, frame); });
     else
-        edit(context, key, "Key " + row.parameter.spec.label,
-             [&](Scene& scene) { set_key(scene, key, frame, value); });
+        edit(context, key, "Set keyframe of " + row.parameter.spec.label,
+             [&](Scene& scene) { set_keyframe(scene, key, frame, value); });
 }
 
 void animation_menu(Context& context, const Row& row) {
     if (row.parameter.spec.animation == Animation::no) return;
     const ParameterKey& key = row.key();
     const Scene& scene = context.document.scene();
-    const bool here = has_key_at(scene, key, std::round(context.view.frame));
-    if (ImGui::MenuItem(here ? "Remove key" : "Key")) toggle_key(context, row);
-    const bool keyed = is_keyed(scene, key);
-    if (ImGui::MenuItem("Remove animation", nullptr, false, keyed))
+    const bool here = has_keyframe_at(scene, key, std::round(context.view.frame));
+    if (ImGui::MenuItem(here ? "Remove keyframe" : "Set keyframe")) toggle_keyframe(context, row);
+    const bool animated = is_animated(scene, key);
+    if (ImGui::MenuItem("Remove animation", nullptr, false, animated))
         edit(context, key, "Remove animation of " + row.parameter.spec.label,
              [&](Scene& changed) { remove_track(changed, key); });
-    if (ImGui::MenuItem("Show in graph", nullptr, false, keyed)) {
+    if (ImGui::MenuItem("Show in graph", nullptr, false, animated)) {
         context.view.timeline_open = context.view.graph_open = true;
-        context.view.graph_key = key;
+        context.view.graph_parameter = key;
     }
     ImGui::Separator();
 }
@@ -144,13 +144,13 @@ void draw_diamond(Context& context, const Row& row) {
     const float size = px(18);
     const ImVec2 middle = row.layout.diamond;
     ImGui::SetCursorScreenPos({middle.x - size * 0.5f, middle.y - size * 0.5f});
-    if (ImGui::InvisibleButton("diamond", {size, size})) toggle_key(context, row);
+    if (ImGui::InvisibleButton("diamond", {size, size})) toggle_keyframe(context, row);
     const Scene& scene = context.document.scene();
-    const bool keyed = is_keyed(scene, row.key());
-    const bool here = keyed && has_key_at(scene, row.key(), std::round(context.view.frame));
+    const bool animated = is_animated(scene, row.key());
+    const bool here = animated && has_keyframe_at(scene, row.key(), std::round(context.view.frame));
     const ImU32 quiet = ImGui::IsItemHovered() ? color::text : color::with_opacity(color::dim, 0.55f);
     draw_icon(ImGui::GetWindowDrawList(), here ? Icon::diamond : Icon::diamond_empty, middle, px(9),
-              keyed ? color::key : quiet);
+              animated ? color::attention : quiet);
 }
 
 }  // namespace

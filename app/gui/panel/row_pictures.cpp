@@ -56,28 +56,28 @@ void density_picture(Context& context, const ParameterSpec& spec) {
     density_plot(context, spec, context.layer().look.pdf, reach_of(context));
 }
 
-void key_density_picture(Context& context, const ParameterSpec& spec) {
-    const ThicknessKey& key = context.layer().look.thickness.keys[place_in_list(spec.key)];
-    density_plot(context, spec, key.pdf, reach_of(context) * widen(key.scale));
+void stop_density_picture(Context& context, const ParameterSpec& spec) {
+    const ThicknessStop& stop = context.layer().look.thickness.stops[place_in_list(spec.key)];
+    density_plot(context, spec, stop.pdf, reach_of(context) * widen(stop.scale));
 }
 
 /// A map's colour, bright enough for a line on the plot's ground.
-ImU32 key_ink(const glm::vec3& color) {
+ImU32 stop_ink(const glm::vec3& color) {
     const auto byte = [](float c) { return static_cast<int>(105.0f + 125.0f * std::clamp(c, 0.0f, 1.0f)); };
     return IM_COL32(byte(color.x), byte(color.y), byte(color.z), 255);
 }
 
-/// What the thickness keys make of it: each key's shape in the colour it stands for, over distances.
+/// What the thickness stops make of it: each stop's shape in the colour it stands for, over distances.
 void all_densities(Context& context, const ParameterSpec&) {
-    const std::vector<ThicknessKey>& keys = context.layer().look.thickness.keys;
-    if (keys.empty()) return;
+    const std::vector<ThicknessStop>& stops = context.layer().look.thickness.stops;
+    if (stops.empty()) return;
     const Area area = begin_plot();
     const double reach = reach_of(context);
     draw_distances(context, area, reach);
-    for (const ThicknessKey& key : keys)
-        draw_curve(area, density_samples(key.pdf), 1.05f, key_ink(key.color), key.scale);
+    for (const ThicknessStop& stop : stops)
+        draw_curve(area, density_samples(stop.pdf), 1.05f, stop_ink(stop.color), stop.scale);
     captions("surface", reach_caption(reach));
-    note("Each key of the thickness map has its own shape.");
+    note("Each stop of the thickness map has its own shape.");
 }
 
 void alpha_picture(Context& context, const ParameterSpec&) {
@@ -135,7 +135,7 @@ void draw_above(Context& context, const ParameterSpec& spec) {
                                    {"layer.look.alpha.power", alpha_picture},
                                    {"layer.look.vertical.shape", vertical_picture},
                                    {"layer.look.noise.frequency", noise_picture},
-                                   {"layer.look.thickness.keys.shape", key_density_picture},
+                                   {"layer.look.thickness.keys.shape", stop_density_picture},
                                    {"layer.render.falloff", falloff_picture},
                                    {"layer.render.hybrid.from_deg", hybrid_picture}};
     draw_of(pictures, context, spec);

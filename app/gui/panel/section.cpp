@@ -127,7 +127,7 @@ bool progress_line(float width, float share, const std::string& text, const char
     if (share > 0.0f)
         list->AddRectFilled(bar.corner, {corner.x + bar.size.x * std::min(share, 1.0f), bar.end().y},
                             color::fill, px(3));
-    clipped_text(list, bar, px(8), share > 0.0f ? color::text : color::key, text);
+    clipped_text(list, bar, px(8), share > 0.0f ? color::text : color::attention, text);
     ImGui::SetCursorScreenPos({bar.end().x + px(4), corner.y});
     return text_button(button, button_width);
 }

@@ -6,7 +6,7 @@
 
 #include "core/file_format.h"
 #include "edit/camera_moves.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "gui/panel/prepare.h"
 #include "gui/panel/section.h"
 #include "gui/panel/whole_look.h"
@@ -108,9 +108,9 @@ std::string noise_state(const Context& context) {
 
 std::string thickness_state(const Context& context) {
     const Thickness& thickness = context.layer().look.thickness;
-    const std::size_t count = thickness.keys.size();
+    const std::size_t count = thickness.stops.size();
     return thickness.map.empty() && count == 0 ? "off"
-                                               : fmt::format("{} key{}", count, count == 1 ? "" : "s");
+                                               : fmt::format("{} stop{}", count, count == 1 ? "" : "s");
 }
 
 std::string color_state(const Context& context) {
@@ -130,7 +130,7 @@ std::string detail_state(const Context& context) {
 }
 
 std::string place_state(const Context& context) {
-    if (is_keyed(context.document.scene(), "camera.position")) return "keyed";
+    if (is_animated(context.document.scene(), "camera.position")) return "animated";
     return context.scene().camera.position ? "" : "auto";
 }
 
@@ -217,7 +217,7 @@ std::size_t rank_in(const TabSection& section, const ParameterSpec& spec) {
 }
 
 bool suits_layer(const Context& context, const ParameterSpec& spec) {
-    if (covers("layer.look.pdf", spec)) return context.layer().look.thickness.keys.empty();
+    if (covers("layer.look.pdf", spec)) return context.layer().look.thickness.stops.empty();
     if (spec.generic_key == "layer.source.hdu" || spec.generic_key == "layer.source.plane")
         return is_fits(context);
     if (spec.generic_key == "layer.source.softening")
@@ -246,8 +246,8 @@ void source_state(Context& context) {
 void camera_buttons(Context& context) {
     const int clicked = button_line({"Key camera here", "Add move"});
     if (clicked == 0)
-        edit(context, "camera.position", "Key camera",
-             [&](Scene& scene) { key_seen_camera(scene, context.view, context.status); });
+        edit(context, "camera.position", "Set camera keyframe",
+             [&](Scene& scene) { set_keyframe_of_seen_camera(scene, context.view, context.status); });
     if (clicked == 1) ImGui::OpenPopup("moves");
     if (begin_popup("moves")) {
         for (std::size_t i = 0; i < camera_move_names.size(); ++i)

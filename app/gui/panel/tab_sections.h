@@ -25,7 +25,7 @@ std::span<const TabSection> tab_sections();
 std::size_t rank_in(const TabSection& section, const ParameterSpec& spec);
 
 /// Whether a parameter makes sense for the selected layer, where that takes more than other parameters'
-/// values to say (ParameterSpec::conditions): those of FITS files, and a density that keys replace.
+/// values to say (ParameterSpec::conditions): those of FITS files, and a density that stops replace.
 bool suits_layer(const Context& context, const ParameterSpec& spec);
 
 // At the top of tabs.

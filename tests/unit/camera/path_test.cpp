@@ -31,15 +31,15 @@ void expect_at(const glm::dvec3& got, const glm::dvec3& expected, double toleran
 
 /// Only ratios of intervals and of distances matter, not whether they are far above 1 or below.
 TEST(Positions, DoNotDependOnTheUnitsOfTimeAndSpace) {
-    const Positions keys = {
+    const Positions keyframes = {
         {0, {0, 0, 0}, smooth}, {2, {1, 3, 0}, smooth}, {3, {4, 3, 1}, smooth}, {7, {5, 0, 2}, smooth}};
     for (const bool constant_speed : {false, true})
         for (const double scale : {1.0 / 1024.0, 1024.0}) {
-            Positions longer = keys, larger = keys;
-            for (auto& key : longer) key.frame *= scale;
-            for (auto& key : larger) key.value *= scale;
+            Positions longer = keyframes, larger = keyframes;
+            for (auto& keyframe : longer) keyframe.frame *= scale;
+            for (auto& keyframe : larger) keyframe.value *= scale;
             for (double frame = 0.25; frame < 7.0; frame += 0.25) {
-                const glm::dvec3 wanted = evaluate_position(keys, frame, Ends::through, constant_speed);
+                const glm::dvec3 wanted = evaluate_position(keyframes, frame, Ends::through, constant_speed);
                 expect_at(evaluate_position(longer, frame * scale, Ends::through, constant_speed), wanted,
                           1e-9);
                 expect_at(evaluate_position(larger, frame, Ends::through, constant_speed) / scale, wanted,
@@ -48,32 +48,32 @@ TEST(Positions, DoNotDependOnTheUnitsOfTimeAndSpace) {
         }
 }
 
-TEST(Scalars, HeldOutsideTheKeys) {
-    Scalars keys = {{1, 5.0, smooth}, {3, 7.0, smooth}};
-    EXPECT_EQ(evaluate_scalar(keys, -100, Ends::through), 5.0);
-    EXPECT_EQ(evaluate_scalar(keys, 1, Ends::through), 5.0);
-    EXPECT_EQ(evaluate_scalar(keys, 3, Ends::through), 7.0);
-    EXPECT_EQ(evaluate_scalar(keys, 100, Ends::through), 7.0);
+TEST(Scalars, HeldOutsideTheKeyframes) {
+    Scalars keyframes = {{1, 5.0, smooth}, {3, 7.0, smooth}};
+    EXPECT_EQ(evaluate_scalar(keyframes, -100, Ends::through), 5.0);
+    EXPECT_EQ(evaluate_scalar(keyframes, 1, Ends::through), 5.0);
+    EXPECT_EQ(evaluate_scalar(keyframes, 3, Ends::through), 7.0);
+    EXPECT_EQ(evaluate_scalar(keyframes, 100, Ends::through), 7.0);
     EXPECT_EQ(evaluate_scalar(Scalars{{4, 2.5, linear}}, 9, Ends::ease), 2.5);
 }
 
 TEST(Scalars, LinearAndStep) {
-    Scalars keys = {{0, 1.0, linear}, {10, 2.0, step}, {20, 5.0, linear}};
-    EXPECT_DOUBLE_EQ(evaluate_scalar(keys, 2.5, Ends::ease), 1.25);
-    EXPECT_EQ(evaluate_scalar(keys, 10, Ends::ease), 2.0);
-    EXPECT_EQ(evaluate_scalar(keys, 19.999, Ends::ease), 2.0);
-    EXPECT_EQ(evaluate_scalar(keys, 20, Ends::ease), 5.0);
+    Scalars keyframes = {{0, 1.0, linear}, {10, 2.0, step}, {20, 5.0, linear}};
+    EXPECT_DOUBLE_EQ(evaluate_scalar(keyframes, 2.5, Ends::ease), 1.25);
+    EXPECT_EQ(evaluate_scalar(keyframes, 10, Ends::ease), 2.0);
+    EXPECT_EQ(evaluate_scalar(keyframes, 19.999, Ends::ease), 2.0);
+    EXPECT_EQ(evaluate_scalar(keyframes, 20, Ends::ease), 5.0);
 }
 
-TEST(Scalars, TwoEasedKeysAreSmoothstep) {
-    Scalars keys = {{0, 0.0, smooth}, {10, 1.0, smooth}};
+TEST(Scalars, TwoEasedKeyframesAreSmoothstep) {
+    Scalars keyframes = {{0, 0.0, smooth}, {10, 1.0, smooth}};
     for (double u : {0.1, 0.25, 0.5, 0.9})
-        EXPECT_NEAR(evaluate_scalar(keys, 10 * u, Ends::ease), u * u * (3 - 2 * u), 1e-15);
+        EXPECT_NEAR(evaluate_scalar(keyframes, 10 * u, Ends::ease), u * u * (3 - 2 * u), 1e-15);
 }
 
-TEST(Scalars, TwoKeysThroughAreALine) {
-    Scalars keys = {{0, 0.0, smooth}, {10, 1.0, smooth}};
-    EXPECT_NEAR(evaluate_scalar(keys, 3, Ends::through), 0.3, 1e-15);
+TEST(Scalars, TwoKeyframesThroughAreALine) {
+    Scalars keyframes = {{0, 0.0, smooth}, {10, 1.0, smooth}};
+    EXPECT_NEAR(evaluate_scalar(keyframes, 3, Ends::through), 0.3, 1e-15);
 }
 
 TEST(Scalars, InnerTangentIsTheChordOfTheNeighbours) {
@@ -86,69 +86,69 @@ TEST(Scalars, InnerTangentIsTheChordOfTheNeighbours) {
     EXPECT_NEAR(evaluate_scalar(bend, 1, Ends::through), 0.75, 1e-15);
 }
 
-TEST(Scalars, SmoothNeverLeavesTheRangeOfItsTwoKeys) {
-    Scalars keys = {
+TEST(Scalars, SmoothNeverLeavesTheRangeOfItsTwoKeyframes) {
+    Scalars keyframes = {
         {0, 0.0, smooth}, {10, 0.0, smooth}, {20, 10.0, smooth}, {30, 10.0, smooth}, {40, -3.0, smooth}};
     for (int f = 0; f <= 400; ++f) {
-        double v = evaluate_scalar(keys, f * 0.1, Ends::through);
+        double v = evaluate_scalar(keyframes, f * 0.1, Ends::through);
         auto i = std::min<std::size_t>(static_cast<std::size_t>(f) / 100, 3);
-        EXPECT_GE(v, std::fmin(keys[i].value, keys[i + 1].value));
-        EXPECT_LE(v, std::fmax(keys[i].value, keys[i + 1].value));
+        EXPECT_GE(v, std::fmin(keyframes[i].value, keyframes[i + 1].value));
+        EXPECT_LE(v, std::fmax(keyframes[i].value, keyframes[i + 1].value));
     }
 }
 
-TEST(Positions, PassThroughTheirKeysAtTheirFrames) {
-    Positions keys = {
+TEST(Positions, PassThroughTheirKeyframesAtTheirFrames) {
+    Positions keyframes = {
         {1, {0, 0, 0}, smooth}, {5, {3, 1, 0}, smooth}, {20, {4, 4, 4}, smooth}, {21, {0, 5, 1}, smooth}};
     for (Ends ends : {Ends::ease, Ends::through})
-        for (const auto& key : keys)
-            expect_at(evaluate_position(keys, key.frame, ends, false), key.value, 1e-14);
+        for (const auto& keyframe : keyframes)
+            expect_at(evaluate_position(keyframes, keyframe.frame, ends, false), keyframe.value, 1e-14);
 }
 
-TEST(Positions, CentripetalCurveOfFourKeysMatchesBarryAndGoldman) {
+TEST(Positions, CentripetalCurveOfFourKeyframesMatchesBarryAndGoldman) {
     // The pyramid of Barry and Goldman (1988) with knots sqrt(distance), an independent form of the same
     // curve.
-    Positions keys = {
+    Positions keyframes = {
         {0, {0, 0, 0}, smooth}, {1, {1, 0, 0}, smooth}, {2, {1, 4, 0}, smooth}, {3, {3, 5, 2}, smooth}};
     double t[4] = {0, 0, 0, 0};
     for (std::size_t i = 0; i < 3; ++i)
-        t[i + 1] = t[i] + std::sqrt(glm::distance(keys[i].value, keys[i + 1].value));
+        t[i + 1] = t[i] + std::sqrt(glm::distance(keyframes[i].value, keyframes[i + 1].value));
     double best = 1e9;
-    glm::dvec3 got = evaluate_position(keys, 1.5, Ends::through, false);
+    glm::dvec3 got = evaluate_position(keyframes, 1.5, Ends::through, false);
     for (int k = 0; k <= 100000; ++k) {
         double s = t[1] + (t[2] - t[1]) * k / 100000.0;
         auto mix = [&](const glm::dvec3& a, const glm::dvec3& b, double ta, double tb) {
             return a * ((tb - s) / (tb - ta)) + b * ((s - ta) / (tb - ta));
         };
-        glm::dvec3 a1 = mix(keys[0].value, keys[1].value, t[0], t[1]),
-                   a2 = mix(keys[1].value, keys[2].value, t[1], t[2]),
-                   a3 = mix(keys[2].value, keys[3].value, t[2], t[3]);
+        glm::dvec3 a1 = mix(keyframes[0].value, keyframes[1].value, t[0], t[1]),
+                   a2 = mix(keyframes[1].value, keyframes[2].value, t[1], t[2]),
+                   a3 = mix(keyframes[2].value, keyframes[3].value, t[2], t[3]);
         glm::dvec3 b1 = mix(a1, a2, t[0], t[2]), b2 = mix(a2, a3, t[1], t[3]);
         best = std::fmin(best, glm::distance(got, mix(b1, b2, t[1], t[2])));
     }
     EXPECT_LT(best, 1e-4);  // half the sampling step along the curve
 }
 
-TEST(Positions, SpeedIsContinuousAtKeysOfUnevenFrames) {
-    Positions keys = {
+TEST(Positions, SpeedIsContinuousAtKeyframesOfUnevenFrames) {
+    Positions keyframes = {
         {0, {0, 0, 0}, smooth}, {10, {5, 0, 0}, smooth}, {12, {6, 2, 0}, smooth}, {40, {0, 9, 1}, smooth}};
     const double h = 1e-5;
     for (double f : {10.0, 12.0}) {
-        auto at = [&](double frame) { return evaluate_position(keys, frame, Ends::ease, false); };
+        auto at = [&](double frame) { return evaluate_position(keyframes, frame, Ends::ease, false); };
         expect_at((at(f) - at(f - h)) / h, (at(f + h) - at(f)) / h, 1e-3);
     }
 }
 
-TEST(Positions, EvenKeysOnALineMoveEvenly) {
-    Positions keys = {{0, {0, 0, 0}, smooth}, {10, {1, 2, 3}, smooth}, {20, {2, 4, 6}, smooth}};
-    expect_at(evaluate_position(keys, 13, Ends::through, false), glm::dvec3(1.3, 2.6, 3.9), 1e-14);
+TEST(Positions, EvenKeyframesOnALineMoveEvenly) {
+    Positions keyframes = {{0, {0, 0, 0}, smooth}, {10, {1, 2, 3}, smooth}, {20, {2, 4, 6}, smooth}};
+    expect_at(evaluate_position(keyframes, 13, Ends::through, false), glm::dvec3(1.3, 2.6, 3.9), 1e-14);
 }
 
 TEST(Positions, EaseStartsAndEndsAtRest) {
-    Positions keys = {{0, {0, 0, 0}, smooth}, {10, {5, 0, 0}, smooth}, {20, {5, 5, 0}, smooth}};
+    Positions keyframes = {{0, {0, 0, 0}, smooth}, {10, {5, 0, 0}, smooth}, {20, {5, 5, 0}, smooth}};
     auto moved = [&](double a, double b) {
-        return glm::distance(evaluate_position(keys, a, Ends::ease, false),
-                             evaluate_position(keys, b, Ends::ease, false));
+        return glm::distance(evaluate_position(keyframes, a, Ends::ease, false),
+                             evaluate_position(keyframes, b, Ends::ease, false));
     };
     EXPECT_LT(moved(0, 0.01), 1e-4);
     EXPECT_LT(moved(19.99, 20), 1e-4);
@@ -157,11 +157,11 @@ TEST(Positions, EaseStartsAndEndsAtRest) {
 
 // A slow stretch before a fast one: the chord over both is far steeper than the slow stretch may take.
 TEST(Positions, NeverRunBackwardsBetweenSlowAndFastStretches) {
-    Positions keys = {{0, {0, 0, 0}, smooth}, {10, {0.01, 0, 0}, smooth}, {11, {100, 0, 0}, smooth}};
+    Positions keyframes = {{0, {0, 0, 0}, smooth}, {10, {0.01, 0, 0}, smooth}, {11, {100, 0, 0}, smooth}};
     for (Ends ends : {Ends::ease, Ends::through}) {
         double before = 0.0;
         for (int i = 0; i <= 1100; ++i) {
-            const double x = evaluate_position(keys, i * 0.01, ends, false).x;
+            const double x = evaluate_position(keyframes, i * 0.01, ends, false).x;
             ASSERT_GE(x, before) << "frame " << i * 0.01;
             before = x;
         }
@@ -171,38 +171,38 @@ TEST(Positions, NeverRunBackwardsBetweenSlowAndFastStretches) {
         ASSERT_GE(degrees_about_y(evaluate_rotation(turn, i * 0.01, Ends::through)), -1e-9) << i * 0.01;
 }
 
-TEST(Positions, CoincidentKeysRest) {
-    Positions keys = {
+TEST(Positions, CoincidentKeyframesRest) {
+    Positions keyframes = {
         {0, {0, 0, 0}, smooth}, {10, {1, 1, 0}, smooth}, {20, {1, 1, 0}, smooth}, {30, {4, 0, 0}, smooth}};
     for (bool constant_speed : {false, true})
         for (int f = 0; f <= 30; ++f) {
-            glm::dvec3 p = evaluate_position(keys, f, Ends::ease, constant_speed);
+            glm::dvec3 p = evaluate_position(keyframes, f, Ends::ease, constant_speed);
             EXPECT_TRUE(std::isfinite(p.x + p.y + p.z)) << f;
         }
-    expect_at(evaluate_position(keys, 15, Ends::ease, false), glm::dvec3(1, 1, 0), 0.0);
+    expect_at(evaluate_position(keyframes, 15, Ends::ease, false), glm::dvec3(1, 1, 0), 0.0);
     Positions still = {{0, {2, 2, 2}, smooth}, {10, {2, 2, 2}, smooth}};
     expect_at(evaluate_position(still, 5, Ends::ease, true), glm::dvec3(2, 2, 2), 0.0);
 }
 
 TEST(Positions, ConstantSpeedCoversEqualLengthsInEqualTimes) {
-    Positions keys = {
+    Positions keyframes = {
         {0, {0, 0, 0}, smooth}, {3, {10, 0, 0}, smooth}, {50, {11, 1, 0}, smooth}, {60, {0, 8, 5}, smooth}};
-    auto at = [&](double f) { return evaluate_position(keys, f, Ends::through, true); };
+    auto at = [&](double f) { return evaluate_position(keyframes, f, Ends::through, true); };
     double first = glm::distance(at(0), at(0.01));
     for (double f : {2.0, 14.0, 37.7, 59.9})
         EXPECT_NEAR(glm::distance(at(f), at(f + 0.01)), first, 1e-5 * first) << f;
-    expect_at(at(60), keys.back().value, 0.0);
-    expect_at(at(60 - 1e-9), keys.back().value, 1e-8);
+    expect_at(at(60), keyframes.back().value, 0.0);
+    expect_at(at(60 - 1e-9), keyframes.back().value, 1e-8);
 }
 
 TEST(Positions, ConstantSpeedOnALineIsLinear) {
-    Positions keys = {{0, {0, 0, 0}, linear}, {1, {1, 0, 0}, linear}, {10, {10, 0, 0}, linear}};
-    expect_at(evaluate_position(keys, 2.5, Ends::ease, true), glm::dvec3(2.5, 0, 0), 1e-12);
+    Positions keyframes = {{0, {0, 0, 0}, linear}, {1, {1, 0, 0}, linear}, {10, {10, 0, 0}, linear}};
+    expect_at(evaluate_position(keyframes, 2.5, Ends::ease, true), glm::dvec3(2.5, 0, 0), 1e-12);
 }
 
 TEST(Positions, ConstantSpeedEasesOverATenthAtEachEnd) {
-    Positions keys = {{0, {0, 0, 0}, smooth}, {100, {90, 0, 0}, smooth}};
-    auto x = [&](double f) { return evaluate_position(keys, f, Ends::ease, true).x; };
+    Positions keyframes = {{0, {0, 0, 0}, smooth}, {100, {90, 0, 0}, smooth}};
+    auto x = [&](double f) { return evaluate_position(keyframes, f, Ends::ease, true).x; };
     EXPECT_NEAR(x(10), 5.0, 1e-9);   // half the pace over the ramp
     EXPECT_NEAR(x(50), 45.0, 1e-9);  // then 1 per frame
     EXPECT_NEAR(x(60) - x(50), 10.0, 1e-9);
@@ -213,21 +213,22 @@ TEST(Positions, ConstantSpeedEasesOverATenthAtEachEnd) {
 }
 
 TEST(Rotations, LinearTurnsEvenlyTheShorterWay) {
-    Rotations keys = {{0, about_y(0), linear}, {10, -about_y(90), linear}};  // q and -q are the same rotation
-    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keys, 3, Ends::ease)), 27.0, 1e-12);
+    Rotations keyframes = {{0, about_y(0), linear},
+                           {10, -about_y(90), linear}};  // q and -q are the same rotation
+    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keyframes, 3, Ends::ease)), 27.0, 1e-12);
     Rotations far = {{0, about_y(170), linear}, {10, about_y(190), linear}};
     EXPECT_NEAR(std::fabs(degrees_about_y(evaluate_rotation(far, 5, Ends::ease))), 180.0, 1e-12);
 }
 
 TEST(Rotations, StepHolds) {
-    Rotations keys = {{0, about_y(10), step}, {10, about_y(90), linear}};
-    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keys, 9.9, Ends::ease)), 10.0, 1e-12);
-    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keys, 10.0, Ends::ease)), 90.0, 1e-12);
+    Rotations keyframes = {{0, about_y(10), step}, {10, about_y(90), linear}};
+    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keyframes, 9.9, Ends::ease)), 10.0, 1e-12);
+    EXPECT_NEAR(degrees_about_y(evaluate_rotation(keyframes, 10.0, Ends::ease)), 90.0, 1e-12);
 }
 
-TEST(Rotations, SmoothEasesAndKeepsItsSpeedAtKeys) {
-    Rotations keys = {{0, about_y(0), smooth}, {10, about_y(30), smooth}, {40, about_y(60), smooth}};
-    auto at = [&](double f) { return degrees_about_y(evaluate_rotation(keys, f, Ends::ease)); };
+TEST(Rotations, SmoothEasesAndKeepsItsSpeedAtKeyframes) {
+    Rotations keyframes = {{0, about_y(0), smooth}, {10, about_y(30), smooth}, {40, about_y(60), smooth}};
+    auto at = [&](double f) { return degrees_about_y(evaluate_rotation(keyframes, f, Ends::ease)); };
     EXPECT_LT(at(0.01), 1e-3);
     EXPECT_NEAR(at(10), 30.0, 1e-12);
     EXPECT_NEAR((at(10.0) - at(9.999)) / 0.001, (at(10.001) - at(10.0)) / 0.001, 1e-2);
@@ -235,12 +236,12 @@ TEST(Rotations, SmoothEasesAndKeepsItsSpeedAtKeys) {
     EXPECT_NEAR(degrees_about_y(evaluate_rotation(two, 2.5, Ends::ease)), 90.0 * 0.15625, 1e-12);
 }
 
-TEST(Rotations, EqualAndUnnormalisedKeysAreSafe) {
-    Rotations keys = {{0, about_y(30) * 2.0, smooth}, {10, about_y(30), smooth}};
-    glm::dvec4 q = evaluate_rotation(keys, 4, Ends::ease);
+TEST(Rotations, EqualAndUnnormalisedKeyframesAreSafe) {
+    Rotations keyframes = {{0, about_y(30) * 2.0, smooth}, {10, about_y(30), smooth}};
+    glm::dvec4 q = evaluate_rotation(keyframes, 4, Ends::ease);
     EXPECT_NEAR(glm::length(q), 1.0, 1e-15);
     EXPECT_NEAR(degrees_about_y(q), 30.0, 1e-12);
-    EXPECT_NEAR(glm::length(evaluate_rotation(keys, -4, Ends::ease)), 1.0, 1e-15);
+    EXPECT_NEAR(glm::length(evaluate_rotation(keyframes, -4, Ends::ease)), 1.0, 1e-15);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdio>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "edit/layers.h"
 #include "scenes.h"
 
@@ -84,11 +84,11 @@ TEST_F(BatchCommandTest, EditsAreAssignments) {
     document.set("camera.rotation", Value::List{0.0, 0.5, 0.0, 1.0}, 1.0);
     expect_command();
     ASSERT_FALSE(HasFailure());
-    document.edit("Keys", [](Scene& s) {
-        set_key(s, opacity, 1.0, 0.0);
-        set_key(s, opacity, 9.5, 1.0);
+    document.edit("Keyframes", [](Scene& s) {
+        set_keyframe(s, opacity, 1.0, 0.0);
+        set_keyframe(s, opacity, 9.5, 1.0);
         set_interpolation(s, opacity, 1.0, Interpolation::step);
-        set_key(s, "layer.stars.render.core", 12.0, 0.25);
+        set_keyframe(s, "layer.stars.render.core", 12.0, 0.25);
         remove_track(s, "layer.dust.look.noise.1.jitter");
     });
     expect_command();
@@ -106,7 +106,7 @@ TEST_F(BatchCommandTest, AssignmentsOfTheCommandLineStay) {
 }
 
 TEST_F(BatchCommandTest, AFreeViewIsACamera) {
-    document.edit("Key", [](Scene& s) { set_key(s, "camera.fov", 3.0, 30.0); });
+    document.edit("Keyframes", [](Scene& s) { set_keyframe(s, "camera.fov", 3.0, 30.0); });
     document.save();
     CameraParams camera;
     camera.position = glm::dvec3(1.0, 2.0, 3.5);
@@ -116,7 +116,7 @@ TEST_F(BatchCommandTest, AFreeViewIsACamera) {
     EXPECT_EQ(command.reason, "");
     const Scene loaded = scene_of(shell_words(command.text));
     EXPECT_EQ(loaded.camera, camera);
-    EXPECT_FALSE(is_keyed(loaded, "camera.fov"));
+    EXPECT_FALSE(is_animated(loaded, "camera.fov"));
 }
 
 TEST_F(BatchCommandTest, WhatCannotBeSaidIsNotSaid) {

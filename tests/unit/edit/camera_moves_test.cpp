@@ -1,4 +1,4 @@
-// Camera keys and moves: circles are round, ends rest, keys outside the move stay.
+// Camera keyframes and moves: circles are round, ends rest, keyframes outside the move stay.
 #include "edit/camera_moves.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "core/real.h"
 #include "edit/check_edit.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "scene/animate.h"
 #include "scenes.h"
 
@@ -90,9 +90,9 @@ TEST_F(CameraMoves, LastTenSecondsAtAnyRateOnWholeFrames) {
         s.output.fps = fps;
         add_camera_move(s, CameraMove::orbit, box, 1.0);
         const Track& track = *find_track(s, "camera.position");
-        EXPECT_EQ(track.keys.front().frame, 1.0);
-        EXPECT_EQ(track.keys.back().frame, 1.0 + std::floor(10.0 * fps + 0.5));
-        for (const auto& key : track.keys) EXPECT_EQ(key.frame, std::floor(key.frame));
+        EXPECT_EQ(track.keyframes.front().frame, 1.0);
+        EXPECT_EQ(track.keyframes.back().frame, 1.0 + std::floor(10.0 * fps + 0.5));
+        for (const auto& keyframe : track.keyframes) EXPECT_EQ(keyframe.frame, std::floor(keyframe.frame));
         EXPECT_NO_THROW(check_edited_scene(s, "scene"));
     }
 }
@@ -111,14 +111,14 @@ TEST_F(CameraMoves, FramesReachToTheEndOfTheMove) {
     EXPECT_EQ(frames_after("1-9x2,20-259", 20.0), "1-9x2,20-259");  // the same move again
 }
 
-TEST_F(CameraMoves, KeysOutsideTheMoveStay) {
+TEST_F(CameraMoves, KeyframesOutsideTheMoveStay) {
     for (const double frame : {1.0, 50.0, 400.0})
-        set_key(scene, "camera.position", frame, Value::List{frame, 4.0, 10.0});
+        set_keyframe(scene, "camera.position", frame, Value::List{frame, 4.0, 10.0});
     scene.camera.rotation = glm::dvec4(0.0, 0.0, 0.0, 1.0);
     add_camera_move(scene, CameraMove::orbit, box, 48.0);
-    EXPECT_TRUE(has_key_at(scene, "camera.position", 1.0));
-    EXPECT_TRUE(has_key_at(scene, "camera.position", 400.0));
-    EXPECT_FALSE(has_key_at(scene, "camera.position", 50.0));
+    EXPECT_TRUE(has_keyframe_at(scene, "camera.position", 1.0));
+    EXPECT_TRUE(has_keyframe_at(scene, "camera.position", 400.0));
+    EXPECT_FALSE(has_keyframe_at(scene, "camera.position", 50.0));
     EXPECT_FALSE(scene.camera.rotation);  // it would replace the target
 }
 
@@ -137,23 +137,23 @@ TEST_F(CameraMoves, AnEmptyBoxIsTheOrigin) {
     EXPECT_NO_THROW(check_edited_scene(scene, "scene"));
 }
 
-TEST_F(CameraMoves, KeyCameraKeysWhatIsAnimated) {
-    set_key(scene, "camera.fov", 1.0, 40.0);
+TEST_F(CameraMoves, CameraKeyframesHoldWhatIsAnimated) {
+    set_keyframe(scene, "camera.fov", 1.0, 40.0);
     CameraParams camera;
     camera.position = glm::dvec3(1.0, 2.0, 3.0);
     camera.target = glm::dvec3(4.0, 5.0, 6.0);
     camera.fov = 30.0;
     camera.roll = 10.0;
-    key_camera(scene, camera, 12.0);
+    set_camera_keyframe(scene, camera, 12.0);
     EXPECT_EQ(position(12.0), *camera.position);
     EXPECT_EQ(target(12.0), camera.target);
     EXPECT_EQ(scene_at(scene, 12.0).camera.fov, 30.0);
-    EXPECT_FALSE(is_keyed(scene, "camera.roll"));
-    EXPECT_FALSE(is_keyed(scene, "camera.rotation"));
+    EXPECT_FALSE(is_animated(scene, "camera.roll"));
+    EXPECT_FALSE(is_animated(scene, "camera.rotation"));
 }
 
 /// Every way a camera can look, through the quaternion and back.
-TEST_F(CameraMoves, KeyCameraTurnsACameraWithARotation) {
+TEST_F(CameraMoves, CameraKeyframesTurnACameraWithARotation) {
     for (const glm::dvec3& from : {glm::dvec3(3, 1, 2), glm::dvec3(-3, 0.1, 0), glm::dvec3(0, 0, -5),
                                    glm::dvec3(0.1, -4, 0.2), glm::dvec3(-1, 2, -8)}) {
         Scene s = scene;
@@ -161,11 +161,11 @@ TEST_F(CameraMoves, KeyCameraTurnsACameraWithARotation) {
         CameraParams camera;
         camera.position = from;
         camera.roll = 25.0;
-        key_camera(s, camera, 12.0);
-        const CameraParams keyed = scene_at(s, 12.0).camera;
-        ASSERT_TRUE(keyed.rotation);
+        set_camera_keyframe(s, camera, 12.0);
+        const CameraParams set = scene_at(s, 12.0).camera;
+        ASSERT_TRUE(set.rotation);
         const glm::dmat3 wanted = make_camera(camera, 16, 9, {}).world_from_camera;
-        const glm::dmat3 got = make_camera(keyed, 16, 9, {}).world_from_camera;
+        const glm::dmat3 got = make_camera(set, 16, 9, {}).world_from_camera;
         for (int i = 0; i < 3; ++i) EXPECT_LT(glm::length(wanted[i] - got[i]), 1e-12);
     }
 }

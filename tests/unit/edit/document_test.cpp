@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "scenes.h"
 
 namespace astrosplat {
@@ -140,8 +140,9 @@ TEST(Document, RefusedEditsChangeNothing) {
         message([&] { document.edit("Name", [](Scene& s) { s.layers[0].name = "a b"; }); }),
         "szene ä.toml: layer.name: expected letters, digits and _ beginning with a letter, found 'a b'");
     EXPECT_EQ(message([&] {
-                  document.edit("Keys",
-                                [](Scene& s) { std::swap(s.animation[0].keys[0], s.animation[0].keys[1]); });
+                  document.edit("Keyframes", [](Scene& s) {
+                      std::swap(s.animation[0].keyframes[0], s.animation[0].keyframes[1]);
+                  });
               }),
               "layer.stars.render.core: expected ascending frames, each once, found others");
     EXPECT_EQ(message_of<std::runtime_error>([&] {
@@ -162,19 +163,19 @@ TEST(Document, SettingAKeyedParameterSetsItsKey) {
     const std::string core = "layer.stars.render.core";
     document.set(core, 0.75, 12.0);
     const Track& track = *find_track(document.scene(), core);
-    ASSERT_EQ(track.keys.size(), 3u);
-    EXPECT_EQ(track.keys[1].frame, 12.0);
-    EXPECT_EQ(track.keys[1].value, std::vector<double>{0.75});
+    ASSERT_EQ(track.keyframes.size(), 3u);
+    EXPECT_EQ(track.keyframes[1].frame, 12.0);
+    EXPECT_EQ(track.keyframes[1].value, std::vector<double>{0.75});
     EXPECT_EQ(value_of(document, core), Value(0.5));  // the value below the track
     document.undo();
-    EXPECT_EQ(find_track(document.scene(), core)->keys.size(), 2u);
+    EXPECT_EQ(find_track(document.scene(), core)->keyframes.size(), 2u);
 }
 
 TEST(Document, ResetGivesTheDefaultAndEndsTheAnimation) {
     const SceneFolder f;
     Document document = Document::open(f.file);
     document.reset("layer.stars.render.core");
-    EXPECT_FALSE(is_keyed(document.scene(), "layer.stars.render.core"));
+    EXPECT_FALSE(is_animated(document.scene(), "layer.stars.render.core"));
     document.reset(opacity);
     EXPECT_EQ(value_of(document, opacity), Value(1.0));
     EXPECT_EQ(document.undo_name(), "Reset Opacity of stars");
@@ -186,7 +187,7 @@ TEST(Document, RenamingALayerTakesItsTracksAlong) {
     const SceneFolder f;
     Document document = Document::open(f.file);
     document.set("layer.stars.name", "suns", 1.0);
-    EXPECT_TRUE(is_keyed(document.scene(), "layer.suns.render.core"));
+    EXPECT_TRUE(is_animated(document.scene(), "layer.suns.render.core"));
     document.save();
     EXPECT_EQ(load_scene(f.file), document.scene());
 }
@@ -195,7 +196,7 @@ TEST(Document, TracksOfRemovedElementsGo) {
     const SceneFolder f;
     Document document = Document::open(f.file);
     document.edit("Remove noise", [](Scene& s) { s.layers[0].look.noise.pop_back(); });
-    EXPECT_FALSE(is_keyed(document.scene(), "layer.dust.look.noise.1.jitter"));
+    EXPECT_FALSE(is_animated(document.scene(), "layer.dust.look.noise.1.jitter"));
     document.save();
     EXPECT_EQ(load_scene(f.file), document.scene());
 }

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "scenes.h"
 
 namespace astrosplat {
@@ -38,14 +38,14 @@ TEST_F(Layers, Duplicate) {
     EXPECT_EQ(copy, scene.layers[1]);
     const Track* track = find_track(scene, "layer.stars_2.render.core");
     ASSERT_TRUE(track);
-    EXPECT_EQ(track->keys, find_track(scene, "layer.stars.render.core")->keys);
+    EXPECT_EQ(track->keyframes, find_track(scene, "layer.stars.render.core")->keyframes);
 }
 
 TEST_F(Layers, Remove) {
     remove_layer(scene, 1);
     EXPECT_EQ(names(), Names{"dust"});
-    EXPECT_FALSE(is_keyed(scene, "layer.stars.render.core"));
-    EXPECT_TRUE(is_keyed(scene, "layer.dust.look.noise.1.jitter"));
+    EXPECT_FALSE(is_animated(scene, "layer.stars.render.core"));
+    EXPECT_TRUE(is_animated(scene, "layer.dust.look.noise.1.jitter"));
 }
 
 TEST_F(Layers, Move) {
@@ -61,8 +61,8 @@ TEST_F(Layers, Move) {
 TEST_F(Layers, Rename) {
     rename_layer(scene, 1, "suns");
     EXPECT_EQ(names(), (Names{"dust", "suns"}));
-    EXPECT_TRUE(is_keyed(scene, "layer.suns.render.core"));
-    EXPECT_FALSE(is_keyed(scene, "layer.stars.render.core"));
+    EXPECT_TRUE(is_animated(scene, "layer.suns.render.core"));
+    EXPECT_FALSE(is_animated(scene, "layer.stars.render.core"));
     const Scene before = scene;
     EXPECT_EQ(message_of<InputError>([&] { rename_layer(scene, 1, "dust"); }),
               "suns: layer.name: expected each name once, found 'dust' twice");
@@ -75,7 +75,7 @@ TEST_F(Layers, Rename) {
 TEST_F(Layers, ANameThatBeginsLikeAnotherKeepsItsTracks) {
     scene.layers[0].name = "star";
     rename_layer(scene, 0, "gas");
-    EXPECT_TRUE(is_keyed(scene, "layer.stars.render.core"));
+    EXPECT_TRUE(is_animated(scene, "layer.stars.render.core"));
 }
 
 TEST(LayersInAFile, EveryChangeIsSavedAndLoaded) {

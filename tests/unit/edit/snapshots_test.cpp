@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "edit/layers.h"
 #include "scenes.h"
 
@@ -36,13 +36,13 @@ TEST_F(Snapshots, RestoreIsOneStepThatBringsTheLookBack) {
     document.set(power, 5.0, 1.0);
     document.set("layer.dust.visible", false, 1.0);
     document.set("output.exposure", 2.0, 1.0);
-    document.edit("Key", [](Scene& s) { set_key(s, power, 3.0, 4.0); });
-    document.edit("Keys", [](Scene& s) { remove_track(s, "layer.stars.render.core"); });
+    document.edit("Keyframes", [](Scene& s) { set_keyframe(s, power, 3.0, 4.0); });
+    document.edit("Keyframes", [](Scene& s) { remove_track(s, "layer.stars.render.core"); });
     restore_look(document, first);
     Scene restored = document.scene();
     EXPECT_EQ(restored.layers, before.layers);
     EXPECT_EQ(restored.output.exposure, 0.0);
-    EXPECT_FALSE(is_keyed(restored, power));
+    EXPECT_FALSE(is_animated(restored, power));
     EXPECT_EQ(*find_track(restored, "layer.stars.render.core"),
               *find_track(before, "layer.stars.render.core"));
     EXPECT_EQ(document.undo_name(), "Restore Erster Blick");
@@ -57,7 +57,7 @@ TEST_F(Snapshots, WhatIsNoLookStays) {
     document.set("layer.dust.source.count", std::int64_t{5000}, 1.0);
     document.set("layer.stars.transform.scale", 3.0, 1.0);
     document.set("output.frames", "7", 1.0);
-    document.edit("Key", [](Scene& s) { set_key(s, "camera.fov", 3.0, 30.0); });
+    document.edit("Keyframes", [](Scene& s) { set_keyframe(s, "camera.fov", 3.0, 30.0); });
     const Scene before = document.scene();
     restore_look(document, first);
     EXPECT_EQ(document.scene(), before);
@@ -75,8 +75,8 @@ TEST_F(Snapshots, LayersAreMatchedByName) {
     EXPECT_EQ(test::layer(scene, "stars").look.density, 1.0f);
     EXPECT_EQ(test::layer(scene, "stars_2").look.density, 0.125f);
     EXPECT_EQ(test::layer(scene, "gas").look.density, 0.125f);
-    EXPECT_TRUE(is_keyed(scene, "layer.gas.look.noise.1.jitter"));
-    EXPECT_FALSE(is_keyed(scene, "layer.dust.look.noise.1.jitter"));
+    EXPECT_TRUE(is_animated(scene, "layer.gas.look.noise.1.jitter"));
+    EXPECT_FALSE(is_animated(scene, "layer.dust.look.noise.1.jitter"));
 }
 
 }  // namespace

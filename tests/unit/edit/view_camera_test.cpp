@@ -8,7 +8,7 @@
 
 #include "core/real.h"
 #include "edit/camera_moves.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "edit/navigate.h"
 #include "scene/animate.h"
 #include "scenes.h"
@@ -261,8 +261,8 @@ TEST(Views, FrontTopAndSideReadRight) {
 
 TEST(Views, TheSceneCameraIsTheOneAtTheFrame) {
     Scene scene = parse_scene(test::edit_scene, "/scene.toml");
-    set_key(scene, "camera.fov", 1.0, 40.0);
-    set_key(scene, "camera.fov", 3.0, 60.0);
+    set_keyframe(scene, "camera.fov", 1.0, 40.0);
+    set_keyframe(scene, "camera.fov", 3.0, 60.0);
     ViewState view;
     view.frame = 2.0;
     EXPECT_EQ(view_camera(scene, view, box, aspect).fov, 50.0);
@@ -331,7 +331,7 @@ struct SeenCamera : testing::Test {
     }
     CameraParams keyed() const {
         Scene edited = scene;
-        key_seen_camera(edited, view, status);
+        set_keyframe_of_seen_camera(edited, view, status);
         return scene_at(edited, 7.0).camera;
     }
 };
@@ -352,13 +352,13 @@ TEST_F(SeenCamera, IsWhatIsKeyedInEveryView) {
     }
 }
 
-TEST_F(SeenCamera, KeysNothingButPlaceAndDirectionOfACameraThatMoves) {
-    set_key(scene, "camera.position", 30.0, Value::List{0.0, 1.0, 5.0});
+TEST_F(SeenCamera, SetsNothingButPlaceAndDirectionOfACameraThatMoves) {
+    set_keyframe(scene, "camera.position", 30.0, Value::List{0.0, 1.0, 5.0});
     view.view = ViewKind::free;
     Scene edited = scene;
-    key_seen_camera(edited, view, status);
-    EXPECT_TRUE(has_key_at(edited, "camera.position", 7.0));
-    EXPECT_TRUE(has_key_at(edited, "camera.target", 7.0));
+    set_keyframe_of_seen_camera(edited, view, status);
+    EXPECT_TRUE(has_keyframe_at(edited, "camera.position", 7.0));
+    EXPECT_TRUE(has_keyframe_at(edited, "camera.target", 7.0));
     EXPECT_EQ(edited.animation.size(), scene.animation.size() + 1);
     EXPECT_EQ(edited.camera, scene.camera);
 }

@@ -108,14 +108,14 @@ TEST(Coverage, ActsOnTheAlphaOfStepFour) {
     EXPECT_NEAR(front_view(shaded, false), 0.25, 0.02);
 }
 
-TEST(Coverage, HoldsWithThicknessKeys) {
+TEST(Coverage, HoldsWithThicknessStops) {
     SplatSet set = test::slab(spacing, half, max_distance, 0.6f);
     set.uv.assign(set.position.size(), {0.5f, 0.5f});
     Image map = make_image(1, 1, 1, 0.5f);  // half way between the keys
     Look look;
     look.radius = {0.15f, 0.15f, 1.0f, 1.0f};
     look.thickness.map = "map.exr";
-    look.thickness.keys = {{glm::vec3(0.0f), 1.0f, {}}, {glm::vec3(1.0f), 0.5f, {}}};
+    look.thickness.stops = {{glm::vec3(0.0f), 1.0f, {}}, {glm::vec3(1.0f), 0.5f, {}}};
     LookInputs inputs = inputs_of(ColumnLaw::transmittance);
     inputs.thickness_map = &map;
     EXPECT_NEAR(front_view(apply_look(set, look, inputs), false), 0.6, 0.02);

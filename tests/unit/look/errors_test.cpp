@@ -36,18 +36,18 @@ TEST(LookErrors, CurveThatGoesBack) {
               "look.vertical.points: expected points in ascending order of x, found 0.25 after 0.5");
 }
 
-TEST(LookErrors, CurveOfAThicknessKeyIsNamed) {
+TEST(LookErrors, CurveOfAThicknessStopIsNamed) {
     Look look;
-    look.thickness.keys.resize(1);
-    look.thickness.keys[0].pdf.points = {{0.5f, 1.0f}, {0.5f, 0.0f}};
+    look.thickness.stops.resize(1);
+    look.thickness.stops[0].pdf.points = {{0.5f, 1.0f}, {0.5f, 0.0f}};
     EXPECT_EQ(message(test::file_set(1), look),
               "look.thickness.keys[0].points: expected points in ascending order of x, found 0.5 after 0.5");
 }
 
-TEST(LookErrors, TooManyKeys) {
+TEST(LookErrors, TooManyStops) {
     Look look;
-    look.thickness.keys.resize(9);
-    EXPECT_EQ(message(test::file_set(1), look), "look.thickness.keys: expected at most 8 keys, found 9");
+    look.thickness.stops.resize(9);
+    EXPECT_EQ(message(test::file_set(1), look), "look.thickness.keys: expected at most 8 stops, found 9");
 }
 
 TEST(LookErrors, TooManyNoises) {

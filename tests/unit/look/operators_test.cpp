@@ -58,7 +58,7 @@ struct ThicknessCase {
         set.uv.resize(1);
         look.reach = 1.0f;
         look.thickness.map = "map.exr";
-        look.thickness.keys = {{{1, 0, 0}, 1.0f, {}}, {{0, 1, 0}, 0.5f, {}}, {{0, 0, 1}, 0.25f, {}}};
+        look.thickness.stops = {{{1, 0, 0}, 1.0f, {}}, {{0, 1, 0}, 0.5f, {}}, {{0, 0, 1}, 0.25f, {}}};
         look.radius.vertical_scale = 0.0f;  // radius is 0.25 (1 - x), so it tells x
         inputs.thickness_map = &map;
     }
@@ -76,7 +76,7 @@ double weight(double r, double g, double b, glm::vec3 key) {
     return 1.0 / (d * d);
 }
 
-TEST(Thickness, KeysWeighAsTheirDistanceInTheMap) {
+TEST(Thickness, StopsWeighAsTheirDistanceInTheMap) {
     ThicknessCase c;
     const double near = 1.0 / 1e-8, far = 1.0 / ((2.0 + 1e-4) * (2.0 + 1e-4));
     const double sum = near + 2.0 * far;
@@ -89,7 +89,7 @@ TEST(Thickness, MapIsReadBilinearlyAndClamped) {
     ThicknessCase c;
     const auto expected = [&](double r, double g, double b) {
         double sum = 0.0, reach = 0.0;
-        for (const ThicknessKey& key : c.look.thickness.keys) {
+        for (const ThicknessStop& key : c.look.thickness.stops) {
             const double w = weight(r, g, b, key.color);
             sum += w;
             reach += w * double(key.scale);
@@ -102,25 +102,25 @@ TEST(Thickness, MapIsReadBilinearlyAndClamped) {
     EXPECT_NEAR(c.reach_at(0.25f, -9.0f), expected(0.0, 0.0, 1.0), 1e-5);
 }
 
-TEST(Thickness, PdfIsTheWeightedMeanOfTheKeys) {
+TEST(Thickness, PdfIsTheWeightedMeanOfTheStops) {
     constexpr std::int64_t count = 40000;
     ThicknessCase c;
     c.set = test::file_set(count);
     c.set.uv.assign(std::size_t(count), {0.5f, 0.75f});  // half red, half green
     for (float& d : c.set.distance) d = 0.25f;
-    c.look.thickness.keys.resize(2);
-    c.look.thickness.keys[0] = {{1, 0, 0}, 1.0f, {}};
-    c.look.thickness.keys[1] = {{0, 1, 0}, 1.0f, {}};
-    c.look.thickness.keys[1].pdf.shape = DensityCurve::Shape::quadratic;
+    c.look.thickness.stops.resize(2);
+    c.look.thickness.stops[0] = {{1, 0, 0}, 1.0f, {}};
+    c.look.thickness.stops[1] = {{0, 1, 0}, 1.0f, {}};
+    c.look.thickness.stops[1].pdf.shape = DensityCurve::Shape::quadratic;
     const double p = 0.5 + 0.5 * 0.75 * 0.75;
     EXPECT_NEAR(double(shade(c.set, c.look, c.inputs).size()) / double(count), p,
                 5.0 * std::sqrt(p * (1.0 - p) / double(count)));
 }
 
-TEST(Thickness, WithoutAMapTheFirstKeyCounts) {
+TEST(Thickness, WithoutAMapTheFirstStopCounts) {
     Look look;
     look.reach = 1.0f;
-    look.thickness.keys = {{{1, 0, 0}, 0.5f, {}}, {{0, 1, 0}, 9.0f, {}}};
+    look.thickness.stops = {{{1, 0, 0}, 0.5f, {}}, {{0, 1, 0}, 9.0f, {}}};
     EXPECT_EQ(shade(one_splat(0.5f, 1.0f, 1.0f), look).size(), 1);
     EXPECT_EQ(shade(one_splat(0.51f, 1.0f, 1.0f), look).size(), 0);
 }

@@ -49,12 +49,12 @@ void use_everything(Case& c) {
     c.look.density = 0.8f;
     c.look.reach = 1.7f;
     c.look.thickness.map = "map.exr";
-    c.look.thickness.keys.resize(3);
-    c.look.thickness.keys[0] = {{0.2f, 0.4f, 0.1f}, 1.0f, {}};
-    c.look.thickness.keys[1] = {{0.9f, 0.4f, 0.8f}, 0.6f, {}};
-    c.look.thickness.keys[1].pdf.shape = DensityCurve::Shape::gaussian;
-    c.look.thickness.keys[2].pdf.shape = DensityCurve::Shape::curve;
-    c.look.thickness.keys[2].pdf.points = {{0.1f, 0.9f}, {0.5f, 0.2f}, {0.8f, 0.7f}};
+    c.look.thickness.stops.resize(3);
+    c.look.thickness.stops[0] = {{0.2f, 0.4f, 0.1f}, 1.0f, {}};
+    c.look.thickness.stops[1] = {{0.9f, 0.4f, 0.8f}, 0.6f, {}};
+    c.look.thickness.stops[1].pdf.shape = DensityCurve::Shape::gaussian;
+    c.look.thickness.stops[2].pdf.shape = DensityCurve::Shape::curve;
+    c.look.thickness.stops[2].pdf.points = {{0.1f, 0.9f}, {0.5f, 0.2f}, {0.8f, 0.7f}};
     c.look.noise = {{1.3f, 4, 2.1f, 0.5f, 3, 0.6f, 0.4f, 0.1f, 0.5f, 0.2f},
                     {5.3f, 2, 2.0f, 0.7f, 8, 0.0f, 0.0f, 0.05f, 0.3f, 0.4f}};
     c.look.alpha = {1.7f, 0.9f, true, 1.2f};
@@ -81,8 +81,8 @@ std::vector<Case> cases() {
     all[4].set.absorbs = true;
     for (std::size_t i = 0; i < std::size_t(count); i += 3) all[4].set.color[i] = {-0.8f, -1.0f, -1.35f};
     all[3].name = "one key, culling noise";
-    all[3].look.thickness.keys = {{glm::vec3(1.0f), 0.7f, {}}};
-    all[3].look.thickness.keys[0].pdf.shape = DensityCurve::Shape::smooth;
+    all[3].look.thickness.stops = {{glm::vec3(1.0f), 0.7f, {}}};
+    all[3].look.thickness.stops[0].pdf.shape = DensityCurve::Shape::smooth;
     all[3].look.noise = {{2.0f, 3, 2.0f, 0.5f, 1, 0.7f, 0.0f, 0.0f, 0.0f, 0.0f}};
     all[4].name = "picture under screen";
     use_everything(all[4]);

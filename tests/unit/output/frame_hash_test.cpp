@@ -145,14 +145,14 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
     EXPECT_GT(tried, 60);
 }
 
-TEST_F(FrameHashTest, OnlyTheFramesAKeyReachesChange) {
-    const auto move_last_key = [](Scene& s) {
+TEST_F(FrameHashTest, OnlyTheFramesAKeyframeReachesChange) {
+    const auto move_last_keyframe = [](Scene& s) {
         for (Track& track : s.animation)
-            if (track.key == "camera.position") track.keys[2].value = {9, 9, 9};
+            if (track.key == "camera.position") track.keyframes[2].value = {9, 9, 9};
     };
-    EXPECT_EQ(changed(move_last_key, 1), hash(scene(), 1));
-    EXPECT_EQ(changed(move_last_key, 10), hash(scene(), 10));
-    EXPECT_NE(changed(move_last_key, 11), hash(scene(), 11));
+    EXPECT_EQ(changed(move_last_keyframe, 1), hash(scene(), 1));
+    EXPECT_EQ(changed(move_last_keyframe, 10), hash(scene(), 10));
+    EXPECT_NE(changed(move_last_keyframe, 11), hash(scene(), 11));
     EXPECT_NE(hash(scene(), 1), hash(scene(), 2));
     EXPECT_EQ(hash(scene(), 16), hash(scene(), 19));  // nothing moves there: the same picture
 }

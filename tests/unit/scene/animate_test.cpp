@@ -34,7 +34,7 @@ TEST(Animate, ChoicesBooleansAndIntegersStep) {
     EXPECT_TRUE(scene_at(scene, 9).layers[0].visible);
 }
 
-TEST(Animate, SmoothNeverLeavesTheRangeOfItsKeys) {
+TEST(Animate, SmoothNeverLeavesTheRangeOfItsKeyframes) {
     const Scene scene = animated(
         "\"layer.stars.render.opacity\" = { keys = [[0, 0], [10, 1], [11, 1], [30, 0]], interpolation = "
         "\"smooth\", ends = \"through\" }\n"
@@ -81,7 +81,7 @@ TEST(Animate, CurvesAndListElements) {
     ASSERT_EQ(look.pdf.points.size(), 2u);
     EXPECT_EQ(look.pdf.points[0], glm::vec2(0.0f, 0.5f));
     EXPECT_EQ(look.pdf.points[1], glm::vec2(0.75f, 0.5f));
-    EXPECT_EQ(look.thickness.keys.at(0).scale, 2.0f);
+    EXPECT_EQ(look.thickness.stops.at(0).scale, 2.0f);
 }
 
 TEST(Animate, EveryAnimatableParameterHoldsItsKey) {

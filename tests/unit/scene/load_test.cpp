@@ -44,7 +44,7 @@ Scene defaults() {
     layer.source.meshes[0].mesh = "disk.obj";
     layer.source.texture.mask.resize(1);
     layer.source.texture.mask[0].any.resize(1);
-    layer.look.thickness.keys.resize(1);
+    layer.look.thickness.stops.resize(1);
     layer.look.noise.resize(1);
     scene.file = "scene.toml";
     return scene;
@@ -245,11 +245,11 @@ TEST(Load, TracksKeepTheFilesOrderAndTheirSettings) {
               "= \"smooth\", ends = \"through\", constant_speed = true }\n"
               "\"layer.stars.look.noise.cull\" = { keys = [[-2.5, 0.25]] }\n");
     ASSERT_EQ(scene.animation.size(), 3u);
-    EXPECT_EQ(scene.animation[0].keys[1].value, std::vector<double>{4.0});
+    EXPECT_EQ(scene.animation[0].keyframes[1].value, std::vector<double>{4.0});
     const Track& path = scene.animation[1];
-    EXPECT_EQ(path.keys[0].interpolation, Interpolation::linear);
-    EXPECT_EQ(path.keys[1].interpolation, Interpolation::smooth);
-    EXPECT_EQ(path.keys[1].value, (std::vector<double>{0, 2, 4}));
+    EXPECT_EQ(path.keyframes[0].interpolation, Interpolation::linear);
+    EXPECT_EQ(path.keyframes[1].interpolation, Interpolation::smooth);
+    EXPECT_EQ(path.keyframes[1].value, (std::vector<double>{0, 2, 4}));
     EXPECT_EQ(path.ends, Ends::through);
     EXPECT_TRUE(path.constant_speed);
     EXPECT_EQ(scene.animation[2].key, "layer.stars.look.noise.0.cull");

@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(
              "6: layer.stars.look.thickness.map: expected thickness.keys that the map's colours stand for, "
              "found none"},
         Case{"[layer.look]\nthickness.keys = [{}, {}]\n",
-             "6: layer.stars.look.thickness.keys: expected a thickness.map for several keys, found none"},
+             "6: layer.stars.look.thickness.keys: expected a thickness.map for several stops, found none"},
         Case{"[layer.look]\nradius.min = 0.2\nradius.max = 0.1\n",
              "7: layer.stars.look.radius.max: expected min not above max, found 0.2 and 0.1"},
         Case{"[layer.render]\nblend = \"ovr\"\n",
@@ -278,15 +278,17 @@ INSTANTIATE_TEST_SUITE_P(
              "layer.stars.look.noise.2.cull: expected an index of at most 0 in layer.look.noise, found 2"},
         Case{"camera.fov = { keys = [[1, 20]] }\n",
              "camera: expected the whole key in quotes, such as \"camera.position\", found a table"},
-        Case{"\"camera.fov\" = 3\n", "camera.fov: expected { keys = [[frame, value], ...] }, found no keys"},
+        Case{"\"camera.fov\" = 3\n",
+             "camera.fov: expected { keys = [[frame, value], ...] }, found no keyframes"},
         Case{"\"camera.fov\" = { keys = [] }\n",
-             "camera.fov: expected { keys = [[frame, value], ...] }, found no keys"},
-        Case{"\"camera.fov\" = { keys = [[1]] }\n",
-             "camera.fov: expected keys [frame, value] or [frame, value, \"smooth\"], found a list of 1"},
+             "camera.fov: expected { keys = [[frame, value], ...] }, found no keyframes"},
+        Case{
+            "\"camera.fov\" = { keys = [[1]] }\n",
+            "camera.fov: expected keyframes [frame, value] or [frame, value, \"smooth\"], found a list of 1"},
         Case{"\"camera.fov\" = { keys = [[\"a\", 3]] }\n",
-             "camera.fov: expected a frame number first in a key, found a string"},
+             "camera.fov: expected a frame number first in a keyframe, found a string"},
         Case{"\"camera.fov\" = { keys = [[nan, 3]] }\n",
-             "camera.fov: expected a frame number first in a key, found a number"},
+             "camera.fov: expected a frame number first in a keyframe, found a number"},
         Case{"\"camera.fov\" = { keys = [[1, 200]] }\n",
              "camera.fov: frame 1: expected a number of at least 0.001 and below 180, found 200"},
         Case{"\"camera.fov\" = { keys = [[1, nan]] }\n",
@@ -299,9 +301,10 @@ INSTANTIATE_TEST_SUITE_P(
              "camera.fov: expected each frame once, found 2 twice"},
         Case{"\"camera.fov\" = { keys = [[2, 30], [1, 30]] }\n",
              "camera.fov: expected ascending frames, found 1 after 2"},
-        Case{"\"camera.fov\" = { keys = [[2, 30, \"smoth\"]] }\n",
-             "camera.fov: the way to the next key: expected linear, smooth, step, found 'smoth'; did you "
-             "mean 'smooth'?"},
+        Case{
+            "\"camera.fov\" = { keys = [[2, 30, \"smoth\"]] }\n",
+            "camera.fov: the way to the next keyframe: expected linear, smooth, step, found 'smoth'; did you "
+            "mean 'smooth'?"},
         Case{"\"camera.fov\" = { keys = [[2, 30]], ends = \"loop\" }\n",
              "camera.fov: ends: expected ease, through, found 'loop'"},
         Case{"\"camera.fov\" = { keys = [[2, 30]], end = \"ease\" }\n",
@@ -310,9 +313,10 @@ INSTANTIATE_TEST_SUITE_P(
              "camera.fov: constant_speed: expected it on a position, found it on another parameter"},
         Case{"\"camera.position\" = { keys = [[2, [1, 2, 3]]], constant_speed = 1 }\n",
              "camera.position: constant_speed: expected true or false, found a number"},
-        Case{"\"layer.stars.look.pdf.points\" = { keys = [[1, [[0, 1], [1, 0]]], [2, [[0, 1], [0.5, 1], [1, "
-             "0]]]] }\n",
-             "layer.stars.look.pdf.points: expected as many points in every key, found another number"}));
+        Case{
+            "\"layer.stars.look.pdf.points\" = { keys = [[1, [[0, 1], [1, 0]]], [2, [[0, 1], [0.5, 1], [1, "
+            "0]]]] }\n",
+            "layer.stars.look.pdf.points: expected as many points in every keyframe, found another number"}));
 
 TEST(Messages, WholeFiles) {
     EXPECT_EQ(message(""),

@@ -122,7 +122,7 @@ TEST(Save, TheLastLayerOfAFileIsRemoved) {
 
 TEST(Save, TracksAreChangedAddedAndRemoved) {
     Scene scene = parse(commented);
-    scene.animation[1].keys[1].value = {20.0};
+    scene.animation[1].keyframes[1].value = {20.0};
     EXPECT_EQ(saved(scene),
               replaced(commented, "[[1, 0], [9, 10, \"step\"]]", "[[1, 0.0], [9, 20.0, \"step\"]]"));
     scene = parse(commented);
@@ -305,8 +305,8 @@ TEST(Save, PresetsGiveBackLookAndRender) {
     Scene scene = parse(commented);
     Look& look = scene.layers[1].look;
     look.thickness.map = "maps/m.png";
-    look.thickness.keys.resize(2);
-    look.thickness.keys[1].pdf.shape = DensityCurve::Shape::gaussian;
+    look.thickness.stops.resize(2);
+    look.thickness.stops[1].pdf.shape = DensityCurve::Shape::gaussian;
     scene.layers[1].render.falloff.core = 0.25f;
     const fs::path folder = fs::temp_directory_path() / "astrosplat save preset";
     fs::create_directories(folder);

@@ -11,8 +11,8 @@
 
 #include "core/error.h"
 #include "core/log.h"
-#include "sets/cache_key.h"
 #include "sets/load_source.h"
+#include "sets/recipe.h"
 #include "sets/set_cache.h"
 #include "source/prepared_picture.h"
 #include "source/write_picture.h"
@@ -52,7 +52,7 @@ class PreparedSource : public testing::Test {
         std::erase_if(files, [](const fs::path& file) { return file.extension() != ".exr"; });
         return files;
     }
-    std::string name(const SourceParams& source) const { return cache_key(source, "dust").name; }
+    std::string name(const SourceParams& source) const { return recipe_of(source, "dust").name; }
     /// `source` with the picture that the command would have written.
     SourceParams by_hand(SourceParams source) const {
         const PreparedPicture ready = prepare_picture(source.meshes[0].texture, source.texture);
@@ -154,7 +154,7 @@ TEST_F(PreparedSource, EveryKeyChangesTheNames) {
         SourceParams source = source_;
         change(source.texture.prepare);
         sets.push_back(name(source));
-        pictures.push_back(prepared_key_text(source.meshes[0].texture, source.texture));
+        pictures.push_back(prepared_recipe_text(source.meshes[0].texture, source.texture));
     }
     for (std::vector<std::string>* names : {&sets, &pictures}) {
         std::ranges::sort(*names);

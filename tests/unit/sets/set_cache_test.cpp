@@ -1,4 +1,4 @@
-// The cache of generated sets: the same bits as generated, a key that follows every input, a size limit,
+// The cache of generated sets: the same bits as generated, a recipe that follows every input, a size limit,
 // processes that share a folder, and folders and entries that cannot be used.
 #include "sets/set_cache.h"
 
@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "core/log.h"
-#include "sets/cache_key.h"
 #include "sets/load_source.h"
+#include "sets/recipe.h"
 #include "splat_files/native.h"
 #include "support/temp_folder.h"
 #include "support/variable.h"
@@ -79,8 +79,8 @@ class SetCacheTest : public testing::Test {
         return load_source(cache_, source, name);
     }
     LoadedSet load() const { return load(source_); }
-    fs::path key_file(const std::string& ending) const {
-        return cache_.folder / (cache_key(source_, "dust").name + ending);
+    fs::path entry_file(const std::string& ending) const {
+        return cache_.folder / (recipe_of(source_, "dust").name + ending);
     }
 
     TempFolder folder_;
@@ -135,7 +135,7 @@ TEST_F(SetCacheTest, SplatFilesPassBy) {
     EXPECT_FALSE(fs::exists(cache_.folder));
 }
 
-// ---- the key
+// ---- the recipe
 
 MaskParams& one_mask(SourceParams& source) {
     source.texture.mask.resize(1);
@@ -148,7 +148,7 @@ UvCamera& seen_from(SourceParams& source, double y) {
     return source.uv_camera;
 }
 
-TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
+TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheName) {
     using Settings = TextureSettings;
     const std::vector<std::function<void(SourceParams&)>> changes = {
         [](SourceParams& s) { s.meshes[0].mesh = "disk"; },
@@ -233,58 +233,58 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheKey) {
         },
         [](SourceParams& s) { s.seed = 5; },
     };
-    std::vector<std::string> keys = {cache_key(source_, "dust").name, cache_key(source_, "stars").name};
+    std::vector<std::string> names = {recipe_of(source_, "dust").name, recipe_of(source_, "stars").name};
     for (const auto& change : changes) {
         SourceParams source = source_;
         change(source);
-        keys.push_back(cache_key(source, "dust").name);
-        EXPECT_EQ(keys.back().size(), 64u);
+        names.push_back(recipe_of(source, "dust").name);
+        EXPECT_EQ(names.back().size(), 64u);
     }
-    std::sort(keys.begin(), keys.end());
-    EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
 }
 
-TEST_F(SetCacheTest, WhatDoesNotReachTheSetStaysOutOfTheKey) {
+TEST_F(SetCacheTest, WhatDoesNotReachTheSetStaysOutOfTheName) {
     SourceParams seeded = source_, sized = source_, moved = source_;
     seeded.seed = 5;
-    EXPECT_EQ(cache_key(seeded, "dust").name, cache_key(seeded, "stars").name);
+    EXPECT_EQ(recipe_of(seeded, "dust").name, recipe_of(seeded, "stars").name);
     sized.voxel_size = 0.1;
-    const std::string key = cache_key(sized, "dust").name;
+    const std::string name = recipe_of(sized, "dust").name;
     sized.count = 7;
     sized.meshes[0].relief = 0.7;
     sized.meshes[0].shape.waist = 0.7;
     sized.uv_width = 3.0;
     sized.uv_camera.fov = 3.0;
     sized.back = BackWall::varied;
-    EXPECT_EQ(cache_key(sized, "dust").name, key);
+    EXPECT_EQ(recipe_of(sized, "dust").name, name);
     fs::copy_file(folder_ / "p.ppm", folder_ / "other.ppm");
     moved.meshes[0].texture = {folder_ / "other.ppm"};
-    EXPECT_EQ(cache_key(moved, "dust").name, cache_key(source_, "dust").name);
+    EXPECT_EQ(recipe_of(moved, "dust").name, recipe_of(source_, "dust").name);
 }
 
-TEST_F(SetCacheTest, BytesOfEveryInputChangeTheKey) {
+TEST_F(SetCacheTest, BytesOfEveryInputChangeTheName) {
     const SourceParams source = mesh_source();
-    std::vector<std::string> keys = {cache_key(source, "dust").name};
+    std::vector<std::string> names = {recipe_of(source, "dust").name};
     folder_.file("p.ppm", picture(16, 129));
-    keys.push_back(cache_key(source, "dust").name);
+    names.push_back(recipe_of(source, "dust").name);
     folder_.file("a.obj", std::string(triangle) + "#\n");
-    keys.push_back(cache_key(source, "dust").name);
+    names.push_back(recipe_of(source, "dust").name);
     folder_.file("a.mtl", "newmtl m\nmap_Kd q.ppm\n");
-    keys.push_back(cache_key(source, "dust").name);
+    names.push_back(recipe_of(source, "dust").name);
     folder_.file("q.ppm", picture(8));
-    keys.push_back(cache_key(source, "dust").name);
-    std::sort(keys.begin(), keys.end());
-    EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+    names.push_back(recipe_of(source, "dust").name);
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
 }
 
 TEST_F(SetCacheTest, HashingInputsCanBeCancelled) {
     const std::atomic<bool> cancelled{true};
-    EXPECT_THROW(cache_key(mesh_source(), "dust", Progress{{}, &cancelled}), Cancelled);
+    EXPECT_THROW(recipe_of(mesh_source(), "dust", Progress{{}, &cancelled}), Cancelled);
 }
 
-TEST_F(SetCacheTest, InputsThatCannotBeReadHaveNoKeyAndTheLoaderSaysWhy) {
+TEST_F(SetCacheTest, InputsThatCannotBeReadHaveNoNameAndTheLoaderSaysWhy) {
     source_.meshes[0].texture = {folder_ / "none.ppm"};
-    EXPECT_EQ(cache_key(source_, "dust").name, "");
+    EXPECT_EQ(recipe_of(source_, "dust").name, "");
     try {
         load();
         FAIL();
@@ -318,11 +318,11 @@ TEST_F(SetCacheTest, TheLeastRecentlyUsedGoFirst) {
     std::int64_t largest = 0;
     for (const std::uint32_t seed : {1u, 2u, 3u}) {
         LoadedSet loaded = load(with_seed(seed));
-        loaded.set.key = cache_key_text(with_seed(seed), "dust");
+        loaded.set.recipe = recipe_text(with_seed(seed), "dust");
         largest = std::max(largest, native_file_bytes(loaded.set));
     }
     const auto age = [&](std::uint32_t seed, int hours) {
-        fs::last_write_time(cache_.folder / (cache_key(with_seed(seed), "dust").name + ".splats"),
+        fs::last_write_time(cache_.folder / (recipe_of(with_seed(seed), "dust").name + ".splats"),
                             fs::file_time_type::clock::now() - std::chrono::hours(hours));
     };
     age(1, 30), age(2, 20), age(3, 10);
@@ -351,12 +351,12 @@ TEST_F(SetCacheTest, ASetLargerThanTheLimitIsNotKeptAndPushesNothingOut) {
 
 TEST_F(SetCacheTest, DamagedEntriesAreGeneratedAgainWithAWarning) {
     const SplatSet set = load().set;
-    const std::string whole = bytes_of(key_file(".splats"));
+    const std::string whole = bytes_of(entry_file(".splats"));
     std::vector<std::string> damaged = {"", "something else", whole.substr(0, whole.size() / 2), whole};
     damaged.back()[whole.size() / 2] ^= 1;
     for (const std::string& bytes : damaged) {
-        fs::remove(key_file(".splats"));
-        std::ofstream(key_file(".splats"), std::ios::binary) << bytes;
+        fs::remove(entry_file(".splats"));
+        std::ofstream(entry_file(".splats"), std::ios::binary) << bytes;
         warnings_.clear();
         const LoadedSet again = load();
         EXPECT_FALSE(again.cached);
@@ -383,10 +383,10 @@ TEST_F(SetCacheTest, AnEntryOfAnotherSetUnderThisNameIsNotTaken) {
     expect_same_set(again.set, set);
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_NE(warnings_[0].find("expected that of the set asked for"), std::string::npos) << warnings_[0];
-    EXPECT_TRUE(again.set.key.empty());
+    EXPECT_TRUE(again.set.recipe.empty());
     const LoadedSet repaired = load();
     EXPECT_TRUE(repaired.cached);
-    EXPECT_TRUE(repaired.set.key.empty());
+    EXPECT_TRUE(repaired.set.recipe.empty());
 }
 
 TEST_F(SetCacheTest, AFolderThatCannotBeMadeIsAWarning) {
@@ -397,7 +397,7 @@ TEST_F(SetCacheTest, AFolderThatCannotBeMadeIsAWarning) {
 }
 
 TEST_F(SetCacheTest, ThePlaceOfAnEntryTakenByAFolderIsAWarning) {
-    fs::create_directories(key_file(".splats"));
+    fs::create_directories(entry_file(".splats"));
     EXPECT_FALSE(load().cached);
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_NE(warnings_[0].find("what was generated is not kept"), std::string::npos) << warnings_[0];
@@ -419,12 +419,12 @@ TEST_F(SetCacheTest, AReadOnlyFolderIsReadAndItsLackIsAWarning) {
 
 TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
     fs::create_directories(cache_.folder);
-    const std::string dead(64, 'd'), alive(64, 'a'), own = cache_key(source_, "dust").name;
+    const std::string dead(64, 'd'), alive(64, 'a'), own = recipe_of(source_, "dust").name;
     const auto leave = [&](const std::string& name) {
         std::ofstream(cache_.folder / name) << "x";
         return cache_.folder / name;
     };
-    const auto temporary = [](const std::string& key) { return "." + key + ".1-2-3.part.splats"; };
+    const auto temporary = [](const std::string& name) { return "." + name + ".1-2-3.part.splats"; };
     const std::vector<fs::path> gone = {leave(temporary(dead)), leave(dead + ".lock"), leave(own + ".lock"),
                                         leave(temporary(own))};
     const std::vector<fs::path> stay = {leave(temporary(alive)), leave(alive + ".lock"), leave("mine.lock"),
@@ -443,17 +443,17 @@ TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
 TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
     fs::create_directories(cache_.folder);
     SplatSet set = load_source(source_, "dust");
-    const int lock = open(key_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const int lock = open(entry_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     ASSERT_EQ(flock(lock, LOCK_EX), 0);
     std::optional<LoadedSet> loaded;
     std::atomic<bool> waits{false};
     set_log_sink([&](LogLevel, const std::string& line) { waits = waits || line.find("waiting") < 99; });
     std::thread other([&] { loaded = load(); });
     while (!waits) std::this_thread::yield();
-    set.key = cache_key_text(source_, "dust");
-    write_native(key_file(".splats"), set, {}, RowOrder::id);
-    set.key.clear();
-    fs::remove(key_file(".lock"));  // as FileLock gives it back
+    set.recipe = recipe_text(source_, "dust");
+    write_native(entry_file(".splats"), set, {}, RowOrder::id);
+    set.recipe.clear();
+    fs::remove(entry_file(".lock"));  // as FileLock gives it back
     close(lock);
     other.join();
     EXPECT_TRUE(loaded->cached);
@@ -462,7 +462,7 @@ TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
 
 TEST_F(SetCacheTest, WaitingCanBeCancelled) {
     fs::create_directories(cache_.folder);
-    const int lock = open(key_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const int lock = open(entry_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     ASSERT_EQ(flock(lock, LOCK_EX), 0);
     std::atomic<bool> cancelled{false};
     set_log_sink([&](LogLevel, const std::string& line) { cancelled = line.find("waiting") < 99; });
@@ -480,7 +480,7 @@ TEST_F(SetCacheTest, ACancelledRunLeavesNothing) {
 
 TEST_F(SetCacheTest, AProcessThatIsKilledGivesWay) {
     fs::create_directories(cache_.folder);
-    const fs::path ready = folder_ / "ready", lock_name = key_file(".lock");
+    const fs::path ready = folder_ / "ready", lock_name = entry_file(".lock");
     const pid_t child = fork();
     if (child == 0) {  // takes the lock, says so, and is killed
         const int lock = open(lock_name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);

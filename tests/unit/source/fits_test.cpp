@@ -226,7 +226,7 @@ std::optional<FitsSky> sky_with(const std::vector<std::pair<const char*, double>
     return read_fits(folder / "sky.fits", "auto", 0).sky;
 }
 
-TEST(FitsSky, IsReadFromAllThreeKindsOfKeys) {
+TEST(FitsSky, IsReadFromAllThreeKindsOfKeywords) {
     using Keys = std::vector<std::pair<const char*, double>>;
     const auto with = [](Keys more) {
         more.insert(more.begin(), {{"CRPIX1", 2.5}, {"CRPIX2", 3.5}, {"CRVAL1", 83.8}, {"CRVAL2", -5.4}});
@@ -248,7 +248,7 @@ TEST(FitsSky, IsReadFromAllThreeKindsOfKeys) {
               {-0.02 * c, -0.01 * s, -0.02 * s, 0.01 * c});
 }
 
-TEST(FitsSky, IsUnknownWithoutItsKeys) {
+TEST(FitsSky, IsUnknownWithoutItsKeywords) {
     EXPECT_FALSE(sky_with({}));
     const std::vector<std::pair<const char*, double>> place = {
         {"CRPIX1", 2.5}, {"CRPIX2", 3.5}, {"CRVAL1", 83.8}, {"CRVAL2", -5.4}};

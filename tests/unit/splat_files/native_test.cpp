@@ -60,14 +60,14 @@ TEST_F(Native, EverythingSurvives) {
     expect_same_set(got, set);
 }
 
-TEST_F(Native, AKeySurvivesBesideTheCredit) {
+TEST_F(Native, ARecipeSurvivesBesideTheCredit) {
     SplatSet set = full_set(10);
     for (const char* credit : {"", "ESA"}) {
-        set.credit = credit, set.key = "set 1\nseed 3\n";
+        set.credit = credit, set.recipe = "set 1\nseed 3\n";
         write_native(path("a.splats"), set, {}, RowOrder::id);
         const SplatSet got = read_native(path("a.splats"));
         EXPECT_EQ(got.credit, credit);
-        EXPECT_EQ(got.key, set.key);
+        EXPECT_EQ(got.recipe, set.recipe);
         EXPECT_EQ(static_cast<std::int64_t>(std::filesystem::file_size(path("a.splats"))),
                   native_file_bytes(set));
     }
@@ -207,7 +207,7 @@ TEST_F(Native, Messages) {
     std::uint32_t flags;
     std::memcpy(&flags, &whole[12], sizeof flags);
     EXPECT_EQ(error(forged(whole, 12, flags | 0x80u)),
-              "a.splats:header: expected a zero between credit and key, found none");
+              "a.splats:header: expected a zero between credit and recipe, found none");
     EXPECT_EQ(error(forged(whole, 24, 0u)),
               "a.splats:header: expected blocks of at least one splat, found 0");
     for (const std::uint64_t count :

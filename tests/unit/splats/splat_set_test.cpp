@@ -91,12 +91,12 @@ TEST(RowOrder, DescentsAreFoundAnywhere) {
     }
 }
 
-TEST(RowOrder, KeysThenIdsThenRows) {
-    const Buffer<std::uint32_t> keys{2, 0, 2, 1, 2, 0};
+TEST(RowOrder, BinsThenIdsThenRows) {
+    const Buffer<std::uint32_t> bins{2, 0, 2, 1, 2, 0};
     const Buffer<std::uint64_t> ids{9, 4, 3, 8, 9, 4};
-    const auto rows = rows_by_key<std::uint32_t>(keys, 4, ids);
+    const auto rows = rows_by_bin<std::uint32_t>(bins, 4, ids);
     EXPECT_EQ(std::vector(rows.begin(), rows.end()), (std::vector<std::uint32_t>{1, 5, 3, 2, 0, 4}));
-    const auto wide = rows_by_key<std::uint64_t>(keys, 4, ids);
+    const auto wide = rows_by_bin<std::uint64_t>(bins, 4, ids);
     EXPECT_TRUE(std::equal(rows.begin(), rows.end(), wide.begin(), wide.end()));
 }
 

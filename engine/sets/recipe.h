@@ -21,17 +21,17 @@ inline constexpr int prepare_version = 1;
 /// picture also its material libraries and their pictures), and the parameters in use, with the seed
 /// resolved. Names of files stay out, except for their endings. Empty where an input cannot be read: then the
 /// loader says why. For kind mesh. Throws Cancelled.
-std::string cache_key_text(const SourceParams& source, const std::string& layer_name,
-                           const Progress& progress = {});
+std::string recipe_text(const SourceParams& source, const std::string& layer_name,
+                        const Progress& progress = {});
 
 /// The same of one prepared picture: its files, how they are read and settings.prepare.
-std::string prepared_key_text(const std::vector<std::filesystem::path>& files,
-                              const TextureSettings& settings, const Progress& progress = {});
+std::string prepared_recipe_text(const std::vector<std::filesystem::path>& files,
+                                 const TextureSettings& settings, const Progress& progress = {});
 
 /// That text, and its hash, which names the entry; both empty where an input cannot be read.
-struct CacheKey {
+struct Recipe {
     std::string text, name;
 };
-CacheKey cache_key(const SourceParams& source, const std::string& layer_name, const Progress& progress = {});
+Recipe recipe_of(const SourceParams& source, const std::string& layer_name, const Progress& progress = {});
 
 }  // namespace astrosplat

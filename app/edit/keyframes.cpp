@@ -1,5 +1,5 @@
-// Tracks stay sorted by frame; a parameter without a track has no keys.
-#include "edit/keys.h"
+// Tracks stay sorted by frame; a parameter without a track has no keyframes.
+#include "edit/keyframes.h"
 
 #include <fmt/format.h>
 
@@ -12,24 +12,24 @@
 namespace astrosplat {
 namespace {
 
-using TrackKey = Keyframe<std::vector<double>>;
+using TrackKeyframe = Keyframe<std::vector<double>>;
 
 Track* track_of(Scene& scene, const std::string& key) {
     const Track* found = find_track(scene, key);
     return found ? &scene.animation[static_cast<std::size_t>(found - scene.animation.data())] : nullptr;
 }
 
-std::vector<TrackKey>::iterator key_at(Track& track, double frame) {
-    return std::find_if(track.keys.begin(), track.keys.end(),
-                        [&](const TrackKey& key) { return key.frame == frame; });
+std::vector<TrackKeyframe>::iterator keyframe_at(Track& track, double frame) {
+    return std::find_if(track.keyframes.begin(), track.keyframes.end(),
+                        [&](const TrackKeyframe& keyframe) { return keyframe.frame == frame; });
 }
 
-/// Puts a key in its place, instead of one that is there.
-void insert_key(Track& track, TrackKey key) {
-    std::erase_if(track.keys, [&](const TrackKey& old) { return old.frame == key.frame; });
-    const auto after = std::find_if(track.keys.begin(), track.keys.end(),
-                                    [&](const TrackKey& other) { return other.frame > key.frame; });
-    track.keys.insert(after, std::move(key));
+/// Puts a keyframe in its place, instead of one that is there.
+void insert_keyframe(Track& track, TrackKeyframe keyframe) {
+    std::erase_if(track.keyframes, [&](const TrackKeyframe& old) { return old.frame == keyframe.frame; });
+    const auto after = std::find_if(track.keyframes.begin(), track.keyframes.end(),
+                                    [&](const TrackKeyframe& other) { return other.frame > keyframe.frame; });
+    track.keyframes.insert(after, std::move(keyframe));
 }
 
 /// The numbers of a value that fits the parameter; sets it in passing.
@@ -65,15 +65,15 @@ const Track* find_track(const Scene& scene, const std::string& key) {
     return found == scene.animation.end() ? nullptr : &*found;
 }
 
-bool is_keyed(const Scene& scene, const std::string& key) { return find_track(scene, key) != nullptr; }
+bool is_animated(const Scene& scene, const std::string& key) { return find_track(scene, key) != nullptr; }
 
-bool has_key_at(const Scene& scene, const std::string& key, double frame) {
+bool has_keyframe_at(const Scene& scene, const std::string& key, double frame) {
     const Track* track = find_track(scene, key);
-    return track && std::any_of(track->keys.begin(), track->keys.end(),
-                                [&](const TrackKey& k) { return k.frame == frame; });
+    return track && std::any_of(track->keyframes.begin(), track->keyframes.end(),
+                                [&](const TrackKeyframe& keyframe) { return keyframe.frame == frame; });
 }
 
-void set_key(Scene& scene, const std::string& key, double frame, const Value& value) {
+void set_keyframe(Scene& scene, const std::string& key, double frame, const Value& value) {
     if (!std::isfinite(frame)) throw InputError(key + ": expected a finite frame number, found another");
     Scene scratch = scene;  // values are checked by setting them
     const Description description = describe(scratch);
@@ -87,22 +87,23 @@ void set_key(Scene& scene, const std::string& key, double frame, const Value& va
         scene.animation.push_back(new_track(parameter->spec));
         track = &scene.animation.back();
     }
-    const bool alone = track->keys.empty() || (track->keys.size() == 1 && track->keys[0].frame == frame);
-    if (!alone && track->keys[0].value.size() != numbers.size())
+    const bool alone =
+        track->keyframes.empty() || (track->keyframes.size() == 1 && track->keyframes[0].frame == frame);
+    if (!alone && track->keyframes[0].value.size() != numbers.size())
         throw InputError(parameter->spec.key.text() +
-                         ": expected as many points as in the other keys, found " + "another number");
-    const auto old = key_at(*track, frame);
-    const Interpolation way = old == track->keys.end() ? track->interpolation : old->interpolation;
-    insert_key(*track, {frame, std::move(numbers), way});
+                         ": expected as many points as in the other keyframes, found " + "another number");
+    const auto old = keyframe_at(*track, frame);
+    const Interpolation way = old == track->keyframes.end() ? track->interpolation : old->interpolation;
+    insert_keyframe(*track, {frame, std::move(numbers), way});
 }
 
-void remove_key(Scene& scene, const std::string& key, double frame) {
+void remove_keyframe(Scene& scene, const std::string& key, double frame) {
     Track* track = track_of(scene, key);
     if (!track) return;
-    const auto found = key_at(*track, frame);
-    if (found == track->keys.end()) return;
-    if (track->keys.size() > 1) {
-        track->keys.erase(found);
+    const auto found = keyframe_at(*track, frame);
+    if (found == track->keyframes.end()) return;
+    if (track->keyframes.size() > 1) {
+        track->keyframes.erase(found);
         return;
     }
     const Description description = describe(scene);
@@ -115,51 +116,52 @@ void remove_track(Scene& scene, const std::string& key) {
     std::erase_if(scene.animation, [&](const Track& track) { return track.key == key; });
 }
 
-void move_key(Scene& scene, const std::string& key, double from, double to) {
+void move_keyframe(Scene& scene, const std::string& key, double from, double to) {
     Track* track = track_of(scene, key);
-    if (!track || from == to || !std::isfinite(to) || key_at(*track, from) == track->keys.end()) return;
-    copy_key(scene, key, from, to);
-    track->keys.erase(key_at(*track, from));
+    if (!track || from == to || !std::isfinite(to) || keyframe_at(*track, from) == track->keyframes.end())
+        return;
+    copy_keyframe(scene, key, from, to);
+    track->keyframes.erase(keyframe_at(*track, from));
 }
 
-void copy_key(Scene& scene, const std::string& key, double from, double to) {
+void copy_keyframe(Scene& scene, const std::string& key, double from, double to) {
     Track* track = track_of(scene, key);
     if (!track || !std::isfinite(to)) return;
-    const auto found = key_at(*track, from);
-    if (found == track->keys.end()) return;
-    TrackKey copy = *found;
+    const auto found = keyframe_at(*track, from);
+    if (found == track->keyframes.end()) return;
+    TrackKeyframe copy = *found;
     copy.frame = to;
-    insert_key(*track, std::move(copy));
+    insert_keyframe(*track, std::move(copy));
 }
 
 void set_interpolation(Scene& scene, const std::string& key, double frame, Interpolation interpolation) {
     Track* track = track_of(scene, key);
     if (!track) return;
-    const auto found = key_at(*track, frame);
-    if (found != track->keys.end()) found->interpolation = interpolation;
+    const auto found = keyframe_at(*track, frame);
+    if (found != track->keyframes.end()) found->interpolation = interpolation;
 }
 
 void set_ends(Scene& scene, const std::string& key, Ends ends) {
     if (Track* track = track_of(scene, key)) track->ends = ends;
 }
 
-std::vector<double> key_frames(const Scene& scene) {
+std::vector<double> frames_with_keyframes(const Scene& scene) {
     std::vector<double> frames;
     for (const Track& track : scene.animation)
-        for (const TrackKey& key : track.keys) frames.push_back(key.frame);
+        for (const TrackKeyframe& keyframe : track.keyframes) frames.push_back(keyframe.frame);
     std::sort(frames.begin(), frames.end());
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     return frames;
 }
 
-double next_key_frame(const Scene& scene, double frame) {
-    const std::vector<double> frames = key_frames(scene);
+double frame_of_next_keyframe(const Scene& scene, double frame) {
+    const std::vector<double> frames = frames_with_keyframes(scene);
     const auto next = std::upper_bound(frames.begin(), frames.end(), frame);
     return next == frames.end() ? frame : *next;
 }
 
-double previous_key_frame(const Scene& scene, double frame) {
-    const std::vector<double> frames = key_frames(scene);
+double frame_of_previous_keyframe(const Scene& scene, double frame) {
+    const std::vector<double> frames = frames_with_keyframes(scene);
     const auto here = std::lower_bound(frames.begin(), frames.end(), frame);
     return here == frames.begin() ? frame : *(here - 1);
 }

@@ -1,5 +1,5 @@
 // One line for each thing that a generated set depends on.
-#include "sets/cache_key.h"
+#include "sets/recipe.h"
 
 #include <fmt/format.h>
 
@@ -127,7 +127,7 @@ std::string lattice_lines(const SourceParams& source) {
     return fmt::format("{}\nbuffer {}\n", size, buffer);
 }
 
-// Nothing for columns, so that sets made before there was a choice keep their keys.
+// Nothing for columns, so that sets made before there was a choice keep their names.
 std::string structure_lines(const SourceParams& source) {
     const auto& [kind, height, depth, clumps, flare, warp, stars, dust, opacity, density, border] =
         source.structure;
@@ -161,8 +161,8 @@ std::string projection_lines(const SourceParams& source) {
 
 }  // namespace
 
-std::string cache_key_text(const SourceParams& source, const std::string& layer_name,
-                           const Progress& progress) try {
+std::string recipe_text(const SourceParams& source, const std::string& layer_name,
+                        const Progress& progress) try {
     assert(source.kind == SourceKind::mesh);
     // Names all fields, so that a new one cannot be forgotten: either it belongs below, or among the unused.
     [[maybe_unused]] const auto& [kind, meshes, texture, buffer, voxels, voxel_size, count, splats, jitter,
@@ -179,8 +179,8 @@ std::string cache_key_text(const SourceParams& source, const std::string& layer_
     return {};
 }
 
-std::string prepared_key_text(const std::vector<fs::path>& files, const TextureSettings& settings,
-                              const Progress& progress) try {
+std::string prepared_recipe_text(const std::vector<fs::path>& files, const TextureSettings& settings,
+                                 const Progress& progress) try {
     std::string text = fmt::format("picture of astrosplat {}\n", ASTROSPLAT_VERSION);
     for (const fs::path& file : files) text += file_line("texture", file, progress);
     return text + texture_lines(settings) + prepare_lines(settings.prepare, progress);
@@ -188,8 +188,8 @@ std::string prepared_key_text(const std::vector<fs::path>& files, const TextureS
     return {};
 }
 
-CacheKey cache_key(const SourceParams& source, const std::string& layer_name, const Progress& progress) {
-    std::string text = cache_key_text(source, layer_name, progress);
+Recipe recipe_of(const SourceParams& source, const std::string& layer_name, const Progress& progress) {
+    std::string text = recipe_text(source, layer_name, progress);
     std::string name = text.empty() ? "" : Sha256().add(text).hex();
     return {std::move(text), std::move(name)};
 }

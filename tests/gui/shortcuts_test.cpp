@@ -1,10 +1,10 @@
-// Keys pressed over the window: what they change and ask for.
+// Shortcuts pressed over the window: what they change and ask for.
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "edit/camera_moves.h"
-#include "edit/keys.h"
+#include "edit/keyframes.h"
 #include "edit/view_camera.h"
 #include "gui/actions.h"
 #include "gui/key_codes.h"
@@ -16,7 +16,7 @@ namespace {
 
 using Kind = Command::Kind;
 
-TEST(Keys, CodesOfLettersAndDigitsAreTheirCharacters) {
+TEST(Shortcuts, CodesOfLettersAndDigitsAreTheirCharacters) {
     const auto expect_named = [](int code, char character) {
         EXPECT_EQ(code, character);
         EXPECT_EQ(key_name(code), std::string(1, character));
@@ -32,55 +32,55 @@ TEST(Keys, CodesOfLettersAndDigitsAreTheirCharacters) {
     EXPECT_EQ(key_name(128), "");
 }
 
-TEST(Keys, UndoAndRedoNameTheirStep) {
+TEST(Shortcuts, UndoAndRedoNameTheirStep) {
     TestWindow window(example_document());
     make_edited(window);
     window.click("Edit");
     window.keep_picture("undo_menu");
-    window.key(key_code::escape);
-    window.key('Z', true);
+    window.tap(key_code::escape);
+    window.tap('Z', true);
     EXPECT_EQ(window.document.scene().layers[0].render.opacity, 1.0);
-    window.key('Z', true, true);
+    window.tap('Z', true, true);
     EXPECT_EQ(window.document.scene().layers[0].render.opacity, 0.5);
 }
 
-TEST(Keys, FramesAndKeys) {
+TEST(Shortcuts, FramesAndKeyframes) {
     TestWindow window(example_document());
-    window.key(key_code::right);
+    window.tap(key_code::right);
     EXPECT_EQ(window.view.frame, 2.0);
-    window.key(key_code::left);
-    window.key(key_code::left);
+    window.tap(key_code::left);
+    window.tap(key_code::left);
     EXPECT_EQ(window.view.frame, 1.0) << "not before the first";
-    window.key(key_code::up);
+    window.tap(key_code::up);
     EXPECT_EQ(window.view.frame, 24.0);
-    window.key(key_code::down);
+    window.tap(key_code::down);
     EXPECT_EQ(window.view.frame, 1.0);
-    window.key(key_code::right, true);
+    window.tap(key_code::right, true);
     EXPECT_EQ(window.view.frame, 240.0);
-    window.key(key_code::space);
+    window.tap(key_code::space);
     EXPECT_TRUE(window.view.playing);
-    window.key(key_code::space);
+    window.tap(key_code::space);
     EXPECT_FALSE(window.view.playing);
 }
 
-TEST(Keys, KeysTheCameraOrTheRowUnderTheMouse) {
+TEST(Shortcuts, SetKeyframesOfTheCameraOrTheRowUnderTheMouse) {
     TestWindow window(example_document());
     window.view.frame = 50;
-    window.key('K');
-    EXPECT_TRUE(has_key_at(window.document.scene(), "camera.position", 50));
-    window.key('K', false, true);
-    EXPECT_FALSE(has_key_at(window.document.scene(), "camera.position", 50));
+    window.tap('K');
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), "camera.position", 50));
+    window.tap('K', false, true);
+    EXPECT_FALSE(has_keyframe_at(window.document.scene(), "camera.position", 50));
     const std::string gain = "layer.dust.look.alpha.gain";
     for (const DrawnRow& row : window.gui.panel().rows())
         if (row.key == gain) window.move(row.label);
     window.frame();
-    window.key('K');
-    EXPECT_TRUE(has_key_at(window.document.scene(), gain, 50));
-    EXPECT_FALSE(has_key_at(window.document.scene(), "camera.position", 50));
+    window.tap('K');
+    EXPECT_TRUE(has_keyframe_at(window.document.scene(), gain, 50));
+    EXPECT_FALSE(has_keyframe_at(window.document.scene(), "camera.position", 50));
 }
 
-/// The menu, the key and the panel's button mean one thing: what is seen is keyed.
-TEST(Keys, KeyCameraHereIsOneAct) {
+/// The menu, the shortcut and the panel's button mean one thing: a keyframe of what is seen.
+TEST(Shortcuts, KeyCameraHereIsOneAct) {
     for (const ViewKind kind : {ViewKind::camera, ViewKind::free, ViewKind::front}) {
         const auto scene_after = [&](const auto& act) {
             TestWindow window(example_document());
@@ -93,7 +93,7 @@ TEST(Keys, KeyCameraHereIsOneAct) {
             window.frame();
             return window.document.scene();
         };
-        const Scene by_key = scene_after([](TestWindow& window) { window.key('K'); });
+        const Scene by_key = scene_after([](TestWindow& window) { window.tap('K'); });
         const Scene by_menu =
             scene_after([](TestWindow& window) { window.choose("Camera/Key camera here"); });
         const Scene by_button = scene_after([](TestWindow& window) {
@@ -104,7 +104,7 @@ TEST(Keys, KeyCameraHereIsOneAct) {
         view.view = kind;
         view.free.position = {3.0, 2.0, 20.0};
         view.frame = 50;
-        key_seen_camera(wanted, view, example_status());
+        set_keyframe_of_seen_camera(wanted, view, example_status());
         EXPECT_EQ(by_key, wanted);
         EXPECT_EQ(by_menu, wanted);
         EXPECT_EQ(by_button, wanted);
@@ -112,74 +112,74 @@ TEST(Keys, KeyCameraHereIsOneAct) {
 }
 
 /// Before the viewport's shape is known, it is the output's.
-TEST(Keys, ThreeQuarterFitsThePicture) {
+TEST(Shortcuts, ThreeQuarterFitsThePicture) {
     TestWindow window(example_document());
     const OutputParams& output = window.document.scene().output;
     for (const double aspect : {0.0, 0.5}) {
         window.status.viewport_aspect = aspect;
         const double shape = aspect > 0.0 ? aspect : double(output.width) / double(output.height);
         const FreeCamera wanted = three_quarter_view(window.view.free, window.status.box, shape);
-        window.key(key_code::n9);
+        window.tap(key_code::n9);
         EXPECT_EQ(window.view.free.height, wanted.height);
         EXPECT_EQ(window.view.free.position, wanted.position);
     }
 }
 
-TEST(Keys, ViewsAndSwitches) {
+TEST(Shortcuts, ViewsAndSwitches) {
     TestWindow window(example_document());
-    window.key(key_code::n7);
+    window.tap(key_code::n7);
     EXPECT_EQ(window.view.view, ViewKind::top);
-    window.key(key_code::n9);
+    window.tap(key_code::n9);
     EXPECT_EQ(window.view.view, ViewKind::free);
-    window.key(key_code::n0);
+    window.tap(key_code::n0);
     EXPECT_EQ(window.view.view, ViewKind::camera);
-    window.key('G');
+    window.tap('G');
     EXPECT_FALSE(window.view.gate);
-    window.key('Z');
+    window.tap('Z');
     EXPECT_EQ(window.view.size, SizeMode::one_to_one);
-    window.key(key_code::tab);
+    window.tap(key_code::tab);
     EXPECT_EQ(window.view.compare, CompareMode::b);
-    window.key('S');
+    window.tap('S');
     EXPECT_EQ(window.view.solo.count("dust"), 1U);
-    window.key('H');
+    window.tap('H');
     EXPECT_FALSE(window.document.scene().layers[0].visible);
-    window.key(key_code::f11);
+    window.tap(key_code::f11);
     EXPECT_FALSE(window.view.panels);
     EXPECT_FALSE(window.has("ruler"));
 }
 
-TEST(Keys, TheSheetOpensAndCloses) {
+TEST(Shortcuts, TheSheetOpensAndCloses) {
     TestWindow window(example_document());
-    window.key(key_code::f1);
-    EXPECT_TRUE(window.has("keys/Close"));
-    window.key(key_code::f1);
+    window.tap(key_code::f1);
+    EXPECT_TRUE(window.has("shortcuts/Close"));
+    window.tap(key_code::f1);
     EXPECT_FALSE(window.view.help_open);
-    window.key(key_code::f1);
-    window.key(key_code::escape);
+    window.tap(key_code::f1);
+    window.tap(key_code::escape);
     EXPECT_FALSE(window.view.help_open);
-    window.key(key_code::f1);
-    window.click("keys/Close");
+    window.tap(key_code::f1);
+    window.click("shortcuts/Close");
     EXPECT_FALSE(window.view.help_open);
 }
 
-TEST(Keys, AreLettersWhereTextIsTyped) {
+TEST(Shortcuts, AreLettersWhereTextIsTyped) {
     TestWindow window(example_document());
     window.double_click(window.at("frame"));
-    window.key('G');
-    window.key(key_code::space);
+    window.tap('G');
+    window.tap(key_code::space);
     EXPECT_TRUE(window.view.gate);
     EXPECT_FALSE(window.view.playing);
 }
 
-TEST(Keys, EscapeCancelsTheJob) {
+TEST(Shortcuts, EscapeCancelsTheJob) {
     TestWindow window(example_document());
     window.status.job = {"Rendering 3 of 240", 0.01f};
-    window.key(key_code::escape);
+    window.tap(key_code::escape);
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::cancel_render});
 }
 
-// Two actions with one key would make one of them unreachable.
-TEST(Keys, NoneMeansTwoThings) {
+// Two actions with one shortcut would make one of them unreachable.
+TEST(Shortcuts, NoneMeansTwoThings) {
     std::map<std::string, std::string> seen;
     for (const Action& action : actions()) {
         const std::string text = shortcut_text(action.shortcut);

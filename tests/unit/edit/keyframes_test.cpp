@@ -1,0 +1,160 @@
+// Editing tracks: keys appear, change, move and vanish where asked, and what comes out loads again.
+#include "edit/keyframes.h"
+
+#include <gtest/gtest.h>
+
+#include "edit/document.h"
+#include "scene/animate.h"
+#include "scenes.h"
+
+namespace astrosplat {
+namespace {
+
+using Frames = std::vector<double>;
+using test::opacity;
+
+const std::string core = "layer.stars.render.core";  // keys at 1 and 24, smooth
+
+struct Keyframes : testing::Test {
+    Scene scene = parse_scene(test::edit_scene, "/scene.toml");
+
+    Frames frames_of(const std::string& key) const {
+        Frames frames;
+        if (const Track* track = find_track(scene, key))
+            for (const auto& k : track->keyframes) frames.push_back(k.frame);
+        return frames;
+    }
+};
+
+TEST_F(Keyframes, AreFound) {
+    EXPECT_TRUE(is_animated(scene, core));
+    EXPECT_FALSE(is_animated(scene, opacity));
+    EXPECT_EQ(find_track(scene, opacity), nullptr);
+    EXPECT_TRUE(has_keyframe_at(scene, core, 24.0));
+    EXPECT_FALSE(has_keyframe_at(scene, core, 23.0));
+    EXPECT_FALSE(has_keyframe_at(scene, opacity, 24.0));
+}
+
+TEST_F(Keyframes, AreAddedInOrderAndReplaced) {
+    set_keyframe(scene, core, 12.0, 0.9);
+    set_keyframe(scene, core, -3.0, 0.1);
+    EXPECT_EQ(frames_of(core), (Frames{-3, 1, 12, 24}));
+    set_keyframe(scene, core, 12.0, 0.8);
+    EXPECT_EQ(frames_of(core), (Frames{-3, 1, 12, 24}));
+    EXPECT_EQ(find_track(scene, core)->keyframes[2].value, Frames{0.8});
+    EXPECT_EQ(find_track(scene, core)->keyframes[2].interpolation, Interpolation::smooth);  // the track's
+}
+
+TEST_F(Keyframes, KeepTheirInterpolationWhenSetAgain) {
+    set_interpolation(scene, core, 24.0, Interpolation::step);
+    set_keyframe(scene, core, 24.0, 0.25);
+    EXPECT_EQ(find_track(scene, core)->keyframes[1].value, Frames{0.25});
+    EXPECT_EQ(find_track(scene, core)->keyframes[1].interpolation, Interpolation::step);
+    EXPECT_EQ(find_track(scene, core)->interpolation, Interpolation::smooth);
+}
+
+TEST_F(Keyframes, TheFirstMakesATrack) {
+    set_keyframe(scene, opacity, 5.0, 0.25);
+    ASSERT_EQ(frames_of(opacity), Frames{5});
+    EXPECT_EQ(scene_at(scene, 100.0).layers[1].render.opacity, 0.25f);
+    EXPECT_EQ(find_track(scene, opacity)->interpolation, Interpolation::smooth);
+    set_keyframe(scene, "layer.stars.visible", 5.0, false);
+    EXPECT_EQ(find_track(scene, "layer.stars.visible")->interpolation, Interpolation::linear);
+    EXPECT_FALSE(scene_at(scene, 5.0).layers[1].visible);
+    set_keyframe(scene, "layer.stars.render.blend", 5.0, "add");
+    EXPECT_EQ(scene_at(scene, 5.0).layers[1].render.blend, Blend::add);
+}
+
+TEST_F(Keyframes, ValuesThatDoNotFitAreRefused) {
+    const Scene before = scene;
+    const auto message = [&](const std::string& key, const Value& value, double frame) {
+        return message_of<InputError>([&] { set_keyframe(scene, key, frame, value); });
+    };
+    EXPECT_EQ(message(core, 2.0, 1.0), core + ": expected a number from 0 to 1, found 2");
+    EXPECT_EQ(message(core, 0.5, std::numeric_limits<double>::infinity()),
+              core + ": expected a finite frame number, found another");
+    EXPECT_EQ(message("layer.dust.source.count", std::int64_t{5}, 1.0),
+              "layer.dust.source.count: this parameter cannot be animated");
+    EXPECT_EQ(message("layer.dust.look.nothing", 1.0, 1.0),
+              "layer.dust.look.nothing: expected a parameter of the scene, found none of that name");
+    EXPECT_EQ(message("camera.position", Value::List{}, 1.0),
+              "camera.position: expected 3 numbers, found none");
+    EXPECT_EQ(message("camera.rotation", Value::List{0.0, 0.0, 0.0, 0.0}, 1.0),
+              "camera.rotation: expected 4 numbers, found 0");
+    EXPECT_EQ(scene, before);
+    const Value::List two{Value::List{0.0, 1.0}, Value::List{1.0, 0.0}};
+    const Value::List three{Value::List{0.0, 1.0}, Value::List{0.5, 0.5}, Value::List{1.0, 0.0}};
+    set_keyframe(scene, "layer.dust.look.pdf.points", 1.0, two);
+    EXPECT_EQ(message("layer.dust.look.pdf.points", three, 2.0),
+              "layer.dust.look.pdf.points: expected as many points as in the other keyframes, found another "
+              "number");
+    set_keyframe(scene, "layer.dust.look.pdf.points", 1.0, three);  // the only key may change
+}
+
+TEST_F(Keyframes, TheLastOneLeavesItsValue) {
+    remove_keyframe(scene, core, 7.0);  // there is none
+    EXPECT_EQ(frames_of(core), (Frames{1, 24}));
+    remove_keyframe(scene, core, 24.0);
+    EXPECT_EQ(scene.layers[1].render.falloff.core, 0.5f);
+    remove_keyframe(scene, core, 1.0);
+    EXPECT_FALSE(is_animated(scene, core));
+    EXPECT_EQ(scene.layers[1].render.falloff.core, 1.0f);
+}
+
+TEST_F(Keyframes, MoveAndCopyReplaceWhatIsThere) {
+    set_keyframe(scene, core, 12.0, 0.9);
+    set_interpolation(scene, core, 12.0, Interpolation::step);
+    move_keyframe(scene, core, 12.0, 30.5);
+    EXPECT_EQ(frames_of(core), (Frames{1, 24, 30.5}));
+    EXPECT_EQ(find_track(scene, core)->keyframes[2].interpolation, Interpolation::step);
+    move_keyframe(scene, core, 30.5, 1.0);
+    EXPECT_EQ(frames_of(core), (Frames{1, 24}));
+    EXPECT_EQ(find_track(scene, core)->keyframes[0].value, Frames{0.9});
+    copy_keyframe(scene, core, 1.0, 24.0);
+    EXPECT_EQ(find_track(scene, core)->keyframes[1].value, Frames{0.9});
+    copy_keyframe(scene, core, 1.0, 48.0);
+    EXPECT_EQ(frames_of(core), (Frames{1, 24, 48}));
+    const Scene before = scene;
+    move_keyframe(scene, core, 2.0, 3.0);
+    copy_keyframe(scene, core, 2.0, 3.0);
+    move_keyframe(scene, opacity, 1.0, 3.0);
+    move_keyframe(scene, core, 24.0, 24.0);
+    EXPECT_EQ(scene, before);
+}
+
+TEST_F(Keyframes, EndsAndWholeTracks) {
+    set_ends(scene, core, Ends::through);
+    EXPECT_EQ(find_track(scene, core)->ends, Ends::through);
+    remove_track(scene, core);
+    EXPECT_FALSE(is_animated(scene, core));
+    EXPECT_EQ(scene.layers[1].render.falloff.core, 0.5f);  // as below the track all along
+}
+
+TEST_F(Keyframes, FramesOfAllTracks) {
+    EXPECT_EQ(frames_with_keyframes(scene), (Frames{1, 24, 48}));
+    EXPECT_EQ(frame_of_next_keyframe(scene, 1.0), 24.0);
+    EXPECT_EQ(frame_of_next_keyframe(scene, 23.5), 24.0);
+    EXPECT_EQ(frame_of_next_keyframe(scene, 48.0), 48.0);
+    EXPECT_EQ(frame_of_previous_keyframe(scene, 48.0), 24.0);
+    EXPECT_EQ(frame_of_previous_keyframe(scene, 47.0), 24.0);
+    EXPECT_EQ(frame_of_previous_keyframe(scene, 1.0), 1.0);
+    EXPECT_EQ(frame_of_previous_keyframe(scene, -7.0), -7.0);
+}
+
+TEST(KeyframesInAFile, AreSavedAndLoaded) {
+    const test::SceneFolder f;
+    Document document = Document::open(f.file);
+    document.edit("Keyframes", [](Scene& s) {
+        set_keyframe(s, opacity, 1.0, 0.0);
+        set_keyframe(s, opacity, 24.0, 1.0);
+        set_interpolation(s, opacity, 24.0, Interpolation::step);
+        set_keyframe(s, "camera.position", 1.0, Value::List{0.0, 1.0, 9.5});
+        move_keyframe(s, core, 24.0, 30.0);
+    });
+    document.save();
+    EXPECT_EQ(load_scene(f.file), document.scene());
+    EXPECT_EQ(document.scene().animation.size(), 4u);
+}
+
+}  // namespace
+}  // namespace astrosplat
