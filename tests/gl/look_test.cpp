@@ -255,7 +255,7 @@ std::map<std::string, std::vector<std::uint32_t>> members_of(const LookUniforms&
         put_numbers(names, std::string("look.") + name, member);
     };
     put("seed", u.seed), put("axis", u.axis), put("reach", u.reach), put("density", u.density);
-    put("key_count", u.stop_count), put("noise_count", u.noise_count), put("unpremultiply", u.unpremultiply);
+    put("stop_count", u.stop_count), put("noise_count", u.noise_count), put("unpremultiply", u.unpremultiply);
     put("alpha_threshold", u.alpha_threshold), put("alpha_power", u.alpha_power),
         put("alpha_gain", u.alpha_gain);
     put("vertical_reach", u.vertical_reach), put("match", u.match), put("own_radius", u.own_radius);
