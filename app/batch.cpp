@@ -38,7 +38,7 @@ void print_plan(const BatchPlan& plan) {
     const JobEstimate job = estimate(plan);
     const auto count = static_cast<std::int64_t>(plan.frames.size());
     fmt::print("scene {}\n", printable(plan.scene.file.string()));
-    fmt::print("picture {}x{} px", output.width, output.height);
+    fmt::print("frame {}x{} px", output.width, output.height);
     if (plan.region.width > 0) {
         fmt::print(", region {},{},{},{}", plan.region.x, plan.region.y, plan.region.width,
                    plan.region.height);
@@ -130,23 +130,23 @@ FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& prog
     const Scene now = scene_at(plan_.scene, time);
     const RenderSettings settings = this->settings(frame);
     if (frame.existing == Existing::keep) refuse_existing(frame.file);
-    const RenderedFrame picture = pipeline_->frame(time, settings, progress);
+    const RenderedFrame rendered = pipeline_->frame(time, settings, progress);
     FrameMetadata metadata = this->metadata(frame, now, settings);
-    metadata.pixel_hash = pixel_hash(picture.beauty);
+    metadata.pixel_hash = pixel_hash(rendered.beauty);
     progress.check();
     write_frame({frame.file, now.output, settings.width, settings.height, settings.region,
                  pipeline_->layer_names(time), frame.existing},
-                picture, metadata);
+                rendered, metadata);
     FrameFigures figures;
     figures.frame = frame.frame;
     figures.file = frame.file;
     figures.seconds = seconds_since(start);
-    figures.render_seconds = picture.statistics.seconds;
-    figures.splats_in = picture.statistics.splats_in;
-    figures.splats_drawn = picture.statistics.splats_drawn;
+    figures.render_seconds = rendered.statistics.seconds;
+    figures.splats_in = rendered.statistics.splats_in;
+    figures.splats_drawn = rendered.statistics.splats_drawn;
     figures.sha256 = metadata.pixel_hash;
     log_detail(fmt::format("frame {}: {} drawn, mean overlap {:.2f}", frame.frame,
-                           human_count(figures.splats_drawn, "splat"), picture.statistics.mean_overlap));
+                           human_count(figures.splats_drawn, "splat"), rendered.statistics.mean_overlap));
     return figures;
 }
 

@@ -97,7 +97,7 @@ Region parse_region(const std::string& text, const OutputParams& output) {
     if (r.empty() || r[0] < 0 || r[1] < 0 || r[2] < 1 || r[3] < 1 || r[0] > output.width - r[2] ||
         r[1] > output.height - r[3]) {
         bad_input("--region", "",
-                  fmt::format("X,Y,W,H inside the picture of {}x{} px", output.width, output.height),
+                  fmt::format("X,Y,W,H inside the frame of {}x{} px", output.width, output.height),
                   "'" + text + "'");
     }
     return {r[0], r[1], r[2], r[3]};

@@ -107,11 +107,11 @@ void add_batch(CLI::App& app, Invocation& call) {
     app.add_option("SCENE", call.input, "A scene; without --batch also a picture, mesh or splat file");
     add_value(app, "-f,--frames", batch.frames, "1-100,120,200-300x2", "Frames to render");
     add_value(app, "-o,--output", batch.output, "PATTERN", "Frame files, such as frames/shot.####.exr");
-    add_value(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the picture");
+    add_value(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the frame");
     add_assignments(app, batch.assignments);
     add_value(app, "--layers", batch.layers, "A,B", "Renders only these layers");
     add_value(app, "--memory", batch.memory_gib, "GiB", "Limit of the renderer's working memory");
-    add_value(app, "--region", batch.region, "X,Y,W,H", "Part of the picture, from the top left, in pixels");
+    add_value(app, "--region", batch.region, "X,Y,W,H", "Part of the frame, from the top left, in pixels");
     app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
     app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
     app.add_flag("--dry-run", batch.dry_run, "Says what would be done, and does nothing");
@@ -126,7 +126,7 @@ void add_screenshot(CLI::App& app, Invocation& call) {
     add_value(app, "--size", shot.size, "WxH", "With --screenshot: its size in pixels (default: 960x540)");
     add_value(app, "--frame", shot.frame, "N", "With --screenshot: the frame (default: the first)");
     app.add_flag("--ui", shot.ui, "With --screenshot: the whole window with its panels");
-    app.add_flag("--settled", shot.settled, "With --screenshot: the final picture, not the preview");
+    app.add_flag("--settled", shot.settled, "With --screenshot: the final frame, not the preview");
     app.add_flag("--opengl", shot.opengl, "With --screenshot: a preview drawn by OpenGL on any machine");
 }
 
@@ -211,10 +211,10 @@ void add_reports(CLI::App& app, Invocation& call) {
     add_value(info, "FILE", call.info.file, "FILE", "Scene, mesh, picture, frame or splat file")->required();
     info.add_flag("--json", call.info.json, "Prints JSON");
 
-    CLI::App& compare = add_command(app, call, "compare", "Compares the linear light of two pictures",
+    CLI::App& compare = add_command(app, call, "compare", "Compares the linear light of two images",
                                     [&call] { return run_compare(call.compare); });
-    add_value(compare, "A", call.compare.a, "A", "A picture")->required();
-    add_value(compare, "B", call.compare.b, "B", "A picture of the same size")->required();
+    add_value(compare, "A", call.compare.a, "A", "An image")->required();
+    add_value(compare, "B", call.compare.b, "B", "An image of the same size")->required();
     compare.add_flag("--json", call.compare.json, "Prints JSON");
     add_value(compare, "--max-difference", call.compare.max_difference, "X",
               "Largest difference allowed in any channel; beyond it the exit code is 3");
@@ -272,7 +272,7 @@ void refuse_without_screenshot(const ScreenshotOptions& shot) {
     if (option) bad_input(option, "", "--screenshot OUT.png beside it", "none");
 }
 
-/// The window, or a picture of it.
+/// The window, or a screenshot of it.
 int run_window(Invocation& call) {
     ViewerOptions viewer{call.input, {}, call.batch_options.cache};
     for (const std::string& text : call.batch_options.assignments)

@@ -1,4 +1,4 @@
-// compare: how far two pictures are apart, in linear premultiplied light.
+// compare: how far two images are apart, in linear premultiplied light.
 #include "compare.h"
 
 #include <limits>

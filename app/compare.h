@@ -1,4 +1,4 @@
-// compare: how far two pictures are apart. Prints results to stdout, everything else to stderr, and returns
+// compare: how far two images are apart. Prints results to stdout, everything else to stderr, and returns
 // the exit code.
 #pragma once
 

@@ -42,7 +42,7 @@ std::int64_t splats_of(const SetCache& cache, const SourceParams& source) {
     return static_cast<std::int64_t>(expected_kept(lattice, meshes, max_distance));
 }
 
-std::int64_t picture_bytes(const BatchPlan& plan) {
+std::int64_t frame_bytes(const BatchPlan& plan) {
     const OutputParams& output = plan.scene.output;
     const bool whole = plan.region.width == 0;
     const std::int64_t pixels = whole ? output.width * output.height : plan.region.width * plan.region.height;
@@ -63,7 +63,7 @@ JobEstimate estimate(const BatchPlan& plan) {
     }
     std::int64_t screen = job.splats * screen_bytes;
     if (plan.memory_limit_bytes > 0) screen = std::min(screen, plan.memory_limit_bytes);
-    job.bytes = program_bytes + job.splats * (set_bytes + shaded_bytes) + screen + picture_bytes(plan);
+    job.bytes = program_bytes + job.splats * (set_bytes + shaded_bytes) + screen + frame_bytes(plan);
     return job;
 }
 

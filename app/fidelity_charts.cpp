@@ -10,7 +10,7 @@
 #include "fidelity/signed_difference.h"
 #include "fidelity_table.h"
 #include "output/encode.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 
 namespace astrosplat {
 namespace {
@@ -73,7 +73,7 @@ std::string power_line(const FrontFidelity& front, std::size_t bands, double top
 
 }  // namespace
 
-std::string picture_url(const Image& linear) {
+std::string image_url(const Image& linear) {
     const FrameFormat format{FrameKind::png,
                              OutputParams::Depth::uint8,
                              OutputParams::Compression::deflate,

@@ -1,5 +1,5 @@
-// The drawings of a fidelity report, to be put into a page: pictures and small vector graphics. In:
-// pictures of linear light and ratios. Out: HTML text; colours of lines and letters are the page's
+// The drawings of a fidelity report, to be put into a page: images and small vector graphics. In:
+// images of linear light and ratios. Out: HTML text; colours of lines and letters are the page's
 // (fidelity_page.html).
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace astrosplat {
 
-/// "data:image/png;base64,...": the picture as displayed.
-std::string picture_url(const Image& linear);
+/// "data:image/png;base64,...": the image as displayed.
+std::string image_url(const Image& linear);
 
 /// The same of displayed value a minus b, mean of the channels: orange where a is brighter, blue where it
 /// is darker, full at a tenth of white.

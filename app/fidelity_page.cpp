@@ -12,7 +12,7 @@
 namespace astrosplat {
 namespace {
 
-// Light and dark by the reader's choice; one column on a phone. Pictures stand on black in both.
+// Light and dark by the reader's choice; one column on a phone. Images stand on black in both.
 constexpr const char* style = R"css(
 :root { color-scheme: light dark; --page: #fbfaf8; --ink: #24211d; --quiet: #75706a; --line: #e3dfd8; --card: #fff;
         --more: #c9640a; --less: #1f6fb8; --met: #2c7a4b; --missed: #b3402e; }
@@ -52,7 +52,7 @@ polyline { fill: none; stroke-width: 2; stroke-linejoin: round; }
 .wipe i { position: absolute; top: 0; bottom: 1.9rem; left: var(--at, 50%); width: 1px; background: #fff9; }
 )css";
 
-// The two pictures over each other, with a line to drag; without scripts they stay side by side.
+// The two images over each other, with a line to drag; without scripts they stay side by side.
 constexpr const char* script = R"js(
 const w = document.querySelector('.wipe'), m = w.querySelectorAll('img');
 m[0].src = document.getElementById('seen').src; m[1].src = document.getElementById('reference').src;
@@ -110,8 +110,8 @@ std::string summary(const std::vector<FidelityRow>& rows) {
 std::string front_section(const FidelityReport& report) {
     std::string html =
         "<h2>Front</h2>\n<p>As rendered, and as the picture looks through the renderer's pixel filter.</p>\n";
-    html += "<div class='columns'>\n" + figure(picture_url(report.front_view), "rendered", "seen") +
-            figure(picture_url(report.front_reference), "picture", "reference") + "</div>\n";
+    html += "<div class='columns'>\n" + figure(image_url(report.front_view), "rendered", "seen") +
+            figure(image_url(report.front_reference), "picture", "reference") + "</div>\n";
     html +=
         "<figure class='wipe' style='margin-top:1.25rem'><img alt=''><img alt=''><i></i><figcaption>rendered "
         "to the left of the line, the "
@@ -143,8 +143,8 @@ std::string charts_section(const FidelityReport& report) {
 
 std::string side_section(const FidelityReport& report) {
     return "<h2>From the side</h2>\n<div class='columns'>\n" +
-           figure(picture_url(report.side_view), "from 60 degrees") +
-           figure(picture_url(report.edge_view), "edge-on") + "</div>\n";
+           figure(image_url(report.side_view), "from 60 degrees") +
+           figure(image_url(report.edge_view), "edge-on") + "</div>\n";
 }
 
 constexpr const char* definitions = R"html(<h2>How it is measured</h2>

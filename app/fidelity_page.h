@@ -1,4 +1,4 @@
-// The page of a fidelity report: numbers against targets, pictures side by side, difference, cells, power
+// The page of a fidelity report: numbers against targets, images side by side, difference, cells, power
 // by scale and the views from the side. One file that asks for nothing from elsewhere.
 #pragma once
 

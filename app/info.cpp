@@ -104,7 +104,7 @@ Report describe_image(const fs::path& file) {
                      {"height", info.height},
                      {"channels", channels}};
     if (info.width != info.whole_width || info.height != info.whole_height) {
-        report["whole_picture"] = {info.whole_width, info.whole_height};
+        report["whole_frame"] = {info.whole_width, info.whole_height};
         report["at"] = {info.x, info.y};
     }
     const auto [frame_hash, pixel_hash] = read_frame_hashes(file);

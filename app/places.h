@@ -1,4 +1,4 @@
-// Where results go: asked before any work is done, so that hours are not spent on a picture nobody can write.
+// Where results go: asked before any work is done, so that hours are not spent on a frame nobody can write.
 #pragma once
 
 #include <filesystem>

@@ -18,7 +18,7 @@
 #include "source/fits.h"
 #include "source/picture.h"
 #include "source/prepared_picture.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 
 namespace astrosplat {
 namespace {
@@ -53,17 +53,17 @@ void write_split(const PrepareOptions& options, const Image& picture, const std:
     const Existing existing = existing_of(options.overwrite);
     Image front = picture;
     cut_with_mask(front, mask);
-    write_linear_picture(options.folder / "front.exr", front, credit, existing);
+    write_linear_image(options.folder / "front.exr", front, credit, existing);
     Image back = picture;
     fill(back, bright_pixels(mask), FillKind::texture, progress);
-    write_linear_picture(options.folder / "back.exr", back, credit, existing);
+    write_linear_image(options.folder / "back.exr", back, credit, existing);
 }
 
 void write_all(const PrepareOptions& options, const PrepareParams& params, const PreparedPicture& result,
                const Image& picture, const Progress& progress) {
     const Existing existing = existing_of(options.overwrite);
     if (options.split) write_split(options, result.image, result.credit, progress);
-    write_linear_picture(options.folder / "picture.exr", picture, result.credit, existing);
+    write_linear_image(options.folder / "picture.exr", picture, result.credit, existing);
     if (params.stars == PrepareParams::Stars::remove)
         write_file_atomically(options.folder / "stars.csv",
                               star_table(result.stars, picture.width, picture.height), existing);

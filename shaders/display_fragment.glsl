@@ -1,29 +1,29 @@
-// A pixel of a picture on the screen: through exposure and view transform, or the difference of two. The transform is
-// that of engine/output/encode.cpp for frames without alpha. What is chosen per picture comes as defines (a software
-// rasteriser runs both sides of a branch): VIEW and VIEW_B of the pictures, TAPS_A and TAPS_B reads per axis, DIFFERENCE,
+// A pixel of a image on the screen: through exposure and view transform, or the difference of two. The transform is
+// that of engine/output/encode.cpp for frames without alpha. What is chosen per image comes as defines (a software
+// rasteriser runs both sides of a branch): VIEW and VIEW_B of the images, TAPS_A and TAPS_B reads per axis, DIFFERENCE,
 // DITHER.
 
 const int VIEW_LINEAR = 0;
 const int VIEW_SRGB = 1;
 const int VIEW_SOFT = 2;
-const int VIEW_NONE = 3;  // the picture holds display values
+const int VIEW_NONE = 3;  // the image holds display values
 
-uniform sampler2D picture_a;  // linear light, premultiplied, top row first
+uniform sampler2D image_a;  // linear light, premultiplied, top row first
 #ifdef DIFFERENCE
-uniform sampler2D picture_b;
+uniform sampler2D image_b;
 uniform float difference_gain;
 #endif
-uniform vec4 place;  // upper left corner of the picture in px from the target's lower left; 1 / size
+uniform vec4 place;  // upper left corner of the image in px from the target's lower left; 1 / size
 uniform float gain;  // 2^exposure
 
 layout(location = 0) out vec4 shown;
 
 // Mean over the pixel of the target, whose upper left corner is uv and whose size is step.
-vec3 read_picture(sampler2D picture, int taps, vec2 uv, vec2 step) {
+vec3 read_image(sampler2D image, int taps, vec2 uv, vec2 step) {
     vec3 sum = vec3(0.0);
     for (int j = 0; j < taps; ++j)
         for (int i = 0; i < taps; ++i)
-            sum += textureLod(picture, uv + step * (vec2(i, j) + 0.5) / float(taps), 0.0).rgb;
+            sum += textureLod(image, uv + step * (vec2(i, j) + 0.5) / float(taps), 0.0).rgb;
     return sum / float(taps * taps);
 }
 
@@ -54,9 +54,9 @@ vec3 dither(uvec2 px) {
 void main() {
     vec2 px = vec2(gl_FragCoord.x - place.x, place.y - gl_FragCoord.y);
     vec2 uv = (px - 0.5) * place.zw;
-    vec3 color = apply_view(VIEW, read_picture(picture_a, TAPS_A, uv, place.zw));
+    vec3 color = apply_view(VIEW, read_image(image_a, TAPS_A, uv, place.zw));
 #ifdef DIFFERENCE
-    vec3 other = apply_view(VIEW_B, read_picture(picture_b, TAPS_B, uv, place.zw));
+    vec3 other = apply_view(VIEW_B, read_image(image_b, TAPS_B, uv, place.zw));
     color = abs(color - other) * difference_gain;
 #endif
 #ifdef DITHER

@@ -1,4 +1,4 @@
-// A shaded splat onto the picture, as engine/render/project.cpp and footprint.cpp do: a point, or with QUADS the corner
+// A shaded splat onto the frame, as engine/render/project.cpp and footprint.cpp do: a point, or with QUADS the corner
 // of a square. Needs blend.glsl, projection.glsl and footprint.glsl. KIND is the number of the group's FoldKind.
 
 const int MAX_LAYERS = 64;

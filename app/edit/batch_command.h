@@ -14,7 +14,7 @@ namespace astrosplat {
 struct BatchCommandOptions {
     std::optional<double> frame;         // empty: the frames of [output]
     std::int64_t width = 0, height = 0;  // px; 0: the resolution of [output]
-    std::optional<Region> region;        // of that picture
+    std::optional<Region> region;        // of that frame
     std::optional<CameraParams> camera;  // a free view instead of the scene's camera
     std::string program = "astrosplat";
 };

@@ -118,7 +118,7 @@ Path orbit_path(const glm::dvec3& middle, const glm::dvec3& start) {
     };
 }
 
-/// The distance shrinks by the same factor at every step of the share: the picture grows evenly.
+/// The distance shrinks by the same factor at every step of the share: the frame fills evenly.
 Path fly_in_path(const glm::dvec3& middle, const glm::dvec3& start) {
     return [=](double share) { return middle + (start - middle) * real::pow(fly_in_share, share); };
 }

@@ -26,7 +26,7 @@ struct Elevation {
     glm::dvec3 direction() const { return level * real::cos(angle) + up * real::sin(angle); }
 };
 
-/// `above`: which way the picture's up is, for a direction along `up` itself.
+/// `above`: which way the view's up is, for a direction along `up` itself.
 Elevation elevation_of(const glm::dvec3& direction, const glm::dvec3& up, const glm::dvec3& above) {
     const double sine = glm::dot(direction, up);
     glm::dvec3 level = direction - up * sine;

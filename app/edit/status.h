@@ -1,4 +1,4 @@
-// What the window has to say: how far the picture is, what layers hold, what jobs run. Filled by the viewer
+// What the window has to say: how far the frame is, what layers hold, what jobs run. Filled by the viewer
 // every frame, only read by the widgets.
 #pragma once
 
@@ -43,15 +43,15 @@ struct LayerStatus {
     std::shared_ptr<const LayerHistograms> histograms;
 };
 
-enum class PictureState { loading, preview, refining, final, failed };
+enum class ViewFrameState { loading, preview, refining, final, failed };
 
-struct PictureStatus {
-    PictureState state = PictureState::loading;
+struct ViewFrameStatus {
+    ViewFrameState state = ViewFrameState::loading;
     std::int64_t shown = 0, total = 0;  // splats in the preview and in the sets
     float progress = 0.0f;              // refining
     double seconds = 0.0;               // final: how long it took
     std::string error;
-    int width = 0, height = 0;  // px of the whole picture, also where a part of it is shown
+    int width = 0, height = 0;  // px of the whole frame, also where a part of it is shown
 };
 
 /// How true the view from the front is to the picture that the splats were made of.
@@ -78,7 +78,7 @@ struct PrepareStatus {
 struct PixelProbe {
     int x = 0, y = 0;
     float rgba[4] = {0, 0, 0, 0};  // linear, premultiplied
-    std::optional<float> depth;    // scene units; of final pictures of scenes that write depth
+    std::optional<float> depth;    // scene units; of final frames of scenes that write depth
 };
 
 struct Snapshot {
@@ -108,7 +108,7 @@ struct Message {
 };
 
 struct Status {
-    PictureStatus picture;
+    ViewFrameStatus view_frame;
     std::optional<FrontStatus> front;          // none: no layer has a picture
     std::optional<PrepareStatus> preparation;  // none: nothing to prepare, or not asked for
     std::vector<LayerStatus> layers;           // as in the scene
@@ -128,8 +128,8 @@ struct Status {
     bool has_ffmpeg = false;
     std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
 
-    double viewport_aspect = 0.0;     // width / height; 0: not known
-    void* picture_texture = nullptr;  // the viewport with the picture in its place, bottom row first
+    double viewport_aspect = 0.0;      // width / height; 0: not known
+    void* viewport_texture = nullptr;  // the viewport with the frame in its place, bottom row first
     std::vector<std::vector<glm::vec2>> overlay_lines;  // camera path, frustum; px of the viewport
 };
 

@@ -20,7 +20,7 @@ CameraParams axis_view(const glm::dvec3& back, const glm::dvec3& up, const Bound
     return camera_params(framed(camera, box, aspect));
 }
 
-/// Field of view, height and clipping of a resolved camera that sees one unit of picture height.
+/// Field of view, height and clipping of a resolved camera that sees one unit of frame height.
 FreeCamera lens_of(const Camera& camera, const CameraParams& params) {
     FreeCamera free;
     free.projection = camera.projection;
@@ -91,7 +91,7 @@ FreeCamera free_camera(const CameraParams& params, const Bounds& box, double asp
     const double distance = std::fmax(least, glm::dot(middle - camera.eye, forward));
     free.pivot = params.position && !params.rotation ? params.target : camera.eye + forward * distance;
     free.up = params.up;
-    // A rolled or freely turned camera: its own up is up, or the picture would jump.
+    // A rolled or freely turned camera: its own up is up, or the frame would jump.
     if (glm::dot(view_axes(free).up, camera.world_from_camera[1]) < 1.0 - 1e-12)
         free.up = camera.world_from_camera[1];
     return free;

@@ -12,7 +12,7 @@
 namespace astrosplat {
 
 /// What a view looks through at a frame. `box`: the visible layers' bounds in world space, which a scene
-/// camera without position and the front, top and side views frame. `aspect` = width / height of the picture.
+/// camera without position and the front, top and side views frame. `aspect` = width / height of the frame.
 /// Front looks along -z, side along -x, top along -y with -z up, all with parallel rays.
 CameraParams view_camera(const Scene& scene, const ViewState& view, const Bounds& box, double aspect);
 
@@ -38,12 +38,12 @@ CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, do
 
 /// What it shows grown upwards and downwards, or cut, to `factor` times the height, at the same scale.
 FreeCamera with_height(const FreeCamera& camera, double factor);
-/// The whole box in the picture, seen from the same direction; the pivot is its middle.
+/// The whole box in the frame, seen from the same direction; the pivot is its middle.
 FreeCamera framed(const FreeCamera& camera, const Bounds& box, double aspect);
 /// The whole box seen diagonally from above, with the lens of `camera`.
 FreeCamera three_quarter_view(const FreeCamera& camera, const Bounds& box, double aspect);
 
-/// Unit vectors of the picture in world space.
+/// Unit vectors of the frame in world space.
 struct ViewAxes {
     glm::dvec3 right, up, forward;
 };

@@ -54,11 +54,11 @@ struct ViewState : PanelSizes {
     FreeCamera free;
     bool lock_to_camera = false;  // moving the mouse edits the scene's camera
     SizeMode size = SizeMode::fit;
-    glm::dvec2 pan_px{0.0};  // 1:1: the picture's middle from the viewport's
-    double zoom = 1.0;       // 1:1: screen px per picture px
+    glm::dvec2 pan_px{0.0};  // 1:1: the frame's middle from the viewport's
+    double zoom = 1.0;       // 1:1: screen px per frame px
 
     CompareMode compare = CompareMode::a;
-    float wipe = 0.5f;  // 0..1 of the picture's width; A lies to the left
+    float wipe = 0.5f;  // 0..1 of the frame's width; A lies to the left
     float difference_gain = 1.0f;
     std::filesystem::path reference;  // picture to compare with
 
@@ -67,7 +67,7 @@ struct ViewState : PanelSizes {
     bool gate = true, safe_areas = false, camera_path = true;
     PreviewEngine engine = PreviewEngine::automatic;
     float preview_share = 0.0f;  // 0: sized to hold the frame rate; else 0..1 of every layer
-    bool settle = true;          // the final picture follows by itself
+    bool settle = true;          // the final frame follows by itself
 
     std::set<std::string> solo;  // names of layers; empty: all
 

@@ -1,4 +1,4 @@
-// Background by clearing, then the picture, or its parts on both sides of the wipe, each cut to its rectangle
+// Background by clearing, then the image, or its parts on both sides of the wipe, each cut to its rectangle
 // and drawn by a program made for exactly what it shows: a pixel costs one read and one curve.
 #include "gl/display.h"
 
@@ -44,13 +44,13 @@ ProgramSource source_of(const Variant& v) {
 
 /// A texture and how it is read: pixels one to one, or at least twice as large, as they are; else smoothed,
 /// shrunk ones with several taps.
-struct Picture {
+struct ShownImage {
     GLuint texture = 0;
     GLenum filter = GL_NEAREST;
     int taps = 1;
 };
 
-Picture picture_of(GLuint texture, const DisplaySettings& s) {
+ShownImage image_of(GLuint texture, const DisplaySettings& s) {
     constexpr int most_taps = 4;
     GLint width = 0;
     glBindTexture(GL_TEXTURE_2D, texture);
@@ -60,10 +60,10 @@ Picture picture_of(GLuint texture, const DisplaySettings& s) {
     return {texture, GL_LINEAR, std::clamp(static_cast<int>(std::ceil(rate / 2.0)), 1, most_taps)};
 }
 
-void bind(int unit, const Picture& picture) {
-    bind_texture(unit, GL_TEXTURE_2D, picture.texture);
+void bind(int unit, const ShownImage& image) {
+    bind_texture(unit, GL_TEXTURE_2D, image.texture);
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    set_sampling(GL_TEXTURE_2D, picture.filter);
+    set_sampling(GL_TEXTURE_2D, image.filter);
     glActiveTexture(GL_TEXTURE0);
 }
 
@@ -100,8 +100,8 @@ struct Display::State {
         std::unique_ptr<GlProgram>& entry = programs[variant];
         if (!entry) {
             entry = std::make_unique<GlProgram>(source_of(variant));
-            entry->set_sampler("picture_a", 0);
-            entry->set_sampler("picture_b", 1);
+            entry->set_sampler("image_a", 0);
+            entry->set_sampler("image_b", 1);
         }
         return *entry;
     }
@@ -132,17 +132,17 @@ struct Display::State {
     }
 
     void draw_side(const PixelRect& r, bool b, const DisplaySettings& s) {
-        const Picture picture = picture_of(b ? s.b : s.a, s);
-        bind(0, picture);
+        const ShownImage image = image_of(b ? s.b : s.a, s);
+        bind(0, image);
         Variant variant;
         variant.view_a = b && s.b_is_display ? view_none : view_number(s.view);
-        variant.taps_a = picture.taps;
+        variant.taps_a = image.taps;
         variant.dither = s.dither;
         draw(r, variant, s);
     }
 
     void draw_difference(const PixelRect& r, const DisplaySettings& s) {
-        const Picture a = picture_of(s.a, s), b = picture_of(s.b, s);
+        const ShownImage a = image_of(s.a, s), b = image_of(s.b, s);
         bind(0, a);
         bind(1, b);
         const int view = view_number(s.view);

@@ -1,4 +1,4 @@
-// From linear pictures to what the screen shows: exposure, view transform over black, A/B wipe,
+// From linear images to what the screen shows: exposure, view transform over black, A/B wipe,
 // difference, letterbox.
 #pragma once
 
@@ -11,18 +11,18 @@
 
 namespace astrosplat {
 
-/// How a picture is shown. `view` is not automatic.
+/// How a image is shown. `view` is not automatic.
 struct DisplaySettings {
     OutputParams::View view = OutputParams::View::srgb;
     float exposure = 0.0f;  // stops
     unsigned a = 0, b = 0;  // textures; b 0: only a
     enum class Mode { a, wipe, b, difference } mode = Mode::a;
-    float wipe = 0.5f;  // 0..1 of the picture's width
+    float wipe = 0.5f;  // 0..1 of the image's width
     float difference_gain = 1.0f;
-    bool b_is_display = false;  // b holds display values (a reference picture), not linear light
-    // Where the picture lies in the target, px from its upper left; may be larger than the target (1:1).
+    bool b_is_display = false;  // b holds display values (a reference image), not linear light
+    // Where the image lies in the target, px from its upper left; may be larger than the target (1:1).
     float x = 0, y = 0, width = 0, height = 0;
-    float background[3] = {0, 0, 0};  // around the picture, display values
+    float background[3] = {0, 0, 0};  // around the image, display values
     bool dither = false;              // as 8-bit files are: no bands in dark gradients
     std::uint64_t content = 0;        // another number whenever the pixels of a or b are; 0: not known
     bool operator==(const DisplaySettings&) const = default;

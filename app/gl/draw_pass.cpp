@@ -118,7 +118,7 @@ void DrawPass::draw(const DrawInput& input, ShadedBuffers& splats, const Footpri
     if (input.count == 0) return;
     upload_block(input);
     footprints.bind(profiles_unit, nodes_unit);
-    // Points whose centre is outside the view volume are not drawn, so the volume is wider than the picture.
+    // Points whose centre is outside the view volume are not drawn, so the volume is wider than the frame.
     const float margin_px = 0.5f * widest_point_px_;
     glViewportIndexedf(0, -margin_px, -margin_px, float(input.width) + 2.0f * margin_px,
                        float(input.height) + 2.0f * margin_px);

@@ -1,4 +1,4 @@
-// Drawing the splats of one blend group into the bound picture, blended as the engine folds them.
+// Drawing the splats of one blend group into the bound target, blended as the engine folds them.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ namespace astrosplat {
 inline const std::vector<std::string> splat_vertex_files =
     after_projections({"maths.glsl", "blend.glsl", "footprint.glsl", "splat_vertex.glsl"});
 
-/// One layer of a group: its constants for this picture, its footprints, and where its splats begin.
+/// One layer of a group: its constants for this frame, its footprints, and where its splats begin.
 struct DrawLayer {
     LayerProjection projection;
     FootprintSlot footprint;
@@ -51,7 +51,7 @@ class DrawPass {
     float widest_point_px_ = 1.0f;
 };
 
-/// How the bound picture takes what a group's shaders give, until end_blending().
+/// How the bound target takes what a group's shaders give, until end_blending().
 void begin_blending(FoldKind kind);
 void end_blending();
 

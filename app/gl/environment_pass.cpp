@@ -5,7 +5,7 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "core/real.h"
-#include "gl/picture_texture.h"
+#include "gl/image_texture.h"
 
 namespace astrosplat {
 namespace {

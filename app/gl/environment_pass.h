@@ -1,5 +1,5 @@
-// The environment as the bottom of the picture: the two mip levels that a camera needs as textures, and a
-// pass over the whole picture.
+// The environment as the bottom of the frame: the two mip levels that a camera needs as textures, and a
+// pass over the whole frame.
 #pragma once
 
 #include "camera/camera.h"
@@ -16,7 +16,7 @@ inline const std::vector<std::string> environment_fragment_files =
 class EnvironmentPass {
   public:
     EnvironmentPass();
-    /// Fills the bound picture: colour of the environment, alpha 1.
+    /// Fills the bound target: colour of the environment, alpha 1.
     void draw(const Environment& environment, const Camera& camera);
 
   private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int profile_samples = 256;  // as in splat_vertex.glsl
 constexpr int node_count = shared::NODE_COUNT;
-constexpr std::size_t most_tables = 16;  // more only while one picture needs them
+constexpr std::size_t most_tables = 16;  // more only while one frame needs them
 
 /// Weights of one radius at equal steps of distance from the flat inside's end to the support's.
 void sample_profile(const FootprintTable& table, int node, float* samples) {

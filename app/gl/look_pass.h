@@ -51,7 +51,7 @@ class LookPass {
     std::map<LookLimits, std::unique_ptr<GlProgram>> programs_;  // compiled when first needed
     GlBuffer block_;
     GlTexture map_;
-    GlTarget unused_;  // without a window OpenGL draws nothing where no picture is bound
+    GlTarget unused_;  // without a window OpenGL draws nothing where no target is bound
 };
 
 }  // namespace astrosplat

@@ -26,8 +26,7 @@ void GlTarget::resize(int width, int height, GLenum format) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_.name(), 0);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw std::runtime_error(
-            fmt::format("OpenGL cannot draw into a picture of {} x {} px", width, height));
+        throw std::runtime_error(fmt::format("OpenGL cannot draw into a frame of {} x {} px", width, height));
     width_ = width;
     height_ = height;
 }

@@ -14,7 +14,7 @@
 #include "gl/draw_pass.h"
 #include "gl/environment_pass.h"
 #include "gl/group_splats.h"
-#include "gl/picture_texture.h"
+#include "gl/image_texture.h"
 #include "render/resolve.h"
 
 namespace astrosplat {
@@ -40,12 +40,12 @@ struct FrameGroup {
 bool depends_on_order(FoldKind kind) { return kind == FoldKind::over || kind == FoldKind::general; }
 
 /// Isolated layers that cover, add or absorb do the same drawn straight onto what is behind them.
-bool needs_own_picture(const BlendGroup& group) {
+bool needs_own_target(const BlendGroup& group) {
     if (!group.isolated || group.holdout || group.blend == Blend::absorb) return false;
     return group.absorbs || (group.blend != Blend::over && group.blend != Blend::add);
 }
 
-/// Distance, as splats are sorted, beyond which none that reaches the picture is wider than a point may be.
+/// Distance, as splats are sorted, beyond which none that reaches the frame is wider than a point may be.
 double far_distance(const LayerProjection& p, double radius, double widest_px, int width, int height) {
     const double room_px = 0.5 * widest_px - double(p.margin_px) - 1.0;
     const double diagonal_px = std::hypot(double(width), double(height)) + double(p.margin_px);
@@ -101,7 +101,7 @@ struct GlPreview::State {
     RawSplatStore raw;
     std::map<std::size_t, GroupSplats> groups;  // by place in the frame
     OrderThread orders;
-    GlTarget picture, own_picture;
+    GlTarget frame, own_target;
     GlProgram composite_covering{{{"BLEND 0"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}, {}}};
     GlProgram composite_screen{{{"BLEND 2"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}, {}}};
     GlVertexArray nothing;
@@ -122,7 +122,7 @@ struct GlPreview::State {
     void wait_for_orders(std::vector<FrameGroup>& frame);
     void draw_group(const FrameGroup& group, GroupSplats& splats);
     void composite(const BlendGroup& group);
-    void begin_picture(const Camera& camera, const Environment* sky);
+    void begin_frame(const Camera& camera, const Environment* sky);
 };
 
 std::vector<FrameGroup> GlPreview::State::make_frame(const std::vector<PreviewLayer>& layers,
@@ -188,8 +188,8 @@ void GlPreview::State::wait_for_orders(std::vector<FrameGroup>& frame) {
     }
 }
 
-void GlPreview::State::begin_picture(const Camera& camera, const Environment* sky) {
-    picture.bind();
+void GlPreview::State::begin_frame(const Camera& camera, const Environment* sky) {
+    frame.bind();
     glClearColor(0.0f, 0.0f, 0.0f, sky ? 1.0f : 0.0f);
     glClear(GL_COLOR_BUFFER_BIT);
     if (sky && !sky->faces->empty()) environment.draw(*sky, camera);
@@ -201,16 +201,16 @@ void GlPreview::State::draw_group(const FrameGroup& group, GroupSplats& splats) 
         footprints.prepare(group.falloffs, group.projections[0].margin_px / 4.0f);
     for (std::size_t l = 0; l < group.layers.size(); ++l)
         layers.push_back({group.projections[l], slots[l], splats.first_of(l)});
-    DrawInput input{layers, group.blend.kind, picture.width(), picture.height(), group.ordered, 0, 0};
+    DrawInput input{layers, group.blend.kind, frame.width(), frame.height(), group.ordered, 0, 0};
     input.count = group.ordered ? splats.ordered_count() : splats.shown();
     input.point_count = group.all_far ? input.count : group.ordered ? splats.far_count() : 0;
     draw.draw(input, splats.buffers(), footprints);
 }
 
 void GlPreview::State::composite(const BlendGroup& group) {
-    picture.bind();
+    frame.bind();
     (group.blend == Blend::screen ? composite_screen : composite_covering).use();
-    bind_texture(0, GL_TEXTURE_2D, own_picture.texture());
+    bind_texture(0, GL_TEXTURE_2D, own_target.texture());
     begin_blending(group.blend == Blend::lighten ? FoldKind::lighten : FoldKind::general);
     glBindVertexArray(nothing.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -231,24 +231,24 @@ unsigned GlPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& 
     for (const FrameGroup& group : frame)
         falloffs.insert(falloffs.end(), group.falloffs.begin(), group.falloffs.end());
     state.footprints.prepare(falloffs, pixel_filter);
-    state.picture.resize(width, height, GL_RGBA32F);
-    state.begin_picture(camera, environment);
+    state.frame.resize(width, height, GL_RGBA32F);
+    state.begin_frame(camera, environment);
     state.wait_for_orders(frame);
     for (std::size_t g = 0; g < frame.size(); ++g) {
-        const bool own = needs_own_picture(frame[g].blend);
+        const bool own = needs_own_target(frame[g].blend);
         if (own) {
-            state.own_picture.resize(width, height, GL_RGBA32F);
-            state.own_picture.bind();
+            state.own_target.resize(width, height, GL_RGBA32F);
+            state.own_target.bind();
             glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
             glClear(GL_COLOR_BUFFER_BIT);
         } else {
-            state.picture.bind();
+            state.frame.bind();
         }
         state.draw_group(frame[g], state.groups[g]);
         if (own) state.composite(frame[g].blend);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    return state.picture.texture();
+    return state.frame.texture();
 }
 
 bool GlPreview::sorting() const { return state_->sorting; }
@@ -256,10 +256,10 @@ bool GlPreview::sorting() const { return state_->sorting; }
 void GlPreview::wait_for_order() { state_->orders.wait(std::chrono::hours(1)); }
 
 Image GlPreview::read() const {
-    const GlTarget& picture = state_->picture;
-    Image image = make_image(picture.width(), picture.height(), 4);
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.framebuffer());
-    glReadPixels(0, 0, picture.width(), picture.height(), GL_RGBA, GL_FLOAT, image.pixels.data());
+    const GlTarget& frame = state_->frame;
+    Image image = make_image(frame.width(), frame.height(), 4);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, frame.framebuffer());
+    glReadPixels(0, 0, frame.width(), frame.height(), GL_RGBA, GL_FLOAT, image.pixels.data());
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
     return image;
 }

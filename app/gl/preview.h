@@ -1,5 +1,5 @@
-// The picture in motion, drawn by OpenGL: raw splats in GPU memory, the look evaluated there
-// (shaders/shared), a share of every layer, sorted, into an RGBA32F picture (DESIGN 10).
+// The frame in motion, drawn by OpenGL: raw splats in GPU memory, the look evaluated there
+// (shaders/shared), a share of every layer, sorted, into an RGBA32F frame (DESIGN 10).
 #pragma once
 
 #include <cstdint>
@@ -54,7 +54,7 @@ class GlPreview {
     GlPreview();
     ~GlPreview();
 
-    /// Draws into its own picture of width x height px and returns the texture (RGBA32F, linear,
+    /// Draws into its own frame of width x height px and returns the texture (RGBA32F, linear,
     /// premultiplied, top row first). Layers in file order. Throws InputError where a look cannot be applied.
     unsigned draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
                   const Environment* environment, int width, int height, float pixel_filter);
@@ -62,7 +62,7 @@ class GlPreview {
     bool sorting() const;
     /// For tests and screenshots: waits for the sorting, so that the next draw() is exact.
     void wait_for_order();
-    /// The picture as it is, read back.
+    /// The frame as it is, read back.
     Image read() const;
     std::int64_t shown() const;  // splats of the last draw, before the look dropped any
 

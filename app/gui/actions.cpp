@@ -108,7 +108,7 @@ const Action table[] = {
     below_line(flip<&ViewState::gate>("View", "Gate", plain('G'))),
     flip<&ViewState::safe_areas>("View", "Safe areas"),
     flip<&ViewState::camera_path>("View", "Camera path"),
-    flip<&ViewState::settle>("View", "Settle to the final picture"),
+    flip<&ViewState::settle>("View", "Settle to the final frame"),
     below_line(flip<&ViewState::timeline_open>("View", "Timeline")),
     flip<&ViewState::snapshots_open>("View", "Snapshots"),
     flip<&ViewState::panels>("View", "Panels", plain(key_code::f11)),

@@ -40,7 +40,7 @@ bool word_button(GuiFrame& frame, const char* word, float x, float y) {
 const char* button_word(const Status& status) {
     std::size_t index = 0;
     if (loading_layer(status, index)) return "Cancel";
-    return status.picture.state == PictureState::failed ? "Copy" : nullptr;
+    return status.view_frame.state == ViewFrameState::failed ? "Copy" : nullptr;
 }
 
 void press_button(GuiFrame& frame) {
@@ -48,36 +48,35 @@ void press_button(GuiFrame& frame) {
     if (loading_layer(frame.status, index))
         request(frame, Command::Kind::cancel_load, index);
     else
-        frame.requested.push_back({Command::Kind::copy_text, {}, frame.status.picture.error, 0});
+        frame.requested.push_back({Command::Kind::copy_text, {}, frame.status.view_frame.error, 0});
 }
 
 }  // namespace
 
 BadgeText badge_text(const Scene& scene, const Status& status) {
-    const PictureStatus& picture = status.picture;
+    const ViewFrameStatus& shown = status.view_frame;
     std::size_t index = 0;
     if (const LayerStatus* layer = loading_layer(status, index)) {
         const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";
         return {fmt::format("Generating {} {:.0f} %", name, layer->progress * 100.0f),
                 layer->found > 0 ? splat_count(layer->found) : "", color::accent};
     }
-    const std::string total = splat_count(picture.total);
-    switch (picture.state) {
-        case PictureState::loading:
+    const std::string total = splat_count(shown.total);
+    switch (shown.state) {
+        case ViewFrameState::loading:
             return {"Loading", "", color::accent};
-        case PictureState::refining:
-            return {fmt::format("Refining {:.0f} %", picture.progress * 100.0f), total, color::attention};
-        case PictureState::final:
-            return {fmt::format("Final {:.1f} s", picture.seconds), total, color::good};
-        case PictureState::failed:
-            return {"Cannot render: " + picture.error, "", color::error};
-        case PictureState::preview:
+        case ViewFrameState::refining:
+            return {fmt::format("Refining {:.0f} %", shown.progress * 100.0f), total, color::attention};
+        case ViewFrameState::final:
+            return {fmt::format("Final {:.1f} s", shown.seconds), total, color::good};
+        case ViewFrameState::failed:
+            return {"Cannot render: " + shown.error, "", color::error};
+        case ViewFrameState::preview:
             break;
     }
-    if (picture.shown >= picture.total) return {"Preview", total, color::accent};
-    const bool little =
-        static_cast<double>(picture.shown) < little_shown * static_cast<double>(picture.total);
-    return {fmt::format("Preview {} of {}", short_count(picture.shown), short_count(picture.total)),
+    if (shown.shown >= shown.total) return {"Preview", total, color::accent};
+    const bool little = static_cast<double>(shown.shown) < little_shown * static_cast<double>(shown.total);
+    return {fmt::format("Preview {} of {}", short_count(shown.shown), short_count(shown.total)),
             little ? "less than a tenth of the splats" : "", color::accent, little};
 }
 

@@ -1,4 +1,4 @@
-// The widgets: everything of the window but the picture (VIEWER.md). In: the document, what the person looks
+// The widgets: everything of the window but the frame (VIEWER.md). In: the document, what the person looks
 // at, the viewer's status. Out: edits of the document and the view state, and commands for the viewer. No
 // OpenGL.
 #pragma once

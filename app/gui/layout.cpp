@@ -54,14 +54,14 @@ Layout make_layout(const ViewState& view, float width_px, float height_px, float
     return layout;
 }
 
-Rect place_picture(const ViewState& view, const Rect& viewport, int width_px, int height_px) {
+Rect place_frame(const ViewState& view, const Rect& viewport, int width_px, int height_px) {
     const double w = std::max(width_px, 1), h = std::max(height_px, 1);
     double scale = view.zoom, shift_x = view.pan_px.x, shift_y = view.pan_px.y;
     if (view.size == SizeMode::fit) {
         scale = std::min(viewport.width / w, viewport.height / h);
         shift_x = shift_y = 0.0;
     }
-    // Whole pixels, so that a picture of the viewport's own size is shown pixel by pixel.
+    // Whole pixels, so that a frame of the viewport's own size is shown pixel by pixel.
     const double x = viewport.x + std::floor((viewport.width - w * scale) * 0.5 + shift_x + 0.5);
     const double y = viewport.y + std::floor((viewport.height - h * scale) * 0.5 + shift_y + 0.5);
     return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(w * scale),

@@ -1,4 +1,4 @@
-// Where the parts of the window and the picture in it lie. In: sizes and the view. Out: rectangles.
+// Where the parts of the window and the frame in it lie. In: sizes and the view. Out: rectangles.
 #pragma once
 
 #include "edit/view_state.h"
@@ -20,8 +20,8 @@ struct Layout {
 };
 Layout make_layout(const ViewState& view, float width_px, float height_px, float content_scale);
 
-/// Where a picture of this size is shown, px of the window. Fit: as large as the viewport allows, in its
+/// Where a frame of this size is shown, px of the window. Fit: as large as the viewport allows, in its
 /// middle; 1:1: zoomed and moved as `view` says. It may reach beyond the viewport.
-Rect place_picture(const ViewState& view, const Rect& viewport, int width_px, int height_px);
+Rect place_frame(const ViewState& view, const Rect& viewport, int width_px, int height_px);
 
 }  // namespace astrosplat

@@ -27,7 +27,7 @@ struct Group {
 };
 
 const Group& mouse_group() {
-    static const Group group{"Mouse in the picture",
+    static const Group group{"Mouse in the view",
                              {{"Orbit about the pivot", "Left"},
                               {"Move", "Middle, Shift+Left"},
                               {"Nearer, to the cursor", "Wheel"},

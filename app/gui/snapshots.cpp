@@ -13,7 +13,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr float picture_width = 128, picture_height = 72, card_height = 108, margin = 8;
+constexpr float thumbnail_width = 128, thumbnail_height = 72, card_height = 108, margin = 8;
 
 std::string snapshot_line(const Snapshot& snapshot) {
     const std::string splats = short_count(snapshot.splats);
@@ -23,7 +23,7 @@ std::string snapshot_line(const Snapshot& snapshot) {
 
 // The thumbnail as large as its frame allows; its first row is the lowest.
 void draw_thumbnail(ImDrawList* list, const Snapshot& snapshot, ImVec2 corner) {
-    const float w = px(picture_width), h = px(picture_height);
+    const float w = px(thumbnail_width), h = px(thumbnail_height);
     list->AddRectFilled(corner, {corner.x + w, corner.y + h}, IM_COL32_BLACK, px(3));
     if (!snapshot.thumbnail || snapshot.aspect <= 0) return;
     const float shown_w = std::min(w, h * snapshot.aspect), shown_h = shown_w / snapshot.aspect;
@@ -53,19 +53,19 @@ void draw_card(GuiFrame& frame, std::size_t index) {
     const Snapshot& snapshot = frame.status.snapshots[index];
     ImGui::PushID(static_cast<int>(index));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    if (ImGui::InvisibleButton("card", {px(picture_width), px(card_height)}))
+    if (ImGui::InvisibleButton("card", {px(thumbnail_width), px(card_height)}))
         request(frame, Command::Kind::compare_snapshot, index);
     note_item(frame, fmt::format("snapshot {}", index));
     const bool hovered = ImGui::IsItemHovered(), is_b = frame.status.b_snapshot == static_cast<int>(index);
     tooltip("Click: compare as B. Right click: restore, delete");
     ImDrawList* list = ImGui::GetWindowDrawList();
     draw_thumbnail(list, snapshot, corner);
-    const ImVec2 end{corner.x + px(picture_width), corner.y + px(picture_height)};
+    const ImVec2 end{corner.x + px(thumbnail_width), corner.y + px(thumbnail_height)};
     if (is_b || hovered) list->AddRect(corner, end, is_b ? color::accent : color::dim, px(3), 0, px(1.5f));
     ImGui::PushFont(small_font());
     const std::string name = (is_b ? "B  " : "") + snapshot.name;
     list->AddText({corner.x, end.y + px(3)}, is_b ? color::accent : color::text,
-                  fitting(name, px(picture_width)).c_str());
+                  fitting(name, px(thumbnail_width)).c_str());
     list->AddText({corner.x, end.y + px(18)}, color::dim, snapshot_line(snapshot).c_str());
     ImGui::PopFont();
     card_menu(frame, index);
@@ -73,9 +73,9 @@ void draw_card(GuiFrame& frame, std::size_t index) {
 }
 
 void draw_take_button(GuiFrame& frame) {
-    const ImVec2 corner = ImGui::GetCursorScreenPos(), size{px(72), px(picture_height)};
+    const ImVec2 corner = ImGui::GetCursorScreenPos(), size{px(72), px(thumbnail_height)};
     if (icon_button("take snapshot", Icon::plus, size, px(14), color::dim,
-                    "Keep the look and the picture as they are now"))
+                    "Keep the look and the view as they are now"))
         request(frame, Command::Kind::take_snapshot);
     note_item(frame, "take snapshot");
     ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3));
@@ -93,8 +93,8 @@ void draw_snapshots(GuiFrame& frame, const Rect& area) {
     }
     if (frame.status.snapshots.empty()) {
         ImGui::SameLine(0, px(12));
-        row_text("Snapshots keep a look with its picture, to compare with and to come back to.",
-                 px(picture_height), color::dim);
+        row_text("Snapshots keep a look with its thumbnail, to compare with and to come back to.",
+                 px(thumbnail_height), color::dim);
     }
     ImGui::EndChild();
 }

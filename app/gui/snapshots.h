@@ -1,4 +1,4 @@
-// The strip of snapshots under the picture: a thumbnail, its name, splats and time of each; clicked it
+// The strip of snapshots under the frame: a thumbnail, its name, splats and time of each; clicked it
 // becomes B.
 #pragma once
 

@@ -35,7 +35,7 @@ int choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segme
 void view_choice(GuiFrame& frame) {
     const int clicked = choice(frame, "view",
                                {{"Camera", "Through the scene's camera (0)"},
-                                {"Free", "A camera of the window, the scene's stays (drag in the picture)"},
+                                {"Free", "A camera of the window, the scene's stays (drag in the view)"},
                                 {"Front", "Along z, without perspective (1)"},
                                 {"Top", "From above (7)"},
                                 {"Side", "Along x (3)"}},
@@ -46,8 +46,8 @@ void view_choice(GuiFrame& frame) {
 void size_choice(GuiFrame& frame) {
     const int clicked =
         choice(frame, "size",
-               {{"Fit", "The picture at the size of the window (Z)"},
-                {"1:1", "The picture at the size of the output: wheel zooms, middle drag moves (Z)"}},
+               {{"Fit", "The frame at the size of the window (Z)"},
+                {"1:1", "The frame at the size of the output: wheel zooms, middle drag moves (Z)"}},
                static_cast<int>(frame.view.size));
     if (clicked >= 0 && clicked != static_cast<int>(frame.view.size)) toggle_one_to_one(frame);
 }
@@ -86,7 +86,7 @@ void combo(const char* id, Enum& value, const std::vector<const char*>& names, f
 void display_control(GuiFrame& frame) {
     combo("##display", frame.view.display, {"As output", "Linear", "sRGB", "Soft"}, px(84));
     note_item(frame, "display");
-    tooltip("How the picture's linear light is shown; rendered files follow [output] view");
+    tooltip("How the frame's linear light is shown; rendered files follow [output] view");
 }
 
 void exposure_control(GuiFrame& frame) {

@@ -1,4 +1,4 @@
-// The row of tools over the picture: from where it is seen, at what size, compared with what, and how shown.
+// The row of tools over the frame: from where it is seen, at what size, compared with what, and how shown.
 #pragma once
 
 #include "gui/gui_frame.h"

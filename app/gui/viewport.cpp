@@ -1,4 +1,4 @@
-// Picture and mouse of the viewport.
+// Frame and mouse of the viewport.
 #include "gui/viewport.h"
 
 #include <imgui.h>
@@ -17,20 +17,20 @@ constexpr float wipe_grip = 6;  // px at either side
 constexpr double zoom_least = 1.0 / 16, zoom_most = 32;
 constexpr double notch_zoom = 1.189207115002721;  // a quarter of doubling, for a notch of the wheel
 
-bool near_wipe(const GuiFrame& frame, const Rect& picture) {
+bool near_wipe(const GuiFrame& frame, const Rect& frame_area) {
     if (frame.view.compare != CompareMode::wipe) return false;
-    const float edge = picture.x + picture.width * frame.view.wipe;
+    const float edge = frame_area.x + frame_area.width * frame.view.wipe;
     return std::fabs(ImGui::GetIO().MousePos.x - edge) <= px(wipe_grip);
 }
 
-void draw_picture(const GuiFrame& frame, const Rect& area) {
+void draw_frame_in_view(const GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    if (!frame.status.picture_texture) {
+    if (!frame.status.viewport_texture) {
         list->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height}, IM_COL32_BLACK);
         return;
     }
     // The texture's first row is the lowest.
-    list->AddImage(frame.status.picture_texture, {area.x, area.y},
+    list->AddImage(frame.status.viewport_texture, {area.x, area.y},
                    {area.x + area.width, area.y + area.height}, {0, 1}, {1, 0});
 }
 
@@ -50,21 +50,21 @@ ViewportInput::Drag drag_of(int button, bool shift, bool alt) {
     return button == 2 ? Drag::pan : Drag::look;
 }
 
-void Viewport::begin_drag(GuiFrame& frame, const Rect& picture) {
+void Viewport::begin_drag(GuiFrame& frame, const Rect& frame_area) {
     const ImGuiIO& io = ImGui::GetIO();
     for (int button = 0; button < 3; ++button)
         if (io.MouseClicked[button]) button_ = button;
-    input_.drag = button_ == 0 && near_wipe(frame, picture) ? ViewportInput::Drag::wipe
-                                                            : drag_of(button_, io.KeyShift, io.KeyAlt);
+    input_.drag = button_ == 0 && near_wipe(frame, frame_area) ? ViewportInput::Drag::wipe
+                                                               : drag_of(button_, io.KeyShift, io.KeyAlt);
     input_.drag_begins = true;
-    moves_picture_ = input_.drag == ViewportInput::Drag::pan && frame.view.size == SizeMode::one_to_one;
+    moves_frame_ = input_.drag == ViewportInput::Drag::pan && frame.view.size == SizeMode::one_to_one;
 }
 
-// 1:1: pan and wheel move the picture in the window; the camera stays.
-void Viewport::move_picture(GuiFrame& frame, const Rect& area) {
+// 1:1: pan and wheel move the frame in the window; the camera stays.
+void Viewport::move_frame(GuiFrame& frame, const Rect& area) {
     ViewState& view = frame.view;
     if (view.size != SizeMode::one_to_one) return;
-    if (moves_picture_ && input_.drag == ViewportInput::Drag::pan) {
+    if (moves_frame_ && input_.drag == ViewportInput::Drag::pan) {
         view.pan_px += input_.delta_px;
         input_.drag = ViewportInput::Drag::none;
         input_.drag_begins = false;
@@ -82,29 +82,29 @@ void Viewport::move_picture(GuiFrame& frame, const Rect& area) {
     input_.wheel = 0.0f;
 }
 
-void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& picture) {
+void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     const ImGuiIO& io = ImGui::GetIO();
     const ViewportInput::Drag before = input_.drag;
-    const bool moved_before = moves_picture_;
+    const bool moved_before = moves_frame_;
     input_ = {};
     ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::InvisibleButton("picture", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)},
+    ImGui::InvisibleButton("frame in view", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                                ImGuiButtonFlags_MouseButtonRight);
-    note_item(frame, "picture");
+    note_item(frame, "frame in view");
     ImGui::SetItemAllowOverlap();
     input_.hovered = ImGui::IsItemHovered();
     input_.mouse_px = {io.MousePos.x - area.x, io.MousePos.y - area.y};
     input_.double_click = input_.hovered && io.MouseDoubleClicked[0] && !io.KeyAlt && !io.KeyShift;
     if (input_.hovered || ImGui::IsItemActive()) input_.wheel = io.MouseWheel;
     if (ImGui::IsItemActivated()) {
-        begin_drag(frame, picture);
+        begin_drag(frame, frame_area);
     } else if (ImGui::IsItemActive()) {
         input_.drag = moved_before ? ViewportInput::Drag::pan : before;
         input_.delta_px = {io.MouseDelta.x, io.MouseDelta.y};
     } else {
         input_.drag_ends = before != ViewportInput::Drag::none;
-        moves_picture_ = false;
+        moves_frame_ = false;
     }
     if (input_.drag == ViewportInput::Drag::look) {
         input_.fly = fly_direction();
@@ -112,25 +112,26 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& picture
     }
     const bool wiping = input_.drag == ViewportInput::Drag::wipe;
     if (wiping)
-        frame.view.wipe = std::clamp((io.MousePos.x - picture.x) / std::max(picture.width, 1.0f), 0.0f, 1.0f);
-    if (wiping || (input_.hovered && near_wipe(frame, picture)))
+        frame.view.wipe =
+            std::clamp((io.MousePos.x - frame_area.x) / std::max(frame_area.width, 1.0f), 0.0f, 1.0f);
+    if (wiping || (input_.hovered && near_wipe(frame, frame_area)))
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    move_picture(frame, area);
+    move_frame(frame, area);
 }
 
 void Viewport::draw(GuiFrame& frame, const Rect& area) {
     const auto place = [&] {
-        const PictureStatus& picture = frame.status.picture;
-        return picture.width > 0 ? place_picture(frame.view, area, picture.width, picture.height) : area;
+        const ViewFrameStatus& shown = frame.status.view_frame;
+        return shown.width > 0 ? place_frame(frame.view, area, shown.width, shown.height) : area;
     };
     read_mouse(frame, area, place());
-    const Rect picture = place();
+    const Rect frame_area = place();
     ImGui::PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
-    draw_picture(frame, area);
+    draw_frame_in_view(frame, area);
     draw_overlay_lines(frame, area);
-    draw_gate(frame, area, picture);
-    draw_wipe(frame, area, picture);
-    draw_view_line(frame, area, picture);
+    draw_gate(frame, area, frame_area);
+    draw_wipe(frame, area, frame_area);
+    draw_view_line(frame, area, frame_area);
     draw_front_badge(frame, area, draw_badge(frame, area));
     ImGui::PopClipRect();
 }

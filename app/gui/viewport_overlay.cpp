@@ -1,4 +1,4 @@
-// Marks over the picture: thin, grey, and only those that were asked for; and the badge in its corner.
+// Marks over the frame: thin, grey, and only those that were asked for; and the badge in its corner.
 #include "gui/viewport_overlay.h"
 
 #include <fmt/format.h>
@@ -28,13 +28,14 @@ Rect shrunk(const Rect& r, float share) {
 // By ViewKind.
 constexpr const char* view_names[] = {"Camera", "Free view, 0 returns to the camera", "Front", "Top", "Side"};
 
-// The part of the picture that the output shows: as high as it, as the camera's angle is vertical.
-Rect gate_of(const Scene& scene, const Rect& picture) {
-    const float width = std::round(picture.height * static_cast<float>(aspect_of(scene.output)));
-    return {std::round(picture.x + (picture.width - width) * 0.5f), picture.y, width, picture.height};
+// The part of the frame that the output shows: as high as it, as the camera's angle is vertical.
+Rect gate_of(const Scene& scene, const Rect& frame_area) {
+    const float width = std::round(frame_area.height * static_cast<float>(aspect_of(scene.output)));
+    return {std::round(frame_area.x + (frame_area.width - width) * 0.5f), frame_area.y, width,
+            frame_area.height};
 }
 
-// Dims the picture at the left and right of the gate.
+// Dims the frame at the left and right of the gate.
 void dim_outside(ImDrawList* list, const Rect& area, const Rect& gate) {
     const ImU32 shade = color::with_opacity(IM_COL32_BLACK, 0.55f);
     if (gate.x > area.x) list->AddRectFilled(lo(area), {gate.x, area.y + area.height}, shade);
@@ -57,12 +58,12 @@ std::string aspect_text(std::int64_t width, std::int64_t height) {
     return fmt::format("{:.2f}:1", static_cast<double>(width) / static_cast<double>(height));
 }
 
-void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& picture) {
+void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     const ViewState& view = frame.view;
     const bool through_camera = view.view == ViewKind::camera;
-    if (!through_camera || frame.status.picture.width <= 0 || view.compare == CompareMode::front) return;
+    if (!through_camera || frame.status.view_frame.width <= 0 || view.compare == CompareMode::front) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const Rect gate = gate_of(frame.document.scene(), picture);
+    const Rect gate = gate_of(frame.document.scene(), frame_area);
     const ImU32 grey = color::with_opacity(color::dim, 0.7f);
     if (view.gate) {
         dim_outside(list, area, gate);
@@ -84,10 +85,10 @@ void draw_overlay_lines(const GuiFrame& frame, const Rect& area) {
     }
 }
 
-void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& picture) {
+void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     if (frame.view.compare != CompareMode::wipe) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const float x = std::round(picture.x + picture.width * frame.view.wipe) + 0.5f;
+    const float x = std::round(frame_area.x + frame_area.width * frame.view.wipe) + 0.5f;
     list->AddLine({x, area.y}, {x, area.y + area.height}, color::with_opacity(color::text, 0.8f));
     const ImVec2 grip{x, area.y + area.height * 0.5f};
     list->AddRectFilled({grip.x - px(3), grip.y - px(18)}, {grip.x + px(3), grip.y + px(18)}, color::text,
@@ -100,7 +101,7 @@ void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& picture) {
     ImGui::PopFont();
 }
 
-void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& picture) {
+void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     const OutputParams& output = frame.document.scene().output;
     const bool difference = frame.view.compare == CompareMode::front;
     std::string text = view_names[static_cast<std::size_t>(frame.view.view)];
@@ -115,7 +116,7 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& picture
     ImGui::PushFont(small_font());
     // Inside the gate, clear of its line.
     const bool gated = frame.view.view == ViewKind::camera && frame.view.gate && !difference;
-    const Rect gate = gated ? gate_of(frame.document.scene(), picture) : area;
+    const Rect gate = gated ? gate_of(frame.document.scene(), frame_area) : area;
     const float left = std::max(area.x, gate.x), top = std::max(area.y, gate.y);
     shadowed(ImGui::GetWindowDrawList(), {left + px(inset), top + px(inset)}, color::dim, text);
     ImGui::PopFont();

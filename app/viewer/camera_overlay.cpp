@@ -64,7 +64,7 @@ std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_
     return lines;
 }
 
-/// A line in the world as lines in px of the picture, cut where it passes behind the eye.
+/// A line in the world as lines in px of the frame, cut where it passes behind the eye.
 std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std::vector<glm::dvec3>& line) {
     const glm::dmat3 camera_from_world = glm::transpose(camera.world_from_camera);
     const double front =
@@ -94,7 +94,7 @@ std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std
 }  // namespace
 
 std::vector<CameraOverlay::Line> CameraOverlay::lines(const Scene& scene, const Scene& now, const Bounds& box,
-                                                      const PictureRequest& request, const Rect& place) {
+                                                      const ViewRequest& request, const Rect& place) {
     std::vector<Line> result;
     try {
         const bool same_box = path_box_.lo == box.lo && path_box_.hi == box.hi;

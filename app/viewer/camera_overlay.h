@@ -1,5 +1,5 @@
-// What a view beside the scene's camera draws over the picture: the camera's path and its frustum. In: the
-// scene, the frame, the picture and its place. Out: lines in px of the viewport.
+// What a view beside the scene's camera draws over the frame: the camera's path and its frustum. In: the
+// scene, the frame, the frame and its place. Out: lines in px of the viewport.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -8,17 +8,17 @@
 
 #include "gui/gui.h"
 #include "scene/scene.h"
-#include "viewer/picture.h"
+#include "viewer/view_frame.h"
 
 namespace astrosplat {
 
 class CameraOverlay {
   public:
     using Line = std::vector<glm::vec2>;
-    /// `now` is the scene at the frame; `place` shows the picture of `request`. No lines where the camera
-    /// cannot be made: the picture's badge says why.
+    /// `now` is the scene at the frame; `place` shows the frame of `request`. No lines where the camera
+    /// cannot be made: the frame's badge says why.
     std::vector<Line> lines(const Scene& scene, const Scene& now, const Bounds& box,
-                            const PictureRequest& request, const Rect& place);
+                            const ViewRequest& request, const Rect& place);
 
   private:
     std::vector<glm::dvec3> path_;  // of the scene's camera

@@ -38,17 +38,17 @@ Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height
 }
 
 void Comparison::take_snapshot(const Document& document, const ViewState& view, const Display& display,
-                               glm::ivec2 size_px, const PictureStatus& picture) {
+                               glm::ivec2 size_px, const ViewFrameStatus& frame) {
     constexpr std::size_t most = 24;
     constexpr int thumbnail_px = 192;
-    StoredPicture stored;
+    StoredView stored;
     stored.look = store_look("Look " + std::to_string(++snapshots_taken_), document, view);
     const Image small = thumbnail_of(display.read(), size_px.x, size_px.y, thumbnail_px);
     stored.thumbnail.upload(small);
     stored.aspect = static_cast<float>(small.width) / static_cast<float>(small.height);
-    const bool final = picture.state == PictureState::final;
-    stored.splats = final ? picture.total : picture.shown;
-    stored.seconds = final ? picture.seconds : 0.0;
+    const bool final = frame.state == ViewFrameState::final;
+    stored.splats = final ? frame.total : frame.shown;
+    stored.seconds = final ? frame.seconds : 0.0;
     snapshots_.push_back(std::move(stored));
     if (snapshots_.size() > most) delete_snapshot(0);
 }
@@ -80,8 +80,7 @@ void Comparison::load_reference(const std::filesystem::path& file) {
     ++references_loaded_;
 }
 
-void Comparison::show(const Scene& scene, const ViewState& view, const PictureOfB& how,
-                      DisplaySettings& shown) {
+void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& how, DisplaySettings& shown) {
     using Mode = DisplaySettings::Mode;
     comparing_ = view.compare != CompareMode::a && view.compare != CompareMode::front;
     if (!comparing_) return;
@@ -103,13 +102,13 @@ void Comparison::show(const Scene& scene, const ViewState& view, const PictureOf
     shown.difference_gain = view.difference_gain;
 }
 
-const PictureStatus* Comparison::refining() const {
-    return comparing_ && b_.status().state == PictureState::refining ? &b_.status() : nullptr;
+const ViewFrameStatus* Comparison::refining() const {
+    return comparing_ && b_.status().state == ViewFrameState::refining ? &b_.status() : nullptr;
 }
 
 void Comparison::fill(Status& status) const {
     status.snapshots.clear();
-    for (const StoredPicture& stored : snapshots_)
+    for (const StoredView& stored : snapshots_)
         status.snapshots.push_back({stored.look.name, to_handle(stored.thumbnail.handle()), stored.aspect,
                                     stored.splats, stored.seconds});
     status.b_snapshot = b_snapshot_;

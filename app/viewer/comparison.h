@@ -1,5 +1,5 @@
-// What the picture, A, is compared with: the look of a snapshot seen by the same camera, or a reference
-// picture. In: the looks to keep, the file to read, requests for B's picture. Out: what the display shows
+// What the frame, A, is compared with: the look of a snapshot seen by the same camera, or a reference
+// picture. In: the looks to keep, the file to read, requests for B's frame. Out: what the display shows
 // beside A.
 #pragma once
 
@@ -12,8 +12,8 @@
 #include "edit/snapshots.h"
 #include "edit/status.h"
 #include "gl/display.h"
-#include "gl/picture_texture.h"
-#include "viewer/picture.h"
+#include "gl/image_texture.h"
+#include "viewer/view_frame.h"
 
 namespace astrosplat {
 
@@ -27,7 +27,7 @@ class Comparison {
     /// Keeps the look as it is, with a thumbnail of what `display` shows at this size in px and the facts of
     /// that picture. The oldest of more than 24 goes.
     void take_snapshot(const Document& document, const ViewState& view, const Display& display,
-                       glm::ivec2 size_px, const PictureStatus& picture);
+                       glm::ivec2 size_px, const ViewFrameStatus& frame);
     void delete_snapshot(std::size_t index);
     void clear_snapshots();
     /// Null where there is none of this number.
@@ -42,39 +42,39 @@ class Comparison {
     void forget_reference() { reference_file_.clear(); }
     const std::filesystem::path& reference_file() const { return reference_file_; }
 
-    /// How B's picture is made: the request for any scene as A's is made, and how it is drawn.
-    struct PictureOfB {
-        std::function<PictureRequest(const Scene&)> request_for;
+    /// How B's frame is made: the request for any scene as A's is made, and how it is drawn.
+    struct ViewOfB {
+        std::function<ViewRequest(const Scene&)> request_for;
         PreviewChoice choice;
         bool may_settle = false;
         double now = 0.0;  // seconds
     };
     /// Puts B beside A in `shown`, as `view` compares them.
-    void show(const Scene& scene, const ViewState& view, const PictureOfB& how, DisplaySettings& shown);
+    void show(const Scene& scene, const ViewState& view, const ViewOfB& how, DisplaySettings& shown);
 
-    /// B's picture is on its way.
+    /// B's frame is on its way.
     bool waiting() const { return comparing_ && b_.waiting(); }
     /// B's status while it is refined; else null.
-    const PictureStatus* refining() const;
+    const ViewFrameStatus* refining() const;
     /// Grows whenever the pixels of B or the reference change.
     std::uint64_t version() const { return b_.version() + references_loaded_; }
     void fill(Status& status) const;
 
   private:
-    /// A stored look with the picture of it.
-    struct StoredPicture {
+    /// A stored look with a thumbnail of it.
+    struct StoredView {
         StoredLook look;
-        PictureTexture thumbnail;
+        ImageTexture thumbnail;
         float aspect = 1.0f;
         std::int64_t splats = 0;
         double seconds = 0.0;
     };
 
-    ViewPicture b_;
-    std::vector<StoredPicture> snapshots_;
+    ViewFrame b_;
+    std::vector<StoredView> snapshots_;
     int b_snapshot_ = -1, snapshots_taken_ = 0;
     bool comparing_ = false;  // the last show() showed more than A
-    PictureTexture reference_;
+    ImageTexture reference_;
     std::filesystem::path reference_file_;  // what `reference_` holds
     std::uint64_t references_loaded_ = 0;
 };

@@ -70,8 +70,8 @@ const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Cam
         draw_backdrop(*environment, camera, width, height, backdrop_);
         settings.backdrop = &backdrop_;
     }
-    picture_ = render(visible, camera, nullptr, settings, {}, &cache_).beauty;
-    return picture_;
+    frame_ = render(visible, camera, nullptr, settings, {}, &cache_).beauty;
+    return frame_;
 }
 
 std::vector<double> CpuPreview::kept() const {

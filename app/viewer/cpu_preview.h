@@ -1,4 +1,4 @@
-// The picture in motion, drawn by the engine's own compositor: for machines whose OpenGL is drawn by the
+// The frame in motion, drawn by the engine's own compositor: for machines whose OpenGL is drawn by the
 // processor anyway, where it is the faster of the two. Same shares and same compensation as GlPreview.
 #pragma once
 
@@ -36,7 +36,7 @@ class CpuPreview {
 
     std::vector<KeptLayer> layers_;
     RenderCache cache_;
-    Image picture_, backdrop_;
+    Image frame_, backdrop_;
     std::int64_t shown_ = 0;
 };
 

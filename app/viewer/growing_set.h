@@ -30,7 +30,7 @@ class GrowingSet : public KeptWatcher {
         Bounds box;                           // that the whole set will have, about; layer space
     };
     /// What there is now; a set of none before the first splat. A splat drawn by chance: the same splats come
-    /// first in every sample, so that pictures of one after the other do not flicker.
+    /// first in every sample, so that frames of one after the other do not flicker.
     Sample sample() const;
 
   private:

@@ -19,7 +19,7 @@
 namespace astrosplat {
 
 struct LoadedLayer {
-    std::shared_ptr<const SplatSet> set;      // in order of id: for the final picture; null while it grows
+    std::shared_ptr<const SplatSet> set;      // in order of id: for the final frame; null while it grows
     std::shared_ptr<const SplatSet> preview;  // any prefix is a fair sample
     std::int64_t splats = 0;                  // of the whole set; while it grows those there are so far
     bool arranged = false;  // until then `preview` is a small sample, and grows a little later
@@ -41,7 +41,7 @@ LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& 
                           const std::string& name);
 /// The same with its preview in stratified order, of as many splats as it may ever show.
 LoadedLayer arranged_layer(LoadedLayer layer, std::int64_t preview_limit, const Progress& progress);
-/// The same with histograms and files, for which meshes and pictures are read once more.
+/// The same with histograms and files, for which meshes and frames are read once more.
 LoadedLayer described_layer(LoadedLayer layer);
 
 }  // namespace astrosplat

@@ -53,21 +53,21 @@ void edit_camera(Document& document, const CameraParams& before, const CameraPar
         gesture);
 }
 
-/// What the picture looks through now, as a free camera.
-FreeCamera picture_camera(const PictureRequest& request) {
+/// What the frame looks through now, as a free camera.
+FreeCamera camera_of_view(const ViewRequest& request) {
     return free_camera(request.scene.camera, request.box,
                        static_cast<double>(request.width) / request.height);
 }
 
-/// The same for the whole viewport, so that leaving a picture narrower than the viewport changes no scale.
-FreeCamera viewport_camera(const ViewState& view, const ShownPicture& shown) {
-    const FreeCamera camera = picture_camera(shown.request);
+/// The same for the whole viewport, so that leaving a frame narrower than the viewport changes no scale.
+FreeCamera viewport_camera(const ViewState& view, const ShownView& shown) {
+    const FreeCamera camera = camera_of_view(shown.request);
     if (view.size == SizeMode::one_to_one) return camera;
     return with_height(camera, shown.viewport_px.y / shown.request.height);
 }
 
 /// True: it was the scene's camera.
-bool go_to_free_view(ViewState& view, const ShownPicture& shown, bool turning) {
+bool go_to_free_view(ViewState& view, const ShownView& shown, bool turning) {
     const bool from_camera = view.view == ViewKind::camera;
     view.free = viewport_camera(view, shown);
     // Front, top and side are flat; turned, a thing looks solid only in perspective.
@@ -105,19 +105,17 @@ FreeCamera Navigator::moved(FreeCamera camera, const ViewportInput& input, const
     return camera;
 }
 
-bool Navigator::navigate(const ViewportInput& input, const ShownPicture& shown, double now,
-                         Document& document, ViewState& view) {
+bool Navigator::navigate(const ViewportInput& input, const ShownView& shown, double now, Document& document,
+                         ViewState& view) {
     const double before = std::exchange(navigated_at_, now);
     const double elapsed_s = before < 0.0 ? 0.0 : std::min(0.1, now - before);
     if (input.drag_begins) ++gesture_;
     if (!moves(input)) return false;
     if (view.view == ViewKind::camera && view.lock_to_camera) {
-        const glm::dvec2 picture_px(shown.request.width, shown.request.height);
-        const FreeCamera camera =
-            moved(picture_camera(shown.request), input, picture_px, shown.box, elapsed_s);
+        const glm::dvec2 frame_px(shown.request.width, shown.request.height);
+        const FreeCamera camera = moved(camera_of_view(shown.request), input, frame_px, shown.box, elapsed_s);
         const CameraParams& old = shown.request.scene.camera;
-        edit_camera(document, old, moved_camera(old, camera, picture_px.x / picture_px.y), view.frame,
-                    gesture_);
+        edit_camera(document, old, moved_camera(old, camera, frame_px.x / frame_px.y), view.frame, gesture_);
         return false;
     }
     using Drag = ViewportInput::Drag;
@@ -127,12 +125,12 @@ bool Navigator::navigate(const ViewportInput& input, const ShownPicture& shown, 
     return left;
 }
 
-void keep_free_camera(ViewState& view, const ShownPicture& shown) {
+void keep_free_camera(ViewState& view, const ShownView& shown) {
     if (view.view == ViewKind::front || view.view == ViewKind::top || view.view == ViewKind::side)
         view.free = viewport_camera(view, shown);
 }
 
-bool frame_in_view(ViewState& view, const Bounds& box, const ShownPicture& shown) {
+bool frame_in_view(ViewState& view, const Bounds& box, const ShownView& shown) {
     if (box.empty()) return false;
     const bool left = view.view != ViewKind::free && go_to_free_view(view, shown, false);
     view.free = framed(view.free, box, shown.viewport_px.x / shown.viewport_px.y);

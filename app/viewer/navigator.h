@@ -8,13 +8,13 @@
 #include "edit/document.h"
 #include "edit/view_state.h"
 #include "gui/gui.h"
-#include "viewer/picture.h"
+#include "viewer/view_frame.h"
 
 namespace astrosplat {
 
 /// What is on the screen when the hand moves.
-struct ShownPicture {
-    const PictureRequest& request;
+struct ShownView {
+    const ViewRequest& request;
     glm::dvec2 viewport_px;
     Bounds box;  // of the visible layers, world space
 };
@@ -23,7 +23,7 @@ class Navigator {
   public:
     /// One frame of mouse and keyboard; `now` in seconds. True: the view left the scene's camera. Throws
     /// InputError where that cannot be edited.
-    bool navigate(const ViewportInput& input, const ShownPicture& shown, double now, Document& document,
+    bool navigate(const ViewportInput& input, const ShownView& shown, double now, Document& document,
                   ViewState& view);
 
   private:
@@ -37,12 +37,12 @@ class Navigator {
 
 /// Front, top and side make their camera from the layers' bounds in every frame: the free one follows, so
 /// that the free view begins where the person is.
-void keep_free_camera(ViewState& view, const ShownPicture& shown);
+void keep_free_camera(ViewState& view, const ShownView& shown);
 
 /// What the person is told where a view left the camera.
 inline constexpr const char* left_camera_message = "Free view, a copy of the camera; 0 returns to it";
 
 /// The whole box in a free view. True: the view left the scene's camera.
-bool frame_in_view(ViewState& view, const Bounds& box, const ShownPicture& shown);
+bool frame_in_view(ViewState& view, const Bounds& box, const ShownView& shown);
 
 }  // namespace astrosplat

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scene/layer_setup.h"
 #include "source/texture.h"
 
 namespace astrosplat {

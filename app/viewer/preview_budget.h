@@ -12,7 +12,7 @@ namespace astrosplat {
 float share_for_budget(std::span<const std::int64_t> sizes, std::int64_t budget);
 
 /// Follows a target time, damped, and stays where it is within an eighth of the target: a share that moves
-/// means that sets are cut and shaded again, and that the picture's grain changes under the eye.
+/// means that sets are cut and shaded again, and that the frame's grain changes under the eye.
 struct PreviewBudget {
     std::int64_t least = 30000, most = 4000000;  // splats
     std::int64_t splats = 200000;                // the budget
@@ -28,7 +28,7 @@ struct PreviewBudget {
 };
 
 /// What a frame has left for its preview beside the rest of the window, which a software rasteriser draws as
-/// slowly as the picture.
+/// slowly as the frame.
 class FramePace {
   public:
     /// For the preview about to be drawn at `now_s`: what 24 frames a second leave of a frame, in ms, at

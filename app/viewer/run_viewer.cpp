@@ -1,4 +1,4 @@
-// The window's loop: wait for events, advance the session, draw widgets and picture, show the frame.
+// The window's loop: wait for events, advance the session, draw widgets and viewport, show them.
 #include "viewer/run_viewer.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 #include "edit/preferences.h"
 #include "exit_code.h"
 #include "viewer/session.h"
-#include "viewer/session_picture.h"
+#include "viewer/session_view.h"
 #include "viewer/window.h"
 
 namespace astrosplat {
@@ -114,7 +114,7 @@ class Loop {
                       {static_cast<int>(layout.viewport.width * io.DisplayFramebufferScale.x),
                        static_cast<int>(layout.viewport.height * io.DisplayFramebufferScale.y)},
                       now);
-        // The badge was drawn before the picture: it must not call a preview final.
+        // The badge was drawn before the frame: it must not call a preview final.
         if (was_settled && !settled(session_)) {
             frames_left_ = frames_after_event;
             return window_.drop_frame();

@@ -1,4 +1,4 @@
-// One picture of what the window would show, without a display: the viewport alone, or with the panels.
+// One frame of what the window would show, without a display: the viewport alone, or with the panels.
 #include "viewer/screenshot.h"
 
 #include <algorithm>
@@ -13,23 +13,23 @@
 #include "core/text.h"
 #include "exit_code.h"
 #include "output/write.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 #include "viewer/session.h"
-#include "viewer/session_picture.h"
+#include "viewer/session_view.h"
 #include "viewer/widget_target.h"
 
 namespace astrosplat {
 namespace {
 
-/// Advances until the sets are there and the picture is what was asked for.
+/// Advances until the sets are there and the frame is what was asked for.
 template <class DrawFrame>
-void wait_for_picture(Session& session, bool final, const DrawFrame& draw_frame) {
+void wait_for_frame(Session& session, bool final, const DrawFrame& draw_frame) {
     for (;;) {
         const double now = seconds_now();
         advance(session, now);
         draw_frame(now);
-        if (session.status.picture.state == PictureState::failed)
-            throw InputError(session.status.picture.error);
+        if (session.status.view_frame.state == ViewFrameState::failed)
+            throw InputError(session.status.view_frame.error);
         for (const LayerStatus& layer : session.status.layers)
             if (!layer.error.empty()) throw InputError(layer.error);
         if (session.sets.loaded(session.document) &&
@@ -63,10 +63,10 @@ void write_exr(const ScreenshotOptions& options, const Size& size, Session& sess
     RenderedFrame preview;
     OutputParams output = session.document.scene().output;
     if (!options.settled) {
-        preview.beauty = session.picture.read();
+        preview.beauty = session.view_frame.read();
         output.aovs.clear();
     }
-    const auto final = options.settled ? session.picture.final_frame() : nullptr;
+    const auto final = options.settled ? session.view_frame.final_frame() : nullptr;
     const RenderedFrame& frame = final ? *final : preview;
     output.path = options.output.string();
     output.depth = OutputParams::Depth::float32;
@@ -82,12 +82,12 @@ void write_exr(const ScreenshotOptions& options, const Size& size, Session& sess
 }
 
 /// The viewport alone.
-void take_picture(const ScreenshotOptions& options, const Size& size, bool exr, Session& session) {
-    wait_for_picture(session, options.settled, [&](double now) {
+void take_viewport(const ScreenshotOptions& options, const Size& size, bool exr, Session& session) {
+    wait_for_frame(session, options.settled, [&](double now) {
         draw_viewport(session, {size.width, size.height}, now, true);
     });
     if (exr) return write_exr(options, size, session);
-    write_picture(options.output, size.width, size.height, session.display.read());
+    write_image(options.output, size.width, size.height, session.display.read());
 }
 
 /// The window with its panels.
@@ -105,12 +105,12 @@ void take_window(const ScreenshotOptions& options, const Size& size, Session& se
                       now, true);
         target.end();
     };
-    wait_for_picture(session, options.settled, draw_frame);
+    wait_for_frame(session, options.settled, draw_frame);
     for (int i = 0; i < 3; ++i) {  // until the widgets have seen the last status
         advance(session, seconds_now());
         draw_frame(seconds_now());
     }
-    write_picture(options.output, size.width, size.height, target.read());
+    write_image(options.output, size.width, size.height, target.read());
 }
 
 void take(const ScreenshotOptions& options, const GlInfo& gl) {
@@ -128,7 +128,7 @@ void take(const ScreenshotOptions& options, const GlInfo& gl) {
     session.view.hint_open = false;
     prepare_screenshot(session, options.ui);
     if (options.opengl) session.view.engine = PreviewEngine::opengl;
-    options.ui ? take_window(options, size, session) : take_picture(options, size, exr, session);
+    options.ui ? take_window(options, size, session) : take_viewport(options, size, exr, session);
 }
 
 }  // namespace

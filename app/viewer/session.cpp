@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "edit/new_from_file.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 #include "viewer/child_process.h"
 #include "viewer/session_commands.h"
 #include "viewer/session_status.h"
@@ -162,7 +162,7 @@ void advance(Session& session, double now) {
 void navigate(Session& session, const ViewportInput& input, double now) {
     if (session.request.width <= 0) return;
     probe(session, input.hovered ? input.mouse_px : glm::dvec2(-1.0));
-    if (session.view.size == SizeMode::one_to_one) return;  // the widgets move and zoom the picture
+    if (session.view.size == SizeMode::one_to_one) return;  // the widgets move and zoom the frame
     attempt(session.status, [&] {
         if (session.navigator.navigate(input, session.shown(), now, session.document, session.view))
             say(session.status, left_camera_message);
@@ -188,23 +188,23 @@ void drop(Session& session, const std::vector<fs::path>& files) {
 double next_due(const Session& session, double now) {
     if (!session.sets.loader().idle() || session.jobs.running()) return 0.1;
     if (session.view.playing) return 0.0;
-    if (!session.picture.exact()) return 0.02;
-    const PictureState reached = session.picture.status().state;
-    if (reached == PictureState::refining || session.comparison.waiting()) return 0.03;
-    if (reached == PictureState::preview && session.view.settle) return session.picture.due(now);
+    if (!session.view_frame.exact()) return 0.02;
+    const ViewFrameState reached = session.view_frame.status().state;
+    if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;
+    if (reached == ViewFrameState::preview && session.view.settle) return session.view_frame.due(now);
     if (session.front.working() || session.preparation.working()) return 0.1;
     return 1.0;  // to look at the disk and autosave
 }
 
-bool preview_exact(const Session& session) { return session.picture.exact() && session.sets.same_sets(); }
-bool settled(const Session& session) { return session.picture.status().state == PictureState::final; }
+bool preview_exact(const Session& session) { return session.view_frame.exact() && session.sets.same_sets(); }
+bool settled(const Session& session) { return session.view_frame.status().state == ViewFrameState::final; }
 std::string title(const Session& session) {
     return session.document.name() + (session.document.edited() ? " - edited" : "") + " - astrosplat";
 }
 
 void prepare_screenshot(Session& session, bool with_panels) {
     constexpr std::int64_t preview_splats = 500'000;
-    session.viewport_is_picture = !with_panels;
+    session.viewport_is_frame = !with_panels;
     session.fixed_splats = preview_splats;
     session.status.recoveries.clear();
 }
@@ -212,7 +212,7 @@ void prepare_screenshot(Session& session, bool with_panels) {
 void save_screenshot(Session& session, const fs::path& file, int width, int height,
                      const std::vector<unsigned char>& rgba) {
     attempt(session.status, [&] {
-        write_picture(file, width, height, rgba);
+        write_image(file, width, height, rgba);
         say(session.status, "Saved " + file.string());
     });
 }

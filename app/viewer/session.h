@@ -1,4 +1,4 @@
-// Everything of the viewer but the window: the document, its sets, the pictures and jobs, brought forward
+// Everything of the viewer but the window: the document, its sets, the frames and jobs, brought forward
 // once per frame. The window and the screenshot both drive it. Needs a current OpenGL context.
 #pragma once
 
@@ -19,7 +19,7 @@
 #include "edit/view_state.h"
 #include "gl/context.h"
 #include "gl/display.h"
-#include "gl/picture_texture.h"
+#include "gl/image_texture.h"
 #include "gui/gui.h"
 #include "viewer/camera_overlay.h"
 #include "viewer/comparison.h"
@@ -27,11 +27,11 @@
 #include "viewer/front_check.h"
 #include "viewer/jobs.h"
 #include "viewer/navigator.h"
-#include "viewer/picture.h"
 #include "viewer/playback.h"
 #include "viewer/prepare_preview.h"
 #include "viewer/run_viewer.h"
 #include "viewer/set_wishes.h"
+#include "viewer/view_frame.h"
 
 namespace astrosplat {
 
@@ -48,15 +48,15 @@ struct Session {
 
     SetWishes sets;
     std::shared_ptr<PictureFiles> files = std::make_shared<PictureFiles>();
-    ViewPicture picture{files};  // A
+    ViewFrame view_frame{files};  // A
     Comparison comparison{files};
     FrontCheck front;
     std::shared_ptr<const FrontFound> front_shown;  // whose difference is in the texture
-    PictureTexture front_texture;
+    ImageTexture front_texture;
     std::uint64_t fronts_shown = 0;  // how many were in the texture
     PreparePreview preparation;
     std::shared_ptr<const PreparedView> preparation_shown;  // in the two textures
-    PictureTexture preparation_before, preparation_after;
+    ImageTexture preparation_before, preparation_after;
     Display display;
     CameraOverlay overlay;
     Navigator navigator;
@@ -66,18 +66,18 @@ struct Session {
     Autosave autosave{autosave_folder(), autosave_interval()};
 
     bool quitting = false, fresh_demo = false;
-    bool viewport_is_picture = false;                 // for a screenshot without panels
+    bool viewport_is_frame = false;                   // for a screenshot without panels
     std::int64_t fixed_splats = 0;                    // of the preview; 0: by the frame rate
     std::optional<std::filesystem::path> screenshot;  // asked for: the caller reads the window and saves it
     std::optional<std::string> clipboard;             // text for it
-    std::set<std::string> said_errors;                // of the picture and the layers, that still hold
+    std::set<std::string> said_errors;                // of the frame and the layers, that still hold
     Commands dropped;  // from files, to be shown to the widgets, which ask about unsaved changes
 
     // Of the last draw_viewport():
-    PictureRequest request;
+    ViewRequest request;
     glm::ivec2 viewport_px{0};
 
-    ShownPicture shown() const { return {request, viewport_px, status.box}; }
+    ShownView shown() const { return {request, viewport_px, status.box}; }
 };
 
 /// Loads what the scene needs and takes what jobs have to say. `now` in seconds.
@@ -93,7 +93,7 @@ void drop(Session& session, const std::vector<std::filesystem::path>& files);
 double next_due(const Session& session, double now);
 /// The preview is that of the present camera, look and sets.
 bool preview_exact(const Session& session);
-/// The picture is final.
+/// The frame is final.
 bool settled(const Session& session);
 std::string title(const Session& session);
 
@@ -109,7 +109,7 @@ void find_recoveries(Status& status);
 Document demo_document(std::span<const Assignment> assignments = {});
 
 /// For screenshots: the preview draws a fixed number of splats instead of one that holds a frame rate; and
-/// where the panels are left out, the whole viewport is the picture, whatever the output's aspect.
+/// where the panels are left out, the whole viewport is the frame, whatever the output's aspect.
 void prepare_screenshot(Session& session, bool with_panels);
 void save_screenshot(Session& session, const std::filesystem::path& file, int width, int height,
                      const std::vector<unsigned char>& rgba);

@@ -108,7 +108,7 @@ void cancel_render(State& s, const Command&) { s.jobs.cancel(); }
 void take_screenshot(State& s, const Command& c) { s.screenshot = c.path; }
 
 void snapshot(State& s, const Command&) {
-    s.comparison.take_snapshot(s.document, s.view, s.display, s.viewport_px, s.picture.status());
+    s.comparison.take_snapshot(s.document, s.view, s.display, s.viewport_px, s.view_frame.status());
 }
 
 void store_b(State& s, const Command& c) {

@@ -8,13 +8,13 @@
 
 #include "core/parallel.h"
 #include "scene/layer_setup.h"
-#include "viewer/session_picture.h"
+#include "viewer/session_view.h"
 
 namespace astrosplat {
 namespace {
 
 void fill_layers(Session& session, const Scene& now) {
-    const std::vector<std::int64_t>&shown = session.picture.shown(), &kept = session.picture.kept();
+    const std::vector<std::int64_t>&shown = session.view_frame.shown(), &kept = session.view_frame.kept();
     Status& status = session.status;
     const SetLoader& loader = session.sets.loader();
     status.layers.resize(now.layers.size());
@@ -33,8 +33,8 @@ void fill_layers(Session& session, const Scene& now) {
 
 void fill_status(Session& session) {
     fill_layers(session, evaluated(session.document.scene(), session.view));
-    const PictureStatus* refining = session.comparison.refining();
-    session.status.picture = refining ? *refining : session.picture.status();
+    const ViewFrameStatus* refining = session.comparison.refining();
+    session.status.view_frame = refining ? *refining : session.view_frame.status();
     session.status.threads = thread_count();
     const GlInfo& gl = session.gl;
     session.status.engine = draws_by_opengl(session)
@@ -46,7 +46,7 @@ void fill_status(Session& session) {
 
 void say_new_errors(Status& status, std::set<std::string>& said) {
     std::set<std::string> errors;
-    if (status.picture.state == PictureState::failed) errors.insert(status.picture.error);
+    if (status.view_frame.state == ViewFrameState::failed) errors.insert(status.view_frame.error);
     for (const LayerStatus& layer : status.layers) errors.insert(layer.error);
     errors.erase("");
     for (const std::string& error : errors)
@@ -55,18 +55,18 @@ void say_new_errors(Status& status, std::set<std::string>& said) {
 }
 
 void probe(Session& session, glm::dvec2 mouse_px) {
-    const PictureRequest& request = session.request;
+    const ViewRequest& request = session.request;
     session.status.probe.reset();
-    if (request.width <= 0 || session.picture.texture() == 0) return;
+    if (request.width <= 0 || session.view_frame.texture() == 0) return;
     const glm::vec2 port(session.viewport_px);
-    const Rect place = place_picture(session.view, {0, 0, port.x, port.y}, request.width, request.height);
+    const Rect place = place_frame(session.view, {0, 0, port.x, port.y}, request.width, request.height);
     const auto x =
         static_cast<std::int64_t>(std::floor((mouse_px.x - place.x) / place.width * request.width));
     const auto y =
         static_cast<std::int64_t>(std::floor((mouse_px.y - place.y) / place.height * request.height));
-    const Image* pixels = session.picture.pixels();
+    const Image* pixels = session.view_frame.pixels();
     if (!pixels) return;
-    const std::shared_ptr<const RenderedFrame> final = session.picture.final_frame();
+    const std::shared_ptr<const RenderedFrame> final = session.view_frame.final_frame();
     session.status.probe = probe_of(*pixels, final ? &final->depth : nullptr, request.region, x, y);
 }
 

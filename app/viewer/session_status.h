@@ -1,4 +1,4 @@
-// What the widgets are told: layers, picture, machine, the pixel under the mouse.
+// What the widgets are told: layers, frame, machine, the pixel under the mouse.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@ namespace astrosplat {
 /// Fills Status but for what commands, jobs and the disk say.
 void fill_status(Session& session);
 
-/// Says in the message line why the picture or a layer failed; `said` holds what was said of those that still
+/// Says in the message line why the frame or a layer failed; `said` holds what was said of those that still
 /// do.
 void say_new_errors(Status& status, std::set<std::string>& said);
 
 /// Fills Status::probe with the linear pixel under the mouse, px of the viewport.
 void probe(Session& session, glm::dvec2 mouse_px);
 
-/// The pixel x, y of a whole picture of which `pixels` is the region. The depth is that of `depth`, the final
+/// The pixel x, y of a whole frame of which `pixels` is the region. The depth is that of `depth`, the final
 /// frame's, where there is one and the pixel holds something. None outside of the region.
 std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, const Region& region,
                                    std::int64_t x, std::int64_t y);

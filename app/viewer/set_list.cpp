@@ -29,7 +29,7 @@ bool satisfies(const LoadedLayer& loaded, const SourceParams& identity) {
     return !loaded.outdated && identity_of(loaded.source, loaded.name) == identity;
 }
 
-/// Splats of a picture that is made again and again while everything else should go on.
+/// Splats of a view that is made again and again while everything else should go on.
 std::int64_t growing_limit(std::int64_t preview_limit) {
     return std::clamp<std::int64_t>(preview_limit / 16, 1, 1 << 18);
 }
@@ -200,7 +200,7 @@ std::shared_ptr<SetJob> SetList::growing_job() const {
 bool SetList::grow(const SetJob& job, LoadedLayer grown) {
     if (job_.get() != &job || !is_wanted(job)) return false;
     Entry& entry = entries_[job.name];
-    if (entry.loaded) grown.box = entry.loaded->box;  // so that the picture does not move
+    if (entry.loaded) grown.box = entry.loaded->box;  // so that the view does not move
     entry.growing = std::make_shared<const LoadedLayer>(std::move(grown));
     ++revision_;
     return true;

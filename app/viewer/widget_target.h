@@ -1,4 +1,4 @@
-// Dear ImGui drawing into a picture of its own, without a window: for screenshots and measurements. Needs a
+// Dear ImGui drawing into a frame of its own, without a window: for screenshots and measurements. Needs a
 // current OpenGL context, and to be the only user of Dear ImGui.
 #pragma once
 

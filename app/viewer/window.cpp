@@ -125,12 +125,12 @@ void Window::drop_frame() {
     frame_took_s_ = glfwGetTime() - frame_began_s_;
 }
 
-bool Window::end_frame(std::uint64_t pictures) {
+bool Window::end_frame(std::uint64_t frames) {
     ImGui::Render();
     frame_took_s_ = glfwGetTime() - frame_began_s_;
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
-    const FrameMark frame{hash_of(*ImGui::GetDrawData()), pictures, width, height};
+    const FrameMark frame{hash_of(*ImGui::GetDrawData()), frames, width, height};
     if (frame == shown_ && !damaged_) return false;
     shown_ = frame;
     damaged_ = false;

@@ -36,9 +36,9 @@ class Window {
     /// Ends the frame without showing it.
     void drop_frame();
     /// Draws the widgets and shows the frame, unless it would look like the one before: filling the window
-    /// takes a software rasteriser 30 ms. `pictures`: differs whenever the pixels of a texture do that the
+    /// takes a software rasteriser 30 ms. `frames`: differs whenever the pixels of a texture do that the
     /// widgets show. Returns whether it was shown.
-    bool end_frame(std::uint64_t pictures);
+    bool end_frame(std::uint64_t frames);
 
     bool close_requested();  // and forgets it
     std::vector<std::filesystem::path> take_dropped();
@@ -59,7 +59,7 @@ class Window {
 
     /// What a frame looks like.
     struct FrameMark {
-        std::uint64_t widgets = 0, pictures = 0;
+        std::uint64_t widgets = 0, frames = 0;
         int width = 0, height = 0;
         bool operator==(const FrameMark&) const = default;
     };

@@ -17,7 +17,7 @@ namespace astrosplat {
 namespace {
 
 constexpr double framing_elevation_deg = 35.0;
-constexpr double framing_fill = 0.9;    // share of the picture's width or height a framed box fills
+constexpr double framing_fill = 0.9;    // share of the frame's width or height a framed box fills
 constexpr double parallel_sine = 1e-9;  // below this sine two directions count as parallel
 
 void expect(bool good, const char* key, const char* expected, double found) {
@@ -54,7 +54,7 @@ glm::dmat3 look_along(const glm::dvec3& view, glm::dvec3 up, double roll_deg) {
     return glm::dmat3(right * c - above * s, right * s + above * c, back);
 }
 
-// Half the picture's height at distance 1.
+// Half the frame's height at distance 1.
 double half_height(const CameraParams& params, double aspect) {
     if (params.focal_length > 0.0) return 0.5 * params.film_width / params.focal_length / aspect;
     return real::tan(real::radians(params.fov) * 0.5);

@@ -46,7 +46,7 @@ struct Camera {
     glm::dvec3 eye{0.0};
     glm::dmat3 world_from_camera{1.0};  // rotation only; columns are the camera's x, y, z axes in world space
     double focal_px = 1.0;              // perspective: px per unit of x/z; orthographic: px per scene unit
-    double center_x_px = 0.0, center_y_px = 0.0;  // where the optical axis meets the picture (y down)
+    double center_x_px = 0.0, center_y_px = 0.0;  // where the optical axis meets the frame (y down)
     double near = 0.01, far = 0.0, near_fade = 0.0;
     double aspect = 1.0;  // width / height
 };
@@ -55,7 +55,7 @@ struct Camera {
 /// orthographic. Can be asked before anything is generated; what an animation brings is met at its frame.
 void check_supported(const CameraParams& params);
 
-/// Resolves the parameters for a picture of width x height px. `scene_box` (may be empty) is what a camera
+/// Resolves the parameters for a frame of width x height px. `scene_box` (may be empty) is what a camera
 /// without position frames: its place, target and (orthographic) height then come from frame_box; a rotation
 /// is kept. Where the view is parallel to up, -z is up, else +x. Throws InputError for values out of range,
 /// projections and camera files that a later release brings, and a zero view direction.
@@ -65,13 +65,13 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
 Lens make_lens(const Camera& camera);
 ExactLens make_exact_lens(const Camera& camera);
 
-/// Unit direction in world space through a point of the picture (px, y down), for environments.
+/// Unit direction in world space through a point of the frame (px, y down), for environments.
 glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px);
 /// Angle between the rays of neighbouring pixels, radians; 0 where rays are parallel.
 double pixel_spread(const Camera& camera);
 
 /// Position and target that frame a box from 35 degrees above +z with the given vertical field of view: its
-/// corners fill 90 % of the picture's width or height. An empty box counts as the origin, a point as a cube
+/// corners fill 90 % of the frame's width or height. An empty box counts as the origin, a point as a cube
 /// of side 1.
 struct Framing {
     glm::dvec3 position, target;
@@ -86,7 +86,7 @@ Bounds box_to_frame(const Bounds& box);
 
 /// 4x4 row-major matrices as OpenEXR defines them (row vectors: p * M): camera space is left-handed with z
 /// forward; NDC, after division by w, runs from (0, 0) at the upper left to (1, 1) at the lower right of the
-/// whole picture.
+/// whole frame.
 struct ExrMatrices {
     float world_to_camera[16];
     float world_to_ndc[16];

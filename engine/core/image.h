@@ -1,4 +1,4 @@
-// A picture in memory: rows from the top, interleaved float channels. Unless a comment says otherwise: linear
+// An image in memory: rows from the top, interleaved float channels. Unless a comment says otherwise: linear
 // light, Rec. 709 primaries, premultiplied by alpha.
 #pragma once
 

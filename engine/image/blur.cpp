@@ -24,7 +24,7 @@ Image unfilled_image(std::int64_t width, std::int64_t height, int channels) {
     return image;
 }
 
-// Index of the mirrored picture: ... 1 0 | 0 1 2 ... n-1 | n-1 n-2 ...
+// Index of the mirrored image: ... 1 0 | 0 1 2 ... n-1 | n-1 n-2 ...
 std::int64_t mirrored(std::int64_t i, std::int64_t n) {
     const std::int64_t period = 2 * n;
     i = ((i % period) + period) % period;

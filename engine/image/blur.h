@@ -1,4 +1,4 @@
-// Gaussian blurs of pictures in memory. In and out: interleaved float channels; beyond its edges a picture
+// Gaussian blurs of images in memory. In and out: interleaved float channels; beyond its edges an image
 // is mirrored (half-sample symmetric). The same bits with any number of threads.
 #pragma once
 
@@ -13,7 +13,7 @@ Image convolved_with_gaussian(const Image& image, double sigma_px);
 /// The same for any width at a cost that does not grow with it. Up to 4 px it is the convolution above;
 /// wider blurs are made at half the size (a binomial halving and a linear doubling add 1.5 px^2 of
 /// variance, which the blur between them leaves out), so that the profile stays within 1 % of the
-/// Gaussian's peak. The picture's sum is kept where its sides are even as often as they are halved;
+/// Gaussian's peak. The image's sum is kept where its sides are even as often as they are halved;
 /// elsewhere the last row and column weigh up to a quarter less or more.
 Image gaussian_blur(const Image& image, double sigma_px);
 

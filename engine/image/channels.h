@@ -1,4 +1,4 @@
-// Single channels of pictures. In: a picture in memory. Out: one channel of it, or a value between its
+// Single channels of images. In: an image in memory. Out: one channel of it, or a value between its
 // pixels.
 #pragma once
 

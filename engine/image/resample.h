@@ -1,5 +1,5 @@
-// Pictures at another size, as the renderer's pixels would show them. In: a picture and where each output
-// pixel lies in it. Out: the picture convolved with the pixel filter and sampled at the output pixels.
+// Images at another size, as the renderer's pixels would show them. In: an image and where each output
+// pixel lies in it. Out: the image convolved with the pixel filter and sampled at the output pixels.
 #pragma once
 
 #include <glm/mat2x2.hpp>
@@ -16,13 +16,13 @@ struct PixelMap {
     glm::dmat2 linear{1.0};
 };
 
-/// The map under which the picture fills an output of that size from left to right, its middle in the
+/// The map under which the image fills an output of that size from left to right, its middle in the
 /// middle.
 PixelMap map_to_width(const Image& image, std::int64_t width, std::int64_t height);
 
-/// The picture convolved with a Gaussian of `sigma_px` output pixels (for a map that scales unevenly: of as
+/// The image convolved with a Gaussian of `sigma_px` output pixels (for a map that scales unevenly: of as
 /// many texels as have the same area) and sampled, linearly between texels, at width x height pixel
-/// centres. What lies outside of the picture is 0.
+/// centres. What lies outside of the image is 0.
 Image resampled(const Image& image, const PixelMap& texel_from_pixel, std::int64_t width, std::int64_t height,
                 double sigma_px);
 

@@ -1,4 +1,4 @@
-// Sums over pictures whose bits do not depend on the number of threads.
+// Sums over images whose bits do not depend on the number of threads.
 #pragma once
 
 #include <cstdint>

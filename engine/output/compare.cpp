@@ -1,4 +1,4 @@
-// Differences of two pictures, in one pass over the rows and one selection for the percentile.
+// Differences of two images, in one pass over the rows and one selection for the percentile.
 #include "output/compare.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// How far two pictures of one size are apart, in linear light.
+// How far two images of one size are apart, in linear light.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct ImageComparison {
     bool identical() const { return differing_pixels == 0; }
 };
 
-/// Both pictures must have the same size and channels (assert).
+/// Both images must have the same size and channels (assert).
 ImageComparison compare_images(const Image& a, const Image& b);
 
 /// Reads both as linear light. Throws InputError when one cannot be read or the sizes differ.

@@ -16,7 +16,7 @@ float apply_view(OutputParams::View view, float value);
 
 /// Threshold in (-1/2, 1/2) that is added before rounding to 8 bits: a low-discrepancy lattice
 /// (Roberts' R2 sequence in 32-bit fixed point), shifted per channel, a function of the pixel's place
-/// in the whole picture.
+/// in the whole frame.
 float dither(std::int64_t x, std::int64_t y, int channel);
 
 /// Channels a file of this format holds: 3 without alpha, else 4.
@@ -28,7 +28,7 @@ int stored_channels(const FrameFormat& format);
 /// stored straight: it becomes 0.
 void encode_pixel(const FrameFormat& format, float gain, const float* rgba, float* stored);
 
-/// Interleaved 8 or 16 bit samples of a picture whose upper left pixel is (x0, y0) of the whole.
+/// Interleaved 8 or 16 bit samples of an image whose upper left pixel is (x0, y0) of the whole.
 std::vector<std::uint8_t> encode_8bit(const FrameFormat& format, const Image& image, std::int64_t x0,
                                       std::int64_t y0);
 std::vector<std::uint16_t> encode_16bit(const FrameFormat& format, const Image& image);

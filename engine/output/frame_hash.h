@@ -31,7 +31,7 @@ void check_unchanged(const HashedFiles& files, const Progress& progress = {});
 /// Hashes frames of one scene; input files are hashed by content, once each.
 class FrameHasher {
   public:
-    /// `region` as in RenderSettings: the part of the picture that is rendered; empty: all.
+    /// `region` as in RenderSettings: the part of the frame that is rendered; empty: all.
     explicit FrameHasher(const Scene& scene, const Region& region = {}) : scene_(scene), region_(region) {}
 
     /// 64 hex digits. Throws InputError when an input file exists but cannot be read.

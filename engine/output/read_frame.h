@@ -11,7 +11,7 @@ namespace astrosplat {
 
 struct ImageInfo {
     std::int64_t width = 0, height = 0;  // px, of the pixels stored
-    std::int64_t x = 0, y = 0;           // px, where they lie in the whole picture
+    std::int64_t x = 0, y = 0;           // px, where they lie in the whole frame
     std::int64_t whole_width = 0, whole_height = 0;
     std::string file_format;                                    // "openexr", "tiff", "png", ...
     std::vector<std::pair<std::string, std::string>> channels;  // name and type: "R", "half"

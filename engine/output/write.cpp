@@ -41,8 +41,7 @@ struct Channel {
 void check_finite(const Image& image, const char* what) {
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
         if (!std::isfinite(image.pixels[i]))
-            throw std::logic_error(
-                fmt::format("a value of the {} picture is not finite (value {})", what, i));
+            throw std::logic_error(fmt::format("a value of the {} image is not finite (value {})", what, i));
 }
 
 OIIO::TypeDesc type_of(Depth depth) {

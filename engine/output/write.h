@@ -32,7 +32,7 @@ struct FrameMetadata {
 struct FrameFile {
     std::filesystem::path file;  // its ending chooses the format
     OutputParams output;
-    std::int64_t whole_width = 0, whole_height = 0;  // px, of the whole picture
+    std::int64_t whole_width = 0, whole_height = 0;  // px, of the whole frame
     Region region{};                                 // where the frame lies in it (EXR: the data window)
     std::vector<std::string> layer_names{};          // of RenderedFrame::layers
     Existing existing = Existing::replace;

@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::int64_t block_px = 8;
 
-void draw_exactly(const Environment& environment, const Camera& camera, const Region& part, Image& picture) {
+void draw_exactly(const Environment& environment, const Camera& camera, const Region& part, Image& image) {
     for (std::int64_t y = part.y; y < part.y + part.height; ++y) {
         for (std::int64_t x = part.x; x < part.x + part.width; ++x) {
             const glm::dvec3 ray =
                 ray_direction(camera, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
             const glm::vec3 color = sample_environment(environment, ray, pixel_spread(camera));
-            std::copy_n(&color[0], 3, picture.at(x, y));
+            std::copy_n(&color[0], 3, image.at(x, y));
         }
     }
 }
@@ -37,9 +37,9 @@ const Image& nearest_level(const Environment& environment, double spread) {
 /// Places of the blocks' corners on the level, texels; longitudes as they come from atan2.
 class Places {
   public:
-    Places(const Environment& environment, const Camera& camera, const Image& level, const Image& picture)
-        : columns_(picture.width / block_px + 2), size_(level.width - 2, level.height - 2) {
-        const std::int64_t rows = picture.height / block_px + 2;
+    Places(const Environment& environment, const Camera& camera, const Image& level, const Image& image)
+        : columns_(image.width / block_px + 2), size_(level.width - 2, level.height - 2) {
+        const std::int64_t rows = image.height / block_px + 2;
         places_.resize(columns_ * rows);
         parallel_each(columns_ * rows, 8 * columns_, [&](std::int64_t i) {
             const glm::dvec3 ray = ray_direction(camera, static_cast<double>(i % columns_ * block_px) + 0.5,
@@ -88,14 +88,14 @@ void look_up(const Image& level, glm::vec2 place, float gain, float* __restrict 
 }
 
 void draw_block(const Image& level, float gain, const glm::vec2 (&corner)[4], const Region& part,
-                Image& picture) {
+                Image& image) {
     constexpr float step = 1.0f / static_cast<float>(block_px);
     for (std::int64_t y = 0; y < part.height; ++y) {
         const float v = static_cast<float>(y) * step;
         const glm::vec2 left = corner[0] + (corner[2] - corner[0]) * v;
         const glm::vec2 right = corner[1] + (corner[3] - corner[1]) * v;
         const glm::vec2 move = (right - left) * step;
-        float* out = picture.at(part.x, part.y + y);
+        float* out = image.at(part.x, part.y + y);
         for (std::int64_t x = 0; x < part.width; ++x)
             look_up(level, left + move * static_cast<float>(x), gain, out + 4 * x);
     }
@@ -104,25 +104,25 @@ void draw_block(const Image& level, float gain, const glm::vec2 (&corner)[4], co
 }  // namespace
 
 void draw_backdrop(const Environment& environment, const Camera& camera, std::int64_t width,
-                   std::int64_t height, Image& picture) {
-    if (picture.width != width || picture.height != height || picture.channels != 4)
-        picture = make_image(width, height, 4);
+                   std::int64_t height, Image& image) {
+    if (image.width != width || image.height != height || image.channels != 4)
+        image = make_image(width, height, 4);
     if (environment.faces->size() != 1) {  // a cube needs no arc functions
         parallel_chunks(height, block_px, [&](std::int64_t begin, std::int64_t end, int) {
-            draw_exactly(environment, camera, {0, begin, width, end - begin}, picture);
+            draw_exactly(environment, camera, {0, begin, width, end - begin}, image);
         });
         return;
     }
     const Image& level = nearest_level(environment, pixel_spread(camera));
-    const Places places(environment, camera, level, picture);
+    const Places places(environment, camera, level, image);
     parallel_chunks(height, block_px, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t x = 0; x < width; x += block_px) {
             const Region part{x, begin, std::min(block_px, width - x), end - begin};
             glm::vec2 corner[4];
             if (places.corners(x / block_px, begin / block_px, corner))
-                draw_block(level, environment.gain, corner, part, picture);
+                draw_block(level, environment.gain, corner, part, image);
             else
-                draw_exactly(environment, camera, part, picture);
+                draw_exactly(environment, camera, part, image);
         }
     });
 }

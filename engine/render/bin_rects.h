@@ -16,9 +16,9 @@ struct BinLevel {
     float last_column, last_row;
 };
 
-/// Bins over a part of the picture.
+/// Bins over a part of the frame.
 struct BinPyramid {
-    float x0_px, y0_px;                // its corner in the whole picture
+    float x0_px, y0_px;                // its corner in the whole frame
     float bin_px;                      // width of the bins of the first level, a multiple of 8
     std::span<const BinLevel> levels;  // the last one is a single bin
 };

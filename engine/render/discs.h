@@ -1,4 +1,4 @@
-// Where splats are on the picture and how far they reach, value by value, as vector code wants them.
+// Where splats are on the frame and how far they reach, value by value, as vector code wants them.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace astrosplat {
 
-/// Centres and reaches in px of the whole picture.
+/// Centres and reaches in px of the whole frame.
 struct Discs {
     Buffer<float> x_px, y_px, reach_px;
     void resize(std::size_t size) {

@@ -26,7 +26,7 @@ namespace astrosplat::HWY_NAMESPACE {
 /// One cell being folded.
 struct Cell {
     std::size_t first_pixel;  // in the planes
-    float x0_px, y0_px;       // of the whole picture
+    float x0_px, y0_px;       // of the whole frame
     std::uint64_t open;       // blocks that take more light
 };
 

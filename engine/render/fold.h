@@ -51,7 +51,7 @@ struct TilePlanes {
     static constexpr int widest_px = 128;  // largest tile
     static constexpr int block_px = 4, block_pixels = block_px * block_px;
     static constexpr int cell_blocks = 8, cell_px = cell_blocks * block_px, cell_pixels = cell_px * cell_px;
-    std::int64_t x0 = 0, y0 = 0;  // px of the whole picture
+    std::int64_t x0 = 0, y0 = 0;  // px of the whole frame
     int width = 0, height = 0;    // px in use
     int cell_columns = 0, cell_rows = 0;
     Buffer<float> color[3];  // light towards the eye

@@ -47,7 +47,7 @@ struct SplatBatch {
     static constexpr int blocks = TilePlanes::cell_blocks * TilePlanes::cell_blocks;
     int count = 0;
     bool is_faint = false;  // no splat's opacity comes near 1: s needs no clamping
-    // Of the whole picture; from `count` to the next whole vector they touch nothing.
+    // Of the whole frame; from `count` to the next whole vector they touch nothing.
     const float* x_px = nullptr;
     const float* y_px = nullptr;
     const float* reach_px = nullptr;

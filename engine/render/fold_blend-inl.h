@@ -74,7 +74,7 @@ constexpr std::size_t part_of(int side) { return parts == 1 ? 0 : static_cast<st
 
 /// Some of a block's pixels: those of one vector or two.
 struct BlockPart {
-    V x_px[parts], y_px[parts];  // of the whole picture
+    V x_px[parts], y_px[parts];  // of the whole frame
     std::size_t at;              // in the planes
 };
 

@@ -1,4 +1,4 @@
-// What goes into a frame and what comes out of it: layers and settings in, pictures and statistics out. The
+// What goes into a frame and what comes out of it: layers and settings in, images and statistics out. The
 // vocabulary that scenes, writers and the preview share with the renderer (render.h).
 #pragma once
 
@@ -30,14 +30,14 @@ struct RenderLayer {
 };
 
 struct RenderSettings {
-    std::int64_t width = 1920, height = 1080;  // px, the whole picture
-    Region region;              // part to render; empty: all. The pixels are those of the whole picture
+    std::int64_t width = 1920, height = 1080;  // px, the whole frame
+    Region region;              // part to render; empty: all. The pixels are those of the whole frame
     float pixel_filter = 0.5f;  // px, standard deviation
     float exposure = 0.0f;      // stops; only tightens the stop rule
     bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
     int tile_px = 0;  // a multiple of 8 from 16 to 128; 0: the quicker of 32 and 64. Changes no bit
     std::int64_t memory_limit_bytes = 0;  // for screen splats; 0: none. Rendered in bands, same bits
-    /// For previews: the whole picture's backdrop (backdrop.h), which stands for the environment; null: none.
+    /// For previews: the whole frame's backdrop (backdrop.h), which stands for the environment; null: none.
     const Image* backdrop = nullptr;
 };
 

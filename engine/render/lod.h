@@ -22,7 +22,7 @@ struct LevelChoice {
     float fade = 0.0f;
 };
 
-/// Level for a projected diameter; `limit_px` is lod.max_px scaled to the picture's height. The finer level
+/// Level for a projected diameter; `limit_px` is lod.max_px scaled to the frame's height. The finer level
 /// fades in over a factor 1.5 in size.
 LevelChoice choose_levels(float diameter_px, float limit_px, int max_children);
 

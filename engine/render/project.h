@@ -12,7 +12,7 @@
 
 namespace astrosplat {
 
-/// Where on the picture splats are wanted, px of the whole picture.
+/// Where on the frame splats are wanted, px of the whole frame.
 struct ScreenRect {
     float x0, y0, x1, y1;
 };

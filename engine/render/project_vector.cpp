@@ -31,7 +31,7 @@ using namespace astrosplat::shared_types;
 }  // namespace
 #pragma GCC diagnostic pop
 
-/// `lanes` splats on the picture.
+/// `lanes` splats on the frame.
 struct Projected {
     alignas(64) float x[lanes], y[lanes], z[lanes];  // camera space
     alignas(64) float disc[lanes][4];                // x_px, y_px, radius_px, opacity

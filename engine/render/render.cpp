@@ -74,7 +74,7 @@ RenderedFrame make_frame(std::span<const RenderLayer> layers, const RenderSettin
     const std::int64_t channels = 4 + settings.aov_depth + settings.aov_coverage + settings.aov_count +
                                   (settings.aov_layers ? 4 * static_cast<std::int64_t>(layers.size()) : 0);
     claim_memory(region.width * region.height * channels * static_cast<std::int64_t>(sizeof(float)),
-                 "the picture");
+                 "the frame");
     RenderedFrame frame;
     frame.beauty = make_image(region.width, region.height, 4);
     if (settings.aov_depth) frame.depth = make_image(region.width, region.height, 1);
@@ -197,7 +197,7 @@ Region tile_region(const TileGrid& grid, std::int64_t tile) {
             std::min<std::int64_t>(grid.tile_px, grid.y0 + grid.height - y)};
 }
 
-/// Whether a tile's only group goes straight into the picture.
+/// Whether a tile's only group goes straight into the frame.
 bool stands_alone(const Job& job) {
     const bool nothing_behind = !job.environment || job.settings.backdrop;
     return job.groups.size() == 1 && !job.groups[0].isolated && !job.fold.aovs && nothing_behind;
@@ -207,7 +207,7 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
                  RenderedFrame& frame) {
     const Region region = tile_region(bins.grid(), tile);
     const bool alone = stands_alone(job), behind = job.environment || job.settings.backdrop;
-    bool begun = false;  // until then the tile is as black as the new picture
+    bool begun = false;  // until then the tile is as black as the new frame
     for (std::size_t g = 0; g < std::max<std::size_t>(1, job.groups.size()); ++g) {
         worker.runs.clear();
         if (g < job.groups.size()) bins.collect(tile, static_cast<int>(g), worker.runs);
@@ -230,7 +230,7 @@ void render_tile(const Job& job, const TileBins& bins, std::int64_t tile, TileWo
 }
 
 /// The tiles in the order in which they are rendered: with tile_done from the middle of the
-/// picture outwards.
+/// frame outwards.
 std::vector<std::int64_t> tile_order(const Job& job, const TileGrid& grid) {
     std::vector<std::int64_t> order(static_cast<std::size_t>(grid.tiles()));
     std::iota(order.begin(), order.end(), std::int64_t{0});
@@ -254,7 +254,7 @@ void make_footprints(const Job& job, const TileBins::Sums& sums, RenderCache::St
                              sums.largest_px, job.progress);
 }
 
-/// One band, which will take about so many `records`; `before` of the picture's share is done already.
+/// One band, which will take about so many `records`; `before` of the frame's share is done already.
 void render_band(const Job& job, const TileGrid& grid, std::int64_t records, double before,
                  RenderCache::State& cache, RenderedFrame& frame) {
     const double share = static_cast<double>(grid.height) / static_cast<double>(job.region.height);
@@ -281,7 +281,7 @@ void render_band(const Job& job, const TileGrid& grid, std::int64_t records, dou
     frame.statistics.mean_overlap += sums.footprint_px;
 }
 
-/// The picture's tiles, and the records they will take, roughly.
+/// The frame's tiles, and the records they will take, roughly.
 struct Tiles {
     TileGrid grid;
     std::int64_t records = 0;
@@ -307,7 +307,7 @@ Tiles choose_tiles(const Job& job) {
     return {grid, records[0]};
 }
 
-/// The picture in bands of `band_rows` rows of tiles, with tile_done those nearest to the middle first.
+/// The frame in bands of `band_rows` rows of tiles, with tile_done those nearest to the middle first.
 std::vector<TileGrid> make_bands(const Job& job, const TileGrid& grid, std::int64_t band_rows) {
     std::vector<TileGrid> bands;
     for (std::int64_t row = 0; row < grid.rows(); row += band_rows) {

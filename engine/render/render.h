@@ -24,12 +24,12 @@ class RenderCache {
     std::unique_ptr<State> state;
 };
 
-/// Called when the pixels of a tile are final in the frame's images; `tile_px` in px of the whole picture.
+/// Called when the pixels of a tile are final in the frame's images; `tile_px` in px of the whole frame.
 /// Comes from the worker threads, several at once but never for the same pixels, and the work waits for it.
 using TileDone = std::function<void(const Region& tile_px, const RenderedFrame& frame)>;
 
 /// A pure function of its arguments but for `progress`. Layers in file order; invisible ones are left out by
-/// the caller. `environment` may be null. With `tile_done` the tiles come from the middle of the picture
+/// the caller. `environment` may be null. With `tile_done` the tiles come from the middle of the frame
 /// outwards, each pixel in exactly one. Throws Cancelled within some 20 ms of being asked to stop, and
 /// InputError when memory does not suffice.
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,

@@ -45,9 +45,9 @@ class TileResolver {
     /// Composites a group over what is there.
     void composite(const BlendGroup& group, const TilePlanes& planes);
     /// Writes the pixels to their place in the frame's images, whose corner is (x0, y0) px of the
-    /// whole picture.
+    /// whole frame.
     void write(const TilePlanes& tile, std::int64_t x0, std::int64_t y0, RenderedFrame& frame) const;
-    /// begin, composite and write in one for the only group of a picture without AOVs, if it is not isolated,
+    /// begin, composite and write in one for the only group of a frame without AOVs, if it is not isolated,
     /// before nothing or a backdrop.
     void write_alone(const BlendGroup& group, const TilePlanes& tile, std::int64_t x0, std::int64_t y0,
                      RenderedFrame& frame) const;

@@ -1,4 +1,4 @@
-// Scatter: screen splats into the picture's tiles, in one pass over the shaded splats and one write of
+// Scatter: screen splats into the frame's tiles, in one pass over the shaded splats and one write of
 // each record.
 //
 // Splats are projected a few hundred at a time and appended to bins, where each worker fills blocks of its
@@ -49,7 +49,7 @@ class SplatStore {
     std::int64_t filled_ = 0;               // lines of it in use
 };
 
-/// The tiles of the part of the picture being rendered, px of the whole picture.
+/// The tiles of the part of the frame being rendered, px of the whole frame.
 struct TileGrid {
     std::int64_t x0 = 0, y0 = 0, width = 0, height = 0;  // px
     int tile_px = 32;

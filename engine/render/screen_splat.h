@@ -1,4 +1,4 @@
-// A splat on the picture: what projection makes of a shaded splat and what the fold consumes. 40 bytes,
+// A splat on the frame: what projection makes of a shaded splat and what the fold consumes. 40 bytes,
 // because tens of millions of them stream through memory.
 #pragma once
 
@@ -38,7 +38,7 @@ inline void set_shape_number(ScreenSplat& splat, std::uint32_t number) {
 }
 
 /// Total order of DESIGN 7, near to far: by distance; ties by (layer, id) ascending, those between children
-/// of one splat by their place on the picture. (Splats that are not round have no children.)
+/// of one splat by their place on the frame. (Splats that are not round have no children.)
 inline bool in_front_of(const ScreenSplat& a, const ScreenSplat& b) {
     if (a.depth != b.depth) return a.depth < b.depth;
     if (a.layer != b.layer) return a.layer < b.layer;

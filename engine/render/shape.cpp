@@ -83,7 +83,7 @@ class Spectrum {
 }  // namespace
 
 Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& ellipsoid, float px_per_unit) {
-    // The picture's axes at p, across the ray there: the view's axes turned the shortest way.
+    // The frame's axes at p, across the ray there: the view's axes turned the shortest way.
     glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0);
     if (!shared::has_parallel_rays(lens)) {
         const glm::dvec3 ray = glm::normalize(glm::dvec3(p)), axis(0.0, 0.0, -1.0);

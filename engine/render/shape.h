@@ -1,6 +1,6 @@
 // Footprints that are not round: an ellipsoid seen through a camera is an ellipse, drawn with the profile
 // of a round footprint. In: the ellipse in px. Out: the round footprint, and how its plane is reached from
-// the picture's.
+// the frame's.
 //
 // The profile is that of the ellipse's smaller radius, stretched along the larger one so that its variance is
 // the falloff's and the pixel filter's together: exact for a gaussian, as EWA (Zwicker et al. 2001). Of other

@@ -11,7 +11,7 @@
 #include "source/picture.h"
 #include "source/prepared_picture.h"
 #include "source/stored_picture.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 
 namespace astrosplat {
 namespace {
@@ -42,7 +42,7 @@ void keep_picture(const SetCache& cache, const fs::path& file, const PreparedPic
     std::error_code error;
     fs::create_directories(cache.folder, error);
     try {
-        write_linear_picture(file, without_plain_alpha(picture.image), picture.credit, Existing::replace);
+        write_linear_image(file, without_plain_alpha(picture.image), picture.credit, Existing::replace);
     } catch (const OutputError& failure) {
         warn_unkept(cache, failure.what());
     }

@@ -8,7 +8,7 @@
 #define Vec3 vec3
 #endif
 
-// One appearance of a splat in the picture. A ball's footprint is a circle.
+// One appearance of a splat in the frame. A ball's footprint is a circle.
 struct Instance {
     Float x_px;         // centre, y down
     Float y_px;

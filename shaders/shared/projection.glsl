@@ -1,4 +1,4 @@
-// Projection: camera space (x right, y up, in front is -z) to the picture. To the renderer and the preview all
+// Projection: camera space (x right, y up, in front is -z) to the frame. To the renderer and the preview all
 // projections are alike. Each is a file of functions with its name in front, a constant in lens.glsl, lines in the table
 // below, a place in the lists of camera/projections.inc and app/gl/program.cpp, and what make_camera makes of its
 // parameters. One under which a ball is no circle draws all splats as ellipsoids: render/shape.h.
@@ -15,7 +15,7 @@ Instance instance_of(Lens lens, Vec3 p) {
     return perspective_instance(lens, p);
 }
 
-// Direction through a point of the picture, of any length.
+// Direction through a point of the frame, of any length.
 Vec3 ray_through(Lens lens, Float x_px, Float y_px) {
     if (has_parallel_rays(lens)) return Vec3(0.0f, 0.0f, -1.0f);
     return perspective_ray(lens, x_px, y_px);
@@ -30,17 +30,17 @@ Vec3 point_at_depth(Lens lens, Float x_px, Float y_px, Float depth) {
 // Angle between the rays of neighbouring pixels, radians.
 Real pixel_spread(Lens lens) { return has_parallel_rays(lens) ? 0.0f : perspective_spread(lens); }
 
-// Depth of a splat along the view axis from its place in the picture and its sort depth.
+// Depth of a splat along the view axis from its place in the frame and its sort depth.
 Float axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
     if (has_parallel_rays(lens)) return depth;
     return perspective_axis_depth(lens, x_px, y_px, depth);
 }
 
-// Distance as sort_depth measures it beyond which no ball of `radius` that touches the picture is wider than radius_px;
-// picture_px: no less than the picture's diagonal with the footprint's margin.
-Real small_from(Lens lens, Real radius, Real radius_px, Real picture_px) {
+// Distance as sort_depth measures it beyond which no ball of `radius` that touches the frame is wider than radius_px;
+// frame_px: no less than the frame's diagonal with the footprint's margin.
+Real small_from(Lens lens, Real radius, Real radius_px, Real frame_px) {
     if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_small_from(lens, radius, radius_px);
-    return perspective_small_from(lens, radius, radius_px, picture_px);
+    return perspective_small_from(lens, radius, radius_px, frame_px);
 }
 
 // What is the same for all of them.

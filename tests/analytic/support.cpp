@@ -14,8 +14,8 @@
 namespace astrosplat::analytic {
 namespace {
 
-void write_picture(const std::filesystem::path& file, const char* plugin, OIIO::TypeDesc type, int width,
-                   int height, const Texels& texels) {
+void write_image(const std::filesystem::path& file, const char* plugin, OIIO::TypeDesc type, int width,
+                 int height, const Texels& texels) {
     std::vector<float> values;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
@@ -34,11 +34,11 @@ void write_picture(const std::filesystem::path& file, const char* plugin, OIIO::
 }  // namespace
 
 void write_float_tiff(const std::filesystem::path& file, int width, int height, const Texels& texels) {
-    write_picture(file, "tiff", OIIO::TypeDesc::FLOAT, width, height, texels);
+    write_image(file, "tiff", OIIO::TypeDesc::FLOAT, width, height, texels);
 }
 
 void write_png(const std::filesystem::path& file, int width, int height, const Texels& texels) {
-    write_picture(file, "png", OIIO::TypeDesc::UINT8, width, height, texels);
+    write_image(file, "png", OIIO::TypeDesc::UINT8, width, height, texels);
 }
 
 float StoredFile::at(const std::string& name, std::int64_t x, std::int64_t y) const {

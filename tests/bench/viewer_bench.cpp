@@ -25,7 +25,7 @@
 #include "scene/scene.h"
 #include "support/temp_folder.h"
 #include "viewer/session.h"
-#include "viewer/session_picture.h"
+#include "viewer/session_view.h"
 #include "viewer/widget_target.h"
 
 namespace astrosplat::bench {
@@ -159,13 +159,13 @@ class Viewer {
 
 constexpr int samples = 21, orbit_frames = 120, warm_frames = 60;
 
-std::string shown_of(const PictureStatus& picture) {
+std::string shown_of(const ViewFrameStatus& picture) {
     return fmt::format(", {} of {} thousand splats", picture.shown / 1000, picture.total / 1000);
 }
 
 void measure_start(Viewer& viewer, double started, double processor_started) {
     viewer.session().view.settle = false;
-    viewer.run_until([&] { return viewer.session().status.picture.shown > 0; });
+    viewer.run_until([&] { return viewer.session().status.view_frame.shown > 0; });
     viewer.frame();
     print_row("start to first picture", "<= 1.5 s", fmt::format("{:.2f} s", seconds_now() - started),
               fmt::format("processor {:.2f} s", processor_seconds() - processor_started));
@@ -184,9 +184,10 @@ void measure_settling(Viewer& viewer, const std::string& what) {
     std::vector<unsigned char> before;
     session.view.settle = true;
     viewer.run_until([&] {
-        if (first == 0.0 && session.status.picture.state != PictureState::loading) {
+        if (first == 0.0 && session.status.view_frame.state != ViewFrameState::loading) {
             std::vector<unsigned char> pixels = session.display.read();
-            const bool refining = session.status.picture.state == PictureState::refining || settled(session);
+            const bool refining =
+                session.status.view_frame.state == ViewFrameState::refining || settled(session);
             if (refining && pixels != before) first = seconds_now();
             before = std::move(pixels);
         }
@@ -241,7 +242,7 @@ void measure_cancelling(Viewer& viewer) {
         session.view.settle = true;
         viewer.orbit_a_little();
         viewer.frame();
-        while (session.status.picture.state != PictureState::refining) {
+        while (session.status.view_frame.state != ViewFrameState::refining) {
             viewer.frame(true);
             advance(session, seconds_now());
         }
@@ -279,7 +280,7 @@ void measure_viewport(Viewer& viewer, const Parts& wanted) {
     viewer.orbit(warm_frames);
     if (wanted("orbit"))
         print_rate("orbit, 960x540", ">= 24 frames/s, never below 12", viewer.orbit(orbit_frames),
-                   shown_of(viewer.session().status.picture));
+                   shown_of(viewer.session().status.view_frame));
     if (wanted("slider")) measure_sliders(viewer);
     if (wanted("scrub")) measure_scrubbing(viewer);
     if (!wanted("settle")) return;
@@ -299,7 +300,7 @@ void measure_window(Viewer& viewer, const Parts& wanted) {
     viewer.orbit(warm_frames);
     if (wanted("window"))
         print_rate("orbit, window of 1600x900 with panels", "", viewer.orbit(orbit_frames),
-                   shown_of(viewer.session().status.picture));
+                   shown_of(viewer.session().status.view_frame));
     viewer.settle();
     Times redraw;
     for (int i = 0; i < samples; ++i) redraw.measure([&] { viewer.frame(); });

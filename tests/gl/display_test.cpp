@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "gl/gl_fixture.h"
-#include "gl/picture_texture.h"
+#include "gl/image_texture.h"
 #include "output/encode.h"
 
 namespace astrosplat {
@@ -44,7 +44,7 @@ class DisplayPicture : public GlTest {
         display.draw(settings, columns, rows);
         return {display.read(), columns};
     }
-    static DisplaySettings whole(const PictureTexture& a) {
+    static DisplaySettings whole(const ImageTexture& a) {
         DisplaySettings settings;
         settings.a = a.handle();
         settings.width = width;
@@ -55,7 +55,7 @@ class DisplayPicture : public GlTest {
 
 TEST_F(DisplayPicture, EveryViewAsTheWriter) {
     const Image image = ramp(width, height);
-    PictureTexture texture;
+    ImageTexture texture;
     texture.upload(image);
     for (const View view : {View::linear, View::srgb, View::soft})
         for (const float stops : {0.0f, 1.5f, -2.0f}) {
@@ -75,7 +75,7 @@ TEST_F(DisplayPicture, EveryViewAsTheWriter) {
 
 TEST_F(DisplayPicture, DithersAsTheWriter) {
     const Image image = ramp(width, height);
-    PictureTexture texture;
+    ImageTexture texture;
     texture.upload(image);
     DisplaySettings settings = whole(texture);
     settings.dither = true;
@@ -98,7 +98,7 @@ TEST_F(DisplayPicture, DithersAsTheWriter) {
 TEST_F(DisplayPicture, LiesWhereItIsPutWithBackgroundAround) {
     Image image = make_image(4, 2, 4, 1.0f);
     image.at(0, 0)[1] = 0.0f;  // upper left: magenta
-    PictureTexture texture;
+    ImageTexture texture;
     texture.upload(image);
     DisplaySettings settings;
     settings.a = texture.handle();
@@ -125,7 +125,7 @@ TEST_F(DisplayPicture, LiesWhereItIsPutWithBackgroundAround) {
 
 TEST_F(DisplayPicture, LargerThanTheTargetItIsCut) {
     const Image image = ramp(2 * width, 2 * height);
-    PictureTexture texture;
+    ImageTexture texture;
     texture.upload(image);
     DisplaySettings settings;
     settings.a = texture.handle();
@@ -141,7 +141,7 @@ TEST_F(DisplayPicture, ShrunkItIsTheMean) {
     Image image = make_image(8 * width, 8 * height, 4, 0.0f);
     for (std::int64_t y = 0; y < image.height; ++y)
         for (std::int64_t x = 0; x < image.width; ++x) image.at(x, y)[0] = (x + y) % 2 == 0 ? 1.0f : 0.0f;
-    PictureTexture texture;
+    ImageTexture texture;
     texture.upload(image);
     DisplaySettings settings = whole(texture);
     settings.view = View::linear;
@@ -150,7 +150,7 @@ TEST_F(DisplayPicture, ShrunkItIsTheMean) {
 }
 
 TEST_F(DisplayPicture, WipeShowsAToTheLeftAndBToTheRightOfALine) {
-    PictureTexture a, b;
+    ImageTexture a, b;
     a.upload(make_image(width, height, 4, 0.25f));
     b.upload(make_image(width, height, 4, 0.75f));
     DisplaySettings settings = whole(a);
@@ -172,7 +172,7 @@ TEST_F(DisplayPicture, WipeShowsAToTheLeftAndBToTheRightOfALine) {
 }
 
 TEST_F(DisplayPicture, DifferenceIsOfDisplayValuesTimesGain) {
-    PictureTexture a, b;
+    ImageTexture a, b;
     a.upload(make_image(width, height, 4, 0.5f));
     b.upload(make_image(width, height, 4, 0.7f));
     DisplaySettings settings = whole(a);
@@ -189,7 +189,7 @@ TEST_F(DisplayPicture, DifferenceIsOfDisplayValuesTimesGain) {
 
 TEST_F(DisplayPicture, ATileAloneIsReplaced) {
     Image image = make_image(width, height, 4, 0.0f);
-    PictureTexture texture;
+    ImageTexture texture;
     texture.upload(image);
     image = make_image(width, height, 4, 1.0f);
     texture.upload(image, {16, 8, 32, 24});

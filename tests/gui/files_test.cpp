@@ -3,7 +3,7 @@
 
 #include "gui/file_list.h"
 #include "gui/key_codes.h"
-#include "gui/reference_pictures.h"
+#include "gui/reference_screens.h"
 #include "gui/test_window.h"
 #include "support/temp_folder.h"
 
@@ -130,7 +130,7 @@ TEST_F(FileDialogTest, ReplacingIsAsked) {
     type_path((folder / "scenes/old.toml").string());
     window.click("file/Save");
     EXPECT_TRUE(window.take_commands().empty());
-    window.keep_picture("replace");
+    window.keep_screen("replace");
     window.click("file/Replace");
     const Commands commands = window.take_commands();
     ASSERT_EQ(commands.size(), 1U);

@@ -26,7 +26,7 @@ TEST(Layout, CoversTheWindowWithoutGaps) {
 TEST(Layout, TheWindowKeepsToItAtOddScales) {
     TestWindow window(example_document(), 1600, 1000, 1.25f);
     const Rect viewport = make_layout(window.view, 1600, 1000, 1.25f).viewport;
-    EXPECT_EQ(window.at("picture"),
+    EXPECT_EQ(window.at("frame in view"),
               glm::vec2(viewport.x + viewport.width / 2, viewport.y + viewport.height / 2));
 }
 
@@ -46,7 +46,7 @@ TEST(Layout, SplittersAreDraggedAndReset) {
 
 TEST(Layout, APictureOfTheViewportsSizeIsShownPixelByPixel) {
     const Rect viewport{0, 60, 1241, 667};
-    const Rect fit = place_picture(ViewState{}, viewport, 1241, 667);
+    const Rect fit = place_frame(ViewState{}, viewport, 1241, 667);
     EXPECT_EQ(fit.x, 0);
     EXPECT_EQ(fit.y, 60);
     EXPECT_EQ(fit.width, 1241);
@@ -54,7 +54,7 @@ TEST(Layout, APictureOfTheViewportsSizeIsShownPixelByPixel) {
     view.size = SizeMode::one_to_one;
     view.pan_px = {10, -5};
     view.zoom = 2;
-    const Rect zoomed = place_picture(view, {0, 0, 1000, 500}, 100, 50);
+    const Rect zoomed = place_frame(view, {0, 0, 1000, 500}, 100, 50);
     EXPECT_EQ(zoomed.x, 410);
     EXPECT_EQ(zoomed.y, 195);
     EXPECT_EQ(zoomed.width, 200);

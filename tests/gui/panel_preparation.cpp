@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "gui/panel_driver.h"
-#include "gui/reference_pictures.h"
+#include "gui/reference_screens.h"
 
 namespace astrosplat {
 namespace {

@@ -5,7 +5,7 @@
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/panel_driver.h"
-#include "gui/reference_pictures.h"
+#include "gui/reference_screens.h"
 #include "gui/test_window.h"
 #include "gui/theme.h"
 
@@ -39,7 +39,7 @@ TEST_F(References, Graph) {
 TEST_F(References, SnapshotsAndWipe) {
     window.view.snapshots_open = true;
     window.view.compare = CompareMode::wipe;
-    void* picture = window.status.picture_texture;
+    void* picture = window.status.viewport_texture;
     window.status.snapshots = {{"Warm dust", picture, 1.83f, 12400000, 1.8},
                                {"Before the noise", picture, 0.6f, 12400000, 0}};
     window.status.b_snapshot = 0;
@@ -61,8 +61,8 @@ TEST_F(References, Question) {
     expect_reference("question");
 }
 TEST_F(References, Failed) {
-    window.status.picture.state = PictureState::failed;
-    window.status.picture.error = "the picture 'stars.png' of layer stars cannot be read";
+    window.status.view_frame.state = ViewFrameState::failed;
+    window.status.view_frame.error = "the picture 'stars.png' of layer stars cannot be read";
     window.status.message = {"/scenes/whirlpool.toml:14: expected a file that can be read, found none", true};
     window.status.changed_on_disk = true;
     window.status.job = {"Rendering 12 of 240", 0.05f};
@@ -89,7 +89,7 @@ TEST_F(References, FirstStart) {
     expect_reference("first_start");
 }
 TEST_F(References, FreeViewWithOverlays) {
-    window.status.picture.state = PictureState::preview;
+    window.status.view_frame.state = ViewFrameState::preview;
     window.view.view = ViewKind::free;
     window.view.inspect_exposure = 2.5f;
     window.view.preview_share = 0.25f;
@@ -101,8 +101,8 @@ TEST_F(References, FreeViewWithOverlays) {
 }
 TEST_F(References, WithoutPanels) {
     window.tap(key_code::f11);
-    window.status.picture.state = PictureState::final;
-    window.status.picture.seconds = 1.8;
+    window.status.view_frame.state = ViewFrameState::final;
+    window.status.view_frame.seconds = 1.8;
     expect_reference("no_panels");
 }
 

@@ -36,7 +36,7 @@ TEST(Shortcuts, UndoAndRedoNameTheirStep) {
     TestWindow window(example_document());
     make_edited(window);
     window.click("Edit");
-    window.keep_picture("undo_menu");
+    window.keep_screen("undo_menu");
     window.tap(key_code::escape);
     window.tap('Z', true);
     EXPECT_EQ(window.document.scene().layers[0].render.opacity, 1.0);

@@ -78,9 +78,9 @@ TestWindow::TestWindow(Document document_, int width, int height, float content_
     io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     status = example_status();
-    status.picture_texture = &image_;
-    status.picture.width = image_.width;
-    status.picture.height = image_.height;
+    status.viewport_texture = &image_;
+    status.view_frame.width = image_.width;
+    status.view_frame.height = image_.height;
     move({-100.0f, -100.0f});
     frame(2);
 }
@@ -191,7 +191,7 @@ Picture8 TestWindow::picture(Style style) {
     return target;
 }
 
-void TestWindow::keep_picture(const std::string& name) {
+void TestWindow::keep_screen(const std::string& name) {
     const char* folder = std::getenv("ASTROSPLAT_GUI_PICTURES");
     if (folder && *folder) write_ppm(std::filesystem::path(folder) / (name + ".ppm"), picture());
 }
@@ -233,10 +233,10 @@ count = 1400000
 
 Status example_status() {
     Status status;
-    status.picture.state = PictureState::refining;
-    status.picture.progress = 0.41f;
-    status.picture.shown = 240000;
-    status.picture.total = 12400000;
+    status.view_frame.state = ViewFrameState::refining;
+    status.view_frame.progress = 0.41f;
+    status.view_frame.shown = 240000;
+    status.view_frame.total = 12400000;
     for (const std::int64_t splats : {2900000, 8100000, 1400000}) {
         LayerStatus layer;
         layer.splats = splats;

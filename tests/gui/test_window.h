@@ -44,7 +44,7 @@ class TestWindow {
     /// The last frame as it looks.
     Picture8 picture(Style style = Style::as_seen);
     /// Into the folder that $ASTROSPLAT_GUI_PICTURES names, when it names one.
-    void keep_picture(const std::string& name);
+    void keep_screen(const std::string& name);
 
     Document document;
     ViewState view;

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = Command::Kind;
 
-TEST(Picture, ItsShapeIsInSmallNumbersOrToOne) {
+TEST(Viewport, ItsShapeIsInSmallNumbersOrToOne) {
     EXPECT_EQ(aspect_text(1920, 1080), "16:9");
     EXPECT_EQ(aspect_text(2900, 1900), "29:19");
     EXPECT_EQ(aspect_text(3000, 1900), "1.58:1");
@@ -21,7 +21,7 @@ TEST(Picture, ItsShapeIsInSmallNumbersOrToOne) {
     EXPECT_EQ(aspect_text(1000, 1000), "1:1");
 }
 
-TEST(Picture, MouseButtonsMeanDrags) {
+TEST(Viewport, MouseButtonsMeanDrags) {
     using Drag = ViewportInput::Drag;
     EXPECT_EQ(drag_of(0, false, false), Drag::orbit);
     EXPECT_EQ(drag_of(0, true, false), Drag::pan);
@@ -32,9 +32,9 @@ TEST(Picture, MouseButtonsMeanDrags) {
     EXPECT_EQ(drag_of(1, false, true), Drag::dolly);
 }
 
-TEST(Picture, ADragBeginsMovesAndEnds) {
+TEST(Viewport, ADragBeginsMovesAndEnds) {
     TestWindow window(example_document());
-    const glm::vec2 middle = window.at("picture");
+    const glm::vec2 middle = window.at("frame in view");
     window.move(middle);
     window.frame(2);
     EXPECT_TRUE(window.gui.viewport_input().hovered);
@@ -51,9 +51,9 @@ TEST(Picture, ADragBeginsMovesAndEnds) {
     EXPECT_FALSE(window.gui.viewport_input().drag_ends);
 }
 
-TEST(Picture, LettersFlyOnlyWhileLookingAround) {
+TEST(Viewport, LettersFlyOnlyWhileLookingAround) {
     TestWindow window(example_document());
-    window.move(window.at("picture"));
+    window.move(window.at("frame in view"));
     window.frame(2);
     ImGui::GetIO().KeysDown['W'] = true;
     window.frame();
@@ -83,20 +83,20 @@ TEST(ToolRow, TheSharePreviewsShowIsDraggedAndZeroMeansAuto) {
     EXPECT_EQ(window.view.preview_share, 0.0f);
 }
 
-TEST(Picture, TheWipeIsDragged) {
+TEST(Viewport, TheWipeIsDragged) {
     TestWindow window(example_document());
     window.view.compare = CompareMode::wipe;
     window.frame();
-    const glm::vec2 middle = window.at("picture");
+    const glm::vec2 middle = window.at("frame in view");
     window.drag(middle, {200, 0});
     EXPECT_GT(window.view.wipe, 0.6f);
     EXPECT_LT(window.view.wipe, 0.7f);
 }
 
-TEST(Picture, OneToOneZoomsAboutTheMouseAndMoves) {
+TEST(Viewport, OneToOneZoomsAboutTheMouseAndMoves) {
     TestWindow window(example_document());
     window.view.size = SizeMode::one_to_one;
-    const glm::vec2 middle = window.at("picture");
+    const glm::vec2 middle = window.at("frame in view");
     window.move(middle + glm::vec2(100, 0));
     window.frame(2);
     for (int i = 0; i < 4; ++i) window.wheel(1);
@@ -108,17 +108,17 @@ TEST(Picture, OneToOneZoomsAboutTheMouseAndMoves) {
     EXPECT_EQ(window.view.pan_px, glm::dvec2(40, 20));
 }
 
-TEST(Picture, TheBadgeSaysHowFinalItIs) {
+TEST(Viewport, TheBadgeSaysHowFinalItIs) {
     const Document document = example_document();
     Status status = example_status();
     EXPECT_EQ(badge_text(document.scene(), status).text, "Refining 41 %");
-    status.picture.state = PictureState::preview;
+    status.view_frame.state = ViewFrameState::preview;
     EXPECT_EQ(badge_text(document.scene(), status).text, "Preview 240 k of 12.4 M");
     EXPECT_TRUE(badge_text(document.scene(), status).warns);
-    status.picture.shown = 2000000;
+    status.view_frame.shown = 2000000;
     EXPECT_FALSE(badge_text(document.scene(), status).warns);
-    status.picture.state = PictureState::final;
-    status.picture.seconds = 1.8;
+    status.view_frame.state = ViewFrameState::final;
+    status.view_frame.seconds = 1.8;
     EXPECT_EQ(badge_text(document.scene(), status).text, "Final 1.8 s");
     status.layers[1].loading = true;
     status.layers[1].progress = 0.37f;
@@ -129,7 +129,7 @@ TEST(Picture, TheBadgeSaysHowFinalItIs) {
     EXPECT_EQ(badge_text(document.scene(), status).beside, "");
 }
 
-TEST(Picture, TheFrontIsMeasuredBesideTheBadge) {
+TEST(Viewport, TheFrontIsMeasuredBesideTheBadge) {
     FrontStatus front;
     EXPECT_EQ(front_text(front), "");
     front.working = true;
@@ -149,7 +149,7 @@ TEST(Picture, TheFrontIsMeasuredBesideTheBadge) {
     EXPECT_EQ(front_text(front), "Front cannot be compared: no picture");
 }
 
-TEST(Picture, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
+TEST(Viewport, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
     TestWindow window(example_document());
     window.frame();
     window.tap('D');
@@ -162,10 +162,10 @@ TEST(Picture, DShowsWhereTheFrontDiffersIfThereIsAPicture) {
     EXPECT_EQ(window.view.compare, CompareMode::a);
 }
 
-TEST(Picture, TheBadgesButtons) {
+TEST(Viewport, TheBadgesButtons) {
     TestWindow window(example_document());
-    window.status.picture.state = PictureState::failed;
-    window.status.picture.error = "no such picture";
+    window.status.view_frame.state = ViewFrameState::failed;
+    window.status.view_frame.error = "no such picture";
     window.frame(2);
     window.click("badge/Copy");
     Commands commands = window.take_commands();
@@ -179,7 +179,7 @@ TEST(Picture, TheBadgesButtons) {
     EXPECT_EQ(commands[0].index, 1U);
 }
 
-TEST(Picture, TheBadgeStaysInThePictureHoweverLongANameIs) {
+TEST(Viewport, TheBadgeStaysInThePictureHoweverLongANameIs) {
     TestWindow window(example_document());
     window.document.edit("Rename", [](Scene& scene) { scene.layers[1].name = std::string(300, 'x'); });
     window.status.layers[1].loading = true;
@@ -221,7 +221,7 @@ TEST(MessageBar, AnErrorStaysUntilItIsClicked) {
     EXPECT_TRUE(seen() == empty);
 }
 
-TEST(Picture, CountsHaveThreeDigitsAtMost) {
+TEST(Viewport, CountsHaveThreeDigitsAtMost) {
     EXPECT_EQ(short_count(999), "999");
     EXPECT_EQ(splat_count(0), "0 splats");
     EXPECT_EQ(splat_count(1), "1 splat");

@@ -13,7 +13,7 @@
 #include "analytic/support.h"
 #include "output/write.h"
 #include "scene/load.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 
 namespace astrosplat {
 namespace {
@@ -58,7 +58,7 @@ void write_differences(const fs::path& file, const Image& differences) {
         const auto level = static_cast<unsigned char>(255.0 * std::min(1.0, d / never));
         rgba.insert(rgba.end(), {level, level, level, 255});
     }
-    write_picture(file, differences.width, differences.height, rgba);
+    write_image(file, differences.width, differences.height, rgba);
 }
 
 class Images : public testing::TestWithParam<std::string> {

@@ -49,7 +49,7 @@ double integral_over_disc(double radius, int rings, int spokes, const Function& 
     return sum * (radius / rings) * (2.0 * pi / spokes);
 }
 
-/// A splat on the picture.
+/// A splat on the frame.
 struct Disc {
     double x, y, radius_px;  // centre; y down
     double opacity;          // alpha * layer opacity * near fade
@@ -172,7 +172,7 @@ void composite(const LayerRender& render, const Disc& disc, double s, glm::dvec4
     under.a = render.holdout ? through * under.a : 1.0 - through + through * under.a;
 }
 
-/// An isolated layer's picture, rendered on black, over what lies behind it.
+/// An isolated layer's frame, rendered on black, over what lies behind it.
 void composite_isolated(Blend blend, const glm::dvec4& top, glm::dvec4& under) {
     double through = 0.0;
     for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,4 @@
-// The picture by the book: what the tile renderer must show, for scenes small enough to wait for it.
+// The frame by the book: what the tile renderer must show, for scenes small enough to wait for it.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace astrosplat::test {
 
-/// The beauty picture (RGBA, linear, premultiplied) of the whole frame: for each pixel, for each splat, back
+/// The beauty frame (RGBA, linear, premultiplied) of the whole frame: for each pixel, for each splat, back
 /// to front. Level of detail, regions and the arbitrary output variables are left out. `environment` may be
 /// null.
 Image reference_render(std::span<const RenderLayer> layers, const Camera& camera,

@@ -49,7 +49,7 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
     ViewState view;
     view.size = SizeMode::one_to_one;
     const Rect viewport = make_layout(ViewState(), width, height, 1.0f).viewport;
-    const Rect whole = place_picture(view, viewport, 1600, 1200);
+    const Rect whole = place_frame(view, viewport, 1600, 1200);
     const auto left = static_cast<int>(viewport.x - whole.x), top = static_cast<int>(viewport.y - whole.y);
     ASSERT_GT(left, 0);
     ASSERT_GT(top, 0);

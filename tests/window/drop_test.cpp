@@ -6,7 +6,7 @@ namespace {
 
 class WindowDrop : public WindowTest {
   protected:
-    glm::vec2 middle() { return same_widgets().at("picture"); }
+    glm::vec2 middle() { return same_widgets().at("frame in view"); }
 };
 
 TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {

@@ -2,7 +2,7 @@
 #include <thread>
 
 #include "gui/theme.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -14,7 +14,7 @@ class WindowFiles : public WindowTest {
         constexpr int size = 64;
         std::vector<unsigned char> rgba;
         for (int i = 0; i < size * size; ++i) rgba.insert(rgba.end(), {red, 90, blue, 255});
-        write_picture(folder / name, size, size, rgba);
+        write_image(folder / name, size, size, rgba);
     }
     /// Something in the window is in the colour of errors.
     bool failed() const { return count_of(screen->pixels({0, 0, width, height}), color::error) > 10; }

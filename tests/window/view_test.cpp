@@ -13,7 +13,7 @@ TEST_F(WindowView, OrbitGoesToAFreeViewAndZeroReturns) {
     start();
     const Pixels before = settled_picture();
     const Pixels tools = pixels_of(&Layout::tools);
-    person->drag(same_widgets().at("picture"), {120.0f, 40.0f});
+    person->drag(same_widgets().at("frame in view"), {120.0f, 40.0f});
     settled_picture(before);
     EXPECT_NE(pixels_of(&Layout::tools), tools) << "the view is still called Camera";
     EXPECT_EQ(title(), "scene.toml - astrosplat") << "looking around is no edit";

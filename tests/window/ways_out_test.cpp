@@ -79,7 +79,7 @@ TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
     settled_picture();
     person->press("ctrl+shift+r");
     ASSERT_TRUE(comes_true([&] { return names_in(folder / "frames").size() > 2; }));
-    person->drag(same_widgets().at("picture"), {60.0f, 0.0f});  // usable meanwhile
+    person->drag(same_widgets().at("frame in view"), {60.0f, 0.0f});  // usable meanwhile
     same_widgets().status.job = {"Rendering", 0.1f};
     same_widgets().frame();
     choose("Render/Cancel");

@@ -4,7 +4,7 @@
 
 #include "edit/preferences.h"
 #include "gui/theme.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 
 namespace astrosplat::test {
 namespace {
@@ -54,7 +54,7 @@ void write_rings(const fs::path& file) {
             const auto byte = [&](double level) { return static_cast<unsigned char>(255.0 * light * level); };
             rgba.insert(rgba.end(), {byte(1.0), byte(0.7), byte(0.3 + 0.005 * x), 255});
         }
-    write_picture(file, size, size, rgba);
+    write_image(file, size, size, rgba);
 }
 
 ViewerTest::ViewerTest() : scene_file(folder / "scene.toml") {

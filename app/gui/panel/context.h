@@ -42,7 +42,7 @@ struct CopiedLook {
 };
 
 /// The field of a noise, drawn once: greys at the corners of cells, row by row.
-struct NoisePicture {
+struct NoiseSketch {
     Noise noise;
     double span = 0.0;  // scene units across
     int columns = 0;
@@ -66,10 +66,10 @@ struct Memory {
     std::string renaming;  // layer whose name is typed
     int dragged_layer = -1;
     std::optional<CopiedLook> copied;
-    std::vector<NoisePicture> noises;  // by entry of the list
-    float preparation_line = 0.5f;     // between before and after, 0..1 of the width
-    float scroll = 0.0f;               // how far the tab can be scrolled
-    ParameterKey hovered;              // row under the mouse, and since when: tooltips wait a little
+    std::vector<NoiseSketch> noises;  // by entry of the list
+    float preparation_line = 0.5f;    // between before and after, 0..1 of the width
+    float scroll = 0.0f;              // how far the tab can be scrolled
+    ParameterKey hovered;             // row under the mouse, and since when: tooltips wait a little
     double hovered_since = 0.0;
     std::optional<ParameterKey> request;  // whose file is asked for
 };

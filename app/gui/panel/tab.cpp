@@ -1,13 +1,13 @@
 // Loops over the description: a parameter appears in the section that it names, in the order it was described
 // in, where it has an effect. What sections show besides is in tab_sections.h, list_rows.h and
-// row_pictures.h.
+// row_sketches.h.
 #include "gui/panel/tab.h"
 
 #include <algorithm>
 
 #include "gui/panel/list_rows.h"
 #include "gui/panel/row.h"
-#include "gui/panel/row_pictures.h"
+#include "gui/panel/row_sketches.h"
 #include "gui/panel/section.h"
 #include "gui/panel/tab_sections.h"
 

@@ -197,7 +197,7 @@ const TabSection sections[] = {
     {"Camera", "Place", unfolded, place_state, {"camera.position", "camera.rotation"}},
     {"Camera", "Lens", unfolded, lens_state},
     {"Camera", "Environment", nullptr, environment_state, {"environment.visible"}},
-    {"Output", "Picture", unfolded, resolution_state},
+    {"Output", "Frame", unfolded, resolution_state},
     {"Output", "Frames", unfolded, frames_state},
     {"Output", "File format", nullptr, format_state},
     {"Output", "Provenance", nullptr, provenance_state}};

@@ -20,7 +20,7 @@
 #include "core/parallel.h"
 #include "output/encode.h"
 #include "output/metadata.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 #include "support/errors.h"
 #include "support/file_limit.h"
 
@@ -406,11 +406,11 @@ TEST_F(WriteTest, AFullDiskIsAnErrorForScreenshotsToo) {
     for (std::size_t i = 0; i < rgba.size(); ++i)
         rgba[i] = static_cast<unsigned char>((i * 2654435761u) >> 13);
     const fs::path file = folder_ / "shot.png";
-    write_picture(file, 128, 128, rgba);
+    write_image(file, 128, 128, rgba);
     const std::string before = bytes_of(file);
     {
         const FileLimit full(before.size() / 2);
-        EXPECT_THROW(write_picture(file, 128, 128, rgba), OutputError);
+        EXPECT_THROW(write_image(file, 128, 128, rgba), OutputError);
     }
     EXPECT_TRUE(bytes_of(file) == before);
 }

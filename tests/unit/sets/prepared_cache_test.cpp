@@ -15,7 +15,7 @@
 #include "sets/recipe.h"
 #include "sets/set_cache.h"
 #include "source/prepared_picture.h"
-#include "source/write_picture.h"
+#include "source/write_image.h"
 #include "support/errors.h"
 #include "support/starry_picture.h"
 #include "support/temp_folder.h"
@@ -57,7 +57,7 @@ class PreparedSource : public testing::Test {
     SourceParams by_hand(SourceParams source) const {
         const PreparedPicture ready = prepare_picture(source.meshes[0].texture, source.texture);
         EXPECT_EQ(ready.stars.size(), 12u);
-        write_linear_picture(folder_ / "ready.exr", without_plain_alpha(ready.image), "", Existing::replace);
+        write_linear_image(folder_ / "ready.exr", without_plain_alpha(ready.image), "", Existing::replace);
         source.meshes[0].texture = {folder_ / "ready.exr"};
         source.texture.prepare = {};
         return source;
@@ -94,7 +94,7 @@ TEST_F(PreparedSource, KeepsItsPictureForOtherSets) {
     // Another picture in its place is seen by every other set, not by the one that is kept.
     PreparedPicture other = prepare_picture(source_.meshes[0].texture, source_.texture);
     for (float& value : other.image.pixels) value *= 0.5f;
-    write_linear_picture(pictures()[0], other.image, "", Existing::replace);
+    write_linear_image(pictures()[0], other.image, "", Existing::replace);
     EXPECT_TRUE(same(load_source(cache_, source_, "dust").set, uncached));
     source_.structure.clumps = 0.5;
     EXPECT_FALSE(same(load_source(cache_, source_, "dust").set, load_source(source_, "dust")));

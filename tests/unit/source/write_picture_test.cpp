@@ -1,5 +1,5 @@
 // A picture made in memory is the file that a reader takes.
-#include "source/write_picture.h"
+#include "source/write_image.h"
 
 #include <gtest/gtest.h>
 

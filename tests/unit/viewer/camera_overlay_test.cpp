@@ -15,7 +15,7 @@ using Line = CameraOverlay::Line;
 struct CameraOverlayTest : testing::Test {
     Scene scene = parse_scene(test::edit_scene, "/scene.toml");  // 640 x 360 px
     Bounds box{{-4.0, -1.0, -3.0}, {6.0, 1.0, 5.0}};
-    PictureRequest request;
+    ViewRequest request;
     Rect place{10.0f, 20.0f, 320.0f, 180.0f};
     CameraOverlay overlay;
     CameraOverlayTest() {

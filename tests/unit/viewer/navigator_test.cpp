@@ -15,9 +15,9 @@ struct NavigatorTest : testing::Test {
     test::SceneFolder folder;
     Document document = Document::open(folder.file);
     ViewState view;
-    PictureRequest request;
+    ViewRequest request;
     Bounds box{{-4.0, -1.0, -3.0}, {6.0, 1.0, 5.0}};
-    ShownPicture shown{request, {640.0, 360.0}, box};
+    ShownView shown{request, {640.0, 360.0}, box};
     Navigator navigator;
     NavigatorTest() {
         request.scene = document.scene();

@@ -21,20 +21,20 @@ TEST(Refusals, AFailedPictureAndLayerAreSaidOnce) {
     status.layers.resize(2);
     say_new_errors(status, said);
     EXPECT_TRUE(status.log.empty());
-    status.picture.state = PictureState::failed;
-    status.picture.error = "s.toml: camera.fov: expected an angle, found 0";
+    status.view_frame.state = ViewFrameState::failed;
+    status.view_frame.error = "s.toml: camera.fov: expected an angle, found 0";
     say_new_errors(status, said);
     ASSERT_EQ(status.log.size(), 1u);
     EXPECT_TRUE(status.message.error);
-    EXPECT_EQ(status.message.text, status.picture.error);
+    EXPECT_EQ(status.message.text, status.view_frame.error);
     status.layers[1].error = "a.png: expected a picture, found none";
     say_new_errors(status, said);
     say_new_errors(status, said);
     ASSERT_EQ(status.log.size(), 2u);
     EXPECT_EQ(status.message.text, status.layers[1].error);
-    status.picture.state = PictureState::preview;
+    status.view_frame.state = ViewFrameState::preview;
     say_new_errors(status, said);
-    status.picture.state = PictureState::failed;
+    status.view_frame.state = ViewFrameState::failed;
     say_new_errors(status, said);
     EXPECT_EQ(status.log.size(), 3u) << "it has failed again";
 }

@@ -1,4 +1,4 @@
-#include "viewer/picture.h"
+#include "viewer/view_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,18 +18,18 @@ bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr
 }
 
 constexpr std::int64_t small_layer = 15'000;  // splats that a preview shows of any layer
-constexpr double rest_s = 0.3;                // without a change, before the final picture begins
+constexpr double rest_s = 0.3;                // without a change, before the final frame begins
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
 
-Region whole(const PictureRequest& request) {
+Region whole(const ViewRequest& request) {
     if (request.region.width > 0) return request.region;
     return {0, 0, request.width, request.height};
 }
 
 }  // namespace
 
-bool PictureRequest::operator==(const PictureRequest& other) const {
+bool ViewRequest::operator==(const ViewRequest& other) const {
     return width == other.width && height == other.height && files == other.files &&
            region.x == other.region.x && region.y == other.region.y && region.width == other.region.width &&
            region.height == other.region.height &&
@@ -37,11 +37,11 @@ bool PictureRequest::operator==(const PictureRequest& other) const {
            scene == other.scene;
 }
 
-Camera camera_of(const PictureRequest& request) {
+Camera camera_of(const ViewRequest& request) {
     return make_camera(request.scene.camera, request.width, request.height, request.box);
 }
 
-std::vector<PreviewLayer> ViewPicture::preview_layers() {
+std::vector<PreviewLayer> ViewFrame::preview_layers() {
     std::vector<PreviewLayer> layers;
     std::vector<std::int64_t> sizes;  // of the layers seen
     places_.clear();
@@ -77,7 +77,7 @@ std::vector<PreviewLayer> ViewPicture::preview_layers() {
     return layers;
 }
 
-void ViewPicture::note_kept(const std::vector<double>& shares) {
+void ViewFrame::note_kept(const std::vector<double>& shares) {
     kept_.assign(request_->layers.size(), -1);
     for (std::size_t n = 0; n < std::min(shares.size(), places_.size()); ++n) {
         const auto whole = static_cast<double>(request_->layers[places_[n]]->splats);
@@ -85,19 +85,19 @@ void ViewPicture::note_kept(const std::vector<double>& shares) {
     }
 }
 
-/// The environment_ of the picture shown_ has been loaded since, or could not be: then the preview says why.
-bool ViewPicture::environment_arrived() {
+/// The environment_ of the frame shown_ has been loaded since, or could not be: then the preview says why.
+bool ViewFrame::environment_arrived() {
     try {
         if (!request_) return false;
         const std::shared_ptr<const Environment> now = files_->environment(request_->scene.environment);
         return (now ? now->faces : nullptr) != (environment_ ? environment_->faces : nullptr);
     } catch (const InputError&) {
-        return status_.state != PictureState::failed;
+        return status_.state != ViewFrameState::failed;
     }
 }
 
-/// There is more to be shown_ of the same sets. Once the final_ picture has begun nobody needs it.
-bool ViewPicture::previews_arrived(const PictureRequest& now) const {
+/// There is more to be shown_ of the same sets. Once the final_ frame has begun nobody needs it.
+bool ViewFrame::previews_arrived(const ViewRequest& now) const {
     const auto same_preview = [](const auto& a, const auto& b) {
         return (a ? a->preview : nullptr) == (b ? b->preview : nullptr);
     };
@@ -105,7 +105,7 @@ bool ViewPicture::previews_arrived(const PictureRequest& now) const {
                        same_preview);
 }
 
-void ViewPicture::draw_preview(double now) {
+void ViewFrame::draw_preview(double now) {
     const auto start = Clock::now();
     const double target_ms = pace_.target_ms(now, choice_.target_ms);
     ++version_;
@@ -131,13 +131,13 @@ void ViewPicture::draw_preview(double now) {
     }
     pace_.drew(milliseconds_since(start));
     budget_.measured(milliseconds_since(start), target_ms, status_.shown);
-    status_.state = PictureState::preview;
+    status_.state = ViewFrameState::preview;
     status_.width = request_->width;
     status_.height = request_->height;
     status_.error.clear();
 }
 
-void ViewPicture::begin_final() {
+void ViewFrame::begin_final() {
     FinalRequest wanted;
     wanted.scene = request_->scene;
     for (std::size_t i = 0; i < request_->layers.size(); ++i) {
@@ -155,26 +155,26 @@ void ViewPicture::begin_final() {
     texture_ = canvas_texture_.handle();
     final_.start(std::move(wanted));
     final_started_ = true;
-    status_.state = PictureState::refining;
+    status_.state = ViewFrameState::refining;
     status_.progress = 0.0f;
 }
 
-void ViewPicture::take_final() {
+void ViewFrame::take_final() {
     for (const Region& tile : final_.take_tiles(canvas_)) {
         canvas_texture_.upload(canvas_, tile);
         ++version_;
     }
     texture_ = canvas_texture_.handle();
     status_.progress = final_.progress();
-    const FinalPicture::Outcome outcome = final_.outcome();
+    const FinalFrame::Outcome outcome = final_.outcome();
     status_.seconds = outcome.seconds;
     status_.error = outcome.error;
-    if (outcome.state == FinalPicture::State::done) status_.state = PictureState::final;
-    if (outcome.state == FinalPicture::State::failed) status_.state = PictureState::failed;
+    if (outcome.state == FinalFrame::State::done) status_.state = ViewFrameState::final;
+    if (outcome.state == FinalFrame::State::failed) status_.state = ViewFrameState::failed;
 }
 
-void ViewPicture::show(const PictureRequest& request, const PreviewChoice& choice, bool settle, double now,
-                       bool hurry) {
+void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
+                     bool hurry) {
     const bool changed = !request_ || !(*request_ == request) || choice_.opengl != choice.opengl ||
                          choice_.share != choice.share || environment_arrived();
     const bool fuller = !changed && !final_started_ && previews_arrived(request);
@@ -187,37 +187,37 @@ void ViewPicture::show(const PictureRequest& request, const PreviewChoice& choic
         try {
             draw_preview(now);
         } catch (const InputError& error) {
-            status_.state = PictureState::failed;
+            status_.state = ViewFrameState::failed;
             status_.error = error.what();
             final_started_ = true;  // which would meet the same
         }
         return;
     }
-    if (status_.state == PictureState::failed) return;
+    if (status_.state == ViewFrameState::failed) return;
     if (!final_started_) {
         if (files_->loading()) return;
         if (settle && (hurry || now - changed_at_ >= rest_s)) begin_final();
-    } else if (status_.state == PictureState::refining) {
+    } else if (status_.state == ViewFrameState::refining) {
         take_final();
     }
 }
 
-const Image* ViewPicture::pixels() const {
+const Image* ViewFrame::pixels() const {
     if (final_started_ && canvas_.width > 0) return &canvas_;
     return drawn_;
 }
 
-Image ViewPicture::read() const {
+Image ViewFrame::read() const {
     const Image* image = pixels();
     return image ? *image : gl_->read();
 }
 
-double ViewPicture::due(double now) const { return std::max(0.0, changed_at_ + rest_s - now); }
+double ViewFrame::due(double now) const { return std::max(0.0, changed_at_ + rest_s - now); }
 
-bool ViewPicture::exact() const { return request_ && !files_->loading() && !(gl_ && gl_->sorting()); }
+bool ViewFrame::exact() const { return request_ && !files_->loading() && !(gl_ && gl_->sorting()); }
 
-std::shared_ptr<const RenderedFrame> ViewPicture::final_frame() const {
-    return status_.state == PictureState::final ? final_.outcome().frame : nullptr;
+std::shared_ptr<const RenderedFrame> ViewFrame::final_frame() const {
+    return status_.state == ViewFrameState::final ? final_.outcome().frame : nullptr;
 }
 
 }  // namespace astrosplat

@@ -1,11 +1,11 @@
-#include "gl/picture_texture.h"
+#include "gl/image_texture.h"
 
 #include <algorithm>
 #include <cassert>
 
 namespace astrosplat {
 
-void PictureTexture::upload(const Image& rgba) {
+void ImageTexture::upload(const Image& rgba) {
     assert(rgba.channels == 4);
     const bool fits = handle() != 0 && rgba.width == width_ && rgba.height == height_;
     if (fits) return upload(rgba, {0, 0, width_, height_});
@@ -17,7 +17,7 @@ void PictureTexture::upload(const Image& rgba) {
     set_sampling(GL_TEXTURE_2D, GL_NEAREST);
 }
 
-void PictureTexture::upload(const Image& rgba, const Region& part) {
+void ImageTexture::upload(const Image& rgba, const Region& part) {
     assert(rgba.channels == 4 && rgba.width == width_ && rgba.height == height_);
     assert(part.x >= 0 && part.y >= 0 && part.x + part.width <= width_ && part.y + part.height <= height_);
     if (part.width <= 0 || part.height <= 0) return;
@@ -29,7 +29,7 @@ void PictureTexture::upload(const Image& rgba, const Region& part) {
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-void PictureTexture::upload_smooth(const Image& rgba) {
+void ImageTexture::upload_smooth(const Image& rgba) {
     upload(rgba);
     set_sampling(GL_TEXTURE_2D, GL_LINEAR);
 }

@@ -2,7 +2,7 @@
 // reaches nobody; tiles are copied into the run's canvas without a lock, since each is written once. The
 // thread has the window's priority: the window sleeps between events, which serves it first, while a lower
 // one would hold up the pool's threads at the end of every loop on a busy machine.
-#include "viewer/final_picture.h"
+#include "viewer/final_frame.h"
 
 #include <algorithm>
 #include <atomic>
@@ -29,9 +29,9 @@ struct Run {
 
     std::mutex mutex;           // for all below
     std::vector<Region> fresh;  // px of the canvas
-    FinalPicture::Outcome outcome{FinalPicture::State::running, {}, 0.0, {}};
+    FinalFrame::Outcome outcome{FinalFrame::State::running, {}, 0.0, {}};
 
-    void end(FinalPicture::Outcome how) {
+    void end(FinalFrame::Outcome how) {
         const std::lock_guard lock(mutex);
         outcome = std::move(how);
     }
@@ -70,13 +70,13 @@ void render_run(Pipeline& pipeline, Run& run) {
     };
     auto frame =
         std::make_shared<RenderedFrame>(pipeline.frame(request.frame, settings, progress, tile_done));
-    run.end({FinalPicture::State::done, {}, seconds_since(start), std::move(frame)});
+    run.end({FinalFrame::State::done, {}, seconds_since(start), std::move(frame)});
     run.progress = 1.0f;
 }
 
 }  // namespace
 
-struct FinalPicture::Impl {
+struct FinalFrame::Impl {
     // With the worker's lock:
     std::shared_ptr<Run> current;  // the latest; null before the first and after cancel()
     std::shared_ptr<Run> next;     // not begun yet
@@ -108,7 +108,7 @@ struct FinalPicture::Impl {
     void work(Run& run);
 };
 
-void FinalPicture::Impl::work(Run& run) {
+void FinalFrame::Impl::work(Run& run) {
     try {
         const Region region = whole_region(run.request);
         run.canvas = {region.width, region.height, 4, {}};
@@ -119,47 +119,47 @@ void FinalPicture::Impl::work(Run& run) {
     } catch (const Cancelled&) {
         run.end({});
     } catch (const std::bad_alloc&) {
-        run.end({State::failed, "not enough memory for the final picture", 0.0, {}});
+        run.end({State::failed, "not enough memory for the final frame", 0.0, {}});
     } catch (const std::exception& error) {
         run.end({State::failed, error.what(), 0.0, {}});
     }
 }
 
-FinalPicture::FinalPicture() : impl_(std::make_unique<Impl>()) {}
-FinalPicture::~FinalPicture() = default;
+FinalFrame::FinalFrame() : impl_(std::make_unique<Impl>()) {}
+FinalFrame::~FinalFrame() = default;
 
-void FinalPicture::start(FinalRequest request) {
+void FinalFrame::start(FinalRequest request) {
     auto run = std::make_shared<Run>();
     run->request = std::move(request);
     impl_->replace(std::move(run));
 }
 
-void FinalPicture::cancel() { impl_->replace(nullptr); }
+void FinalFrame::cancel() { impl_->replace(nullptr); }
 
-FinalPicture::Outcome FinalPicture::outcome() const {
+FinalFrame::Outcome FinalFrame::outcome() const {
     const std::shared_ptr<Run> run = impl_->latest();
     if (!run) return {};
     const std::lock_guard lock(run->mutex);
     return run->outcome;
 }
 
-float FinalPicture::progress() const {
+float FinalFrame::progress() const {
     const std::shared_ptr<Run> run = impl_->latest();
     return run ? run->progress.load() : 0.0f;
 }
 
-std::vector<Region> FinalPicture::take_tiles(Image& picture) {
+std::vector<Region> FinalFrame::take_tiles(Image& image) {
     const std::shared_ptr<Run> run = impl_->latest();
     if (!run) return {};
     const Region region = whole_region(run->request);
-    if (picture.width != region.width || picture.height != region.height || picture.channels != 4)
-        picture = make_image(region.width, region.height, 4);
+    if (image.width != region.width || image.height != region.height || image.channels != 4)
+        image = make_image(region.width, region.height, 4);
     std::vector<Region> tiles;
     {
         const std::lock_guard lock(run->mutex);
         tiles.swap(run->fresh);
     }
-    for (const Region& tile : tiles) copy_tile(run->canvas, tile, picture);
+    for (const Region& tile : tiles) copy_tile(run->canvas, tile, image);
     return tiles;
 }
 

@@ -1,6 +1,6 @@
 // Three numbers judge: a difference that makes a pixel bad, how many bad pixels there may be, and a
 // difference that none may exceed. Rounding of edges is what they leave room for.
-#include "gui/reference_pictures.h"
+#include "gui/reference_screens.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

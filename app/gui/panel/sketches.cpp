@@ -1,5 +1,5 @@
-// Small pictures of what numbers mean: a dot, the angles of a hybrid, the field of a noise.
-#include "gui/panel/pictures.h"
+// Small sketches of what numbers mean: a dot, the angles of a hybrid, the field of a noise.
+#include "gui/panel/sketches.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,9 +108,9 @@ void draw_noise(Context& context, std::size_t entry, const Noise& noise, double 
     const int columns = std::max(1, static_cast<int>(area.size.x / px(cell)));
     const int rows = static_cast<int>(area.size.y / px(cell));
     context.memory.noises.resize(std::max(context.memory.noises.size(), entry + 1));
-    NoisePicture& picture = context.memory.noises[entry];
-    if (picture.columns != columns || picture.span != span || !same_field(picture.noise, noise))
-        picture = {noise, span, columns, noise_greys(noise, columns, rows, span)};
+    NoiseSketch& sketch = context.memory.noises[entry];
+    if (sketch.columns != columns || sketch.span != span || !same_field(sketch.noise, noise))
+        sketch = {noise, span, columns, noise_greys(noise, columns, rows, span)};
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 size{area.size.x / float(columns), area.size.y / float(rows)};
     for (int y = 0; y < rows; ++y)
@@ -118,9 +118,8 @@ void draw_noise(Context& context, std::size_t entry, const Noise& noise, double 
             const ImVec2 corner{area.corner.x + size.x * float(x), area.corner.y + size.y * float(y)};
             const auto at = static_cast<std::size_t>(y * (columns + 1) + x);
             const auto below = at + static_cast<std::size_t>(columns + 1);
-            list->AddRectFilledMultiColor(corner, {corner.x + size.x, corner.y + size.y}, picture.greys[at],
-                                          picture.greys[at + 1], picture.greys[below + 1],
-                                          picture.greys[below]);
+            list->AddRectFilledMultiColor(corner, {corner.x + size.x, corner.y + size.y}, sketch.greys[at],
+                                          sketch.greys[at + 1], sketch.greys[below + 1], sketch.greys[below]);
         }
     captions(figures(span) + " scene units across", "");
 }

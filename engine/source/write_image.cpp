@@ -1,4 +1,4 @@
-#include "source/write_picture.h"
+#include "source/write_image.h"
 
 #include <fmt/format.h>
 // fmt first: OpenImageIO brings a copy of it with other settings.
@@ -8,8 +8,8 @@
 
 namespace astrosplat {
 
-void write_picture(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
-                   std::span<const unsigned char> rgba) {
+void write_image(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
+                 std::span<const unsigned char> rgba) {
     assert(static_cast<std::int64_t>(rgba.size()) == width * height * 4);
     OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
     spec.attribute("DateTime", "");  // OpenImageIO would write the time
@@ -18,8 +18,8 @@ void write_picture(const std::filesystem::path& file, std::int64_t width, std::i
     picture.commit();
 }
 
-void write_linear_picture(const std::filesystem::path& file, const Image& image, const std::string& credit,
-                          Existing existing) {
+void write_linear_image(const std::filesystem::path& file, const Image& image, const std::string& credit,
+                        Existing existing) {
     assert(image.channels == 3 || image.channels == 4);
     OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), image.channels,
                          OIIO::TypeDesc::FLOAT);

@@ -1,4 +1,4 @@
-// What the viewport shows: the view becomes a request for a picture; the picture and what it is compared with
+// What the viewport shows: the view becomes a request for a frame; the frame and what it is compared with
 // are placed in the viewport, with lines of the camera over them.
 #pragma once
 
@@ -12,8 +12,8 @@ Scene evaluated(const Scene& scene, const ViewState& view);
 /// The preview is drawn by OpenGL rather than by the processor.
 bool draws_by_opengl(const Session& session);
 
-/// Draws the viewport's content at its size in px into Status::picture_texture. `now` in seconds; `hurry`:
-/// the final picture at once.
+/// Draws the viewport's content at its size in px into Status::viewport_texture. `now` in seconds; `hurry`:
+/// the final frame at once.
 void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry = false);
 
 }  // namespace astrosplat

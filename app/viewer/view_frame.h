@@ -1,4 +1,4 @@
-// One picture of the viewport: the preview while something changes, then the final picture, tile by tile,
+// One frame of the viewport: the preview while something changes, then the final frame, tile by tile,
 // once the hand rests (DESIGN 10). In: what is to be seen. Out: a texture, and how far it is.
 #pragma once
 
@@ -10,31 +10,31 @@
 
 #include "edit/status.h"
 #include "edit/view_state.h"
-#include "gl/picture_texture.h"
+#include "gl/image_texture.h"
 #include "gl/preview.h"
 #include "scene/scene.h"
 #include "viewer/cpu_preview.h"
-#include "viewer/final_picture.h"
+#include "viewer/final_frame.h"
 #include "viewer/picture_files.h"
 #include "viewer/preview_budget.h"
 #include "viewer/set_loader.h"
 
 namespace astrosplat {
 
-/// What is to be seen. Equal requests show equal pictures.
-struct PictureRequest {
+/// What is to be seen. Equal requests show equal frames.
+struct ViewRequest {
     Scene scene;  // as it stands at the frame, with the view's camera; layers that are not to be seen are
                   // invisible
     std::vector<std::shared_ptr<const LoadedLayer>> layers;  // as in the scene; null: not loaded
     Bounds box;                                              // of the visible layers, world space
-    int width = 0, height = 0;                               // px of the whole picture
+    int width = 0, height = 0;                               // px of the whole frame
     std::uint64_t files = 0;                                 // another number: pictures were changed on disk
     Region region;                                           // the part to be seen; empty: all
-    bool operator==(const PictureRequest& other) const;
+    bool operator==(const ViewRequest& other) const;
 };
 
-/// The camera of a request, for its whole picture. Throws InputError.
-Camera camera_of(const PictureRequest& request);
+/// The camera of a request, for its whole frame. Throws InputError.
+Camera camera_of(const ViewRequest& request);
 
 /// How previews are drawn.
 struct PreviewChoice {
@@ -44,21 +44,21 @@ struct PreviewChoice {
     double target_ms = 25.0;  // of one preview
 };
 
-class ViewPicture {
+class ViewFrame {
   public:
-    explicit ViewPicture(std::shared_ptr<PictureFiles> files) : files_(std::move(files)) {}
+    explicit ViewFrame(std::shared_ptr<PictureFiles> files) : files_(std::move(files)) {}
 
     /// Shows `request`: draws a preview where it differs from the last one, else goes on towards the final
-    /// picture once nothing has changed for 0.3 s (`settle`; `hurry`: at once). `now` in seconds.
-    void show(const PictureRequest& request, const PreviewChoice& choice, bool settle, double now,
+    /// frame once nothing has changed for 0.3 s (`settle`; `hurry`: at once). `now` in seconds.
+    void show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
               bool hurry = false);
     unsigned texture() const { return texture_; }
     /// Grows whenever the texture's pixels change.
     std::uint64_t version() const { return version_; }
-    const PictureStatus& status() const { return status_; }
+    const ViewFrameStatus& status() const { return status_; }
     /// show() should be called again soon although nobody did anything.
     bool waiting() const {
-        return status_.state == PictureState::preview || status_.state == PictureState::refining;
+        return status_.state == ViewFrameState::preview || status_.state == ViewFrameState::refining;
     }
     /// Preview splats of each layer in the last preview.
     const std::vector<std::int64_t>& shown() const { return shown_; }
@@ -66,41 +66,41 @@ class ViewPicture {
     const std::vector<std::int64_t>& kept() const { return kept_; }
     /// The preview is that of the present request, in order.
     bool exact() const;
-    /// Seconds until the final picture may begin.
+    /// Seconds until the final frame may begin.
     double due(double now) const;
     /// Linear RGBA as shown, region-sized; null while only the GPU has it.
     const Image* pixels() const;
     /// The same, read back from the GPU where need be.
     Image read() const;
-    /// The final picture, when status says so.
+    /// The final frame, when status says so.
     std::shared_ptr<const RenderedFrame> final_frame() const;
 
   private:
     std::vector<PreviewLayer> preview_layers();
     void note_kept(const std::vector<double>& shares);
     bool environment_arrived();
-    bool previews_arrived(const PictureRequest& now) const;
+    bool previews_arrived(const ViewRequest& now) const;
     void draw_preview(double now);
     void take_final();
     void begin_final();
 
     std::shared_ptr<PictureFiles> files_;
-    std::optional<PictureRequest> request_;
+    std::optional<ViewRequest> request_;
     std::shared_ptr<const Environment> environment_;  // of the last preview
     PreviewChoice choice_;
     CpuPreview cpu_;
     std::unique_ptr<GlPreview> gl_;  // made when first wanted
     PreviewBudget budget_;
     FramePace pace_;
-    FinalPicture final_;
+    FinalFrame final_;
     bool final_started_ = false;
     double changed_at_ = 0.0;
-    PictureTexture canvas_texture_;
+    ImageTexture canvas_texture_;
     const Image* drawn_ = nullptr;  // the processor's preview; null while the GPU's is shown
-    Image canvas_;                  // preview and tiles of the final picture, once that has begun
+    Image canvas_;                  // preview and tiles of the final frame, once that has begun
     unsigned texture_ = 0;
     std::uint64_t version_ = 0;  // of its pixels
-    PictureStatus status_;
+    ViewFrameStatus status_;
     std::vector<std::int64_t> shown_, kept_;
     std::vector<std::size_t> places_;  // in the scene, of the layers that the last preview drew
 };

@@ -1,4 +1,4 @@
-#include "viewer/session_picture.h"
+#include "viewer/session_view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace astrosplat {
 namespace {
 
-/// What a picture does not depend on, at its default, so that editing it does not make the picture again.
+/// What a frame does not depend on, at its default, so that editing it does not make the frame again.
 void forget_what_is_not_seen(Scene& scene) {
     const OutputParams standard;
     scene.file.clear();
@@ -37,7 +37,7 @@ OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of
     return view == OutputParams::View::automatic ? OutputParams::View::srgb : view;
 }
 
-/// The part of a 1:1 picture that the viewport shows; empty: all of it.
+/// The part of a 1:1 frame that the viewport shows; empty: all of it.
 Region visible_part(const Rect& place, int width, int height, int viewport_width, int viewport_height) {
     const double scale = static_cast<double>(place.width) / width;
     const auto low = [scale](double at) {
@@ -55,26 +55,26 @@ Region visible_part(const Rect& place, int width, int height, int viewport_width
     return part;
 }
 
-/// Size in px of the whole picture.
-glm::ivec2 picture_size(const Session& session, const OutputParams& output) {
+/// Size in px of the whole frame.
+glm::ivec2 frame_size(const Session& session, const OutputParams& output) {
     const glm::dvec2 output_px(static_cast<double>(output.width), static_cast<double>(output.height));
     if (session.view.size == SizeMode::one_to_one) return output_px;
-    if (session.view.view != ViewKind::camera || session.viewport_is_picture) return session.viewport_px;
+    if (session.view.view != ViewKind::camera || session.viewport_is_frame) return session.viewport_px;
     const double aspect = output_px.x / output_px.y;
     const double height = std::min<double>(session.viewport_px.y, session.viewport_px.x / aspect);
     return {std::max(1, static_cast<int>(std::lround(height * aspect))),
             std::max(1, static_cast<int>(std::lround(height)))};
 }
 
-PictureRequest make_request(const Session& session, Scene now) {
-    PictureRequest made;
+ViewRequest make_request(const Session& session, Scene now) {
+    ViewRequest made;
     made.files = session.disk.changes();
     for (const LayerParams& layer : now.layers) {
         made.layers.push_back(session.sets.loader().layer(layer.name));
         if (layer.visible && made.layers.back())
             made.box.add(world_bounds(made.layers.back()->box, render_layer(layer)));
     }
-    const glm::ivec2 size = picture_size(session, now.output);
+    const glm::ivec2 size = frame_size(session, now.output);
     made.width = size.x;
     made.height = size.y;
     const double aspect = static_cast<double>(made.width) / static_cast<double>(made.height);
@@ -86,8 +86,8 @@ PictureRequest make_request(const Session& session, Scene now) {
     return made;
 }
 
-/// Limits a 1:1 picture to what the viewport shows of it; returns where that part lies.
-Rect crop_to_viewport(PictureRequest& request, const Rect& whole, glm::ivec2 viewport_px) {
+/// Limits a 1:1 frame to what the viewport shows of it; returns where that part lies.
+Rect crop_to_viewport(ViewRequest& request, const Rect& whole, glm::ivec2 viewport_px) {
     request.region = visible_part(whole, request.width, request.height, viewport_px.x, viewport_px.y);
     const Region& part = request.region;
     if (part.width <= 0) return whole;
@@ -104,13 +104,13 @@ PreviewChoice preview_choice(const Session& session) {
     return choice;
 }
 
-/// Where A and what it is compared with are shown: `place` holds the picture's part, `whole` all of it.
+/// Where A and what it is compared with are shown: `place` holds the frame's part, `whole` all of it.
 DisplaySettings display_settings(const Session& session, const OutputParams& output, const Rect& place,
                                  const Rect& whole) {
     DisplaySettings shown;
     shown.view = display_view(session.view.display, output.view);
     shown.exposure = static_cast<float>(output.exposure) + session.view.inspect_exposure;
-    shown.a = session.picture.texture();
+    shown.a = session.view_frame.texture();
     shown.x = place.x;
     shown.y = place.y;
     shown.width = place.width;
@@ -122,11 +122,11 @@ DisplaySettings display_settings(const Session& session, const OutputParams& out
 /// Compares the front with its picture while A is at rest; null: nothing is found yet.
 std::shared_ptr<const FrontFound> check_front(Session& session, const Scene& now) {
     std::optional<FrontStatus>& status = session.status.front;
-    const bool at_rest = session.picture.status().state == PictureState::final;
+    const bool at_rest = session.view_frame.status().state == ViewFrameState::final;
     const bool shown = session.view.compare == CompareMode::front;
     status.reset();
     if (!at_rest) session.front.cancel();
-    if (session.viewport_is_picture || !has_front_picture(now) || !(at_rest || shown)) return {};
+    if (session.viewport_is_frame || !has_front_picture(now) || !(at_rest || shown)) return {};
     status.emplace();
     status->changed_by_look = front_changed_by_look(now);
     if (status->changed_by_look && !shown) return {};
@@ -191,8 +191,8 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     const bool new_sets = session.sets.new_sets();
     session.request = make_request(session, scene);
     keep_free_camera(session.view, session.shown());
-    const Rect whole = place_picture(session.view, {0, 0, port_px.x, port_px.y}, session.request.width,
-                                     session.request.height);
+    const Rect whole = place_frame(session.view, {0, 0, port_px.x, port_px.y}, session.request.width,
+                                   session.request.height);
     const bool from_outside = session.view.view != ViewKind::camera && session.view.camera_path;
     session.status.overlay_lines.clear();
     if (from_outside)
@@ -205,16 +205,16 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     const bool may_settle =
         session.view.settle && !session.view.playing && session.sets.loader().sets_there();
     const double start = thread_seconds();
-    session.picture.show(session.request, choice, may_settle, now, hurry);
+    session.view_frame.show(session.request, choice, may_settle, now, hurry);
     if (new_sets) session.sets.drew_new_sets(thread_seconds() - start);
-    const PictureState reached = session.picture.status().state;
-    session.sets.loader().hold(reached == PictureState::refining);
+    const ViewFrameState reached = session.view_frame.status().state;
+    session.sets.loader().hold(reached == ViewFrameState::refining);
 
     DisplaySettings shown = display_settings(session, scene.output, place, whole);
-    // A's final picture comes first; B's follows it.
-    const bool a_is_done = reached == PictureState::final || reached == PictureState::failed;
+    // A's final frame comes first; B's follows it.
+    const bool a_is_done = reached == ViewFrameState::final || reached == ViewFrameState::failed;
     const auto request_for = [&](const Scene& other) {
-        PictureRequest wanted = make_request(session, evaluated(other, session.view));
+        ViewRequest wanted = make_request(session, evaluated(other, session.view));
         wanted.region = session.request.region;
         return wanted;
     };
@@ -223,8 +223,8 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     const std::shared_ptr<const FrontFound> front = check_front(session, scene);
     if (front && session.view.compare == CompareMode::front) show_front(session, front, shown);
     show_preparation(session);
-    shown.content = 1 + session.picture.version() + session.comparison.version() + session.fronts_shown;
-    session.status.picture_texture =
+    shown.content = 1 + session.view_frame.version() + session.comparison.version() + session.fronts_shown;
+    session.status.viewport_texture =
         to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));
 }
 

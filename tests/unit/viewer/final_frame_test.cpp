@@ -1,5 +1,5 @@
 // The settled picture is the pipeline's, bit for bit, whatever was begun and cancelled before it.
-#include "viewer/final_picture.h"
+#include "viewer/final_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@
 namespace astrosplat {
 namespace {
 
-using State = FinalPicture::State;
+using State = FinalFrame::State;
 
-class FinalPictureTest : public testing::Test {
+class FinalFrameTest : public testing::Test {
   protected:
-    FinalPictureTest() {
+    FinalFrameTest() {
         for (const LayerParams& layer : small.scene.layers)
             sets.push_back(std::make_shared<const SplatSet>(load_source(layer.source, layer.name)));
     }
@@ -48,7 +48,7 @@ class FinalPictureTest : public testing::Test {
         return pixel_hash(pipeline.frame(wanted.frame, settings).beauty);
     }
 
-    static void wait(const FinalPicture& picture) {
+    static void wait(const FinalFrame& picture) {
         while (picture.outcome().state == State::running)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -57,8 +57,8 @@ class FinalPictureTest : public testing::Test {
     std::vector<std::shared_ptr<const SplatSet>> sets;
 };
 
-TEST_F(FinalPictureTest, SettlesToThePipelinesPixels) {
-    FinalPicture picture;
+TEST_F(FinalFrameTest, SettlesToThePipelinesPixels) {
+    FinalFrame picture;
     EXPECT_EQ(picture.outcome().state, State::idle);
     picture.start(request(0));
     wait(picture);
@@ -73,10 +73,10 @@ TEST_F(FinalPictureTest, SettlesToThePipelinesPixels) {
     EXPECT_TRUE(picture.take_tiles(tiles).empty());
 }
 
-TEST_F(FinalPictureTest, DepthComesWithTheSamePixels) {
+TEST_F(FinalFrameTest, DepthComesWithTheSamePixels) {
     FinalRequest wanted = request(0);
     wanted.depth = true;
-    FinalPicture picture;
+    FinalFrame picture;
     picture.start(wanted);
     wait(picture);
     ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
@@ -84,10 +84,10 @@ TEST_F(FinalPictureTest, DepthComesWithTheSamePixels) {
     EXPECT_EQ(picture.outcome().frame->depth.width, wanted.width);
 }
 
-TEST_F(FinalPictureTest, ARegionIsThatPartOfThePicture) {
+TEST_F(FinalFrameTest, ARegionIsThatPartOfThePicture) {
     FinalRequest wanted = request(1);
     wanted.region = {37, 20, 90, 51};
-    FinalPicture picture;
+    FinalFrame picture;
     picture.start(wanted);
     wait(picture);
     ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
@@ -97,10 +97,10 @@ TEST_F(FinalPictureTest, ARegionIsThatPartOfThePicture) {
     EXPECT_EQ(pixel_hash(tiles), hash_of(wanted));
 }
 
-TEST_F(FinalPictureTest, CancelsAndRestartsInAnyOrderLeaveNoTrace) {
+TEST_F(FinalFrameTest, CancelsAndRestartsInAnyOrderLeaveNoTrace) {
     std::array<std::string, 8> wanted;
     for (std::uint32_t i = 0; i < 8; ++i) wanted[i] = hash_of(request(i));
-    FinalPicture picture;
+    FinalFrame picture;
     Image tiles;
     std::uint32_t current = 0;
     for (std::uint32_t step = 0; step < 120; ++step) {
@@ -123,10 +123,10 @@ TEST_F(FinalPictureTest, CancelsAndRestartsInAnyOrderLeaveNoTrace) {
     }
 }
 
-TEST_F(FinalPictureTest, ACancelledPictureStaysUnfinished) {
+TEST_F(FinalFrameTest, ACancelledPictureStaysUnfinished) {
     FinalRequest large = request(0);
     large.width = large.height = 4000;
-    FinalPicture picture;
+    FinalFrame picture;
     Image tiles;
     std::size_t finished = 0;
     picture.start(large);
@@ -151,10 +151,10 @@ TEST_F(FinalPictureTest, ACancelledPictureStaysUnfinished) {
     std::printf("from cancel to the next picture's pixel: %.1f ms\n", taken.count());
 }
 
-TEST_F(FinalPictureTest, AFailureIsOneLineAndTheNextPictureWorks) {
+TEST_F(FinalFrameTest, AFailureIsOneLineAndTheNextPictureWorks) {
     FinalRequest bad = request(0);
     bad.scene.layers[0].look.thickness.map = small.folder / "missing.png";
-    FinalPicture picture;
+    FinalFrame picture;
     picture.start(bad);
     wait(picture);
     EXPECT_EQ(picture.outcome().state, State::failed);
@@ -168,10 +168,10 @@ TEST_F(FinalPictureTest, AFailureIsOneLineAndTheNextPictureWorks) {
     EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash_of(request(0)));
 }
 
-TEST_F(FinalPictureTest, LayersStillLoadingAreLeftOut) {
+TEST_F(FinalFrameTest, LayersStillLoadingAreLeftOut) {
     FinalRequest wanted = request(0);
     wanted.sets[0] = nullptr;
-    FinalPicture picture;
+    FinalFrame picture;
     picture.start(wanted);
     wait(picture);
     ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
@@ -179,10 +179,10 @@ TEST_F(FinalPictureTest, LayersStillLoadingAreLeftOut) {
     EXPECT_NE(pixel_hash(picture.outcome().frame->beauty), hash_of(request(0)));
 }
 
-TEST_F(FinalPictureTest, EndsInTheMiddleOfAPicture) {
+TEST_F(FinalFrameTest, EndsInTheMiddleOfAPicture) {
     FinalRequest large = request(0);
     large.width = large.height = 4000;
-    FinalPicture picture;
+    FinalFrame picture;
     picture.start(large);
 }
 

@@ -1,4 +1,4 @@
-// Small pictures of what parameters mean: a dot, the angles of a hybrid, a noise.
+// Small sketches of what parameters mean: a dot, the angles of a hybrid, a noise.
 #pragma once
 
 #include "gui/panel/context.h"

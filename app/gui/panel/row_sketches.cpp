@@ -1,4 +1,4 @@
-#include "gui/panel/row_pictures.h"
+#include "gui/panel/row_sketches.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include "gui/panel/companions.h"
 #include "gui/panel/curve_plot.h"
 #include "gui/panel/levels.h"
-#include "gui/panel/pictures.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/section.h"
+#include "gui/panel/sketches.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 
@@ -52,11 +52,11 @@ void density_plot(Context& context, const ParameterSpec& spec, const DensityCurv
     draw_profile(context, area, spec, density_samples(pdf), reach);
 }
 
-void density_picture(Context& context, const ParameterSpec& spec) {
+void density_sketch(Context& context, const ParameterSpec& spec) {
     density_plot(context, spec, context.layer().look.pdf, reach_of(context));
 }
 
-void stop_density_picture(Context& context, const ParameterSpec& spec) {
+void stop_density_sketch(Context& context, const ParameterSpec& spec) {
     const ThicknessStop& stop = context.layer().look.thickness.stops[place_in_list(spec.key)];
     density_plot(context, spec, stop.pdf, reach_of(context) * widen(stop.scale));
 }
@@ -80,12 +80,12 @@ void all_densities(Context& context, const ParameterSpec&) {
     note("Each stop of the thickness map has its own shape.");
 }
 
-void alpha_picture(Context& context, const ParameterSpec&) {
+void alpha_sketch(Context& context, const ParameterSpec&) {
     draw_curve(begin_plot(56.0f), alpha_samples(context.layer().look.alpha), 1.05f, color::accent);
     captions("transparent", "opaque");
 }
 
-void vertical_picture(Context& context, const ParameterSpec& spec) {
+void vertical_sketch(Context& context, const ParameterSpec& spec) {
     const VerticalAlpha& vertical = context.layer().look.vertical;
     if (vertical.shape == VerticalAlpha::Shape::none) return;
     const double reach = vertical.reach > 0.0f ? widen(vertical.reach) : reach_of(context);
@@ -102,48 +102,48 @@ void automatic_size_note(Context& context, const ParameterSpec&) {
              : fmt::format("0, 0: the file's own, {} to {}", figures(status.radius_min), largest));
 }
 
-void noise_picture(Context& context, const ParameterSpec& spec) {
+void noise_sketch(Context& context, const ParameterSpec& spec) {
     const Bounds& box = context.status.box;
     const glm::dvec3 size = box.empty() ? glm::dvec3(10.0) : glm::dvec3(box.hi - box.lo);
     const std::size_t place = place_in_list(spec.key);
     draw_noise(context, place, context.layer().look.noise[place], std::max({size.x, size.y, size.z}));
 }
 
-void falloff_picture(Context& context, const ParameterSpec&) { draw_falloff(context.layer().render.falloff); }
+void falloff_sketch(Context& context, const ParameterSpec&) { draw_falloff(context.layer().render.falloff); }
 
-void hybrid_picture(Context& context, const ParameterSpec&) {
+void hybrid_sketch(Context& context, const ParameterSpec&) {
     const LayerRender& render = context.layer().render;
     draw_hybrid(render.hybrid_from_deg, render.hybrid_to_deg);
 }
 
-void levels_picture(Context& context, const ParameterSpec&) { edit_levels(context); }
+void levels_sketch(Context& context, const ParameterSpec&) { edit_levels(context); }
 
 using Draw = void (*)(Context&, const ParameterSpec&);
-using Pictures = std::map<std::string_view, Draw>;  // by generic key
+using Sketches = std::map<std::string_view, Draw>;  // by generic key
 
-void draw_of(const Pictures& pictures, Context& context, const ParameterSpec& spec) {
-    const auto found = pictures.find(spec.generic_key);
-    if (found != pictures.end()) found->second(context, spec);
+void draw_of(const Sketches& sketches, Context& context, const ParameterSpec& spec) {
+    const auto found = sketches.find(spec.generic_key);
+    if (found != sketches.end()) found->second(context, spec);
 }
 
 }  // namespace
 
 void draw_above(Context& context, const ParameterSpec& spec) {
-    static const Pictures pictures{{"layer.source.black", levels_picture},
-                                   {"layer.look.pdf.shape", density_picture},
+    static const Sketches sketches{{"layer.source.black", levels_sketch},
+                                   {"layer.look.pdf.shape", density_sketch},
                                    {"layer.look.density", all_densities},
-                                   {"layer.look.alpha.power", alpha_picture},
-                                   {"layer.look.vertical.shape", vertical_picture},
-                                   {"layer.look.noise.frequency", noise_picture},
-                                   {"layer.look.thickness.keys.shape", stop_density_picture},
-                                   {"layer.render.falloff", falloff_picture},
-                                   {"layer.render.hybrid.from_deg", hybrid_picture}};
-    draw_of(pictures, context, spec);
+                                   {"layer.look.alpha.power", alpha_sketch},
+                                   {"layer.look.vertical.shape", vertical_sketch},
+                                   {"layer.look.noise.frequency", noise_sketch},
+                                   {"layer.look.thickness.keys.shape", stop_density_sketch},
+                                   {"layer.render.falloff", falloff_sketch},
+                                   {"layer.render.hybrid.from_deg", hybrid_sketch}};
+    draw_of(sketches, context, spec);
 }
 
 void draw_below(Context& context, const ParameterSpec& spec) {
-    static const Pictures pictures{{"layer.look.radius.max", automatic_size_note}};
-    draw_of(pictures, context, spec);
+    static const Sketches sketches{{"layer.look.radius.max", automatic_size_note}};
+    draw_of(sketches, context, spec);
 }
 
 }  // namespace astrosplat::panel

@@ -1,4 +1,4 @@
-// A picture on the GPU that the processor fills: images in, a texture out.
+// A image on the GPU that the processor fills: images in, a texture out.
 #pragma once
 
 #include "core/image.h"
@@ -6,8 +6,8 @@
 
 namespace astrosplat {
 
-/// A picture on the GPU that the processor fills, whole or tile by tile. RGBA32F, top row first.
-class PictureTexture {
+/// A image on the GPU that the processor fills, whole or tile by tile. RGBA32F, top row first.
+class ImageTexture {
   public:
     void upload(const Image& rgba);
     /// Only this part of `rgba` (whose size is that of the last upload).
@@ -21,7 +21,7 @@ class PictureTexture {
     std::int64_t width_ = 0, height_ = 0;
 };
 
-/// A number that another picture at the same address hardly has.
+/// A number that another image at the same address hardly has.
 float content_probe(const Image& image);
 
 }  // namespace astrosplat

@@ -13,13 +13,13 @@ namespace astrosplat {
 
 /// Writes width x height px of RGBA bytes, top row first, atomically; the ending chooses the format. The
 /// colour is written, alpha is left out. Throws OutputError.
-void write_picture(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
-                   std::span<const unsigned char> rgba);
+void write_image(const std::filesystem::path& file, std::int64_t width, std::int64_t height,
+                 std::span<const unsigned char> rgba);
 
 /// Writes linear light of 3 channels, or 4 with a premultiplied alpha, as an EXR file of 32-bit floats,
 /// atomically. `credit` goes into its header where there is one. Throws OutputError.
-void write_linear_picture(const std::filesystem::path& file, const Image& image, const std::string& credit,
-                          Existing existing);
+void write_linear_image(const std::filesystem::path& file, const Image& image, const std::string& credit,
+                        Existing existing);
 
 /// A PNG file in memory, of width x height px of RGB bytes, top row first. Throws OutputError.
 std::string png_bytes(std::int64_t width, std::int64_t height, std::span<const unsigned char> rgb);

@@ -1,4 +1,4 @@
-// The final picture in the background: the offline renderer on a thread of its own, whose tiles the window
+// The final frame in the background: the offline renderer on a thread of its own, whose tiles the window
 // takes as they come. The pixels are the very bits of `--batch` at that size.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace astrosplat {
 
-/// One picture to compute.
+/// One frame to compute.
 struct FinalRequest {
     Scene scene;                                        // evaluated by the pipeline at `frame`
     std::vector<std::shared_ptr<const SplatSet>> sets;  // one a layer; null: the layer is not drawn
@@ -26,10 +26,10 @@ struct FinalRequest {
     bool depth = false;                  // also RenderedFrame::depth; changes no pixel of the beauty
 };
 
-class FinalPicture {
+class FinalFrame {
   public:
-    FinalPicture();
-    ~FinalPicture();  // cancels and waits
+    FinalFrame();
+    ~FinalFrame();  // cancels and waits
 
     /// Cancels what is under way and begins again. Returns at once.
     void start(FinalRequest request);
@@ -47,9 +47,9 @@ class FinalPicture {
     Outcome outcome() const;
     float progress() const;
 
-    /// Tiles finished since the last call, copied into `picture` (resized to the request's). Returns their
-    /// regions, px of `picture`. Never blocks on the renderer.
-    std::vector<Region> take_tiles(Image& picture);
+    /// Tiles finished since the last call, copied into `frame` (resized to the request's). Returns their
+    /// regions, px of `frame`. Never blocks on the renderer.
+    std::vector<Region> take_tiles(Image& image);
 
   private:
     struct Impl;
