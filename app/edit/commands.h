@@ -39,6 +39,7 @@ struct Command {
         compare_snapshot,  // index becomes B
         copy_batch_command,
         copy_text,    // text
+        say,          // text: for the message line
         frame_layer,  // camera on the selected layer
         frame_all,
         add_move  // index: CameraMove

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <deque>
 
 #include "core/atomic_file.h"
@@ -293,14 +294,24 @@ std::string Document::undo_name() const { return can_undo() ? state_->history[st
 std::string Document::redo_name() const { return can_redo() ? state_->history[state_->now + 1].name : ""; }
 
 void Document::undo() {
-    if (!can_undo()) return;
-    --state_->now;
-    state_->revision = next_revision();
+    if (can_undo()) go_to(state_->now - 1);
 }
 
 void Document::redo() {
-    if (!can_redo()) return;
-    ++state_->now;
+    if (can_redo()) go_to(state_->now + 1);
+}
+
+std::vector<std::string> Document::history() const {
+    std::vector<std::string> names;
+    for (const auto& step : state_->history) names.push_back(step.name);
+    return names;
+}
+
+std::size_t Document::history_place() const { return state_->now; }
+
+void Document::go_to(std::size_t step) {
+    assert(step < state_->history.size());
+    state_->now = step;
     state_->revision = next_revision();
 }
 

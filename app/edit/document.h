@@ -75,6 +75,13 @@ class Document {
     void undo();
     void redo();
 
+    /// Names of the steps, oldest first; the first is the document as it was opened. The scene is as after
+    /// the step of number history_place().
+    std::vector<std::string> history() const;
+    std::size_t history_place() const;
+    /// Undoes or redoes to a step of history().
+    void go_to(std::size_t step);
+
     /// Writes the scene's file, atomically, keeping comments and order. Throws OutputError, and InputError
     /// when untitled or a preset the scene uses cannot be read any more.
     void save();

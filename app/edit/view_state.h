@@ -24,6 +24,7 @@ enum class CompareMode {
     difference,
     front  // where the view from the front differs from the layer's own picture
 };
+enum class DifferenceFrom { reference, b };
 enum class PanelTab { source, look, render, camera, output };
 enum class PreviewEngine { automatic, opengl, processor };
 
@@ -59,6 +60,7 @@ struct ViewState : PanelSizes {
 
     CompareMode compare = CompareMode::a;
     float wipe = 0.5f;  // 0..1 of the frame's width; A lies to the left
+    DifferenceFrom difference_from = DifferenceFrom::reference;
     float difference_gain = 1.0f;
     std::filesystem::path reference;  // picture to compare with
 
@@ -81,5 +83,11 @@ struct ViewState : PanelSizes {
     bool changed_on_disk = false;  // the line that offers Reload or Keep is shown
     bool hint_open = false;        // "Drop a picture, mesh or splat file here. F1 shows the keys."
 };
+
+/// The frame is compared with the reference picture rather than with B.
+inline bool needs_reference(const ViewState& view) {
+    return view.compare == CompareMode::reference ||
+           (view.compare == CompareMode::difference && view.difference_from == DifferenceFrom::reference);
+}
 
 }  // namespace astrosplat

@@ -20,6 +20,10 @@ void edit(GuiFrame& f, const std::string& name, const std::function<void(Scene&)
     try_edit([&] { f.document.edit(name, change); });
 }
 
+void say(GuiFrame& f, std::string text) {
+    f.requested.push_back({Command::Kind::say, {}, std::move(text), 0});
+}
+
 void go_to(GuiFrame& f, double frame) {
     const FrameRange range = frame_range(f.document.scene());
     f.view.frame = std::clamp(frame, range.first, range.last);
@@ -35,10 +39,12 @@ Value value_now(const GuiFrame& f, const std::string& key) {
 }  // namespace
 
 void undo(GuiFrame& f) {
-    try_edit([&] { f.document.undo(); });
+    say(f, "Undone: " + f.document.undo_name());
+    f.document.undo();
 }
 void redo(GuiFrame& f) {
-    try_edit([&] { f.document.redo(); });
+    say(f, "Redone: " + f.document.redo_name());
+    f.document.redo();
 }
 bool can_undo(const GuiFrame& f) { return f.document.can_undo(); }
 bool can_redo(const GuiFrame& f) { return f.document.can_redo(); }
@@ -71,9 +77,8 @@ void toggle_one_to_one(GuiFrame& f) {
 bool is_one_to_one(const GuiFrame& f) { return f.view.size == SizeMode::one_to_one; }
 
 void set_compare(GuiFrame& f, CompareMode mode) {
-    const bool needs_reference = mode == CompareMode::reference || mode == CompareMode::difference;
-    if (needs_reference && f.view.reference.empty()) request(f, Command::Kind::set_reference);
     f.view.compare = mode;
+    if (needs_reference(f.view) && f.view.reference.empty()) request(f, Command::Kind::set_reference);
 }
 void toggle_front(GuiFrame& f) { f.view.compare = shows_front(f) ? CompareMode::a : CompareMode::front; }
 bool has_front(const GuiFrame& f) { return f.status.front.has_value(); }

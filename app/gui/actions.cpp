@@ -86,7 +86,7 @@ const Action table[] = {
     below_line({"File", "Quit", ctrl('Q'), ask<Kind::quit>}),
 
     {"Edit", "Undo", ctrl('Z'), undo, can_undo, nullptr, undo_label, false, true},
-    {"Edit", "Redo", ctrl_shift('Z'), redo, can_redo, nullptr, redo_label, false, true},
+    {"Edit", "Redo", ctrl_shift('Z'), redo, can_redo, nullptr, redo_label, false, true, ctrl('Y')},
     below_line({"Edit", "Store as B", plain('B'), ask<Kind::store_b>}),
     {"Edit", "Take snapshot", {}, take_snapshot},
 
@@ -150,11 +150,14 @@ const Action table[] = {
     {"", "Cancel what runs, close what is open", plain(key_code::escape), cancel},
 };
 
-bool pressed(const Action& action) {
+bool pressed(const Shortcut& s, bool repeats) {
     const ImGuiIO& io = ImGui::GetIO();
-    const Shortcut& s = action.shortcut;
     if (s.code == 0 || io.KeyAlt || io.KeyCtrl != s.ctrl || io.KeyShift != s.shift) return false;
-    return ImGui::IsKeyPressed(s.code, action.repeats);
+    return ImGui::IsKeyPressed(s.code, repeats);
+}
+
+bool pressed(const Action& action) {
+    return pressed(action.shortcut, action.repeats) || pressed(action.also, action.repeats);
 }
 
 }  // namespace

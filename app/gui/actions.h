@@ -24,6 +24,7 @@ struct Action {
     std::string (*label_now)(const GuiFrame&) = nullptr;  // in place of label where it says more
     bool line_above = false;
     bool repeats = false;  // while it is held
+    Shortcut also = {};    // does the same
 };
 
 /// In the order of the menus.

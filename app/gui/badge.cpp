@@ -36,6 +36,18 @@ bool word_button(GuiFrame& frame, const char* word, float x, float y) {
     return clicked;
 }
 
+/// What keeps a whole frame from being the scene's: a visible layer that could not be loaded, or whose set
+/// was made before its source was changed. Empty: nothing.
+std::string lacking(const Scene& scene, const Status& status) {
+    for (std::size_t i = 0; i < std::min(scene.layers.size(), status.layers.size()); ++i) {
+        if (!scene.layers[i].visible) continue;
+        const std::string& name = scene.layers[i].name;
+        if (!status.layers[i].error.empty()) return "Not final: " + name + " is missing";
+        if (status.layers[i].stale) return "Not final: " + name + " needs to be generated again";
+    }
+    return "";
+}
+
 // Words of the button that belongs to the state; nullptr: none.
 const char* button_word(const Status& status) {
     std::size_t index = 0;
@@ -68,6 +80,8 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
         case ViewFrameState::refining:
             return {fmt::format("Refining {:.0f} %", shown.progress * 100.0f), total, color::attention};
         case ViewFrameState::final:
+            if (const std::string why = lacking(scene, status); !why.empty())
+                return {why, total, color::error};
             return {fmt::format("Final {:.1f} s", shown.seconds), total, color::good};
         case ViewFrameState::failed:
             return {"Cannot render: " + shown.error, "", color::error};

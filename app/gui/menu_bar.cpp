@@ -1,4 +1,5 @@
-// The menus: a loop over actions(), with recent files added where File > Open is.
+// The menus: a loop over actions(), with recent files and the history added where File > Open
+// and Edit > Redo are.
 #include "gui/menu_bar.h"
 
 #include <imgui.h>
@@ -29,6 +30,25 @@ void recent_files(GuiFrame& frame) {
     }
 }
 
+// The steps of the document, the newest at the top; a click goes there. What can be redone is dimmed.
+void history(GuiFrame& frame) {
+    constexpr std::size_t most_seen = 30;
+    if (!ImGui::BeginMenu("History")) return note_item(frame, "Edit/History");
+    const std::vector<std::string> names = frame.document.history();
+    const std::size_t now = frame.document.history_place();
+    const std::size_t last = std::min(names.size(), std::max(now + most_seen / 2, most_seen));
+    for (std::size_t step = last; step-- > last - std::min(last, most_seen);) {
+        ImGui::PushID(static_cast<int>(step));
+        ImGui::PushStyleColor(ImGuiCol_Text, step > now ? color::dim : color::text);
+        const std::string& name = step == 0 ? "As opened" : names[step];
+        if (ImGui::MenuItem(name.c_str(), nullptr, step == now)) frame.document.go_to(step);
+        note_item(frame, "Edit/History/" + std::to_string(step));
+        ImGui::PopStyleColor();
+        ImGui::PopID();
+    }
+    ImGui::EndMenu();
+}
+
 void draw_action(GuiFrame& frame, const Action& action) {
     if (action.line_above) ImGui::Separator();
     const std::string label = action.label_now ? action.label_now(frame) : action.label;
@@ -38,6 +58,7 @@ void draw_action(GuiFrame& frame, const Action& action) {
         action.run(frame);
     note_item(frame, std::string(action.menu) + "/" + action.label);
     if (std::string_view(action.label) == "Open...") recent_files(frame);
+    if (std::string_view(action.label) == "Redo") history(frame);
 }
 
 // Actions of one submenu follow each other in the table; it opens where the first of them stands.

@@ -52,22 +52,6 @@ void size_choice(GuiFrame& frame) {
     if (clicked >= 0 && clicked != static_cast<int>(frame.view.size)) toggle_one_to_one(frame);
 }
 
-void compare_choice(GuiFrame& frame) {
-    const int clicked = choice(frame, "compare",
-                               {{"A", "The look as it is now (Tab)"},
-                                {"A|B", "Wipe between now and B"},
-                                {"B", "The stored look; B stores one (Tab)"},
-                                {"Ref", "Over the reference picture"},
-                                {"Diff", "Difference from the reference picture"}},
-                               static_cast<int>(frame.view.compare));
-    if (clicked >= 0) set_compare(frame, static_cast<CompareMode>(clicked));
-    ViewState& view = frame.view;
-    ImGui::SameLine(0, px(small_gap));
-    if (view.compare != CompareMode::difference) return;
-    drag_field("##gain", view.difference_gain, 0.02f, 0.1f, 100, "x %.1f", px(52), color::text);
-    tooltip("The difference is multiplied by this");
-}
-
 // A field that opens a list of choices.
 template <class Enum>
 void combo(const char* id, Enum& value, const std::vector<const char*>& names, float width) {
@@ -81,6 +65,28 @@ void combo(const char* id, Enum& value, const std::vector<const char*>& names, f
         if (ImGui::Selectable(names[i], i == index)) value = static_cast<Enum>(i);
     close_on_escape();
     ImGui::EndCombo();
+}
+
+void compare_choice(GuiFrame& frame) {
+    const int clicked = choice(frame, "compare",
+                               {{"A", "The look as it is now (Tab)"},
+                                {"A|B", "Wipe between now and B"},
+                                {"B", "The stored look; B stores one (Tab)"},
+                                {"Ref", "Over the reference picture"},
+                                {"Diff", "Difference from the reference picture, or from B"}},
+                               static_cast<int>(frame.view.compare));
+    if (clicked >= 0) set_compare(frame, static_cast<CompareMode>(clicked));
+    ViewState& view = frame.view;
+    ImGui::SameLine(0, px(small_gap));
+    if (view.compare != CompareMode::difference) return;
+    const DifferenceFrom before = view.difference_from;
+    combo("##from", view.difference_from, {"from Ref", "from B"}, px(76));
+    note_item(frame, "difference from");
+    tooltip("What the difference is taken from");
+    if (view.difference_from != before) set_compare(frame, view.compare);
+    ImGui::SameLine(0, px(small_gap));
+    drag_field("##gain", view.difference_gain, 0.02f, 0.1f, 100, "x %.1f", px(52), color::text);
+    tooltip("The difference is multiplied by this");
 }
 
 void display_control(GuiFrame& frame) {

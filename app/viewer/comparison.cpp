@@ -85,8 +85,7 @@ void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& 
     comparing_ = view.compare != CompareMode::a && view.compare != CompareMode::front;
     if (!comparing_) return;
     const bool has_reference = reference_.handle() != 0;
-    const bool with_reference = view.compare == CompareMode::reference ||
-                                (view.compare == CompareMode::difference && b_snapshot_ < 0 && has_reference);
+    const bool with_reference = needs_reference(view);
     if (with_reference ? !has_reference : b_snapshot_ < 0) return;
     if (with_reference) {
         shown.b = reference_.handle();

@@ -139,6 +139,7 @@ void copy_batch_command(State& s, const Command&) {
 }
 
 void copy_text(State& s, const Command& c) { s.clipboard = c.text; }
+void say_text(State& s, const Command& c) { say(s.status, c.text); }
 
 void frame_box_in_view(State& s, const Bounds& box) {
     if (frame_in_view(s.view, box, s.shown())) say(s.status, left_camera_message);
@@ -197,6 +198,7 @@ constexpr Entry entries[] = {{Kind::new_from_file, open_path},
                              {Kind::compare_snapshot, compare_snapshot},
                              {Kind::copy_batch_command, copy_batch_command},
                              {Kind::copy_text, copy_text},
+                             {Kind::say, say_text},
                              {Kind::frame_layer, frame_layer},
                              {Kind::frame_all, frame_all},
                              {Kind::add_move, add_move}};

@@ -44,6 +44,50 @@ TEST(Shortcuts, UndoAndRedoNameTheirStep) {
     EXPECT_EQ(window.document.scene().layers[0].render.opacity, 0.5);
 }
 
+TEST(Shortcuts, WhatIsUndoneIsSaid) {
+    TestWindow window(example_document());
+    make_edited(window);
+    const std::string name = window.document.undo_name();
+    window.tap('Z', true);
+    window.tap('Y', true);
+    EXPECT_EQ(window.document.scene().layers[0].render.opacity, 0.5);
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), (std::vector{Command::Kind::say, Command::Kind::say}));
+    EXPECT_EQ(commands[0].text, "Undone: " + name);
+    EXPECT_EQ(commands[1].text, "Redone: " + name);
+}
+
+TEST(Menus, TheHistoryGoesToAnyStep) {
+    TestWindow window(example_document());
+    for (const double opacity : {0.9, 0.8, 0.7})
+        window.document.edit("Opacity", [&](Scene& scene) { scene.layers[0].render.opacity = opacity; });
+    const auto go_to = [&](const char* step) {
+        window.choose(std::string("Edit/History/") + step);
+        return window.document.scene().layers[0].render.opacity;
+    };
+    EXPECT_FLOAT_EQ(go_to("1"), 0.9f);
+    EXPECT_TRUE(window.document.can_redo());
+    EXPECT_FLOAT_EQ(go_to("3"), 0.7f);
+    EXPECT_EQ(go_to("0"), 1.0);
+    EXPECT_FALSE(window.document.can_undo());
+}
+
+/// B and the reference are two things: storing B does not change what the difference is taken from.
+TEST(ToolRow, TheDifferenceIsFromWhatIsChosen) {
+    TestWindow window(example_document());
+    window.view.reference = "telescope.png";
+    window.status.b_snapshot = 0;
+    window.click("compare/Diff");
+    EXPECT_TRUE(needs_reference(window.view));
+    window.view.difference_from = DifferenceFrom::b;
+    window.frame();
+    EXPECT_FALSE(needs_reference(window.view));
+    EXPECT_TRUE(window.has("difference from"));
+    EXPECT_TRUE(window.take_commands().empty());
+    window.click("compare/Ref");
+    EXPECT_TRUE(needs_reference(window.view));
+}
+
 TEST(Shortcuts, FramesAndKeyframes) {
     TestWindow window(example_document());
     window.tap(key_code::right);
@@ -182,10 +226,12 @@ TEST(Shortcuts, EscapeCancelsTheJob) {
 TEST(Shortcuts, NoneMeansTwoThings) {
     std::map<std::string, std::string> seen;
     for (const Action& action : actions()) {
-        const std::string text = shortcut_text(action.shortcut);
-        if (text.empty()) continue;
-        EXPECT_TRUE(seen.emplace(text, action.label).second)
-            << text << ": " << seen[text] << ", " << action.label;
+        for (const Shortcut& shortcut : {action.shortcut, action.also}) {
+            const std::string text = shortcut_text(shortcut);
+            if (text.empty()) continue;
+            EXPECT_TRUE(seen.emplace(text, action.label).second)
+                << text << ": " << seen[text] << ", " << action.label;
+        }
     }
 }
 

@@ -120,6 +120,12 @@ TEST(Viewport, TheBadgeSaysHowFinalItIs) {
     status.view_frame.state = ViewFrameState::final;
     status.view_frame.seconds = 1.8;
     EXPECT_EQ(badge_text(document.scene(), status).text, "Final 1.8 s");
+    status.layers[1].stale = true;
+    EXPECT_EQ(badge_text(document.scene(), status).text, "Not final: stars needs to be generated again");
+    status.layers[0].error = "dust.obj: no such file";
+    EXPECT_EQ(badge_text(document.scene(), status).text, "Not final: dust is missing");
+    status.layers[0].error.clear();
+    status.layers[1].stale = false;
     status.layers[1].loading = true;
     status.layers[1].progress = 0.37f;
     status.layers[1].found = 3100000;

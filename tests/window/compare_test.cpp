@@ -12,10 +12,10 @@ class WindowCompare : public WindowTest {};
 
 TEST_F(WindowCompare, TabShowsTheStoredLookAndTheOneAtHand) {
     start();
-    const Pixels stored = settled_picture();
+    const Pixels stored = settled_frame();
     person->press("b");
     person->drag(value_box(power), {60.0f, 0.0f});
-    const Pixels changed = settled_picture(stored);
+    const Pixels changed = settled_frame(stored);
     person->press("Tab");
     expect_settled(stored);
     person->press("Tab");
@@ -26,11 +26,11 @@ TEST_F(WindowCompare, TabShowsTheStoredLookAndTheOneAtHand) {
 /// The ground of a signed difference is what no picture of the scene has.
 TEST_F(WindowCompare, DShowsWhereTheFrontDiffersAndThePictureAgain) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     constexpr std::uint32_t ground = IM_COL32(18, 18, 22, 255);
     ASSERT_EQ(count_of(before, ground), 0);
     person->press("d");
-    EXPECT_TRUE(comes_true([&] { return count_of(picture(), ground) > 1000; })) << program->err_so_far();
+    EXPECT_TRUE(comes_true([&] { return count_of(frame_pixels(), ground) > 1000; })) << program->err_so_far();
     person->press("d");
     expect_settled(before);
 }
@@ -41,9 +41,9 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
     text.replace(text.find("[320, 180]"), 10, "[1600, 1200]");
     write_text(scene_file, text);
     start();
-    const Pixels fitted = settled_picture();
+    const Pixels fitted = settled_frame();
     person->press("z");
-    const Pixels shown = settled_picture(fitted);
+    const Pixels shown = settled_frame(fitted);
     ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
     const Image frame = load_raw_image(folder / "frame.png");
     ViewState view;
@@ -67,7 +67,7 @@ TEST_F(WindowCompare, OutputPixelsAreThoseOfTheFrame) {
 
 TEST_F(WindowCompare, WhatACommandDidIsSaid) {
     start();
-    settled_picture();
+    settled_frame();
     const Rect bar = make_layout(ViewState(), width, height, 1.0f).status;
     const auto message = [&] {
         return screen->pixels({0, static_cast<int>(bar.y), 400, static_cast<int>(bar.height)});
@@ -83,7 +83,7 @@ TEST_F(WindowCompare, AMovieHasTheScenesFramesAndSpeed) {
     write_text(stand_in, "#!/bin/sh\nfor last in \"$@\"; do :; done\necho \"$@\" > \"$last\"\n");
     fs::permissions(stand_in, fs::perms::owner_all);
     start();
-    settled_picture();
+    settled_frame();
     same_widgets().status.has_ffmpeg = true;
     same_widgets().frame();
     choose("Render/Movie...");

@@ -11,11 +11,11 @@ class WindowDrop : public WindowTest {
 
 TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     write_rings(folder / "übrig 2.png");
     ASSERT_TRUE(screen->drop({folder / "übrig 2.png"}, middle()));
     expect_title("scene.toml - edited");
-    settled_picture(before);
+    settled_frame(before);
     person->press("ctrl+s");
     expect_title("scene.toml");
     const Scene scene = saved();
@@ -32,11 +32,11 @@ TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {
 
 TEST_F(WindowDrop, ALookIsGivenToTheLayer) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     write_text(folder / "look.toml", "[look]\nalpha = { power = 3.0 }\n");
     ASSERT_TRUE(screen->drop({folder / "look.toml"}, middle()));
     expect_title("scene.toml - edited");
-    settled_picture(before);
+    settled_frame(before);
     person->press("ctrl+s");
     expect_title("scene.toml");
     EXPECT_EQ(saved().layers[0].look.alpha.power, 3.0f);
@@ -46,7 +46,7 @@ TEST_F(WindowDrop, OnTheDemoAPictureBecomesAGalaxy) {
     start({"--no-cache"});
     expect_title("Untitled");
     ASSERT_TRUE(screen->drop({folder / "rings.png"}, middle()));
-    settled_picture();
+    settled_frame();
     person->press("ctrl+s");
     person->press("ctrl+a");
     person->type("galaxy.toml");

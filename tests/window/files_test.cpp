@@ -27,11 +27,11 @@ class WindowFiles : public WindowTest {
 
 TEST_F(WindowFiles, ATextureIsReadAgain) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     write_plain("rings.png", 250, 10);
-    const Pixels after = settled_picture(before);
+    const Pixels after = settled_frame(before);
     write_plain("rings.png", 10, 250);
-    settled_picture(after);
+    settled_frame(after);
     write_rings(folder / "rings.png");
     expect_settled(before);
     EXPECT_EQ(title(), "scene.toml - astrosplat") << "nothing of the scene is edited";
@@ -45,11 +45,11 @@ TEST_F(WindowFiles, SkyAndThicknessMapAreReadAgain) {
         "[layer.look.thickness]\nmap = \"thick.png\"\nkeys = [ { color = [1, 0.35, 1], scale = 1.0 }, "
         "{ color = [0, 0.35, 0], scale = 0.2 } ]\n\n");
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     write_plain("thick.png", 0, 0);
-    const Pixels thin = settled_picture(before);
+    const Pixels thin = settled_frame(before);
     write_plain("sky.png", 10, 60);
-    settled_picture(thin);
+    settled_frame(thin);
     write_plain("sky.png", 60, 10);
     expect_settled(thin);
     write_plain("thick.png", 255, 255);
@@ -61,7 +61,7 @@ TEST_F(WindowFiles, WhatWasMissingIsShownWhenItComes) {
     start();
     EXPECT_TRUE(comes_true([&] { return failed(); }));
     fs::rename(folder / "away.png", folder / "rings.png");
-    settled_picture();
+    settled_frame();
 }
 
 /// What a shortcut cannot do is a line in the window, not only at the terminal it was started from.

@@ -18,7 +18,7 @@ class WindowGrowth : public WindowTest {
     }
     /// More than the words over the picture.
     bool something_is_seen() const {
-        const Pixels seen = picture();
+        const Pixels seen = frame_pixels();
         const auto is_lit = [](std::uint32_t rgb) {
             return std::max({rgb >> 16 & 0xff, rgb >> 8 & 0xff, rgb & 0xff}) > 60;
         };

@@ -8,10 +8,10 @@ class WindowLook : public WindowTest {};
 
 TEST_F(WindowLook, AValueIsDraggedSavedAndUndone) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     person->drag(value_box(power), {60.0f, 0.0f});
     expect_title("scene.toml - edited");
-    const Pixels after = settled_picture(before);
+    const Pixels after = settled_frame(before);
     person->press("ctrl+s");
     expect_title("scene.toml");
     EXPECT_GT(saved().layers[0].look.alpha.power, 1.0f);
@@ -29,12 +29,12 @@ TEST_F(WindowLook, AValueIsDraggedSavedAndUndone) {
 
 TEST_F(WindowLook, AValueIsTypedAfterADoubleClick) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     person->double_click(value_box(power));
     person->type("2.25");
     person->press("Return");
     expect_title("scene.toml - edited");
-    settled_picture(before);
+    settled_frame(before);
     person->press("ctrl+s");
     expect_title("scene.toml");
     EXPECT_EQ(saved().layers[0].look.alpha.power, 2.25f);

@@ -19,7 +19,7 @@ class WindowSafety : public WindowTest {
     }
     void edit() {
         start();
-        settled_picture();
+        settled_frame();
         person->drag(value_box(power), {60.0f, 0.0f});
         expect_title("scene.toml - edited");
     }
@@ -83,10 +83,10 @@ class WindowDisk : public WindowSafety {
 
 TEST_F(WindowDisk, ASceneEditedByHandIsReadAgain) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     replace("count = 60000", "count = 60000\n[layer.look]\nalpha = { power = 2.5 }");
     click_when_shown("notice/Reload");
-    settled_picture(before);
+    settled_frame(before);
     EXPECT_EQ(title(), "scene.toml - astrosplat");
 
     replace("power = 2.5", "powr = 2.5");
@@ -102,7 +102,7 @@ TEST_F(WindowDisk, ASceneEditedByHandIsReadAgain) {
 TEST_F(WindowDisk, AnEnvironmentThatCannotBeReadEndsNothing) {
     write_text(folder / "sky.png", "no picture");
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     replace("[[layer]]", "[environment]\nimage = \"sky.png\"\n[[layer]]");
     click_when_shown("notice/Reload");
     EXPECT_TRUE(comes_true([&] { return picture_failed() || !running(); }));

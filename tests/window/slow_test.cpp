@@ -9,7 +9,7 @@ class WindowSlow : public WindowTest {};
 
 TEST_F(WindowSlow, AValueIsKeyedAtTwoFramesBlindly) {
     start();
-    const Pixels first = settled_picture();
+    const Pixels first = settled_frame();
     TestWindow& widgets = same_widgets();
     const float y = widgets.at("ruler").y, from = widgets.at("keyframe camera.position 1").x,
                 to = widgets.at("keyframe camera.position 24").x;
@@ -21,7 +21,7 @@ TEST_F(WindowSlow, AValueIsKeyedAtTwoFramesBlindly) {
     person->type("3.25");
     person->press("Return");
     person->press("ctrl+s");
-    EXPECT_EQ(picture(), first);
+    EXPECT_EQ(frame_pixels(), first);
     go_on();
     const auto keyframes = [&] {
         const Scene scene = saved();

@@ -19,7 +19,7 @@ class WindowTime : public WindowTest {
 
 TEST_F(WindowTime, AValueIsKeyedAtTwoFramesAndPlaysAgain) {
     start();
-    const Pixels first = settled_picture();
+    const Pixels first = settled_frame();
     const Pixels timeline = pixels_of(&Layout::timeline);
     person->click(diamond(power));
     expect_title("scene.toml - edited");
@@ -28,11 +28,11 @@ TEST_F(WindowTime, AValueIsKeyedAtTwoFramesAndPlaysAgain) {
     expect_settled(first);
 
     scrub_to_the_end();
-    const Pixels before = settled_picture(first);
+    const Pixels before = settled_frame(first);
     person->double_click(value_box(power));
     person->type("3");
     person->press("Return");
-    const Pixels last = settled_picture(before);
+    const Pixels last = settled_frame(before);
     person->press("ctrl+s");
     expect_title("scene.toml");
 

@@ -11,10 +11,10 @@ class WindowView : public WindowTest {};
 
 TEST_F(WindowView, OrbitGoesToAFreeViewAndZeroReturns) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     const Pixels tools = pixels_of(&Layout::tools);
     person->drag(same_widgets().at("frame in view"), {120.0f, 40.0f});
-    settled_picture(before);
+    settled_frame(before);
     EXPECT_NE(pixels_of(&Layout::tools), tools) << "the view is still called Camera";
     EXPECT_EQ(title(), "scene.toml - astrosplat") << "looking around is no edit";
     person->press("0");
@@ -39,14 +39,14 @@ double processor_seconds(pid_t process) {
 // frame after frame would need all of it.
 TEST_F(WindowView, AnIdleWindowRests) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     constexpr double while_s = 3.0, most_s = 0.5;
     const double begin = processor_seconds(program->id());
     usleep(static_cast<useconds_t>(while_s * 1e6));
     const double used = processor_seconds(program->id()) - begin;
     std::printf("idle window: %.1f %% of one core\n", 100.0 * used / while_s);
     EXPECT_LT(used, most_s);
-    EXPECT_EQ(picture(), before);
+    EXPECT_EQ(frame_pixels(), before);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ Pixels load_pixels(const fs::path& file) {
 
 TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
     start();
-    settled_picture();
+    settled_frame();
     person->move({width - 2.0f, height - 2.0f});
     Pixels shown = screen->pixels({0, 0, width, height});
     person->press("F12");
@@ -55,7 +55,7 @@ TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
 
 TEST_F(WindowWaysOut, AFrameIsRendered) {
     start();
-    const Pixels before = settled_picture();
+    const Pixels before = settled_frame();
     choose("Render/This frame...");
     same_widgets().frame(2);
     person->press("ctrl+a");
@@ -76,7 +76,7 @@ TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
     text.replace(text.find("1-24"), 4, "1-9000");
     write_text(scene_file, text);
     start();
-    settled_picture();
+    settled_frame();
     person->press("ctrl+shift+r");
     ASSERT_TRUE(comes_true([&] { return names_in(folder / "frames").size() > 2; }));
     person->drag(same_widgets().at("frame in view"), {60.0f, 0.0f});  // usable meanwhile

@@ -133,7 +133,7 @@ Pixels WindowTest::pixels_of(Rect Layout::*part) const {
     return screen->pixels(area_of(make_layout(ViewState(), width, height, 1.0f).*part));
 }
 
-Pixels WindowTest::picture() const {
+Pixels WindowTest::frame_pixels() const {
     Area area = area_of(make_layout(ViewState(), width, height, 1.0f).viewport);
     area.height -= badge_height;
     return screen->pixels(area);
@@ -146,19 +146,19 @@ bool WindowTest::settled() const {
     return count_of(screen->pixels(area), color::good) > 10;  // the dot
 }
 
-Pixels WindowTest::settled_picture(const Pixels& before) {
+Pixels WindowTest::settled_frame(const Pixels& before) {
     Pixels now;
     const auto arrived = [&] {
         if (!settled()) return false;
-        now = picture();
-        return settled() && now != before && now == picture();
+        now = frame_pixels();
+        return settled() && now != before && now == frame_pixels();
     };
     EXPECT_TRUE(comes_true(arrived)) << program->err_so_far();
     return now;
 }
 
 void WindowTest::expect_settled(const Pixels& expected) {
-    EXPECT_TRUE(comes_true([&] { return settled() && picture() == expected; }));
+    EXPECT_TRUE(comes_true([&] { return settled() && frame_pixels() == expected; }));
 }
 
 TestWindow& WindowTest::same_widgets() {

@@ -62,11 +62,11 @@ class WindowTest : public ViewerTest {
     /// Waits for this title: the scene's name, and whether it is edited.
     void expect_title(const std::string& begin);
     /// The viewport without its badge.
-    Pixels picture() const;
+    Pixels frame_pixels() const;
     /// The badge says that the picture is final.
     bool settled() const;
     /// The next final picture other than `before`; fails the test where none comes.
-    Pixels settled_picture(const Pixels& before = {});
+    Pixels settled_frame(const Pixels& before = {});
     /// Waits for this very picture to be final.
     void expect_settled(const Pixels& expected);
 
