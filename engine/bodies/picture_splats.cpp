@@ -19,6 +19,7 @@ constexpr float cell_jitter = 0.5f;         // of the lattice's spacing
 constexpr float least_brightness = 0.002f;  // below which opacity falls to 0: empty sky hides nothing
 constexpr float greatest_opacity = 0.985f;
 constexpr float star_opacity = 0.25f;  // of a star's own
+constexpr float glow_hiding = 0.5f;    // share of its optical depth that the glow between two walls keeps
 
 // What a dot is before it has a depth.
 struct Candidate {
@@ -30,9 +31,13 @@ struct Candidate {
     std::uint64_t id;
 };
 
-// A bulge glows: seen from the side, light comes from all of its depth, not from a surface as a cloud's
-// would.
-float hiding_at(float thickness) { return 1.0f / std::max(1.0f, thickness * thickness); }
+// Share of the optical depth that dots keep. A bulge glows: seen from the side, light comes from all of its
+// depth, not from a surface as a cloud's would. So does what is between two walls: were it a fog, the fit
+// would raise the filaments of the back wall by what is lost in it, and from behind they would burn out.
+float hiding_of(const BandDots& dots, const Placement& placement, float thickness) {
+    if (placement.kind == StructureKind::disk) return 1.0f / std::max(1.0f, thickness * thickness);
+    return dots.glow ? glow_hiding : 1.0f;
+}
 
 // The optical depth a dot adds to its column is its share of the column's light.
 void shade(const Candidate& dot, float footprint, const Opacity& opacity, ChunkDots& out) {
@@ -85,7 +90,7 @@ class BandChunk {
         const float gain = dots_.spacing * dots_.spacing / kept;
         dot.light *= gain;
         dot.amplitude *= gain;
-        dot.hiding = placement_.kind == StructureKind::disk ? hiding_at(thickness) : 1.0f;
+        dot.hiding = hiding_of(dots_, placement_, thickness);
         dot.id = id;
         push(dot, x, y, as_hash(placement_.seed, low, high, shared::PURPOSE_DEPTH));
     }

@@ -138,8 +138,7 @@ void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock&
     }
     for (int i = 0; i < block.count; ++i) block.distance[i] = std::fabs(block.z[i]);
     for (int i = 0; i < block.count; ++i) block.z[i] += middle_plane(placement, block.x[i], block.y[i]);
-    if (placement.kind == StructureKind::walls)
-        add_walls(placement, feature > widest_filament * placement.scale, block);
+    if (placement.kind == StructureKind::walls) add_walls(placement, dots.glow, block);
 }
 
 void set_knot_depths(Placement& placement) {
@@ -238,6 +237,8 @@ std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement
         dots.index = band.index;
         dots.feature = static_cast<float>(band.feature);
         dots.spread = 0.5f * dots.feature;
+        dots.glow =
+            placement.kind == StructureKind::walls && band.feature > widest_filament * placement.scale;
         dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, static_cast<float>(sigma));
         const double s = static_cast<double>(dots.sigma), area = 2.0 * real::pi * s * s;
         dots.spacing = static_cast<float>(std::sqrt(std::max(1.0, area / each)));

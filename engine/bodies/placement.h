@@ -57,6 +57,7 @@ struct BandDots {
     float threshold = 0.0f;   // amplitude over brightness below which they are thinned out
     float feature = 0.0f;
     float spread = 0.0f;  // about a sheet
+    bool glow = false;    // fills what is between two walls, and hides little
     float thickness_from = 0.0f,
           thickness_to = std::numeric_limits<float>::infinity();  // H(x, y) / H where such dots belong
 };

@@ -12,9 +12,12 @@
 #include "bodies/front_fit.h"
 #include "bodies/picture_splats.h"
 #include "bodies/uv_surface.h"
+#include "camera/camera.h"
+#include "core/color.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/channels.h"
+#include "render/render.h"
 #include "source/picture_camera.h"
 #include "support/painted_picture.h"
 #include "support/printing.h"
@@ -231,6 +234,18 @@ TEST(PictureLight, FadesAtTheBorderAndDropsWhatIsNoLight) {
     EXPECT_NEAR(faded.light.at(4, 30)[1] / 0.5f, *faded.alpha.at(4, 30), 1e-6);
 }
 
+PictureSplats unfitted_dots(const Image& light, const Placement& placement) {
+    const Image brightest = brightest_channel(light);
+    PictureSplats dots;
+    const std::vector<Band> bands = make_bands(light.width);
+    split_bands(light, bands, false, [&](const Band& band, const Image& image) {
+        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        for (const BandDots& size : band_dots(band, coarsest, placement))
+            add_band(image, size, brightest, {}, placement, {}, dots);
+    });
+    return dots;
+}
+
 // The fit makes an even picture even and keeps its flux.
 TEST(FrontFit, GivesAnEvenPictureItsColour) {
     const Image light = [] {
@@ -242,18 +257,48 @@ TEST(FrontFit, GivesAnEvenPictureItsColour) {
         }
         return image;
     }();
-    const Image brightest = brightest_channel(light);
-    const Placement placement = make_placement(brightest, of_kind(StructureKind::disk), 10.0, true, 1u);
-    PictureSplats dots;
-    const std::vector<Band> bands = make_bands(light.width);
-    split_bands(light, bands, false, [&](const Band& band, const Image& image) {
-        for (const BandDots& size :
-             band_dots(band, band.index + 1 == static_cast<int>(bands.size()), placement))
-            add_band(image, size, brightest, {}, placement, {}, dots);
-    });
+    const Placement placement =
+        make_placement(brightest_channel(light), of_kind(StructureKind::disk), 10.0, true, 1u);
+    PictureSplats dots = unfitted_dots(light, placement);
     const FrontFit fit = fit_front(dots, light);
     EXPECT_GT(fit.psnr_db, fit.first_psnr_db);
     EXPECT_GT(fit.psnr_db, 30.0);
+}
+
+Image view_along_z(const PictureSplats& dots, const Image& light, double from) {
+    RenderLayer layer;
+    layer.splats = &dots.splats;
+    CameraParams params;
+    params.projection = Projection::orthographic;
+    params.position = glm::dvec3(0.0, 0.0, from);
+    params.target = glm::dvec3(0.0);
+    params.height = static_cast<double>(light.height);
+    RenderSettings settings;
+    settings.width = light.width;
+    settings.height = light.height;
+    const Camera camera =
+        make_camera(params, static_cast<double>(light.width), static_cast<double>(light.height), {});
+    return render({&layer, 1}, camera, nullptr, settings).beauty;
+}
+
+// What the back wall loses in the glow before it is not given to it many times over.
+TEST(FrontFit, WallsHaveTheSameLightFromBehind) {
+    Image light = painted::remnant(480, 300);
+    for (float& value : light.pixels) value *= 4.0f;
+    const Placement placement =
+        make_placement(brightest_channel(light), of_kind(StructureKind::walls), 48.0, true, 1u);
+    PictureSplats dots = unfitted_dots(light, placement);
+    fit_front(dots, light);
+    const Image front = view_along_z(dots, light, 1000.0), back = view_along_z(dots, light, -1000.0);
+    double squares = 0.0;
+    for (std::int64_t y = 0; y < light.height; ++y) {
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            const double difference = static_cast<double>(display_srgb(front.at(x, y)[0])) -
+                                      static_cast<double>(display_srgb(back.at(light.width - 1 - x, y)[0]));
+            squares += difference * difference;
+        }
+    }
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(light.width * light.height)), 0.014);
 }
 
 // A disk whose right half is twice as thick, under an even light.
