@@ -36,6 +36,7 @@ Report to_report(const ParameterRow& row) {
         report["min"] = spec.min;
         report["max"] = spec.max;
     }
+    if (!spec.zero.empty()) report["zero"] = std::string(spec.zero);
     if (!spec.choices.empty()) report["choices"] = spec.choices;
     report["animated"] = name_of(spec.animation);
     return report;

@@ -81,7 +81,7 @@ void describe_camera(const Describer& d, CameraParams& c) {
     lens(c.fov, "fov", "Field of view", "degrees", "Vertical field of view.", at_least(0.001), below(180),
          slider(5, 120), only_with("projection", {"perspective"}), only_with("focal_length", {0.0}));
     lens(c.focal_length, "focal_length", "Focal length", "mm", "Above 0 it replaces fov, with film_width.",
-         within(0, 1e6), slider(0, 300), only_with("projection", {"perspective"}));
+         within(0, 1e6), slider(0, 300), only_with("projection", {"perspective"}), zero_is("Off"));
     lens(c.film_width, "film_width", "Film width", "mm", "Width of the film behind focal_length.",
          within(0.001, 1e6), slider(8, 70), only_with("projection", {"perspective"}),
          never_with("focal_length", {0.0}));
@@ -92,9 +92,10 @@ void describe_camera(const Describer& d, CameraParams& c) {
     lens(c.near, "near", "Near", "scene units", "Nothing nearer is drawn.", at_least(1e-9), slider(0.001, 10),
          logarithmic());
     lens(c.far, "far", "Far", "scene units", "Nothing farther is drawn; 0: no limit.", at_least(0),
-         slider(0, 10000));
+         slider(0, 10000), zero_is("No limit"));
     lens(c.near_fade, "near_fade", "Near fade", "scene units",
-         "Splats fade in over this beyond near; 0: one radius of the splat.", at_least(0), slider(0, 10));
+         "Splats fade in over this beyond near; 0: one radius of the splat.", at_least(0), slider(0, 10),
+         zero_is("Auto"));
     place(c.file, "file", "Camera file", "", "Camera path to import instead of these keys.");
 }
 

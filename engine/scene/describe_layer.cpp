@@ -101,7 +101,7 @@ void describe_rework(const Describer& d, TextureSettings& t) {
     d(t.derive, "derive", "Map", "", "Shows a map made of the picture: dust, H-alpha, young stars.");
     d(t.smooth, "smooth", "Smooth", "of the width", "Blurs the picture; standard deviation.", range(0, 0.2));
     d(t.detail, "detail", "Detail", "of the width",
-      "Leaves only what a blur of this width takes away; 0: everything.", range(0, 0.2));
+      "Leaves only what a blur of this width takes away; 0: everything.", range(0, 0.2), zero_is("Off"));
     d.list("mask", t.mask, describe_mask);
 }
 
@@ -144,7 +144,7 @@ void describe_structure(const Describer& d, StructureParams& s) {
       "make bodies.");
     bodies(s.height, "height", "Scale height", "scene units",
            "Thickness; 0: 1.8 % of the picture's longest side for a disk, else 1.1 %.", at_least(0),
-           slider(0, 1));
+           slider(0, 1), zero_is("Auto"));
     d(s.depth, "depth", "Depth", "of the width", "Whole depth of walls, or of the relief of a flat sheet.",
       within(0, 10), slider(0, 0.5), only_with("kind", {"sheet", "walls"}));
     bodies(s.clumps, "clumps", "Clumps", "", "How strongly depths gather in clouds.", within(0, 100),
@@ -178,7 +178,8 @@ void describe_uv_camera(const Describer& d, UvCamera& c) {
     d(c.fov, "fov", "Its field of view", "degrees", "From the picture's bottom to its top.", at_least(0.001),
       below(180), slider(1, 120), only_with("height", {0.0}));
     d(c.height, "height", "Its height", "scene units",
-      "From the picture's bottom to its top, with parallel rays; 0: fov.", at_least(0), slider(0, 100));
+      "From the picture's bottom to its top, with parallel rays; 0: fov.", at_least(0), slider(0, 100),
+      zero_is("Off"));
 }
 
 void describe_source(const Describer& d, SourceParams& s) {
@@ -195,26 +196,26 @@ void describe_source(const Describer& d, SourceParams& s) {
             range(1, 1e6));
     lattice(s.voxel_size, "voxel_size", "Voxel size", "scene units",
             "Edge of a voxel instead of voxels; 0: not used.", at_least(0), slider(0, 1),
-            only_with("voxels", {"auto"}));
+            only_with("voxels", {"auto"}), zero_is("Off"));
     splats(s.count, "count", "Count", "", "About how many positions voxels = \"auto\" keeps.", range(1, 1e15),
            slider(1e4, 1e9), logarithmic(), never_with("kind", {"splats"}), only_with("voxels", {"auto"}),
            only_with("voxel_size", {0.0}), only_with("splats", {std::int64_t(0)}));
     lattice(s.splats, "splats", "Splats", "",
             "In place of count: positions left after the picture's alpha and masks; 0: count.",
             range(0, 1e15), slider(1e4, 1e9), logarithmic(), only_with("voxels", {"auto"}),
-            only_with("voxel_size", {0.0}));
+            only_with("voxel_size", {0.0}), zero_is("Off"));
     lattice(s.jitter, "jitter", "Jitter", "of half a voxel", "How far positions leave the lattice.",
             range(0, 1));
     lattice(s.max_distance, "max_distance", "Largest distance", "scene units",
             "Positions farther from the meshes are dropped; 0: 2 % of the longest side.", at_least(0),
-            slider(0, 10));
+            slider(0, 10), zero_is("Auto"));
     files.only_with("kind", {"mesh"})(s.uv, "uv", "Picture coordinates", "",
                                       "The mesh's own, or projected along an axis or from a camera.");
     const Describer planar =
         files.only_with("kind", {"mesh"}).only_with("uv", {"planar-xy", "planar-xz", "planar-yz"});
     planar(s.uv_width, "uv_width", "Picture width", "scene units",
            "What the picture's width covers; 0: it is stretched over the meshes' box.", at_least(0),
-           slider(0, 100));
+           slider(0, 100), zero_is("Auto"));
     planar(s.uv_center, "uv_center", "Picture centre", "scene units", "Where the picture's middle lies.",
            as(Type::position), slider(-10, 10), never_with("uv_width", {0.0}));
     planar(s.back, "back", "Back wall", "",
@@ -224,7 +225,7 @@ void describe_source(const Describer& d, SourceParams& s) {
     describe_structure(d.shown_in("Source", "Structure").only_with("kind", {"mesh"}).in("structure", false),
                        s.structure);
     splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",
-           slider(0, 1000));
+           slider(0, 1000), zero_is("Auto"));
     files(s.file, "file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.",
           only_with("kind", {"splats"}));
     describe_stars(files.only_with("kind", {"stars"}), s.stars);

@@ -62,7 +62,7 @@ void describe_vertical(const Describer& d, VerticalAlpha& v) {
     d(v.points, "points", "Points", "", "Curve: points (x, opacity) with x ascending.", within(0, 1e6),
       only_with("shape", {"curve"}));
     d(v.reach, "reach", "Reach", "scene units", "Where x = 1 for this alone; 0: the layer's reach.",
-      at_least(0), slider(0, 10));
+      at_least(0), slider(0, 10), zero_is("Auto"));
     d(v.match, "match", "Match the picture", "",
       "Makes the front view show the picture's opacity; picture: its light too, cell by cell; auto: coverage "
       "for meshes, none for splat files.");
@@ -71,9 +71,9 @@ void describe_vertical(const Describer& d, VerticalAlpha& v) {
 void describe_radius(const Describer& d, Radius& r) {
     d(r.min, "min", "Smallest size", "scene units",
       "Smallest radius; with max 0 too: the file's, or 0.6 voxel diagonals.", at_least(0), slider(0, 1),
-      shown_as("Smallest"));
+      shown_as("Smallest"), zero_is("Auto"));
     d(r.max, "max", "Largest size", "scene units", "Largest radius.", at_least(0), slider(0, 1),
-      shown_as("Largest"));
+      shown_as("Largest"), zero_is("Auto"));
     d(r.horizontal_scale, "horizontal_scale", "Size at soft edges", "",
       "Factor on the radius where opacity is 0.", within(0, 1e6), slider(0, 4), shown_as("At soft edges"));
     d(r.vertical_scale, "vertical_scale", "Size with distance", "", "Factor on the radius at reach.",
@@ -101,7 +101,7 @@ void describe_look(const Describer& d, Look& look) {
             within(0, 1e6), slider(0, 1));
     density(look.reach, "reach", "Reach", "scene units",
             "Distance where x = 1; 0: max_distance, or a file's largest distance.", at_least(0),
-            slider(0, 10));
+            slider(0, 10), zero_is("Auto"));
     describe_curve(density.in("pdf", true), look.pdf);
     thickness(look.thickness.map, "thickness.map", "Thickness map", "",
               "Picture whose colours choose among the stops.", shown_as("Picture"));
@@ -137,7 +137,7 @@ void describe_render(const Describer& d, LayerRender& r) {
         "Absorb: the layer shines not at all; of each channel it lets (1 - opacity) to this power through.",
         range(0, 10), slider(0, 3), only_with("blend", {"absorb"}));
     detail(r.lod.max_px, "lod.max_px", "Split above", "px at 1080 lines",
-           "Dots that look larger are split; 0: off.", at_least(0), slider(0, 200));
+           "Dots that look larger are split; 0: off.", at_least(0), slider(0, 200), zero_is("Off"));
     detail(r.lod.max_children, "lod.max_children", "Most children", "", "Largest number of parts of one dot.",
            range(1, 16777216), slider(1, 65536), logarithmic());
     detail(r.lod.noise, "lod.noise", "Structure", "",

@@ -37,6 +37,7 @@ inline auto one_of(std::vector<std::string> names) { return sets(&ParameterSpec:
 /// How nothing is written.
 inline auto or_auto() { return sets(&ParameterSpec::nothing, Value("auto")); }
 inline auto or_no_text() { return sets(&ParameterSpec::nothing, Value("")); }
+inline auto zero_is(std::string_view words) { return sets(&ParameterSpec::zero, words); }
 /// Points that need not ascend.
 inline auto in_any_order() { return sets(&ParameterSpec::any_order, true); }
 inline auto shown_as(std::string short_label) {

@@ -73,6 +73,7 @@ struct ParameterSpec {
     Animation animation = Animation::no;
     std::vector<std::string> choices;
     Value nothing;                  // how "not set" is written, where the field may be empty: "auto" or []
+    std::string_view zero;          // what 0 means where it is no amount: "Auto", "Off"; empty: an amount
     std::string_view tab, section;  // where the window shows it: "Look", "Size"
     std::string row_label;          // the label below that section's title
     std::vector<Condition> conditions;  // it does something where all of these hold

@@ -8,6 +8,7 @@
 #include "gui/icons.h"
 #include "gui/panel/choice_fields.h"
 #include "gui/panel/row.h"
+#include "gui/panel/row_sketches.h"
 #include "gui/panel/section.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
@@ -76,6 +77,13 @@ void number_field(Context& context, const Row& row) {
     if (!row.value.is_number()) return text_field(context, row, row.layout.value);
     BoxContent content = number_content(spec, row.value.number());
     content.unit = spec.unit;
+    const std::string words =
+        row.value.number() == 0.0 && !spec.zero.empty() ? zero_in_words(context, spec) : "";
+    if (!words.empty()) {
+        content.shown = words;
+        content.dimmed = true;
+        if (words == spec.zero) content.unit.clear();
+    }
     const BoxEvent event = value_box(context, "number", row.layout.value, content);
     if (event.kind == BoxEvent::Kind::dragged)
         set_value(context, row.key(), as_number(spec, event.value), context.memory.gesture);

@@ -92,16 +92,6 @@ void vertical_sketch(Context& context, const ParameterSpec& spec) {
     draw_profile(context, begin_plot(), spec, vertical_samples(vertical), reach);
 }
 
-void automatic_size_note(Context& context, const ParameterSpec&) {
-    const Radius& radius = context.layer().look.radius;
-    const LayerStatus& status = context.layer_status();
-    if (radius.min != 0.0f || radius.max != 0.0f || !(status.radius_max > 0.0)) return;
-    const std::string largest = figures(status.radius_max);
-    note(status.radius_min == status.radius_max
-             ? fmt::format("0, 0: {} scene units", largest)
-             : fmt::format("0, 0: the file's own, {} to {}", figures(status.radius_min), largest));
-}
-
 void noise_sketch(Context& context, const ParameterSpec& spec) {
     const Bounds& box = context.status.box;
     const glm::dvec3 size = box.empty() ? glm::dvec3(10.0) : glm::dvec3(box.hi - box.lo);
@@ -141,9 +131,18 @@ void draw_above(Context& context, const ParameterSpec& spec) {
     draw_of(sketches, context, spec);
 }
 
-void draw_below(Context& context, const ParameterSpec& spec) {
-    static const Sketches sketches{{"layer.look.radius.max", automatic_size_note}};
-    draw_of(sketches, context, spec);
+std::string zero_in_words(const Context& context, const ParameterSpec& spec) {
+    double used = 0.0;
+    if (spec.generic_key.is_below("layer.look.radius")) {
+        const Radius& radius = context.layer().look.radius;
+        if (radius.min != 0.0f || radius.max != 0.0f) return "";  // then 0 is a size
+        const LayerStatus& status = context.layer_status();
+        used = spec.generic_key == "layer.look.radius.min" ? status.radius_min : status.radius_max;
+    } else if (spec.generic_key == "layer.look.reach" || spec.generic_key == "layer.look.vertical.reach") {
+        used = reach_of(context);
+    }
+    const std::string words(spec.zero);
+    return used > 0.0 ? fmt::format("{} ({})", words, figures(used)) : words;
 }
 
 }  // namespace astrosplat::panel

@@ -35,7 +35,6 @@ bool is_shown(const Context& context, const ParameterSpec& spec) {
 void draw_row(Context& context, const Parameter& parameter) {
     draw_above(context, parameter.spec);
     parameter_row(context, parameter);
-    draw_below(context, parameter.spec);
 }
 
 void draw_rows_below(Context& context, const ParameterKey& element, const Rows& tab_rows,
