@@ -80,7 +80,7 @@ void Jobs::start_in(const fs::path& folder, const Command& command, const Docume
                          {"-f", frame_text(frame), "-o", fs::absolute(command.path).string()});
     } else {
         target = absolute_pattern(document);
-        arguments.insert(arguments.end(), {"-o", target.string()});
+        arguments.insert(arguments.end(), {"-o", target.string(), "--resume"});  // what is done stays
     }
     job_.start(folder, document.text_for(folder / "scene.toml"), frames, arguments, std::move(afterwards));
     target_ = std::move(target);

@@ -94,5 +94,32 @@ TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
     EXPECT_TRUE(running());
 }
 
+/// Frames that are finished and still the scene's are kept, others are rendered again.
+TEST_F(WindowWaysOut, ARangeGoesOnWhereItEnded) {
+    std::string text = text_of(scene_file);
+    text.replace(text.find("1-24"), 4, "1-3");
+    write_text(scene_file, text);
+    ASSERT_EQ(run({"--batch", scene_file.string(), "--no-cache"}).code, 0);
+    const fs::path frames = folder / "frames", kept = frames / "shot.0002.png";
+    const std::string whole = text_of(kept);
+    fs::remove(frames / "shot.0001.png");
+    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "3", "--set", "output.exposure=2", "--overwrite",
+                   "--no-cache"})
+                  .code,
+              0);
+    const std::string other = text_of(frames / "shot.0003.png");
+    const fs::file_time_type long_ago = fs::last_write_time(kept) - std::chrono::hours(1);
+    fs::last_write_time(kept, long_ago);
+    start();
+    settled_frame();
+    person->press("ctrl+shift+r");
+    EXPECT_TRUE(comes_true([&] {
+        return fs::exists(frames / "shot.0001.png") && text_of(frames / "shot.0003.png") != other &&
+               names_in(folder / "tmp").empty();
+    }));
+    EXPECT_EQ(fs::last_write_time(kept), long_ago);
+    EXPECT_EQ(text_of(kept), whole);
+}
+
 }  // namespace
 }  // namespace astrosplat::test

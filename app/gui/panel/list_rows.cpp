@@ -100,11 +100,11 @@ const ListRows* list_of(const ParameterSpec& spec) {
 
 bool list_element_head(Context& context, const ListRows& list, std::size_t index) {
     if (list.size(context.layer()) <= list.least) return false;
-    return element_head(fmt::format("{} {}", list.title, index + 1).c_str());
+    return element_head(fmt::format("{} {}", list.title, index).c_str());
 }
 
 bool inner_element_head(const InnerRows& list, std::size_t index) {
-    return element_head(fmt::format("{} {}", list.title, index + 1).c_str());
+    return element_head(fmt::format("{} {}", list.title, index).c_str());
 }
 
 void remove_inner_element(Context& context, const InnerRows& list, std::size_t outer, std::size_t index) {
