@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -57,7 +58,25 @@ std::uint64_t hash_of(const ImDrawData& data) {
     return hash;
 }
 
-constexpr int smallest_width = 1100, smallest_height = 680;
+constexpr int smallest_width = 1100, smallest_height = 680;  // px at scale 1
+
+struct Size {
+    int width, height;
+};
+
+/// A size at scale 1 on the first monitor, no larger than that has room for.
+Size on_monitor(Size size) {
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    if (!monitor) return size;
+    float scale = 1.0f, vertical = 1.0f;
+    glfwGetMonitorContentScale(monitor, &scale, &vertical);
+    int x = 0, y = 0, width = 0, height = 0;
+    glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    const auto scaled = [&](int px) {
+        return static_cast<int>(std::lround(float(px) * std::max(1.0f, scale)));
+    };
+    return {std::min(scaled(size.width), width), std::min(scaled(size.height), height)};
+}
 
 }  // namespace
 
@@ -67,13 +86,14 @@ Window::Window(int width, int height, const std::string& title) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 1);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    const Size size = on_monitor({width, height}), least = on_monitor({smallest_width, smallest_height});
+    window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
     if (!window_) {
         const std::string reason = glfw_reason("no OpenGL 4.1");
         glfwTerminate();
         throw NoContext(reason);
     }
-    glfwSetWindowSizeLimits(window_, smallest_width, smallest_height, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowSizeLimits(window_, least.width, least.height, GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwMakeContextCurrent(window_);
     gl_ = load_gl(reinterpret_cast<GlLoader>(glfwGetProcAddress));
     glfwSwapInterval(1);
@@ -235,7 +255,11 @@ std::vector<std::filesystem::path> Window::take_dropped() { return std::exchange
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
-void Window::size(int& width, int& height) const { glfwGetWindowSize(window_, &width, &height); }
+void Window::size(int& width, int& height) const {
+    glfwGetWindowSize(window_, &width, &height);
+    width = static_cast<int>(std::lround(static_cast<float>(width) / content_scale()));
+    height = static_cast<int>(std::lround(static_cast<float>(height) / content_scale()));
+}
 
 float Window::content_scale() const {
     float x = 1.0f, y = 1.0f;

@@ -43,7 +43,7 @@ class Window {
     bool close_requested();  // and forgets it
     std::vector<std::filesystem::path> take_dropped();
     void set_title(const std::string& title);
-    /// Screen units, for the preferences.
+    /// Px at scale 1, for the preferences.
     void size(int& width, int& height) const;
     float content_scale() const;
     const GlInfo& gl() const { return gl_; }

@@ -1,4 +1,5 @@
 // The server says which display it took; it ends with the test, however that ends.
+#include <X11/Xatom.h>
 #include <X11/Xutil.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -102,6 +103,21 @@ std::string Screen::Impl::title_of(::Window window) const {
 std::string Screen::title() const {
     const ::Window window = impl_->window();
     return window ? impl_->title_of(window) : "";
+}
+
+Area Screen::window_area() const {
+    XWindowAttributes a{};
+    const ::Window window = impl_->window();
+    if (!window || !XGetWindowAttributes(impl_->connection, window, &a)) return {};
+    return {a.x, a.y, a.width, a.height};
+}
+
+void Screen::set_dpi(int dpi) const {
+    const std::string resources = "Xft.dpi:\t" + std::to_string(dpi) + "\n";
+    XChangeProperty(impl_->connection, DefaultRootWindow(impl_->connection), XA_RESOURCE_MANAGER, XA_STRING,
+                    8, PropModeReplace, reinterpret_cast<const unsigned char*>(resources.data()),
+                    static_cast<int>(resources.size()));
+    XSync(impl_->connection, False);
 }
 
 void Screen::focus() const {

@@ -38,6 +38,10 @@ class Screen {
     Pixels pixels(const Area& area) const;
     /// Of the one window; empty while there is none.
     std::string title() const;
+    /// Of the one window, its border not counted; zeros while there is none.
+    Area window_area() const;
+    /// What the desktop says of the screen to programs that begin: 96 is scale 1.
+    void set_dpi(int dpi) const;
     /// Keys go to the window, as a window manager would have it.
     void focus() const;
     /// Drags the files of another program over the window and lets go there. False where the window does not
