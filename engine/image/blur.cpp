@@ -54,18 +54,21 @@ void mirror_ends(float* middle, std::int64_t width, int channels, std::int64_t m
     }
 }
 
-// Rows of a strip blurred along themselves, those that the columns' kernel reaches beyond it included.
+// Rows of a strip blurred along themselves, those that the columns' kernel reaches beyond it included. Its
+// memory serves strip after strip.
 class BlurredRows {
   public:
-    BlurredRows(const Image& image, const std::vector<float>& weights, std::int64_t begin, std::int64_t end)
-        : begin_(begin - margin_of(weights)), count_(image.width * image.channels) {
-        const std::int64_t margin = margin_of(weights), rows = end + margin - begin_;
+    void fill(const Image& image, const std::vector<float>& weights, std::int64_t begin, std::int64_t end) {
+        const auto margin = static_cast<std::int64_t>(weights.size() / 2);
+        begin_ = begin - margin;
+        count_ = image.width * image.channels;
+        const std::int64_t rows = end + margin - begin_;
         values_.resize(static_cast<std::size_t>(rows * count_));
-        Buffer<float> padded(static_cast<std::size_t>(count_ + 2 * margin * image.channels));
-        float* const middle = padded.data() + margin * image.channels;
+        padded_.resize(static_cast<std::size_t>(count_ + 2 * margin * image.channels));
+        float* const middle = padded_.data() + margin * image.channels;
         std::vector<const float*> shifted;
         for (std::size_t k = 0; k < weights.size(); ++k)
-            shifted.push_back(padded.data() + static_cast<std::int64_t>(k) * image.channels);
+            shifted.push_back(padded_.data() + static_cast<std::int64_t>(k) * image.channels);
         for (std::int64_t row = 0; row < rows; ++row) {
             std::copy_n(image.at(0, mirrored(begin_ + row, image.height)), count_, middle);
             mirror_ends(middle, image.width, image.channels, margin);
@@ -76,11 +79,8 @@ class BlurredRows {
     const float* row(std::int64_t y) const { return values_.data() + (y - begin_) * count_; }
 
   private:
-    static std::int64_t margin_of(const std::vector<float>& weights) {
-        return static_cast<std::int64_t>(weights.size() / 2);
-    }
-    std::int64_t begin_, count_;
-    Buffer<float> values_;
+    std::int64_t begin_ = 0, count_ = 0;
+    Buffer<float> values_, padded_;
 };
 
 // The four rows or columns that the pixel at 2 i + 1/2 averages.
@@ -94,8 +94,10 @@ Image convolved_with_gaussian(const Image& image, double sigma_px) {
     const std::vector<float> weights = gaussian_weights(sigma_px);
     const auto margin = static_cast<std::int64_t>(weights.size() / 2);
     Image out = unfilled_image(image.width, image.height, image.channels);
-    parallel_chunks(image.height, rows_per_strip, [&](std::int64_t begin, std::int64_t end, int) {
-        const BlurredRows blurred(image, weights, begin, end);
+    std::vector<BlurredRows> of_worker(static_cast<std::size_t>(thread_count()));
+    parallel_chunks(image.height, rows_per_strip, [&](std::int64_t begin, std::int64_t end, int worker) {
+        BlurredRows& blurred = of_worker[static_cast<std::size_t>(worker)];
+        blurred.fill(image, weights, begin, end);
         std::vector<const float*> rows(weights.size());
         for (std::int64_t y = begin; y < end; ++y) {
             for (std::size_t k = 0; k < rows.size(); ++k)
