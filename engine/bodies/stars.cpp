@@ -24,6 +24,7 @@ constexpr float least_excess = 0.04f;  // of the displayed white
 constexpr float noise_factor = 4.5f;
 constexpr double widest_sigma = 2.2, narrowest_sigma = 0.6;
 constexpr float wing_share = 0.5f;    // of the peak, that the light at 2 to 3 px must stay below
+constexpr float least_level = 0.01f;  // of the displayed white, below which a pixel is left as it is
 constexpr float uneven_share = 0.3f;  // of the peak, that this light may differ by around the star
 
 /// Median of the brightness over the window about a pixel.
@@ -136,19 +137,19 @@ std::optional<Star> star_at(const Image& light, const Image& brightest, std::int
     return star;
 }
 
-// Calls visit(pixel, x, y) for the pixels within `reach` px of the star.
+// Calls visit(pixel, x, y) for the pixels of rows [begin, end) within `reach` px of the star.
 template <class Visit>
-void for_each_pixel(Image& image, const Star& star, std::int64_t reach, Visit visit) {
+void for_each_pixel(Image& image, const Star& star, std::int64_t reach, std::int64_t begin, std::int64_t end,
+                    Visit visit) {
     const auto cx = static_cast<std::int64_t>(star.x), cy = static_cast<std::int64_t>(star.y);
-    for (std::int64_t y = std::max<std::int64_t>(0, cy - reach); y <= std::min(image.height - 1, cy + reach);
-         ++y)
+    for (std::int64_t y = std::max(begin, cy - reach); y < std::min(end, cy + reach + 1); ++y)
         for (std::int64_t x = std::max<std::int64_t>(0, cx - reach);
              x <= std::min(image.width - 1, cx + reach); ++x)
             visit(image.at(x, y), x, y);
 }
 
-void subtract(Image& light, const Star& star) {
-    for_each_pixel(light, star, 6, [&](float* pixel, std::int64_t x, std::int64_t y) {
+void subtract(Image& light, const Star& star, std::int64_t begin, std::int64_t end) {
+    for_each_pixel(light, star, 6, begin, end, [&](float* pixel, std::int64_t x, std::int64_t y) {
         const double dx = static_cast<double>(x) + 0.5 - static_cast<double>(star.x);
         const double dy = static_cast<double>(y) + 0.5 - static_cast<double>(star.y);
         const double width = 2.0 * static_cast<double>(star.sigma) * static_cast<double>(star.sigma);
@@ -158,13 +159,26 @@ void subtract(Image& light, const Star& star) {
 }
 
 // What a Gaussian does not describe, wings and diffraction, is cut to a little above the background.
-void level(Image& light, const Image& before, const Star& star) {
+void level(Image& light, const Image& before, const Star& star, std::int64_t begin, std::int64_t end) {
     const auto reach = static_cast<std::int64_t>(3.0f * star.sigma + 1.0f);
-    for_each_pixel(light, star, reach, [&](float* pixel, std::int64_t x, std::int64_t y) {
-        const float most = 1.15f * background(before, x, y) + 0.01f;
+    for_each_pixel(light, star, reach, begin, end, [&](float* pixel, std::int64_t x, std::int64_t y) {
         const float brightest = std::max({pixel[0], pixel[1], pixel[2]});
+        if (brightest <= least_level) return;
+        const float most = 1.15f * background(before, x, y) + least_level;
         if (brightest <= most) return;
         for (int c = 0; c < 3; ++c) pixel[c] *= most / brightest;
+    });
+}
+
+// change(star, first row, end row) for the stars near every strip of rows, in their order.
+template <class Change>
+void for_each_strip(const Image& light, const std::vector<Star>& stars, const Change& change) {
+    constexpr std::int64_t rows = 64;
+    constexpr float farthest = 12.0f;  // px that a change reaches
+    parallel_chunks(light.height, rows, [&](std::int64_t begin, std::int64_t end, int) {
+        for (const Star& star : stars)
+            if (star.y > static_cast<float>(begin) - farthest && star.y < static_cast<float>(end) + farthest)
+                change(star, begin, end);
     });
 }
 
@@ -185,9 +199,13 @@ std::vector<Star> take_stars(Image& light) {
     });
     std::vector<Star> stars;
     for (const auto& row : rows) stars.insert(stars.end(), row.begin(), row.end());
-    for (const Star& star : stars) subtract(light, star);
+    for_each_strip(light, stars, [&](const Star& star, std::int64_t begin, std::int64_t end) {
+        subtract(light, star, begin, end);
+    });
     const Image without = brightest_channel(light);
-    for (const Star& star : stars) level(light, without, star);
+    for_each_strip(light, stars, [&](const Star& star, std::int64_t begin, std::int64_t end) {
+        level(light, without, star, begin, end);
+    });
     return stars;
 }
 
