@@ -37,33 +37,48 @@ struct Spline {
 };
 
 // Adds to the rows [first_row, end_row); beyond its edges a picture is mirrored.
-void add(float light, const Spline& x, const Spline& y, std::int64_t first_row, std::int64_t end_row,
-         Image& sum) {
+void add(const glm::vec3& light, const Spline& x, const Spline& y, std::int64_t first_row,
+         std::int64_t end_row, Image& sum) {
+    float across[9];
+    for (int n = 0; n < 9; ++n) across[n] = light[n % 3] * x.weight[n / 3];
     const bool inside = x.middle > 0 && x.middle + 1 < sum.width;
     for (std::int64_t j = 0; j < 3; ++j) {
         const std::int64_t row = std::clamp<std::int64_t>(y.middle + j - 1, 0, sum.height - 1);
         if (row < first_row || row >= end_row) continue;
-        const float here = light * y.weight[j];
-        float* const steps = sum.at(0, row);
-        for (std::int64_t k = 0; k < 3; ++k) {
-            const std::int64_t column = x.middle + k - 1;
-            steps[inside ? column : std::clamp<std::int64_t>(column, 0, sum.width - 1)] += here * x.weight[k];
+        if (inside) {
+            float* const three = sum.at(x.middle - 1, row);
+            for (int n = 0; n < 9; ++n) three[n] += across[n] * y.weight[j];
+            continue;
+        }
+        for (int n = 0; n < 9; ++n) {
+            const std::int64_t column = std::clamp<std::int64_t>(x.middle + n / 3 - 1, 0, sum.width - 1);
+            sum.at(column, row)[n % 3] += across[n] * y.weight[j];
         }
     }
 }
 
-float ratio_at(const Image& fraction, std::size_t i) {
-    return fraction.pixels[2 * i] / fraction.pixels[2 * i + 1];
-}
-
 float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, largest_factor); }
 
-// What `change` makes of the ratio of each pixel's two channels.
-template <class Change>
-Image factor_of(const Image& fraction, const Change& change) {
-    Image factor = make_image(fraction.width, fraction.height, 1);
+// What dots take of a ratio: with `overshoot` its square.
+Image factor_of(const Fraction& fraction, bool overshoot) {
+    Image factor = fraction.wanted;
+    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
+        const float ratio = factor.pixels[i] / fraction.seen.pixels[i];
+        factor.pixels[i] = clamped(overshoot ? ratio * ratio : ratio);
+    });
+    return factor;
+}
+
+// The square, and once more what the ratio differs by from that of the pixels `blur_px` around.
+Image sharpening_factor_of(const Fraction& fraction, double blur_px) {
+    Image factor = fraction.wanted;
     parallel_each(factor.pixels.size(), 65536,
-                  [&](std::size_t i) { factor.pixels[i] = clamped(change(ratio_at(fraction, i), i)); });
+                  [&](std::size_t i) { factor.pixels[i] /= fraction.seen.pixels[i]; });
+    const Image wide = gaussian_blur(factor, blur_px);
+    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
+        const float ratio = factor.pixels[i];
+        factor.pixels[i] = clamped(ratio * ratio * (ratio / wide.pixels[i]));
+    });
     return factor;
 }
 
@@ -109,7 +124,7 @@ std::size_t FlatLight::grid_for(double variance) const {
     return grid;
 }
 
-void FlatLight::spread(const Range& range, int channel, double step, Image& sum) const {
+void FlatLight::spread(const Range& range, double step, Image& sum) const {
     const auto scale = static_cast<float>(1.0 / step);
     const auto flux = static_cast<float>(static_cast<double>(footprint_share) * 2.0 * real::pi * range.sigma *
                                          range.sigma / (step * step));
@@ -120,17 +135,17 @@ void FlatLight::spread(const Range& range, int channel, double step, Image& sum)
             if (chunk.bottom < top || chunk.top > bottom) continue;
             for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
                 const glm::vec2 at = texel(i) * scale;
-                const float light = flux * dots_.splats.alpha[i] * dots_.splats.color[i][channel];
+                const glm::vec3 light = dots_.splats.color[i] * (flux * dots_.splats.alpha[i]);
                 add(light, Spline(at.x), Spline(at.y), first_row, end_row, sum);
             }
         }
     });
 }
 
-Image FlatLight::sum(int channel) const {
+Image FlatLight::sum() const {
     std::size_t grid = grids_.size() - 1;
     double missing = 0.0;  // texels^2, of the blur of what is there
-    Image sum = make_image(grids_[grid].width, grids_[grid].height, 1);
+    Image sum = make_image(grids_[grid].width, grids_[grid].height, 3);
     const auto move_to = [&](std::size_t to, double still_missing) {
         double now = missing - still_missing;
         for (std::size_t g = to; g < grid; ++g) now -= doubling_variance * grids_[g].step * grids_[g].step;
@@ -143,52 +158,49 @@ Image FlatLight::sum(int channel) const {
         const std::size_t to = grid_for(variance);
         const double step = grids_[to].step;
         move_to(to, std::max(0.0, variance - spread_variance * step * step));
-        spread(*range, channel, step, sum);
+        spread(*range, step, sum);
     }
     move_to(0, 0.0);
     return sum;
 }
 
-void FlatLight::multiply(const Range& range, int channel, const Image& factor, double step) {
+void FlatLight::multiply(const Range& range, const Image& factor, double step) {
     const auto scale = static_cast<float>(1.0 / step);
     parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
         for (std::size_t i = range.chunks[c].begin; i < range.chunks[c].end; ++i) {
             const glm::vec2 at = texel(i) * scale;
-            dots_.splats.color[i][channel] *= bilinear(factor, 0, at.x, at.y);
+            const LinearSample place(factor, at.x, at.y);
+            for (int channel = 0; channel < 3; ++channel)
+                dots_.splats.color[i][channel] *= place.of(factor, channel);
         }
     });
 }
 
-void FlatLight::multiply(int channel, const Image& factor, double step) {
-    for (const Range& range : ranges_) multiply(range, channel, factor, step);
+void FlatLight::multiply(const Image& factor, double step) {
+    for (const Range& range : ranges_) multiply(range, factor, step);
 }
 
-void FlatLight::correct(int channel, Image fraction, bool overshoot) {
+void FlatLight::correct(Fraction fraction, bool overshoot) {
     std::size_t grid = 0;
     double variance = 0.0;  // texels^2, of the blur so far
     for (const Range& range : ranges_) {
         const double seen = seen_share * (range.sigma * range.sigma + filter_variance_);
         for (const std::size_t to = grid_for(seen); grid < to; ++grid) {
-            fraction = halved(fraction);
+            fraction.wanted = halved(fraction.wanted);
+            fraction.seen = halved(fraction.seen);
             variance += doubling_variance * grids_[grid].step * grids_[grid].step;
         }
-        const auto blurred_to = [&](double wanted) {
-            return gaussian_blur(fraction, std::sqrt(wanted - variance) / grids_[grid].step);
-        };
+        const double step = grids_[grid].step;
+        const auto missing_px = [&](double wanted) { return std::sqrt(wanted - variance) / step; };
         if (seen > variance) {
-            fraction = blurred_to(seen);
+            fraction.wanted = gaussian_blur(fraction.wanted, missing_px(seen));
+            fraction.seen = gaussian_blur(fraction.seen, missing_px(seen));
             variance = seen;
         }
-        const double step = grids_[grid].step;
-        if (!overshoot) {
-            multiply(range, channel, factor_of(fraction, [](float r, std::size_t) { return r; }), step);
-        } else if (range.sigma > fine_sigma) {
-            multiply(range, channel, factor_of(fraction, [](float r, std::size_t) { return r * r; }), step);
-        } else {
-            const Image wide = blurred_to(around * seen);
-            const auto sharpened = [&](float r, std::size_t i) { return r * r * (r / ratio_at(wide, i)); };
-            multiply(range, channel, factor_of(fraction, sharpened), step);
-        }
+        const bool sharpens = overshoot && range.sigma <= fine_sigma;
+        const Image factor = sharpens ? sharpening_factor_of(fraction, missing_px(around * seen))
+                                      : factor_of(fraction, overshoot);
+        multiply(range, factor, step);
     }
 }
 

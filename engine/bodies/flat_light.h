@@ -1,6 +1,5 @@
-// The dots of a picture on grids of its size and coarser ones, a channel at a time. In: dots. Out: their
-// light from the front as if nothing hid anything, for a small part of what compositing them costs; or that
-// channel of the dots, changed.
+// The dots of a picture on grids of its size and coarser ones. In: dots. Out: their light from the front as
+// if nothing hid anything, for a small part of what compositing them costs; or the dots' colours, changed.
 #pragma once
 
 #include <vector>
@@ -10,24 +9,28 @@
 
 namespace astrosplat {
 
+/// What is wanted over what is seen: three channels each, of one size, > 0.
+struct Fraction {
+    Image wanted, seen;
+};
+
 class FlatLight {
   public:
     /// Of the dots that shine, over a picture of width x height texels seen through a Gaussian filter. The
     /// dots' places and sizes stay as they are while this lives.
     FlatLight(PictureSplats& dots, std::int64_t width, std::int64_t height, double filter_px);
 
-    /// The sum of a channel of all dots: one channel, of the picture's size. The same bits with any number of
-    /// threads.
-    Image sum(int channel) const;
+    /// The sum of all dots: three channels, of the picture's size. The same bits with any number of threads.
+    Image sum() const;
 
-    /// Multiplies a channel of every dot by the ratio of the two channels of `fraction`, an image of the
-    /// picture's size, each blurred by half of the dot's own footprint, clamped to [1/3, 3]. `overshoot`: by
-    /// its square, and fine dots once more by what it differs from the ratio of the pixels around.
-    void correct(int channel, Image fraction, bool overshoot);
+    /// Multiplies every dot's colour by the ratio of the two images of `fraction`, each blurred by half of
+    /// the dot's own footprint, clamped to [1/3, 3]. `overshoot`: by its square, and fine dots once more by
+    /// what it differs from the ratio of the pixels around.
+    void correct(Fraction fraction, bool overshoot);
 
-    /// Multiplies a channel of every dot by a value of `factor`, of one channel on steps of so many texels,
+    /// Multiplies every dot's colour by a value of `factor`, of three channels on steps of so many texels,
     /// linear between them.
-    void multiply(int channel, const Image& factor, double step);
+    void multiply(const Image& factor, double step);
 
   private:
     struct Chunk {
@@ -46,8 +49,8 @@ class FlatLight {
     void add_range(const DotRange& dots);
     std::size_t grid_for(double variance) const;
     glm::vec2 texel(std::size_t dot) const;
-    void spread(const Range& range, int channel, double step, Image& sum) const;
-    void multiply(const Range& range, int channel, const Image& factor, double step);
+    void spread(const Range& range, double step, Image& sum) const;
+    void multiply(const Range& range, const Image& factor, double step);
 
     PictureSplats& dots_;
     double filter_variance_;     // texels^2

@@ -1,7 +1,8 @@
-// Compositing the dots takes long, and what hides what does not change with their colours. So they are
-// rendered twice only; between, the share of all light that reaches the viewer, pixel by pixel, makes the
-// view out of the dots' flat light. Steps are Richardson and Lucy's, which stay positive and undo the dots'
-// own blur as well.
+// Compositing the dots takes long, and what hides what hardly changes with their colours. So they are
+// rendered once: then the share of all light that reaches the viewer makes the view out of the dots' flat
+// light. (On coarse pixels: a share for every pixel would follow the grain of the dots.) Before, what there
+// is too much of is supposed to be hidden. Steps are Richardson and Lucy's, which stay positive and undo the
+// dots' own blur.
 #include "bodies/front_fit.h"
 
 #include <algorithm>
@@ -15,7 +16,6 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
-#include "image/channels.h"
 #include "render/render.h"
 
 namespace astrosplat {
@@ -23,57 +23,63 @@ namespace {
 
 constexpr double filter_px = 0.5;               // of the output's pixels, as scenes have it
 constexpr float sky = 0.002f;                   // added to both sides of a ratio
-constexpr int first_steps = 4, last_steps = 2;  // after the first rendering, and after the last
+constexpr int first_steps = 2, last_steps = 6;  // before the rendering and after it
+constexpr double share_blur_px = 2.0;           // coarse pixels, of the share that is supposed
 constexpr std::int64_t cell_px = 32;
+// Of the rendering's records; with more it takes its picture in parts.
+constexpr std::int64_t least_projected_bytes = std::int64_t{256} << 20, projected_bytes_a_texel = 24;
 constexpr std::int64_t psnr_step = 4;  // rows between those that the PSNR is measured on
 
-Image quotient(Image image, const Image& divisor) {
-    parallel_each(image.pixels.size(), 65536,
-                  [&](std::size_t i) { image.pixels[i] /= std::max(divisor.pixels[i], 1e-12f); });
-    return image;
-}
-
-void multiply(Image& image, const Image& factor) {
-    parallel_each(image.pixels.size(), 65536, [&](std::size_t i) { image.pixels[i] *= factor.pixels[i]; });
-}
-
-// Channel 0: what is wanted over what is seen, times what is seen; 1: what is seen.
-Image weighted_ratio(const Image& wanted, const Image& seen) {
-    Image out = make_image(seen.width, seen.height, 2);
-    parallel_each(seen.pixels.size(), 65536, [&](std::size_t i) {
-        const float here = seen.pixels[i] + sky;
-        out.pixels[2 * i] = std::clamp((wanted.pixels[i] + sky) / here, 0.25f, 4.0f) * here;
-        out.pixels[2 * i + 1] = here;
+// The ratio of what is wanted to what is seen, weighted by what is seen.
+Fraction weighted_ratio(const Image& wanted, Image seen) {
+    Fraction ratio{wanted, std::move(seen)};
+    parallel_each(ratio.seen.pixels.size(), 65536, [&](std::size_t i) {
+        float& here = ratio.seen.pixels[i];
+        here += sky;
+        float& there = ratio.wanted.pixels[i];
+        there = std::clamp((there + sky) / here, 0.25f, 4.0f) * here;
     });
-    return out;
+    return ratio;
+}
+
+glm::dvec3 light_of_cell(const Image& image, std::int64_t column, std::int64_t row) {
+    glm::dvec3 sum(0.0);
+    for (std::int64_t y = row * cell_px; y < std::min((row + 1) * cell_px, image.height); ++y)
+        for (std::int64_t x = column * cell_px; x < std::min((column + 1) * cell_px, image.width); ++x)
+            for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(image.at(x, y)[c]);
+    return sum;
 }
 
 // What is wanted over what is seen, in cells.
 Image cell_ratio(const Image& wanted, const Image& seen) {
-    Image cells = make_image((seen.width + cell_px - 1) / cell_px, (seen.height + cell_px - 1) / cell_px, 1);
+    Image cells = make_image((seen.width + cell_px - 1) / cell_px, (seen.height + cell_px - 1) / cell_px, 3);
     parallel_each(cells.height, 1, [&](std::int64_t row) {
         for (std::int64_t column = 0; column < cells.width; ++column) {
-            double wanted_sum = 0.0, seen_sum = 0.0;
-            for (std::int64_t y = row * cell_px; y < std::min((row + 1) * cell_px, seen.height); ++y) {
-                for (std::int64_t x = column * cell_px; x < std::min((column + 1) * cell_px, seen.width);
-                     ++x) {
-                    wanted_sum += static_cast<double>(*wanted.at(x, y));
-                    seen_sum += static_cast<double>(*seen.at(x, y));
-                }
-            }
-            const double ratio = seen_sum > 0.0 ? wanted_sum / seen_sum : 1.0;
-            *cells.at(column, row) = static_cast<float>(std::clamp(ratio, 0.5, 2.0));
+            const glm::dvec3 here = light_of_cell(seen, column, row),
+                             there = light_of_cell(wanted, column, row);
+            for (int c = 0; c < 3; ++c)
+                cells.at(column, row)[c] =
+                    static_cast<float>(here[c] > 0.0 ? std::clamp(there[c] / here[c], 0.5, 2.0) : 1.0);
         }
     });
     return cells;
+}
+
+// The colours of an image of three or more channels over those of `flat`.
+Image share_of(const Image& seen, const Image& flat) {
+    Image share = flat;
+    parallel_each(flat.width * flat.height, 65536, [&](std::int64_t i) {
+        for (int c = 0; c < 3; ++c)
+            share.pixels[3 * i + c] =
+                seen.pixels[seen.channels * i + c] / std::max(flat.pixels[3 * i + c], 1e-12f);
+    });
+    return share;
 }
 
 class FrontView {
   public:
     FrontView(PictureSplats& dots, const Image& picture)
         : target_(gaussian_blur(picture, filter_px)), flat_(dots, picture.width, picture.height, filter_px) {
-        settings_.width = picture.width;
-        settings_.height = picture.height;
         settings_.pixel_filter = static_cast<float>(filter_px);
         layer_.name = "front";
         layer_.splats = &dots.splats;
@@ -88,69 +94,75 @@ class FrontView {
         params.height = static_cast<double>(picture.height);
         camera_ =
             make_camera(params, static_cast<double>(picture.width), static_cast<double>(picture.height), {});
+        settings_.width = picture.width;
+        settings_.height = picture.height;
+        settings_.memory_limit_bytes =
+            std::max(least_projected_bytes, projected_bytes_a_texel * picture.width * picture.height);
     }
 
-    void render_now(const Progress& progress) {
-        frame_ = render({&layer_, 1}, camera_, nullptr, settings_, progress, &cache_);
+    /// What is seen if the light that the picture does not have is hidden.
+    Image supposed();
+    /// What is seen, from a rendering.
+    Image rendered(const Progress& progress);
+    /// What is seen if the same share of the light is hidden as then.
+    Image seen() const { return shown(flat_.sum()); }
+    /// Takes the colours a step on from what is seen.
+    void step_from(Image seen, bool overshoot) {
+        flat_.correct(weighted_ratio(target_, std::move(seen)), overshoot);
     }
-
-    /// Takes a channel so many steps on from the rendering; `settle`: with the last one the light of wide
-    /// areas is right, too, and what is seen then is returned.
-    Image go_on(int channel, int steps, bool settle);
-    /// Takes a channel from what is seen to the picture's flux, cell by cell.
-    void match_cells(int channel, const Image& seen);
-    /// Sum of the squares of what sRGB values differ from the picture's, of some rows.
-    double error(int channel, const Image& seen) const;
-    double rendered_error(int channel) const { return error(channel, channel_of(frame_.beauty, channel)); }
-    double psnr_db(double error_of_all) const;
+    /// Takes them to the picture's flux, cell by cell.
+    void match_cells(const Image& seen) {
+        flat_.multiply(cell_ratio(target_, seen), static_cast<double>(cell_px));
+    }
+    /// On sRGB values of some rows.
+    double psnr_db(const Image& seen) const;
 
   private:
+    Image shown(Image flat) const;
+
     Image target_;  // the picture as the filter shows it
     FlatLight flat_;
     RenderSettings settings_;
     RenderLayer layer_;
     Camera camera_;
-    RenderCache cache_;
-    RenderedFrame frame_;
+    Image share_;  // of the flat light that reaches the viewer, at half the picture's size
 };
 
-Image FrontView::go_on(int channel, int steps, bool settle) {
-    const Image wanted = channel_of(target_, channel);
-    Image seen = channel_of(frame_.beauty, channel);
-    const Image share = quotient(seen, flat_.sum(channel));
-    const auto seen_now = [&] {
-        Image now = flat_.sum(channel);
-        multiply(now, share);
-        return now;
-    };
-    for (int step = 0; step < steps; ++step) {
-        if (step > 0) seen = seen_now();
-        flat_.correct(channel, weighted_ratio(wanted, seen), !settle || step + 1 < steps);
-    }
-    return settle ? seen_now() : Image{};
+Image FrontView::supposed() {
+    Image flat = flat_.sum();
+    share_ = share_of(halved(target_), halved(flat));
+    parallel_each(share_.pixels.size(), 65536,
+                  [&](std::size_t i) { share_.pixels[i] = std::min(share_.pixels[i], 1.0f); });
+    share_ = gaussian_blur(share_, share_blur_px);
+    return shown(std::move(flat));
 }
 
-void FrontView::match_cells(int channel, const Image& seen) {
-    const Image cells = cell_ratio(channel_of(target_, channel), seen);
-    flat_.multiply(channel, cells, static_cast<double>(cell_px));
+Image FrontView::rendered(const Progress& progress) {
+    Image flat = flat_.sum();
+    const Image beauty = render({&layer_, 1}, camera_, nullptr, settings_, progress).beauty;
+    share_ = share_of(halved(beauty), halved(flat));
+    return shown(std::move(flat));
 }
 
-double FrontView::error(int channel, const Image& seen) const {
+Image FrontView::shown(Image flat) const {
+    const Image share = doubled(share_, flat.width, flat.height);
+    parallel_each(flat.pixels.size(), 65536, [&](std::size_t i) { flat.pixels[i] *= share.pixels[i]; });
+    return flat;
+}
+
+double FrontView::psnr_db(const Image& seen) const {
     std::vector<double> rows(static_cast<std::size_t>((target_.height + psnr_step - 1) / psnr_step), 0.0);
     parallel_each(rows.size(), 16, [&](std::size_t row) {
-        const std::int64_t y = static_cast<std::int64_t>(row) * psnr_step;
-        for (std::int64_t x = 0; x < target_.width; ++x) {
-            const double difference = static_cast<double>(display_srgb(*seen.at(x, y))) -
-                                      static_cast<double>(display_srgb(target_.at(x, y)[channel]));
+        const float* const here = seen.at(0, static_cast<std::int64_t>(row) * psnr_step);
+        const float* const there = target_.at(0, static_cast<std::int64_t>(row) * psnr_step);
+        for (std::int64_t i = 0; i < 3 * target_.width; ++i) {
+            const double difference =
+                static_cast<double>(display_srgb(here[i])) - static_cast<double>(display_srgb(there[i]));
             rows[row] += difference * difference;
         }
     });
-    return std::accumulate(rows.begin(), rows.end(), 0.0);
-}
-
-double FrontView::psnr_db(double error_of_all) const {
-    const std::int64_t rows = (target_.height + psnr_step - 1) / psnr_step;
-    const double mean = error_of_all / (3.0 * static_cast<double>(target_.width * rows));
+    const double error = std::accumulate(rows.begin(), rows.end(), 0.0);
+    const double mean = error / (3.0 * static_cast<double>(target_.width) * static_cast<double>(rows.size()));
     return -10.0 / real::log(10.0) * real::log(std::max(mean, 1e-12));
 }
 
@@ -159,25 +171,19 @@ double FrontView::psnr_db(double error_of_all) const {
 FrontFit fit_front(PictureSplats& dots, Image light, const Progress& progress) {
     FrontView view(dots, light);
     light = {};
-    const auto each_channel = [&](const auto& change) {
-        for (int channel = 0; channel < 3; ++channel) {
-            progress.check();
-            change(channel);
-        }
-    };
-    double before = 0.0, after = 0.0;
-    view.render_now(progress);
-    each_channel([&](int channel) {
-        before += view.rendered_error(channel);
-        view.go_on(channel, first_steps, false);
-    });
-    view.render_now(progress);
-    each_channel([&](int channel) {
-        const Image seen = view.go_on(channel, last_steps, true);
-        after += view.error(channel, seen);
-        view.match_cells(channel, seen);
-    });
-    return {first_steps + last_steps, view.psnr_db(before), view.psnr_db(after)};
+    Image seen = view.supposed();
+    for (int step = 0; step < first_steps; ++step) {
+        progress.check();
+        view.step_from(step == 0 ? std::move(seen) : view.seen(), true);
+    }
+    seen = view.rendered(progress);
+    for (int step = 0; step < last_steps; ++step) {
+        progress.check();
+        view.step_from(std::move(seen), step + 1 < last_steps);
+        seen = view.seen();  // after the last step the light of wide areas is right, too
+    }
+    view.match_cells(seen);
+    return {first_steps + last_steps, view.psnr_db(seen)};
 }
 
 }  // namespace astrosplat

@@ -10,9 +10,7 @@ namespace astrosplat {
 
 struct FrontFit {
     int steps = 0;
-    /// On sRGB values of every fourth row, at the picture's own resolution; the last as it is estimated from
-    /// the last rendering.
-    double first_psnr_db = 0.0, psnr_db = 0.0;
+    double psnr_db = 0.0;  // on sRGB values of every fourth row, as it is estimated from the rendering
 };
 
 /// Multiplies colours until the orthographic front view is the picture as the default pixel filter shows it;
