@@ -38,18 +38,17 @@ void bend(const Placement& placement, DepthBlock& block) {
     }
     noise_sum(noise, waves);
     for (int i = 0; i < block.count; ++i) {
-        const float height = bilinear(placement.thickness, 0, block.x[i], block.y[i]);
+        const float height = placement.scale_height(block.x[i], block.y[i]);
         block.z[i] += height * (sheet_height + waves.z[i]);
     }
 }
 
 // Channel 0: light before the sheet, 1: all light, of cells of share_cell_px, blurred.
 Image light_before(const Placement& placement, const PictureSplats& dots) {
-    const Image& field = placement.thickness;
-    Image cells = make_image((field.width + share_cell_px - 1) / share_cell_px,
-                             (field.height + share_cell_px - 1) / share_cell_px, 2);
-    const float middle_x = 0.5f * static_cast<float>(field.width),
-                middle_y = 0.5f * static_cast<float>(field.height);
+    Image cells = make_image((placement.picture_width + share_cell_px - 1) / share_cell_px,
+                             (placement.picture_height + share_cell_px - 1) / share_cell_px, 2);
+    const float middle_x = 0.5f * static_cast<float>(placement.picture_width),
+                middle_y = 0.5f * static_cast<float>(placement.picture_height);
     for (std::size_t i = 0; i < static_cast<std::size_t>(dots.splats.size()); ++i) {
         const glm::vec3 p = dots.splats.position[i], color = dots.splats.color[i];
         const float x = p.x + middle_x, y = middle_y - p.y, radius = dots.splats.radius[i];
@@ -60,7 +59,8 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
             std::clamp<std::int64_t>(static_cast<std::int64_t>(y) / share_cell_px, 0, cells.height - 1);
         float* const cell = cells.at(column, row);
         cell[1] += light;
-        if (p.z - middle_plane(placement, x, y) > sheet_height * bilinear(field, 0, x, y)) cell[0] += light;
+        if (p.z - middle_plane(placement, x, y) > sheet_height * placement.scale_height(x, y))
+            cell[0] += light;
     }
     return gaussian_blur(cells, share_blur_cells);
 }
@@ -134,7 +134,7 @@ class DustRow {
         if (block_.count == DepthBlock::size) flush(out);
         block_.x[block_.count] = x;
         block_.y[block_.count] = y;
-        block_.height[block_.count] = sheet_thickness * bilinear(placement_.thickness, 0, x, y);
+        block_.height[block_.count] = sheet_thickness * placement_.scale_height(x, y);
         block_.clumping[block_.count] = 1.0f;
         block_.random[block_.count++] = random;
     }
@@ -151,11 +151,13 @@ class DustRow {
 Image transmittance_of(const Image& brightest, const Image& emission, const Image& alpha) {
     Image ratio = brightest;
     const Image whole = brightest_channel(emission);
-    for (std::size_t i = 0; i < ratio.pixels.size(); ++i)
+    parallel_each(ratio.pixels.size(), 65536, [&](std::size_t i) {
         ratio.pixels[i] = std::clamp((ratio.pixels[i] + dark_sky) / (whole.pixels[i] + dark_sky),
                                      least_transmittance, 1.0f);
-    for (std::size_t i = 0; i < alpha.pixels.size(); ++i)
+    });
+    parallel_each(alpha.pixels.size(), 65536, [&](std::size_t i) {
         ratio.pixels[i] = 1.0f - (1.0f - ratio.pixels[i]) * alpha.pixels[i];
+    });
     return ratio;
 }
 

@@ -12,6 +12,8 @@
 namespace astrosplat {
 namespace {
 
+constexpr double finest_blur_steps = 10.0;  // of a field's pixels, that its blur is wide at least
+
 // Lengths of the published measurements, in px of a picture 1920 wide.
 double scaled(double length, const Image& image) {
     return length * static_cast<double>(image.width) / 1920.0;
@@ -56,40 +58,53 @@ void limit_slope(Image& image, double steepest) {
     }
 }
 
-// Of a smooth field, for which every fourth pixel of every fourth row will do.
 double field_percentile(const Image& field, double share) {
-    std::vector<double> values;
-    for (std::int64_t y = 0; y < field.height; y += 4)
-        for (std::int64_t x = 0; x < field.width; x += 4)
-            values.push_back(static_cast<double>(*field.at(x, y)));
-    return percentile(std::move(values), share);
+    return percentile({field.pixels.begin(), field.pixels.end()}, share);
+}
+
+Image halved_often(Image image, int times) {
+    for (int i = 0; i < times; ++i) image = halved(image);
+    return image;
 }
 
 }  // namespace
 
+int field_halvings(const Image& brightest) {
+    int halvings = 0;
+    while (scaled(40.0, brightest) >= finest_blur_steps * static_cast<double>(2 << halvings)) ++halvings;
+    return halvings;
+}
+
 Image thickness_field(const Image& brightest, double height) {
-    Image field = gaussian_blur(brightest, scaled(40.0, brightest));
+    const int halvings = field_halvings(brightest);
+    const double step = static_cast<double>(1 << halvings);
+    Image field = gaussian_blur(halved_often(brightest, halvings), scaled(40.0, brightest) / step);
     const double bright = std::max(1e-12, field_percentile(field, 0.995));
     change_each(field, [&](double v) {
         return height * std::min(0.55 + 1.65 * real::pow(std::max(0.0, v / bright), 2.5), 2.2);
     });
-    limit_slope(field, 0.3);
+    limit_slope(field, 0.3 * step);
     return field;
 }
 
 Image relief_field(const Image& brightest, double depth, double steepest) {
-    Image field = gaussian_blur(brightest, scaled(60.0, brightest));
+    const int halvings = field_halvings(brightest);
+    const double step = static_cast<double>(1 << halvings);
+    const auto blurred = [&](const Image& image, double length) {
+        return gaussian_blur(image, scaled(length, brightest) / step);
+    };
+    Image field = blurred(halved_often(brightest, halvings), 60.0);
     const double lo = field_percentile(field, 0.25);
     const double span = std::max(1e-12, field_percentile(field, 0.96) - lo);
     change_each(field, [&](double v) { return std::clamp((v - lo) / span, 0.0, 1.0); });
-    field = gaussian_blur(field, scaled(30.0, field));
+    field = blurred(field, 30.0);
     change_each(field, [](double v) { return std::sqrt(std::max(0.0, v)); });
-    field = gaussian_blur(field, scaled(45.0, field));
+    field = blurred(field, 45.0);
     const float highest = *std::max_element(field.pixels.begin(), field.pixels.end());
     if (highest <= 0.0f) return field;
     change_each(field, [&](double v) { return v / static_cast<double>(highest) * depth; });
-    limit_slope(field, steepest);
-    return gaussian_blur(field, scaled(10.0, field));  // takes the chamfer's edges off
+    limit_slope(field, steepest * step);
+    return blurred(field, 10.0);  // takes the chamfer's edges off
 }
 
 }  // namespace astrosplat

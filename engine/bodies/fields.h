@@ -1,10 +1,14 @@
 // How thick a layer is and where its middle lies, as smooth fields over a picture (DEPTH 4). In: the
-// picture's light without its stars. Out: one-channel images of the picture's size, in texels.
+// picture's light without its stars. Out: one-channel images, in texels, halved as often as their smoothness
+// allows.
 #pragma once
 
 #include "core/image.h"
 
 namespace astrosplat {
+
+/// How often the fields of a picture are halved: twice at a width of 1920, more for larger ones.
+int field_halvings(const Image& brightest);
 
 /// The scale height at every pixel of a layer whose typical one is `height`: .55 to 2.2 times it, more where
 /// the picture is bright over a wide area: H min(.55 + 1.65 (G_40 * m / its 99.5 %)^2.5, 2.2), rising by at

@@ -197,9 +197,8 @@ void add_stars(const std::vector<Star>& stars, const Placement& placement, const
                PictureSplats& out) {
     const std::int64_t begin = out.splats.size();
     resize(out, begin + static_cast<std::int64_t>(stars.size()));
-    const Image& field = placement.thickness;
-    const float middle_x = 0.5f * static_cast<float>(field.width),
-                middle_y = 0.5f * static_cast<float>(field.height);
+    const float middle_x = 0.5f * static_cast<float>(placement.picture_width),
+                middle_y = 0.5f * static_cast<float>(placement.picture_height);
     double sigmas = 0.0;
     for (std::size_t i = 0; i < stars.size(); ++i) {
         const Star& star = stars[i];
@@ -210,7 +209,7 @@ void add_stars(const std::vector<Star>& stars, const Placement& placement, const
         const float inside = std::clamp(u, 1e-5f, 1.0f - 1e-5f);
         const float spread =
             placement.kind == StructureKind::disk
-                ? 0.5f * bilinear(field, 0, star.x, star.y) * as_log(inside / (1.0f - inside))
+                ? 0.5f * placement.scale_height(star.x, star.y) * as_log(inside / (1.0f - inside))
                 : (2.0f * u - 1.0f) * static_cast<float>(placement.depth);
         const float peak = std::max({star.peak.x, star.peak.y, star.peak.z, 1e-6f});
         const float alpha =

@@ -61,8 +61,8 @@ NoiseStack waves(const Placement& placement, std::uint32_t field,
 
 // Of a place, from the middle of the picture, in halves of its longest side.
 glm::vec2 from_middle(const Placement& placement, float x, float y) {
-    const auto w = static_cast<float>(placement.thickness.width),
-               h = static_cast<float>(placement.thickness.height);
+    const auto w = static_cast<float>(placement.picture_width),
+               h = static_cast<float>(placement.picture_height);
     return glm::vec2(x - 0.5f * w, y - 0.5f * h) * (2.0f / std::max(w, h));
 }
 
@@ -78,7 +78,7 @@ void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& b
     const float own = dots.index > 2 ? 1.2f * dots.sigma * dots.sigma : 0.0f;
     const float typical = static_cast<float>(placement.height);
     for (int i = 0; i < block.count; ++i) {
-        const float height = bilinear(placement.thickness, 0, block.x[i], block.y[i]);
+        const float height = placement.scale_height(block.x[i], block.y[i]);
         const float disk = typical * flare_at(placement, block.x[i], block.y[i]);
         const float h = height * share, flat = std::min(1.0f, disk / height);
         block.clumping[i] = flat * flat * flat * flat;  // a bulge is smooth
@@ -102,26 +102,26 @@ void add_walls(const Placement& placement, bool glow, PlacedBlock& block) {
         const float front = 1.0f / (1.0f + shared::as_exp(-8.0f * side.z[i]));
         const std::uint32_t random = as_mix(block.random[i] ^ 0x5bd1e995u);
         const float share = glow ? std::sqrt(as_uniform(as_mix(random))) : 1.0f;
-        const float out = share * bilinear(placement.relief, 0, block.x[i], block.y[i]);
+        const float out = share * placement.relief_at(block.x[i], block.y[i]);
         const bool in_front = as_uniform(random) < (glow ? 0.5f : front);
         block.z[i] += (in_front ? out : -out) + bend.z[i];
     }
 }
 
-float relief_at(const Placement& placement, float x, float y) {
-    return 2.0f * bilinear(placement.relief, 0, x, y) - static_cast<float>(placement.depth);
+float sheet_at(const Placement& placement, float x, float y) {
+    return 2.0f * placement.relief_at(x, y) - static_cast<float>(placement.depth);
 }
 
 // Under a round knot it is level, but not under a piece of a filament, which would become a flight of steps.
 void add_relief(const Placement& placement, PlacedBlock& block) {
     if (placement.relief.pixels.empty()) return;
     for (int i = 0; i < block.count; ++i) {
-        const float own = relief_at(placement, block.x[i], block.y[i]);
+        const float own = sheet_at(placement, block.x[i], block.y[i]);
         if (block.knot[i] < 0) {
             block.z[i] += own;
         } else {
             const Knot& knot = placement.knots.knots[static_cast<std::size_t>(block.knot[i])];
-            block.z[i] += own + knot.roundness * (relief_at(placement, knot.x, knot.y) - own);
+            block.z[i] += own + knot.roundness * (sheet_at(placement, knot.x, knot.y) - own);
         }
     }
 }
@@ -165,9 +165,9 @@ void set_knot_depths(Placement& placement) {
 
 void follow_knots(const Placement& placement, PlacedBlock& block) {
     for (int i = 0; i < block.count; ++i) {
-        const auto x = std::min(static_cast<std::int64_t>(block.x[i]), placement.thickness.width - 1);
-        const auto y = std::min(static_cast<std::int64_t>(block.y[i]), placement.thickness.height - 1);
-        const auto at = static_cast<std::size_t>(y * placement.thickness.width + x);
+        const auto x = std::min(static_cast<std::int64_t>(block.x[i]), placement.picture_width - 1);
+        const auto y = std::min(static_cast<std::int64_t>(block.y[i]), placement.picture_height - 1);
+        const auto at = static_cast<std::size_t>(y * placement.picture_width + x);
         const std::int32_t owner = placement.knots.owner[at];
         const std::uint32_t random = as_mix(block.random[i] ^ 0x2c1b3c6du);
         if (owner < 0 || as_uniform(random) >= placement.knots.weight[at]) continue;
@@ -185,6 +185,9 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
     const double longest = static_cast<double>(std::max(brightest.width, brightest.height));
     Placement placement;
     placement.kind = params.kind;
+    placement.picture_width = brightest.width;
+    placement.picture_height = brightest.height;
+    placement.field_halvings = field_halvings(brightest);
     placement.scale = static_cast<double>(brightest.width) / 1920.0;
     placement.height =
         params.height > 0.0
@@ -198,10 +201,12 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
         placement.warp = params.warp * static_cast<double>(brightest.width);
         placement.flare = params.flare;
         Image& field = placement.thickness;
+        const auto middle = [&](std::int64_t i) {
+            return (static_cast<float>(i) + 0.5f) * static_cast<float>(1 << placement.field_halvings);
+        };
         parallel_for(field.height, [&](std::int64_t y, int) {
             for (std::int64_t x = 0; x < field.width; ++x)
-                *field.at(x, y) *=
-                    flare_at(placement, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+                *field.at(x, y) *= flare_at(placement, middle(x), middle(y));
         });
     }
     if (params.kind == StructureKind::walls) placement.relief = relief_field(brightest, placement.depth, 0.7);
@@ -212,8 +217,18 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
     return placement;
 }
 
+float Placement::scale_height(float x, float y) const {
+    const float share = 1.0f / static_cast<float>(1 << field_halvings);
+    return bilinear(thickness, 0, x * share, y * share);
+}
+
+float Placement::relief_at(float x, float y) const {
+    const float share = 1.0f / static_cast<float>(1 << field_halvings);
+    return bilinear(relief, 0, x * share, y * share);
+}
+
 float Placement::thickness_at(float x, float y) const {
-    return bilinear(thickness, 0, x, y) / (static_cast<float>(height) * flare_at(*this, x, y));
+    return scale_height(x, y) / (static_cast<float>(height) * flare_at(*this, x, y));
 }
 
 float middle_plane(const Placement& placement, float x, float y) {

@@ -31,11 +31,16 @@ struct Placement {
     double flare = 0.0;  // of a disk: scale height at the rim over that in the middle, less 1
     double warp = 0.0;   // texels, of a disk's plane at its rim
     std::uint32_t seed = 0;
-    Image thickness;  // H(x, y), texels
-    Image relief;     // how far the middle of a sheet or a wall stands out, texels; empty: not at all
-    Knots knots;      // each at one depth
+    std::int64_t picture_width = 0, picture_height = 0;  // texels
+    int field_halvings = 0;                              // of the size of the fields:
+    Image thickness;                                     // H(x, y), texels
+    Image relief;  // how far the middle of a sheet or a wall stands out, texels; empty: not at all
+    Knots knots;   // each at one depth
     std::vector<float> knot_z;  // theirs, texels
 
+    /// Values of the fields at a place of the picture.
+    float scale_height(float x, float y) const;
+    float relief_at(float x, float y) const;
     /// H(x, y) over H and without its flare: more than 1 where a disk is a bulge.
     float thickness_at(float x, float y) const;
 };

@@ -65,6 +65,7 @@ Placement flat_placement() {
     placement.scale = 0.5;
     placement.height = 10.0;
     placement.seed = 7u;
+    placement.picture_width = placement.picture_height = size_px;
     placement.thickness = make_image(size_px, size_px, 1, 10.0f);
     return placement;
 }
