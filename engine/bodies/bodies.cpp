@@ -28,7 +28,7 @@ namespace {
 constexpr double dust_of_disks = 0.8;  // all of it makes lanes edge-on that are deeper than real ones
 constexpr int most_pictures = 255;     // ids hold 8 bits of their number
 constexpr int picture_bit = 56, instance_bit = 42;
-constexpr std::uint64_t most_instances = 63;
+constexpr int most_faces = 64;             // that show one dot: ids hold 6 bits of which
 constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a dot comes at most
 
 // A picture of a mesh's material, where a face shows it.
@@ -37,6 +37,11 @@ struct PictureOnMesh {
     std::uint32_t mesh_index = 0, material = 0;
     const Texture& texture() const { return mesh->textures[material]; }
 };
+
+glm::vec2 uv_of(const glm::vec3& texel, const Image& image) {
+    return {texel.x / static_cast<float>(image.width) + 0.5f,
+            texel.y / static_cast<float>(image.height) + 0.5f};
+}
 
 std::int64_t texels_of(const Texture& texture) { return texture.image.width * texture.image.height; }
 
@@ -89,88 +94,111 @@ PictureSplats make_dots(const PictureLight& picture, const UvSurface& surface, c
     return dots;
 }
 
-PictureSplats dots_of(const Texture& texture, const UvSurface& surface, const StructureParams& params,
+// Takes the texture's pixels.
+PictureSplats dots_of(Texture& texture, const UvSurface& surface, const StructureParams& params,
                       std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
     PictureLight picture = picture_light(texture, params.border);
+    texture.image.pixels = {};
     PictureSplats dots = make_dots(picture, surface, params, seed, layer_name, progress);
     picture.alpha = {};
     const FrontFit fit = fit_front(dots, std::move(picture.light), progress);
-    log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit, {:.1f} before",
-                           layer_name, fit.psnr_db, fit.steps, fit.first_psnr_db));
+    log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", layer_name,
+                           fit.psnr_db, fit.steps));
     return dots;
 }
 
-// Dots of a chunk on their places of the mesh, in order.
-struct PlacedDots {
-    std::vector<std::int64_t> dot;
-    std::vector<SurfacePlace> place;
-    std::vector<std::uint8_t> instance;
-};
+constexpr std::int64_t rows_per_task = 16384;
 
-std::vector<PlacedDots> on_surface(const PictureSplats& dots, const UvSurface& surface, const Image& image) {
-    constexpr std::int64_t per_chunk = 16384;
-    const std::int64_t count = dots.splats.size();
-    std::vector<PlacedDots> chunks(static_cast<std::size_t>((count + per_chunk - 1) / per_chunk));
-    parallel_chunks(count, per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        PlacedDots& chunk = chunks[static_cast<std::size_t>(begin / per_chunk)];
-        for (std::int64_t i = begin; i < end; ++i) {
-            const glm::vec3 p = dots.splats.position[static_cast<std::size_t>(i)];
-            std::uint64_t instance = 0;
-            surface.at(
-                {p.x / static_cast<float>(image.width) + 0.5f, p.y / static_cast<float>(image.height) + 0.5f},
-                [&](const SurfacePlace& place) {
-                    if (instance > most_instances) return;
-                    chunk.dot.push_back(i);
-                    chunk.place.push_back(place);
-                    chunk.instance.push_back(static_cast<std::uint8_t>(instance++));
-                });
-        }
+// How many faces show each dot.
+Buffer<std::uint8_t> faces_of(const PictureSplats& dots, const UvSurface& surface, const Image& image) {
+    Buffer<std::uint8_t> faces(dots.splats.position.size());
+    parallel_each(faces.size(), rows_per_task, [&](std::size_t i) {
+        const int found = surface.faces_at(uv_of(dots.splats.position[i], image));
+        faces[i] = static_cast<std::uint8_t>(std::min(found, most_faces));
     });
-    return chunks;
+    return faces;
 }
 
-void resize(SplatSet& set, std::int64_t count) {
-    for_each_column([&]<class T>(Buffer<T> SplatSet::*column, SplatColumn) {
-        (set.*column).resize(static_cast<std::size_t>(count));
+// Every value as often as `first` has rows for it.
+template <class T>
+void repeat(Buffer<T>& values, const Buffer<std::int64_t>& first) {
+    Buffer<T> rows(static_cast<std::size_t>(first.back()));
+    parallel_each(values.size(), rows_per_task, [&](std::size_t i) {
+        std::fill(rows.begin() + first[i], rows.begin() + first[i + 1], values[i]);
+    });
+    values = std::move(rows);
+}
+
+// One row for every face that shows a dot; the id says which of them.
+void repeat_by_faces(const Buffer<std::uint8_t>& faces, PictureSplats& dots) {
+    if (std::ranges::all_of(faces, [](std::uint8_t n) { return n == 1; })) return;
+    Buffer<std::int64_t> first(faces.size() + 1);
+    first[0] = 0;
+    for (std::size_t i = 0; i < faces.size(); ++i) first[i + 1] = first[i] + faces[i];
+    for_each_array(dots.splats, [&](auto& values) { repeat(values, first); });
+    repeat(dots.distance, first);
+    parallel_each(faces.size(), rows_per_task, [&](std::size_t i) {
+        for (std::int64_t n = 0; n < faces[i]; ++n)
+            dots.splats.id[static_cast<std::size_t>(first[i] + n)] |= static_cast<std::uint64_t>(n)
+                                                                      << instance_bit;
     });
 }
 
-void write_dot(const PictureSplats& dots, const PlacedDots& chunk, std::size_t i,
-               const PictureOnMesh& picture, std::uint64_t number, std::size_t at, SplatSet& set) {
-    const auto dot = static_cast<std::size_t>(chunk.dot[i]);
-    const SurfacePlace& place = chunk.place[i];
-    const Image& image = picture.texture().image;
-    const glm::vec3 p = dots.splats.position[dot];
+SurfacePlace place_of_row(const UvSurface& surface, glm::vec2 uv, std::uint64_t id) {
+    std::uint64_t face = id >> instance_bit & (most_faces - 1);
+    SurfacePlace found;
+    surface.at(uv, [&](const SurfacePlace& place) {
+        if (face-- == 0) found = place;
+    });
+    return found;
+}
+
+// Brings a row whose place and sizes are in texels to its place on the mesh.
+void put_on_surface(const UvSurface& surface, const PictureOnMesh& picture, std::uint64_t number,
+                    std::size_t row, SplatSet& set) {
+    const glm::vec3 p = set.position[row];
+    const glm::vec2 uv = uv_of(p, picture.texture().image);
+    const SurfacePlace place = place_of_row(surface, uv, set.id[row]);
     const float z = place.approach > 0.0f ? std::min(p.z, nearest_approach / place.approach) : p.z;
     const float scale = place.units_per_texel * (1.0f - place.approach * z);  // nearer dots are smaller
-    set.position[at] = place.position + place.rise * (z * place.units_per_texel);
-    set.color[at] = dots.splats.color[dot];
-    set.alpha[at] = dots.splats.alpha[dot];
-    set.distance[at] = dots.distance[dot] * scale;
-    set.id[at] = number << picture_bit | static_cast<std::uint64_t>(chunk.instance[i]) << instance_bit |
-                 dots.splats.id[dot];
-    set.uv[at] = {p.x / static_cast<float>(image.width) + 0.5f,
-                  p.y / static_cast<float>(image.height) + 0.5f};
-    set.normal[at] = place.normal;
-    set.mesh[at] = picture.mesh_index;
-    set.radius[at] = dots.splats.radius[dot] * scale;
+    set.position[row] = place.position + place.rise * (z * place.units_per_texel);
+    set.distance[row] *= scale;
+    set.radius[row] *= scale;
+    set.id[row] |= number << picture_bit;
+    set.uv[row] = uv;
+    set.normal[row] = place.normal;
+    set.mesh[row] = picture.mesh_index;
 }
 
-// Puts the dots onto the mesh and behind those that are there.
-void append(const PictureSplats& dots, const UvSurface& surface, const PictureOnMesh& picture,
-            std::uint64_t number, SplatSet& set) {
-    const std::vector<PlacedDots> chunks = on_surface(dots, surface, picture.texture().image);
-    std::vector<std::int64_t> first{set.size()};
-    for (const PlacedDots& chunk : chunks)
-        first.push_back(first.back() + static_cast<std::int64_t>(chunk.dot.size()));
-    resize(set, first.back());
-    parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int) {
-        const PlacedDots& chunk = chunks[static_cast<std::size_t>(c)];
-        for (std::size_t i = 0; i < chunk.dot.size(); ++i)
-            write_dot(dots, chunk, i, picture, number,
-                      static_cast<std::size_t>(first[static_cast<std::size_t>(c)]) + i, set);
+// The dots on the mesh, in the memory that they have.
+SplatSet on_mesh(PictureSplats dots, const UvSurface& surface, const PictureOnMesh& picture,
+                 std::uint64_t number) {
+    repeat_by_faces(faces_of(dots, surface, picture.texture().image), dots);
+    SplatSet set;
+    set.position = std::move(dots.splats.position);
+    set.color = std::move(dots.splats.color);
+    set.alpha = std::move(dots.splats.alpha);
+    set.radius = std::move(dots.splats.radius);
+    set.id = std::move(dots.splats.id);
+    set.distance = std::move(dots.distance);
+    set.uv.resize(set.position.size());
+    set.normal.resize(set.position.size());
+    set.mesh.resize(set.position.size());
+    parallel_each(set.position.size(), rows_per_task,
+                  [&](std::size_t row) { put_on_surface(surface, picture, number, row, set); });
+    return set;
+}
+
+// Puts rows behind those that are there.
+void append(SplatSet rows, SplatSet& set) {
+    for_each_column([&]<class T>(Buffer<T> SplatSet::*column, SplatColumn) {
+        Buffer<T>& all = set.*column;
+        if (all.empty())
+            all = std::move(rows.*column);
+        else
+            all.insert(all.end(), (rows.*column).begin(), (rows.*column).end());
+        rows.*column = Buffer<T>();
     });
-    set.test_positions += dots.splats.size();
 }
 
 }  // namespace
@@ -211,21 +239,22 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const BodiesLimit& limit
     }
 }
 
-SplatSet make_bodies(std::span<const TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
+SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
                      const std::string& layer_name, const Progress& progress) {
     claim_memory(bodies_memory_bytes(meshes), fmt::format("making bodies for layer '{}'", layer_name));
     SplatSet set;
     const std::vector<PictureOnMesh> pictures = pictures_of(meshes);
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         const PictureOnMesh& picture = pictures[i];
-        const Texture& texture = picture.texture();
+        Texture& texture = meshes[picture.mesh_index].textures[picture.material];
         const UvSurface surface(picture.mesh->mesh, picture.material, texture.image.width,
                                 texture.image.height, texture.wrap == TextureSettings::Wrap::repeat,
                                 picture.mesh->camera ? &*picture.mesh->camera : nullptr);
-        const PictureSplats dots =
+        PictureSplats dots =
             dots_of(texture, surface, params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
-        append(dots, surface, picture, i, set);
+        set.test_positions += dots.splats.size();
         set.absorbs = set.absorbs || dots.absorbs;
+        append(on_mesh(std::move(dots), surface, picture, i), set);
         if (set.credit.empty()) set.credit = texture.credit;
         progress.at(static_cast<double>(i + 1) / static_cast<double>(pictures.size()));
     }

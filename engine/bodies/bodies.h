@@ -32,10 +32,10 @@ struct BodiesLimit {
 void reduce_pictures(std::vector<TexturedMesh>& meshes, const BodiesLimit& limit,
                      const std::string& layer_name);
 
-/// Every picture of every mesh by itself. `params.kind` is not columns. Announces its memory before taking it
-/// and says at detail level what was found. The same bits with any number of threads. Throws InputError,
-/// Cancelled.
-SplatSet make_bodies(std::span<const TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
+/// Every picture of every mesh by itself; its pixels are given back once they are read. `params.kind` is not
+/// columns. Announces its memory before taking it and says at detail level what was found. The same bits with
+/// any number of threads. Throws InputError, Cancelled.
+SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
                      const std::string& layer_name, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -140,11 +140,11 @@ void UvSurface::fill_grid() {
         for_each_cell(faces_[i], [&](std::size_t cell) { cell_faces_[next[cell]++] = i; });
 }
 
-void UvSurface::at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>& visit) const {
+template <class Visit>
+void UvSurface::for_each_face_at(glm::vec2 uv, Visit visit) const {
     const glm::dvec2 p(uv);
     const auto cell = [&](double v) { return static_cast<int>(std::clamp(v * cells_, 0.0, cells_ - 1.0)); };
     const auto here = static_cast<std::size_t>(cell(p.y) * cells_ + cell(p.x));
-    std::optional<SurfacePlace> nearest;
     for (std::uint32_t i = first_face_[here]; i < first_face_[here + 1]; ++i) {
         const Face& face = faces_[cell_faces_[i]];
         const glm::dvec2 &a = face.uv[0], &b = face.uv[1], &c = face.uv[2];
@@ -153,25 +153,38 @@ void UvSurface::at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>&
         const double of_a = edge_area(b, c, p), of_b = edge_area(c, a, p), of_c = edge_area(a, b, p);
         if (!inside(of_a, whole, b, c) || !inside(of_b, whole, c, a) || !inside(of_c, whole, a, b)) continue;
         const double sum = of_a + of_b + of_c;
-        const double weights[3] = {of_a / sum, of_b / sum, of_c / sum};
+        visit(face, {of_a / sum, of_b / sum, of_c / sum});
+    }
+}
+
+int UvSurface::faces_at(glm::vec2 uv) const {
+    int faces = 0;
+    for_each_face_at(uv, [&](const Face&, const glm::dvec3&) { ++faces; });
+    return camera_ ? std::min(faces, 1) : faces;
+}
+
+void UvSurface::at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>& visit) const {
+    std::optional<SurfacePlace> nearest;
+    for_each_face_at(uv, [&](const Face& face, const glm::dvec3& weights) {
         if (!camera_) {
             visit(place_on(face, weights));
-            continue;
+            return;
         }
         const SurfacePlace place = seen_on(face, weights);
         if (!nearest || place.depth < nearest->depth) nearest = place;
-    }
+    });
     if (nearest) visit(*nearest);
 }
 
-SurfacePlace UvSurface::place_on(const Face& face, const double (&weights)[3]) const {
+SurfacePlace UvSurface::place_on(const Face& face, const glm::dvec3& weights) const {
     glm::dvec3 position(0.0), normal(0.0);
     double scale = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t vertex = mesh_.triangles[face.triangle].position[k];
-        position += weights[k] * glm::dvec3(mesh_.positions[vertex]);
-        normal += weights[k] * glm::dvec3(normals_[vertex]);
-        scale += weights[k] * static_cast<double>(units_per_texel_[vertex]);
+        const double weight = weights[static_cast<int>(k)];
+        position += weight * glm::dvec3(mesh_.positions[vertex]);
+        normal += weight * glm::dvec3(normals_[vertex]);
+        scale += weight * static_cast<double>(units_per_texel_[vertex]);
     }
     const double length = glm::length(normal);
     SurfacePlace place;
@@ -183,17 +196,16 @@ SurfacePlace UvSurface::place_on(const Face& face, const double (&weights)[3]) c
 }
 
 // What is in the middle of two corners in the picture is nearer to the nearer one of them on the face.
-SurfacePlace UvSurface::seen_on(const Face& face, const double (&weights)[3]) const {
+SurfacePlace UvSurface::seen_on(const Face& face, const glm::dvec3& weights) const {
     const bool parallel = camera_->projection == Projection::orthographic;
     const glm::dvec3& back = camera_->world_from_camera[2];
-    double on_face[3], sum = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const glm::dvec3 corner(mesh_.positions[mesh_.triangles[face.triangle].position[k]]);
+    glm::dvec3 on_face;
+    for (int k = 0; k < 3; ++k) {
+        const auto vertex = mesh_.triangles[face.triangle].position[static_cast<std::size_t>(k)];
+        const glm::dvec3 corner(mesh_.positions[vertex]);
         on_face[k] = parallel ? weights[k] : weights[k] / glm::dot(back, camera_->eye - corner);
-        sum += on_face[k];
     }
-    for (double& weight : on_face) weight /= sum;
-    SurfacePlace place = place_on(face, on_face);
+    SurfacePlace place = place_on(face, on_face / (on_face[0] + on_face[1] + on_face[2]));
     const glm::dvec3 to_eye = camera_->eye - glm::dvec3(place.position);
     const double depth = glm::dot(back, to_eye),
                  units_per_texel = picture_height_at(*camera_, depth) / height_;

@@ -36,6 +36,9 @@ class UvSurface {
     /// to it, so that it sees its picture once. An edge belongs to one of its two faces.
     void at(glm::vec2 uv, const std::function<void(const SurfacePlace&)>& visit) const;
 
+    /// How many faces at() visits.
+    int faces_at(glm::vec2 uv) const;
+
     /// Texels over scene units, by the areas of all faces; 0 for a mesh without area.
     double texels_per_unit() const { return texels_per_unit_; }
     /// Whether all faces lie in one plane, up to a thousandth of the mesh's extent.
@@ -52,8 +55,12 @@ class UvSurface {
     template <class Visit>
     void for_each_cell(const Face& face, Visit visit) const;
 
-    SurfacePlace place_on(const Face& face, const double (&weights)[3]) const;
-    SurfacePlace seen_on(const Face& face, const double (&weights)[3]) const;
+    /// visit(face, the place's weights of its corners)
+    template <class Visit>
+    void for_each_face_at(glm::vec2 uv, Visit visit) const;
+
+    SurfacePlace place_on(const Face& face, const glm::dvec3& weights) const;
+    SurfacePlace seen_on(const Face& face, const glm::dvec3& weights) const;
 
     const Mesh& mesh_;
     const Camera* camera_;

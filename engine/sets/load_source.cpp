@@ -43,7 +43,7 @@ SplatSet generate_source(const SourceParams& source, const std::string& layer_na
         reduce_pictures(meshes, {available_memory_bytes() / 10 * 9, source.splats}, layer_name);
         StructureParams structure = source.structure;
         structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
-        return make_bodies(meshes, structure, seed, layer_name, progress);
+        return make_bodies(std::move(meshes), structure, seed, layer_name, progress);
     }
     const double max_distance = resolved_max_distance(source, bounds(meshes));
     const Lattice lattice = make_lattice(source, meshes, max_distance);

@@ -24,7 +24,7 @@ TexturedMesh painted_galaxy(std::int64_t width, std::int64_t height) {
 
 void bodies(benchmark::State& state) {
     const std::int64_t width = state.range(0), height = width * 5 / 8;
-    const TexturedMesh meshes[] = {painted_galaxy(width, height)};
+    const std::vector<TexturedMesh> meshes{painted_galaxy(width, height)};
     StructureParams params;
     params.kind = StructureKind::disk;
     release_spare_pages();

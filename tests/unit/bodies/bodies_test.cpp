@@ -186,14 +186,14 @@ TEST(UvSurface, ACameraSeesTheNearestFace) {
 // What the camera sees of the set is what the fit saw: every dot where it is in the picture, and as large.
 TEST(Bodies, KeepTheirPlaceInThePictureOfTheirCamera) {
     TexturedMesh front = on_plane(painted::nebula(160, 100));
-    const SplatSet plain = make_bodies({&front, 1}, of_kind(StructureKind::sheet), 3u, "gas");
+    const SplatSet plain = make_bodies({front}, of_kind(StructureKind::sheet), 3u, "gas");
     UvCamera params;
     params.position = glm::dvec3(0.0, 8.0, 0.0);
     params.up = glm::dvec3(0.0, 0.0, -1.0);
     params.fov = 2.0 * real::degrees(real::atan2(3.125, 8.0));
     front.camera = picture_camera(params, 1.6);
     apply_camera_uv(front.mesh, *front.camera);
-    const SplatSet seen = make_bodies({&front, 1}, of_kind(StructureKind::sheet), 3u, "gas");
+    const SplatSet seen = make_bodies({front}, of_kind(StructureKind::sheet), 3u, "gas");
     ASSERT_GT(seen.size(), plain.size() * 99 / 100);  // uv that is rounded loses some at the edges
     std::size_t k = 0;
     for (std::size_t i = 0; i < seen.id.size(); ++i) {
@@ -260,9 +260,7 @@ TEST(FrontFit, GivesAnEvenPictureItsColour) {
     const Placement placement =
         make_placement(brightest_channel(light), of_kind(StructureKind::disk), 10.0, true, 1u);
     PictureSplats dots = unfitted_dots(light, placement);
-    const FrontFit fit = fit_front(dots, light);
-    EXPECT_GT(fit.psnr_db, fit.first_psnr_db);
-    EXPECT_GT(fit.psnr_db, 30.0);
+    EXPECT_GT(fit_front(dots, light).psnr_db, 30.0);
 }
 
 Image view_along_z(const PictureSplats& dots, const Image& light, double from) {
@@ -356,7 +354,7 @@ Image painted_for(StructureKind kind, std::int64_t width, std::int64_t height) {
 
 TEST_P(EveryStructure, MakesAWholeSet) {
     const TexturedMesh mesh = on_plane(painted_for(GetParam(), 320, 200));
-    const SplatSet set = make_bodies({&mesh, 1}, of_kind(GetParam()), 3u, "gas");
+    const SplatSet set = make_bodies({mesh}, of_kind(GetParam()), 3u, "gas");
     check_consistent(set);
     ASSERT_GT(set.size(), 30000);
     EXPECT_EQ(set.spacing, glm::dvec3(0.0));
@@ -383,9 +381,9 @@ TEST_P(EveryStructure, MakesAWholeSet) {
 
 TEST_P(EveryStructure, IsTheSameOnOneThread) {
     const TexturedMesh mesh = on_plane(painted_for(GetParam(), 160, 100));
-    const SplatSet several = make_bodies({&mesh, 1}, of_kind(GetParam()), 3u, "gas");
+    const SplatSet several = make_bodies({mesh}, of_kind(GetParam()), 3u, "gas");
     set_thread_count(1);
-    const SplatSet one = make_bodies({&mesh, 1}, of_kind(GetParam()), 3u, "gas");
+    const SplatSet one = make_bodies({mesh}, of_kind(GetParam()), 3u, "gas");
     set_thread_count(0);
     ASSERT_EQ(one.size(), several.size());
     for (std::size_t i = 0; i < one.id.size(); ++i) {
@@ -399,11 +397,11 @@ TEST_P(EveryStructure, IsTheSameOnOneThread) {
 TEST(Bodies, EveryKeyCounts) {
     const TexturedMesh mesh = on_plane(painted::nebula(160, 100));
     const auto positions = [&](const StructureParams& params) {
-        const SplatSet set = make_bodies({&mesh, 1}, params, 3u, "gas");
+        const SplatSet set = make_bodies({mesh}, params, 3u, "gas");
         return std::vector<glm::vec3>(set.position.begin(), set.position.end());
     };
     const auto alphas = [&](const StructureParams& params) {
-        const SplatSet set = make_bodies({&mesh, 1}, params, 3u, "gas");
+        const SplatSet set = make_bodies({mesh}, params, 3u, "gas");
         return std::vector<float>(set.alpha.begin(), set.alpha.end());
     };
     const StructureParams usual = of_kind(StructureKind::sheet);
@@ -429,8 +427,8 @@ TEST(Bodies, AFadingBorderIsNoDust) {
         StructureParams params = of_kind(StructureKind::disk);
         params.border = border;
         params.dust = 1.0;
-        const TexturedMesh meshes[] = {on_plane(make_image(320, 200, 3, 0.3f))};
-        const SplatSet set = make_bodies(meshes, params, 1u, "even");
+        const TexturedMesh mesh = on_plane(make_image(320, 200, 3, 0.3f));
+        const SplatSet set = make_bodies({mesh}, params, 1u, "even");
         double sum = 0.0, most = 0.0;
         for (std::size_t i = 0; i < set.color.size(); ++i) {
             if (set.color[i].x >= 0.0f) continue;
@@ -467,9 +465,9 @@ TEST(Bodies, DisksWarpAndFlare) {
 TEST(Bodies, AWarpMovesDotsStarsAndDustAlike) {
     const TexturedMesh mesh = on_plane(painted::galaxy(320, 200));
     StructureParams params = of_kind(StructureKind::disk);
-    const SplatSet flat = make_bodies({&mesh, 1}, params, 3u, "gas");
+    const SplatSet flat = make_bodies({mesh}, params, 3u, "gas");
     params.warp = 0.08;
-    const SplatSet bent = make_bodies({&mesh, 1}, params, 3u, "gas");
+    const SplatSet bent = make_bodies({mesh}, params, 3u, "gas");
     const Placement plane = make_placement(make_image(320, 200, 1, 0.3f), params, 32.0, true, 1u);
     int dots[3] = {0, 0, 0}, exact[3] = {0, 0, 0};  // shining, dust, stars
     std::size_t k = 0;
@@ -499,7 +497,7 @@ TEST(Bodies, WhereThePictureIsTransparentThereIsNothing) {
     Image& image = mesh.textures[0].image;
     for (std::int64_t y = 0; y < 100; ++y)
         for (std::int64_t x = 0; x < 80; ++x) std::fill_n(image.at(x, y), 4, 0.0f);
-    const SplatSet set = make_bodies({&mesh, 1}, of_kind(StructureKind::sheet), 3u, "gas");
+    const SplatSet set = make_bodies({mesh}, of_kind(StructureKind::sheet), 3u, "gas");
     ASSERT_GT(set.size(), 1000);
     for (const glm::vec3& p : set.position) ASSERT_GT(p.x, -0.1f);
 }
