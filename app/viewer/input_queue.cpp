@@ -18,6 +18,22 @@ bool has(const std::vector<InputEvent>& frame, std::initializer_list<Kind> kinds
 
 bool is_typed(Kind kind) { return kind == Kind::key_down || kind == Kind::character; }
 
+/// A key that a text field takes no notice of, for it has the character.
+bool writes(const InputEvent& event) {
+    constexpr int shift = 1;
+    return (event.kind == Kind::key_down || event.kind == Kind::key_up) && event.modifiers <= shift &&
+           event.code >= ' ' && event.code <= '~';
+}
+
+/// A frame can take another character, or the key it is of, into a text: only Left, Enter and the like change
+/// where it would go.
+bool fits_in_text(const std::vector<InputEvent>& frame) {
+    return std::ranges::none_of(frame, [](const InputEvent& event) {
+        return event.kind == Kind::press || event.kind == Kind::release ||
+               (event.kind == Kind::key_down && !writes(event));
+    });
+}
+
 /// A frame that has taken `frame` can take `next` too.
 bool fits(const std::vector<InputEvent>& frame, const InputEvent& next) {
     if (has(frame, {Kind::press, Kind::release})) return false;
@@ -41,10 +57,14 @@ bool fits(const std::vector<InputEvent>& frame, const InputEvent& next) {
 
 }  // namespace
 
-std::vector<InputEvent> InputQueue::take(bool may_type) {
+std::vector<InputEvent> InputQueue::take(Typing typing) {
+    const auto can_take = [&](const std::vector<InputEvent>& frame, const InputEvent& next) {
+        if (typing == Typing::later && is_typed(next.kind)) return false;
+        const bool text = typing == Typing::text && (next.kind == Kind::character || writes(next));
+        return text ? fits_in_text(frame) : fits(frame, next);
+    };
     std::vector<InputEvent> frame;
-    while (!events_.empty() && (may_type || !is_typed(events_.front().kind)) &&
-           fits(frame, events_.front())) {
+    while (!events_.empty() && can_take(frame, events_.front())) {
         frame.push_back(events_.front());
         events_.pop_front();
     }

@@ -17,6 +17,9 @@ struct InputEvent {
     bool operator==(const InputEvent&) const = default;
 };
 
+/// What the widgets would do with the keyboard now: nothing yet, act, or write.
+enum class Typing { later, shortcuts, text };
+
 /// Dear ImGui looks at mouse and keyboard once a frame. Where a frame takes long, a click, a drag or a word
 /// falls between two frames: what it cannot tell apart waits for the frame after.
 class InputQueue {
@@ -25,8 +28,8 @@ class InputQueue {
     bool empty() const { return events_.empty(); }
     /// The longest beginning of what waits in which nothing hides what came before: no button or key is
     /// changed twice, a button is pressed and let go where the mouse was last seen, and no key or character
-    /// comes before another that was meant to be first. `may_type`: keys are not kept for later.
-    std::vector<InputEvent> take(bool may_type = true);
+    /// comes before another that was meant to be first. In a text all characters may come at once.
+    std::vector<InputEvent> take(Typing typing = Typing::shortcuts);
 
   private:
     std::deque<InputEvent> events_;

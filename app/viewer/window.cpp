@@ -229,9 +229,10 @@ void Window::feed_frame(bool opening) {
     constexpr int longest_opening = 4;  // frames until the keyboard's focus has come to a new widget
     frames_opening_ = opening ? frames_opening_ + 1 : 0;
     const bool may_type = frames_opening_ == 0 || frames_opening_ > longest_opening;
-    const std::vector<InputEvent> events = input_.take(may_type);
-    for (const InputEvent& event : events) feed(event);
     ImGuiIO& io = ImGui::GetIO();
+    const Typing typing = !may_type ? Typing::later : io.WantTextInput ? Typing::text : Typing::shortcuts;
+    const std::vector<InputEvent> events = input_.take(typing);
+    for (const InputEvent& event : events) feed(event);
     std::copy(std::begin(button_down_), std::end(button_down_), io.MouseDown);
     if (mouse_known_ && ImGui::IsMousePosValid(&io.MousePos))
         io.MousePos = {static_cast<float>(mouse_x_), static_cast<float>(mouse_y_)};

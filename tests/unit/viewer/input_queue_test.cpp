@@ -11,11 +11,12 @@ using Kind = InputEvent::Kind;
 InputEvent at(Kind kind, double x) { return {kind, 0, 0, x, 0.0, 0.0}; }
 InputEvent of(Kind kind, int code) { return {kind, code, 0, 0.0, 0.0, 0.0}; }
 
-std::vector<std::vector<InputEvent>> frames_of(const std::vector<InputEvent>& events) {
+std::vector<std::vector<InputEvent>> frames_of(const std::vector<InputEvent>& events,
+                                               Typing typing = Typing::shortcuts) {
     InputQueue queue;
     for (const InputEvent& event : events) queue.push(event);
     std::vector<std::vector<InputEvent>> frames;
-    while (!queue.empty()) frames.push_back(queue.take());
+    while (!queue.empty()) frames.push_back(queue.take(typing));
     return frames;
 }
 
@@ -64,8 +65,8 @@ TEST(InputQueue, WhatIsTypedWaitsUntilItMay) {
                      three = of(Kind::character, '3');
     InputQueue queue;
     for (const InputEvent& event : {move, key, three}) queue.push(event);
-    EXPECT_EQ(queue.take(false), std::vector<InputEvent>{move});
-    EXPECT_TRUE(queue.take(false).empty());
+    EXPECT_EQ(queue.take(Typing::later), std::vector<InputEvent>{move});
+    EXPECT_TRUE(queue.take(Typing::later).empty());
     EXPECT_EQ(queue.take(), (std::vector<InputEvent>{key, three}));
 }
 
@@ -76,6 +77,26 @@ TEST(InputQueue, KeysAndCharactersKeepTheirOrder) {
                      key_up = of(Kind::key_up, '3'), enter = of(Kind::key_down, 257);
     EXPECT_EQ(frames_of({ctrl, a, a_up, ctrl_up, key, three, key_up, enter}),
               (Frames{{ctrl}, {a}, {a_up, ctrl_up, key, three}, {key_up, enter}}));
+}
+
+/// A word typed in no time is a word, however long a frame takes; Enter is after it, Left before what
+/// follows.
+TEST(InputQueue, AWordIsOneFrameOfAText) {
+    std::vector<InputEvent> word;
+    for (const char letter : {'n', 'n', 'e'})
+        for (const InputEvent& event :
+             {of(Kind::key_down, letter - 32), of(Kind::character, letter), of(Kind::key_up, letter - 32)})
+            word.push_back(event);
+    std::vector<InputEvent> typed = word;
+    const InputEvent enter = of(Kind::key_down, 257), left = of(Kind::key_down, 263),
+                     a = of(Kind::character, 'a');
+    typed.insert(typed.end(), {enter, left, a});
+    EXPECT_EQ(frames_of(typed, Typing::text), (Frames{word, {enter}, {left}, {a}}));
+    EXPECT_GT(frames_of(word).size(), 2u) << "three shortcuts";
+    const InputEvent ctrl = of(Kind::key_down, 341), up = of(Kind::key_up, 'V');
+    InputEvent v = of(Kind::key_down, 'V');
+    v.modifiers = 2;
+    EXPECT_EQ(frames_of({a, ctrl, v, up}, Typing::text), (Frames{{a}, {ctrl}, {v}, {up}}));
 }
 
 TEST(InputQueue, AKeyBeforeAClickIsHeldInIt) {
