@@ -23,7 +23,7 @@ namespace {
 
 constexpr double filter_px = 0.5;               // of the output's pixels, as scenes have it
 constexpr float sky = 0.002f;                   // added to both sides of a ratio
-constexpr int first_steps = 2, last_steps = 6;  // before the rendering and after it
+constexpr int first_steps = 5, last_steps = 5;  // before the rendering and after it
 constexpr double share_blur_px = 2.0;           // coarse pixels, of the share that is supposed
 constexpr std::int64_t cell_px = 32;
 // Of the rendering's records; with more it takes its picture in parts.
