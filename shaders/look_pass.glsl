@@ -1,9 +1,7 @@
-// The look of one splat of the shown share, captured by transform feedback. Needs the shared look and decimate.glsl.
+// The look of one splat, captured by transform feedback. Needs the shared look.
 
 layout(std140) uniform LookBlock { LookUniforms look; };
 uniform sampler2D thickness_map;  // raw values, top row first
-uniform float share;              // of the layer that is shown
-uniform int additive;             // 1: the layer's blend adds
 
 layout(location = 0) in vec3 raw_position;
 layout(location = 1) in vec3 raw_color;
@@ -37,9 +35,7 @@ void main() {
     vec3 map_value = look.stop_count > 1 ? read_map(raw_uv) : vec3(0.0);
     LookOutput o = look_splat(look, LookInput(raw_position, raw_color, raw_alpha, raw_distance, raw_radius, map_value,
                                               raw_id.x, raw_id.y));
-    float alpha = o.keep ? decimated_alpha(o.alpha, share, additive != 0) : 0.0;
-    float radius = o.radius * decimated_radius(o.alpha, share, alpha);
-    shaded_place = vec4(o.position, o.keep ? radius : -1.0);
-    shaded_color = vec4(o.color, alpha);
+    shaded_place = vec4(o.position, o.keep ? o.radius : -1.0);
+    shaded_color = vec4(o.color, o.keep ? o.alpha : 0.0);
     gl_Position = vec4(0.0);
 }

@@ -7,15 +7,12 @@
 namespace astrosplat {
 namespace {
 
-/// None of the first `count` splats is larger, whatever its random numbers and alpha are.
-float radius_bound(const SplatSet& set, std::int64_t count, const LookUniforms& u, float share,
-                   bool additive) {
+/// No splat of the set is larger, whatever its random numbers and alpha are.
+float radius_bound(const SplatSet& set, const LookUniforms& u) {
     float radius = std::max(u.radius_min, u.radius_max);
     if (u.own_radius)
-        for (std::int64_t i = 0; i < count; ++i) radius = std::max(radius, set.radius[std::size_t(i)]);
-    radius *= std::max(1.0f, u.horizontal_scale) * std::max(1.0f, u.vertical_scale);
-    // radius'^2 = radius^2 alpha / (q alpha'), and alpha' >= alpha where alpha' is not alpha / q.
-    return additive ? radius : radius * std::sqrt(1.0f / share);
+        for (const float own : set.radius) radius = std::max(radius, own);
+    return radius * std::max(1.0f, u.horizontal_scale) * std::max(1.0f, u.vertical_scale);
 }
 
 }  // namespace
@@ -37,13 +34,13 @@ void RawSplatStore::drop_unused() {
 bool GroupSplats::lay_out(const std::vector<const PreviewLayer*>& layers) {
     bool same = parts_.size() == layers.size();
     for (std::size_t l = 0; l < layers.size() && same; ++l)
-        same = parts_[l].set == layers[l]->set && parts_[l].count == shown_count(*layers[l]);
+        same = !layers[l]->layer.splats && parts_[l].set == layers[l]->set;
     if (same) return false;
     parts_.clear();
     parts_.resize(layers.size());
     std::int64_t first = 0;
     for (std::size_t l = 0; l < layers.size(); ++l) {
-        parts_[l].set = layers[l]->set;
+        if (!layers[l]->layer.splats) parts_[l].set = layers[l]->set;
         parts_[l].first = first;
         parts_[l].count = shown_count(*layers[l]);
         first += parts_[l].count;
@@ -54,18 +51,20 @@ bool GroupSplats::lay_out(const std::vector<const PreviewLayer*>& layers) {
     return true;
 }
 
+void GroupSplats::upload(Part& part, const ShadedSplats& splats) {
+    part.largest_radius = *std::max_element(splats.radius.begin(), splats.radius.end());
+    buffers_.upload(splats, part.first);
+}
+
 bool GroupSplats::shade(Part& part, const PreviewLayer& layer, RawSplatStore& raw, LookPass& pass) {
     RawSplats& splats = raw.of(layer.set);
     Shading now = shading_of(layer);
     if (part.shading == now) return false;
     part.uniforms = prepare_look(*layer.set, layer.look, layer.inputs);
     part.shading = std::move(now);
-    const bool additive = part.shading->additive;
-    part.share = float(double(part.count) / double(std::max<std::int64_t>(whole_count(layer), 1)));
-    part.largest_radius = radius_bound(*layer.set, part.count, part.uniforms, part.share, additive);
-    splats.hold(part.count);
-    pass.run(splats, {part.uniforms, layer.inputs.thickness_map, part.count, part.share, additive}, buffers_,
-             part.first);
+    part.largest_radius = radius_bound(*layer.set, part.uniforms);
+    splats.hold();
+    pass.run(splats, {part.uniforms, layer.inputs.thickness_map}, buffers_, part.first);
     return true;
 }
 
@@ -77,8 +76,13 @@ void GroupSplats::read_places() {
 void GroupSplats::update(const std::vector<const PreviewLayer*>& layers, RawSplatStore& raw, LookPass& pass,
                          bool ordered) {
     bool changed = lay_out(layers);
-    for (std::size_t l = 0; l < layers.size(); ++l)
-        if (parts_[l].count > 0) changed = shade(parts_[l], *layers[l], raw, pass) || changed;
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+        if (parts_[l].count == 0) continue;
+        if (layers[l]->layer.splats)
+            upload(parts_[l], *layers[l]->layer.splats);
+        else
+            changed = shade(parts_[l], *layers[l], raw, pass) || changed;
+    }
     if (changed) places_.reset();
     if (ordered && !places_) read_places();
 }

@@ -1,5 +1,5 @@
-// The shaded splats of one blend group on the GPU, kept up to date: a look is evaluated again only where
-// look, inputs or share changed, and the order only where places or camera did.
+// The shaded splats of one blend group on the GPU, kept up to date: a look is evaluated again only where look
+// or inputs changed, and the order only where places or camera did.
 #pragma once
 
 #include <cstdint>
@@ -57,9 +57,8 @@ class GroupSplats {
   private:
     /// A layer's splats and what they were made from.
     struct Part {
-        std::shared_ptr<const SplatSet> set;
+        std::shared_ptr<const SplatSet> set;  // null: its splats were given
         std::int64_t first = 0, count = 0;
-        float share = 0.0f;
         std::optional<Shading> shading;  // none: not shaded yet
         LookUniforms uniforms;
         float largest_radius = 0.0f;
@@ -75,6 +74,7 @@ class GroupSplats {
     };
 
     bool lay_out(const std::vector<const PreviewLayer*>& layers);
+    void upload(Part& part, const ShadedSplats& splats);
     bool shade(Part& part, const PreviewLayer& layer, RawSplatStore& raw, LookPass& pass);
     void read_places();
 

@@ -27,15 +27,14 @@ LookLimits limits_for(const LookUniforms& look) {
 }
 
 ProgramSource LookPass::source_for(const LookLimits& limits) {
-    return {
-        {},
-        {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "decimate.glsl", "look_pass.glsl"},
-        {},
-        {"shaded_place", "shaded_color"},
-        {{"LOOK_STOPS", limits.stops},
-         {"LOOK_NOISES", limits.noises},
-         {"LOOK_POINTS", limits.points},
-         {"AS_NOISE_MAX_OCTAVES", limits.octaves}}};
+    return {{},
+            {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "look_pass.glsl"},
+            {},
+            {"shaded_place", "shaded_color"},
+            {{"LOOK_STOPS", limits.stops},
+             {"LOOK_NOISES", limits.noises},
+             {"LOOK_POINTS", limits.points},
+             {"AS_NOISE_MAX_OCTAVES", limits.octaves}}};
 }
 
 LookPass::LookPass() { upload_map(make_image(1, 1, 3)); }
@@ -67,25 +66,24 @@ void LookPass::upload_map(const Image& map) {
 }
 
 void LookPass::run(const RawSplats& raw, const LookPassInput& input, ShadedBuffers& out, std::int64_t first) {
-    if (input.count <= 0) return;
+    const std::int64_t count = raw.set().size();
+    if (count == 0) return;
     unused_.resize(1, 1, GL_RGBA8);
     unused_.bind();
     const GlProgram& program = this->program(limits_for(input.look));
     program.use();
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, block_.get());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(LookUniforms), &input.look, GL_STREAM_DRAW);
-    glUniform1f(program.uniform("share"), input.share);
-    glUniform1i(program.uniform("additive"), input.additive ? 1 : 0);
     if (input.map && input.look.stop_count > 1) upload_map(*input.map);
     bind_texture(0, GL_TEXTURE_2D, map_.name());
     const auto offset = static_cast<GLintptr>(sizeof(glm::vec4)) * first;
-    const auto size = static_cast<GLsizeiptr>(sizeof(glm::vec4)) * input.count;
+    const auto size = static_cast<GLsizeiptr>(sizeof(glm::vec4)) * count;
     glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, out.places(), offset, size);
     glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 1, out.colors(), offset, size);
     glEnable(GL_RASTERIZER_DISCARD);
     glBindVertexArray(raw.vertex_array());
     glBeginTransformFeedback(GL_POINTS);
-    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(input.count));
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(count));
     glEndTransformFeedback();
     glBindVertexArray(0);
     glDisable(GL_RASTERIZER_DISCARD);

@@ -30,15 +30,12 @@ LookLimits limits_for(const LookUniforms& look);
 struct LookPassInput {
     const LookUniforms& look;
     const Image* map = nullptr;  // raw values; read where there are several stops
-    std::int64_t count = 0;      // the first so many splats of the set
-    float share = 1.0f;          // of the layer that these are; alpha and radius make up for the rest
-    bool additive = false;       // the layer's blend adds
 };
 
 class LookPass {
   public:
     LookPass();
-    /// Writes to out[first], out[first + 1], ...; `raw` holds input.count splats.
+    /// Writes all of `raw`, which holds them, to out[first], out[first + 1], ...
     void run(const RawSplats& raw, const LookPassInput& input, ShadedBuffers& out, std::int64_t first);
 
     /// The program for looks within these limits.

@@ -39,7 +39,8 @@ struct TieBreak {
         const auto i = static_cast<std::int64_t>(code & 0xffffffffu);
         std::size_t l = job.layers.size() - 1;
         while (l > 0 && i < job.layers[l].first) --l;
-        return {l, job.layers[l].set->id[static_cast<std::size_t>(i - job.layers[l].first)]};
+        const auto row = static_cast<std::size_t>(i - job.layers[l].first);
+        return {l, job.layers[l].set ? job.layers[l].set->id[row] : row};
     }
     bool operator()(Code a, Code b) const { return of(a) > of(b); }
 };

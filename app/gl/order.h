@@ -24,7 +24,7 @@ struct OrderLayer {
     std::int64_t first = 0, count = 0;
     glm::dmat3 camera_from_layer{1.0};
     glm::dvec3 origin_in_camera{0.0};
-    std::shared_ptr<const SplatSet> set;  // its ids decide ties
+    std::shared_ptr<const SplatSet> set;  // its ids decide ties; null: their order does
 };
 
 struct OrderJob {

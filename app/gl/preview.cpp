@@ -80,17 +80,13 @@ std::vector<BlendGroup> drawable(std::vector<BlendGroup> groups) {
 }  // namespace
 
 std::int64_t shown_count(const PreviewLayer& layer) {
-    const auto size = layer.set ? layer.set->size() : 0;
-    const auto wanted =
-        static_cast<std::int64_t>(std::ceil(double(layer.share) * double(whole_count(layer))));
-    return std::clamp(wanted, std::min<std::int64_t>(size, 1), size);
+    if (layer.layer.splats) return layer.layer.splats->size();
+    return layer.set ? layer.set->size() : 0;
 }
 
 Shading shading_of(const PreviewLayer& layer) {
-    const LayerRender& render = layer.layer.render;
     const Image* map = layer.inputs.thickness_map;
-    return {layer.look, layer.inputs, render.blend == Blend::add && !render.holdout,
-            map ? content_probe(*map) : 0.0f};
+    return {layer.look, layer.inputs, map ? content_probe(*map) : 0.0f};
 }
 
 struct GlPreview::State {

@@ -1,5 +1,5 @@
-// The frame in motion, drawn by OpenGL: raw splats in GPU memory, the look evaluated there
-// (shaders/shared), a share of every layer, sorted, into an RGBA32F frame (DESIGN 10).
+// The frame in motion, drawn by OpenGL: the splats of a cut, or raw splats in GPU memory with the look
+// evaluated there (shaders/shared), sorted, into an RGBA32F frame (DESIGN 10).
 #pragma once
 
 #include <cstdint>
@@ -16,32 +16,22 @@
 
 namespace astrosplat {
 
-/// One layer of the preview. `set` holds the splats in stratified order (splats/stratified.h), so that any
-/// prefix is a fair sample; the same pointer means that nothing needs uploading.
+/// One layer of the preview. Where `layer.splats` is given, these are drawn (merge/cut.h); else all of `set`,
+/// which the look is applied to here. The same `set` means that nothing needs uploading.
 struct PreviewLayer {
-    RenderLayer layer;  // name, render, transform; its `splats` are not used
+    RenderLayer layer;
     std::shared_ptr<const SplatSet> set;
     Look look;
     LookInputs inputs;
-    float share = 1.0f;      // of the whole set, 0..1; no more than `set` holds is drawn
-    std::int64_t whole = 0;  // splats of the whole set, of which `set` is a prefix; 0: `set` is all of it
 };
 
-/// Splats that a layer's share is counted of.
-inline std::int64_t whole_count(const PreviewLayer& layer) {
-    const std::int64_t there = layer.set ? layer.set->size() : 0;
-    return layer.whole > there ? layer.whole : there;
-}
-
-/// Splats of a layer that its share shows: at least one where the set has any.
+/// Splats of a layer that are drawn, before its look drops any.
 std::int64_t shown_count(const PreviewLayer& layer);
 
-/// All that a layer's splats are shaded and thinned out with, beside its rows and share: while it stays
-/// equal, they stay.
+/// All that a layer's splats are shaded with, beside its set: while it stays equal, they stay.
 struct Shading {
     Look look;
     LookInputs inputs;
-    bool additive = false;   // light adds up, so fewer splats need no larger radius
     float map_probe = 0.0f;  // tells another map at the address of an old one
     bool operator==(const Shading&) const = default;
 };

@@ -51,20 +51,26 @@ Buffer<glm::vec4> read_float4(GLuint buffer, std::int64_t count) {
     return values;
 }
 
+void write_float4(GLuint buffer, std::int64_t first, const Buffer<glm::vec4>& values) {
+    constexpr auto stride = static_cast<GLintptr>(sizeof(glm::vec4));
+    glBindBuffer(GL_ARRAY_BUFFER, buffer);
+    glBufferSubData(GL_ARRAY_BUFFER, first * stride, static_cast<GLsizeiptr>(values.size()) * stride,
+                    values.data());
+}
+
 }  // namespace
 
-void RawSplats::hold(std::int64_t count) {
-    if (count <= held_ && vertices_.name() != 0) return;
-    // Somewhat more than asked for, so that a growing share does not upload at every step.
-    held_ = std::min(set_->size(), count + count / 2);
+void RawSplats::hold() {
+    if (vertices_.name() != 0) return;
     glBindVertexArray(vertices_.get());
-    upload(0, buffers_[0], set_->position, held_);
-    upload(1, buffers_[1], set_->color, held_);
-    upload(2, buffers_[2], set_->alpha, held_);
-    upload(3, buffers_[3], set_->distance, held_);
-    upload(4, buffers_[4], set_->id, held_);
-    upload(5, buffers_[5], set_->uv, held_);
-    upload(6, buffers_[6], set_->radius, held_);
+    const std::int64_t count = set_->size();
+    upload(0, buffers_[0], set_->position, count);
+    upload(1, buffers_[1], set_->color, count);
+    upload(2, buffers_[2], set_->alpha, count);
+    upload(3, buffers_[3], set_->distance, count);
+    upload(4, buffers_[4], set_->id, count);
+    upload(5, buffers_[5], set_->uv, count);
+    upload(6, buffers_[6], set_->radius, count);
     glBindVertexArray(0);
 }
 
@@ -79,6 +85,17 @@ void ShadedBuffers::resize(std::int64_t count) {
     glBindVertexArray(0);
     attach(place_texture_.get(), places_.name());
     attach(color_texture_.get(), colors_.name());
+}
+
+void ShadedBuffers::upload(const ShadedSplats& splats, std::int64_t first) {
+    const auto count = splats.position.size();
+    Buffer<glm::vec4> places(count), colors(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        places[i] = glm::vec4(splats.position[i], splats.radius[i]);
+        colors[i] = glm::vec4(splats.color[i], splats.alpha[i]);
+    }
+    write_float4(places_.name(), first, places);
+    write_float4(colors_.name(), first, colors);
 }
 
 Buffer<glm::vec4> ShadedBuffers::read_places() const { return read_float4(places_.name(), size_); }

@@ -8,17 +8,18 @@
 
 #include "core/buffer.h"
 #include "gl/objects.h"
+#include "splats/shaded_splats.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
 
-/// The first splats of a set in stratified order, as the look pass reads them.
+/// The splats of a set, as the look pass reads them.
 class RawSplats {
   public:
     explicit RawSplats(std::shared_ptr<const SplatSet> set) : set_(std::move(set)) {}
 
-    /// Uploads so that at least the first `count` are there; nothing where they are already.
-    void hold(std::int64_t count);
+    /// Uploads them; nothing where they are there already.
+    void hold();
     const SplatSet& set() const { return *set_; }
     const std::shared_ptr<const SplatSet>& pointer() const { return set_; }
     GLuint vertex_array() const { return vertices_.name(); }
@@ -26,7 +27,6 @@ class RawSplats {
   private:
     static constexpr int arrays = 7;  // locations of look_pass.glsl
     std::shared_ptr<const SplatSet> set_;
-    std::int64_t held_ = 0;
     GlVertexArray vertices_;
     GlBuffer buffers_[arrays];
 };
@@ -39,6 +39,9 @@ class ShadedBuffers {
     std::int64_t size() const { return size_; }
     GLuint places() const { return places_.name(); }
     GLuint colors() const { return colors_.name(); }
+
+    /// Writes splats that are shaded already to [first], [first + 1], ...
+    void upload(const ShadedSplats& splats, std::int64_t first);
 
     /// Position and radius of every splat, from the GPU; radius -1 was dropped.
     Buffer<glm::vec4> read_places() const;

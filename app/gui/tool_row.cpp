@@ -110,7 +110,7 @@ void preview_control(GuiFrame& frame) {
     if (drag_field("##preview", percent, 0.2f, 0, 100, format, px(108), color::dim))
         frame.view.preview_share = percent < 0.5f ? 0.0f : percent / 100.0f;
     note_item(frame, "preview");
-    tooltip("Share of every layer's dots drawn while something moves; at 0 it is sized to stay fluid");
+    tooltip("How many dots are drawn while something moves, of all there are; at 0 as many as stay fluid");
 }
 
 void engine_control(GuiFrame& frame) {

@@ -92,7 +92,9 @@ void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& 
         shown.b_is_display = true;
     } else {
         const StoredLook& look = snapshots_[static_cast<std::size_t>(b_snapshot_)].look;
-        b_.show(how.request_for(with_look_of(scene, *look.scene)), how.choice, how.may_settle, how.now);
+        PreviewChoice choice = how.choice;
+        choice.refined = false;  // two sums of whole sets would take twice the memory
+        b_.show(how.request_for(with_look_of(scene, *look.scene)), choice, how.may_settle, how.now);
         shown.b = b_.texture();
     }
     shown.mode = view.compare == CompareMode::b            ? Mode::b

@@ -5,29 +5,39 @@
 
 #include "core/error.h"
 #include "scene/input_files.h"
-#include "splats/stratified.h"
+#include "splats/take_rows.h"
 #include "viewer/histograms.h"
 
 namespace astrosplat {
 namespace {
 
-/// Of the first splats of a preview, which are a fair sample.
 glm::vec3 mean_color(const SplatSet& set) {
-    constexpr std::int64_t sample = 4096;
+    constexpr std::int64_t sampled = 4096;
     glm::vec3 sum(0.0f);
     float weight = 0.0f;
-    for (std::int64_t i = 0; i < std::min(sample, set.size()); ++i) {
-        sum += set.alpha[i] * set.color[i];
-        weight += set.alpha[i];
+    const std::int64_t count = std::min(sampled, set.size());
+    for (std::int64_t i = 0; i < count; ++i) {
+        const std::int64_t row = sampled_row(set.size(), count, i);
+        sum += set.alpha[row] * set.color[row];
+        weight += set.alpha[row];
     }
     return weight > 0.0f ? sum / weight : glm::vec3(1.0f);
 }
 
-LoadedLayer layer_of(std::shared_ptr<const SplatSet> preview, const SourceParams& source,
-                     const std::string& name) {
+MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_for) {
+    MergeSource source;
+    if (set->size() > 0)
+        source.weight =
+            static_cast<float>(static_cast<double>(stands_for) / static_cast<double>(set->size()));
+    source.tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
+    source.set = std::move(set);
+    return source;
+}
+
+LoadedLayer layer_of(MergeSource sample, const SourceParams& source, const std::string& name) {
     LoadedLayer layer;
-    layer.color = mean_color(*preview);
-    layer.preview = std::move(preview);
+    layer.color = mean_color(*sample.set);
+    layer.sample = std::move(sample);
     layer.source = source;
     layer.name = name;
     return layer;
@@ -36,31 +46,36 @@ LoadedLayer layer_of(std::shared_ptr<const SplatSet> preview, const SourceParams
 }  // namespace
 
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
-                        const std::string& name, std::int64_t preview_limit) {
-    constexpr std::int64_t first_look = 1 << 18;  // splats of a preview before it is arranged
-    SplatSet preview = sample_rows(*set, std::min(preview_limit, first_look));
-    LoadedLayer layer = layer_of(std::make_shared<const SplatSet>(std::move(preview)), source, name);
+                        const std::string& name, std::int64_t sample_limit) {
+    const std::int64_t splats = set->size();
+    const auto sample =
+        splats <= sample_limit ? set : std::make_shared<const SplatSet>(sample_rows(*set, sample_limit));
+    LoadedLayer layer = layer_of(source_of(sample, splats), source, name);
     layer.box = bounds(*set);
     layer.radius = unset_radius(*set);
-    layer.splats = set->size();
+    layer.splats = splats;
+    layer.arranged = sample == set;
     layer.set = std::move(set);
     return layer;
 }
 
 LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& source,
                           const std::string& name) {
-    LoadedLayer layer = layer_of(sample.set, source, name);
+    LoadedLayer layer = layer_of(source_of(sample.set, sample.kept), source, name);
     layer.box = sample.box;
     layer.radius = unset_radius(*sample.set);
     layer.splats = sample.kept;
     return layer;
 }
 
-LoadedLayer arranged_layer(LoadedLayer layer, std::int64_t preview_limit, const Progress& progress) {
-    const SplatSet& set = *layer.set;
-    const Buffer<std::int64_t> order = stratified_order(set, progress);
-    layer.preview =
-        std::make_shared<const SplatSet>(take_rows(set, order, std::min(preview_limit, set.size())));
+LoadedLayer arranged_layer(LoadedLayer layer, const Progress& progress) {
+    constexpr std::int64_t rows_per_sampled = 16;
+    layer.whole.set = layer.set;
+    layer.whole.tree = std::make_shared<const MergeTree>(build_merge_tree(*layer.set, progress));
+    const std::int64_t count = std::max(layer.sample.set->size(), layer.set->size() / rows_per_sampled);
+    layer.sample =
+        source_of(std::make_shared<const SplatSet>(sample_tree(*layer.whole.tree, *layer.set, count)),
+                  layer.set->size());
     layer.arranged = true;
     return layer;
 }

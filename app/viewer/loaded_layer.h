@@ -12,6 +12,7 @@
 
 #include "core/progress.h"
 #include "edit/status.h"
+#include "merge/sums.h"
 #include "source/source.h"
 #include "splats/splat_set.h"
 #include "viewer/growing_set.h"
@@ -19,10 +20,11 @@
 namespace astrosplat {
 
 struct LoadedLayer {
-    std::shared_ptr<const SplatSet> set;      // in order of id: for the final frame; null while it grows
-    std::shared_ptr<const SplatSet> preview;  // any prefix is a fair sample
-    std::int64_t splats = 0;                  // of the whole set; while it grows those there are so far
-    bool arranged = false;  // until then `preview` is a small sample, and grows a little later
+    std::shared_ptr<const SplatSet> set;  // for the final frame; null while it grows
+    MergeSource sample;                   // of it, for a preview at once; where that suffices, the set itself
+    MergeSource whole;        // for previews at rest; comes a little later, where `sample` is not all
+    std::int64_t splats = 0;  // of the whole set; while it grows those there are so far
+    bool arranged = false;    // nothing of the above is on its way
     std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
     Bounds box;                                         // layer space; while it grows a guess
     glm::vec3 color{1.0f};                              // mean of the splats, weighted by alpha, linear
@@ -33,15 +35,15 @@ struct LoadedLayer {
     bool outdated = false;                     // one of them was changed since
 };
 
-/// A whole set, with a preview of a sample of at most `preview_limit` splats, in no time.
+/// A whole set, with a sample of at most `sample_limit` splats, in no time.
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
-                        const std::string& name, std::int64_t preview_limit);
+                        const std::string& name, std::int64_t sample_limit);
 /// A set that is being generated.
 LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& source,
                           const std::string& name);
-/// The same with its preview in stratified order, of as many splats as it may ever show.
-LoadedLayer arranged_layer(LoadedLayer layer, std::int64_t preview_limit, const Progress& progress);
-/// The same with histograms and files, for which meshes and frames are read once more.
+/// The same with the tree of the whole, and a sixteenth of it, taken evenly over space, as the sample.
+LoadedLayer arranged_layer(LoadedLayer layer, const Progress& progress);
+/// The same with histograms and files, for which meshes and pictures are read once more.
 LoadedLayer described_layer(LoadedLayer layer);
 
 }  // namespace astrosplat

@@ -7,13 +7,6 @@
 
 namespace astrosplat {
 
-float share_for_budget(std::span<const std::int64_t> sizes, std::int64_t budget) {
-    double sum = 0.0;
-    for (const std::int64_t size : sizes) sum += static_cast<double>(size);
-    if (sum <= static_cast<double>(budget)) return 1.0f;
-    return static_cast<float>(std::max<double>(1.0, static_cast<double>(budget)) / sum);
-}
-
 void PreviewBudget::measured(double milliseconds, double target_ms, std::int64_t shown) {
     constexpr double dead_zone = 1.0 / 8.0, far_off = 2.0;
     quickest_ms_ = frames_ == 0 ? milliseconds : std::min(quickest_ms_, milliseconds);

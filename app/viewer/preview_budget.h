@@ -1,18 +1,13 @@
-// How many splats a preview draws: a budget that follows the measured time of a frame, and the share of every
-// layer that it comes to. Plain numbers in and out, no clock.
+// How many splats a preview draws: a budget that follows the measured time of a frame. Plain numbers in and
+// out, no clock.
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 namespace astrosplat {
 
-/// One share for all layers, in (0, 1], so that they keep their balance and the larger ones give up most.
-/// `sizes`: splats of each whole set; `budget`: splats to draw together.
-float share_for_budget(std::span<const std::int64_t> sizes, std::int64_t budget);
-
-/// Follows a target time, damped, and stays where it is within an eighth of the target: a share that moves
-/// means that sets are cut and shaded again, and that the frame's grain changes under the eye.
+/// Follows a target time, damped, and stays where it is within an eighth of the target: the frame's grain
+/// changes under the eye with every move.
 struct PreviewBudget {
     std::int64_t least = 30000, most = 4000000;  // splats
     std::int64_t splats = 200000;                // the budget

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Splats of a layer that a preview will ever draw.
-std::int64_t preview_limit(const GlInfo& gl) { return gl.software ? 1'000'000 : 60'000'000; }
+/// Splats of a layer that previews know until its tree is there.
+constexpr std::int64_t sample_limit = 1 << 18;
 
 /// A scene, or what any other file becomes, untitled. Throws InputError.
 Document document_for(const fs::path& file, std::span<const Assignment> assignments = {}) {
@@ -92,7 +92,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       preferences(load_preferences()),
       document(options.input.empty() ? demo_document(options.assignments)
                                      : document_for(options.input, options.assignments)),
-      sets(options.cache, preview_limit(gl_info)),
+      sets(options.cache, sample_limit),
       front(1280, options.cache),
       jobs(options.cache),
       fresh_demo(options.input.empty()) {

@@ -99,6 +99,7 @@ Rect crop_to_viewport(ViewRequest& request, const Rect& whole, glm::ivec2 viewpo
 PreviewChoice preview_choice(const Session& session) {
     PreviewChoice choice;
     choice.opengl = draws_by_opengl(session);
+    choice.whole_sets = !session.gl.software;
     choice.share = session.view.preview_share;
     choice.splats = session.fixed_splats;
     return choice;

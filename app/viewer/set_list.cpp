@@ -30,9 +30,7 @@ bool satisfies(const LoadedLayer& loaded, const SourceParams& identity) {
 }
 
 /// Splats of a view that is made again and again while everything else should go on.
-std::int64_t growing_limit(std::int64_t preview_limit) {
-    return std::clamp<std::int64_t>(preview_limit / 16, 1, 1 << 18);
-}
+std::int64_t growing_limit(std::int64_t sample_limit) { return std::max<std::int64_t>(sample_limit / 4, 1); }
 
 }  // namespace
 
@@ -140,7 +138,7 @@ std::optional<SetTask> SetList::next_task() const {
 std::shared_ptr<SetJob> SetList::begin_next() {
     const SetTask task = next_task().value();
     std::list<std::string>& names = queues_[task];
-    job_ = std::make_shared<SetJob>(growing_limit(preview_limit_));
+    job_ = std::make_shared<SetJob>(growing_limit(sample_limit_));
     job_->task = task;
     job_->name = names.front();
     names.pop_front();

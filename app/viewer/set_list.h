@@ -39,8 +39,8 @@ class SetList {
   public:
     using Layer = std::shared_ptr<const LoadedLayer>;
 
-    /// `preview_limit` as SetLoader's.
-    explicit SetList(std::int64_t preview_limit) : preview_limit_(preview_limit) {}
+    /// `sample_limit` as SetLoader's.
+    explicit SetList(std::int64_t sample_limit) : sample_limit_(sample_limit) {}
 
     // Wishes, with SetLoader's meaning.
     void want(const Scene& scene);
@@ -100,7 +100,7 @@ class SetList {
     bool is_wanted(const SetJob& finished) const;
     void queue_rest(const std::string& name, const LoadedLayer& loaded);
 
-    std::int64_t preview_limit_;
+    std::int64_t sample_limit_;
     std::map<std::string, Entry> entries_;              // by layer name
     std::map<SetTask, std::list<std::string>> queues_;  // names of layers; the next one first
     std::shared_ptr<SetJob> job_;                       // being done

@@ -43,8 +43,8 @@ void SetLoader::load(SetJob& job) {
     progress.cancelled = &job.cancelled;
     progress.report = [&](double fraction) { job.progress = static_cast<float>(fraction); };
     auto set = std::make_shared<const SplatSet>(load_set_(job.source, job.name, progress, job.growing));
-    auto layer = std::make_shared<const LoadedLayer>(
-        whole_layer(std::move(set), job.source, job.name, preview_limit_));
+    auto layer =
+        std::make_shared<const LoadedLayer>(whole_layer(std::move(set), job.source, job.name, sample_limit_));
 
     SetList::Layer old;  // let go after the lock
     const auto held = worker_.lock();
@@ -54,7 +54,7 @@ void SetLoader::load(SetJob& job) {
 void SetLoader::arrange(const SetJob& job) {
     Progress progress;
     progress.cancelled = &job.cancelled;
-    replace(job, arranged_layer(*job.loaded, preview_limit_, progress));
+    replace(job, arranged_layer(*job.loaded, progress));
 }
 
 /// After everything that is waited for.
@@ -67,13 +67,13 @@ void SetLoader::replace(const SetJob& job, LoadedLayer layer) {
     old = list_.replace(job, std::move(better));
 }
 
-SetLoader::SetLoader(const SetCache& cache, std::int64_t preview_limit)
+SetLoader::SetLoader(const SetCache& cache, std::int64_t sample_limit)
     : SetLoader(
           [cache](const SourceParams& source, const std::string& name, const Progress& progress,
                   KeptWatcher& watcher) { return load_source(cache, source, name, progress, &watcher).set; },
-          preview_limit) {}
-SetLoader::SetLoader(Load load, std::int64_t preview_limit)
-    : load_set_(std::move(load)), preview_limit_(preview_limit), list_(preview_limit) {}
+          sample_limit) {}
+SetLoader::SetLoader(Load load, std::int64_t sample_limit)
+    : load_set_(std::move(load)), sample_limit_(sample_limit), list_(sample_limit) {}
 
 SetLoader::~SetLoader() {
     const auto held = worker_.lock();

@@ -1,5 +1,5 @@
 // Loads and generates layers' sets in the background, newest wish first. In: a layer's source. Out: the set,
-// a sample of it while it is generated, its stratified order for the preview, and its histograms.
+// samples of it, its tree for the preview, and its histograms.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,10 @@ class SetLoader {
     using Load = std::function<SplatSet(const SourceParams& source, const std::string& layer_name,
                                         const Progress& progress, KeptWatcher& watcher)>;
 
-    /// `preview_limit`: largest number of splats of a layer that a preview will ever draw.
-    SetLoader(const SetCache& cache, std::int64_t preview_limit);
+    /// `sample_limit`: splats of a layer that is shown before its tree is there.
+    SetLoader(const SetCache& cache, std::int64_t sample_limit);
     /// Sets come from `load`, called in another thread.
-    SetLoader(Load load, std::int64_t preview_limit);
+    SetLoader(Load load, std::int64_t sample_limit);
     ~SetLoader();  // cancels and waits
 
     /// Makes sure that every layer of the scene has its set or is on its way: starts what is missing or
@@ -68,7 +68,7 @@ class SetLoader {
     void replace(const SetJob& job, LoadedLayer layer);
 
     Load load_set_;
-    std::int64_t preview_limit_;
+    std::int64_t sample_limit_;
     SetList list_;  // used with the worker's lock
     Worker worker_{[this] { return next_task(); }};
 };

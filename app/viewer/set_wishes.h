@@ -13,7 +13,7 @@ namespace astrosplat {
 
 class SetWishes {
   public:
-    SetWishes(const SetCache& cache, std::int64_t preview_limit) : loader_(cache, preview_limit) {}
+    SetWishes(const SetCache& cache, std::int64_t sample_limit) : loader_(cache, sample_limit) {}
 
     /// The document's sources should be wanted now; `now` in seconds.
     bool due(const Document& document, double now);

@@ -13,12 +13,11 @@ namespace {
 
 /// Histograms may come later than the set. What grows has none yet, and every sample of it is another.
 bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr<const LoadedLayer>& b) {
-    const auto set_of = [](const LoadedLayer& layer) { return layer.set ? layer.set : layer.preview; };
+    const auto set_of = [](const LoadedLayer& layer) { return layer.set ? layer.set : layer.sample.set; };
     return (a ? set_of(*a) : nullptr) == (b ? set_of(*b) : nullptr);
 }
 
-constexpr std::int64_t small_layer = 15'000;  // splats that a preview shows of any layer
-constexpr double rest_s = 0.3;                // without a change, before the final frame begins
+constexpr double rest_s = 0.3;  // without a change, before the final frame begins
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
 
@@ -43,9 +42,9 @@ Camera camera_of(const ViewRequest& request) {
 
 std::vector<PreviewLayer> ViewFrame::preview_layers() {
     std::vector<PreviewLayer> layers;
-    std::vector<std::int64_t> sizes;  // of the layers seen
     places_.clear();
     shown_.assign(request_->layers.size(), 0);
+    kept_.assign(request_->layers.size(), -1);
     status_.total = 0;
     for (std::size_t i = 0; i < request_->layers.size(); ++i) {
         const LayerParams& params = request_->scene.layers[i];
@@ -53,36 +52,52 @@ std::vector<PreviewLayer> ViewFrame::preview_layers() {
         if (!params.visible || !loaded || loaded->splats == 0) continue;
         PreviewLayer layer;
         layer.layer = render_layer(params);
-        layer.set = loaded->preview;
+        layer.set = loaded->set ? loaded->set : loaded->sample.set;
         layer.layer.absorbs = layer.set->absorbs;
-        layer.whole = loaded->splats;
         layer.look = params.look;
         layer.inputs = look_inputs(params);
         if (!params.look.thickness.map.empty())
             layer.inputs.thickness_map =
                 &files_->map(params.look.thickness.map, params.look.thickness.derive);
         status_.total += loaded->splats;
-        sizes.push_back(loaded->splats);
         places_.push_back(i);
         layers.push_back(std::move(layer));
-    }
-    const std::int64_t most = choice_.splats > 0 ? choice_.splats : budget_.splats;
-    const float share = choice_.share > 0.0f ? choice_.share : share_for_budget(sizes, most);
-    for (std::size_t n = 0; n < layers.size(); ++n) {
-        // A share of a small layer, such as a star cluster, would lose what it is made of.
-        const auto small = static_cast<float>(small_layer) / static_cast<float>(sizes[n]);
-        layers[n].share = std::min(1.0f, std::max(share, choice_.share > 0.0f ? 0.0f : small));
-        shown_[places_[n]] = shown_count(layers[n]);
     }
     return layers;
 }
 
-void ViewFrame::note_kept(const std::vector<double>& shares) {
-    kept_.assign(request_->layers.size(), -1);
-    for (std::size_t n = 0; n < std::min(shares.size(), places_.size()); ++n) {
-        const auto whole = static_cast<double>(request_->layers[places_[n]]->splats);
-        kept_[places_[n]] = std::llround(shares[n] * whole);
-    }
+std::int64_t ViewFrame::dots_wanted() const {
+    if (choice_.share > 0.0f)
+        return std::max<std::int64_t>(1, std::llround(double(choice_.share) * double(status_.total)));
+    return choice_.splats > 0 ? choice_.splats : budget_.splats;
+}
+
+bool ViewFrame::draws_whole_sets() const {
+    return choice_.opengl && choice_.whole_sets && choice_.share == 0.0f && status_.total < too_many_;
+}
+
+/// Gives the layers their splats, and notes how many their looks keep.
+void ViewFrame::cut(std::vector<PreviewLayer>& layers, const Camera& camera, int width, int height,
+                    float pixel_filter) {
+    CutSettings settings;
+    settings.budget = dots_wanted();
+    settings.width = width;
+    settings.height = height;
+    if (choice_.share >= 1.0f) settings.least_px = 0.0f;
+    std::vector<std::shared_ptr<const LoadedLayer>> loaded;
+    for (const std::size_t place : places_) loaded.push_back(request_->layers[place]);
+    dots_.cut(layers, loaded, camera, settings, pixel_filter);
+    const std::vector<double> kept = dots_.kept();
+    for (std::size_t n = 0; n < places_.size(); ++n)
+        kept_[places_[n]] = std::llround(kept[n] * static_cast<double>(loaded[n]->splats));
+}
+
+/// Sets that cannot be drawn whole in time are cut from then on.
+void ViewFrame::note_time(double milliseconds, double target_ms, bool whole_sets) {
+    constexpr int patience = 8;  // frames
+    if (!whole_sets) return budget_.measured(milliseconds, target_ms, status_.shown);
+    slow_frames_ = milliseconds > 2.0 * target_ms ? slow_frames_ + 1 : 0;
+    if (slow_frames_ == patience) too_many_ = status_.total;
 }
 
 /// The environment_ of the frame shown_ has been loaded since, or could not be: then the preview says why.
@@ -96,13 +111,19 @@ bool ViewFrame::environment_arrived() {
     }
 }
 
-/// There is more to be shown_ of the same sets. Once the final_ frame has begun nobody needs it.
+/// There is more to be shown of the same sets. Once the final frame has begun nobody needs it.
 bool ViewFrame::previews_arrived(const ViewRequest& now) const {
     const auto same_preview = [](const auto& a, const auto& b) {
-        return (a ? a->preview : nullptr) == (b ? b->preview : nullptr);
+        return (a ? a->sample : MergeSource()) == (b ? b->sample : MergeSource());
     };
     return !std::equal(request_->layers.begin(), request_->layers.end(), now.layers.begin(), now.layers.end(),
                        same_preview);
+}
+
+/// Sums of whole sets, while nothing more urgent needs the processor.
+bool ViewFrame::refine() {
+    return choice_.refined && status_.state != ViewFrameState::refining && !draws_whole_sets() &&
+           dots_.refine();
 }
 
 void ViewFrame::draw_preview(double now) {
@@ -113,24 +134,26 @@ void ViewFrame::draw_preview(double now) {
     const Region part = whole(*request_);
     camera.center_x_px -= static_cast<double>(part.x);
     camera.center_y_px -= static_cast<double>(part.y);
-    const std::vector<PreviewLayer> layers = preview_layers();
+    std::vector<PreviewLayer> layers = preview_layers();
+    const bool whole_sets = draws_whole_sets();
     environment_ = files_->environment(request_->scene.environment);
     const auto filter = static_cast<float>(request_->scene.output.pixel_filter);
     const int width = static_cast<int>(part.width), height = static_cast<int>(part.height);
+    if (!whole_sets) cut(layers, camera, width, height, filter);
+    status_.shown = 0;
+    for (std::size_t n = 0; n < layers.size(); ++n)
+        status_.shown += shown_[places_[n]] = shown_count(layers[n]);
     if (choice_.opengl) {
         if (!gl_) gl_ = std::make_unique<GlPreview>();
         texture_ = gl_->draw(layers, camera, environment_.get(), width, height, filter);
         drawn_ = nullptr;
-        status_.shown = gl_->shown();
     } else {
         drawn_ = &cpu_.draw(layers, camera, environment_.get(), width, height, filter);
         canvas_texture_.upload(*drawn_);
         texture_ = canvas_texture_.handle();
-        status_.shown = cpu_.shown();
-        note_kept(cpu_.kept());
     }
     pace_.drew(milliseconds_since(start));
-    budget_.measured(milliseconds_since(start), target_ms, status_.shown);
+    note_time(milliseconds_since(start), target_ms, whole_sets);
     status_.state = ViewFrameState::preview;
     status_.width = request_->width;
     status_.height = request_->height;
@@ -169,7 +192,10 @@ void ViewFrame::take_final() {
     const FinalFrame::Outcome outcome = final_.outcome();
     status_.seconds = outcome.seconds;
     status_.error = outcome.error;
-    if (outcome.state == FinalFrame::State::done) status_.state = ViewFrameState::final;
+    if (outcome.state == FinalFrame::State::done) {
+        status_.state = ViewFrameState::final;
+        refine();  // for when the hand moves again
+    }
     if (outcome.state == FinalFrame::State::failed) status_.state = ViewFrameState::failed;
 }
 
@@ -177,7 +203,8 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
                      bool hurry) {
     const bool changed = !request_ || !(*request_ == request) || choice_.opengl != choice.opengl ||
                          choice_.share != choice.share || environment_arrived();
-    const bool fuller = !changed && !final_started_ && previews_arrived(request);
+    const bool refined = request_ && refine();
+    const bool fuller = !changed && !final_started_ && (refined || previews_arrived(request));
     if (changed || fuller || (gl_ && gl_->sorting())) {
         final_.cancel();
         final_started_ = false;
@@ -214,7 +241,10 @@ Image ViewFrame::read() const {
 
 double ViewFrame::due(double now) const { return std::max(0.0, changed_at_ + rest_s - now); }
 
-bool ViewFrame::exact() const { return request_ && !files_->loading() && !(gl_ && gl_->sorting()); }
+bool ViewFrame::exact() const {
+    const bool lacks_sums = choice_.refined && !draws_whole_sets() && dots_.lacks_sums();
+    return request_ && !files_->loading() && !(gl_ && gl_->sorting()) && !lacks_sums;
+}
 
 std::shared_ptr<const RenderedFrame> ViewFrame::final_frame() const {
     return status_.state == ViewFrameState::final ? final_.outcome().frame : nullptr;

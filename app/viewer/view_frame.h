@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include "viewer/final_frame.h"
 #include "viewer/picture_files.h"
 #include "viewer/preview_budget.h"
+#include "viewer/preview_dots.h"
 #include "viewer/set_loader.h"
 
 namespace astrosplat {
@@ -39,8 +41,10 @@ Camera camera_of(const ViewRequest& request);
 /// How previews are drawn.
 struct PreviewChoice {
     bool opengl = false;
-    float share = 0.0f;       // of every layer; 0: sized by the frame rate
+    bool whole_sets = false;  // by OpenGL, where it is quick enough: every splat, without a cut
+    float share = 0.0f;       // of all splats, as dots; 1: every splat; 0: sized by the frame rate
     std::int64_t splats = 0;  // with share 0: this many in all, whatever the frame rate; 0: by it
+    bool refined = true;      // cuts of whole sets, once there is time to make them; else of samples
     double target_ms = 25.0;  // of one preview
 };
 
@@ -77,7 +81,12 @@ class ViewFrame {
 
   private:
     std::vector<PreviewLayer> preview_layers();
-    void note_kept(const std::vector<double>& shares);
+    std::int64_t dots_wanted() const;
+    bool draws_whole_sets() const;
+    void cut(std::vector<PreviewLayer>& layers, const Camera& camera, int width, int height,
+             float pixel_filter);
+    void note_time(double milliseconds, double target_ms, bool whole_sets);
+    bool refine();
     bool environment_arrived();
     bool previews_arrived(const ViewRequest& now) const;
     void draw_preview(double now);
@@ -88,6 +97,7 @@ class ViewFrame {
     std::optional<ViewRequest> request_;
     std::shared_ptr<const Environment> environment_;  // of the last preview
     PreviewChoice choice_;
+    PreviewDots dots_;
     CpuPreview cpu_;
     std::unique_ptr<GlPreview> gl_;  // made when first wanted
     PreviewBudget budget_;
@@ -103,6 +113,8 @@ class ViewFrame {
     ViewFrameStatus status_;
     std::vector<std::int64_t> shown_, kept_;
     std::vector<std::size_t> places_;  // in the scene, of the layers that the last preview drew
+    int slow_frames_ = 0;              // of whole sets, one after the other
+    std::int64_t too_many_ = std::numeric_limits<std::int64_t>::max();  // splats to be drawn whole
 };
 
 }  // namespace astrosplat

@@ -42,9 +42,8 @@ TEST_F(ReferenceCompiler, TakesTheSplats) {
 }
 
 TEST_F(ReferenceCompiler, TakesTheLook) {
-    EXPECT_TRUE(takes(
-        "vert", {},
-        {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "decimate.glsl", "look_pass.glsl"}));
+    EXPECT_TRUE(
+        takes("vert", {}, {"maths.glsl", "noise.glsl", "look_uniforms.glsl", "look.glsl", "look_pass.glsl"}));
 }
 
 TEST_F(ReferenceCompiler, TakesThePassesOverThePicture) {

@@ -156,15 +156,14 @@ class GpuLook : public GlTest {
   protected:
     /// Kept splats by id.
     std::unordered_map<std::uint64_t, Shaded> run(const std::shared_ptr<const SplatSet>& set,
-                                                  const Look& look, const LookInputs& inputs,
-                                                  float share = 1.0f) {
+                                                  const Look& look, const LookInputs& inputs) {
         LookPass pass;
         RawSplats raw(set);
-        raw.hold(set->size());
+        raw.hold();
         ShadedBuffers out;
         out.resize(set->size());
         const LookUniforms uniforms = prepare_look(*set, look, inputs);
-        pass.run(raw, {uniforms, inputs.thickness_map, set->size(), share, false}, out, 0);
+        pass.run(raw, {uniforms, inputs.thickness_map}, out, 0);
         const Buffer<glm::vec4> places = out.read_places(), colors = out.read_colors();
         std::unordered_map<std::uint64_t, Shaded> kept;
         for (std::size_t i = 0; i < places.size(); ++i)
@@ -208,17 +207,6 @@ class GpuLook : public GlTest {
 
 TEST_F(GpuLook, EveryOperatorAsTheEngine) {
     for (const LookCase& c : all_cases()) expect_like_engine(c);
-}
-
-TEST_F(GpuLook, ASharePreservesAlphaTimesArea) {
-    const auto set = test::cloud(2000, 3);
-    const auto whole = run(set, with_radius(), {}), tenth = run(set, with_radius(), {}, 0.1f);
-    ASSERT_EQ(whole.size(), tenth.size());
-    for (const auto& [id, splat] : whole) {
-        const float *a = splat.values, *b = tenth.at(id).values;
-        EXPECT_NEAR(b[6] * b[7] * b[7] * 0.1f / (a[6] * a[7] * a[7]), 1.0f, 1e-5f);
-        EXPECT_FLOAT_EQ(b[6], std::min(std::max(0.5f, a[6]), a[6] / 0.1f));
-    }
 }
 
 /// Every number of the struct has a value of its own.

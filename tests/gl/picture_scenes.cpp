@@ -5,11 +5,9 @@
 
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "look/decimate.h"
 #include "output/encode.h"
 #include "output/write.h"
 #include "render/render.h"
-#include "splats/stratified.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat::test {
@@ -91,11 +89,9 @@ Environment small_sky(int faces) {
 Image offline(const std::vector<PreviewLayer>& layers, const Camera& camera, const Environment* environment,
               int width, int height) {
     std::vector<ShadedSplats> shaded;
-    for (const PreviewLayer& layer : layers) {
-        const auto rows = static_cast<std::int64_t>(std::ceil(layer.share * double(layer.set->size())));
-        shaded.push_back(apply_look(first_rows(*layer.set, rows), layer.look, layer.inputs));
-        decimate(shaded.back(), layer.share, layer.layer.render.blend == Blend::add);
-    }
+    for (const PreviewLayer& layer : layers)
+        shaded.push_back(layer.layer.splats ? ShadedSplats(*layer.layer.splats)
+                                            : apply_look(*layer.set, layer.look, layer.inputs));
     std::vector<RenderLayer> render_layers;
     for (std::size_t l = 0; l < layers.size(); ++l) {
         render_layers.push_back(layers[l].layer);

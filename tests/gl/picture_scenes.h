@@ -25,7 +25,7 @@ Camera orthographic_camera(int width, int height);
 /// A sky of a few texels with mip levels, equirectangular or a cube, turned and brightened a little.
 Environment small_sky(int faces);
 
-/// The same layers, of each the same share, through the offline renderer.
+/// The same layers through the offline renderer.
 Image offline(const std::vector<PreviewLayer>& layers, const Camera& camera, const Environment* environment,
               int width, int height);
 

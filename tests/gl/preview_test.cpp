@@ -5,6 +5,7 @@
 
 #include "gl/gl_fixture.h"
 #include "gl/picture_scenes.h"
+#include "merge/cut.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -94,7 +95,7 @@ TEST_F(PreviewPicture, EveryBlendMergedAndIsolated) {
 TEST_F(PreviewPicture, DustAmongLight) {
     for (const auto blend : {Blend::over, Blend::add}) {
         PreviewLayer dusty = test::cloud_layer(2000, 5, 0.06f, render_with(Falloff::Shape::gaussian, blend));
-        auto set = std::make_shared<SplatSet>(first_rows(*dusty.set, dusty.set->size()));
+        auto set = std::make_shared<SplatSet>(*dusty.set);
         for (std::size_t i = 0; i < set->color.size(); i += 2) set->color[i] = {-0.5f, -1.0f, -2.0f};
         set->absorbs = true;
         dusty.set = set;
@@ -197,12 +198,74 @@ TEST_F(PreviewPicture, JitterBringsDotsTooNearForPoints) {
     expect_like_offline({layer}, camera_above(1.15));
 }
 
-/// A small share is drawn by larger dots, which may be too wide for points where the whole set's are not.
-TEST_F(PreviewPicture, DotsOfASmallShareAreTooWideForPoints) {
-    PreviewLayer layer = test::cloud_layer(2000, 9, 0.12f, render_with(Falloff::Shape::linear));
-    layer.layer.render.lod.max_px = 0.0f;
-    layer.share = 0.0625f;
-    expect_like_offline({layer}, camera_above(0.55));
+/// The splats of cuts through layers, whose looks the processor applies.
+class CutLayers {
+  public:
+    /// `budget` in all; gives the layers their splats.
+    CutLayers(std::vector<PreviewLayer>& layers, const Camera& camera, std::int64_t budget) {
+        RenderSettings picture;
+        picture.width = width;
+        picture.height = height;
+        for (const PreviewLayer& layer : layers) {
+            const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*layer.set));
+            merged_.push_back(
+                merge_splats({layer.set, tree, 1.0f}, apply_look(*layer.set, layer.look, layer.inputs)));
+            dots_.emplace_back(layer.layer.render);
+        }
+        std::vector<CutLayer> seen;
+        for (std::size_t l = 0; l < layers.size(); ++l)
+            seen.push_back(
+                {&merged_[l], &dots_[l],
+                 make_projection(layers[l].layer, static_cast<std::uint16_t>(l), camera, picture)});
+        splats_ = cut_splats(seen, {budget, 0.0f, width, height});
+        for (std::size_t l = 0; l < layers.size(); ++l) {
+            layers[l].layer.splats = &splats_[l];
+            layers[l].layer.render.opacity = 1.0f;
+            layers[l].layer.render.lod.max_px = 0.0f;
+        }
+    }
+
+  private:
+    std::vector<MergedSplats> merged_;
+    std::vector<DotSettings> dots_;
+    std::vector<ShadedSplats> splats_;
+};
+
+TEST_F(PreviewPicture, ACutLooksAsTheProcessorDrawsItUnderEveryBlend) {
+    const Camera camera = test::perspective_camera(width, height);
+    for (const auto blend :
+         {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid, Blend::absorb}) {
+        SCOPED_TRACE(static_cast<int>(blend));
+        LayerRender render = render_with(Falloff::Shape::gaussian, blend);
+        render.opacity = 0.8f;
+        std::vector<PreviewLayer> layers = {
+            test::cloud_layer(20000, 9, 0.02f, render_with(Falloff::Shape::linear)),
+            test::cloud_layer(20000, 5, 0.02f, render)};
+        const CutLayers cut(layers, camera, 1500);
+        expect_like_offline(layers, camera);
+    }
+}
+
+TEST_F(PreviewPicture, CutsOfTwoCamerasDoNotMix) {
+    GlPreview preview;
+    Camera camera = test::perspective_camera(width, height);
+    for (const double aside : {0.0, 0.3, 0.6}) {
+        std::vector<PreviewLayer> layers = {
+            test::cloud_layer(20000, 9, 0.02f, render_with(Falloff::Shape::gaussian))};
+        camera.eye.x += aside;
+        const CutLayers cut(layers, camera, 700);
+        preview.draw(layers, camera, nullptr, width, height, 0.5f);
+        const Image wanted = test::offline(layers, camera, nullptr, width, height);
+        EXPECT_GE(test::compare_shown(preview.read(), wanted).psnr_db, 45.0) << "in the very frame";
+    }
+}
+
+TEST_F(PreviewPicture, DotsOfACutAreTooWideForPoints) {
+    std::vector<PreviewLayer> layers = {
+        test::cloud_layer(2000, 9, 0.12f, render_with(Falloff::Shape::linear))};
+    const Camera camera = camera_above(0.55);
+    const CutLayers cut(layers, camera, 20);
+    expect_like_offline(layers, camera);
 }
 
 TEST_F(PreviewPicture, NothingAndEmptyLayers) {
@@ -211,20 +274,7 @@ TEST_F(PreviewPicture, NothingAndEmptyLayers) {
     expect_like_offline({empty}, test::perspective_camera(width, height));
 }
 
-TEST_F(PreviewPicture, AShareIsAsBrightAsTheWhole) {
-    for (const auto blend : {Blend::over, Blend::add, Blend::screen}) {
-        SCOPED_TRACE(static_cast<int>(blend));
-        PreviewLayer layer =
-            test::cloud_layer(60000, 9, 0.012f, render_with(Falloff::Shape::gaussian, blend));
-        layer.look.alpha.gain = 0.1f;  // many faint splats, as sets of millions have
-        const Camera camera = test::perspective_camera(width, height);
-        const Image whole = draw({layer}, camera);
-        layer.share = 0.1f;
-        EXPECT_NEAR(test::compare_shown(draw({layer}, camera), whole).brightness, 1.0, 0.02);
-    }
-}
-
-TEST_F(PreviewPicture, ChangesOfLookShareLayersAndCameraAllArrive) {
+TEST_F(PreviewPicture, ChangesOfLookLayersAndCameraAllArrive) {
     GlPreview old;
     std::vector<PreviewLayer> layers = {
         test::cloud_layer(1500, 9, 0.06f, render_with(Falloff::Shape::linear)),
@@ -243,8 +293,6 @@ TEST_F(PreviewPicture, ChangesOfLookShareLayersAndCameraAllArrive) {
     expect_fresh("jitter");
     camera.eye = {1.5, -0.7, 1.0};
     expect_fresh("camera");
-    layers[1].share = 0.5f;
-    expect_fresh("share");
     layers[0].layer.render.falloff.shape = Falloff::Shape::constant;
     expect_fresh("falloff");
     layers[1].layer.render.isolate = true;
@@ -254,7 +302,7 @@ TEST_F(PreviewPicture, ChangesOfLookShareLayersAndCameraAllArrive) {
     expect_fresh("order of layers");
     layers.pop_back();
     expect_fresh("one layer less");
-    EXPECT_EQ(old.shown(), 750);
+    EXPECT_EQ(old.shown(), 1500);
 }
 
 }  // namespace

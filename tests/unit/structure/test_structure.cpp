@@ -82,6 +82,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
         {"look", {"core", "source", "splats", "look"}},
         {"camera", {"core", "camera"}},
         {"render", {"core", "source", "splats", "camera", "render"}},
+        {"merge", {"core", "splats", "camera", "render", "merge"}},
         {"bodies", {"core", "image", "source", "splats", "camera", "render", "bodies"}},
         {"sets", {"core", "source", "splats", "splat_files", "generate", "bodies", "sets"}},
         {"scene",

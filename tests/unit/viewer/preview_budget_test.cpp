@@ -1,10 +1,9 @@
-// The budget against machines of known speed, and the shares it comes to.
+// The budget against machines of known speed.
 #include "viewer/preview_budget.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 namespace astrosplat {
@@ -80,20 +79,6 @@ TEST(PreviewBudgetTest, FarTooSlowIsMendedWithinAFewFrames) {
     const Machine machine{5.0, 0.1};
     run(budget, machine, 25.0, 12);
     EXPECT_LT(machine.frame(budget.splats), 50.0);
-}
-
-TEST(ShareForBudget, IsOneForAllLayers) {
-    const std::vector<std::int64_t> sizes = {3000000, 900000, 100000};
-    const float share = share_for_budget(sizes, 400000);
-    EXPECT_FLOAT_EQ(share, 0.1f);
-}
-
-TEST(ShareForBudget, NeverMoreThanAllNorNothing) {
-    const std::array<std::int64_t, 2> sizes = {1000, 500};
-    EXPECT_EQ(share_for_budget(sizes, 400000), 1.0f);
-    EXPECT_EQ(share_for_budget(sizes, 1500), 1.0f);
-    EXPECT_GT(share_for_budget(sizes, 0), 0.0f);
-    EXPECT_EQ(share_for_budget({}, 400000), 1.0f);
 }
 
 TEST(FramePace, LeavesTimeForTheRestOfTheWindow) {

@@ -14,7 +14,6 @@
 
 #include "sets/load_source.h"
 #include "splat_files/ply.h"
-#include "splats/stratified.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {
@@ -43,9 +42,13 @@ TEST_F(SetLoaderTest, BringsWhatLoadingBrings) {
         EXPECT_TRUE(
             std::equal(wanted.id.begin(), wanted.id.end(), found->set->id.begin(), found->set->id.end()));
         EXPECT_TRUE(std::equal(wanted.color.begin(), wanted.color.end(), found->set->color.begin()));
-        const SplatSet preview = take_rows(wanted, stratified_order(wanted), 5000);
-        EXPECT_TRUE(std::equal(preview.id.begin(), preview.id.end(), found->preview->id.begin(),
-                               found->preview->id.end()));
+        EXPECT_TRUE(found->arranged);
+        EXPECT_EQ(found->sample.set->size(), 5000);
+        EXPECT_EQ(found->sample.tree->rows.size(), 5000u);
+        EXPECT_FLOAT_EQ(found->sample.weight, static_cast<float>(wanted.size()) / 5000.0f);
+        EXPECT_EQ(found->whole.set, found->set);
+        EXPECT_EQ(found->whole.tree->rows.size(), wanted.id.size());
+        EXPECT_EQ(found->whole.weight, 1.0f);
         EXPECT_EQ(found->box.lo, bounds(wanted).lo);
         EXPECT_EQ(status(i).splats, wanted.size());
         EXPECT_FALSE(status(i).loading || status(i).stale);
@@ -228,7 +231,7 @@ class HeldGeneration {
 
 class GrowingSetsTest : public testing::Test {
   protected:
-    static constexpr std::int64_t limit = 1'000'000;
+    static constexpr std::int64_t limit = 1 << 18;
 
     GrowingSetsTest() {
         small.scene.layers.resize(1);
@@ -250,9 +253,9 @@ TEST_F(GrowingSetsTest, ASetIsSeenGrowingAndThenWhole) {
     ASSERT_TRUE(growing);
     const std::uint64_t revision = loader.revision();
     EXPECT_FALSE(growing->set) << "what is not whole is no final picture";
-    EXPECT_GT(growing->preview->size(), 0);
-    EXPECT_GE(growing->splats, growing->preview->size());
-    EXPECT_LE(growing->preview->size(), limit / 16);
+    EXPECT_GT(growing->sample.set->size(), 0);
+    EXPECT_GE(growing->splats, growing->sample.set->size());
+    EXPECT_LE(growing->sample.set->size(), limit / 4);
     EXPECT_TRUE(loader.status(gas()).loading);
     EXPECT_GE(loader.status(gas()).found, growing->splats);
     EXPECT_GT(loader.status(gas()).radius_min, 0.0);

@@ -1,0 +1,96 @@
+#include "viewer/preview_dots.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "look/apply.h"
+
+namespace astrosplat {
+namespace {
+
+FoundSums make_sums(const SumsRequest& request, const Progress& progress) {
+    const Shading& shading = request.shading;
+    ShadedSplats splats = apply_look(*request.source.set, shading.look, shading.inputs, progress);
+    return {merge_splats(request.source, std::move(splats), progress), {}};
+}
+
+}  // namespace
+
+PreviewDots::PreviewDots() : work_(make_sums) {}
+
+/// What is kept of the layer with this set: when a layer before it is hidden, the others stay as they are.
+PreviewDots::Layer& PreviewDots::layer_at(std::size_t index, const LoadedLayer& loaded) {
+    const auto first = layers_.begin() + static_cast<std::ptrdiff_t>(std::min(index, layers_.size()));
+    const auto found =
+        std::find_if(first, layers_.end(), [&](const Layer& l) { return l.sample == loaded.sample; });
+    if (found != layers_.end()) {
+        std::iter_swap(layers_.begin() + static_cast<std::ptrdiff_t>(index), found);
+    } else {
+        layers_.emplace(first);
+        layers_[index].sample = loaded.sample;
+    }
+    layers_[index].whole = loaded.whole;
+    return layers_[index];
+}
+
+void PreviewDots::merge(Layer& layer, const PreviewLayer& wanted) {
+    if (!layer.dots || !(layer.dots->render == wanted.layer.render)) layer.dots.emplace(wanted.layer.render);
+    Shading shading = shading_of(wanted);
+    if (layer.shading == shading) return;
+    layer.shading.reset();  // an exception below must not leave old splats under a new look
+    layer.of_whole.reset();
+    layer.of_sample = merge_splats(layer.sample, apply_look(*layer.sample.set, shading.look, shading.inputs));
+    layer.shading = std::move(shading);
+}
+
+void PreviewDots::cut(std::vector<PreviewLayer>& layers,
+                      std::span<const std::shared_ptr<const LoadedLayer>> loaded, const Camera& camera,
+                      const CutSettings& settings, float pixel_filter) {
+    RenderSettings frame;
+    frame.width = settings.width;
+    frame.height = settings.height;
+    frame.pixel_filter = pixel_filter;
+    for (std::size_t i = 0; i < layers.size(); ++i) merge(layer_at(i, *loaded[i]), layers[i]);
+    layers_.resize(layers.size());
+    std::vector<CutLayer> seen;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const Layer& layer = layers_[i];
+        seen.push_back({&layer.best(), &*layer.dots,
+                        make_projection(layers[i].layer, static_cast<std::uint16_t>(i), camera, frame)});
+    }
+    std::vector<ShadedSplats> splats = cut_splats(seen, settings);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        layers_[i].splats = std::move(splats[i]);
+        layers[i].layer.splats = &layers_[i].splats;
+        layers[i].layer.render.opacity = 1.0f;
+    }
+}
+
+std::optional<SumsRequest> PreviewDots::missing() const {
+    for (const Layer& layer : layers_)
+        if (layer.whole.tree && layer.shading && !layer.of_whole)
+            return SumsRequest{layer.whole, *layer.shading};
+    return std::nullopt;
+}
+
+bool PreviewDots::refine() {
+    const std::optional<SumsRequest> wanted = missing();
+    if (!wanted) return false;
+    work_.want(*wanted);
+    const std::shared_ptr<const FoundSums> found = work_.found(*wanted);
+    if (!found) return false;
+    for (Layer& layer : layers_)
+        if (layer.whole == wanted->source && layer.shading == wanted->shading) layer.of_whole = found;
+    return found->error.empty();
+}
+
+std::vector<double> PreviewDots::kept() const {
+    std::vector<double> shares;
+    for (const Layer& layer : layers_) {
+        const auto rows = static_cast<double>(std::max<std::int64_t>(1, layer.sample.set->size()));
+        shares.push_back(static_cast<double>(layer.of_sample.splats.size()) / rows);
+    }
+    return shares;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,68 @@
+// The splats that a preview draws of each layer: a cut through its tree (merge/README.md), of the whole set
+// where its sums are there, else of a sample, whose sums take no time. In: layers, a camera and a number of
+// dots. Out: shaded splats.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gl/preview.h"
+#include "merge/cut.h"
+#include "viewer/latest_work.h"
+#include "viewer/loaded_layer.h"
+
+namespace astrosplat {
+
+/// What a layer's sums are made of.
+struct SumsRequest {
+    MergeSource source;
+    Shading shading;
+    bool operator==(const SumsRequest&) const = default;
+};
+struct FoundSums {
+    MergedSplats merged;
+    std::string error;
+};
+
+class PreviewDots {
+  public:
+    PreviewDots();
+
+    /// Gives every layer its splats, which stay until the next call, with the layer's opacity in them.
+    /// `loaded`: what each layer is made of. Throws InputError where a look cannot be applied.
+    void cut(std::vector<PreviewLayer>& layers, std::span<const std::shared_ptr<const LoadedLayer>> loaded,
+             const Camera& camera, const CutSettings& settings, float pixel_filter);
+    /// The last cut was of samples where whole sets could be.
+    bool lacks_sums() const { return missing().has_value(); }
+    /// Goes on making them in the background. True: there are more of them now.
+    bool refine();
+    /// Of each layer the share of its splats that the look keeps, 0..1.
+    std::vector<double> kept() const;
+
+  private:
+    struct Layer {
+        MergeSource sample, whole;
+        std::optional<Shading> shading;  // of the sums there are
+        MergedSplats of_sample;
+        std::shared_ptr<const FoundSums> of_whole;  // with an error: there will be none
+        std::optional<DotSettings> dots;
+        ShadedSplats splats;
+
+        const MergedSplats& best() const {
+            return of_whole && of_whole->error.empty() ? of_whole->merged : of_sample;
+        }
+    };
+
+    Layer& layer_at(std::size_t index, const LoadedLayer& loaded);
+    void merge(Layer& layer, const PreviewLayer& wanted);
+    std::optional<SumsRequest> missing() const;
+
+    std::vector<Layer> layers_;
+    LatestWork<SumsRequest, FoundSums> work_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,355 @@
+// Trees, sums and cuts in closed form: light, second moments and transmittance stay, whatever is merged.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <vector>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/shared_maths.h"
+#include "merge/cut.h"
+#include "render/falloff.h"
+#include "render/render.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int width = 256, height = 256;
+
+float uniform(std::uint32_t i, std::uint32_t which) {
+    return shared::as_uniform(shared::as_hash(7u, i, 0u, which));
+}
+
+/// A set and its splats, which are the same: the look that changes nothing.
+struct Cloud {
+    std::shared_ptr<SplatSet> set = std::make_shared<SplatSet>();
+    ShadedSplats splats;
+
+    void add(const glm::vec3& position, const glm::vec3& color, float alpha, float radius) {
+        const auto id = static_cast<std::uint64_t>(set->size());
+        set->position.push_back(position);
+        set->color.push_back(color);
+        set->alpha.push_back(alpha);
+        set->distance.push_back(0.0f);
+        set->id.push_back(id);
+        splats.position.push_back(position);
+        splats.color.push_back(color);
+        splats.alpha.push_back(alpha);
+        splats.radius.push_back(radius);
+        splats.id.push_back(id);
+    }
+    MergedSplats merged(float weight = 1.0f) const {
+        const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
+        return merge_splats({set, tree, weight}, splats);
+    }
+};
+
+/// In [-1, 1]^3 scaled by `extent`.
+Cloud random_cloud(std::uint32_t count, const glm::vec3& extent, float radius, float alpha) {
+    Cloud cloud;
+    for (std::uint32_t i = 0; i < count; ++i)
+        cloud.add(extent * (2.0f * glm::vec3(uniform(i, 0), uniform(i, 1), uniform(i, 2)) - 1.0f),
+                  {uniform(i, 3), 0.5f, uniform(i, 4) * uniform(i, 4)}, alpha * (0.5f + uniform(i, 5)),
+                  radius * (0.5f + uniform(i, 6)));
+    return cloud;
+}
+
+/// Looks along -z at all of [-1, 1]^3.
+Camera camera(double half_height = 1.5) {
+    CameraParams params;
+    params.projection = Projection::orthographic;
+    params.position = glm::dvec3(0.0, 0.0, 10.0);
+    params.height = 2.0 * half_height;
+    return make_camera(params, width, height, {});
+}
+
+LayerRender render_as(Blend blend) {
+    LayerRender render;
+    render.blend = blend;
+    return render;
+}
+
+ShadedSplats cut_of(const MergedSplats& merged, std::int64_t budget, const LayerRender& render = {},
+                    const Camera& seen_by = camera(), float least_px = 0.0f) {
+    RenderLayer layer;
+    layer.render = render;
+    RenderSettings picture;
+    picture.width = width;
+    picture.height = height;
+    const DotSettings dots(render);
+    const CutLayer cut{&merged, &dots, make_projection(layer, 0, seen_by, picture)};
+    return std::move(cut_splats(std::span(&cut, 1), {budget, least_px, width, height})[0]);
+}
+
+Image picture_of(const ShadedSplats& splats, Blend blend) {
+    RenderLayer layer;
+    layer.splats = &splats;
+    layer.render.blend = blend;
+    RenderSettings settings;
+    settings.width = width;
+    settings.height = height;
+    return render(std::span(&layer, 1), camera(), nullptr, settings).beauty;
+}
+
+glm::dvec3 light_of(const ShadedSplats& splats) {
+    glm::dvec3 sum(0.0);
+    for (std::size_t i = 0; i < splats.alpha.size(); ++i)
+        sum += double(splats.alpha[i]) * double(splats.radius[i]) * double(splats.radius[i]) *
+               glm::dvec3(splats.color[i]);
+    return sum;
+}
+
+TEST(Merge, ATreeHasEveryRowOnceAndChildrenOfBoth) {
+    const Cloud cloud = random_cloud(5000, {1.0f, 0.1f, 1.0f}, 0.01f, 0.5f);
+    const MergeTree tree = build_merge_tree(*cloud.set);
+    std::vector<std::int64_t> rows(tree.rows.begin(), tree.rows.end());
+    std::sort(rows.begin(), rows.end());
+    for (std::int64_t i = 0; i < 5000; ++i) ASSERT_EQ(rows[i], i);
+    ASSERT_EQ(tree.root_count(), 1);
+    EXPECT_EQ(tree.levels.back(), static_cast<std::int64_t>(tree.nodes.size()));
+    for (const MergeNode& node : tree.nodes) {
+        if (node.is_leaf()) {
+            EXPECT_LE(node.end - node.first, MergeTree::leaf_rows);
+            continue;
+        }
+        EXPECT_EQ(tree.nodes[node.children].first, node.first);
+        EXPECT_EQ(tree.nodes[node.children].end, tree.nodes[node.children + 1].first);
+        EXPECT_EQ(tree.nodes[node.children + 1].end, node.end);
+    }
+}
+
+TEST(Merge, SplatsAtOnePlaceAreALeaf) {
+    Cloud cloud;
+    for (int i = 0; i < 100; ++i) cloud.add({1.0f, 2.0f, 3.0f}, glm::vec3(0.5f), 0.1f, 0.5f);
+    EXPECT_EQ(build_merge_tree(*cloud.set).nodes.size(), 1u);
+    EXPECT_TRUE(build_merge_tree(SplatSet()).nodes.empty());
+}
+
+TEST(Merge, BuildingCanBeCancelled) {
+    const std::atomic<bool> cancelled{true};
+    const Cloud cloud = random_cloud(1000, glm::vec3(1.0f), 0.1f, 0.5f);
+    EXPECT_THROW(build_merge_tree(*cloud.set, Progress{{}, &cancelled}), Cancelled);
+    const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*cloud.set));
+    EXPECT_THROW(merge_splats({cloud.set, tree, 1.0f}, cloud.splats, Progress{{}, &cancelled}), Cancelled);
+}
+
+TEST(Merge, TheRootHasLightCentreAndSecondMomentsOfAll) {
+    const Cloud cloud = random_cloud(3000, {1.0f, 0.3f, 0.6f}, 0.02f, 0.5f);
+    double cover = 0.0, own = 0.0;
+    glm::dvec3 centre(0.0), spread(0.0), skew(0.0);
+    const auto each = [&](const auto& visit) {
+        for (std::size_t i = 0; i < 3000; ++i) {
+            const double r = cloud.splats.radius[i], c = double(cloud.splats.alpha[i]) * r * r;
+            visit(c, r, glm::dvec3(cloud.splats.position[i]));
+        }
+    };
+    each([&](double c, double r, const glm::dvec3& p) { cover += c, own += c * r * r, centre += c * p; });
+    centre /= cover;
+    each([&](double c, double, const glm::dvec3& p) {
+        const glm::dvec3 d = p - centre;
+        spread += c * d * d;
+        skew += c * glm::dvec3(d.y * d.z, d.z * d.x, d.x * d.y);
+    });
+    const NodeSums root = cloud.merged().sums[0];
+    EXPECT_NEAR(root.cover, cover, 1e-5 * cover);
+    EXPECT_NEAR(root.own, own / cover, 1e-5 * own / cover);
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(root.light[k], light_of(cloud.splats)[k], 1e-5 * root.light[k]);
+        EXPECT_NEAR(root.centre[k], centre[k], 1e-5);
+        EXPECT_NEAR(root.spread[k], spread[k] / cover, 1e-5);
+        EXPECT_NEAR(root.skew[k], skew[k] / cover, 1e-5);
+    }
+}
+
+TEST(Merge, TheLightOfEveryCutIsThatOfTheWhole) {
+    const Cloud cloud = random_cloud(20000, {1.0f, 0.2f, 1.0f}, 0.01f, 0.5f);
+    const MergedSplats merged = cloud.merged();
+    const glm::dvec3 whole = light_of(cloud.splats);
+    for (const std::int64_t budget : {1, 10, 300, 4000, 20000}) {
+        const ShadedSplats cut = cut_of(merged, budget, render_as(Blend::add));
+        EXPECT_LE(cut.size(), budget);
+        EXPECT_GE(double(cut.size()), 0.9 * double(budget));
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(light_of(cut)[k] / whole[k], 1.0, 1e-5) << budget;
+    }
+}
+
+TEST(Merge, ACutThatHasRoomForAllIsAll) {
+    const Cloud cloud = random_cloud(3000, glm::vec3(1.0f), 0.02f, 0.5f);
+    const ShadedSplats cut = cut_of(cloud.merged(), 3000);
+    ASSERT_EQ(cut.size(), 3000);
+    std::vector<float> wanted(cloud.splats.radius.begin(), cloud.splats.radius.end()),
+        found(cut.radius.begin(), cut.radius.end());
+    std::sort(wanted.begin(), wanted.end());
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, wanted);
+}
+
+TEST(Merge, NothingIsDividedThatLooksSmallEnough) {
+    const Cloud cloud = random_cloud(20000, glm::vec3(0.05f), 0.001f, 0.5f);
+    const std::int64_t fine = cut_of(cloud.merged(), 20000, {}, camera(), 1.5f).size();
+    const std::int64_t coarse = cut_of(cloud.merged(), 20000, {}, camera(), 6.0f).size();
+    EXPECT_LT(fine, 10000);  // the cloud is 9 px wide
+    EXPECT_LT(coarse, fine / 4);
+    EXPECT_GT(coarse, 1);
+}
+
+TEST(Merge, WhatTheFrameDoesNotShowTakesNoDots) {
+    const Cloud cloud = random_cloud(20000, glm::vec3(1.0f), 0.001f, 0.5f);
+    const ShadedSplats cut = cut_of(cloud.merged(), 2000, {}, camera(0.1));
+    EXPECT_GT(cut.size(), 100);
+    for (const glm::vec3& p : cut.position) {
+        EXPECT_LT(std::fabs(p.x), 0.3f);
+        EXPECT_LT(std::fabs(p.y), 0.3f);
+    }
+}
+
+/// Mean over the middle of a picture, where a cloud's edges do not reach.
+double mean_of_middle(const Image& picture, int channel) {
+    double sum = 0.0;
+    int count = 0;
+    for (int y = 3 * height / 8; y < 5 * height / 8; ++y)
+        for (int x = 3 * width / 8; x < 5 * width / 8; ++x, ++count) sum += picture.at(x, y)[channel];
+    return sum / count;
+}
+
+TEST(Merge, AColumnLetsThroughWhatItDidUnderEveryBlend) {
+    for (const float alpha : {0.05f, 0.3f, 0.6f}) {
+        const Cloud cloud = random_cloud(12000, glm::vec3(1.0f), 0.03f, alpha);
+        const MergedSplats merged = cloud.merged();
+        for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::hybrid, Blend::absorb}) {
+            SCOPED_TRACE(testing::Message() << "alpha " << alpha << ", blend " << static_cast<int>(blend));
+            const Image whole = picture_of(cloud.splats, blend);
+            const Image cut = picture_of(cut_of(merged, 1500, render_as(blend)), blend);
+            for (int k = 0; k < 4; ++k) {
+                const double wanted = mean_of_middle(whole, k);
+                EXPECT_NEAR(mean_of_middle(cut, k), wanted, 0.03 * wanted) << k;
+            }
+        }
+    }
+}
+
+TEST(Merge, OneSplatIsItsOwnDotUnderEveryBlend) {
+    for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::lighten, Blend::hybrid}) {
+        for (const float alpha : {0.01f, 0.5f, 0.97f}) {
+            Cloud cloud;
+            cloud.add({0.2f, 0.1f, 0.0f}, {0.9f, 0.4f, 0.1f}, alpha, 0.25f);
+            const Dot dot = make_dot(DotSettings(render_as(blend)), cloud.merged().sums[0], 0.0, 0.3f);
+            EXPECT_NEAR(dot.radius, 0.25, 1e-6);
+            EXPECT_NEAR(dot.alpha, alpha, 2e-4);
+            EXPECT_NEAR(dot.color.x * dot.alpha, 0.9f * alpha, 3e-4);
+            EXPECT_NEAR(dot.color.z * dot.alpha, 0.1f * alpha, 3e-4);
+        }
+    }
+}
+
+TEST(Merge, OpacityOfTheLayerIsInTheDots) {
+    const Cloud cloud = random_cloud(500, glm::vec3(0.1f), 0.01f, 0.1f);
+    LayerRender render;
+    render.opacity = 0.5f;
+    const MergedSplats merged = cloud.merged();
+    EXPECT_NEAR(cut_of(merged, 1, render).alpha[0] / cut_of(merged, 1).alpha[0], 0.5, 0.02);
+    EXPECT_EQ(cut_of(merged, 500, render).alpha[0], 0.5f * cut_of(merged, 500).alpha[0]);
+}
+
+TEST(Merge, TheDepthOfADotAndItsAlphaAreInverse) {
+    for (const auto shape : {Falloff::Shape::constant, Falloff::Shape::linear, Falloff::Shape::trapezoid,
+                             Falloff::Shape::gaussian, Falloff::Shape::exponential}) {
+        Falloff falloff;
+        falloff.shape = shape;
+        const DepthTable table(falloff);
+        for (const double alpha : {1e-6, 1e-3, 0.1, 0.4, 0.8, 0.99})
+            EXPECT_NEAR(table.alpha(table.depth(alpha)) / alpha, 1.0, 1e-3);
+        EXPECT_NEAR(table.depth(1e-6), 1e-6 * falloff_integral(falloff), 1e-10);
+        EXPECT_EQ(table.alpha(table.depth(1.0)), 1.0);
+    }
+    Falloff disc;
+    disc.shape = Falloff::Shape::constant;
+    EXPECT_NEAR(DepthTable(disc).depth(0.5), 3.14159265 * std::log(2.0), 1e-3);
+}
+
+TEST(Merge, AThreadOfSplatsIsARowOfDots) {
+    Cloud cloud;
+    for (std::uint32_t i = 0; i < 4000; ++i) {
+        const float along = 2.0f * uniform(i, 0) - 1.0f;
+        cloud.add({along, 0.5f * along, 0.0f}, glm::vec3(0.5f), 0.2f, 0.004f);
+    }
+    const ShadedSplats cut = cut_of(cloud.merged(), 64);
+    EXPECT_GE(cut.size(), 48);
+    for (std::size_t i = 0; i < cut.radius.size(); ++i) {
+        EXPECT_NEAR(cut.position[i].y, 0.5f * cut.position[i].x, 1e-4);
+        EXPECT_LT(cut.radius[i], 0.1f);  // a dot for every 0.035 of the length
+    }
+}
+
+TEST(Merge, SplatsThatAbsorbAreNotMergedWithLight) {
+    Cloud cloud = random_cloud(1000, glm::vec3(1.0f), 0.02f, 0.5f);
+    for (std::size_t i = 0; i < 1000; i += 3)
+        cloud.set->color[i] = cloud.splats.color[i] = {-0.5f, -1.0f, -2.0f};
+    cloud.set->absorbs = true;
+    const ShadedSplats cut = cut_of(cloud.merged(), 2);
+    ASSERT_EQ(cut.size(), 2);
+    EXPECT_GT(cut.color[0].x, 0.0f);
+    EXPECT_NEAR(cut.color[1].x, -0.5f, 1e-6);
+    EXPECT_NEAR(cut.color[1].z, -2.0f, 1e-6);
+}
+
+TEST(Merge, WhatTheLookDropsIsNotThere) {
+    Cloud cloud = random_cloud(2000, glm::vec3(1.0f), 0.02f, 0.5f);
+    Cloud kept;
+    for (std::size_t i = 0; i < 2000; ++i)
+        if (uniform(static_cast<std::uint32_t>(i), 9) < 0.4f) {
+            kept.add(cloud.splats.position[i], cloud.splats.color[i], cloud.splats.alpha[i],
+                     cloud.splats.radius[i]);
+            kept.splats.id.back() = i;
+        }
+    cloud.splats = kept.splats;
+    const MergedSplats merged = cloud.merged();
+    EXPECT_NEAR(merged.sums[0].light.y / light_of(kept.splats).y, 1.0, 1e-5);
+    EXPECT_EQ(cut_of(merged, 2000).size(), kept.set->size());
+    cloud.splats = ShadedSplats();
+    EXPECT_EQ(cut_of(cloud.merged(), 100).size(), 0);
+}
+
+TEST(Merge, ASampleStandsForTheWhole) {
+    const Cloud cloud = random_cloud(64000, {1.0f, 0.2f, 1.0f}, 0.02f, 0.2f);
+    const MergeTree tree = build_merge_tree(*cloud.set);
+    const SplatSet taken = sample_tree(tree, *cloud.set, 4000);
+    EXPECT_EQ(taken.size(), 4000);
+    EXPECT_TRUE(std::is_sorted(taken.id.begin(), taken.id.end()));
+    Cloud sample;
+    for (const std::uint64_t id : taken.id)
+        sample.add(cloud.splats.position[id], cloud.splats.color[id], cloud.splats.alpha[id],
+                   cloud.splats.radius[id]);
+    const ShadedSplats cut = cut_of(sample.merged(16.0f), 4000, render_as(Blend::add));
+    EXPECT_LT(cut.size(), 1000) << "no splat of a sample is shown by itself";
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(light_of(cut)[k] / light_of(cloud.splats)[k], 1.0, 0.03);
+}
+
+TEST(Merge, TheSameBitsForAnyThreadCount) {
+    const Cloud cloud = random_cloud(50000, {1.0f, 0.1f, 1.0f}, 0.01f, 0.5f);
+    const auto bytes = [](const auto& buffer) {
+        return std::string_view(reinterpret_cast<const char*>(buffer.data()),
+                                buffer.size() * sizeof(buffer[0]));
+    };
+    set_thread_count(1);
+    const MergedSplats one = cloud.merged();
+    const ShadedSplats cut_by_one = cut_of(one, 5000);
+    for (const int threads : {2, 5}) {
+        set_thread_count(threads);
+        const MergedSplats many = cloud.merged();
+        EXPECT_EQ(bytes(many.tree->rows), bytes(one.tree->rows));
+        EXPECT_EQ(bytes(many.sums), bytes(one.sums));
+        const ShadedSplats cut = cut_of(many, 5000);
+        EXPECT_EQ(bytes(cut.position), bytes(cut_by_one.position));
+        EXPECT_EQ(bytes(cut.color), bytes(cut_by_one.color));
+        EXPECT_EQ(bytes(cut.alpha), bytes(cut_by_one.alpha));
+    }
+    set_thread_count(0);
+}
+
+}  // namespace
+}  // namespace astrosplat

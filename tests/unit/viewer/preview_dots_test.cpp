@@ -1,0 +1,195 @@
+// What a preview draws: all splats where there is room, what is kept between draws never shows, samples first
+// and whole sets once their sums are there.
+#include "viewer/preview_dots.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <vector>
+
+#include "core/error.h"
+#include "output/write.h"
+#include "render/render.h"
+#include "scene/layer_setup.h"
+#include "sets/load_source.h"
+#include "support/small_scene.h"
+#include "viewer/cpu_preview.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr int width = 160, height = 100;
+constexpr std::int64_t all = 1'000'000;
+
+class PreviewDotsTest : public testing::Test {
+  protected:
+    explicit PreviewDotsTest(std::int64_t sample_limit = all) {
+        for (const LayerParams& params : small.scene.layers) {
+            const auto set = std::make_shared<const SplatSet>(load_source(params.source, params.name));
+            PreviewLayer layer;
+            layer.layer = render_layer(params);
+            layer.set = set;
+            layer.look = params.look;
+            layer.inputs = look_inputs(params);
+            layers.push_back(layer);
+            loaded.push_back(std::make_shared<const LoadedLayer>(
+                whole_layer(set, params.source, params.name, sample_limit)));
+        }
+    }
+
+    Camera camera() const {
+        Bounds box;
+        box.add({-5.0, -5.0, -5.0});
+        box.add({5.0, 5.0, 5.0});
+        return make_camera(small.scene.camera, width, height, box);
+    }
+    CutSettings settings() const { return {budget, least_px, width, height}; }
+    Image draw(PreviewDots& dots) const {
+        std::vector<PreviewLayer> seen = layers;
+        dots.cut(seen, loaded, camera(), settings(), 0.5f);
+        CpuPreview preview;
+        return preview.draw(seen, camera(), nullptr, width, height, 0.5f);
+    }
+    std::string hash(PreviewDots& dots) const { return pixel_hash(draw(dots)); }
+    std::string redrawn() const {
+        PreviewDots dots;
+        return hash(dots);
+    }
+    Image rendered() const {
+        std::vector<ShadedSplats> shaded;
+        std::vector<RenderLayer> wanted;
+        for (const PreviewLayer& layer : layers) {
+            shaded.push_back(apply_look(*layer.set, layer.look, layer.inputs));
+            wanted.push_back(layer.layer);
+        }
+        for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i].splats = &shaded[i];
+        RenderSettings picture;
+        picture.width = width;
+        picture.height = height;
+        return render(wanted, camera(), nullptr, picture).beauty;
+    }
+
+    SmallScene small;
+    std::vector<PreviewLayer> layers;
+    std::vector<std::shared_ptr<const LoadedLayer>> loaded;
+    std::int64_t budget = all;
+    float least_px = 0.0f;
+};
+
+void wait(PreviewDots& dots) {
+    while (dots.lacks_sums()) {
+        dots.refine();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+}
+
+double light_of(const Image& picture) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        if (i % 4 != 3) sum += picture.pixels[i];
+    return sum;
+}
+
+TEST_F(PreviewDotsTest, WithRoomForAllSplatsTheFrameIsTheRenderers) {
+    PreviewDots dots;
+    const Image picture = draw(dots), wanted = rendered();
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        ASSERT_NEAR(picture.pixels[i], wanted.pixels[i], 1e-5f * std::max(1.0f, wanted.pixels[i]));
+}
+
+TEST_F(PreviewDotsTest, AFewDotsHaveTheLightOfAll) {
+    budget = layers[0].set->size() / 20;
+    PreviewDots dots;
+    EXPECT_NEAR(light_of(draw(dots)) / light_of(rendered()), 1.0, 0.03);
+}
+
+TEST_F(PreviewDotsTest, WhatIsKeptNeverShows) {
+    PreviewDots kept;
+    std::vector<std::string> seen = {hash(kept)};
+    const auto changed = [&](const auto& change) {
+        change();
+        seen.push_back(hash(kept));
+        EXPECT_EQ(seen.back(), redrawn()) << "change " << seen.size() - 1;
+        EXPECT_NE(seen.back(), seen[seen.size() - 2]) << "change " << seen.size() - 1;
+    };
+    changed([&] { budget = 2000; });
+    changed([&] { budget = 500; });
+    changed([&] { layers[0].look.grade.gain = 0.5f; });
+    changed([&] { small.scene.camera.position = glm::dvec3(0.0, 9.0, 2.0); });
+    changed([&] { layers[1].layer.render.blend = Blend::add; });
+    changed([&] { layers[1].layer.render.opacity = 0.4f; });
+    changed([&] { layers[1].layer.render.falloff.shape = Falloff::Shape::linear; });
+    changed([&] { layers[1].inputs.column = ColumnLaw::sum; });
+    changed([&] { budget = 5000; });
+    changed([&] {
+        std::swap(layers[0], layers[1]);
+        std::swap(loaded[0], loaded[1]);
+        layers[0].layer.render.isolate = true;
+    });
+    changed([&] {
+        layers.erase(layers.begin());
+        loaded.erase(loaded.begin());
+    });
+}
+
+TEST_F(PreviewDotsTest, LargeSplatsAreNotSplitUp) {
+    const std::string wanted = redrawn();
+    for (PreviewLayer& layer : layers) layer.layer.render.lod.max_px = 4.0f;
+    EXPECT_EQ(redrawn(), wanted);
+}
+
+TEST_F(PreviewDotsTest, ALookThatCannotBeAppliedIsRefusedUntilItCan) {
+    PreviewDots dots;
+    const std::string before = hash(dots);
+    layers[0].look.noise.assign(9, Noise{});
+    for (Noise& noise : layers[0].look.noise) noise.jitter = 0.1f;
+    for (int i = 0; i < 2; ++i) EXPECT_THROW(hash(dots), InputError);
+    layers[0].look.noise.clear();
+    EXPECT_EQ(hash(dots), before);
+}
+
+TEST_F(PreviewDotsTest, NoLayersAndEmptySets) {
+    const auto nothing = std::make_shared<const SplatSet>();
+    layers.pop_back();
+    loaded.pop_back();
+    layers[0].set = nothing;
+    loaded[0] = std::make_shared<const LoadedLayer>(whole_layer(nothing, {}, "nothing", all));
+    PreviewDots dots;
+    EXPECT_EQ(light_of(draw(dots)), 0.0);
+    layers.clear();
+    loaded.clear();
+    EXPECT_EQ(light_of(draw(dots)), 0.0);
+}
+
+class SampledDotsTest : public PreviewDotsTest {
+  protected:
+    SampledDotsTest() : PreviewDotsTest(1500) {}
+    void arrange() {
+        for (auto& layer : loaded)
+            if (!layer->arranged) layer = std::make_shared<const LoadedLayer>(arranged_layer(*layer, {}));
+    }
+};
+
+TEST_F(SampledDotsTest, ASampleComesFirstAndTheWholeSetOnceItsSumsAreThere) {
+    ASSERT_GT(layers[0].set->size(), 1500);
+    budget = 3000;
+    PreviewDots dots;
+    EXPECT_NEAR(light_of(draw(dots)) / light_of(rendered()), 1.0, 0.15);
+    EXPECT_FALSE(dots.lacks_sums()) << "there is no tree of the whole";
+    arrange();
+    const std::string sampled = hash(dots);
+    wait(dots);
+    const Image whole = draw(dots);
+    EXPECT_NE(pixel_hash(whole), sampled);
+    EXPECT_FALSE(dots.refine()) << "nothing is missing";
+    EXPECT_NEAR(light_of(whole) / light_of(rendered()), 1.0, 0.03);
+    layers[0].look.grade.gain = 0.5f;
+    const std::string edited = hash(dots);
+    wait(dots);
+    EXPECT_NE(hash(dots), edited);
+}
+
+}  // namespace
+}  // namespace astrosplat
