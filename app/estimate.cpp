@@ -34,7 +34,9 @@ std::int64_t splats_of(const SetCache& cache, const SourceParams& source) {
     if (!bodies && !source.voxels && source.voxel_size <= 0.0)
         return source.splats > 0 ? source.splats : source.count;
     const std::vector<TexturedMesh> meshes = load_meshes(cache, source, Progress{{}, &interrupted()});
-    if (bodies) return std::min(expected_dots(meshes), source.splats > 0 ? source.splats : most_splats);
+    if (bodies)
+        return std::min(expected_dots(meshes, source.structure),
+                        source.splats > 0 ? source.splats : most_splats);
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
     const double max_distance = resolved_max_distance(source, box);

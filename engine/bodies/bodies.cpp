@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
 #include "bodies/bands.h"
+#include "bodies/dot_count.h"
 #include "bodies/dust.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_light.h"
@@ -19,14 +22,13 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "image/blur.h"
+#include "image/area.h"
 #include "image/channels.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr double dust_of_disks = 0.8;  // all of it makes lanes edge-on that are deeper than real ones
-constexpr int most_pictures = 255;     // ids hold 8 bits of their number
+constexpr int most_pictures = 255;  // ids hold 8 bits of their number
 constexpr int picture_bit = 56, instance_bit = 42;
 constexpr int most_faces = 64;             // that show one dot: ids hold 6 bits of which
 constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a dot comes at most
@@ -75,7 +77,7 @@ PictureSplats make_dots(const PictureLight& picture, const UvSurface& surface, c
         make_placement(without_stars, params, surface.texels_per_unit(), surface.flat(), seed);
     const Opacity opacity{static_cast<float>(params.opacity), static_cast<float>(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
-    const double dust = params.dust ? *params.dust : params.kind == StructureKind::disk ? dust_of_disks : 0.0;
+    const double dust = dust_of(params);
     Image emission = make_image(dust > 0.0 ? rest.width : 0, rest.height, 3);
     PictureSplats dots;
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
@@ -203,33 +205,76 @@ void append(SplatSet rows, SplatSet& set) {
 
 }  // namespace
 
-std::int64_t expected_dots(std::span<const TexturedMesh> meshes) {
-    std::int64_t texels = 0;
-    for (const PictureOnMesh& picture : pictures_of(meshes)) texels += texels_of(picture.texture());
-    return texels * 3 / 2;
+std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const StructureParams& params) {
+    double dots = 0.0;
+    for (const PictureOnMesh& picture : pictures_of(meshes)) dots += expected_dots(picture.texture(), params);
+    return static_cast<std::int64_t>(dots);
 }
 
-std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes) {
-    constexpr std::int64_t bytes_per_texel = 175, bytes_per_dot = 140;  // measured
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots) {
+    // Measured. Blocks that wait for their next use are a part of it.
+    constexpr std::int64_t bytes_a_texel = 120, bytes_a_dot = 44, waiting_bytes = std::int64_t{256} << 20;
     std::int64_t largest = 0;
     for (const PictureOnMesh& picture : pictures_of(meshes))
         largest = std::max(largest, texels_of(picture.texture()));
-    return largest * bytes_per_texel + expected_dots(meshes) * bytes_per_dot;
+    return largest * bytes_a_texel + dots * bytes_a_dot + std::min(waiting_bytes, largest * bytes_a_texel);
 }
 
-void reduce_pictures(std::vector<TexturedMesh>& meshes, const BodiesLimit& limit,
-                     const std::string& layer_name) {
-    constexpr std::int64_t smallest_px = 64;
-    for (;;) {
-        const bool few = limit.most_dots <= 0 || expected_dots(meshes) <= limit.most_dots;
-        if (few && bodies_memory_bytes(meshes) <= limit.room_bytes) return;
-        Texture* largest = nullptr;
-        for (TexturedMesh& mesh : meshes)
-            for (Texture& texture : mesh.textures)
-                if (!largest || texels_of(texture) > texels_of(*largest)) largest = &texture;
-        if (!largest || std::min(largest->image.width, largest->image.height) < 2 * smallest_px) return;
+namespace {
+
+// How much of the limit is used; more than 1 is too much.
+double used_share(std::span<const TexturedMesh> meshes, const StructureParams& params,
+                  const BodiesLimit& limit) {
+    const std::int64_t dots = expected_dots(meshes, params);
+    const double memory = static_cast<double>(bodies_memory_bytes(meshes, dots)) /
+                          static_cast<double>(std::max<std::int64_t>(1, limit.room_bytes));
+    if (limit.most_dots <= 0) return memory;
+    return std::max(memory, static_cast<double>(dots) / static_cast<double>(limit.most_dots));
+}
+
+Texture* largest_texture(std::vector<TexturedMesh>& meshes) {
+    Texture* largest = nullptr;
+    for (TexturedMesh& mesh : meshes)
+        for (Texture& texture : mesh.textures)
+            if (!largest || texels_of(texture) > texels_of(*largest)) largest = &texture;
+    return largest;
+}
+
+// The picture at `area` of its texels, but no less than 64 px a side.
+Image at_area(const Image& image, double area) {
+    constexpr double smallest_px = 64.0;
+    const auto width = static_cast<double>(image.width), height = static_cast<double>(image.height);
+    const double least = std::min(1.0, smallest_px / std::min(width, height));
+    const double side = std::clamp(std::sqrt(area / (width * height)), least, 1.0);
+    return reduced_by_area(image, std::llround(side * width), std::llround(side * height));
+}
+
+// Reduces one picture until the limit is just kept, as far as this one can do it.
+void reduce(Texture& texture, double first_share, const std::function<double()>& share_now) {
+    constexpr int most_tries = 8;
+    constexpr double aimed_at = 0.93, enough = 0.88;
+    const Image whole = std::move(texture.image);
+    double area = static_cast<double>(whole.width * whole.height), share = first_share;
+    for (int i = 0; i < most_tries && (share > 1.0 || share < enough); ++i) {
+        area = std::min(area * aimed_at / share, static_cast<double>(whole.width * whole.height));
+        texture.image = at_area(whole, area);
+        share = share_now();
+    }
+}
+
+}  // namespace
+
+void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
+                     const BodiesLimit& limit, const std::string& layer_name) {
+    const auto share_now = [&] { return used_share(meshes, params, limit); };
+    std::vector<const Texture*> reduced;
+    for (double share = share_now(); share > 1.0; share = share_now()) {
+        Texture* const largest = largest_texture(meshes);
+        if (!largest || std::ranges::count(reduced, largest) > 0) return;
         const std::int64_t width = largest->image.width, height = largest->image.height;
-        largest->image = halved(largest->image);
+        reduce(*largest, share, share_now);
+        reduced.push_back(largest);
+        const bool few = limit.most_dots <= 0 || expected_dots(meshes, params) < limit.most_dots * 4 / 5;
         const std::string why =
             few ? fmt::format("would not fit into {} of memory",
                               human_bytes(static_cast<double>(limit.room_bytes)))
@@ -241,7 +286,8 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const BodiesLimit& limit
 
 SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
                      const std::string& layer_name, const Progress& progress) {
-    claim_memory(bodies_memory_bytes(meshes), fmt::format("making bodies for layer '{}'", layer_name));
+    claim_memory(bodies_memory_bytes(meshes, expected_dots(meshes, params)),
+                 fmt::format("making bodies for layer '{}'", layer_name));
     SplatSet set;
     const std::vector<PictureOnMesh> pictures = pictures_of(meshes);
     for (std::size_t i = 0; i < pictures.size(); ++i) {

@@ -16,21 +16,22 @@
 
 namespace astrosplat {
 
-/// Dots that make_bodies() will make, about: 1.2 to 1.8 a texel were seen.
-std::int64_t expected_dots(std::span<const TexturedMesh> meshes);
+/// Dots that make_bodies() will make, within some 5 %: told from samples of the pictures.
+std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const StructureParams& params);
 
-/// Bytes that make_bodies() will take at its peak beside the meshes and pictures, within about 15 %.
-std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes);
+/// Bytes that make_bodies() will take at its peak beside the meshes and pictures for so many dots, within
+/// about 15 %.
+std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots);
 
 struct BodiesLimit {
     std::int64_t room_bytes = 0;
     std::int64_t most_dots = 0;  // 0: as many as there are
 };
 
-/// Halves the largest picture, again and again, until make_bodies() keeps to the limit, as far as that can be
-/// told before; a warning says so.
-void reduce_pictures(std::vector<TexturedMesh>& meshes, const BodiesLimit& limit,
-                     const std::string& layer_name);
+/// Reduces the largest picture by an area filter until make_bodies() just keeps to the limit, as far as that
+/// can be told before; then the next one where that does not suffice. A warning says so.
+void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
+                     const BodiesLimit& limit, const std::string& layer_name);
 
 /// Every picture of every mesh by itself; its pixels are given back once they are read. `params.kind` is not
 /// columns. Announces its memory before taking it and says at detail level what was found. The same bits with

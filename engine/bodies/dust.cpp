@@ -65,6 +65,18 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
     return gaussian_blur(cells, share_blur_cells);
 }
 
+// Share of the dots that are kept.
+float kept_dust(float depth) {
+    const float kept = std::min(1.0f, depth / certain_depth);
+    return kept > 1e-3f ? kept : 0.0f;
+}
+
+// Optical depth of a sheet that leaves `transmittance` of all light, with a share of it before the sheet.
+float sheet_depth(float transmittance, float before) {
+    const float behind = (transmittance - before) / std::max(1e-6f, 1.0f - before);
+    return -as_log(std::clamp(behind, least_transmittance, 1.0f));
+}
+
 class DustRow {
   public:
     DustRow(const Image& transmittance, const Image& before, double amount, const Placement& placement)
@@ -82,9 +94,8 @@ class DustRow {
         const float y = (static_cast<float>(row) + random(shared::PURPOSE_JITTER_Y)) * spacing;
         if (x >= static_cast<float>(transmittance_.width) || y >= static_cast<float>(transmittance_.height))
             return;
-        const float depth = amount_ * depth_at(x, y);
-        const float kept = std::min(1.0f, depth / certain_depth);
-        if (!(kept > 1e-3f) || random(shared::PURPOSE_DENSITY) >= kept) return;
+        const float depth = amount_ * depth_at(x, y), kept = kept_dust(depth);
+        if (!(kept > 0.0f) || random(shared::PURPOSE_DENSITY) >= kept) return;
         // The optical depth of a dot of Gaussian s is 2 pi sigma^2 Li2(s), of which s + s^2 / 4 is enough.
         const float share = depth / kept / (dots_each_texel * footprint);
         const float s = std::min(0.9f, 2.0f * (std::sqrt(1.0f + share) - 1.0f));
@@ -126,8 +137,7 @@ class DustRow {
                     cell_y = y / static_cast<float>(share_cell_px);
         const float f =
             bilinear(before_, 0, cell_x, cell_y) / std::max(1e-20f, bilinear(before_, 1, cell_x, cell_y));
-        const float behind = (t - f) / std::max(1e-6f, 1.0f - f);
-        return -as_log(std::clamp(behind, least_transmittance, 1.0f));
+        return sheet_depth(t, f);
     }
 
     void push(float x, float y, std::uint32_t random, ChunkDots& out) {
@@ -159,6 +169,16 @@ Image transmittance_of(const Image& brightest, const Image& emission, const Imag
         ratio.pixels[i] = 1.0f - (1.0f - ratio.pixels[i]) * alpha.pixels[i];
     });
     return ratio;
+}
+
+double dust_of(const StructureParams& params) {
+    constexpr double dust_of_disks = 0.8;  // all of it makes lanes edge-on that are deeper than real ones
+    return params.dust ? *params.dust : params.kind == StructureKind::disk ? dust_of_disks : 0.0;
+}
+
+float expected_dust_dots(float transmittance, double amount) {
+    constexpr float usual_before = 0.37f;  // .29 to .455 were measured
+    return dots_each_texel * kept_dust(static_cast<float>(amount) * sheet_depth(transmittance, usual_before));
 }
 
 void add_dust(const Image& transmittance, double amount, const Placement& placement, PictureSplats& out) {

@@ -15,6 +15,12 @@ inline constexpr glm::vec3 dust_exponents{0.8f, 1.0f, 1.35f};
 /// smaller the picture's `alpha` (one channel, or without pixels): what fades towards an edge is no dust.
 Image transmittance_of(const Image& brightest, const Image& emission, const Image& alpha = {});
 
+/// Share of its optical depth that a picture's dust has.
+double dust_of(const StructureParams& params);
+
+/// Dots a texel where it leaves so much, about.
+float expected_dust_dots(float transmittance, double amount);
+
 /// Adds the dust that, with the light of `out` partly before it and partly behind, leaves `transmittance`
 /// of the whole. `amount`: share of its optical depth, 0 to 1.
 void add_dust(const Image& transmittance, double amount, const Placement& placement, PictureSplats& out);

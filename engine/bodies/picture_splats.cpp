@@ -85,7 +85,7 @@ class BandChunk {
         dot.opacity_limit = alpha_.pixels.empty() ? 1.0f : bilinear(alpha_, 0, x, y);
         if (dot.opacity_limit <= 0.0f) return;
         dot.brightest = bilinear(brightest_, 0, x, y);
-        const float kept = std::min(1.0f, dot.amplitude / (dots_.threshold * (dot.brightest + 0.03f)));
+        const float kept = kept_share(dot.amplitude, dot.brightest, dots_);
         if (random(shared::PURPOSE_DENSITY) >= kept) return;
         const float gain = dots_.spacing * dots_.spacing / kept;
         dot.light *= gain;
@@ -165,6 +165,10 @@ void append_dots(const std::vector<ChunkDots>& chunks, float sigma, PictureSplat
         append(chunk.distance, at, out.distance);
         std::fill_n(out.splats.radius.begin() + at, chunk.id.size(), radius_sigmas * sigma);
     });
+}
+
+float kept_share(float amplitude, float brightest, const BandDots& dots) {
+    return std::min(1.0f, amplitude / (dots.threshold * (brightest + 0.03f)));
 }
 
 float Opacity::depth_of(float brightest, float alpha) const {

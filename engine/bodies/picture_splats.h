@@ -52,6 +52,10 @@ inline constexpr float radius_sigmas = 3.0f;
 inline constexpr float footprint_share = 0.9494f;
 inline constexpr double footprint_variance = 0.8802;
 
+/// Share of a band's dots that are kept where its light's brightest channel is `amplitude`, and the picture's
+/// `brightest`.
+float kept_share(float amplitude, float brightest, const BandDots& dots);
+
 /// Adds a band's dots. `picture` is the whole picture's light, whose brightness decides the opacity.
 void add_band(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
               const Placement& placement, const Opacity& opacity, PictureSplats& out);

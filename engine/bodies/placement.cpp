@@ -180,21 +180,26 @@ void follow_knots(const Placement& placement, PlacedBlock& block) {
 
 }  // namespace
 
-Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
-                         bool flat, std::uint32_t seed) {
-    const double longest = static_cast<double>(std::max(brightest.width, brightest.height));
+Placement placement_without_fields(std::int64_t width, std::int64_t height, const StructureParams& params,
+                                   double texels_per_unit) {
+    const double share = params.kind == StructureKind::disk ? disk_thickness : sheet_thickness;
     Placement placement;
     placement.kind = params.kind;
-    placement.picture_width = brightest.width;
-    placement.picture_height = brightest.height;
-    placement.field_halvings = field_halvings(brightest);
-    placement.scale = static_cast<double>(brightest.width) / 1920.0;
-    placement.height =
-        params.height > 0.0
-            ? params.height * texels_per_unit
-            : (params.kind == StructureKind::disk ? disk_thickness : sheet_thickness) * longest;
-    placement.depth = 0.5 * params.depth * static_cast<double>(brightest.width);
+    placement.picture_width = width;
+    placement.picture_height = height;
+    placement.scale = static_cast<double>(width) / 1920.0;
+    placement.height = params.height > 0.0 ? params.height * texels_per_unit
+                                           : share * static_cast<double>(std::max(width, height));
+    placement.depth = 0.5 * params.depth * static_cast<double>(width);
     placement.clumps = params.clumps;
+    return placement;
+}
+
+Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
+                         bool flat, std::uint32_t seed) {
+    Placement placement =
+        placement_without_fields(brightest.width, brightest.height, params, texels_per_unit);
+    placement.field_halvings = field_halvings(brightest);
     placement.seed = seed;
     placement.thickness = thickness_field(brightest, placement.height);
     if (params.kind == StructureKind::disk) {

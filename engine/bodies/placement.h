@@ -50,6 +50,10 @@ struct Placement {
 Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
                          bool flat, std::uint32_t seed);
 
+/// The part of it that no picture has to be looked at for.
+Placement placement_without_fields(std::int64_t width, std::int64_t height, const StructureParams& params,
+                                   double texels_per_unit);
+
 /// Height of a disk's middle plane, texels: bent like an integral sign from .4 of the way to the rim on,
 /// which is half the longest side from the middle. 0 for other kinds.
 float middle_plane(const Placement& placement, float x, float y);

@@ -40,9 +40,9 @@ SplatSet generate_source(const SourceParams& source, const std::string& layer_na
     }
     const std::uint32_t seed = resolved_seed(source.seed, layer_name);
     if (source.structure.kind != StructureKind::columns) {
-        reduce_pictures(meshes, {available_memory_bytes() / 10 * 9, source.splats}, layer_name);
         StructureParams structure = source.structure;
         structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
+        reduce_pictures(meshes, structure, {available_memory_bytes() / 10 * 9, source.splats}, layer_name);
         return make_bodies(std::move(meshes), structure, seed, layer_name, progress);
     }
     const double max_distance = resolved_max_distance(source, bounds(meshes));

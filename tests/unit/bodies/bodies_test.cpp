@@ -58,32 +58,44 @@ std::vector<SurfacePlace> places(const UvSurface& surface, glm::vec2 uv) {
     return found;
 }
 
-TEST(Bodies, PicturesThatDoNotFitAreHalved) {
-    std::vector<TexturedMesh> small{on_plane(painted::nebula(256, 160))};
-    const std::int64_t room = bodies_memory_bytes(small);
+std::int64_t told_bytes(const std::vector<TexturedMesh>& meshes, const StructureParams& params) {
+    return bodies_memory_bytes(meshes, expected_dots(meshes, params));
+}
+
+TEST(Bodies, PicturesThatDoNotFitAreReducedAsFarAsIsNeeded) {
+    const StructureParams sheet = of_kind(StructureKind::sheet);
     std::vector<TexturedMesh> meshes{on_plane(painted::nebula(1024, 640)),
                                      on_plane(painted::nebula(256, 160))};
     const double before = sum_of(meshes[0].textures[0].image) / (1024.0 * 640.0);
-    reduce_pictures(meshes, {bodies_memory_bytes(meshes), 0}, "gas");
+    const std::int64_t whole = told_bytes(meshes, sheet);
+    reduce_pictures(meshes, sheet, {whole, 0}, "gas");
     EXPECT_EQ(meshes[0].textures[0].image.width, 1024);  // it fits
-    reduce_pictures(meshes, {2 * room, 0}, "gas");
+    reduce_pictures(meshes, sheet, {whole / 3, 0}, "gas");
     const Image& reduced = meshes[0].textures[0].image;
-    EXPECT_EQ(reduced.width, 256);
-    EXPECT_EQ(reduced.height, 160);
-    EXPECT_NEAR(sum_of(reduced) / (256.0 * 160.0), before, 0.003 * before);
+    EXPECT_LE(told_bytes(meshes, sheet), whole / 3);
+    EXPECT_GT(told_bytes(meshes, sheet), whole / 3 * 85 / 100);
+    const auto texels = static_cast<double>(reduced.width * reduced.height);
+    EXPECT_NEAR(static_cast<double>(reduced.width) / static_cast<double>(reduced.height), 1.6, 0.01);
+    EXPECT_NEAR(sum_of(reduced) / texels, before, 0.003 * before);
     EXPECT_EQ(meshes[1].textures[0].image.width, 256);
-    reduce_pictures(meshes, {1, 0}, "gas");  // to no less than 64 px
-    EXPECT_EQ(meshes[0].textures[0].image.height, 80);
+    reduce_pictures(meshes, sheet, {1, 0}, "gas");  // to no less than 64 px
+    EXPECT_EQ(meshes[0].textures[0].image.height, 64);
 }
 
-TEST(Bodies, PicturesOfMoreDotsThanAskedForAreHalved) {
-    std::vector<TexturedMesh> meshes{on_plane(painted::nebula(512, 320))};
-    const std::int64_t room = 2 * bodies_memory_bytes(meshes), dots = expected_dots(meshes);
-    reduce_pictures(meshes, {room, dots}, "gas");
-    EXPECT_EQ(meshes[0].textures[0].image.width, 512);
-    reduce_pictures(meshes, {room, dots - 1}, "gas");
-    EXPECT_EQ(meshes[0].textures[0].image.width, 256);
-    EXPECT_LT(make_bodies(meshes, of_kind(StructureKind::sheet), 3u, "gas").size(), dots);
+// As many as were asked for, or up to 15 % less.
+TEST(Bodies, PicturesOfMoreDotsThanAskedForAreReducedUntilTheyAreNot) {
+    for (const StructureKind kind : {StructureKind::sheet, StructureKind::disk}) {
+        const bool disk = kind == StructureKind::disk;
+        std::vector<TexturedMesh> meshes{
+            on_plane(disk ? painted::galaxy(800, 500) : painted::nebula(800, 500))};
+        const std::int64_t room = 2 * told_bytes(meshes, of_kind(kind));
+        const std::int64_t asked = expected_dots(meshes, of_kind(kind)) * 2 / 3;
+        reduce_pictures(meshes, of_kind(kind), {room, asked}, "gas");
+        EXPECT_LT(meshes[0].textures[0].image.width, 800);
+        const std::int64_t made = make_bodies(meshes, of_kind(kind), 3u, "gas").size();
+        EXPECT_LE(made, asked);
+        EXPECT_GE(made, asked * 85 / 100);
+    }
 }
 
 TEST(UvSurface, ThePlaneIsThePicture) {
