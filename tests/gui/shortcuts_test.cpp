@@ -60,7 +60,8 @@ TEST(Shortcuts, WhatIsUndoneIsSaid) {
 TEST(Menus, TheHistoryGoesToAnyStep) {
     TestWindow window(example_document());
     for (const double opacity : {0.9, 0.8, 0.7})
-        window.document.edit("Opacity", [&](Scene& scene) { scene.layers[0].render.opacity = opacity; });
+        window.document.edit(
+            "Opacity", [&](Scene& scene) { scene.layers[0].render.opacity = static_cast<float>(opacity); });
     const auto go_to = [&](const char* step) {
         window.choose(std::string("Edit/History/") + step);
         return window.document.scene().layers[0].render.opacity;
