@@ -31,11 +31,13 @@ struct Candidate {
     std::uint64_t id;
 };
 
-// Share of the optical depth that dots keep. A bulge glows: seen from the side, light comes from all of its
-// depth, not from a surface as a cloud's would. So does what is between two walls: were it a fog, the fit
-// would raise the filaments of the back wall by what is lost in it, and from behind they would burn out.
+// Share of the optical depth that dots keep. A bulge, old stars without dust, glows: seen from the side,
+// light comes from all of its depth, not from a surface as a cloud's would. So does what is between two
+// walls: were it a fog, the fit would raise the filaments of the back wall by what is lost in it, and from
+// behind they would burn out.
 float hiding_of(const BandDots& dots, const Placement& placement, float thickness) {
-    if (placement.kind == StructureKind::disk) return 1.0f / std::max(1.0f, thickness * thickness);
+    if (placement.kind == StructureKind::disk)
+        return 1.0f / std::max(1.0f, thickness * thickness * thickness);
     return dots.glow ? glow_hiding : 1.0f;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec3.hpp>
+#include <string_view>
 #include <vector>
 
 #include "bodies/choose.h"
@@ -133,6 +134,13 @@ double split_above_px(StructureKind structure, double longest_over_height) {
            longest_over_height * 1080.0;
 }
 
+// Power of brightness. Low for a disk, whose dim parts are then not as bright as its middle from the edge,
+// and lower for walls, which are all edge.
+std::string_view opacity_of(StructureKind structure) {
+    if (structure == StructureKind::walls) return "0.3";
+    return structure == StructureKind::disk ? "0.45" : "0.55";
+}
+
 }  // namespace
 
 PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
@@ -170,7 +178,7 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height))),
         fmt::arg("depth", scene.structure == StructureKind::walls ? "0.18" : "0.15"),
         fmt::arg("bend", scene.structure == StructureKind::disk ? " flare = 0.2, warp = 0.01," : ""),
-        fmt::arg("opacity", scene.structure == StructureKind::walls ? "0.3" : "0.55"));
+        fmt::arg("opacity", opacity_of(scene.structure)));
     return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
 }
 
