@@ -15,7 +15,6 @@ namespace astrosplat {
 namespace {
 
 constexpr float height = 26, inset = 12, padding = 10, dot = 4, gap = 8;
-constexpr double little_shown = 0.1;  // of all splats: the badge says so below
 
 const LayerStatus* loading_layer(const Status& status, std::size_t& index) {
     for (index = 0; index < status.layers.size(); ++index)
@@ -89,9 +88,8 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
             break;
     }
     if (shown.shown >= shown.total) return {"Preview", total, color::accent};
-    const bool little = static_cast<double>(shown.shown) < little_shown * static_cast<double>(shown.total);
-    return {fmt::format("Preview {} of {}", short_count(shown.shown), short_count(shown.total)),
-            little ? "less than a tenth of the splats" : "", color::accent, little};
+    return {fmt::format("Preview, {} dots for {}", short_count(shown.shown), short_count(shown.total)), "",
+            color::accent};
 }
 
 float draw_badge(GuiFrame& frame, const Rect& area) {
@@ -104,9 +102,8 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
     const std::string whole = badge.text;
     badge.text = fitting(badge.text, room);
     const float text_width = ImGui::CalcTextSize(badge.text.c_str()).x;
-    const float sign = badge.warns ? px(14) + px(gap) / 2 : 0.0f;
     float beside_width =
-        badge.beside.empty() ? 0.0f : ImGui::CalcTextSize(badge.beside.c_str()).x + px(gap) * 1.5f + sign;
+        badge.beside.empty() ? 0.0f : ImGui::CalcTextSize(badge.beside.c_str()).x + px(gap) * 1.5f;
     if (text_width + beside_width > room) beside_width = 0.0f;
 
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -117,14 +114,8 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
     list->AddCircleFilled({x + px(padding) + px(dot), y + px(height) * 0.5f}, px(dot), badge.color, 16);
     const float text_y = y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f);
     list->AddText({x + left, text_y}, color::text, badge.text.c_str());
-    if (beside_width > 0) {
-        float at = x + left + text_width + px(gap) * 1.5f;
-        if (badge.warns) {
-            draw_icon(list, Icon::warning, {at + px(7), y + px(height) * 0.5f}, px(12), color::attention);
-            at += sign;
-        }
-        list->AddText({at, text_y}, badge.warns ? color::attention : color::dim, badge.beside.c_str());
-    }
+    if (beside_width > 0)
+        list->AddText({x + left + text_width + px(gap) * 1.5f, text_y}, color::dim, badge.beside.c_str());
     if (word && word_button(frame, word, x + width - px(padding) - word_width + px(gap) * 2, y))
         press_button(frame);
     if (badge.text != whole && ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))

@@ -10,14 +10,13 @@ namespace astrosplat {
 /// Also the buttons in it (Copy, Cancel). Returns where it ends, px.
 float draw_badge(GuiFrame& frame, const Rect& area);
 
-/// Beside it, from `left` on, how true the front is to its frame; nothing where there is no room.
+/// Beside it, from `left` on, how true the front is to its picture; nothing where there is no room.
 void draw_front_badge(GuiFrame& frame, const Rect& area, float left);
 
-/// The words of the badge, for tests and frames: "Refining 41 %" and what stands dimmed beside it.
+/// The words of the badge, for tests and drawings: "Refining 41 %" and what stands dimmed beside it.
 struct BadgeText {
     std::string text, beside;
     unsigned color;  // ImU32
-    bool warns = false;
 };
 BadgeText badge_text(const Scene& scene, const Status& status);
 /// "Front 39.6 dB, SSIM 0.976, light +0.3 %".

@@ -104,13 +104,24 @@ void exposure_control(GuiFrame& frame) {
     tooltip("Exposure of this window only, to look into dark and bright parts. Never saved. Right click: 0");
 }
 
+// From as many dots as hold the frame rate to all splats.
 void preview_control(GuiFrame& frame) {
+    constexpr float least_percent = 0.5f;
     float percent = frame.view.preview_share * 100.0f;
-    const char* format = percent > 0 ? "Preview %.0f %%" : "Preview auto";
-    if (drag_field("##preview", percent, 0.2f, 0, 100, format, px(108), color::dim))
-        frame.view.preview_share = percent < 0.5f ? 0.0f : percent / 100.0f;
+    const float x = ImGui::GetCursorPosX();
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushStyleColor(ImGuiCol_Text, color::dim);
+    ImGui::TextUnformatted("Preview");
+    ImGui::SameLine(x + px(58));
+    ImGui::SetNextItemWidth(px(100));
+    const char* format = percent > 0 ? "%.0f %%" : "Fluid";
+    if (ImGui::SliderFloat("##preview", &percent, 0, 100, format, ImGuiSliderFlags_AlwaysClamp))
+        frame.view.preview_share = percent < least_percent ? 0.0f : percent / 100.0f;
+    ImGui::PopStyleColor();
     note_item(frame, "preview");
-    tooltip("How many dots are drawn while something moves, of all there are; at 0 as many as stay fluid");
+    tooltip(
+        "What moves: at the left as many dots as hold 24 frames a second, each for many splats; to the right "
+        "more dots and fewer frames, up to every splat");
 }
 
 void engine_control(GuiFrame& frame) {
@@ -125,7 +136,7 @@ struct Tool {
     void (*draw)(GuiFrame&);
 };
 constexpr std::array<Tool, 4> right_tools{
-    {{84, display_control}, {72, exposure_control}, {108, preview_control}, {96, engine_control}}};
+    {{84, display_control}, {72, exposure_control}, {158, preview_control}, {96, engine_control}}};
 
 void rest_of_tools(GuiFrame& frame, std::size_t from) {
     const bool clicked = icon_button("more", Icon::dots, {px(control_height), px(control_height)}, px(12),
