@@ -85,7 +85,7 @@ struct ValueError : InputError {
 };
 
 /// One parameter of one particular scene. Valid until a list of that scene (layers, meshes, noise, thickness
-/// keys) changes its length.
+/// stops) changes its length.
 struct Parameter {
     ParameterSpec spec;
     std::function<Value(const ParameterSpec&)> read;

@@ -1,4 +1,4 @@
-// What somebody at the window waits for: frames while orbiting, a slider, the timeline, the final picture,
+// What somebody at the window waits for: frames while orbiting, a slider, the timeline, the final frame,
 // the start. In: a scene (default: the demo) whose sets are in the cache, or with --opengl a number of
 // synthetic splats and a size. Out: Markdown; wall time beside processor time, because only the latter means
 // anything on a busy machine.
@@ -234,7 +234,7 @@ void measure_scrubbing(Viewer& viewer) {
     print_wait("scrub to another frame", "<= 80 ms", times);
 }
 
-/// A touch while the final picture is being computed.
+/// A touch while the final frame is being computed.
 void measure_cancelling(Viewer& viewer) {
     Times times;
     Session& session = viewer.session();

@@ -65,7 +65,7 @@ class WindowTest : public ViewerTest {
     Pixels frame_pixels() const;
     /// The badge says that the picture is final.
     bool settled() const;
-    /// The next final picture other than `before`; fails the test where none comes.
+    /// The next final frame other than `before`; fails the test where none comes.
     Pixels settled_frame(const Pixels& before = {});
     /// Waits for this very picture to be final.
     void expect_settled(const Pixels& expected);

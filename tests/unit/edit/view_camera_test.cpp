@@ -329,14 +329,14 @@ struct SeenCamera : testing::Test {
         view.frame = 6.8;
         view.free = cameras()[3];
     }
-    CameraParams keyed() const {
+    CameraParams with_keyframe() const {
         Scene edited = scene;
         set_keyframe_of_seen_camera(edited, view, status);
         return scene_at(edited, 7.0).camera;
     }
 };
 
-/// The scene's camera, keyed, shows every point where the window showed it.
+/// The scene's camera, given a keyframe, shows every point where the window showed it.
 TEST_F(SeenCamera, IsWhatIsKeyedInEveryView) {
     for (const bool animated : {false, true}) {
         if (animated) scene.camera.rotation = glm::dvec4(0.0, 0.6, 0.0, 0.8);
@@ -345,7 +345,7 @@ TEST_F(SeenCamera, IsWhatIsKeyedInEveryView) {
             for (const FreeCamera& free : cameras()) {
                 view.view = kind;
                 view.free = free;
-                const CameraParams shown = view_camera(scene, view, box, aspect), now = keyed();
+                const CameraParams shown = view_camera(scene, view, box, aspect), now = with_keyframe();
                 for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(1, 0.2, -1)})
                     expect_near(project(now, p, box), project(shown, p, box), 1e-6);
             }
@@ -370,7 +370,7 @@ TEST_F(SeenCamera, KeepsTheLensWhereTheViewportIsNarrow) {
     view.free = free_camera(scene.camera, box, aspect);
     view.free.fov_deg = 2.0 * real::degrees(real::atan(2.0 * real::tan(real::radians(20.0))));
     EXPECT_EQ(seen_camera(scene, view, status).fov, 40.0);
-    expect_near(project(keyed(), {1, 2, -3}), project(scene.camera, {1, 2, -3}), 1e-6);
+    expect_near(project(with_keyframe(), {1, 2, -3}), project(scene.camera, {1, 2, -3}), 1e-6);
 }
 
 TEST_F(SeenCamera, HasAPlaceWhereTheSceneCameraFramesItsLayers) {

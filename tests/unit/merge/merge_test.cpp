@@ -77,11 +77,11 @@ ShadedSplats cut_of(const MergedSplats& merged, std::int64_t budget, const Layer
                     const Camera& seen_by = camera(), float least_px = 0.0f) {
     RenderLayer layer;
     layer.render = render;
-    RenderSettings picture;
-    picture.width = width;
-    picture.height = height;
+    RenderSettings frame;
+    frame.width = width;
+    frame.height = height;
     const DotSettings dots(render);
-    const CutLayer cut{&merged, &dots, make_projection(layer, 0, seen_by, picture)};
+    const CutLayer cut{&merged, &dots, make_projection(layer, 0, seen_by, frame)};
     return std::move(cut_splats(std::span(&cut, 1), {budget, least_px, width, height})[0]);
 }
 

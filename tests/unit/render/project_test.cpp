@@ -1,4 +1,4 @@
-// Projection: place, size, near fade and sort key of single splats and of whole vectors of them.
+// Projection: place, size, near fade and sort depth of single splats and of whole vectors of them.
 #include "render/project.h"
 
 #include <gtest/gtest.h>

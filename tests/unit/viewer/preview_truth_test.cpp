@@ -124,12 +124,12 @@ class Gallery {
         render.blend = view.blend;
         RenderLayer layer;
         layer.render = render;
-        RenderSettings picture;
-        picture.width = frame_width;
-        picture.height = frame_height;
+        RenderSettings frame;
+        frame.width = frame_width;
+        frame.height = frame_height;
         const DotSettings dots(render);
         const CutLayer seen{&merged(view.blend), &dots,
-                            make_projection(layer, 0, camera_at(view.eye), picture)};
+                            make_projection(layer, 0, camera_at(view.eye), frame)};
         const auto splats = cut_splats(std::span(&seen, 1), {budget, 1.5f, frame_width, frame_height});
         return draw(view, splats[0]);
     }
