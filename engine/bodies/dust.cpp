@@ -19,7 +19,8 @@ using shared::as_hash, shared::as_log, shared::as_uniform;
 
 constexpr float least_transmittance = 0.1f;
 constexpr float dark_sky = 0.004f;  // added to both sides of the ratio: noise of dark dark_sky is no dust
-constexpr float sheet_height = 0.2f, sheet_thickness = 0.16f;  // of H
+// Of H. Thicker, lanes smear into curtains for a camera that comes close.
+constexpr float sheet_height = 0.2f, sheet_thickness = 0.05f;
 constexpr double sheet_wave = 26.0;  // texels at a width of 1920, of the clumps in the sheet
 constexpr std::int64_t share_cell_px = 8;
 constexpr double share_blur_cells = 4.0;
@@ -32,7 +33,7 @@ void bend(const Placement& placement, DepthBlock& block) {
     DepthBlock waves = block;
     NoiseStack noise;
     noise.seed = shared::as_mix(placement.seed + 3);
-    for (const auto& [wave, gain] : {std::pair{160.0, 0.22f}, {70.0, 0.14f}, {30.0, 0.08f}}) {
+    for (const auto& [wave, gain] : {std::pair{160.0, 0.15f}, {70.0, 0.1f}, {30.0, 0.04f}}) {
         noise.frequency[noise.count] = static_cast<float>(1.0 / (wave * placement.scale));
         noise.gain[noise.count++] = gain;
     }

@@ -30,6 +30,7 @@ double by_feature(const double (&values)[8], double feature) {
     return values[i] * (1.0 - t) + values[i + 1] * t;
 }
 constexpr double dots_each[8] = {2.4, 4, 9, 16, 24, 24, 24, 24};  // within 2 pi sigma^2
+constexpr double crowd_in_bulges = 32.0;  // times as many wide dots there, or its outline would be ragged
 constexpr double clumpiness[8] = {3, 3, 2.6, 2.2, 1.7, 0.8, 0.3, 0.05};
 
 // Octaves from `longest` on by halves, as far down as a feature allows: small things float where their cloud
@@ -250,9 +251,9 @@ float middle_plane(const Placement& placement, float x, float y) {
 std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement) {
     const double widest = widest_sigma_share * placement.height;
     const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
-    const double each =
+    const double usual =
         by_feature(dots_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
-    const auto of_size = [&](double sigma) {
+    const auto of_size = [&](double sigma, double each) {
         BandDots dots;
         dots.index = band.index;
         dots.feature = static_cast<float>(band.feature);
@@ -265,13 +266,13 @@ std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement
         dots.threshold = static_cast<float>(band.index <= 1 ? 0.05 : 0.25 / each);
         return dots;
     };
-    std::vector<BandDots> sizes{of_size(std::min(natural, widest))};
+    std::vector<BandDots> sizes{of_size(std::min(natural, widest), usual)};
     if (placement.kind != StructureKind::disk) return sizes;
     for (const float thickness : wider_in_bulges) {
         const double sigma = std::min(natural, static_cast<double>(thickness) * widest);
         if (static_cast<float>(sigma) <= sizes.back().sigma) break;
         sizes.back().thickness_to = thickness;
-        sizes.push_back(of_size(sigma));
+        sizes.push_back(of_size(sigma, crowd_in_bulges * usual));
         sizes.back().thickness_from = thickness;
         sizes.back().size = static_cast<int>(sizes.size()) - 1;
     }
