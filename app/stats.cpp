@@ -27,7 +27,8 @@ Json to_json(const LayerStatistics& layer) {
             {"drawn", layer.drawn},
             {"generate_seconds", layer.generate_seconds},
             {"look_seconds", layer.look_seconds},
-            {"cached", layer.cached}};
+            {"cached", layer.cached},
+            {"geometry_cached", layer.geometry_cached}};
 }
 
 Json to_json(const FailedFrame& frame) {

@@ -105,6 +105,7 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     load_thickness_map(layer, params.look.thickness);
     count_set(*layer.set, counts);
     counts.cached = loaded.cached;
+    counts.geometry_cached = loaded.geometry_cached;
     counts.generate_seconds = seconds_since(start);
 }
 

@@ -20,6 +20,7 @@ struct LayerStatistics {
     std::int64_t drawn = 0;  // shaded splats after the look, in the last frame
     double generate_seconds = 0.0, look_seconds = 0.0;
     bool cached = false;  // the set came from the cache; generate_seconds is how long reading it took
+    bool geometry_cached = false;  // its positions did, also where pictures had to be read again
 };
 
 /// What stays between frames: the sets, the maps, the environment pictures, the last shaded splats

@@ -7,6 +7,8 @@
 #include <bit>
 
 #include "core/shared_maths.h"
+#include "generate/columns.h"
+#include "splats/take_rows.h"
 
 namespace astrosplat {
 namespace {
@@ -37,17 +39,19 @@ void GrowingSet::keeps(std::span<const KeptStore::Run> runs) {
     const int shift = log_step(highest);
     const std::size_t step = std::size_t{1} << shift;
     std::vector<Ranked> found;
-    std::size_t first = 0;  // of a run, among the splats of this call
+    std::size_t first = 0;  // of a run, among the positions of this call
+    std::size_t lit = 0;
     std::size_t next = rank_of(~runs.front().splats->id) % step;
     for (const KeptStore::Run& run : runs) {
         for (; next < first + run.count; next += step) {
             const KeptSplat& splat = run.splats[next - first];
             const std::uint32_t rank = rank_of(splat.id) >> shift;
-            if (rank <= highest) found.emplace_back(rank, splat);
+            if (rank <= highest && splat.alpha > 0.0f) found.emplace_back(rank, splat);
         }
         first += run.count;
+        lit += run.lit;
     }
-    kept_ += static_cast<std::int64_t>(first);
+    kept_ += static_cast<std::int64_t>(lit);
     take(found);
 }
 
@@ -60,6 +64,18 @@ void GrowingSet::take(const std::vector<Ranked>& found) {
         highest_rank_ = highest_rank_ / 2;
         std::erase_if(splats_, [&](const Ranked& s) { return s.first > highest_rank_; });
     }
+}
+
+void GrowingSet::ends(const Columns& columns) {
+    if (column_limit_ <= 0) return;
+    auto sample = std::make_shared<const SplatSet>(sample_rows(columns.splats, column_limit_));
+    const std::lock_guard lock(mutex_);
+    columns_ = {std::move(sample), columns.splats.size()};
+}
+
+ColumnSample GrowingSet::columns() const {
+    const std::lock_guard lock(mutex_);
+    return columns_;
 }
 
 GrowingSet::Sample GrowingSet::sample() const {

@@ -11,8 +11,8 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/text.h"
 #include "generate/block_query.h"
+#include "generate/columns.h"
 #include "generate/kept_store.h"
 #include "generate/surface.h"
 #include "source/sample.h"
@@ -56,7 +56,7 @@ struct Worker {
     std::vector<BlockAnswers> answers;
     std::vector<std::uint32_t> scratch;
     KeptStore kept;
-    std::int64_t zero_alpha = 0;  // positions dropped because their alpha is exactly 0
+    std::int64_t unseen = 0;  // positions that no picture shows, whatever it is
 };
 
 // All corners, then all centres, as their ids ask for; each time batch by batch, so that little is stored
@@ -81,7 +81,7 @@ class BlockRun {
                 append_kept(set);
             }
         }
-        for (const Worker& worker : workers_) set.zero_alpha += worker.zero_alpha;
+        for (const Worker& worker : workers_) set.zero_alpha += worker.unseen;
     }
 
   private:
@@ -129,16 +129,15 @@ class BlockRun {
         const SurfaceTriangle& surface = surface_[answers.triangle[slot]];
         const glm::dvec3 place(answers.x[slot], answers.y[slot], answers.z[slot]);
         const std::optional<glm::vec2> uv = uv_of(surface, {answers.v[slot], answers.w[slot]}, place);
-        const TextureSample picture =
-            uv ? sample(*surface.texture, *uv, surface.box_texels) : TextureSample{};
-        if (picture.alpha == 0.0f) {
-            ++worker.zero_alpha;
+        if (!uv) {
+            ++worker.unseen;
             return;
         }
+        const TextureSample picture = sample(*surface.texture, *uv, surface.box_texels);
         const glm::vec3 position(place);
         const auto distance = static_cast<float>(std::sqrt(answers.distance_squared[slot]));
-        worker.kept.add(
-            {position, picture.color, picture.alpha, distance, id, *uv, surface.normal, surface.mesh});
+        worker.kept.add({position, picture.color, picture.alpha, distance, id, *uv, surface.normal,
+                         surface.mesh, answers.triangle[slot]});
     }
 
     void append_kept(SplatSet& set) {
@@ -177,45 +176,45 @@ void describe_set(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
     set.max_distance = max_distance;
     set.generated = true;
     set.test_positions = lattice.positions();
-    std::vector<std::string> credits;
-    for (const TexturedMesh& m : meshes) {
-        for (const Texture& texture : m.textures) {
-            set.divided = set.divided || texture.divided;
-            credits.push_back(texture.credit);
-        }
-    }
-    set.credit = joined_once(credits);
+    describe_pictures(meshes, set);
 }
 
 }  // namespace
 
-std::int64_t generate_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
-                                   double max_distance) {
+std::int64_t columns_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
+                                  double max_distance) {
     double triangles = 0.0;
     for (const TexturedMesh& m : meshes) triangles += static_cast<double>(m.mesh.triangles.size());
-    const double per_splat =
+    const double per_position =
         1.02 * static_cast<double>(bytes_per_splat(is_generated));  // and a batch that exists twice
     const double per_triangle =
         sizeof(TreeTriangle) + sizeof(SurfaceTriangle) + 6.9 * sizeof(float);  // 8/7 boxes
-    const double bytes = expected_kept(lattice, meshes, max_distance) * per_splat + triangles * per_triangle;
+    const double bytes =
+        expected_positions(lattice, meshes, max_distance) * per_position + triangles * per_triangle;
     return static_cast<std::int64_t>(std::min(bytes, 9e18));
 }
 
 KeptCounts count_kept(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance) {
     SplatSet set;
     run_cull(meshes, lattice, {max_distance, 1.0, 1}, {}, nullptr, set);
-    return {set.size() + set.zero_alpha, set.size()};
+    return {set.size() + set.zero_alpha, std::ranges::count_if(set.alpha, [](float a) { return a > 0.0f; })};
+}
+
+Columns make_columns(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
+                     double jitter, std::uint32_t seed, const Progress& progress, KeptWatcher* watcher) {
+    claim_memory(columns_memory_bytes(meshes, lattice, max_distance), "generating splats");
+    Columns columns;
+    describe_set(meshes, lattice, max_distance, columns.splats);
+    if (watcher) watcher->begins(columns.splats, lattice.box);
+    run_cull(meshes, lattice, {max_distance, jitter, seed}, progress, watcher, columns.splats);
+    check_consistent(columns.splats);
+    if (watcher) watcher->ends(columns);
+    return columns;
 }
 
 SplatSet generate(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
-                  double jitter, std::uint32_t seed, const Progress& progress, KeptWatcher* watcher) {
-    claim_memory(generate_memory_bytes(meshes, lattice, max_distance), "generating splats");
-    SplatSet set;
-    describe_set(meshes, lattice, max_distance, set);
-    if (watcher) watcher->begins(set, lattice.box);
-    run_cull(meshes, lattice, {max_distance, jitter, seed}, progress, watcher, set);
-    check_consistent(set);
-    return set;
+                  double jitter, std::uint32_t seed, const Progress& progress) {
+    return lit_splats(make_columns(meshes, lattice, max_distance, jitter, seed, progress));
 }
 
 }  // namespace astrosplat

@@ -31,6 +31,7 @@ void put(const KeptSplat& splat, SplatSet& set, std::size_t row) {
     set.uv[row] = splat.uv;
     set.normal[row] = splat.normal;
     set.mesh[row] = splat.mesh;
+    set.face[row] = splat.face;
 }
 
 void resize(SplatSet& set, std::size_t size) {

@@ -13,14 +13,14 @@
 
 namespace astrosplat {
 
-/// Everything generation stores about a splat.
+/// Everything generation stores about a position that it keeps.
 struct KeptSplat {
     glm::vec3 position, color;
     float alpha, distance;
     std::uint64_t id;
     glm::vec2 uv;
     glm::vec3 normal;
-    std::uint32_t mesh;
+    std::uint32_t mesh, face;
 };
 /// The columns of a generated set: all but the files' own radius.
 constexpr bool is_generated(SplatColumn column) { return column != SplatColumn::radius; }
@@ -32,13 +32,15 @@ class KeptStore {
     struct Run {
         const KeptSplat* splats;
         std::size_t count;
+        std::size_t lit;  // of these: their alpha is not 0
     };
     void begin_run() { open_ = false; }
     void add(const KeptSplat& splat) {
         if (next_ == end_) next_block();
-        if (!open_) runs_.push_back({next_, 0});
+        if (!open_) runs_.push_back({next_, 0, 0});
         open_ = true;
         ++runs_.back().count;
+        if (splat.alpha > 0.0f) ++runs_.back().lit;
         *next_++ = splat;
     }
     const std::vector<Run>& runs() const { return runs_; }
@@ -66,6 +68,8 @@ class KeptStore {
     bool open_ = false;
 };
 
+struct Columns;
+
 /// Who wants to see a set while it is generated. What is made of the splats never reaches the set.
 class KeptWatcher {
   public:
@@ -73,9 +77,12 @@ class KeptWatcher {
     /// Once, before the first splat. `empty` is the set as it will be but without splats; `box` holds the
     /// lattice, layer space.
     virtual void begins(const SplatSet& empty, const Bounds& box) = 0;
-    /// Each kept splat once, in runs of ascending ids that come in any order; from any thread, several at a
-    /// time. The runs are gone after the call, which keeps the thread from its work: it is to be short.
+    /// Each kept position once, those of alpha 0 among them, in runs of ascending ids that come in any order;
+    /// from any thread, several at a time. The runs are gone after the call, which keeps the thread from its
+    /// work: it is to be short.
     virtual void keeps(std::span<const KeptStore::Run> runs) = 0;
+    /// Once, when all are there.
+    virtual void ends(const Columns& columns) = 0;
 };
 
 /// Those columns, for `size` splats; what is new in them has no values yet.

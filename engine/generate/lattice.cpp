@@ -86,8 +86,16 @@ Lattice automatic_lattice(const SourceParams& source, std::span<const TexturedMe
     const double volume = source.splats > 0 ? near.lit : about(near.volume, band) ? band : near.volume;
     Lattice lattice = source.splats > 0 ? cubes(box, cube_side(volume, source.splats), "splats")
                                         : cubes(box, cube_side(volume, source.count), "count");
+    if (!about(near.volume, band)) lattice.crowding = near.volume / band;
     if (!about(near.lit, band)) lattice.filling = near.lit / band;
     return lattice;
+}
+
+double expected_in_band(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance,
+                        double share) {
+    const glm::dvec3 voxel = lattice.spacing();
+    const double band = 4.0 * total_area(meshes) * max_distance / (voxel.x * voxel.y * voxel.z) * share;
+    return std::min(static_cast<double>(lattice.positions()), band);  // also where band is 0 / 0
 }
 
 }  // namespace
@@ -128,11 +136,12 @@ Lattice make_lattice(const SourceParams& source, std::span<const TexturedMesh> m
     return automatic_lattice(source, meshes, max_distance, box);
 }
 
+double expected_positions(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance) {
+    return expected_in_band(lattice, meshes, max_distance, lattice.crowding);
+}
+
 double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance) {
-    const glm::dvec3 voxel = lattice.spacing();
-    const double band =
-        4.0 * total_area(meshes) * max_distance / (voxel.x * voxel.y * voxel.z) * lattice.filling;
-    return std::min(static_cast<double>(lattice.positions()), band);  // also where band is 0 / 0
+    return expected_in_band(lattice, meshes, max_distance, lattice.filling);
 }
 
 }  // namespace astrosplat

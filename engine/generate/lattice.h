@@ -17,8 +17,9 @@ namespace astrosplat {
 struct Lattice {
     Bounds box;         // scene units, after buffer (and after growing to fit voxel_size)
     glm::i64vec3 n{1};  // cells per axis
-    double filling =
-        1.0;  // splats over what a band about the meshes' area would hold, where it is not about 1
+    /// Positions near the meshes, and those of them that are not transparent, over what a band about the
+    /// meshes' area would hold, where that is not about 1.
+    double crowding = 1.0, filling = 1.0;
     glm::dvec3 spacing() const { return box.extent() / glm::dvec3(n); }
     std::int64_t corners() const { return (n.x + 1) * (n.y + 1) * (n.z + 1); }
     std::int64_t positions() const { return corners() + n.x * n.y * n.z; }
@@ -51,8 +52,11 @@ std::uint32_t resolved_seed(std::uint32_t seed, const std::string& layer_name);
 /// Throws InputError for values out of range and for lattices of 2^62 positions or more.
 Lattice make_lattice(const SourceParams& source, std::span<const TexturedMesh> meshes, double max_distance);
 
-/// How many splats a cull of this lattice will give, about: both sides of the whole surface, two positions to
-/// a voxel, and the lattice's own filling.
+/// How many positions a cull of this lattice will keep, about: both sides of the whole surface, two positions
+/// to a voxel, and the lattice's own crowding.
+double expected_positions(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance);
+
+/// How many of them will not be transparent, by the lattice's own filling.
 double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance);
 
 }  // namespace astrosplat

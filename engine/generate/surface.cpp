@@ -4,8 +4,11 @@
 #include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <string>
+#include <vector>
 
 #include "core/parallel.h"
+#include "core/text.h"
 #include "source/picture_camera.h"
 
 namespace astrosplat {
@@ -83,6 +86,18 @@ Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, 
         first += m.mesh.triangles.size();
     }
     return triangles;
+}
+
+void describe_pictures(std::span<const TexturedMesh> meshes, SplatSetFacts& facts) {
+    std::vector<std::string> credits;
+    facts.divided = false;
+    for (const TexturedMesh& m : meshes) {
+        for (const Texture& texture : m.textures) {
+            facts.divided = facts.divided || texture.divided;
+            credits.push_back(texture.credit);
+        }
+    }
+    facts.credit = joined_once(credits);
 }
 
 std::optional<glm::vec2> uv_of(const SurfaceTriangle& triangle, const glm::dvec2& barycentric,

@@ -11,6 +11,7 @@
 #include "core/buffer.h"
 #include "generate/closest_triangle.h"
 #include "source/textured_mesh.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 
@@ -26,6 +27,9 @@ struct SurfaceTriangle {
 /// One entry for each triangle of all meshes in order. `spacing` is the voxel's sides in scene units. The
 /// result points into `meshes`.
 Buffer<SurfaceTriangle> surface_triangles(std::span<const TexturedMesh> meshes, const glm::dvec3& spacing);
+
+/// What the pictures say of a set as a whole: SplatSetFacts::divided and credit.
+void describe_pictures(std::span<const TexturedMesh> meshes, SplatSetFacts& facts);
 
 /// (u,v) of a position whose closest point is there: that point's, or, where a camera took the picture, the
 /// position's own; empty behind that camera.

@@ -57,7 +57,8 @@ void shrink_cache(const SetCache& cache, std::int64_t bytes) {
     std::int64_t total = 0;
     std::error_code error;
     for (const fs::path& file : files_in(cache.folder)) {
-        const bool entry = file.extension() == ".splats" || file.extension() == ".exr";
+        const bool entry =
+            file.extension() == ".splats" || file.extension() == ".texels" || file.extension() == ".exr";
         if (!entry || file.filename().string().front() == '.') continue;
         entries.push_back({fs::last_write_time(file, error), file, 0});
         const std::uintmax_t size = fs::file_size(file, error);

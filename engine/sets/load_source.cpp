@@ -29,30 +29,28 @@ std::string describe_lattice(const Lattice& lattice, double max_distance, std::i
 // Reading inputs is heard by a request to stop, but is no share of the work reported.
 Progress cancel_only(const Progress& progress) { return {{}, progress.cancelled}; }
 
-SplatSet generate_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
-                         KeptWatcher* watcher, const PictureMaker& prepared) {
-    std::vector<TexturedMesh> meshes = load_meshes(source, cancel_only(progress), prepared);
-    for (const TexturedMesh& m : meshes) {
-        for (const Texture& texture : m.textures) {
+[[noreturn]] void fail(const std::string& layer_name, const InputError& error) {
+    throw InputError(fmt::format("layer '{}': {}", layer_name, error.what()));
+}
+
+std::vector<TexturedMesh> load_meshes(const SourceParams& source, const std::string& layer_name,
+                                      const Progress& progress, const PictureMaker& prepared) {
+    std::vector<TexturedMesh> meshes = load_meshes(source, cancel_only(progress), PictureReaders{prepared});
+    for (const TexturedMesh& m : meshes)
+        for (const Texture& texture : m.textures)
             if (!texture.summary.empty())
                 log_detail(fmt::format("layer '{}': {}", layer_name, texture.summary));
-        }
-    }
-    const std::uint32_t seed = resolved_seed(source.seed, layer_name);
-    if (source.structure.kind != StructureKind::columns) {
-        StructureParams structure = source.structure;
-        structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
-        reduce_pictures(meshes, structure, {available_memory_bytes() / 10 * 9, source.splats}, layer_name);
-        return make_bodies(std::move(meshes), structure, seed, layer_name, progress);
-    }
-    const double max_distance = resolved_max_distance(source, bounds(meshes));
-    const Lattice lattice = make_lattice(source, meshes, max_distance);
-    const std::int64_t bytes = generate_memory_bytes(meshes, lattice, max_distance);
-    log_info(fmt::format("layer '{}': {}", layer_name, describe_lattice(lattice, max_distance, bytes)));
-    SplatSet set = generate(meshes, lattice, max_distance, source.jitter, seed, progress, watcher);
-    log_detail(fmt::format("layer '{}': kept {} of {} positions, {} more have alpha 0", layer_name,
-                           set.size(), set.test_positions, set.zero_alpha));
-    return set;
+    return meshes;
+}
+
+SplatSet generate_bodies(const SourceParams& source, const std::string& layer_name, const Progress& progress,
+                         const PictureMaker& prepared) {
+    std::vector<TexturedMesh> meshes = load_meshes(source, layer_name, progress, prepared);
+    StructureParams structure = source.structure;
+    structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
+    reduce_pictures(meshes, structure, {available_memory_bytes() / 10 * 9, source.splats}, layer_name);
+    return make_bodies(std::move(meshes), structure, resolved_seed(source.seed, layer_name), layer_name,
+                       progress);
 }
 
 SplatSet read_source(const SourceParams& source, const Progress& progress) {
@@ -66,19 +64,45 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
 
 }  // namespace
 
-SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
-                     KeptWatcher* watcher, const PictureMaker& prepared) try {
-    switch (source.kind) {
-        case SourceKind::mesh:
-            return generate_source(source, layer_name, progress, watcher, prepared);
-        case SourceKind::splats:
-            return read_source(source, progress);
-        case SourceKind::stars:
-            break;
-    }
-    throw InputError("kind = \"stars\" comes with a later release");
+ColumnPlan plan_columns(const SourceParams& source, const std::string& layer_name, const Progress& progress,
+                        const PictureMaker& prepared) try {
+    ColumnPlan plan;
+    plan.meshes = load_meshes(source, layer_name, progress, prepared);
+    plan.max_distance = resolved_max_distance(source, bounds(plan.meshes));
+    plan.lattice = make_lattice(source, plan.meshes, plan.max_distance);
+    plan.jitter = source.jitter;
+    plan.seed = resolved_seed(source.seed, layer_name);
+    const std::int64_t bytes = columns_memory_bytes(plan.meshes, plan.lattice, plan.max_distance);
+    log_info(
+        fmt::format("layer '{}': {}", layer_name, describe_lattice(plan.lattice, plan.max_distance, bytes)));
+    return plan;
 } catch (const InputError& error) {
-    throw InputError(fmt::format("layer '{}': {}", layer_name, error.what()));
+    fail(layer_name, error);
+}
+
+Columns make_columns(const ColumnPlan& plan, const std::string& layer_name, const Progress& progress,
+                     KeptWatcher* watcher) try {
+    Columns columns =
+        make_columns(plan.meshes, plan.lattice, plan.max_distance, plan.jitter, plan.seed, progress, watcher);
+    log_detail(fmt::format("layer '{}': kept {} of {} positions", layer_name, columns.splats.size(),
+                           columns.splats.test_positions));
+    return columns;
+} catch (const InputError& error) {
+    fail(layer_name, error);
+}
+
+SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress,
+                     KeptWatcher* watcher, const PictureMaker& prepared) {
+    if (makes_columns(source))
+        return lit_splats(make_columns(plan_columns(source, layer_name, progress, prepared), layer_name,
+                                       progress, watcher));
+    try {
+        if (source.kind == SourceKind::mesh) return generate_bodies(source, layer_name, progress, prepared);
+        if (source.kind == SourceKind::splats) return read_source(source, progress);
+        throw InputError("kind = \"stars\" comes with a later release");
+    } catch (const InputError& error) {
+        fail(layer_name, error);
+    }
 }
 
 }  // namespace astrosplat

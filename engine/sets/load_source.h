@@ -1,12 +1,16 @@
 // The front door of a layer's source. In: what [layer.source] says. Out: its SplatSet, generated from meshes
-// and pictures or read from a splat file.
+// and pictures or read from a splat file; of columns also the steps on the way to it.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
+#include "generate/columns.h"
+#include "generate/lattice.h"
 #include "source/prepared_picture.h"
 #include "source/source.h"
+#include "source/textured_mesh.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -18,5 +22,28 @@ class KeptWatcher;
 /// `prepared` gives the pictures that source.prepare asks for.
 SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress = {},
                      KeptWatcher* watcher = nullptr, const PictureMaker& prepared = make_prepared);
+
+/// Whether a source is made into columns.
+inline bool makes_columns(const SourceParams& source) {
+    return source.kind == SourceKind::mesh && source.structure.kind == StructureKind::columns;
+}
+
+/// All that columns are made of.
+struct ColumnPlan {
+    std::vector<TexturedMesh> meshes;
+    Lattice lattice;
+    double max_distance = 0.0;  // scene units
+    double jitter = 1.0;        // 0..1 of half a voxel
+    std::uint32_t seed = 1;
+};
+
+/// Loads meshes and pictures and chooses the lattice, for a source that makes_columns(). Throws as
+/// load_source does.
+ColumnPlan plan_columns(const SourceParams& source, const std::string& layer_name, const Progress& progress,
+                        const PictureMaker& prepared = make_prepared);
+
+/// Searches for the closest points. Throws as load_source does.
+Columns make_columns(const ColumnPlan& plan, const std::string& layer_name, const Progress& progress,
+                     KeptWatcher* watcher = nullptr);
 
 }  // namespace astrosplat

@@ -68,7 +68,7 @@ PictureMaker kept_pictures(const SetCache& cache) {
 
 std::vector<TexturedMesh> load_meshes(const SetCache& cache, const SourceParams& source,
                                       const Progress& progress) {
-    return load_meshes(source, progress, kept_pictures(cache));
+    return load_meshes(source, progress, PictureReaders{kept_pictures(cache)});
 }
 
 }  // namespace astrosplat

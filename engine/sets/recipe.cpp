@@ -159,6 +159,28 @@ std::string projection_lines(const SourceParams& source) {
     return text;
 }
 
+std::string mesh_line(const Mesh& mesh) {
+    Sha256 hash;
+    const auto add = [&](const auto& list) {
+        hash.add(list.data(), list.size() * sizeof list[0]);
+        hash.add(fmt::format(" {}\n", list.size()));
+    };
+    add(mesh.positions), add(mesh.uvs), add(mesh.triangles);
+    return fmt::format("mesh {}\n", hash.hex());
+}
+
+std::string camera_line(const Camera& camera) {
+    std::string text =
+        fmt::format("camera {} {} {} {} {} {}\n", static_cast<int>(camera.projection), camera.focal_px,
+                    camera.center_x_px, camera.center_y_px, camera.near, camera.aspect);
+    text += fmt::format("at {} {} {}\n", camera.eye.x, camera.eye.y, camera.eye.z);
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3& axis = camera.world_from_camera[i];
+        text += fmt::format("axis {} {} {}\n", axis.x, axis.y, axis.z);
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string recipe_text(const SourceParams& source, const std::string& layer_name,
@@ -192,6 +214,18 @@ Recipe recipe_of(const SourceParams& source, const std::string& layer_name, cons
     std::string text = recipe_text(source, layer_name, progress);
     std::string name = text.empty() ? "" : Sha256().add(text).hex();
     return {std::move(text), std::move(name)};
+}
+
+Recipe geometry_recipe(const ColumnPlan& plan) {
+    const auto& [meshes, lattice, max_distance, jitter, seed] = plan;
+    const Bounds& box = lattice.box;
+    std::string text = fmt::format("geometry {} of astrosplat {}\n", set_version, ASTROSPLAT_VERSION);
+    for (const TexturedMesh& m : meshes) text += mesh_line(m.mesh) + (m.camera ? camera_line(*m.camera) : "");
+    text += fmt::format("lattice {} {} {}\n", lattice.n.x, lattice.n.y, lattice.n.z);
+    text += fmt::format("from {} {} {} to {} {} {}\n", box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y,
+                        box.hi.z);
+    text += fmt::format("jitter {}\nmax_distance {}\nseed {}\n", jitter, max_distance, seed);
+    return {text, Sha256().add(text).hex()};
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,6 @@
-// The name under which a generated set is kept: a hash of everything that reaches a bit of it, and of nothing
-// else. In: a source and its layer's name. Out: 64 hex digits.
+// The names under which a generated set is kept: hashes of everything that reaches a bit of it, and of
+// nothing else. In: a source and its layer's name; for the geometry of columns what they are made of. Out: 64
+// hex digits.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "core/progress.h"
+#include "sets/load_source.h"
 #include "source/source.h"
 
 namespace astrosplat {
@@ -33,5 +35,9 @@ struct Recipe {
     std::string text, name;
 };
 Recipe recipe_of(const SourceParams& source, const std::string& layer_name, const Progress& progress = {});
+
+/// The same for what columns are before any picture is looked at: the shapes of the meshes and how pictures
+/// lie on them, the lattice, jitter and seed. A picture reaches it where a shape or `splats` is made by it.
+Recipe geometry_recipe(const ColumnPlan& plan);
 
 }  // namespace astrosplat

@@ -5,7 +5,9 @@
 //
 // In the folder: NAME.splats (native.h, rows by id; the name is recipe.h's, whose text is in the file; its
 // file time says when it was last used), NAME.lock while a process generates that set, .NAME.*.part.splats
-// while it is written.
+// while it is written. Of columns NAME.splats is the geometry, and what is read from pictures lies beside it
+// as NAME.texels, which ends its recipe with the geometry's name: scenes that differ in how pictures are read
+// share their geometry, and only texels are read again.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +25,8 @@ class KeptWatcher;
 
 struct LoadedSet {
     SplatSet set;
-    bool cached = false;  // read from the cache
+    bool cached = false;           // read from the cache
+    bool geometry_cached = false;  // at least that: no closest points were searched for
 };
 
 /// load_source through a cache: reads a mesh source's set where it is kept, else generates and keeps it;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/color.h"
@@ -27,9 +28,9 @@ void for_each_stored(Image& image, const PerPixel& change) {
     });
 }
 
-Stored read_fits_picture(const fs::path& file, const Settings& settings, const Progress& progress) {
-    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane, progress);
-    const Limits limits = choose_limits(value_range(plane.values), settings, file.string());
+Stored stretched_plane(const FitsPlane& plane, const ValueRange& range, const Settings& settings,
+                       const fs::path& file) {
+    const Limits limits = choose_limits(range, settings, file.string());
     const Settings::Stretch stretch = stretch_of(settings);
     Stored stored;
     stored.display_values = stretch != Settings::Stretch::linear;
@@ -59,11 +60,12 @@ void linearise(Image& image, double max_integer) {
     const std::vector<float> table = tabled ? linear_table(max_integer) : std::vector<float>();
     const float scale = static_cast<float>(max_integer);
     for_each_stored(image, [&](float* p) {
+        const bool grey = p[0] == p[1] && p[1] == p[2];
         for (int c = 0; c < 3; ++c) {
             if (tabled)
                 p[c] = table[static_cast<std::size_t>(std::clamp(p[c], 0.0f, 1.0f) * scale + 0.5f)];
             else
-                p[c] = static_cast<float>(real::srgb_to_linear(p[c]));
+                p[c] = c > 0 && grey ? p[0] : static_cast<float>(real::srgb_to_linear(p[c]));
         }
     });
 }
@@ -84,12 +86,27 @@ Settings::Stretch stretch_of(const Settings& settings) {
     return settings.stretch == Settings::Stretch::automatic ? Settings::Stretch::asinh : settings.stretch;
 }
 
-Stored read_stored(const fs::path& file, const Settings& settings, const Progress& progress) {
-    if (is_fits(file)) return read_fits_picture(file, settings, progress);
+RawPicture read_raw(const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
+    RawPicture raw;
+    if (is_fits(file)) {
+        raw.fits = read_fits(file, hdu, plane, progress);
+        raw.range = value_range(raw.fits->values);
+    } else {
+        raw.picture = read_picture(file, progress);
+    }
+    return raw;
+}
+
+Stored stored_of(RawPicture raw, const Settings& settings, const fs::path& file) {
+    if (raw.fits) return stretched_plane(*raw.fits, raw.range, settings, file);
     Stored stored;
-    stored.picture = read_picture(file, progress);
+    stored.picture = std::move(raw.picture);
     stored.display_values = stored.picture.max_integer > 0.0;
     return stored;
+}
+
+Stored read_stored(const fs::path& file, const Settings& settings, const Progress& progress) {
+    return stored_of(read_raw(file, settings.hdu, settings.plane, progress), settings, file);
 }
 
 bool is_encoded(const Stored& stored, Settings::Colorspace colorspace) {

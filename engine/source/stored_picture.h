@@ -3,11 +3,30 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
 
+#include "source/fits.h"
 #include "source/picture.h"
 #include "source/source.h"
 
 namespace astrosplat {
+
+// A file before any setting but FITS' HDU and plane was looked at: the same for all levels.
+struct RawPicture {
+    Picture picture;                // without pixels where there is a plane
+    std::optional<FitsPlane> fits;  // of FITS files
+    ValueRange range;               // of its values
+};
+
+/// Throws InputError, Cancelled.
+RawPicture read_raw(const std::filesystem::path& file, const std::string& hdu, int plane,
+                    const Progress& progress);
+
+/// What gives load_texture() the files: read_raw() or a store of what that gave before.
+using RawReader = std::function<RawPicture(const std::filesystem::path& file, const std::string& hdu,
+                                           int plane, const Progress& progress)>;
 
 // A picture as stored, with what is known about its values.
 struct Stored {
@@ -18,7 +37,10 @@ struct Stored {
 /// What automatic means: asinh.
 TextureSettings::Stretch stretch_of(const TextureSettings& settings);
 
-/// FITS is stretched between its limits. Throws InputError, Cancelled.
+/// FITS is stretched between its limits. Throws InputError, which names `file`.
+Stored stored_of(RawPicture raw, const TextureSettings& settings, const std::filesystem::path& file);
+
+/// Both together. Throws InputError, Cancelled.
 Stored read_stored(const std::filesystem::path& file, const TextureSettings& settings,
                    const Progress& progress);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/color.h"
@@ -18,7 +19,6 @@
 #include "source/fits.h"
 #include "source/mask.h"
 #include "source/picture.h"
-#include "source/stored_picture.h"
 
 namespace astrosplat {
 namespace {
@@ -37,12 +37,12 @@ void for_each_pixel(Image& image, const PerPixel& change) {
 }
 
 // Red of the first, green of the second, blue of the third.
-Stored combine(const std::vector<fs::path>& files, const Settings& settings, const Progress& progress) {
-    Stored first = read_stored(files[0], settings, progress);
+Stored combine(const std::vector<fs::path>& files, const std::function<Stored(const fs::path&)>& read) {
+    Stored first = read(files[0]);
     Image rgb = make_image(first.picture.image.width, first.picture.image.height, 3);
     for (int c = 0; c < 3; ++c) {
         const fs::path& file = files[c];
-        const Stored one = c == 0 ? std::move(first) : read_stored(file, settings, progress);
+        const Stored one = c == 0 ? std::move(first) : read(file);
         const Image& from = one.picture.image;
         if (from.width != rgb.width || from.height != rgb.height)
             bad_input(file.string(), "",
@@ -198,15 +198,18 @@ Settings settings_after_preparation(Settings settings) {
 
 Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& asked,
                      TextureSettings::Wrap default_wrap, const Progress& progress,
-                     const PictureMaker& prepared) {
+                     const PictureReaders& readers) {
     if (files.size() != 1 && files.size() != 3)
         throw InputError(
             fmt::format("expected one texture, or three for red, green and blue, found {}", files.size()));
     const bool is_prepared = prepares(asked.prepare);
     const TextureSettings settings = is_prepared ? settings_after_preparation(asked) : asked;
-    Stored stored = is_prepared         ? as_stored(prepared(files, asked, progress))
-                    : files.size() == 1 ? read_stored(files[0], settings, progress)
-                                        : combine(files, settings, progress);
+    const auto read = [&](const fs::path& file) {
+        return stored_of(readers.raw(file, settings.hdu, settings.plane, progress), settings, file);
+    };
+    Stored stored = is_prepared         ? as_stored(readers.prepared(files, asked, progress))
+                    : files.size() == 1 ? read(files[0])
+                                        : combine(files, read);
     const Settings::Alpha alpha = choose_alpha(files[0], stored.picture, settings.alpha);
     const bool premultiplied = colors_are_premultiplied(stored.picture, settings, alpha);
     make_linear(stored, settings.colorspace, premultiplied);

@@ -14,8 +14,15 @@
 #include "source/mesh.h"
 #include "source/prepared_picture.h"
 #include "source/source.h"
+#include "source/stored_picture.h"
 
 namespace astrosplat {
+
+/// Where load_texture() has files from, and prepared pictures where settings.prepare wants something.
+struct PictureReaders {
+    PictureMaker prepared = make_prepared;
+    RawReader raw = read_raw;
+};
 
 struct Texture {
     Image image;  // RGBA, linear, premultiplied; row 0 is the top (v = 1)
@@ -32,11 +39,10 @@ struct Texture {
 };
 
 /// `default_wrap` is what Wrap::automatic means here. Masks are weighed but not yet applied: shapes that are
-/// made of a picture's brightness see all of it. `prepared` is asked where settings.prepare wants something.
-/// Throws InputError, Cancelled.
+/// made of a picture's brightness see all of it. Throws InputError, Cancelled.
 Texture load_texture(const std::vector<std::filesystem::path>& files, const TextureSettings& settings,
                      TextureSettings::Wrap default_wrap, const Progress& progress = {},
-                     const PictureMaker& prepared = make_prepared);
+                     const PictureReaders& readers = {});
 
 /// Multiplies the picture by its mask, and forgets the mask.
 void apply_mask(Texture& texture);

@@ -1,5 +1,6 @@
 #include "source/textured_mesh.h"
 
+#include <cassert>
 #include <functional>
 #include <utility>
 
@@ -21,6 +22,9 @@ Wrap default_wrap(const SourceParams& source, Wrap of_own_uv) {
     return source.uv == UvMode::camera || source.uv_width > 0.0 ? Wrap::black : Wrap::clamp;
 }
 
+// Of a mesh's own uv.
+Wrap own_wrap(const MeshInput& input) { return is_builtin_mesh(input.mesh) ? Wrap::clamp : Wrap::repeat; }
+
 double aspect_of(const Image& image) {
     return static_cast<double>(image.width) / static_cast<double>(image.height);
 }
@@ -39,7 +43,7 @@ TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, co
     const std::string name = input.mesh.string();
     if (input.texture.empty()) bad_input(name, "texture", "a picture, which built-in meshes need", "none");
     TexturedMesh loaded;
-    loaded.textures.push_back(load(input.texture, default_wrap(source, Wrap::clamp)));
+    loaded.textures.push_back(load(input.texture, default_wrap(source, own_wrap(input))));
     const Texture& texture = loaded.textures.front();
     const double aspect = aspect_of(texture.image);
     loaded.mesh = name == "relief"        ? relief_mesh(texture, input.relief)
@@ -67,7 +71,7 @@ std::vector<Texture> load_maps(const Mesh& mesh, Wrap wrap, const PictureLoader&
 
 TexturedMesh load_file(const MeshInput& input, const SourceParams& source, const PictureLoader& load,
                        const Progress& progress) {
-    const Wrap wrap = default_wrap(source, Wrap::repeat);
+    const Wrap wrap = default_wrap(source, own_wrap(input));
     TexturedMesh loaded;
     loaded.mesh = load_obj(input.mesh, progress);
     if (input.texture.empty()) {
@@ -87,10 +91,10 @@ Bounds bounds(std::span<const TexturedMesh> meshes) {
 }
 
 std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress& progress,
-                                      const PictureMaker& prepared) {
+                                      const PictureReaders& readers) {
     if (source.meshes.empty()) bad_input("source.meshes", "", "at least one mesh", "none");
     const PictureLoader load = [&](const std::vector<std::filesystem::path>& files, Wrap wrap) {
-        return load_texture(files, source.texture, wrap, progress, prepared);
+        return load_texture(files, source.texture, wrap, progress, readers);
     };
     std::vector<TexturedMesh> meshes;
     for (const MeshInput& input : source.meshes) {
@@ -108,6 +112,22 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress
         for (Texture& texture : m.textures) apply_mask(texture);
     }
     return meshes;
+}
+
+void reload_pictures(const SourceParams& source, std::vector<TexturedMesh>& meshes, const Progress& progress,
+                     const PictureReaders& readers) {
+    assert(meshes.size() == source.meshes.size());
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        const MeshInput& input = source.meshes[m];
+        for (std::size_t i = 0; i < meshes[m].textures.size(); ++i) {
+            Texture& texture = meshes[m].textures[i];
+            if (texture.image.width == 0) continue;  // no face uses it
+            const auto files = input.texture.empty() ? std::vector{meshes[m].mesh.maps[i]} : input.texture;
+            texture =
+                load_texture(files, source.texture, default_wrap(source, own_wrap(input)), progress, readers);
+            apply_mask(texture);
+        }
+    }
 }
 
 }  // namespace astrosplat

@@ -43,7 +43,10 @@ enum Flag : std::uint32_t {
     has_radius = 32,
     by_id = 64,
     has_recipe = 128,
-    absorbs = 256
+    absorbs = 256,
+    has_face = 512,
+    only_geometry = 1024,
+    only_colors = 2048
 };
 
 struct Header {
@@ -74,12 +77,22 @@ std::uint32_t flag_of(SplatColumn column) {
             return has_mesh;
         case SplatColumn::radius:
             return has_radius;
+        case SplatColumn::face:
+            return has_face;
         default:
             return 0;
     }
 }
 
-bool has(std::uint32_t flags, SplatColumn column) { return (flags & flag_of(column)) == flag_of(column); }
+bool has(std::uint32_t flags, SplatColumn column) {
+    const bool is_color = column == SplatColumn::color || column == SplatColumn::alpha;
+    if (flags & (is_color ? only_geometry : only_colors)) return false;
+    return (flags & flag_of(column)) == flag_of(column);
+}
+
+std::uint32_t flag_of(NativePart part) {
+    return part == NativePart::geometry ? only_geometry : part == NativePart::colors ? only_colors : 0u;
+}
 
 std::size_t row_bytes(std::uint32_t flags) {
     return bytes_per_splat([&](SplatColumn column) { return has(flags, column); });
@@ -94,8 +107,9 @@ std::size_t block_count(std::uint64_t splats, std::uint32_t block) {
     return static_cast<std::size_t>(splats / block + (splats % block != 0));
 }
 
-/// Bounds and checksum of a packed block, whose first array is the positions.
-BlockEntry describe_block(std::string_view bytes, std::size_t rows) {
+/// Bounds and checksum of a packed block, whose first array is the positions where there are any.
+BlockEntry describe_block(std::uint32_t flags, std::string_view bytes, std::size_t rows) {
+    if (!has(flags, SplatColumn::position)) return {glm::vec3(0.0f), glm::vec3(0.0f), xxh64(bytes)};
     BlockEntry entry{glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), xxh64(bytes)};
     for (std::size_t i = 0; i < rows; ++i) {
         glm::vec3 p;
@@ -108,12 +122,12 @@ BlockEntry describe_block(std::string_view bytes, std::size_t rows) {
 
 // ---- writing
 
-std::uint32_t flags_of(const SplatSet& set, RowOrder order) {
+std::uint32_t flags_of(const SplatSet& set, RowOrder order, NativePart part) {
     std::uint32_t flags = (set.recipe.empty() ? 0u : has_recipe) | (set.generated ? generated : 0u) |
                           (set.divided ? divided : 0u) | (set.absorbs ? absorbs : 0u) |
-                          (order == RowOrder::id ? by_id : 0u);
+                          (order == RowOrder::id ? by_id : 0u) | flag_of(part);
     for_each_column([&](auto column, SplatColumn which) {
-        if (!(set.*column).empty()) flags |= flag_of(which);
+        if (has(flags | flag_of(which), which) && !(set.*column).empty()) flags |= flag_of(which);
     });
     return flags;
 }
@@ -123,19 +137,19 @@ std::string text_of(const SplatSet& set) {
     return set.recipe.empty() ? set.credit : set.credit + '\0' + set.recipe;
 }
 
-std::string header_bytes(const SplatSet& set, RowOrder order) {
+std::string header_bytes(const SplatSet& set, std::uint32_t flags) {
     const std::string text = text_of(set);
     Header header{};
     std::memcpy(header.magic, magic.data(), sizeof header.magic);
     header.version = version;
-    header.flags = flags_of(set, order);
+    header.flags = flags;
     header.splats = static_cast<std::uint64_t>(set.size());
     header.block = splats_per_block;
     header.credit_bytes = static_cast<std::uint32_t>(text.size());
     header.spacing = set.spacing;
     header.max_distance = set.max_distance;
     header.test_positions = set.test_positions;
-    header.zero_alpha = set.zero_alpha;
+    header.zero_alpha = flags & only_colors ? std::ranges::count(set.alpha, 0.0f) : set.zero_alpha;
     std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
     bytes += text;
     bytes.resize(data_offset(text.size()) - sizeof(std::uint64_t), '\0');
@@ -143,11 +157,11 @@ std::string header_bytes(const SplatSet& set, RowOrder order) {
     return bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
 }
 
-/// Rows [begin, end) of every array.
-char* pack(const SplatSet& set, std::int64_t begin, std::int64_t end, char* out) {
-    for_each_column([&](auto column, SplatColumn) {
+/// Rows [begin, end) of every array that the flags name.
+char* pack(const SplatSet& set, std::uint32_t flags, std::int64_t begin, std::int64_t end, char* out) {
+    for_each_column([&](auto column, SplatColumn which) {
         const auto& array = set.*column;
-        if (array.empty()) return;
+        if (!has(flags, which)) return;
         const std::size_t bytes = static_cast<std::size_t>(end - begin) * sizeof array[0];
         std::memcpy(out, &array[begin], bytes);
         out += bytes;
@@ -171,16 +185,15 @@ std::string table_bytes(const std::vector<BlockEntry>& table) {
 }
 
 /// The file, whose blocks are what `pack_rows` makes of their rows.
-void write_blocks(const WriteTarget& target, const SplatSet& set, RowOrder order, const Progress& progress,
-                  const FormatRows& pack_rows) {
+void write_blocks(const WriteTarget& target, const SplatSet& set, std::uint32_t flags,
+                  const Progress& progress, const FormatRows& pack_rows) {
     std::vector<BlockEntry> table(block_count(static_cast<std::uint64_t>(set.size()), splats_per_block));
     write_ordered(
-        target, header_bytes(set, order), set.size(), splats_per_block, row_bytes(flags_of(set, order)),
-        progress,
+        target, header_bytes(set, flags), set.size(), splats_per_block, row_bytes(flags), progress,
         [&](std::int64_t begin, std::int64_t end, char* out) {
             char* const stop = pack_rows(begin, end, out);
-            table[begin / splats_per_block] = describe_block({out, static_cast<std::size_t>(stop - out)},
-                                                             static_cast<std::size_t>(end - begin));
+            table[begin / splats_per_block] = describe_block(
+                flags, {out, static_cast<std::size_t>(stop - out)}, static_cast<std::size_t>(end - begin));
             return stop;
         },
         [&] { return table_bytes(table); });
@@ -189,11 +202,12 @@ void write_blocks(const WriteTarget& target, const SplatSet& set, RowOrder order
 template <class Row>
 void write_in_space(const WriteTarget& target, const SplatSet& set, const Progress& progress) {
     const Buffer<Row> order = spatial_order<Row>(set);
-    write_blocks(
-        target, set, RowOrder::space, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
-            const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-            return pack(set, std::span(order).subspan(first, count), out);
-        });
+    write_blocks(target, set, flags_of(set, RowOrder::space, NativePart::whole), progress,
+                 [&](std::int64_t begin, std::int64_t end, char* out) {
+                     const auto first = static_cast<std::size_t>(begin),
+                                count = static_cast<std::size_t>(end - begin);
+                     return pack(set, std::span(order).subspan(first, count), out);
+                 });
 }
 
 // ---- reading
@@ -237,7 +251,7 @@ Header read_header(const Checker& checker, std::string_view bytes) {
     std::memcpy(&header, bytes.data(), sizeof header);
     if (header.version != version)
         checker.fail("header", fmt::format("version {}", version), std::to_string(header.version));
-    if (header.flags >= absorbs * 2)
+    if (header.flags >= only_colors * 2 || (header.flags & only_geometry && header.flags & only_colors))
         checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
     if (header.block == 0) checker.fail("header", "blocks of at least one splat", "0");
     return header;
@@ -277,6 +291,7 @@ std::uint32_t flags_to_read(const Header& header, const OptionalColumns& wanted)
     if (!wanted.uv) flags &= ~std::uint32_t{has_uv};
     if (!wanted.normal) flags &= ~std::uint32_t{has_normal};
     if (!wanted.mesh) flags &= ~std::uint32_t{has_mesh};
+    if (!wanted.face) flags &= ~std::uint32_t{has_face};
     return flags;
 }
 
@@ -324,12 +339,12 @@ bool unpack(SplatSet& set, std::uint32_t flags, std::size_t first, std::size_t r
 
 void read_block(const Checker& checker, const Layout& layout, std::size_t block, SplatSet& set) {
     const std::size_t first = block * layout.header.block;
-    const std::size_t rows = std::min<std::size_t>(layout.header.block, set.position.size() - first);
+    const std::size_t rows = std::min<std::size_t>(layout.header.block, layout.header.splats - first);
     const std::size_t per_splat = row_bytes(layout.header.flags);
     const std::string_view bytes = layout.blocks.substr(first * per_splat, rows * per_splat);
     const std::string place = fmt::format("block {}", block);
     const BlockEntry& stored = layout.table[block];
-    const BlockEntry found = describe_block(bytes, rows);
+    const BlockEntry found = describe_block(layout.header.flags, bytes, rows);
     if (stored.checksum != found.checksum)
         checker.fail(place, "the checksum written with it", "another (damaged file)");
     if (stored.lo != found.lo || stored.hi != found.hi)
@@ -338,9 +353,23 @@ void read_block(const Checker& checker, const Layout& layout, std::size_t block,
         checker.fail(place, "finite numbers", "infinity or NaN");
 }
 
+NativePart part_of(const Header& header) {
+    return header.flags & only_geometry ? NativePart::geometry
+           : header.flags & only_colors ? NativePart::colors
+                                        : NativePart::whole;
+}
+
+const char* name_of(NativePart part) {
+    constexpr const char* names[] = {"a whole set", "the geometry of a set, from a cache",
+                                     "the colours of a set, from a cache"};
+    return names[static_cast<std::size_t>(part)];
+}
+
 SplatSet read_native_bytes(const Checker& checker, std::string_view bytes, const OptionalColumns& wanted,
-                           const Progress& progress) {
+                           NativePart part, const Progress& progress) {
     const Layout layout = read_layout(checker, bytes);
+    if (part_of(layout.header) != part)
+        checker.fail("header", name_of(part), name_of(part_of(layout.header)));
     SplatSet set = empty_set(layout, wanted, checker.file);
     parallel_parts(layout.table.size(), progress,
                    [&](std::size_t block) { read_block(checker, layout, block, set); });
@@ -352,9 +381,9 @@ SplatSet read_native_bytes(const Checker& checker, std::string_view bytes, const
 }  // namespace
 
 SplatSet read_native(const std::filesystem::path& file, const Progress& progress,
-                     const OptionalColumns& wanted) {
+                     const OptionalColumns& wanted, NativePart part) {
     return read_mapped(file, [&](std::string_view bytes) {
-        return read_native_bytes(Checker{file.string()}, bytes, wanted, progress);
+        return read_native_bytes(Checker{file.string()}, bytes, wanted, part, progress);
     });
 }
 
@@ -373,16 +402,20 @@ std::vector<std::string> native_attributes(const std::filesystem::path& file) {
 
 std::int64_t native_splat_count(const std::filesystem::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
-        return static_cast<std::int64_t>(read_layout(Checker{file.string()}, bytes).header.splats);
+        const Header header = read_layout(Checker{file.string()}, bytes).header;
+        const std::int64_t dark = header.flags & only_colors ? header.zero_alpha : 0;
+        return static_cast<std::int64_t>(header.splats) - dark;
     });
 }
 
-void write_native(const WriteTarget& target, const SplatSet& set, const Progress& progress, RowOrder order) {
+void write_native(const WriteTarget& target, const SplatSet& set, const Progress& progress, RowOrder order,
+                  NativePart part) {
     check_consistent(set);
-    assert(order == RowOrder::space || ids_ascend(set.id));
+    assert(order == RowOrder::id ? ids_ascend(set.id) : part == NativePart::whole);
+    const std::uint32_t flags = flags_of(set, order, part);
     if (order == RowOrder::id)
-        write_blocks(target, set, order, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
-            return pack(set, begin, end, out);
+        write_blocks(target, set, flags, progress, [&](std::int64_t begin, std::int64_t end, char* out) {
+            return pack(set, flags, begin, end, out);
         });
     else if (set.size() <= std::numeric_limits<std::uint32_t>::max())
         write_in_space<std::uint32_t>(target, set, progress);
@@ -390,11 +423,11 @@ void write_native(const WriteTarget& target, const SplatSet& set, const Progress
         write_in_space<std::uint64_t>(target, set, progress);
 }
 
-std::int64_t native_file_bytes(const SplatSet& set) {
+std::int64_t native_file_bytes(const SplatSet& set, NativePart part) {
     const auto rows = static_cast<std::uint64_t>(set.size());
     const std::size_t table = block_count(rows, splats_per_block) * sizeof(BlockEntry);
     return static_cast<std::int64_t>(data_offset(text_of(set).size()) +
-                                     rows * row_bytes(flags_of(set, RowOrder::id)) + table +
+                                     rows * row_bytes(flags_of(set, RowOrder::id, part)) + table +
                                      sizeof(std::uint64_t));
 }
 

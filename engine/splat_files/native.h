@@ -6,18 +6,21 @@
 //            8  u32      version, 1
 //           12  u32      flags: 1 generated, 2 divided, 4 uv, 8 normal, 16 mesh, 32 radius are present,
 //                    64 the rows are in ascending order of id,
-//                    128 a recipe is present
+//                    128 a recipe is present, 256 splats of colours below 0 absorb, 512 faces are present,
+//                    1024 colour and alpha are not there, 2048 nothing but colour and alpha is there
 //           16  u64      splats
 //           24  u32      splats in a block (the last block may hold fewer)
 //           28  u32      bytes of the credit, and of a zero and the recipe where that is present
 //           32  3 f64    spacing             56  f64  max_distance
-//           64  i64      test positions      72  i64  positions dropped for zero alpha
-//           80           credit (UTF-8), 0, recipe, zeros up to 8 bytes before a multiple of 64, u64 checksum
-//           of all before it
+//           64  i64      test positions      72  i64  positions dropped for zero alpha; of colours those that
+//           are 0 80           credit (UTF-8), 0, recipe, zeros up to 8 bytes before a multiple of 64, u64
+//           checksum of all before it
 //   blocks  one after the other, in each: position 3 f32, colour 3 f32, alpha f32, distance f32, id u64, and
 //   where
-//           present uv 2 f32, normal 3 f32, mesh u32, radius f32, every array whole before the next
-//   table   for each block: lowest and highest x y z of its positions (6 f32), u64 checksum of its bytes
+//           present uv 2 f32, normal 3 f32, mesh u32, radius f32, face u32, every array whole before the next
+//   table   for each block: lowest and highest x y z of its positions (6 f32; 0 without positions), u64
+//   checksum
+//           of its bytes
 //           then u64 checksum of the table
 #pragma once
 
@@ -36,22 +39,26 @@ namespace astrosplat {
 /// nothing is sorted when it is read again.
 enum class RowOrder { space, id };
 
-/// Rows come back in the file's order; sort_by_id brings back that of the ids. Every length is checked before
-/// memory is taken or touched, every block against its checksum. Throws InputError.
-/// Columns that are not wanted stay empty.
-SplatSet read_native(const std::filesystem::path& file, const Progress& progress = {},
-                     const OptionalColumns& wanted = {});
+/// What of a set a file holds. Sets travel whole; a cache keeps geometry, which is all but colour and alpha,
+/// and these two in files of their own.
+enum class NativePart { whole, geometry, colors };
 
-/// How many splats a file holds, from its header. Throws InputError.
+/// Rows come back in the file's order; sort_by_id brings back that of the ids. Every length is checked before
+/// memory is taken or touched, every block against its checksum. Throws InputError, also where the file holds
+/// another part of a set. Columns that are not wanted stay empty.
+SplatSet read_native(const std::filesystem::path& file, const Progress& progress = {},
+                     const OptionalColumns& wanted = {}, NativePart part = NativePart::whole);
+
+/// How many splats a file holds, from its header; of colours those whose alpha is not 0. Throws InputError.
 std::int64_t native_splat_count(const std::filesystem::path& file);
 
 /// The same bytes for any thread count. For RowOrder::id the set must be in ascending order of id. Throws
 /// OutputError.
 void write_native(const WriteTarget& target, const SplatSet& set, const Progress& progress = {},
-                  RowOrder order = RowOrder::space);
+                  RowOrder order = RowOrder::space, NativePart part = NativePart::whole);
 
 /// Length of the file that write_native makes of a set.
-std::int64_t native_file_bytes(const SplatSet& set);
+std::int64_t native_file_bytes(const SplatSet& set, NativePart part = NativePart::whole);
 
 /// splat_attributes() of a .splats file.
 std::vector<std::string> native_attributes(const std::filesystem::path& file);

@@ -70,6 +70,7 @@ void drop_columns(SplatSet& set, const OptionalColumns& wanted) {
     if (!wanted.uv) give_back(set.uv);
     if (!wanted.normal) give_back(set.normal);
     if (!wanted.mesh) give_back(set.mesh);
+    if (!wanted.face) give_back(set.face);
 }
 
 Bounds bounds(const SplatSet& set) {

@@ -38,15 +38,27 @@ struct SplatSet : SplatSetFacts {
     Buffer<glm::vec3> normal;    // unit normal of the closest face
     Buffer<std::uint32_t> mesh;  // index of the closest mesh
     Buffer<float> radius;        // scene units; only from files (radiusPP)
+    Buffer<std::uint32_t> face;  // number of the closest triangle, all meshes'; only while columns are made
 
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
 
 /// The columns by number, in the order of for_each_column. Those from uv on are optional.
-enum class SplatColumn : std::uint8_t { position, color, alpha, distance, id, uv, normal, mesh, radius };
+enum class SplatColumn : std::uint8_t {
+    position,
+    color,
+    alpha,
+    distance,
+    id,
+    uv,
+    normal,
+    mesh,
+    radius,
+    face
+};
 constexpr const char* name_of(SplatColumn column) {
     constexpr const char* names[] = {"position", "color",  "alpha", "distance", "id",
-                                     "uv",       "normal", "mesh",  "radius"};
+                                     "uv",       "normal", "mesh",  "radius",   "face"};
     return names[static_cast<std::size_t>(column)];
 }
 constexpr bool is_optional(SplatColumn column) { return column >= SplatColumn::uv; }
@@ -64,6 +76,7 @@ void for_each_column(Visit visit) {
     visit(&SplatSet::normal, SplatColumn::normal);
     visit(&SplatSet::mesh, SplatColumn::mesh);
     visit(&SplatSet::radius, SplatColumn::radius);
+    visit(&SplatSet::face, SplatColumn::face);
 }
 
 /// Bytes of one splat in the columns for which `wanted` says so.
@@ -78,7 +91,7 @@ std::size_t bytes_per_splat(Wanted wanted) {
 
 /// Which of the columns that a set can do without are wanted: pages that nobody reads cost as much as others.
 struct OptionalColumns {
-    bool uv = true, normal = true, mesh = true;
+    bool uv = true, normal = true, mesh = true, face = false;
 };
 
 /// Gives back the memory of columns that are not wanted.

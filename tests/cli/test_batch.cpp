@@ -149,7 +149,7 @@ TEST_F(Batch, StatsHoldTheKeysOfTheContract) {
     }
     ASSERT_EQ(stats.at("layers").size(), 2u);
     for (const char* key : {"name", "test_positions", "kept", "zero_alpha", "drawn", "generate_seconds",
-                            "look_seconds", "cached"}) {
+                            "look_seconds", "cached", "geometry_cached"}) {
         EXPECT_TRUE(stats.at("layers")[0].contains(key)) << key;
     }
     EXPECT_EQ(stats.at("layers")[1].at("name"), "dust");

@@ -28,20 +28,28 @@ voxel_size = 0.2
     }
     /// What a run with these options says of its layer, and the sha256 of its frame.
     struct Figures {
-        bool cached;
+        bool cached, geometry_cached;
         std::int64_t kept, test_positions;
         std::string sha256;
     };
     Figures figures(std::vector<std::string> more, const RunOptions& options = {}) const {
         const std::vector<std::string> sha256 = hashes(more, options);
         const nlohmann::json layer = json("stats.json").at("layers").at(0);
-        return {layer.at("cached"), layer.at("kept"), layer.at("test_positions"), sha256.at(0)};
+        return {layer.at("cached"), layer.at("geometry_cached"), layer.at("kept"), layer.at("test_positions"),
+                sha256.at(0)};
     }
+    std::vector<std::string> names_in(const std::string& relative, const std::string& ending) const {
+        std::vector<std::string> names;
+        for (const std::string& name : SceneTest::names_in(relative))
+            if (fs::path(name).extension() == ending) names.push_back(name);
+        return names;
+    }
+    using SceneTest::names_in;
     std::vector<std::string> sets_in(const std::string& relative) const {
-        std::vector<std::string> sets;
-        for (const std::string& name : names_in(relative))
-            if (fs::path(name).extension() == ".splats") sets.push_back(name);
-        return sets;
+        return names_in(relative, ".splats");
+    }
+    std::vector<std::string> texels_in(const std::string& relative) const {
+        return names_in(relative, ".texels");
     }
     /// Starts a run that generates for a while, and returns once it does.
     std::unique_ptr<RunningProgram> generating_run() const {
@@ -66,7 +74,32 @@ TEST_F(Cache, TheSecondRunTakesTheSetAndGivesTheSamePixels) {
     EXPECT_EQ(second.kept, first.kept);
     EXPECT_EQ(second.test_positions, first.test_positions);
     EXPECT_EQ(sets_in("sets").size(), 1u);
-    EXPECT_EQ(names_in("sets").size(), 1u);
+    EXPECT_EQ(texels_in("sets").size(), 1u);
+    EXPECT_EQ(names_in("sets").size(), 2u);
+}
+
+TEST_F(Cache, ScenesThatDifferInTheirLevelsShareTheirGeometry) {
+    figures({});
+    std::string picture = small_picture();
+    picture.back() ^= 1;
+    write_text(folder / "other.ppm", picture);
+    const std::vector<std::string> changes = {"colorspace=\"linear\"", "alpha=\"luminance\"",
+                                              "unpremultiply=false", "filter=\"area\"",
+                                              "meshes=[ { mesh = \"plane\", texture = \"other.ppm\" } ]"};
+    for (const std::string& change : changes) {
+        const std::vector<std::string> set = {"--set", "layer.gas.source." + change};
+        const Figures shared = figures(set);
+        EXPECT_FALSE(shared.cached) << change;
+        EXPECT_TRUE(shared.geometry_cached) << change;
+        std::vector<std::string> without = set;
+        without.emplace_back("--no-cache");
+        const Figures alone = figures(without);
+        EXPECT_EQ(shared.sha256, alone.sha256) << change;
+        EXPECT_FALSE(alone.geometry_cached) << change;
+        EXPECT_TRUE(figures(set).cached) << change;
+    }
+    EXPECT_EQ(sets_in("sets").size(), 1u);
+    EXPECT_EQ(texels_in("sets").size(), 1 + changes.size());
 }
 
 TEST_F(Cache, OnlyTheSourceMakesANewSet) {
@@ -78,8 +111,11 @@ TEST_F(Cache, OnlyTheSourceMakesANewSet) {
     std::string picture = small_picture();
     picture.back() ^= 1;
     write_text(folder / "picture.ppm", picture);
-    EXPECT_FALSE(figures({}).cached);
-    EXPECT_EQ(sets_in("sets").size(), 3u);
+    const Figures repainted = figures({});
+    EXPECT_FALSE(repainted.cached);
+    EXPECT_TRUE(repainted.geometry_cached);
+    EXPECT_EQ(sets_in("sets").size(), 2u);
+    EXPECT_EQ(texels_in("sets").size(), 3u);
 }
 
 TEST_F(Cache, NoCacheNeitherReadsNorWrites) {
@@ -134,14 +170,16 @@ TEST_F(Cache, AFolderThatCannotBeWrittenIsAWarning) {
 
 TEST_F(Cache, DamagedSetsAreGeneratedAgain) {
     const std::string sha256 = figures({}).sha256;
-    const fs::path set = folder / "sets" / sets_in("sets").at(0);
-    std::string bytes = text_of(set);
-    bytes[bytes.size() / 2] ^= 1;
-    write_text(set, bytes);
-    const Figures again = figures({});
-    EXPECT_FALSE(again.cached);
-    EXPECT_EQ(again.sha256, sha256);
-    EXPECT_TRUE(figures({}).cached);
+    for (const std::string& name : {sets_in("sets").at(0), texels_in("sets").at(0)}) {
+        const fs::path set = folder / "sets" / name;
+        std::string bytes = text_of(set);
+        bytes[bytes.size() / 2] ^= 1;
+        write_text(set, bytes);
+        const Figures again = figures({});
+        EXPECT_FALSE(again.cached);
+        EXPECT_EQ(again.sha256, sha256);
+        EXPECT_TRUE(figures({}).cached);
+    }
 }
 
 TEST_F(Cache, OfManyProcessesOneGenerates) {
@@ -167,7 +205,7 @@ TEST_F(Cache, OfManyProcessesOneGenerates) {
     }
     EXPECT_EQ(generated, 1);
     EXPECT_EQ(sha256.size(), 1u);
-    EXPECT_EQ(names_in("sets").size(), 1u);
+    EXPECT_EQ(names_in("sets").size(), 2u);
 }
 
 TEST_F(Cache, AnInterruptLeavesNothingThere) {
@@ -181,9 +219,9 @@ TEST_F(Cache, WhatAKilledRunLeftIsClearedByTheNext) {
     const auto program = generating_run();
     program->signal(SIGKILL);
     EXPECT_EQ(program->wait().code, -SIGKILL);
-    EXPECT_EQ(names_in("sets").size(), 1u);  // its lock, free again
+    EXPECT_FALSE(names_in("sets").empty());  // its locks, free again
     EXPECT_FALSE(figures({}).cached);
-    EXPECT_EQ(names_in("sets"), (std::set<std::string>{sets_in("sets").at(0)}));
+    EXPECT_EQ(names_in("sets"), (std::set<std::string>{sets_in("sets").at(0), texels_in("sets").at(0)}));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 
 KeptSplat splat_of(std::uint64_t id) {
     const auto v = static_cast<float>(id);
-    return {glm::vec3(v), glm::vec3(0.5f), 1.0f, v, id, glm::vec2(v), glm::vec3(0, 1, 0), 7};
+    return {glm::vec3(v), glm::vec3(0.5f), 1.0f, v, id, glm::vec2(v), glm::vec3(0, 1, 0), 7, 8};
 }
 
 // Store n of two has the odd or the even thousands; as many splats as two blocks and a half hold.
@@ -53,6 +53,7 @@ TEST(KeptStore, PartAfterPartJoinsASetInOrder) {
         ASSERT_EQ(set.id[i], i);
         ASSERT_EQ(set.position[i], glm::vec3(static_cast<float>(i)));
         ASSERT_EQ(set.mesh[i], 7u);
+        ASSERT_EQ(set.face[i], 8u);
     }
 }
 

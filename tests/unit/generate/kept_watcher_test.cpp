@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
+#include "generate/columns.h"
 #include "unit/generate/generate_support.h"
 
 namespace astrosplat {
@@ -32,7 +33,12 @@ class Collector : public KeptWatcher {
             }
     }
 
-    int begun = 0;
+    void ends(const Columns& columns) override {
+        ++ended;
+        EXPECT_EQ(columns.splats.position.size(), kept.size());
+    }
+
+    int begun = 0, ended = 0;
     glm::dvec3 spacing{0.0};
     double max_distance = 0.0;
     bool generated = false;
@@ -54,9 +60,10 @@ TEST(KeptWatcher, SeesEverySplatOnceAndChangesNothing) {
     for (const int threads : {1, 3}) {
         set_thread_count(threads);
         Collector watcher;
-        const SplatSet watched = generate(meshes, lattice, 0.5, 1.0, 9, {}, &watcher);
+        const SplatSet watched = lit_splats(make_columns(meshes, lattice, 0.5, 1.0, 9, {}, &watcher));
         test::expect_same_bits(watched, alone);
         EXPECT_EQ(watcher.begun, 1);
+        EXPECT_EQ(watcher.ended, 1);
         EXPECT_EQ(watcher.spacing, alone.spacing);
         EXPECT_EQ(watcher.max_distance, alone.max_distance);
         EXPECT_TRUE(watcher.generated);

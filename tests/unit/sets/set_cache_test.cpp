@@ -82,6 +82,12 @@ class SetCacheTest : public testing::Test {
     fs::path entry_file(const std::string& ending) const {
         return cache_.folder / (recipe_of(source_, "dust").name + ending);
     }
+    fs::path texel_file(const SourceParams& source) const {
+        return cache_.folder / (recipe_of(source, "dust").name + ".texels");
+    }
+    fs::path geometry_file(const SourceParams& source) const {
+        return cache_.folder / (geometry_recipe(plan_columns(source, "dust", {})).name + ".splats");
+    }
 
     TempFolder folder_;
     SourceParams source_;
@@ -315,21 +321,21 @@ TEST_F(SetCacheTest, TheLeastRecentlyUsedGoFirst) {
         source.seed = seed;
         return source;
     };
-    std::int64_t largest = 0;
-    for (const std::uint32_t seed : {1u, 2u, 3u}) {
-        LoadedSet loaded = load(with_seed(seed));
-        loaded.set.recipe = recipe_text(with_seed(seed), "dust");
-        largest = std::max(largest, native_file_bytes(loaded.set));
-    }
+    for (const std::uint32_t seed : {1u, 2u, 3u}) load(with_seed(seed));
+    std::uintmax_t three = 0;
+    for (const char* const ending : {".splats", ".texels"})
+        for (const fs::path& file : entries(ending)) three += fs::file_size(file);
     const auto age = [&](std::uint32_t seed, int hours) {
-        fs::last_write_time(cache_.folder / (recipe_of(with_seed(seed), "dust").name + ".splats"),
-                            fs::file_time_type::clock::now() - std::chrono::hours(hours));
+        const auto then = fs::file_time_type::clock::now() - std::chrono::hours(hours);
+        fs::last_write_time(geometry_file(with_seed(seed)), then);
+        fs::last_write_time(texel_file(with_seed(seed)), then);
     };
     age(1, 30), age(2, 20), age(3, 10);
     EXPECT_TRUE(load(with_seed(1)).cached);  // used now: 2 is the oldest
-    cache_.limit_bytes = 3 * largest + 2000;
+    cache_.limit_bytes = static_cast<std::int64_t>(three) + 2000;
     load(with_seed(4));
     EXPECT_EQ(entries().size(), 3u);
+    EXPECT_EQ(entries(".texels").size(), 3u);
     EXPECT_EQ(cached_splats(cache_, with_seed(2), "dust"), std::nullopt);
     for (const std::uint32_t seed : {1u, 3u, 4u}) EXPECT_TRUE(load(with_seed(seed)).cached) << seed;
 }
@@ -349,44 +355,147 @@ TEST_F(SetCacheTest, ASetLargerThanTheLimitIsNotKeptAndPushesNothingOut) {
 
 // ---- entries and folders that cannot be used
 
-TEST_F(SetCacheTest, DamagedEntriesAreGeneratedAgainWithAWarning) {
+TEST_F(SetCacheTest, DamagedEntriesAreMadeAgainWithAWarning) {
     const SplatSet set = load().set;
-    const std::string whole = bytes_of(entry_file(".splats"));
-    std::vector<std::string> damaged = {"", "something else", whole.substr(0, whole.size() / 2), whole};
-    damaged.back()[whole.size() / 2] ^= 1;
-    for (const std::string& bytes : damaged) {
-        fs::remove(entry_file(".splats"));
-        std::ofstream(entry_file(".splats"), std::ios::binary) << bytes;
-        warnings_.clear();
-        const LoadedSet again = load();
-        EXPECT_FALSE(again.cached);
-        expect_same_set(again.set, set);
-        ASSERT_EQ(warnings_.size(), 1u);
-        EXPECT_NE(warnings_[0].find("; the set is generated again"), std::string::npos) << warnings_[0];
-        flush_warning_counts();
-        EXPECT_TRUE(load().cached);
+    for (const fs::path& file : {geometry_file(source_), texel_file(source_)}) {
+        const std::string whole = bytes_of(file);
+        std::vector<std::string> damaged = {"", "something else", whole.substr(0, whole.size() / 2), whole};
+        damaged.back()[whole.size() / 2] ^= 1;
+        for (const std::string& bytes : damaged) {
+            fs::remove(file);
+            std::ofstream(file, std::ios::binary) << bytes;
+            warnings_.clear();
+            const LoadedSet again = load();
+            EXPECT_FALSE(again.cached);
+            EXPECT_EQ(again.geometry_cached, file == texel_file(source_));
+            expect_same_set(again.set, set);
+            ASSERT_EQ(warnings_.size(), 1u);
+            EXPECT_NE(warnings_[0].find("; the set is generated again"), std::string::npos) << warnings_[0];
+            flush_warning_counts();
+            EXPECT_EQ(bytes_of(file), whole);
+            EXPECT_TRUE(load().cached);
+        }
     }
+}
+
+TEST_F(SetCacheTest, BodiesThatAreDamagedAreMadeAgain) {
+    source_.structure.kind = StructureKind::disk;
+    const SplatSet set = load().set;
+    const fs::path file = entry_file(".splats");
+    std::string bytes = bytes_of(file);
+    bytes[bytes.size() / 2] ^= 1;
+    fs::remove(file);
+    std::ofstream(file, std::ios::binary) << bytes;
+    const LoadedSet again = load();
+    EXPECT_FALSE(again.cached || again.geometry_cached);
+    expect_same_set(again.set, set);
+    EXPECT_TRUE(load().cached);
+}
+
+// ---- geometry and texels
+
+TEST_F(SetCacheTest, HowPicturesAreReadNeedsNoOtherGeometry) {
+    load();
+    std::size_t texels = 1;
+    const std::function<void(SourceParams&)> changes[] = {
+        [](SourceParams& s) { s.texture.alpha = TextureSettings::Alpha::luminance; },
+        [](SourceParams& s) { s.texture.colorspace = TextureSettings::Colorspace::linear; },
+        [](SourceParams& s) { s.texture.unpremultiply = TextureSettings::Unpremultiply::no; },
+        [](SourceParams& s) { s.texture.filter = TextureSettings::Filter::area; },
+        [](SourceParams& s) { s.texture.smooth = 0.02; },
+        [](SourceParams& s) { s.texture.mask.emplace_back().luminance = glm::dvec2(0.5, 1.0); },
+        [this](SourceParams& s) { s.meshes[0].texture = {folder_.file("q.ppm", picture(16, 7))}; },
+    };
+    for (const auto& change : changes) {
+        SourceParams source = source_;
+        change(source);
+        const LoadedSet loaded = load(source);
+        EXPECT_FALSE(loaded.cached);
+        EXPECT_TRUE(loaded.geometry_cached);
+        expect_same_set(loaded.set, load_source(source, "dust"));
+        EXPECT_EQ(entries().size(), 1u);
+        EXPECT_EQ(entries(".texels").size(), ++texels);
+        const LoadedSet again = load(source);
+        EXPECT_TRUE(again.cached);
+        expect_same_set(again.set, loaded.set);
+        EXPECT_EQ(cached_splats(cache_, source, "dust"), loaded.set.size());
+    }
+}
+
+TEST_F(SetCacheTest, LevelsBringBackWhatOthersHid) {
+    const auto shown_above = [&](double luminance) {
+        SourceParams source = source_;
+        source.texture.mask.emplace_back().luminance = glm::dvec2(luminance, 1.0);
+        return load(source);
+    };
+    const LoadedSet few = shown_above(0.35), many = shown_above(0.2);
+    EXPECT_GT(few.set.size(), 100);
+    EXPECT_LT(2 * few.set.size(), many.set.size());
+    EXPECT_FALSE(few.geometry_cached);
+    EXPECT_TRUE(many.geometry_cached);
+    EXPECT_EQ(few.set.size() + few.set.zero_alpha, many.set.size() + many.set.zero_alpha);
+}
+
+TEST_F(SetCacheTest, OfSeveralMaterialsEveryFaceHasItsPicture) {
+    folder_.file("q.ppm", picture(16, 7));
+    folder_.file("two.mtl", "newmtl a\nmap_Kd p.ppm\nnewmtl b\nmap_Kd q.ppm\n");
+    source_.meshes = {
+        {folder_.file("two.obj",
+                      "mtllib two.mtl\nv 0 0 0\nv 4 0 0\nv 0 4 0\nv 4 4 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                      "usemtl a\nf 1/1 2/2 3/3\nusemtl b\nf 2/2 4/1 3/3\n"),
+         {},
+         0.15}};
+    load();
+    source_.texture.filter = TextureSettings::Filter::area;  // boxes differ from face to face
+    const LoadedSet other = load();
+    EXPECT_TRUE(other.geometry_cached);
+    expect_same_set(other.set, load_source(source_, "dust"));
+}
+
+TEST_F(SetCacheTest, WhereThePictureMakesTheShapeItMakesTheGeometry) {
+    source_.meshes[0].mesh = "relief";
+    load();
+    source_.texture.colorspace = TextureSettings::Colorspace::linear;
+    EXPECT_FALSE(load().geometry_cached);
+    source_.texture.mask.emplace_back().luminance = glm::dvec2(0.2, 1.0);  // which shapes do not see
+    EXPECT_TRUE(load().geometry_cached);
+}
+
+TEST_F(SetCacheTest, SplatsAreCountedAfterTheLevels) {
+    source_.splats = 3000;
+    const LoadedSet all = load();
+    source_.texture.filter = TextureSettings::Filter::nearest;
+    EXPECT_TRUE(load().geometry_cached);
+    source_.texture.mask.emplace_back().luminance = glm::dvec2(0.3, 1.0);
+    const LoadedSet masked = load();
+    EXPECT_FALSE(masked.geometry_cached);  // as many of fewer: another lattice
+    EXPECT_NEAR(static_cast<double>(masked.set.size()), 3000.0, 300.0);
+    EXPECT_NEAR(static_cast<double>(all.set.size()), 3000.0, 300.0);
 }
 
 // As after a collision of hashes, or by a hand that renames files.
 TEST_F(SetCacheTest, AnEntryOfAnotherSetUnderThisNameIsNotTaken) {
     const SplatSet set = load().set;
-    const fs::path own = entries().at(0);
     SourceParams other = source_;
     other.seed = 77;
-    load(other);
-    for (const fs::path& file : entries())
-        if (file != own) fs::rename(file, own);
-    ASSERT_EQ(entries().size(), 1u);
-    const LoadedSet again = load();
-    EXPECT_FALSE(again.cached);
-    expect_same_set(again.set, set);
-    ASSERT_EQ(warnings_.size(), 1u);
-    EXPECT_NE(warnings_[0].find("expected that of the set asked for"), std::string::npos) << warnings_[0];
-    EXPECT_TRUE(again.set.recipe.empty());
-    const LoadedSet repaired = load();
-    EXPECT_TRUE(repaired.cached);
-    EXPECT_TRUE(repaired.set.recipe.empty());
+    for (const bool geometry : {true, false}) {
+        const auto file_of = [&](const SourceParams& s) {
+            return geometry ? geometry_file(s) : texel_file(s);
+        };
+        load(other);
+        fs::rename(file_of(other), file_of(source_));
+        warnings_.clear();
+        const LoadedSet again = load();
+        EXPECT_FALSE(again.cached);
+        expect_same_set(again.set, set);
+        ASSERT_EQ(warnings_.size(), 1u);
+        EXPECT_NE(warnings_[0].find("expected that of the set asked for"), std::string::npos) << warnings_[0];
+        EXPECT_TRUE(again.set.recipe.empty());
+        flush_warning_counts();
+        const LoadedSet repaired = load();
+        EXPECT_TRUE(repaired.cached);
+        EXPECT_TRUE(repaired.set.recipe.empty());
+    }
 }
 
 TEST_F(SetCacheTest, AFolderThatCannotBeMadeIsAWarning) {
@@ -397,7 +506,7 @@ TEST_F(SetCacheTest, AFolderThatCannotBeMadeIsAWarning) {
 }
 
 TEST_F(SetCacheTest, ThePlaceOfAnEntryTakenByAFolderIsAWarning) {
-    fs::create_directories(entry_file(".splats"));
+    fs::create_directories(entry_file(".texels"));
     EXPECT_FALSE(load().cached);
     ASSERT_EQ(warnings_.size(), 1u);
     EXPECT_NE(warnings_[0].find("what was generated is not kept"), std::string::npos) << warnings_[0];
@@ -441,23 +550,30 @@ TEST_F(SetCacheTest, WhatDeadProcessesLeftIsRemovedAndNothingElse) {
 }
 
 TEST_F(SetCacheTest, OthersWaitForTheOneThatGenerates) {
-    fs::create_directories(cache_.folder);
-    SplatSet set = load_source(source_, "dust");
-    const int lock = open(entry_file(".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    ASSERT_EQ(flock(lock, LOCK_EX), 0);
-    std::optional<LoadedSet> loaded;
-    std::atomic<bool> waits{false};
-    set_log_sink([&](LogLevel, const std::string& line) { waits = waits || line.find("waiting") < 99; });
-    std::thread other([&] { loaded = load(); });
-    while (!waits) std::this_thread::yield();
-    set.recipe = recipe_text(source_, "dust");
-    write_native(entry_file(".splats"), set, {}, RowOrder::id);
-    set.recipe.clear();
-    fs::remove(entry_file(".lock"));  // as FileLock gives it back
-    close(lock);
-    other.join();
-    EXPECT_TRUE(loaded->cached);
-    expect_same_set(loaded->set, set);
+    const SetCache elsewhere{folder_ / "elsewhere", 0};
+    const SplatSet set = load_source(elsewhere, source_, "dust").set;
+    for (const bool same_texels : {true, false}) {
+        fs::remove_all(cache_.folder);
+        fs::create_directories(cache_.folder);
+        const fs::path held =
+            (same_texels ? texel_file(source_) : geometry_file(source_)).replace_extension(".lock");
+        const int lock = open(held.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        ASSERT_EQ(flock(lock, LOCK_EX), 0);
+        std::optional<LoadedSet> loaded;
+        std::atomic<bool> waits{false};
+        set_log_sink([&](LogLevel, const std::string& line) { waits = waits || line.find("waiting") < 99; });
+        std::thread other([&] { loaded = load(); });
+        while (!waits) std::this_thread::yield();
+        for (const auto& file : fs::directory_iterator(elsewhere.folder))
+            if (same_texels || file.path().extension() == ".splats")
+                fs::copy_file(file.path(), cache_.folder / file.path().filename());
+        fs::remove(held);  // as FileLock gives it back
+        close(lock);
+        other.join();
+        EXPECT_EQ(loaded->cached, same_texels);
+        EXPECT_TRUE(loaded->geometry_cached);
+        expect_same_set(loaded->set, set);
+    }
 }
 
 TEST_F(SetCacheTest, WaitingCanBeCancelled) {

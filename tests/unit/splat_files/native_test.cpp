@@ -104,6 +104,39 @@ TEST_F(Native, ColumnsThatAreNotWantedStayEmpty) {
     }
 }
 
+TEST_F(Native, PartsOfASetTogetherAreTheSet) {
+    SplatSet set = full_set(70000);
+    std::ranges::sort(set.id);
+    set.face.assign(set.position.size(), 9);
+    std::fill_n(set.alpha.begin(), 30, 0.0f);
+    write_native(path("g.splats"), set, {}, RowOrder::id, NativePart::geometry);
+    write_native(path("c.splats"), set, {}, RowOrder::id, NativePart::colors);
+    for (const auto& [file, part] :
+         {std::pair{"g.splats", NativePart::geometry}, {"c.splats", NativePart::colors}})
+        EXPECT_EQ(std::filesystem::file_size(path(file)),
+                  static_cast<std::uintmax_t>(native_file_bytes(set, part)));
+    SplatSet got = read_native(path("g.splats"), {}, {true, true, true, true}, NativePart::geometry);
+    EXPECT_TRUE(got.color.empty() && got.alpha.empty());
+    SplatSet colors = read_native(path("c.splats"), {}, {}, NativePart::colors);
+    EXPECT_TRUE(colors.position.empty() && colors.id.empty() && colors.uv.empty());
+    got.color = std::move(colors.color);
+    got.alpha = std::move(colors.alpha);
+    expect_same_set(got, set);
+    EXPECT_TRUE(same_bits(got.face, set.face));
+    EXPECT_EQ(native_splat_count(path("g.splats")), 70000);
+    EXPECT_EQ(native_splat_count(path("c.splats")), 70000 - std::ranges::count(set.alpha, 0.0f));
+}
+
+TEST_F(Native, APartIsNotTakenForASet) {
+    write_native(path("a.splats"), full_set(5), {}, RowOrder::id, NativePart::geometry);
+    EXPECT_EQ(error_of(path("a.splats"), [](const auto& file) { read_native(file); }),
+              "a.splats:header: expected a whole set, found the geometry of a set, from a cache");
+    EXPECT_EQ(
+        error_of(path("a.splats"), [](const auto& file) { read_native(file, {}, {}, NativePart::colors); }),
+        "a.splats:header: expected the colours of a set, from a cache, found the geometry of a set, from a "
+        "cache");
+}
+
 TEST_F(Native, EmptySetSurvives) {
     write_native(path("a.splats"), full_set(0));
     expect_same_set(read_native(path("a.splats")), full_set(0));
@@ -203,7 +236,8 @@ TEST_F(Native, Messages) {
     EXPECT_EQ(error("ply" + whole.substr(3)),
               "a.splats: expected an astrosplat .splats file, found another format");
     EXPECT_EQ(error(forged(whole, 8, 2u)), "a.splats:header: expected version 1, found 2");
-    EXPECT_EQ(error(forged(whole, 12, 0x200u)), "a.splats:header: expected known flags, found 0x200");
+    EXPECT_EQ(error(forged(whole, 12, 0x1000u)), "a.splats:header: expected known flags, found 0x1000");
+    EXPECT_EQ(error(forged(whole, 12, 0xc00u)), "a.splats:header: expected known flags, found 0xc00");
     std::uint32_t flags;
     std::memcpy(&flags, &whole[12], sizeof flags);
     EXPECT_EQ(error(forged(whole, 12, flags | 0x80u)),

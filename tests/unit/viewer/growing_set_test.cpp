@@ -19,13 +19,16 @@ std::vector<KeptSplat> splats(std::uint64_t first, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         made[i] = {};
         made[i].id = first + i;
+        made[i].alpha = 1.0f;
         made[i].position.x = static_cast<float>(first + i);
     }
     return made;
 }
 
 void keep(GrowingSet& growing, const std::vector<KeptSplat>& kept) {
-    const KeptStore::Run run{kept.data(), kept.size()};
+    const auto lit =
+        std::count_if(kept.begin(), kept.end(), [](const KeptSplat& s) { return s.alpha > 0.0f; });
+    const KeptStore::Run run{kept.data(), kept.size(), static_cast<std::size_t>(lit)};
     growing.keeps({&run, 1});
 }
 

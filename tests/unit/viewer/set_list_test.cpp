@@ -85,8 +85,9 @@ TEST_F(SetListTest, AGrowingSetIsShownBesideAnOldOneFromHalfOnwards) {
     begun();
     const auto keep_one = [&] {
         job->growing.begins({}, {});
-        const KeptSplat splat{};
-        const KeptStore::Run run{&splat, 1};
+        KeptSplat splat{};
+        splat.alpha = 1.0f;
+        const KeptStore::Run run{&splat, 1, 1};
         job->growing.keeps({&run, 1});
     };
     EXPECT_FALSE(list.growing_job()) << "nothing is kept yet";

@@ -1,0 +1,42 @@
+// A set of columns with every position that a search for closest points has found, also where the picture is
+// transparent: its geometry. In: meshes, a lattice and pictures. Out: Columns, and the set of what is to be
+// seen of them. Other levels of the same pictures, or other pictures, need no search.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/progress.h"
+#include "generate/lattice.h"
+#include "source/textured_mesh.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+class KeptWatcher;
+
+/// With SplatSet::face. Colours and alphas are those of the pictures read last; zero_alpha counts only the
+/// positions that no picture shows.
+struct Columns {
+    SplatSet splats;
+};
+
+/// Bytes that make_columns() will take at its peak, about.
+std::int64_t columns_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
+                                  double max_distance);
+
+/// Runs the cull over the whole lattice, block by block; cost follows what is kept. Deterministic for any
+/// thread count. Announces memory before taking it. `progress` may cancel; `watcher`, where there is one,
+/// sees the positions as they are kept.
+Columns make_columns(std::span<const TexturedMesh> meshes, const Lattice& lattice, double max_distance,
+                     double jitter, std::uint32_t seed, const Progress& progress = {},
+                     KeptWatcher* watcher = nullptr);
+
+/// Colours and alphas of all positions from the pictures of `meshes`, whose triangles are those that the
+/// columns were made of: the bits that make_columns() would give. Throws Cancelled.
+void read_texels(std::span<const TexturedMesh> meshes, Columns& columns, const Progress& progress = {});
+
+/// The set: what has an alpha above 0. The rest is counted in zero_alpha.
+SplatSet lit_splats(Columns columns);
+
+}  // namespace astrosplat
