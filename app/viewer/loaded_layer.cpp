@@ -24,16 +24,6 @@ glm::vec3 mean_color(const SplatSet& set) {
     return weight > 0.0f ? sum / weight : glm::vec3(1.0f);
 }
 
-MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_for) {
-    MergeSource source;
-    if (set->size() > 0)
-        source.weight =
-            static_cast<float>(static_cast<double>(stands_for) / static_cast<double>(set->size()));
-    source.tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
-    source.set = std::move(set);
-    return source;
-}
-
 LoadedLayer layer_of(MergeSource sample, const SourceParams& source, const std::string& name) {
     LoadedLayer layer;
     layer.color = mean_color(*sample.set);
@@ -44,6 +34,16 @@ LoadedLayer layer_of(MergeSource sample, const SourceParams& source, const std::
 }
 
 }  // namespace
+
+MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_for) {
+    MergeSource source;
+    if (set->size() > 0)
+        source.weight =
+            static_cast<float>(static_cast<double>(stands_for) / static_cast<double>(set->size()));
+    source.tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
+    source.set = std::move(set);
+    return source;
+}
 
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
                         const std::string& name, std::int64_t sample_limit) {

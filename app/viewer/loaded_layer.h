@@ -23,6 +23,7 @@ struct LoadedLayer {
     std::shared_ptr<const SplatSet> set;  // for the final frame; null while it grows
     MergeSource sample;                   // of it, for a preview at once; where that suffices, the set itself
     MergeSource whole;        // for previews at rest; comes a little later, where `sample` is not all
+    ColumnSample columns;     // of which live_texels.h makes a preview under other levels
     std::int64_t splats = 0;  // of the whole set; while it grows those there are so far
     bool arranged = false;    // nothing of the above is on its way
     std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
@@ -34,6 +35,9 @@ struct LoadedLayer {
     std::vector<std::filesystem::path> files;  // it was made of; come with the histograms
     bool outdated = false;                     // one of them was changed since
 };
+
+/// A set with its tree, as a sample of so many splats.
+MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_for);
 
 /// A whole set, with a sample of at most `sample_limit` splats, in no time.
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,

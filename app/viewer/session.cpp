@@ -152,6 +152,7 @@ void advance(Session& session, double now) {
     const bool for_screenshot = session.fixed_splats > 0;
     session.playback.advance(session.view, session.document.scene().output, now);
     want_sets(session, now);
+    session.sets.follow(session.document.scene());
     if (!for_screenshot) session.sets.show_growth(now);
     check_disk(session, now);
     if (const auto news = session.jobs.poll(session.status.job)) say(session.status, news->text, news->error);
@@ -188,6 +189,8 @@ void drop(Session& session, const std::vector<fs::path>& files) {
 double next_due(const Session& session, double now) {
     if (!session.sets.loader().idle() || session.jobs.running()) return 0.1;
     if (session.view.playing) return 0.0;
+    if (session.sets.following()) return 0.01;
+    if (!session.sets.wanted(session.document.scene())) return 0.1;
     if (!session.view_frame.exact()) return 0.02;
     const ViewFrameState reached = session.view_frame.status().state;
     if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;

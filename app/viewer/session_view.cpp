@@ -70,7 +70,7 @@ ViewRequest make_request(const Session& session, Scene now) {
     ViewRequest made;
     made.files = session.disk.changes();
     for (const LayerParams& layer : now.layers) {
-        made.layers.push_back(session.sets.loader().layer(layer.name));
+        made.layers.push_back(session.sets.layer(layer));
         if (layer.visible && made.layers.back())
             made.box.add(world_bounds(made.layers.back()->box, render_layer(layer)));
     }
@@ -203,8 +203,9 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     const Rect place = one_to_one ? crop_to_viewport(session.request, whole, session.viewport_px) : whole;
 
     const PreviewChoice choice = preview_choice(session);
-    const bool may_settle =
-        session.view.settle && !session.view.playing && session.sets.loader().sets_there();
+    const bool may_settle = session.view.settle && !session.view.playing &&
+                            session.sets.loader().sets_there() &&
+                            session.sets.wanted(session.document.scene());
     const double start = thread_seconds();
     session.view_frame.show(session.request, choice, may_settle, now, hurry);
     if (new_sets) session.sets.drew_new_sets(thread_seconds() - start);

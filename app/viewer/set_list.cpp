@@ -138,7 +138,7 @@ std::optional<SetTask> SetList::next_task() const {
 std::shared_ptr<SetJob> SetList::begin_next() {
     const SetTask task = next_task().value();
     std::list<std::string>& names = queues_[task];
-    job_ = std::make_shared<SetJob>(growing_limit(sample_limit_));
+    job_ = std::make_shared<SetJob>(growing_limit(sample_limit_), sample_limit_);
     job_->task = task;
     job_->name = names.front();
     names.pop_front();
@@ -175,7 +175,9 @@ SetList::Layer SetList::keep(const SetJob& finished, Layer loaded) {
 SetList::Layer SetList::replace(const SetJob& finished, Layer loaded) {
     if (!is_wanted(finished)) return loaded;
     ++revision_;
-    return std::exchange(entries_[finished.name].loaded, std::move(loaded));
+    Entry& entry = entries_[finished.name];
+    if (loaded->histograms) entry.histograms = loaded->histograms;
+    return std::exchange(entry.loaded, std::move(loaded));
 }
 
 void SetList::fail(const SetJob& finished, const std::string& why) {
@@ -230,7 +232,7 @@ LayerStatus SetList::status(const LayerParams& layer) const {
     status.radius_min = seen->radius.x;
     status.radius_max = seen->radius.y;
     status.color = seen->color;
-    status.histograms = seen->histograms;
+    status.histograms = seen->histograms ? seen->histograms : entry.histograms;
     return status;
 }
 

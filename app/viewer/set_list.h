@@ -32,7 +32,7 @@ struct SetJob {
     std::atomic<float> progress{0.0f};
     GrowingSet growing;
 
-    explicit SetJob(std::int64_t growing_limit) : growing(growing_limit) {}
+    SetJob(std::int64_t growing_limit, std::int64_t column_limit) : growing(growing_limit, column_limit) {}
 };
 
 class SetList {
@@ -89,7 +89,8 @@ class SetList {
         Stage stage = Stage::waiting;
         std::string error;
         Layer loaded;
-        Layer growing;  // shown instead, while the next one is generated
+        Layer growing;                                      // shown instead, while the next one is generated
+        std::shared_ptr<const LayerHistograms> histograms;  // the latest: the next ones come late
     };
 
     Layer find_loaded(const SourceParams& identity) const;

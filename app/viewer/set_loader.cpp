@@ -44,7 +44,8 @@ void SetLoader::load(SetJob& job) {
     progress.report = [&](double fraction) { job.progress = static_cast<float>(fraction); };
     auto set = std::make_shared<const SplatSet>(load_set_(job.source, job.name, progress, job.growing));
     auto layer =
-        std::make_shared<const LoadedLayer>(whole_layer(std::move(set), job.source, job.name, sample_limit_));
+        std::make_shared<LoadedLayer>(whole_layer(std::move(set), job.source, job.name, sample_limit_));
+    layer->columns = job.growing.columns();
 
     SetList::Layer old;  // let go after the lock
     const auto held = worker_.lock();

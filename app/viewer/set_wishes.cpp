@@ -14,6 +14,13 @@ std::vector<SourceParams> sources_of(const Scene& scene) {
     return sources;
 }
 
+/// The set that a preview of the layer under its present levels can be made of.
+std::shared_ptr<const LoadedLayer> base_of(const SetLoader& loader, const LayerParams& layer) {
+    auto loaded = loader.layer(layer.name);
+    if (!loaded || !loaded->set || loaded->outdated) return nullptr;
+    return only_texels_differ(loaded->source, layer.source) ? loaded : nullptr;
+}
+
 }  // namespace
 
 double thread_seconds() {
@@ -27,7 +34,10 @@ bool SetWishes::due(const Document& document, double now) {
     if (document.revision() == wanted_revision_) return false;
     const std::vector<SourceParams> sources = sources_of(document.scene());
     const bool same_layers = sources.size() == wanted_sources_.size();
-    if (same_layers && sources != wanted_sources_ && source_edited_at_ < 0.0) source_edited_at_ = now;
+    const bool edited = same_layers && sources != wanted_sources_;
+    const bool moves = edited && sources != edited_sources_ && followed(document.scene());
+    if (edited && (source_edited_at_ < 0.0 || moves)) source_edited_at_ = now;
+    edited_sources_ = sources;
     return source_edited_at_ < 0.0 || now - source_edited_at_ >= rest_s;
 }
 
@@ -40,6 +50,25 @@ void SetWishes::want(const Document& document) {
 
 bool SetWishes::loaded(const Document& document) const {
     return loader_.idle() && wanted_revision_ == document.revision();
+}
+
+bool SetWishes::wanted(const Scene& scene) const { return wanted_sources_ == sources_of(scene); }
+
+bool SetWishes::followed(const Scene& scene) const {
+    return std::ranges::any_of(scene.layers,
+                               [&](const LayerParams& layer) { return base_of(loader_, layer) != nullptr; });
+}
+
+void SetWishes::follow(const Scene& scene) {
+    for (const LayerParams& layer : scene.layers)
+        if (const auto base = base_of(loader_, layer)) return live_.want({base, layer.source});
+    live_.forget();
+}
+
+std::shared_ptr<const LoadedLayer> SetWishes::layer(const LayerParams& layer) const {
+    if (const auto base = base_of(loader_, layer))
+        if (auto live = live_.layer(base)) return live;
+    return loader_.layer(layer.name);
 }
 
 void SetWishes::show_growth(double now) {

@@ -1,12 +1,13 @@
 // Which sets the scene wants of the loader, and when: a source that is being edited waits until the hand has
-// rested, and a set that grows is shown as often as takes it a few percent of its time. In: the document,
-// once a frame. Out: the loader's sets.
+// rested, while a preview follows its levels; and a set that grows is shown as often as takes it a few
+// percent of its time. In: the document, once a frame. Out: the loader's sets.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "edit/document.h"
+#include "viewer/live_texels.h"
 #include "viewer/set_loader.h"
 
 namespace astrosplat {
@@ -21,6 +22,15 @@ class SetWishes {
     /// The sets are those of the document as it is, or have failed.
     bool loaded(const Document& document) const;
 
+    /// The sets are wanted as the scene is.
+    bool wanted(const Scene& scene) const;
+
+    /// Works towards a preview of what a source is edited to, where that needs no set.
+    void follow(const Scene& scene);
+    bool following() const { return live_.working(); }
+    /// What there is to be seen of a layer: the loader's, or a preview under the levels that it has now.
+    std::shared_ptr<const LoadedLayer> layer(const LayerParams& layer) const;
+
     /// What there is of a set that is being generated.
     void show_growth(double now);
     /// There are other sets than at the last call.
@@ -34,9 +44,12 @@ class SetWishes {
     const SetLoader& loader() const { return loader_; }
 
   private:
+    bool followed(const Scene& scene) const;
+
     SetLoader loader_;
+    LiveTexels live_;
     std::uint64_t wanted_revision_ = 0;  // of the document
-    std::vector<SourceParams> wanted_sources_;
+    std::vector<SourceParams> wanted_sources_, edited_sources_;
     double source_edited_at_ = -1.0;  // below 0: no source waits to be generated again
     double grows_at_ = 0.0;           // when a set that is generated may be shown again
     double new_set_draw_s_ = 0.0;

@@ -73,7 +73,11 @@ std::int64_t ViewFrame::dots_wanted() const {
 }
 
 bool ViewFrame::draws_whole_sets() const {
-    return choice_.opengl && choice_.whole_sets && choice_.share == 0.0f && status_.total < too_many_;
+    const auto is_whole = [](const std::shared_ptr<const LoadedLayer>& layer) {
+        return !layer || layer->set;
+    };
+    return choice_.opengl && choice_.whole_sets && choice_.share == 0.0f && status_.total < too_many_ &&
+           std::ranges::all_of(request_->layers, is_whole);
 }
 
 /// Gives the layers their splats, and notes how many their looks keep.
