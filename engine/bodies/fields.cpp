@@ -81,7 +81,7 @@ Image thickness_field(const Image& brightest, double height) {
     Image field = gaussian_blur(halved_often(brightest, halvings), scaled(40.0, brightest) / step);
     const double bright = std::max(1e-12, field_percentile(field, 0.995));
     change_each(field, [&](double v) {
-        return height * std::min(0.55 + 1.65 * real::pow(std::max(0.0, v / bright), 4.0), 2.2);
+        return height * std::min(0.55 + 1.65 * real::pow(std::max(0.0, v / bright), 5.0), 2.2);
     });
     limit_slope(field, 0.3 * step);
     return field;

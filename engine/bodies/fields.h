@@ -11,7 +11,7 @@ namespace astrosplat {
 int field_halvings(const Image& brightest);
 
 /// The scale height at every pixel of a layer whose typical one is `height`: .55 to 2.2 times it, more where
-/// the picture is bright over a wide area: H min(.55 + 1.65 (G_40 * m / its 99.5 %)^4, 2.2), rising by at
+/// the picture is bright over a wide area: H min(.55 + 1.65 (G_40 * m / its 99.5 %)^5, 2.2), rising by at
 /// most .3 a px, so that a bulge is no taller than it is wide. (DEPTH 4 has 1.6 and the power 1.5, which made
 /// a slab of whole inner disks and a tower of a small bulge.)
 Image thickness_field(const Image& brightest, double height);

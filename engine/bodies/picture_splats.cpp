@@ -18,8 +18,10 @@ using shared::as_exp, shared::as_hash, shared::as_log, shared::as_pow, shared::a
 constexpr float cell_jitter = 0.5f;         // of the lattice's spacing
 constexpr float least_brightness = 0.002f;  // below which opacity falls to 0: empty sky hides nothing
 constexpr float greatest_opacity = 0.985f;
-constexpr float star_opacity = 0.25f;  // of a star's own
-constexpr float glow_hiding = 0.5f;    // share of its optical depth that the glow between two walls keeps
+constexpr float star_opacity = 0.25f;      // of a star's own
+constexpr float glowing_thickness = 0.7f;  // of H, from which the light of a disk is that of its bulge
+constexpr float clearest_bulge = 16.0f;    // times; clearer still, it would burn out where it is seen aslant
+constexpr float glow_hiding = 0.5f;        // share of its optical depth that the glow between two walls keeps
 
 // What a dot is before it has a depth.
 struct Candidate {
@@ -36,8 +38,10 @@ struct Candidate {
 // walls: were it a fog, the fit would raise the filaments of the back wall by what is lost in it, and from
 // behind they would burn out.
 float hiding_of(const BandDots& dots, const Placement& placement, float thickness) {
-    if (placement.kind == StructureKind::disk)
-        return 1.0f / std::max(1.0f, thickness * thickness * thickness);
+    if (placement.kind == StructureKind::disk) {
+        const float bulge = thickness / glowing_thickness;
+        return 1.0f / std::clamp(bulge * bulge * bulge * bulge, 1.0f, clearest_bulge);
+    }
     return dots.glow ? glow_hiding : 1.0f;
 }
 
@@ -45,7 +49,7 @@ float hiding_of(const BandDots& dots, const Placement& placement, float thicknes
 void shade(const Candidate& dot, float footprint, const Opacity& opacity, ChunkDots& out) {
     const float brightest = std::max(least_brightness, dot.brightest);
     const float tau = dot.hiding * opacity.depth_of(dot.brightest, dot.opacity_limit);
-    const float alpha = std::clamp(tau * (dot.amplitude / brightest) / footprint, 1e-4f, 1.0f);
+    const float alpha = std::clamp(tau * (dot.amplitude / brightest) / footprint, 1e-6f, 1.0f);
     const float boost = tau > 1e-4f ? tau / (1.0f - as_exp(-tau)) : 1.0f;  // what lies before it takes away
     out.alpha.push_back(alpha);
     out.color.push_back(dot.light * (boost / (alpha * footprint)));

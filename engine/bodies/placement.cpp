@@ -72,16 +72,24 @@ float flare_at(const Placement& placement, float x, float y) {
     return 1.0f + static_cast<float>(placement.flare) * (p.x * p.x + p.y * p.y);
 }
 
+// Of a dot in a bulge, where the disk alone would be `disk` thick: most are near the plane and few high up,
+// as in a ball of stars. All as high as the bulge would be a tower.
+float height_in_bulge(float disk, float bulge, std::uint32_t random) {
+    return disk + (bulge - disk) * as_uniform(as_mix(random ^ 0x1b56c4e9u));
+}
+
 // Scale heights of a band's dots: fine bands are thinner, and wide dots bring a thickness of their own.
 void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& block) {
     const float fine = std::min(1.0f, static_cast<float>(dots.index) / 5.0f);
     const float share = placement.kind == StructureKind::disk ? 0.45f + 0.55f * fine : 0.6f + 0.4f * fine;
     const float own = dots.index > 2 ? 1.2f * dots.sigma * dots.sigma : 0.0f;
     const float typical = static_cast<float>(placement.height);
+    const bool bulges = placement.kind == StructureKind::disk;
     for (int i = 0; i < block.count; ++i) {
-        const float height = placement.scale_height(block.x[i], block.y[i]);
+        const float whole = placement.scale_height(block.x[i], block.y[i]);
         const float disk = typical * flare_at(placement, block.x[i], block.y[i]);
-        const float h = height * share, flat = std::min(1.0f, disk / height);
+        const float height = bulges && whole > disk ? height_in_bulge(disk, whole, block.random[i]) : whole;
+        const float h = height * share, flat = std::min(1.0f, disk / whole);
         block.clumping[i] = flat * flat * flat * flat;  // a bulge is smooth
         block.height[i] = std::sqrt(std::max(h * h - own, 0.09f * height * height));
     }

@@ -138,7 +138,7 @@ double split_above_px(StructureKind structure, double longest_over_height) {
 // and lower for walls, which are all edge.
 std::string_view opacity_of(StructureKind structure) {
     if (structure == StructureKind::walls) return "0.3";
-    return structure == StructureKind::disk ? "0.45" : "0.55";
+    return structure == StructureKind::disk ? "0.4" : "0.55";
 }
 
 }  // namespace

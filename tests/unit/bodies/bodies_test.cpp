@@ -329,7 +329,7 @@ struct HalfBulge {
     }
 };
 
-TEST(Bulge, HasManyWiderDotsOfTheSameLightAndAnEighthOfTheOpacity) {
+TEST(Bulge, HasManyWiderDotsOfTheSameLightAndAQuarterOfTheOpacity) {
     const HalfBulge disk;
     const PictureSplats dots = disk.dots(make_bands(640).back(), true);
     double light[2] = {0.0, 0.0}, depth[2] = {0.0, 0.0}, radius[2] = {0.0, 0.0}, count[2] = {0.0, 0.0};
@@ -345,14 +345,28 @@ TEST(Bulge, HasManyWiderDotsOfTheSameLightAndAnEighthOfTheOpacity) {
     }
     EXPECT_NEAR(radius[1] / count[1] / (radius[0] / count[0]), 1.7, 0.01);
     EXPECT_GT(count[1], 4.0 * count[0]);  // or single ones would stand out of its outline
-    EXPECT_NEAR(depth[1] / depth[0], 0.125, 0.01);
+    EXPECT_NEAR(depth[1] / depth[0], 0.26, 0.01);
     // What lies before it takes less away, for which the colours of the disk are raised: tau / (1 - e^-tau).
-    const double tau = static_cast<double>(Opacity{}.depth_of(0.3f, 1.0f));
+    const double tau = std::pow(0.7, 4.0) * static_cast<double>(Opacity{}.depth_of(0.3f, 1.0f));
     const auto raised = [](double t) { return t / (1.0 - std::exp(-t)); };
-    EXPECT_NEAR(light[1] / light[0], raised(0.125 * tau) / raised(tau), 0.03);
+    EXPECT_NEAR(light[1] / light[0], raised(0.26 * tau) / raised(tau), 0.01);
     std::vector<std::uint64_t> ids(dots.splats.id.begin(), dots.splats.id.end());
     std::sort(ids.begin(), ids.end());
     EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
+}
+
+// Were all of a bulge's fine light as thick as the bulge, .9 H here, half of it would be farther than .49 H
+// from the plane, and a tenth farther than 1.32 H.
+TEST(Bulge, ThinsOutUpwards) {
+    const HalfBulge disk;
+    const PictureSplats dots = disk.dots(make_bands(640)[0], false);
+    std::vector<float> heights;
+    for (const glm::vec3& p : dots.splats.position)
+        if (p.x > 20.0f) heights.push_back(std::fabs(p.z) / static_cast<float>(disk.placement.height));
+    ASSERT_GT(heights.size(), 1000u);
+    std::sort(heights.begin(), heights.end());
+    EXPECT_NEAR(heights[heights.size() / 2], 0.33f, 0.03f);
+    EXPECT_NEAR(heights[heights.size() * 9 / 10], 0.87f, 0.08f);
 }
 
 class EveryStructure : public testing::TestWithParam<StructureKind> {};
