@@ -12,7 +12,7 @@ struct Image {
     std::int64_t width = 0;   // px
     std::int64_t height = 0;  // px
     int channels = 0;
-    Buffer<float> pixels;  // width * height * channels; uninitialised after make_image
+    Buffer<float> pixels;  // width * height * channels
 
     float* at(std::int64_t x, std::int64_t y) { return pixels.data() + (y * width + x) * channels; }
     const float* at(std::int64_t x, std::int64_t y) const {
@@ -23,6 +23,13 @@ struct Image {
 inline Image make_image(std::int64_t width, std::int64_t height, int channels, float value = 0.0f) {
     Image image{width, height, channels, {}};
     image.pixels.assign(static_cast<std::size_t>(width * height * channels), value);
+    return image;
+}
+
+/// Without a value: whoever writes a pixel first takes its memory.
+inline Image unfilled_image(std::int64_t width, std::int64_t height, int channels) {
+    Image image{width, height, channels, {}};
+    image.pixels.resize(static_cast<std::size_t>(width * height * channels));
     return image;
 }
 

@@ -7,7 +7,7 @@
 namespace astrosplat {
 
 Image brightest_channel(const Image& light) {
-    Image brightest = make_image(light.width, light.height, 1);
+    Image brightest = unfilled_image(light.width, light.height, 1);
     parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t i = begin * light.width; i < end * light.width; ++i) {
             const float* const p = light.pixels.data() + i * light.channels;
@@ -18,7 +18,7 @@ Image brightest_channel(const Image& light) {
 }
 
 Image channel_of(const Image& image, int channel) {
-    Image one = make_image(image.width, image.height, 1);
+    Image one = unfilled_image(image.width, image.height, 1);
     parallel_chunks(image.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t i = begin * image.width; i < end * image.width; ++i)
             one.pixels[static_cast<std::size_t>(i)] =

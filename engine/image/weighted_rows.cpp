@@ -15,6 +15,22 @@ void weighted_rows_here(std::span<const float> weights, std::span<const float* c
     const hn::ScalableTag<float> d;
     const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
     std::int64_t i = 0;
+    for (; i + 4 * lanes <= count;
+         i += 4 * lanes) {  // four at a time share the loads of weights and pointers
+        auto a = hn::Zero(d), b = a, c = a, e = a;
+        for (std::size_t k = 0; k < weights.size(); ++k) {
+            const auto weight = hn::Set(d, weights[k]);
+            const float* const row = rows[k] + i;
+            a = hn::Add(a, hn::Mul(weight, hn::LoadU(d, row)));
+            b = hn::Add(b, hn::Mul(weight, hn::LoadU(d, row + lanes)));
+            c = hn::Add(c, hn::Mul(weight, hn::LoadU(d, row + 2 * lanes)));
+            e = hn::Add(e, hn::Mul(weight, hn::LoadU(d, row + 3 * lanes)));
+        }
+        hn::StoreU(a, d, out + i);
+        hn::StoreU(b, d, out + i + lanes);
+        hn::StoreU(c, d, out + i + 2 * lanes);
+        hn::StoreU(e, d, out + i + 3 * lanes);
+    }
     for (; i + lanes <= count; i += lanes) {
         auto sum = hn::Zero(d);
         for (std::size_t k = 0; k < weights.size(); ++k)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "image/weighted_rows.h"
 
 namespace astrosplat {
 namespace {
@@ -51,6 +52,35 @@ TEST(Blur, IsTheConvolutionWithAGaussian) {
         for (const auto& [x, y] : {std::pair{0, 0}, {22, 16}, {11, 8}, {3, 15}})
             for (int c = 0; c < 3; ++c)
                 EXPECT_NEAR(blurred.at(x, y)[c], direct(image, sigma, x, y, c), 1.5e-4) << sigma << " " << x;
+    }
+}
+
+TEST(Blur, HalvedEarlyIsWithinAFifthOfThePeak) {
+    Image image = make_image(64, 64, 3);
+    image.at(31, 30)[1] = 1.0f;
+    for (const double sigma : {1.26, 1.5, 2.2, 3.9}) {
+        const Image exact = convolved_with_gaussian(image, sigma), quick = gaussian_blur(image, sigma, 1.25);
+        EXPECT_NE(quick.pixels, exact.pixels) << sigma;
+        const float peak = exact.at(31, 30)[1];
+        for (std::size_t i = 0; i < exact.pixels.size(); ++i)
+            ASSERT_NEAR(quick.pixels[i], exact.pixels[i], 0.2f * peak) << sigma;
+    }
+}
+
+// Whatever part of a row vectors of any length take.
+TEST(Blur, RowsAreWeightedAlikeAtEveryPlace) {
+    const std::vector<float> weights{0.25f, -0.5f, 1.7f};
+    const Image image = noise(400, 3, 1);
+    const std::vector<const float*> rows{image.at(0, 0), image.at(0, 1), image.at(0, 2)};
+    for (const std::int64_t count : {1, 3, 16, 63, 64, 65, 130, 257, 400}) {
+        std::vector<float> out(401, -1.0f);
+        weighted_rows(weights, rows, count, out.data());
+        for (std::int64_t i = 0; i < count; ++i) {
+            float sum = 0.0f;
+            for (std::size_t k = 0; k < 3; ++k) sum += weights[k] * rows[k][i];
+            ASSERT_EQ(out[static_cast<std::size_t>(i)], sum) << count << " " << i;
+        }
+        ASSERT_EQ(out[static_cast<std::size_t>(count)], -1.0f) << count;
     }
 }
 
