@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
 
+#include "bodies/dot_lattice.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
@@ -24,6 +29,7 @@ constexpr float sheet_height = 0.2f, sheet_thickness = 0.05f;
 constexpr double sheet_wave = 26.0;  // texels at a width of 1920, of the clumps in the sheet
 constexpr std::int64_t share_cell_px = 8;
 constexpr double share_blur_cells = 4.0;
+constexpr std::size_t light_parts = 8;  // of the dots, whose light is added up at the same time
 constexpr float dot_sigma = 1.3f, dots_each_texel = 0.6f;
 constexpr float certain_depth = 0.1f;  // optical depth from which no dot is left out
 
@@ -46,11 +52,12 @@ void bend(const Placement& placement, DepthBlock& block) {
 
 // Channel 0: light before the sheet, 1: all light, of cells of share_cell_px, blurred.
 Image light_before(const Placement& placement, const PictureSplats& dots) {
-    Image cells = make_image((placement.picture_width + share_cell_px - 1) / share_cell_px,
-                             (placement.picture_height + share_cell_px - 1) / share_cell_px, 2);
+    const Image none = make_image((placement.picture_width + share_cell_px - 1) / share_cell_px,
+                                  (placement.picture_height + share_cell_px - 1) / share_cell_px, 2);
+    std::vector<Image> parts(light_parts, none);
     const float middle_x = 0.5f * static_cast<float>(placement.picture_width),
                 middle_y = 0.5f * static_cast<float>(placement.picture_height);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(dots.splats.size()); ++i) {
+    const auto add = [&](std::size_t i, Image& cells) {
         const glm::vec3 p = dots.splats.position[i], color = dots.splats.color[i];
         const float x = p.x + middle_x, y = middle_y - p.y, radius = dots.splats.radius[i];
         const float light = std::max({color.x, color.y, color.z}) * dots.splats.alpha[i] * radius * radius;
@@ -62,8 +69,15 @@ Image light_before(const Placement& placement, const PictureSplats& dots) {
         cell[1] += light;
         if (p.z - middle_plane(placement, x, y) > sheet_height * placement.scale_height(x, y))
             cell[0] += light;
-    }
-    return gaussian_blur(cells, share_blur_cells);
+    };
+    const std::size_t count = dots.splats.position.size();
+    parallel_each(parts.size(), 1, [&](std::size_t part) {
+        for (std::size_t i = part * count / light_parts; i < (part + 1) * count / light_parts; ++i)
+            add(i, parts[part]);
+    });
+    for (std::size_t part = 1; part < light_parts; ++part)
+        std::ranges::transform(parts[0].pixels, parts[part].pixels, parts[0].pixels.begin(), std::plus());
+    return gaussian_blur(parts[0], share_blur_cells);
 }
 
 // Share of the dots that are kept.
@@ -78,51 +92,19 @@ float sheet_depth(float transmittance, float before) {
     return -as_log(std::clamp(behind, least_transmittance, 1.0f));
 }
 
-class DustRow {
+class DustDots {
   public:
-    DustRow(const Image& transmittance, const Image& before, double amount, const Placement& placement)
+    DustDots(const Image& transmittance, const Image& before, double amount, const Placement& placement)
         : transmittance_(transmittance),
           before_(before),
           amount_(static_cast<float>(amount)),
-          placement_(placement) {}
+          placement_(placement),
+          lattice_(transmittance.width, transmittance.height, spacing) {}
 
-    void add_cell(std::int64_t column, std::int64_t row, std::uint64_t id, ChunkDots& out) {
-        const auto low = static_cast<std::uint32_t>(id), high = static_cast<std::uint32_t>(id >> 32);
-        const auto random = [&](std::uint32_t purpose) {
-            return as_uniform(as_hash(placement_.seed, low, high, purpose));
-        };
-        const float x = (static_cast<float>(column) + random(shared::PURPOSE_JITTER_X)) * spacing;
-        const float y = (static_cast<float>(row) + random(shared::PURPOSE_JITTER_Y)) * spacing;
-        if (x >= static_cast<float>(transmittance_.width) || y >= static_cast<float>(transmittance_.height))
-            return;
-        const float depth = amount_ * depth_at(x, y), kept = kept_dust(depth);
-        if (!(kept > 0.0f) || random(shared::PURPOSE_DENSITY) >= kept) return;
-        // The optical depth of a dot of Gaussian s is 2 pi sigma^2 Li2(s), of which s + s^2 / 4 is enough.
-        const float share = depth / kept / (dots_each_texel * footprint);
-        const float s = std::min(0.9f, 2.0f * (std::sqrt(1.0f + share) - 1.0f));
-        push(x, y, as_hash(placement_.seed, low, high, shared::PURPOSE_DEPTH), out);
-        out.alpha.push_back(s);
-        out.color.push_back(-dust_exponents);
-        out.id.push_back(id);
-    }
-
-    void flush(ChunkDots& out) {
-        if (block_.count == 0) return;
-        NoiseStack noise;
-        noise.seed = placement_.seed;
-        noise.count = 1;
-        noise.frequency[0] = static_cast<float>(1.0 / (sheet_wave * placement_.scale));
-        noise.gain[0] = static_cast<float>(1.6 * placement_.clumps);
-        disk_depths(noise, block_);
-        bend(placement_, block_);
-        const float middle_x = 0.5f * static_cast<float>(transmittance_.width);
-        const float middle_y = 0.5f * static_cast<float>(transmittance_.height);
-        for (int i = 0; i < block_.count; ++i) {
-            const float z = block_.z[i] + middle_plane(placement_, block_.x[i], block_.y[i]);
-            out.position.emplace_back(block_.x[i] - middle_x, middle_y - block_.y[i], z);
-            out.distance.push_back(std::fabs(block_.z[i]));
-        }
-        block_.count = 0;
+    void add_to(PictureSplats& out) const {
+        add_lattice_dots(
+            lattice_, dot_sigma, [&](const DotCell& cell) { return candidate_of(cell).has_value(); },
+            [&](std::span<const DotCell> cells, std::size_t first) { make_dots(cells, first, out); }, out);
     }
 
     static constexpr float footprint = footprint_share * 6.28318531f * dot_sigma * dot_sigma;
@@ -141,20 +123,71 @@ class DustRow {
         return sheet_depth(t, f);
     }
 
-    void push(float x, float y, std::uint32_t random, ChunkDots& out) {
-        if (block_.count == DepthBlock::size) flush(out);
-        block_.x[block_.count] = x;
-        block_.y[block_.count] = y;
-        block_.height[block_.count] = sheet_thickness * placement_.scale_height(x, y);
-        block_.clumping[block_.count] = 1.0f;
-        block_.random[block_.count++] = random;
+    struct Candidate {
+        float x, y;   // texels from the top left corner
+        float alpha;  // of the dot's middle
+        std::uint64_t id;
+    };
+
+    // A cell's dot, where there is dust and it is not thinned out.
+    std::optional<Candidate> candidate_of(const DotCell& cell) const {
+        Candidate dot;
+        dot.id = dust_band << 48 | lattice_.number(cell);
+        dot.x = (static_cast<float>(cell.column) + random(dot.id, shared::PURPOSE_JITTER_X)) * spacing;
+        dot.y = (static_cast<float>(cell.row) + random(dot.id, shared::PURPOSE_JITTER_Y)) * spacing;
+        if (dot.x >= static_cast<float>(transmittance_.width) ||
+            dot.y >= static_cast<float>(transmittance_.height))
+            return {};
+        const float depth = amount_ * depth_at(dot.x, dot.y), kept = kept_dust(depth);
+        if (!(kept > 0.0f) || random(dot.id, shared::PURPOSE_DENSITY) >= kept) return {};
+        // The optical depth of a dot of Gaussian s is 2 pi sigma^2 Li2(s), of which s + s^2 / 4 is enough.
+        const float share = depth / kept / (dots_each_texel * footprint);
+        dot.alpha = std::min(0.9f, 2.0f * (std::sqrt(1.0f + share) - 1.0f));
+        return dot;
+    }
+
+    std::uint32_t hash_of(std::uint64_t id, std::uint32_t purpose) const {
+        return as_hash(placement_.seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32),
+                       purpose);
+    }
+
+    float random(std::uint64_t id, std::uint32_t purpose) const { return as_uniform(hash_of(id, purpose)); }
+
+    void make_dots(std::span<const DotCell> cells, std::size_t first, PictureSplats& out) const {
+        DepthBlock block;
+        block.count = static_cast<int>(cells.size());
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const Candidate dot = *candidate_of(cells[i]);
+            block.x[i] = dot.x;
+            block.y[i] = dot.y;
+            block.height[i] = sheet_thickness * placement_.scale_height(dot.x, dot.y);
+            block.clumping[i] = 1.0f;
+            block.random[i] = hash_of(dot.id, shared::PURPOSE_DEPTH);
+            out.splats.alpha[first + i] = dot.alpha;
+            out.splats.color[first + i] = -dust_exponents;
+            out.splats.id[first + i] = dot.id;
+        }
+        NoiseStack noise;
+        noise.seed = placement_.seed;
+        noise.count = 1;
+        noise.frequency[0] = static_cast<float>(1.0 / (sheet_wave * placement_.scale));
+        noise.gain[0] = static_cast<float>(1.6 * placement_.clumps);
+        disk_depths(noise, block);
+        bend(placement_, block);
+        const float middle_x = 0.5f * static_cast<float>(transmittance_.width);
+        const float middle_y = 0.5f * static_cast<float>(transmittance_.height);
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const float z = block.z[i] + middle_plane(placement_, block.x[i], block.y[i]);
+            out.splats.position[first + i] = {block.x[i] - middle_x, middle_y - block.y[i], z};
+            out.distance[first + i] = std::fabs(block.z[i]);
+        }
     }
 
     const Image& transmittance_;
     const Image& before_;
     float amount_;
     const Placement& placement_;
-    DepthBlock block_{};
+    DotLattice lattice_;
 };
 
 }  // namespace
@@ -183,23 +216,8 @@ float expected_dust_dots(float transmittance, double amount) {
 }
 
 void add_dust(const Image& transmittance, double amount, const Placement& placement, PictureSplats& out) {
-    constexpr std::int64_t rows_per_chunk = 16;
     const Image before = light_before(placement, out);
-    const auto columns =
-        static_cast<std::int64_t>(static_cast<float>(transmittance.width) / DustRow::spacing) + 1;
-    const auto rows =
-        static_cast<std::int64_t>(static_cast<float>(transmittance.height) / DustRow::spacing) + 1;
-    std::vector<ChunkDots> chunks(static_cast<std::size_t>((rows + rows_per_chunk - 1) / rows_per_chunk));
-    parallel_chunks(rows, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        DustRow dust(transmittance, before, amount, placement);
-        ChunkDots& chunk = chunks[static_cast<std::size_t>(begin / rows_per_chunk)];
-        for (std::int64_t row = begin; row < end; ++row)
-            for (std::int64_t column = 0; column < columns; ++column)
-                dust.add_cell(column, row,
-                              dust_band << 48 | static_cast<std::uint64_t>(row * columns + column), chunk);
-        dust.flush(chunk);
-    });
-    append_dots(chunks, dot_sigma, out);
+    DustDots(transmittance, before, amount, placement).add_to(out);
     out.absorbs = true;
 }
 

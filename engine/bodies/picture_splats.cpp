@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <optional>
+#include <span>
 
-#include "core/parallel.h"
+#include "bodies/dot_lattice.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"
@@ -25,6 +26,7 @@ constexpr float glow_hiding = 0.5f;        // share of its optical depth that th
 
 // What a dot is before it has a depth.
 struct Candidate {
+    float x, y;           // texels from the top left corner
     glm::vec3 light;      // of its footprint
     float amplitude;      // the brightest of it
     float brightest;      // of the picture there
@@ -46,86 +48,95 @@ float hiding_of(const BandDots& dots, const Placement& placement, float thicknes
 }
 
 // The optical depth a dot adds to its column is its share of the column's light.
-void shade(const Candidate& dot, float footprint, const Opacity& opacity, ChunkDots& out) {
+void shade(const Candidate& dot, float footprint, const Opacity& opacity, std::size_t at,
+           ShadedSplats& splats) {
     const float brightest = std::max(least_brightness, dot.brightest);
     const float tau = dot.hiding * opacity.depth_of(dot.brightest, dot.opacity_limit);
     const float alpha = std::clamp(tau * (dot.amplitude / brightest) / footprint, 1e-6f, 1.0f);
     const float boost = tau > 1e-4f ? tau / (1.0f - as_exp(-tau)) : 1.0f;  // what lies before it takes away
-    out.alpha.push_back(alpha);
-    out.color.push_back(dot.light * (boost / (alpha * footprint)));
-    out.id.push_back(dot.id);
+    splats.alpha[at] = alpha;
+    splats.color[at] = dot.light * (boost / (alpha * footprint));
+    splats.id[at] = dot.id;
 }
 
-class BandChunk {
+// The dots of a band that are of one size.
+class DotsOfBand {
   public:
-    BandChunk(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
-              const Placement& placement, const Opacity& opacity)
+    DotsOfBand(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
+               const Placement& placement, const Opacity& opacity)
         : band_(band),
           dots_(dots),
           brightest_(brightest),
           alpha_(alpha),
           placement_(placement),
-          opacity_(opacity) {
-        footprint_ = footprint_share * static_cast<float>(2.0 * real::pi) * dots.sigma * dots.sigma;
-        block_.count = 0;
-    }
+          opacity_(opacity),
+          lattice_(band.width, band.height, dots.spacing),
+          first_id_(static_cast<std::uint64_t>(dots.index) << 48 | static_cast<std::uint64_t>(dots.size)
+                                                                       << 40),
+          of_any_thickness_(dots.thickness_from <= 0.0f && std::isinf(dots.thickness_to)) {}
 
-    // A cell's dot, where there is light and it is not thinned out.
-    void add_cell(std::int64_t column, std::int64_t row, std::uint64_t id) {
-        const auto low = static_cast<std::uint32_t>(id), high = static_cast<std::uint32_t>(id >> 32);
-        const auto random = [&](std::uint32_t purpose) {
-            return as_uniform(as_hash(placement_.seed, low, high, purpose));
-        };
-        const auto place_in = [&](std::int64_t cell, std::uint32_t purpose) {
-            return (static_cast<float>(cell) + 0.5f + cell_jitter * (random(purpose) - 0.5f)) * dots_.spacing;
-        };
-        const float x = place_in(column, shared::PURPOSE_JITTER_X),
-                    y = place_in(row, shared::PURPOSE_JITTER_Y);
-        if (x >= static_cast<float>(band_.width) || y >= static_cast<float>(band_.height)) return;
-        const float thickness = placement_.thickness_at(x, y);
-        if (thickness < dots_.thickness_from || thickness >= dots_.thickness_to) return;
-        Candidate dot;
-        dot.light = {bilinear(band_, 0, x, y), bilinear(band_, 1, x, y), bilinear(band_, 2, x, y)};
-        dot.amplitude = std::max({dot.light.x, dot.light.y, dot.light.z});
-        if (dot.amplitude <= 0.0f) return;
-        dot.opacity_limit = alpha_.pixels.empty() ? 1.0f : bilinear(alpha_, 0, x, y);
-        if (dot.opacity_limit <= 0.0f) return;
-        dot.brightest = bilinear(brightest_, 0, x, y);
-        const float kept = kept_share(dot.amplitude, dot.brightest, dots_);
-        if (random(shared::PURPOSE_DENSITY) >= kept) return;
-        const float gain = dots_.spacing * dots_.spacing / kept;
-        dot.light *= gain;
-        dot.amplitude *= gain;
-        dot.hiding = hiding_of(dots_, placement_, thickness);
-        dot.id = id;
-        push(dot, x, y, as_hash(placement_.seed, low, high, shared::PURPOSE_DEPTH));
-    }
-
-    // The dots so far, all placed.
-    ChunkDots finish() {
-        flush();
-        return std::move(out_);
+    DotRange add_to(PictureSplats& out) const {
+        return add_lattice_dots(
+            lattice_, dots_.sigma, [&](const DotCell& cell) { return candidate_of(cell).has_value(); },
+            [&](std::span<const DotCell> cells, std::size_t first) { make_dots(cells, first, out); }, out);
     }
 
   private:
-    void push(const Candidate& dot, float x, float y, std::uint32_t random) {
-        if (block_.count == DepthBlock::size) flush();
-        block_.x[block_.count] = x;
-        block_.y[block_.count] = y;
-        block_.random[block_.count++] = random;
-        shade(dot, footprint_, opacity_, out_);
+    // A cell's dot, where there is light and it is not thinned out.
+    std::optional<Candidate> candidate_of(const DotCell& cell) const {
+        Candidate dot;
+        dot.id = first_id_ + lattice_.number(cell);
+        const auto place_in = [&](std::int64_t step, std::uint32_t purpose) {
+            const float random = as_uniform(hash_of(dot.id, purpose));
+            return (static_cast<float>(step) + 0.5f + cell_jitter * (random - 0.5f)) * dots_.spacing;
+        };
+        dot.x = place_in(cell.column, shared::PURPOSE_JITTER_X);
+        dot.y = place_in(cell.row, shared::PURPOSE_JITTER_Y);
+        if (dot.x >= static_cast<float>(band_.width) || dot.y >= static_cast<float>(band_.height)) return {};
+        if (!of_any_thickness_) {
+            const float thickness = placement_.thickness_at(dot.x, dot.y);
+            if (thickness < dots_.thickness_from || thickness >= dots_.thickness_to) return {};
+        }
+        const LinearSample place(band_, dot.x, dot.y);
+        dot.light = {place.of(band_, 0), place.of(band_, 1), place.of(band_, 2)};
+        dot.amplitude = std::max({dot.light.x, dot.light.y, dot.light.z});
+        if (dot.amplitude <= 0.0f) return {};
+        dot.opacity_limit = alpha_.pixels.empty() ? 1.0f : place.of(alpha_);
+        if (dot.opacity_limit <= 0.0f) return {};
+        dot.brightest = place.of(brightest_);
+        const float kept = kept_share(dot.amplitude, dot.brightest, dots_);
+        if (as_uniform(hash_of(dot.id, shared::PURPOSE_DENSITY)) >= kept) return {};
+        const float gain = dots_.spacing * dots_.spacing / kept;
+        dot.light *= gain;
+        dot.amplitude *= gain;
+        return dot;
     }
 
-    void flush() {
-        if (block_.count == 0) return;
-        place(placement_, dots_, block_);
+    std::uint32_t hash_of(std::uint64_t id, std::uint32_t purpose) const {
+        return as_hash(placement_.seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(id >> 32),
+                       purpose);
+    }
+
+    void make_dots(std::span<const DotCell> cells, std::size_t first, PictureSplats& out) const {
+        const float footprint =
+            footprint_share * static_cast<float>(2.0 * real::pi) * dots_.sigma * dots_.sigma;
+        PlacedBlock block;
+        block.count = static_cast<int>(cells.size());
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            Candidate dot = *candidate_of(cells[i]);
+            dot.hiding = hiding_of(dots_, placement_, placement_.thickness_at(dot.x, dot.y));
+            block.x[i] = dot.x;
+            block.y[i] = dot.y;
+            block.random[i] = hash_of(dot.id, shared::PURPOSE_DEPTH);
+            shade(dot, footprint, opacity_, first + i, out.splats);
+        }
+        place(placement_, dots_, block);
         const float middle_x = 0.5f * static_cast<float>(band_.width);
         const float middle_y = 0.5f * static_cast<float>(band_.height);
-        for (int i = 0; i < block_.count; ++i) {
-            out_.position.emplace_back(block_.x[i] - middle_x, middle_y - block_.y[i], block_.z[i]);
-            out_.distance.push_back(block_.distance[i]);
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            out.splats.position[first + i] = {block.x[i] - middle_x, middle_y - block.y[i], block.z[i]};
+            out.distance[first + i] = block.distance[i];
         }
-        block_.count = 0;
     }
 
     const Image& band_;
@@ -134,17 +145,14 @@ class BandChunk {
     const Image& alpha_;
     const Placement& placement_;
     const Opacity& opacity_;
-    float footprint_ = 0.0f;
-    PlacedBlock block_;
-    ChunkDots out_;
+    DotLattice lattice_;
+    std::uint64_t first_id_;
+    bool of_any_thickness_;
 };
 
-template <class T>
-void append(const std::vector<T>& from, std::int64_t at, Buffer<T>& to) {
-    std::copy(from.begin(), from.end(), to.begin() + at);
-}
+}  // namespace
 
-void resize(PictureSplats& set, std::int64_t count) {
+void resize_dots(PictureSplats& set, std::int64_t count) {
     const auto size = static_cast<std::size_t>(count);
     set.splats.position.resize(size);
     set.splats.color.resize(size);
@@ -152,25 +160,6 @@ void resize(PictureSplats& set, std::int64_t count) {
     set.splats.radius.resize(size);
     set.splats.id.resize(size);
     set.distance.resize(size);
-}
-
-}  // namespace
-
-void append_dots(const std::vector<ChunkDots>& chunks, float sigma, PictureSplats& out) {
-    std::vector<std::int64_t> first{out.splats.size()};
-    for (const ChunkDots& chunk : chunks)
-        first.push_back(first.back() + static_cast<std::int64_t>(chunk.id.size()));
-    resize(out, first.back());
-    parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t i, int) {
-        const ChunkDots& chunk = chunks[static_cast<std::size_t>(i)];
-        const std::int64_t at = first[static_cast<std::size_t>(i)];
-        append(chunk.position, at, out.splats.position);
-        append(chunk.color, at, out.splats.color);
-        append(chunk.alpha, at, out.splats.alpha);
-        append(chunk.id, at, out.splats.id);
-        append(chunk.distance, at, out.distance);
-        std::fill_n(out.splats.radius.begin() + at, chunk.id.size(), radius_sigmas * sigma);
-    });
 }
 
 float kept_share(float amplitude, float brightest, const BandDots& dots) {
@@ -185,28 +174,13 @@ float Opacity::depth_of(float brightest, float alpha) const {
 
 void add_band(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
               const Placement& placement, const Opacity& opacity, PictureSplats& out) {
-    constexpr std::int64_t rows_per_chunk = 16;
-    const auto columns = static_cast<std::int64_t>(static_cast<float>(band.width) / dots.spacing) + 1;
-    const auto rows = static_cast<std::int64_t>(static_cast<float>(band.height) / dots.spacing) + 1;
-    std::vector<ChunkDots> chunks(static_cast<std::size_t>((rows + rows_per_chunk - 1) / rows_per_chunk));
-    parallel_chunks(rows, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        BandChunk chunk(band, dots, brightest, alpha, placement, opacity);
-        const std::uint64_t first =
-            static_cast<std::uint64_t>(dots.index) << 48 | static_cast<std::uint64_t>(dots.size) << 40;
-        for (std::int64_t row = begin; row < end; ++row)
-            for (std::int64_t column = 0; column < columns; ++column)
-                chunk.add_cell(column, row, first + static_cast<std::uint64_t>(row * columns + column));
-        chunks[static_cast<std::size_t>(begin / rows_per_chunk)] = chunk.finish();
-    });
-    const std::int64_t first_dot = out.splats.size();
-    append_dots(chunks, dots.sigma, out);
-    out.ranges.push_back({first_dot, out.splats.size(), dots.sigma});
+    out.ranges.push_back(DotsOfBand(band, dots, brightest, alpha, placement, opacity).add_to(out));
 }
 
 void add_stars(const std::vector<Star>& stars, const Placement& placement, const Opacity& opacity,
                PictureSplats& out) {
     const std::int64_t begin = out.splats.size();
-    resize(out, begin + static_cast<std::int64_t>(stars.size()));
+    resize_dots(out, begin + static_cast<std::int64_t>(stars.size()));
     const float middle_x = 0.5f * static_cast<float>(placement.picture_width),
                 middle_y = 0.5f * static_cast<float>(placement.picture_height);
     double sigmas = 0.0;

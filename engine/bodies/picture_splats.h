@@ -21,13 +21,6 @@ struct DotRange {
     float sigma = 0.0f;  // texels; of stars: of most of them
 };
 
-/// Dots of a chunk of a lattice, in order of their cells.
-struct ChunkDots {
-    std::vector<glm::vec3> position, color;
-    std::vector<float> alpha, distance;
-    std::vector<std::uint64_t> id;
-};
-
 struct PictureSplats {
     ShadedSplats
         splats;  // id: band, 254 for dust or 255 for stars from bit 48 on, size from 40, lattice cell
@@ -36,8 +29,8 @@ struct PictureSplats {
     bool absorbs = false;          // there is dust: dots of colours below 0 (blend.glsl)
 };
 
-/// Appends dots of one size, chunk by chunk.
-void append_dots(const std::vector<ChunkDots>& chunks, float sigma, PictureSplats& out);
+/// Makes room for more dots, whose values are not set.
+void resize_dots(PictureSplats& set, std::int64_t count);
 
 /// How a picture's brightness m becomes opacity, 1 - e^-tau = kappa m^p (DEPTH 5).
 struct Opacity {

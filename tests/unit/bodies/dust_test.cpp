@@ -102,17 +102,17 @@ TEST(Dust, AmountIsAShareOfTheDepth) {
 // Half of the light lies before the sheet and is not dimmed: the rest has to lose twice as much.
 TEST(Dust, LightBeforeTheSheetIsMadeUpFor) {
     PictureSplats dots;
-    std::vector<ChunkDots> chunks(1);
     for (int y = 2; y < size_px; y += 4)
         for (int x = 2; x < size_px; x += 4)
             for (const float z : {-20.0f, 20.0f}) {
-                chunks[0].position.emplace_back(static_cast<float>(x - 120), static_cast<float>(120 - y), z);
-                chunks[0].color.emplace_back(1.0f);
-                chunks[0].alpha.push_back(0.1f);
-                chunks[0].distance.push_back(20.0f);
-                chunks[0].id.push_back(chunks[0].id.size());
+                dots.splats.position.emplace_back(static_cast<float>(x - 120), static_cast<float>(120 - y),
+                                                  z);
+                dots.splats.color.emplace_back(1.0f);
+                dots.splats.alpha.push_back(0.1f);
+                dots.splats.radius.push_back(2.0f * radius_sigmas);
+                dots.splats.id.push_back(dots.splats.id.size());
+                dots.distance.push_back(20.0f);
             }
-    append_dots(chunks, 2.0f, dots);
     const std::int64_t first = dots.splats.size();
     add_dust(make_image(size_px, size_px, 1, 0.8f), 1.0, flat_placement(), dots);
     EXPECT_NEAR(optical_depth(dots, first), -std::log(0.6), 0.02);
