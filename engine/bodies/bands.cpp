@@ -19,7 +19,7 @@ constexpr float least_share = 0.25f;  // of the mean that the coarser band gets
 
 // The brightest channel and its square: blurred together, they give mean and deviation.
 Image moments_of(const Image& light) {
-    Image out = make_image(light.width, light.height, 2);
+    Image out = unfilled_image(light.width, light.height, 2);
     parallel_each(light.width * light.height, 65536, [&](std::int64_t i) {
         const float* const p = light.pixels.data() + 3 * i;
         const float brightest = std::max({p[0], p[1], p[2]});
@@ -32,7 +32,7 @@ Image moments_of(const Image& light) {
 // The share of the mean that the coarser bands get.
 Image common_share(const Image& light, double blur) {
     const Image moments = gaussian_blur(moments_of(light), blur);
-    Image share = make_image(light.width, light.height, 1);
+    Image share = unfilled_image(light.width, light.height, 1);
     parallel_each(share.pixels.size(), 65536, [&](std::size_t i) {
         const float mean = moments.pixels[2 * i], square = moments.pixels[2 * i + 1];
         const float deviation = std::sqrt(std::max(0.0f, square - mean * mean));
@@ -46,7 +46,7 @@ Image common_share(const Image& light, double blur) {
 // large.
 Image take_band(Image& light, double blur, bool fill_holes) {
     const Image share = common_share(light, blur);
-    Image band = make_image(light.width, light.height, 3);
+    Image band = unfilled_image(light.width, light.height, 3);
     for (std::size_t c = 0; c < 3; ++c) {
         const Image mean = gaussian_blur(channel_of(light, static_cast<int>(c)), blur);
         parallel_each(mean.pixels.size(), 65536, [&](std::size_t i) {

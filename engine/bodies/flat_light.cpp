@@ -15,14 +15,15 @@ namespace {
 
 constexpr std::size_t dots_per_chunk = 4096;
 constexpr std::int64_t rows_per_strip = 32;
-constexpr double coarsest_step = 0.5;  // of the deviation of what is seen on a grid
+constexpr double coarsest_step = 0.55;  // of the deviation of what is seen on a grid
 constexpr std::int64_t smallest_grid = 8;
 constexpr double spread_variance = 0.25;    // steps^2, of the quadratic B-spline at any offset
 constexpr double doubling_variance = 0.75;  // steps^2 of the finer grid
 constexpr double seen_share = 0.25;         // of a footprint's variance through which a dot sees the ratio
 constexpr float largest_factor = 3.0f;
-constexpr double fine_sigma = 1.5;  // texels, up to which dots are sharpened
-constexpr double around = 16.0;     // times the variance of what a dot sees
+constexpr double fine_sigma = 1.5;            // texels, up to which dots are sharpened
+constexpr double around = 16.0;               // times the variance of what a dot sees
+constexpr double narrowest_halved_px = 1.25;  // its profile need not be exact
 
 // Quadratic B-spline weights of the step that a place >= 0 lies in and of its neighbours.
 struct Spline {
@@ -39,15 +40,15 @@ struct Spline {
 // Adds to the rows [first_row, end_row); beyond its edges a picture is mirrored.
 void add(const glm::vec3& light, const Spline& x, const Spline& y, std::int64_t first_row,
          std::int64_t end_row, Image& sum) {
-    float across[9];
+    float across[12] = {};  // and a pixel more, of 0, so that they fill vectors
     for (int n = 0; n < 9; ++n) across[n] = light[n % 3] * x.weight[n / 3];
-    const bool inside = x.middle > 0 && x.middle + 1 < sum.width;
+    const bool inside = x.middle > 0 && x.middle + 2 < sum.width;
     for (std::int64_t j = 0; j < 3; ++j) {
         const std::int64_t row = std::clamp<std::int64_t>(y.middle + j - 1, 0, sum.height - 1);
         if (row < first_row || row >= end_row) continue;
         if (inside) {
-            float* const three = sum.at(x.middle - 1, row);
-            for (int n = 0; n < 9; ++n) three[n] += across[n] * y.weight[j];
+            float* const four = sum.at(x.middle - 1, row);
+            for (int n = 0; n < 12; ++n) four[n] += across[n] * y.weight[j];
             continue;
         }
         for (int n = 0; n < 9; ++n) {
@@ -61,9 +62,9 @@ float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, l
 
 // What dots take of a ratio: with `overshoot` its square.
 Image factor_of(const Fraction& fraction, bool overshoot) {
-    Image factor = fraction.wanted;
+    Image factor = unfilled_image(fraction.seen.width, fraction.seen.height, 3);
     parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
-        const float ratio = factor.pixels[i] / fraction.seen.pixels[i];
+        const float ratio = fraction.wanted.pixels[i] / fraction.seen.pixels[i];
         factor.pixels[i] = clamped(overshoot ? ratio * ratio : ratio);
     });
     return factor;
@@ -71,10 +72,11 @@ Image factor_of(const Fraction& fraction, bool overshoot) {
 
 // The square, and once more what the ratio differs by from that of the pixels `blur_px` around.
 Image sharpening_factor_of(const Fraction& fraction, double blur_px) {
-    Image factor = fraction.wanted;
-    parallel_each(factor.pixels.size(), 65536,
-                  [&](std::size_t i) { factor.pixels[i] /= fraction.seen.pixels[i]; });
-    const Image wide = gaussian_blur(factor, blur_px);
+    Image factor = unfilled_image(fraction.seen.width, fraction.seen.height, 3);
+    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
+        factor.pixels[i] = fraction.wanted.pixels[i] / fraction.seen.pixels[i];
+    });
+    const Image wide = gaussian_blur(factor, blur_px, narrowest_halved_px);
     parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
         const float ratio = factor.pixels[i];
         factor.pixels[i] = clamped(ratio * ratio * (ratio / wide.pixels[i]));

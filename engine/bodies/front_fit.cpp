@@ -2,7 +2,8 @@
 // rendered once: then the share of all light that reaches the viewer makes the view out of the dots' flat
 // light. (On coarse pixels: a share for every pixel would follow the grain of the dots.) Before, what there
 // is too much of is supposed to be hidden. Steps are Richardson and Lucy's, which stay positive and undo the
-// dots' own blur.
+// dots' own blur; each takes half of the last one along (Polyak's heavy ball, in logarithms), so that seven
+// are worth ten without.
 #include "bodies/front_fit.h"
 
 #include <algorithm>
@@ -23,24 +24,12 @@ namespace {
 
 constexpr double filter_px = 0.5;               // of the output's pixels, as scenes have it
 constexpr float sky = 0.002f;                   // added to both sides of a ratio
-constexpr int first_steps = 5, last_steps = 5;  // before the rendering and after it
+constexpr int first_steps = 4, last_steps = 3;  // before the rendering and after it
 constexpr double share_blur_px = 2.0;           // coarse pixels, of the share that is supposed
 constexpr std::int64_t cell_px = 32;
 // Of the rendering's records; with more it takes its picture in parts.
 constexpr std::int64_t least_projected_bytes = std::int64_t{256} << 20, projected_bytes_a_texel = 24;
 constexpr std::int64_t psnr_step = 4;  // rows between those that the PSNR is measured on
-
-// The ratio of what is wanted to what is seen, weighted by what is seen.
-Fraction weighted_ratio(const Image& wanted, Image seen) {
-    Fraction ratio{wanted, std::move(seen)};
-    parallel_each(ratio.seen.pixels.size(), 65536, [&](std::size_t i) {
-        float& here = ratio.seen.pixels[i];
-        here += sky;
-        float& there = ratio.wanted.pixels[i];
-        there = std::clamp((there + sky) / here, 0.25f, 4.0f) * here;
-    });
-    return ratio;
-}
 
 glm::dvec3 light_of_cell(const Image& image, std::int64_t column, std::int64_t row) {
     glm::dvec3 sum(0.0);
@@ -67,7 +56,7 @@ Image cell_ratio(const Image& wanted, const Image& seen) {
 
 // The colours of an image of three or more channels over those of `flat`.
 Image share_of(const Image& seen, const Image& flat) {
-    Image share = flat;
+    Image share = unfilled_image(flat.width, flat.height, 3);
     parallel_each(flat.width * flat.height, 65536, [&](std::int64_t i) {
         for (int c = 0; c < 3; ++c)
             share.pixels[3 * i + c] =
@@ -107,9 +96,7 @@ class FrontView {
     /// What is seen if the same share of the light is hidden as then.
     Image seen() const { return shown(flat_.sum()); }
     /// Takes the colours a step on from what is seen.
-    void step_from(Image seen, bool overshoot) {
-        flat_.correct(weighted_ratio(target_, std::move(seen)), overshoot);
-    }
+    void step_from(Image seen, bool overshoot) { flat_.correct(weighted_ratio(std::move(seen)), overshoot); }
     /// Takes them to the picture's flux, cell by cell.
     void match_cells(const Image& seen) {
         flat_.multiply(cell_ratio(target_, seen), static_cast<double>(cell_px));
@@ -119,8 +106,10 @@ class FrontView {
 
   private:
     Image shown(Image flat) const;
+    Fraction weighted_ratio(Image seen);
 
-    Image target_;  // the picture as the filter shows it
+    Image target_;    // the picture as the filter shows it
+    Image momentum_;  // root of the last step's ratio; without pixels before the first step
     FlatLight flat_;
     RenderSettings settings_;
     RenderLayer layer_;
@@ -148,6 +137,22 @@ Image FrontView::shown(Image flat) const {
     const Image share = doubled(share_, flat.width, flat.height);
     parallel_each(flat.pixels.size(), 65536, [&](std::size_t i) { flat.pixels[i] *= share.pixels[i]; });
     return flat;
+}
+
+// The ratio of what is wanted to what is seen, weighted by what is seen.
+Fraction FrontView::weighted_ratio(Image seen) {
+    const bool first = momentum_.pixels.empty();
+    if (first) momentum_ = unfilled_image(seen.width, seen.height, 3);
+    Fraction ratio{unfilled_image(seen.width, seen.height, 3), std::move(seen)};
+    parallel_each(ratio.seen.pixels.size(), 65536, [&](std::size_t i) {
+        float& here = ratio.seen.pixels[i];
+        here += sky;
+        const float now = std::clamp((target_.pixels[i] + sky) / here, 0.25f, 4.0f);
+        const float step = first ? now : std::clamp(now * momentum_.pixels[i], 0.25f, 4.0f);
+        momentum_.pixels[i] = std::sqrt(step);
+        ratio.wanted.pixels[i] = step * here;
+    });
+    return ratio;
 }
 
 double FrontView::psnr_db(const Image& seen) const {

@@ -25,7 +25,8 @@ float finite_light(float value) { return value > 0.0f && std::isfinite(value) ? 
 PictureLight picture_light(const Texture& texture, double border) {
     const Image& image = texture.image;
     const double width_px = border * static_cast<double>(image.width);
-    PictureLight result{make_image(image.width, image.height, 3), make_image(image.width, image.height, 1)};
+    PictureLight result{unfilled_image(image.width, image.height, 3),
+                        unfilled_image(image.width, image.height, 1)};
     parallel_chunks(image.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t y = begin; y < end; ++y) {
             const float fade_y = edge_fade(y, image.height, width_px);

@@ -161,10 +161,11 @@ void subtract(Image& light, const Star& star, std::int64_t begin, std::int64_t e
 // What a Gaussian does not describe, wings and diffraction, is cut to a little above the background.
 void level(Image& light, const Image& before, const Star& star, std::int64_t begin, std::int64_t end) {
     const auto reach = static_cast<std::int64_t>(3.0f * star.sigma + 1.0f);
-    for_each_pixel(light, star, reach, begin, end, [&](float* pixel, std::int64_t x, std::int64_t y) {
+    const float most =
+        1.15f * background(before, static_cast<std::int64_t>(star.x), static_cast<std::int64_t>(star.y)) +
+        least_level;
+    for_each_pixel(light, star, reach, begin, end, [&](float* pixel, std::int64_t, std::int64_t) {
         const float brightest = std::max({pixel[0], pixel[1], pixel[2]});
-        if (brightest <= least_level) return;
-        const float most = 1.15f * background(before, x, y) + least_level;
         if (brightest <= most) return;
         for (int c = 0; c < 3; ++c) pixel[c] *= most / brightest;
     });

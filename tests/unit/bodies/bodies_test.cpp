@@ -275,6 +275,19 @@ TEST(FrontFit, GivesAnEvenPictureItsColour) {
     EXPECT_GT(fit_front(dots, light).psnr_db, 30.0);
 }
 
+// Steps that take nothing of the last one along end 1 dB below.
+TEST(FrontFit, IsCloseToItsPictureAfterSevenSteps) {
+    Image light = painted::nebula(480, 300);
+    for (std::size_t i = 0; i < light.pixels.size(); ++i)
+        light.pixels[i] *= static_cast<float>(0.5 + painted::random(static_cast<std::uint32_t>(i), 7));
+    const Placement placement =
+        make_placement(brightest_channel(light), of_kind(StructureKind::sheet), 48.0, true, 1u);
+    PictureSplats dots = unfitted_dots(light, placement);
+    const FrontFit fit = fit_front(dots, light);
+    EXPECT_EQ(fit.steps, 7);
+    EXPECT_GT(fit.psnr_db, 44.0);
+}
+
 Image view_along_z(const PictureSplats& dots, const Image& light, double from) {
     RenderLayer layer;
     layer.splats = &dots.splats;
