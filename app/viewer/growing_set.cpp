@@ -8,7 +8,6 @@
 
 #include "core/shared_maths.h"
 #include "generate/columns.h"
-#include "splats/take_rows.h"
 
 namespace astrosplat {
 namespace {
@@ -66,11 +65,10 @@ void GrowingSet::take(const std::vector<Ranked>& found) {
     }
 }
 
-void GrowingSet::ends(const Columns& columns) {
+void GrowingSet::ends(Columns sample, std::int64_t of) {
     if (column_limit_ <= 0) return;
-    auto sample = std::make_shared<const SplatSet>(sample_rows(columns.splats, column_limit_));
     const std::lock_guard lock(mutex_);
-    columns_ = {std::move(sample), columns.splats.size()};
+    columns_ = {std::make_shared<const SplatSet>(std::move(sample.splats)), of};
 }
 
 ColumnSample GrowingSet::columns() const {

@@ -28,7 +28,8 @@ class GrowingSet : public KeptWatcher {
 
     void begins(const SplatSet& empty, const Bounds& box) override;
     void keeps(std::span<const KeptStore::Run> runs) override;
-    void ends(const Columns& columns) override;
+    std::int64_t sample_limit() const override { return column_limit_; }
+    void ends(Columns sample, std::int64_t of) override;
 
     /// Splats kept so far.
     std::int64_t kept() const { return kept_; }

@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "generate/kept_store.h"
 #include "generate/surface.h"
 #include "source/sample.h"
+#include "splats/take_rows.h"
 
 namespace astrosplat {
 namespace {
@@ -55,6 +57,10 @@ void read_texels(std::span<const TexturedMesh> meshes, Columns& columns, const P
             set.alpha[i] = picture.alpha;
         }
     });
+}
+
+void show_end(const Columns& columns, KeptWatcher& watcher) {
+    watcher.ends({sample_rows(columns.splats, watcher.sample_limit())}, columns.splats.size());
 }
 
 SplatSet lit_splats(Columns columns) {

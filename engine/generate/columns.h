@@ -36,6 +36,9 @@ Columns make_columns(std::span<const TexturedMesh> meshes, const Lattice& lattic
 /// columns were made of: the bits that make_columns() would give. Throws Cancelled.
 void read_texels(std::span<const TexturedMesh> meshes, Columns& columns, const Progress& progress = {});
 
+/// Shows a watcher its sample of finished columns.
+void show_end(const Columns& columns, KeptWatcher& watcher);
+
 /// The set: what has an alpha above 0. The rest is counted in zero_alpha.
 SplatSet lit_splats(Columns columns);
 

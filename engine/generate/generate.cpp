@@ -208,7 +208,7 @@ Columns make_columns(std::span<const TexturedMesh> meshes, const Lattice& lattic
     if (watcher) watcher->begins(columns.splats, lattice.box);
     run_cull(meshes, lattice, {max_distance, jitter, seed}, progress, watcher, columns.splats);
     check_consistent(columns.splats);
-    if (watcher) watcher->ends(columns);
+    if (watcher) show_end(columns, *watcher);
     return columns;
 }
 

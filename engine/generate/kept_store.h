@@ -81,8 +81,11 @@ class KeptWatcher {
     /// from any thread, several at a time. The runs are gone after the call, which keeps the thread from its
     /// work: it is to be short.
     virtual void keeps(std::span<const KeptStore::Run> runs) = 0;
-    /// Once, when all are there.
-    virtual void ends(const Columns& columns) = 0;
+    /// So many of all positions it wants to see in the end, at most.
+    virtual std::int64_t sample_limit() const = 0;
+    /// Once, when all are there: `sample` of so many, spread evenly over them. Also for columns that were
+    /// found in a cache, which have no beginning.
+    virtual void ends(Columns sample, std::int64_t of) = 0;
 };
 
 /// Those columns, for `size` splats; what is new in them has no values yet.

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -17,12 +16,11 @@
 #include "core/file_lock.h"
 #include "core/log.h"
 #include "core/memory.h"
-#include "core/sha256.h"
 #include "generate/kept_store.h"
+#include "sets/kept_sets.h"
 #include "sets/load_source.h"
 #include "sets/prepared_cache.h"
 #include "sets/recipe.h"
-#include "splat_files/native.h"
 
 namespace astrosplat {
 namespace {
@@ -31,78 +29,11 @@ namespace fs = std::filesystem;
 
 constexpr auto poll_interval = std::chrono::milliseconds(50);
 
-constexpr std::string_view geometry_line = "geometry ";  // the last of the recipe of texels
-
-fs::path set_file(const SetCache& cache, const std::string& name) {
-    return cache.folder / (name + ".splats");
-}
-fs::path texel_file(const SetCache& cache, const std::string& name) {
-    return cache.folder / (name + ".texels");
-}
 fs::path lock_file(const fs::path& folder, const std::string& name) { return folder / (name + ".lock"); }
 
 bool serves(const SetCache& cache, const SourceParams& source) {
     return !cache.folder.empty() && source.kind == SourceKind::mesh;
 }
-
-// ---- reading
-
-/// Nothing where there is no entry, or none that can be used: one that is damaged, or that was made of
-/// something else, whatever its name says. Where the memory left would not hold it the generator is to say
-/// so. `is_own` looks at its recipe.
-std::optional<SplatSet> read_entry(const fs::path& file, NativePart part, const Progress& progress,
-                                   const OptionalColumns& wanted,
-                                   const std::function<bool(std::string_view recipe)>& is_own) {
-    std::error_code error;
-    const std::uintmax_t bytes = fs::file_size(file, error);
-    if (error || bytes > static_cast<std::uintmax_t>(available_memory_bytes())) return std::nullopt;
-    try {
-        SplatSet set = read_native(file, progress, wanted, part);
-        if (!is_own(set.recipe)) bad_input(file.string(), "recipe", "that of the set asked for", "another");
-        fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // refused: it seems older
-        return set;
-    } catch (const InputError& damage) {
-        log_warning(fmt::format("{}; the set is generated again", damage.what()));
-        fs::remove(file, error);
-    }
-    return std::nullopt;
-}
-
-std::optional<SplatSet> read_whole(const SetCache& cache, const Recipe& recipe, const Progress& progress,
-                                   const OptionalColumns& wanted) {
-    auto set = read_entry(set_file(cache, recipe.name), NativePart::whole, progress, wanted,
-                          [&](std::string_view text) { return text == recipe.text; });
-    if (set) set->recipe.clear();
-    return set;
-}
-
-std::optional<Columns> read_geometry(const SetCache& cache, const std::string& name, const Progress& progress,
-                                     const OptionalColumns& wanted) {
-    auto set = read_entry(set_file(cache, name), NativePart::geometry, progress, wanted,
-                          [&](std::string_view text) { return Sha256().add(text).hex() == name; });
-    if (!set) return std::nullopt;
-    set->recipe.clear();
-    return Columns{std::move(*set)};
-}
-
-/// Geometry and texels that belong together.
-std::optional<Columns> read_columns(const SetCache& cache, const Recipe& recipe, const Progress& progress,
-                                    const OptionalColumns& wanted) {
-    const std::string beginning = recipe.text + std::string(geometry_line);
-    auto texels = read_entry(texel_file(cache, recipe.name), NativePart::colors, progress, wanted,
-                             [&](std::string_view text) { return text.starts_with(beginning); });
-    if (!texels) return std::nullopt;
-    auto columns = read_geometry(cache, texels->recipe.substr(beginning.size()), progress, wanted);
-    if (!columns || columns->splats.position.size() != texels->color.size()) return std::nullopt;
-    SplatSet& set = columns->splats;
-    set.color = std::move(texels->color);
-    set.alpha = std::move(texels->alpha);
-    set.divided = texels->divided;
-    set.credit = std::move(texels->credit);
-    return columns;
-}
-
-// ---- keeping
 
 /// Removes lock files of processes that ended early: those whose lock nobody holds. `own_name` is the one
 /// held by the caller.
@@ -116,39 +47,6 @@ void remove_leftovers(const fs::path& folder, const std::string& own_name) {
         FileLock lock(file);  // removes the file where the lock can be had
         lock.try_lock(FileLock::Missing::leave);
     }
-}
-
-struct Entry {
-    fs::path file;
-    NativePart part;
-    std::string recipe;
-};
-
-/// Files of one set, where the cache has room for all of them. Called with the lock of the set held (or on
-/// file systems without locks).
-void keep(const SetCache& cache, const std::vector<Entry>& entries, SplatSet& set, const Progress& progress) {
-    std::int64_t bytes = 0;
-    for (const Entry& entry : entries) {
-        set.recipe = entry.recipe;
-        bytes += native_file_bytes(set, entry.part);
-    }
-    const std::int64_t limit = limit_bytes(cache);
-    if (bytes > limit) {
-        log_info(fmt::format("a set of {} is not kept: the cache may hold {}",
-                             human_bytes(static_cast<double>(bytes)),
-                             human_bytes(static_cast<double>(limit))));
-    } else {
-        shrink_cache(cache, limit - bytes);
-        try {
-            for (const Entry& entry : entries) {
-                set.recipe = entry.recipe;
-                write_native(entry.file, set, Progress{{}, progress.cancelled}, RowOrder::id, entry.part);
-            }
-        } catch (const OutputError& error) {
-            warn_unkept(cache, error.what());
-        }
-    }
-    set.recipe.clear();
 }
 
 /// Waits while another process generates the same set.
@@ -216,23 +114,22 @@ class CachedLoad {
         const Recipe geometry = geometry_recipe(plan);
         FileLock lock(lock_file(cache_.folder, geometry.name));
         wait_for(lock, layer_name_, progress_);
-        const OptionalColumns all{true, true, true, true};
-        std::optional<Columns> columns = read_geometry(cache_, geometry.name, progress_, all);
+        std::optional<Columns> columns = read_geometry(cache_, geometry.name, progress_);
         const bool known = columns.has_value();
         if (known) {
             log_info(fmt::format("layer '{}': {} from the cache, pictures are read again", layer_name_,
                                  human_count(columns->splats.size(), "position")));
             read_texels(plan.meshes, *columns, progress_);
-            if (watcher_) watcher_->ends(*columns);
+            if (watcher_) show_end(*columns, *watcher_);
         } else {
             columns = make_columns(plan, layer_name_, progress_, watcher_);
         }
         if (is_current()) {
-            std::vector<Entry> entries;
+            std::vector<KeptFile> entries;
             if (!known)
                 entries.push_back({set_file(cache_, geometry.name), NativePart::geometry, geometry.text});
-            entries.push_back({texel_file(cache_, recipe_.name), NativePart::colors,
-                               recipe_.text + std::string(geometry_line) + geometry.name});
+            entries.push_back(
+                {texel_file(cache_, recipe_.name), NativePart::colors, texel_recipe(recipe_, geometry.name)});
             keep(cache_, entries, columns->splats, progress_);
         }
         return {lit_splats(std::move(*columns)), false, known};
@@ -241,11 +138,10 @@ class CachedLoad {
     std::optional<LoadedSet> find() const {
         std::optional<SplatSet> set;
         if (makes_columns(source_)) {
-            OptionalColumns wanted = wanted_;
-            wanted.face = watcher_ != nullptr;
-            std::optional<Columns> columns = read_columns(cache_, recipe_, progress_, wanted);
-            if (columns && watcher_) watcher_->ends(*columns);
-            if (columns) set = lit_splats(std::move(*columns));
+            auto kept =
+                read_columns(cache_, recipe_, watcher_ ? watcher_->sample_limit() : 0, wanted_, progress_);
+            if (kept && watcher_) watcher_->ends(std::move(kept->sample), kept->positions);
+            if (kept) set = std::move(kept->set);
         } else {
             set = read_whole(cache_, recipe_, progress_, wanted_);
         }

@@ -36,11 +36,15 @@ std::int64_t sampled_row(std::int64_t size, std::int64_t count, std::int64_t i) 
     return std::min(begin + step, end - 1);
 }
 
-SplatSet sample_rows(const SplatSet& set, std::int64_t count) {
-    Buffer<std::int64_t> rows(static_cast<std::size_t>(std::min(count, set.size())));
+Buffer<std::int64_t> sampled_rows(std::int64_t size, std::int64_t count) {
+    Buffer<std::int64_t> rows(static_cast<std::size_t>(std::min(count, size)));
     const auto sampled = static_cast<std::int64_t>(rows.size());
-    for (std::int64_t i = 0; i < sampled; ++i) rows[i] = sampled_row(set.size(), sampled, i);
-    return take_rows(set, rows);
+    for (std::int64_t i = 0; i < sampled; ++i) rows[i] = sampled_row(size, sampled, i);
+    return rows;
+}
+
+SplatSet sample_rows(const SplatSet& set, std::int64_t count) {
+    return take_rows(set, sampled_rows(set.size(), count));
 }
 
 }  // namespace astrosplat

@@ -33,9 +33,13 @@ class Collector : public KeptWatcher {
             }
     }
 
-    void ends(const Columns& columns) override {
+    std::int64_t sample_limit() const override { return 1000; }
+    void ends(Columns sample, std::int64_t of) override {
         ++ended;
-        EXPECT_EQ(columns.splats.position.size(), kept.size());
+        EXPECT_EQ(sample.splats.size(), 1000);
+        EXPECT_EQ(static_cast<std::size_t>(of), kept.size());
+        for (std::size_t i = 0; i < sample.splats.id.size(); ++i)
+            EXPECT_EQ(kept.at(sample.splats.id[i]).face, sample.splats.face[i]);
     }
 
     int begun = 0, ended = 0;

@@ -3,11 +3,14 @@
 #include "splat_files/native.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "splat_files/checksum.h"
+#include "splat_files/native_read.h"
 #include "splat_files/splat_file.h"
 #include "splats/spatial_order.h"
+#include "splats/take_rows.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
@@ -125,6 +128,42 @@ TEST_F(Native, PartsOfASetTogetherAreTheSet) {
     EXPECT_TRUE(same_bits(got.face, set.face));
     EXPECT_EQ(native_splat_count(path("g.splats")), 70000);
     EXPECT_EQ(native_splat_count(path("c.splats")), 70000 - std::ranges::count(set.alpha, 0.0f));
+}
+
+TEST_F(Native, RowsAreThoseOfTheWhole) {
+    SplatSet set = full_set(150000);  // three blocks
+    std::ranges::sort(set.id);
+    for (std::size_t i = 0; i < set.alpha.size(); ++i)
+        set.alpha[i] = i % 3 == 0 || i / 70000 == 1 ? 0.0f : 0.5f;
+    for (const NativePart part : {NativePart::geometry, NativePart::colors, NativePart::whole})
+        write_native(path(std::to_string(static_cast<int>(part))), set, {}, RowOrder::id, part);
+    const auto file = [&](NativePart part) { return path(std::to_string(static_cast<int>(part))); };
+    const LitRows lit = native_lit_rows(file(NativePart::colors));
+    EXPECT_EQ(lit.of, 150000);
+    ASSERT_EQ(static_cast<std::int64_t>(lit.rows.size()), native_splat_count(file(NativePart::colors)));
+    for (const std::int64_t row : lit.rows) ASSERT_GT(set.alpha[row], 0.0f);
+    const Buffer<std::int64_t> few = {0, 65535, 65536, 149999}, none;
+    const NativeRows choices[] = {{lit.rows, {}}, {few, {false, true, false}}, {none, {}}};
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        const std::vector<SplatSet> got =
+            read_native_rows(file(NativePart::whole), NativePart::whole, choices);
+        ASSERT_EQ(got.size(), 3u);
+        expect_same_set(got[0], take_rows(set, lit.rows));
+        SplatSet expected = take_rows(set, few);
+        drop_columns(expected, {false, true, false});
+        expect_same_set(got[1], expected);
+        EXPECT_EQ(got[2].size(), 0);
+        const auto colors = read_native_rows(file(NativePart::colors), NativePart::colors, choices);
+        EXPECT_TRUE(same_bits(colors[1].alpha, expected.alpha));
+        EXPECT_TRUE(colors[1].position.empty());
+    }
+    const Buffer<std::int64_t> beyond = {150000};
+    EXPECT_EQ(error_of(file(NativePart::whole),
+                       [&](const auto& f) {
+                           read_native_rows(f, NativePart::whole, std::array{NativeRows{beyond, {}}});
+                       }),
+              "0:header: expected more than 150000 splats, found 150000");
 }
 
 TEST_F(Native, APartIsNotTakenForASet) {

@@ -1,0 +1,158 @@
+#include "splat_files/native_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cfloat>
+#include <cstring>
+#include <glm/common.hpp>
+
+#include "core/error.h"
+#include "splat_files/checksum.h"
+
+namespace astrosplat::native {
+
+static_assert(std::endian::native == std::endian::little, "the structs are the file's bytes");
+
+std::uint32_t flag_of(SplatColumn column) {
+    switch (column) {
+        case SplatColumn::uv:
+            return has_uv;
+        case SplatColumn::normal:
+            return has_normal;
+        case SplatColumn::mesh:
+            return has_mesh;
+        case SplatColumn::radius:
+            return has_radius;
+        case SplatColumn::face:
+            return has_face;
+        default:
+            return 0;
+    }
+}
+
+bool has(std::uint32_t flags, SplatColumn column) {
+    const bool is_color = column == SplatColumn::color || column == SplatColumn::alpha;
+    if (flags & (is_color ? only_geometry : only_colors)) return false;
+    return (flags & flag_of(column)) == flag_of(column);
+}
+
+std::uint32_t flag_of(NativePart part) {
+    return part == NativePart::geometry ? only_geometry : part == NativePart::colors ? only_colors : 0u;
+}
+
+std::size_t row_bytes(std::uint32_t flags) {
+    return bytes_per_splat([&](SplatColumn column) { return has(flags, column); });
+}
+
+std::size_t data_offset(std::size_t credit_bytes) {
+    return (sizeof(Header) + credit_bytes + sizeof(std::uint64_t) + 63) / 64 * 64;
+}
+
+std::size_t block_count(std::uint64_t splats, std::uint32_t block) {
+    return static_cast<std::size_t>(splats / block + (splats % block != 0));
+}
+
+BlockEntry describe_block(std::uint32_t flags, std::string_view bytes, std::size_t rows) {
+    if (!has(flags, SplatColumn::position)) return {glm::vec3(0.0f), glm::vec3(0.0f), xxh64(bytes)};
+    BlockEntry entry{glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), xxh64(bytes)};
+    for (std::size_t i = 0; i < rows; ++i) {
+        glm::vec3 p;
+        std::memcpy(&p, bytes.data() + i * sizeof p, sizeof p);
+        entry.lo = glm::min(entry.lo, p);
+        entry.hi = glm::max(entry.hi, p);
+    }
+    return entry;
+}
+
+void Checker::fail(std::string_view place, const std::string& expected, const std::string& found) const {
+    bad_input(file, place, expected, found);
+}
+
+void Checker::checksum(std::string_view place, std::string_view bytes) const {
+    std::uint64_t stored;
+    std::memcpy(&stored, bytes.data() + bytes.size(), sizeof stored);
+    if (stored != xxh64(bytes)) fail(place, "the checksum written with it", "another (damaged file)");
+}
+
+namespace {
+
+void check_values(const Checker& checker, const Header& header) {
+    const auto is_length = [](double v) { return v >= 0.0 && v <= DBL_MAX; };
+    if (!is_length(header.spacing.x) || !is_length(header.spacing.y) || !is_length(header.spacing.z) ||
+        !is_length(header.max_distance))
+        checker.fail("header", "spacing and max_distance finite and >= 0", "another value");
+    if (header.test_positions < 0 || header.zero_alpha < 0)
+        checker.fail("header", "counts of positions >= 0", "a negative count");
+}
+
+Header read_header(const Checker& checker, std::string_view bytes) {
+    if (bytes.size() < sizeof(Header) || bytes.substr(0, magic.size()) != magic)
+        checker.fail("", "an astrosplat .splats file", "another format");
+    Header header;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    if (header.version != version)
+        checker.fail("header", fmt::format("version {}", version), std::to_string(header.version));
+    if (header.flags >= only_colors * 2 || (header.flags & only_geometry && header.flags & only_colors))
+        checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
+    if (header.block == 0) checker.fail("header", "blocks of at least one splat", "0");
+    return header;
+}
+
+NativePart part_of(const Header& header) {
+    return header.flags & only_geometry ? NativePart::geometry
+           : header.flags & only_colors ? NativePart::colors
+                                        : NativePart::whole;
+}
+
+const char* name_of(NativePart part) {
+    constexpr const char* names[] = {"a whole set", "the geometry of a set, from a cache",
+                                     "the colours of a set, from a cache"};
+    return names[static_cast<std::size_t>(part)];
+}
+
+}  // namespace
+
+Layout read_layout(const Checker& checker, std::string_view bytes) {
+    Layout layout{read_header(checker, bytes), {}, {}, {}, {}};
+    const Header& header = layout.header;
+    const std::size_t per_splat = row_bytes(header.flags), begin = data_offset(header.credit_bytes);
+    const std::size_t blocks = block_count(header.splats, header.block);
+    const bool fits = header.splats <= bytes.size() / per_splat;
+    const std::size_t data = fits ? static_cast<std::size_t>(header.splats) * per_splat : 0;
+    const std::size_t table = blocks * sizeof(BlockEntry);
+    if (!fits || bytes.size() != begin + data + table + sizeof(std::uint64_t))
+        checker.fail("", fmt::format("the length that {} splats take", header.splats),
+                     fmt::format("{} bytes (truncated or damaged file)", bytes.size()));
+    checker.checksum("header", bytes.substr(0, begin - sizeof(std::uint64_t)));
+    checker.checksum("table", bytes.substr(begin + data, table));
+    check_values(checker, header);
+    layout.credit = bytes.substr(sizeof(Header), header.credit_bytes);
+    if (header.flags & has_recipe) {
+        const std::size_t end = layout.credit.rfind('\0');
+        if (end == std::string::npos) checker.fail("header", "a zero between credit and recipe", "none");
+        layout.recipe = layout.credit.substr(end + 1);
+        layout.credit.resize(end);
+    }
+    layout.blocks = bytes.substr(begin, data);
+    layout.table.resize(blocks);
+    if (table > 0) std::memcpy(layout.table.data(), bytes.data() + begin + data, table);
+    return layout;
+}
+
+Layout read_layout(const Checker& checker, std::string_view bytes, NativePart part) {
+    Layout layout = read_layout(checker, bytes);
+    if (part_of(layout.header) != part)
+        checker.fail("header", name_of(part), name_of(part_of(layout.header)));
+    return layout;
+}
+
+Block block_at(const Layout& layout, std::size_t number) {
+    const std::size_t first = number * layout.header.block;
+    const std::size_t rows = std::min<std::size_t>(layout.header.block, layout.header.splats - first);
+    const std::size_t per_splat = row_bytes(layout.header.flags);
+    return {first, rows, layout.blocks.substr(first * per_splat, rows * per_splat)};
+}
+
+}  // namespace astrosplat::native

@@ -1,0 +1,92 @@
+// The format of native.h as structs: header, blocks and table. In: bytes of a file. Out: a Layout whose
+// lengths and checksums are known to be right. For the reader and the writer alone.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "splat_files/native.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat::native {
+
+constexpr std::string_view magic = "\x89SPLAT\r\n";
+constexpr std::uint32_t version = 1;
+constexpr std::uint32_t splats_per_block = 65536;
+enum Flag : std::uint32_t {
+    generated = 1,
+    divided = 2,
+    has_uv = 4,
+    has_normal = 8,
+    has_mesh = 16,
+    has_radius = 32,
+    by_id = 64,
+    has_recipe = 128,
+    absorbs = 256,
+    has_face = 512,
+    only_geometry = 1024,
+    only_colors = 2048
+};
+
+struct Header {
+    char magic[8];
+    std::uint32_t version, flags;
+    std::uint64_t splats;
+    std::uint32_t block, credit_bytes;
+    glm::dvec3 spacing;
+    double max_distance;
+    std::int64_t test_positions, zero_alpha;
+};
+static_assert(sizeof(Header) == 80);
+
+struct BlockEntry {
+    glm::vec3 lo, hi;
+    std::uint64_t checksum;
+};
+static_assert(sizeof(BlockEntry) == 32);
+
+std::uint32_t flag_of(NativePart part);
+/// What says in the flags that a file has a column; 0: every file has it.
+std::uint32_t flag_of(SplatColumn column);
+bool has(std::uint32_t flags, SplatColumn column);
+std::size_t row_bytes(std::uint32_t flags);
+
+/// Where the blocks begin, behind header, credit, padding and checksum.
+std::size_t data_offset(std::size_t credit_bytes);
+std::size_t block_count(std::uint64_t splats, std::uint32_t block);
+/// Bounds and checksum of a packed block, whose first array is the positions where there are any.
+BlockEntry describe_block(std::uint32_t flags, std::string_view bytes, std::size_t rows);
+
+/// A file whose lengths are known to be right.
+struct Layout {
+    Header header;
+    std::string credit, recipe;
+    std::string_view blocks;
+    std::vector<BlockEntry> table;
+};
+
+struct Checker {
+    std::string file;
+
+    [[noreturn]] void fail(std::string_view place, const std::string& expected,
+                           const std::string& found) const;
+    /// The 8 bytes behind `bytes` are their checksum.
+    void checksum(std::string_view place, std::string_view bytes) const;
+};
+
+/// Checks all lengths against the file's size, then the checksums of header and table. Throws InputError.
+Layout read_layout(const Checker& checker, std::string_view bytes);
+/// The same, and that it is this part of a set.
+Layout read_layout(const Checker& checker, std::string_view bytes, NativePart part);
+
+/// A block of the file.
+struct Block {
+    std::size_t first, rows;  // of the file's rows
+    std::string_view bytes;
+};
+Block block_at(const Layout& layout, std::size_t number);
+
+}  // namespace astrosplat::native
