@@ -97,9 +97,24 @@ BatchCommand batch_command(const Document& document, const BatchCommandOptions& 
         const Region& r = *options.region;
         text += fmt::format(" --region {},{},{},{}", r.x, r.y, r.width, r.height);
     }
+    for (const std::string& word : options.arguments) text += " " + shell_word(word);
     for (const Assignment& a : assignments)
         text += " --set " + shell_word(fmt::format("{}={}", a.key, a.value));
     return {text, ""};
+}
+
+BatchCommand render_command(const Document& document, const RenderTask& task, const std::string& program) {
+    BatchCommandOptions options;
+    options.arguments = batch_arguments(task);
+    options.program = program;
+    BatchCommand command = batch_command(document, options);
+    if (command.text.empty() || task.kind != RenderKind::movie) return command;
+    const fs::path movie = render_target(task);
+    command.text += " &&";
+    for (const std::string& word : movie_command(movie, document.scene().output.fps))
+        command.text += " " + shell_word(word);
+    command.text += " && rm -r " + shell_word(movie_folder(movie).string());
+    return command;
 }
 
 }  // namespace astrosplat

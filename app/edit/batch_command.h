@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "camera/camera.h"
 #include "core/image.h"
 #include "edit/document.h"
+#include "edit/render_task.h"
 
 namespace astrosplat {
 
@@ -16,6 +18,7 @@ struct BatchCommandOptions {
     std::int64_t width = 0, height = 0;  // px; 0: the resolution of [output]
     std::optional<Region> region;        // of that frame
     std::optional<CameraParams> camera;  // a free view instead of the scene's camera
+    std::vector<std::string> arguments;  // more words of --batch
     std::string program = "astrosplat";
 };
 
@@ -27,6 +30,10 @@ struct BatchCommand {
 /// Edits that are not saved, and another camera, appear as --set; the command is given only where loading the
 /// file with them gives exactly the scene shown. Frames between two frames are rounded.
 BatchCommand batch_command(const Document& document, const BatchCommandOptions& options);
+
+/// The command line that renders what the dialog asks for, from any folder; a movie by a second command
+/// behind it.
+BatchCommand render_command(const Document& document, const RenderTask& task, const std::string& program);
 
 /// One word for a POSIX shell, in quotes where it needs them.
 std::string shell_word(const std::string& text);

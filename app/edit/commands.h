@@ -26,13 +26,16 @@ struct Command {
         apply_look,       // path: to the selected layer
         regenerate,       // index: layer whose set is stale
         cancel_load,      // index: layer being generated
-        render_frame,     // path: to this file, the current frame
-        render_range,     // as [output] says
-        render_movie,     // path: through ffmpeg
+        render,           // what ViewState::render says
+        choose_target,    // path: where that goes
         prepare_picture,  // path: folder for the files, index: layer
-        cancel_render,
-        screenshot,  // path
-        store_b,     // the look now becomes B
+        cancel_render,    // the job that runs
+        cancel_job,       // index: number of the job
+        remove_job,       // likewise
+        open_folder,      // path: in the desktop's file manager
+        save_view,        // path: the frame as it is seen, without the window
+        screenshot,       // path
+        store_b,          // the look now becomes B
         take_snapshot,
         restore_snapshot,  // index
         delete_snapshot,   // index

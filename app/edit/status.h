@@ -89,9 +89,24 @@ struct Snapshot {
     double seconds = 0.0;  // render time; 0: from the preview
 };
 
-struct JobStatus {
-    std::string name;  // "Rendering 12 of 240"; empty: none
-    float progress = 0.0f;
+/// One of the jobs that write files.
+struct QueuedJob {
+    enum class State { waiting, running, done, failed, cancelled };
+    std::uint64_t number = 0;  // its name among all of this session
+    State state = State::waiting;
+    std::string title;             // "galaxy.toml: Frames 1-240, 1920x1080"
+    std::filesystem::path target;  // a file, a pattern of files or a folder
+    std::string text;              // what it said last: "frame 12 (3/10)", or why it failed
+    float progress = 0.0f;         // 0..1
+    std::optional<double> seconds_left;
+    std::vector<std::filesystem::path> files;  // frames that are finished
+};
+
+/// The finished frame of a job that is looked at.
+struct FinishedFrame {
+    void* texture = nullptr;  // handle for the widgets, top row first; null: none yet
+    float aspect = 1.0f;      // width / height
+    std::string error;        // why it cannot be shown, one line
 };
 
 /// An autosave that may be wanted.
@@ -117,7 +132,10 @@ struct Status {
     std::vector<Snapshot> snapshots;
     int b_snapshot = -1;
     std::string b_name;
-    JobStatus job;
+    std::vector<QueuedJob> jobs;    // oldest first
+    FinishedFrame finished;         // of the queue's dialog
+    std::string render_command;     // that does what the dialog would
+    std::string no_render_command;  // why it cannot be said, one line
     Message message;
     std::vector<Message> log;
     std::int64_t memory_bytes = 0;
@@ -132,5 +150,12 @@ struct Status {
     void* viewport_texture = nullptr;  // the viewport with the frame in its place, bottom row first
     std::vector<std::vector<glm::vec2>> overlay_lines;  // camera path, frustum; px of the viewport
 };
+
+/// Null: none.
+inline const QueuedJob* running_job(const Status& status) {
+    for (const QueuedJob& job : status.jobs)
+        if (job.state == QueuedJob::State::running) return &job;
+    return nullptr;
+}
 
 }  // namespace astrosplat

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "edit/render_task.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -80,6 +81,12 @@ struct ViewState : PanelSizes {
     bool preparation_open = false;  // the panel shows before and after; set every frame
     bool snapshots_open = false;
     bool help_open = false, log_open = false;
+    bool render_open = false;  // the dialog of:
+    RenderTask render;
+    bool queue_open = false;
+    std::uint64_t queue_job = 0;  // whose frames are looked at; 0: of the last one
+    int queue_frame = -1;         // the finished frame that is seen; -1: the newest
+    bool queue_playing = false;
     bool changed_on_disk = false;  // the line that offers Reload or Keep is shown
     bool hint_open = false;        // "Drop a picture, mesh or splat file here. F1 shows the keys."
 };

@@ -58,9 +58,8 @@ void take_snapshot(GuiFrame& f) {
 bool has_file(const GuiFrame& f) { return !f.document.file().empty(); }
 bool has_layer(const GuiFrame& f) { return f.view.layer < f.document.scene().layers.size(); }
 bool has_box(const GuiFrame& f) { return !f.status.box.empty(); }
-bool has_job(const GuiFrame& f) { return !f.status.job.name.empty(); }
+bool has_job(const GuiFrame& f) { return running_job(f.status) != nullptr; }
 bool has_ffmpeg(const GuiFrame& f) { return f.status.has_ffmpeg; }
-std::string range_label(const GuiFrame& f) { return "Range " + f.document.scene().output.frames; }
 std::string movie_label(const GuiFrame& f) { return has_ffmpeg(f) ? "Movie..." : "Movie... (needs ffmpeg)"; }
 
 void three_quarter(GuiFrame& f) {

@@ -20,7 +20,6 @@ bool has_layer(const GuiFrame& f);
 bool has_box(const GuiFrame& f);
 bool has_job(const GuiFrame& f);
 bool has_ffmpeg(const GuiFrame& f);
-std::string range_label(const GuiFrame& f);  // "Range 1-240"
 std::string movie_label(const GuiFrame& f);
 
 void three_quarter(GuiFrame& f);

@@ -6,6 +6,7 @@
 #include "edit/camera_moves.h"
 #include "gui/action_functions.h"
 #include "gui/key_codes.h"
+#include "gui/render_dialog.h"
 
 namespace astrosplat {
 namespace {
@@ -58,6 +59,11 @@ Action view_from(const char* label, Shortcut shortcut = {}) {
             .checked = [](C f) { return f.view.view == kind; }};
 }
 
+template <RenderKind kind>
+void render(F f) {
+    open_render_dialog(f.document, f.view, kind);
+}
+
 template <CompareMode mode>
 Action compare(const char* label) {
     return {.menu = "View",
@@ -82,7 +88,8 @@ const Action table[] = {
     below_line({"File", "Import as a layer...", {}, ask<Kind::import_file>}),
     {"File", "Export look...", {}, ask<Kind::save_look>, has_layer},
     {"File", "Apply look...", {}, ask<Kind::apply_look>, has_layer},
-    below_line({"File", "Screenshot...", plain(key_code::f12), ask<Kind::screenshot>}),
+    below_line({"File", "Save the frame as seen...", {}, ask<Kind::save_view>}),
+    {"File", "Screenshot of the window...", plain(key_code::f12), ask<Kind::screenshot>},
     below_line({"File", "Quit", ctrl('Q'), ask<Kind::quit>}),
 
     {"Edit", "Undo", ctrl('Z'), undo, can_undo, nullptr, undo_label, false, true},
@@ -129,9 +136,10 @@ const Action table[] = {
     add_move<CameraMove::face_on_to_edge_on>(),
     below_line(flip<&ViewState::lock_to_camera>("Camera", "Lock to camera")),
 
-    {"Render", "This frame...", ctrl('R'), ask<Kind::render_frame>},
-    {"Render", "Range", ctrl_shift('R'), ask<Kind::render_range>, nullptr, nullptr, range_label},
-    {"Render", "Movie...", {}, ask<Kind::render_movie>, has_ffmpeg, nullptr, movie_label},
+    {"Render", "Frame...", ctrl('R'), render<RenderKind::frame>},
+    {"Render", "Frames...", ctrl_shift('R'), render<RenderKind::range>},
+    {"Render", "Movie...", {}, render<RenderKind::movie>, has_ffmpeg, nullptr, movie_label},
+    below_line(flip<&ViewState::queue_open>("Render", "Queue...")),
     {"Render", "Cancel", {}, ask<Kind::cancel_render>, has_job},
     below_line({"Render", "Copy batch command", {}, ask<Kind::copy_batch_command>}),
 

@@ -49,14 +49,15 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
             return writing("Save the scene as", "scenes", scenes, document, stem(document) + ".toml");
         case Kind::save_look:
             return writing("Export the selected layer's look", "looks", scenes, document, "look.toml");
-        case Kind::render_frame:
-            return writing("Render this frame to", "pictures", frames, document, stem(document) + ".exr");
-        case Kind::render_movie:
-            return writing("Render a movie to", "movies", {".mp4", ".mov", ".mkv"}, document,
-                           stem(document) + ".mp4");
+        case Kind::choose_target:
+            return writing("Where the files go", "pictures and movies", {}, document,
+                           stem(document) + ".####.exr");
         case Kind::prepare_picture:
             return writing("Write the prepared picture and its stars to a new folder", "files", {}, document,
                            stem(document) + "-prepared");
+        case Kind::save_view:
+            return writing("Save the frame as it is seen", "pictures", {".png"}, document,
+                           stem(document) + ".png");
         case Kind::screenshot:
             return writing("Save what the window shows", "pictures", {".png", ".exr"}, document,
                            stem(document) + ".png");

@@ -10,6 +10,8 @@
 #include "gui/menu_bar.h"
 #include "gui/notice.h"
 #include "gui/panel/panel.h"
+#include "gui/queue_dialog.h"
+#include "gui/render_dialog.h"
 #include "gui/sheets.h"
 #include "gui/snapshots.h"
 #include "gui/splitters.h"
@@ -92,6 +94,8 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
     draw_splitters(frame, layout);
     draw_shortcut_sheet(frame);
     draw_log(frame);
+    draw_render_dialog(frame);
+    draw_queue(frame);
     flow.run(frame, panel, commands);
 }
 

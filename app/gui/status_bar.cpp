@@ -9,13 +9,14 @@
 #include <iterator>
 
 #include "gui/icons.h"
+#include "gui/queue_dialog.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr float bar_margin = 12, gap = 24, bar_width = 120;
+constexpr float bar_margin = 12, part_gap = 24, bar_width = 120;
 
 // Where the probe's numbers begin, after its left edge; the last is its width.
 constexpr float probe_columns[] = {0, 46, 100, 150, 200, 250, 300, 352};
@@ -45,8 +46,8 @@ float right_text(const std::string& text, float right, const Rect& area, ImU32 c
 }
 
 float draw_job(GuiFrame& frame, float right, const Rect& area) {
-    const JobStatus& job = frame.status.job;
-    if (job.name.empty()) return right;
+    const QueuedJob* const job = running_job(frame.status);
+    if (!job) return right;
     const float side = area.height;
     ImGui::SetCursorScreenPos({right - side, area.y});
     if (icon_button("cancel job", Icon::cross, {side, side}, px(10), color::dim, "Cancel (Esc)"))
@@ -55,10 +56,16 @@ float draw_job(GuiFrame& frame, float right, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float x1 = right - side - px(4), x0 = x1 - px(bar_width);
     const float y0 = std::floor(area.y + area.height * 0.5f - px(2)), y1 = y0 + px(4);
-    const float done = x0 + (x1 - x0) * std::clamp(job.progress, 0.0f, 1.0f);
+    const float done = x0 + (x1 - x0) * std::clamp(job->progress, 0.0f, 1.0f);
     list->AddRectFilled({x0, y0}, {x1, y1}, color::field, px(2));
     list->AddRectFilled({x0, y0}, {done, y1}, color::accent, px(2));
-    return right_text(job.name, x0 - px(8), area, color::text) - px(gap);
+    const std::string left = job->seconds_left ? ", " + duration_text(*job->seconds_left) + " left" : "";
+    const float x = right_text(job->text + left, x0 - px(8), area, color::text);
+    ImGui::SetCursorScreenPos({x, area.y});
+    if (ImGui::InvisibleButton("job", {x1 - x, area.height})) frame.view.queue_open = true;
+    note_item(frame, "job");
+    tooltip("Click: the queue");
+    return x - px(part_gap);
 }
 
 // Label and number at fixed places, so that nothing wanders while the mouse moves.
@@ -73,7 +80,7 @@ float draw_probe(const Status& status, float right, const Rect& area) {
         list->AddText({at, y}, color::dim, cells[i].label);
         list->AddText({at + px(13), y}, color::text, cells[i].number.c_str());
     }
-    return x - px(gap);
+    return x - px(part_gap);
 }
 
 }  // namespace
@@ -99,7 +106,7 @@ void StatusBar::draw(GuiFrame& frame, const Rect& area) {
     ImGui::PushFont(small_font());
     float right =
         right_text(machine_text(frame.status), area.x + area.width - px(bar_margin), area, color::dim);
-    right = draw_job(frame, right - px(gap), area);
+    right = draw_job(frame, right - px(part_gap), area);
     right = draw_probe(frame.status, right, area);
     const bool error = !unread_.empty();
     const std::string whole = error                        ? unread_

@@ -24,6 +24,22 @@ std::string without_prefix(const std::string& line) {
     return line.rfind(prefix, 0) == 0 ? line.substr(prefix.size()) : line;
 }
 
+// "frame 12 (3/10)" of "frame 12 (3/10) 37% eta 00:04:10".
+std::string without_share(const std::string& line) {
+    const std::size_t percent = line.find("% eta ");
+    if (percent == std::string::npos) return line;
+    const std::size_t blank = line.rfind(' ', percent);
+    return blank == std::string::npos ? line : line.substr(0, blank);
+}
+
+// Of "saved FILE 3.59s".
+std::optional<fs::path> file_of_line(const std::string& line) {
+    constexpr std::string_view begin = "saved ";
+    const std::size_t end = line.rfind(' ');
+    if (line.rfind(begin, 0) != 0 || end < begin.size()) return std::nullopt;
+    return line.substr(begin.size(), end - begin.size());
+}
+
 }  // namespace
 
 std::optional<float> share_of_line(const std::string& line) {
@@ -51,7 +67,8 @@ struct RenderJob::Impl {
     std::optional<ChildProcess> process;
     std::string partial, last_line;
     float progress = 0.0f;
-    std::int64_t frames = 0, saved = 0;
+    std::int64_t frames = 0;
+    std::vector<fs::path> saved;
     fs::path folder;
 
     void begin_step() {
@@ -60,11 +77,12 @@ struct RenderJob::Impl {
     }
     void take_line(const std::string& line) {
         if (trim(line).empty()) return;
-        last_line = without_prefix(line);
-        if (last_line.rfind("saved ", 0) == 0) ++saved;
+        last_line = without_share(without_prefix(line));
+        if (const auto file = file_of_line(last_line)) saved.push_back(*file);
         if (const auto share = share_of_line(line)) progress = *share;
         // Short frames are saved faster than progress is reported.
-        if (frames > 0) progress = std::max(progress, static_cast<float>(saved) / static_cast<float>(frames));
+        if (frames > 0)
+            progress = std::max(progress, static_cast<float>(saved.size()) / static_cast<float>(frames));
     }
     void read_output() {
         partial += process->output();
@@ -151,6 +169,8 @@ std::string RenderJob::text() const {
     if (impl_->state == State::running && impl_->step > 0) return impl_->steps[impl_->step].name;
     return impl_->last_line.empty() ? "Rendering" : impl_->last_line;
 }
+
+const std::vector<fs::path>& RenderJob::saved_files() const { return impl_->saved; }
 
 float RenderJob::progress() const { return impl_->progress; }
 

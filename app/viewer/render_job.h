@@ -40,8 +40,10 @@ class RenderJob {
     State state() const;
     /// Takes what the process has said since the last call. Cheap; call every frame.
     void poll();
-    std::string text() const;  // "Rendering frame 12 (3/10)", or the last line of a job that failed
+    std::string text() const;  // "frame 12 (3/10)", or the last line of a job that failed
     float progress() const;    // 0..1
+    /// Frames it has saved, in the order in which they came.
+    const std::vector<std::filesystem::path>& saved_files() const;
     /// done, failed or cancelled: seen once, then none.
     State take_result();
 

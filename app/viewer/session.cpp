@@ -10,8 +10,8 @@
 #include "core/memory.h"
 #include "edit/new_from_file.h"
 #include "source/write_image.h"
-#include "viewer/child_process.h"
 #include "viewer/session_commands.h"
+#include "viewer/session_render.h"
 #include "viewer/session_status.h"
 
 namespace astrosplat {
@@ -155,7 +155,7 @@ void advance(Session& session, double now) {
     session.sets.follow(session.document.scene());
     if (!for_screenshot) session.sets.show_growth(now);
     check_disk(session, now);
-    if (const auto news = session.jobs.poll(session.status.job)) say(session.status, news->text, news->error);
+    attempt(session.status, [&] { show_renderings(session, now); });
     session.autosave.update(session.document);
     fill_status(session);
 }
@@ -195,7 +195,7 @@ double next_due(const Session& session, double now) {
     const ViewFrameState reached = session.view_frame.status().state;
     if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;
     if (reached == ViewFrameState::preview && session.view.settle) return session.view_frame.due(now);
-    if (session.front.working() || session.preparation.working()) return 0.1;
+    if (session.front.working() || session.preparation.working() || session.finished.working()) return 0.1;
     return 1.0;  // to look at the disk and autosave
 }
 

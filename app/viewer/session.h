@@ -22,18 +22,28 @@
 #include "gl/image_texture.h"
 #include "gui/gui.h"
 #include "viewer/camera_overlay.h"
+#include "viewer/child_process.h"
 #include "viewer/comparison.h"
 #include "viewer/disk_watch.h"
+#include "viewer/finished_frames.h"
 #include "viewer/front_check.h"
-#include "viewer/jobs.h"
 #include "viewer/navigator.h"
 #include "viewer/playback.h"
 #include "viewer/prepare_preview.h"
+#include "viewer/render_queue.h"
 #include "viewer/run_viewer.h"
 #include "viewer/set_wishes.h"
 #include "viewer/view_frame.h"
 
 namespace astrosplat {
+
+/// What a command of the render dialog was made of.
+struct CommandSource {
+    std::uint64_t revision = 0;
+    std::filesystem::path file;
+    RenderTask task;
+    bool operator==(const CommandSource&) const = default;
+};
 
 /// Document, view and status, and the parts that each keep a state of their own.
 struct Session {
@@ -62,7 +72,12 @@ struct Session {
     Navigator navigator;
     Playback playback;
     DiskWatch disk;
-    Jobs jobs;
+    RenderQueue jobs;
+    std::optional<CommandSource> command_source;  // of the command in the status
+    FinishedFrames finished;
+    std::shared_ptr<const FinishedView> finished_shown;  // in the texture
+    ImageTexture finished_texture;
+    std::optional<ChildProcess> file_manager;  // that a folder was opened with
     Autosave autosave{autosave_folder(), autosave_interval()};
 
     bool quitting = false, fresh_demo = false;

@@ -1,15 +1,19 @@
 #include "viewer/session_commands.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <iterator>
 
 #include "core/atomic_file.h"
+#include "core/error.h"
 #include "edit/batch_command.h"
 #include "edit/camera_moves.h"
 #include "edit/layers.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "scene/save.h"
+#include "source/write_image.h"
 
 namespace astrosplat {
 namespace {
@@ -100,11 +104,43 @@ void cancel_load(State& s, const Command& c) {
     if (const LayerParams* layer = layer_at(s, c.index)) s.sets.loader().cancel(layer->name);
 }
 
-void render_files(State& s, const Command& c) { s.jobs.start(c, s.document, s.view.frame); }
-void prepare_files(State& s, const Command& c) {
-    if (const LayerParams* layer = layer_at(s, c.index)) s.jobs.prepare(layer->source, c.path);
+void render_files(State& s, const Command&) {
+    s.jobs.add(s.view.render, s.document);
+    if (s.jobs.jobs().size() > 1) s.view.queue_open = true;
 }
-void cancel_render(State& s, const Command&) { s.jobs.cancel(); }
+void choose_target(State& s, const Command& c) {
+    s.view.render.folder = c.path.parent_path();
+    s.view.render.name = c.path.filename().string();
+    s.view.render_open = true;
+}
+void prepare_files(State& s, const Command& c) {
+    if (const LayerParams* layer = layer_at(s, c.index)) s.jobs.add_preparation(layer->source, c.path);
+}
+void cancel_render(State& s, const Command&) { s.jobs.cancel_running(); }
+void cancel_job(State& s, const Command& c) { s.jobs.cancel(c.index); }
+void remove_job(State& s, const Command& c) { s.jobs.remove(c.index); }
+void open_folder(State& s, const Command& c) {
+    s.file_manager.emplace(std::vector<std::string>{"xdg-open", c.path.string()});
+}
+
+/// What the viewport shows of the frame, without what lies around it.
+void save_view(State& s, const Command& c) {
+    const glm::vec2 port(s.viewport_px);
+    const Rect whole = place_frame(s.view, {0, 0, port.x, port.y}, s.request.width, s.request.height);
+    const int x0 = std::max(0, static_cast<int>(std::lround(whole.x))),
+              y0 = std::max(0, static_cast<int>(std::lround(whole.y)));
+    const int x1 = std::min(s.viewport_px.x, static_cast<int>(std::lround(whole.x + whole.width))),
+              y1 = std::min(s.viewport_px.y, static_cast<int>(std::lround(whole.y + whole.height)));
+    if (x1 <= x0 || y1 <= y0) throw InputError("there is no frame to save yet");
+    const std::vector<unsigned char> all = s.display.read();
+    std::vector<unsigned char> part;
+    for (int y = y0; y < y1; ++y) {
+        const auto row = all.begin() + 4 * (std::ptrdiff_t{y} * s.viewport_px.x + x0);
+        part.insert(part.end(), row, row + 4 * std::ptrdiff_t{x1 - x0});
+    }
+    write_image(c.path, x1 - x0, y1 - y0, part);
+    say(s.status, "Saved " + c.path.string());
+}
 void take_screenshot(State& s, const Command& c) { s.screenshot = c.path; }
 
 void snapshot(State& s, const Command&) {
@@ -185,11 +221,14 @@ constexpr Entry entries[] = {{Kind::new_from_file, open_path},
                              {Kind::apply_look, apply_look_file},
                              {Kind::regenerate, regenerate},
                              {Kind::cancel_load, cancel_load},
-                             {Kind::render_frame, render_files},
-                             {Kind::render_range, render_files},
-                             {Kind::render_movie, render_files},
+                             {Kind::render, render_files},
+                             {Kind::choose_target, choose_target},
                              {Kind::prepare_picture, prepare_files},
                              {Kind::cancel_render, cancel_render},
+                             {Kind::cancel_job, cancel_job},
+                             {Kind::remove_job, remove_job},
+                             {Kind::open_folder, open_folder},
+                             {Kind::save_view, save_view},
                              {Kind::screenshot, take_screenshot},
                              {Kind::store_b, store_b},
                              {Kind::take_snapshot, snapshot},

@@ -39,7 +39,6 @@ TEST(Menus, ItemsBecomeCommands) {
         {"Edit/Take snapshot", Kind::take_snapshot},
         {"View/Frame layer", Kind::frame_layer},
         {"View/Frame all", Kind::frame_all},
-        {"Render/Range", Kind::render_range},
         {"Render/Copy batch command", Kind::copy_batch_command},
         {"File/Quit", Kind::quit}};
     TestWindow window(example_document());
@@ -53,8 +52,8 @@ TEST(Menus, ItemsBecomeCommands) {
 TEST(Menus, ItemsWithoutAFileAskForIt) {
     for (const std::string path :
          {"File/New from picture...", "File/Open...", "File/Save", "File/Save as...",
-          "File/Import as a layer...", "File/Export look...", "File/Apply look...", "File/Screenshot...",
-          "View/Load reference...", "Render/This frame...", "Render/Movie..."}) {
+          "File/Import as a layer...", "File/Export look...", "File/Apply look...",
+          "File/Screenshot of the window...", "File/Save the frame as seen...", "View/Load reference..."}) {
         TestWindow window(example_document());
         window.choose(path);
         window.frame(2);

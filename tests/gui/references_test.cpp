@@ -55,6 +55,28 @@ TEST_F(References, Shortcuts) {
     window.tap(key_code::f1);
     expect_reference("shortcuts");
 }
+TEST_F(References, RenderDialog) {
+    window.choose("Render/Frames...");
+    window.view.render.folder = "/films/one";
+    window.view.render.name = "a.doc";
+    window.status.render_command = "astrosplat --batch /films/whirlpool.toml --frames=1-240";
+    expect_reference("render");
+}
+TEST_F(References, Queue) {
+    QueuedJob done = running_job_of("", 1.0f), failed = done,
+              running = running_job_of("frame 12 (12/240)", 0.05f);
+    done.state = QueuedJob::State::done;
+    failed.state = QueuedJob::State::failed;
+    failed.text = "no space left on device";
+    failed.number = 2;
+    running.number = 3;
+    running.seconds_left = 754.0;
+    running.files = {"/films/a.0001.png", "/films/a.0002.png"};
+    window.status.jobs = {done, failed, running};
+    window.status.finished = {window.status.viewport_texture, 1.78f, ""};
+    window.view.queue_open = true;
+    expect_reference("queue");
+}
 TEST_F(References, Question) {
     make_edited(window);
     window.choose("File/Quit");
@@ -65,7 +87,7 @@ TEST_F(References, Failed) {
     window.status.view_frame.error = "the picture 'stars.png' of layer stars cannot be read";
     window.status.message = {"/scenes/whirlpool.toml:14: expected a file that can be read, found none", true};
     window.status.changed_on_disk = true;
-    window.status.job = {"Rendering 12 of 240", 0.05f};
+    window.status.jobs.push_back(running_job_of("frame 12 (12/240)", 0.05f));
     expect_reference("failed");
 }
 TEST_F(References, WhatTheButtonsOfANoticeDo) {

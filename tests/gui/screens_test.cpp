@@ -98,7 +98,7 @@ TEST_P(Screens, Failed) {
         "the picture 'stars.png' of layer stars cannot be read: no such file or directory";
     window.status.message = {"/scenes/whirlpool.toml:14: expected a file that can be read, found none", true};
     window.status.changed_on_disk = true;
-    window.status.job = {"Rendering 12 of 240", 0.05f};
+    window.status.jobs.push_back(running_job_of("frame 12 (12/240)", 0.05f));
     keep("failed");
 }
 TEST_P(Screens, FirstStart) {

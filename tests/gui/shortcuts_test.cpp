@@ -218,7 +218,7 @@ TEST(Shortcuts, AreLettersWhereTextIsTyped) {
 
 TEST(Shortcuts, EscapeCancelsTheJob) {
     TestWindow window(example_document());
-    window.status.job = {"Rendering 3 of 240", 0.01f};
+    window.status.jobs.push_back(running_job_of("frame 3 (3/240)", 0.01f));
     window.tap(key_code::escape);
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::cancel_render});
 }

@@ -263,6 +263,17 @@ void make_edited(TestWindow& window) {
     window.frame();
 }
 
+QueuedJob running_job_of(const std::string& text, float progress) {
+    QueuedJob job;
+    job.number = 1;
+    job.state = QueuedJob::State::running;
+    job.title = "whirlpool.toml: Frames 1-240, 1920x1080";
+    job.target = "/renders/whirlpool/whirlpool.####.exr";
+    job.text = text;
+    job.progress = progress;
+    return job;
+}
+
 std::vector<Command::Kind> kinds(const Commands& commands) {
     std::vector<Command::Kind> list;
     for (const Command& command : commands) list.push_back(command.kind);

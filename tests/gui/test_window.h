@@ -66,6 +66,8 @@ Status example_status();
 /// One unsaved edit, "Opacity of dust".
 void make_edited(TestWindow& window);
 
+QueuedJob running_job_of(const std::string& text, float progress);
+
 std::vector<Command::Kind> kinds(const Commands& commands);
 
 }  // namespace astrosplat

@@ -1,4 +1,4 @@
-// Two looks one after the other, the output's own pixels, and a movie of the scene's frames.
+// Two looks one after the other, and the output's own pixels.
 #include <cmath>
 
 #include "output/read_frame.h"
@@ -75,25 +75,6 @@ TEST_F(WindowCompare, WhatACommandDidIsSaid) {
     const Pixels before = message();
     choose("Render/Copy batch command");
     EXPECT_TRUE(comes_true([&] { return message() != before; }));
-}
-
-/// With a stand-in for ffmpeg that writes down what it is asked for.
-TEST_F(WindowCompare, AMovieHasTheScenesFramesAndSpeed) {
-    const fs::path stand_in = folder / "no programs/ffmpeg";
-    write_text(stand_in, "#!/bin/sh\nfor last in \"$@\"; do :; done\necho \"$@\" > \"$last\"\n");
-    fs::permissions(stand_in, fs::perms::owner_all);
-    start();
-    settled_frame();
-    same_widgets().status.has_ffmpeg = true;
-    same_widgets().frame();
-    choose("Render/Movie...");
-    same_widgets().frame(2);
-    person->press("ctrl+a");
-    person->type("film.mp4");
-    person->press("Return");
-    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "film.mp4"); }));
-    EXPECT_NE(text_of(folder / "film.mp4").find("-framerate 24 "), std::string::npos)
-        << text_of(folder / "film.mp4");
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // Files from the window: what it shows, one frame, and a range that is cancelled.
 #include <cmath>
 #include <set>
+#include <utility>
 
+#include "edit/batch_command.h"
+#include "gui/key_codes.h"
 #include "output/read_frame.h"
 #include "source/texture.h"
 #include "window/window_test.h"
@@ -17,6 +20,40 @@ class WindowWaysOut : public WindowTest {
         for (const auto& entry : fs::directory_iterator(place, ignored))
             names.insert(entry.path().filename().string());
         return names;
+    }
+    /// In the open dialog, and begins.
+    void name_files(const std::string& name) {
+        same_widgets().frame(2);
+        person->double_click(same_widgets().at("render/name"));
+        person->press("ctrl+a");
+        person->type(name);
+        person->click(same_widgets().at("render/Render"));
+        same_widgets().click("render/Render");
+        same_widgets().take_commands();
+    }
+    /// As the open dialog has it.
+    void render() {
+        same_widgets().frame(2);
+        person->press("Return");
+        same_widgets().tap(key_code::enter);
+        same_widgets().take_commands();
+    }
+    bool comes(const fs::path& file) const {
+        return comes_true([&] { return fs::exists(folder / file); });
+    }
+    void set_resolution(const std::string& size) {
+        std::string text = text_of(scene_file);
+        text.replace(text.find("[320, 180]"), 10, size);
+        write_text(scene_file, text);
+    }
+    /// What ffprobe tells of a movie: "width,height,frames", and its rate.
+    std::string facts_of(const fs::path& movie) const {
+        const std::string show =
+            "ffprobe -v error -count_frames -select_streams v -of csv=p=0 -show_entries ";
+        return run_program(
+                   {"/bin/sh", "-c",
+                    show + "stream=width,height,r_frame_rate,nb_read_frames " + shell_word(movie.string())})
+            .out;
     }
 };
 
@@ -56,18 +93,15 @@ TEST_F(WindowWaysOut, AScreenshotIsTheWindow) {
 TEST_F(WindowWaysOut, AFrameIsRendered) {
     start();
     const Pixels before = settled_frame();
-    choose("Render/This frame...");
-    same_widgets().frame(2);
-    person->press("ctrl+a");
-    person->type("frame.png");
-    person->click(same_widgets().at("file/Save"));
-    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "frame.png"); }));
-    const ImageInfo info = read_image_info(folder / "frame.png");
+    choose("Render/Frame...");
+    name_files("frame.png");
+    ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "frames/frame.png"); }));
+    const ImageInfo info = read_image_info(folder / "frames/frame.png");
     EXPECT_EQ(info.width, 320);
     EXPECT_EQ(info.height, 180);
     const RunResult batch = run({"--batch", scene_file.string(), "-f", "1", "-o", "batch.png", "--no-cache"});
     ASSERT_EQ(batch.code, 0) << batch.err;
-    EXPECT_EQ(text_of(folder / "frame.png"), text_of(folder / "batch.png"));
+    EXPECT_EQ(text_of(folder / "frames/frame.png"), text_of(folder / "batch.png"));
     expect_settled(before);
 }
 
@@ -77,10 +111,11 @@ TEST_F(WindowWaysOut, ACancelledRangeLeavesWholeFilesOnly) {
     write_text(scene_file, text);
     start();
     settled_frame();
-    person->press("ctrl+shift+r");
+    choose("Render/Frames...");
+    render();
     ASSERT_TRUE(comes_true([&] { return names_in(folder / "frames").size() > 2; }));
     person->drag(same_widgets().at("frame in view"), {60.0f, 0.0f});  // usable meanwhile
-    same_widgets().status.job = {"Rendering", 0.1f};
+    same_widgets().status.jobs.push_back(running_job_of("Rendering", 0.1f));
     same_widgets().frame();
     choose("Render/Cancel");
     EXPECT_TRUE(comes_true([&] { return names_in(folder / "tmp").empty(); })) << "the job's folder stays";
@@ -112,13 +147,89 @@ TEST_F(WindowWaysOut, ARangeGoesOnWhereItEnded) {
     fs::last_write_time(kept, long_ago);
     start();
     settled_frame();
-    person->press("ctrl+shift+r");
+    choose("Render/Frames...");
+    render();
     EXPECT_TRUE(comes_true([&] {
         return fs::exists(frames / "shot.0001.png") && text_of(frames / "shot.0003.png") != other &&
                names_in(folder / "tmp").empty();
     }));
     EXPECT_EQ(fs::last_write_time(kept), long_ago);
     EXPECT_EQ(text_of(kept), whole);
+}
+
+/// Sizes odd and even: H.264 wants even ones.
+TEST_F(WindowWaysOut, AMovieHasTheScenesFramesAndSpeed) {
+    const RunResult found = run_program({"/bin/sh", "-c", "command -v ffprobe && command -v ffmpeg"});
+    if (found.code != 0) GTEST_SKIP() << "ffmpeg is not installed";
+    const std::string ffmpeg = found.out.substr(found.out.find('\n') + 1);
+    fs::create_directories(folder / "no programs");
+    fs::create_symlink(ffmpeg.substr(0, ffmpeg.size() - 1), folder / "no programs/ffmpeg");
+    const std::string untouched = text_of(scene_file);
+    for (const auto& [size, facts] :
+         {std::pair{"[320, 180]", "320,180,24/1,24\n"}, {"[161, 91]", "162,92,24/1,24\n"}}) {
+        write_text(scene_file, untouched);
+        set_resolution(size);
+        start();
+        settled_frame();
+        same_widgets().status.has_ffmpeg = true;
+        same_widgets().frame();
+        choose("Render/Movie...");
+        name_files("a film [1].mp4");
+        const fs::path movie = folder / "frames/a film [1].mp4";
+        ASSERT_TRUE(comes_true([&] { return fs::exists(movie) && names_in(folder / "frames").size() == 1; }))
+            << program->err_so_far();
+        EXPECT_EQ(facts_of(movie), facts);
+        fs::remove(movie);
+        end(SIGTERM);
+    }
+}
+
+TEST_F(WindowWaysOut, JobsWaitForEachOther) {
+    start();
+    settled_frame();
+    choose("Render/Frames...");
+    name_files("one.####.png");
+    ASSERT_TRUE(comes("frames/one.0001.png"));
+    same_widgets().status.jobs.push_back(running_job_of("", 0.1f));
+    choose("Render/Frames...");
+    render();
+    ASSERT_TRUE(comes("frames/shot.0024.png"));
+    EXPECT_EQ(names_in(folder / "frames").size(), 48u) << "the first was whole before the second began";
+}
+
+TEST_F(WindowWaysOut, TheFrameAsSeenIsSaved) {
+    start();
+    const Pixels seen = settled_frame();
+    choose("File/Save the frame as seen...");
+    same_widgets().frame(2);
+    person->press("ctrl+a");
+    person->type("seen.png");
+    person->press("Return");
+    ASSERT_TRUE(comes("seen.png"));
+    const Pixels saved = load_pixels(folder / "seen.png");
+    const Rect port = make_layout(ViewState(), width, height, 1.0f).viewport;
+    EXPECT_NEAR(static_cast<float>(saved.width) / static_cast<float>(saved.height), 320.0f / 180.0f, 0.01f);
+    EXPECT_LE(saved.width, static_cast<int>(port.width) + 1);
+    std::set<std::uint32_t> colors(saved.rgb.begin(), saved.rgb.end()),
+        on_screen(seen.rgb.begin(), seen.rgb.end());
+    EXPECT_GT(colors.size(), 100u);
+    std::size_t known = 0;
+    for (const std::uint32_t color : colors) known += on_screen.count(color);
+    EXPECT_GT(known * 10, colors.size() * 9) << "its pixels are the screen's";
+}
+
+/// As pasted, from another folder.
+TEST_F(WindowWaysOut, TheCommandOfTheDialogWorksInAShell) {
+    const Document document = Document::open(scene_file);
+    RenderTask task = make_render_task(document, RenderKind::range, 1.0);
+    task.frames = "1-2";
+    task.folder = folder / "it's $HOME `here`";
+    const BatchCommand command = render_command(document, task, ASTROSPLAT_PROGRAM);
+    RunOptions elsewhere = options();
+    elsewhere.folder = "/";
+    const RunResult result = run_program({"/bin/sh", "-c", command.text}, elsewhere);
+    ASSERT_EQ(result.code, 0) << command.text << "\n" << result.err;
+    EXPECT_EQ(names_in(task.folder), (std::set<std::string>{"shot.0001.png", "shot.0002.png"}));
 }
 
 }  // namespace

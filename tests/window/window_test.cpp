@@ -165,7 +165,7 @@ TestWindow& WindowTest::same_widgets() {
     if (!widgets_) {
         widgets_.emplace(Document::open(scene_file), width, height);
         widgets_->status.layers.resize(1);
-        widgets_->status.job = {};
+        widgets_->status.jobs.clear();
         widgets_->frame(3);
     }
     return *widgets_;

@@ -11,6 +11,7 @@
 #include "gui/panel/section.h"
 #include "gui/panel/whole_look.h"
 #include "gui/panel/words.h"
+#include "gui/render_dialog.h"
 #include "gui/theme.h"
 
 namespace astrosplat::panel {
@@ -259,8 +260,8 @@ void camera_buttons(Context& context) {
 }
 
 void output_buttons(Context& context) {
-    const int clicked = button_line({"Render range", "Copy batch command"});
-    if (clicked == 0) context.commands.push_back({Command::Kind::render_range, {}, "", 0});
+    const int clicked = button_line({"Render frames...", "Copy batch command"});
+    if (clicked == 0) open_render_dialog(context.document, context.view, RenderKind::range);
     if (clicked == 1) context.commands.push_back({Command::Kind::copy_batch_command, {}, "", 0});
     ImGui::Dummy({0.0f, px(4)});
 }

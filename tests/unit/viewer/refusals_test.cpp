@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "support/temp_folder.h"
 #include "support/variable.h"
-#include "viewer/jobs.h"
+#include "viewer/render_queue.h"
 #include "viewer/session_status.h"
 
 namespace astrosplat {
@@ -50,8 +50,33 @@ TEST(Refusals, AJobThatIsRefusedLeavesNoFolder) {
     const Document document = Document::open(folder.file("scene.toml", scene));
     fs::remove(preset);  // without it the scene cannot be written
     const Variable place("TMPDIR", temporary.c_str());
-    Jobs jobs{SetCache{}};
-    EXPECT_THROW(jobs.start({Command::Kind::render_range, {}, {}, 0}, document, 1.0), InputError);
+    RenderQueue jobs{SetCache{}};
+    EXPECT_THROW(jobs.add(make_render_task(document, RenderKind::range, 1.0), document), InputError);
+    EXPECT_TRUE(jobs.jobs().empty());
+    EXPECT_TRUE(fs::is_empty(temporary));
+}
+
+TEST(Refusals, AJobThatWaitsLeavesNothingBehind) {
+    const TempFolder folder;
+    const fs::path temporary = folder / "tmp";
+    fs::create_directories(temporary);
+    const Variable place("TMPDIR", temporary.c_str());
+    const Document document =
+        Document::open(folder.file("scene.toml",
+                                   "astrosplat = 1\n[[layer]]\nname = \"a\"\n[layer.source]\n"
+                                   "meshes = [ { mesh = \"plane\", texture = \"a.png\" } ]\n"));
+    RenderQueue jobs{SetCache{}};
+    jobs.add(make_render_task(document, RenderKind::range, 1.0), document);
+    EXPECT_FALSE(fs::is_empty(temporary)) << "the scene as it is now";
+    jobs.cancel(1);
+    EXPECT_TRUE(fs::is_empty(temporary));
+    EXPECT_EQ(jobs.jobs()[0].state, QueuedJob::State::cancelled);
+    jobs.remove(1);
+    EXPECT_TRUE(jobs.jobs().empty());
+    {
+        RenderQueue dropped{SetCache{}};
+        dropped.add(make_render_task(document, RenderKind::range, 1.0), document);
+    }
     EXPECT_TRUE(fs::is_empty(temporary));
 }
 

@@ -1,0 +1,149 @@
+#include "edit/render_task.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <system_error>
+
+#include "core/error.h"
+#include "core/file_format.h"
+#include "output/frame_path.h"
+#include "scene/frames.h"
+
+namespace astrosplat {
+namespace fs = std::filesystem;
+namespace {
+
+// The pattern of [output] path as an absolute path.
+fs::path absolute_pattern(const Document& document) {
+    std::error_code ignored;
+    const fs::path folder = document.file().empty() ? fs::current_path(ignored)
+                                                    : fs::absolute(document.file(), ignored).parent_path();
+    return (folder / document.scene().output.path).lexically_normal();
+}
+
+// "galaxy" of "galaxy.####.exr".
+std::string name_without_frame(const fs::path& pattern) {
+    std::string stem = pattern.stem().string();
+    stem.erase(stem.find('#') == std::string::npos ? stem.size() : stem.find('#'));
+    while (!stem.empty() && (stem.back() == '.' || stem.back() == '_' || stem.back() == '-')) stem.pop_back();
+    return stem.empty() ? "frame" : stem;
+}
+
+std::string frame_problem(const RenderTask& task) {
+    try {
+        const std::size_t count = parse_frames(task.frames, "frames").size();
+        const bool numbered = has_frame_token(render_target(task).string());
+        if (task.kind == RenderKind::range && count > 1 && !numbered)
+            return "the name needs #### where the number of the frame goes";
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+// What ffmpeg's pattern takes for this very text.
+std::string literal_in_glob(const std::string& text) {
+    std::string literal;
+    for (const char c : text) {
+        if (std::string_view("*?[]{}\\").find(c) != std::string_view::npos) literal += '\\';
+        literal += c;
+    }
+    return literal;
+}
+
+}  // namespace
+
+RenderTask make_render_task(const Document& document, RenderKind kind, double frame) {
+    const OutputParams& output = document.scene().output;
+    const fs::path pattern = absolute_pattern(document);
+    RenderTask task;
+    task.kind = kind;
+    task.frames = kind == RenderKind::frame ? fmt::format("{}", std::lround(frame)) : output.frames;
+    task.width = output.width;
+    task.height = output.height;
+    task.folder = pattern.parent_path();
+    task.name = pattern.filename().string();
+    if (kind == RenderKind::movie) task.name = name_without_frame(pattern) + ".mp4";
+    return task;
+}
+
+fs::path render_target(const RenderTask& task) { return task.folder / task.name; }
+
+std::vector<std::string> render_endings(RenderKind kind) {
+    if (kind == RenderKind::movie) return {".mp4", ".mov", ".mkv"};
+    return endings_of({FileKind::picture}, FileUse::written);
+}
+
+std::string with_ending(const std::string& name, const std::string& ending) {
+    return fs::path(name).replace_extension(ending).string();
+}
+
+std::string render_problem(const RenderTask& task) {
+    constexpr std::int64_t largest = 65536;
+    if (task.width < 1 || task.height < 1 || task.width > largest || task.height > largest)
+        return fmt::format("a side is 1 to {} px long, not {} and {}", largest, task.width, task.height);
+    if (task.folder.empty() || !task.folder.is_absolute()) return "choose a folder";
+    if (task.name.empty() || task.name.find('/') != std::string::npos)
+        return "give the files a name, without /";
+    const std::vector<std::string> endings = render_endings(task.kind);
+    const std::string ending = fs::path(task.name).extension().string();
+    if (std::find(endings.begin(), endings.end(), ending) == endings.end())
+        return fmt::format("the name ends with one of {}, not with '{}'", fmt::join(endings, " "), ending);
+    return frame_problem(task);
+}
+
+std::string render_title(const RenderTask& task) {
+    const char* const what = task.kind == RenderKind::movie   ? "Movie of "
+                             : task.kind == RenderKind::frame ? "Frame "
+                                                              : "Frames ";
+    return fmt::format("{}{}, {}x{}", what, task.frames, task.width, task.height);
+}
+
+std::vector<std::string> batch_arguments(const RenderTask& task) {
+    std::vector<std::string> words{"--frames=" + task.frames,  // also where it begins with a minus
+                                   fmt::format("--resolution={}x{}", task.width, task.height),
+                                   "--output=" + render_files(task).string()};
+    // A movie's frames lie in a folder of its own, where nothing is in the way.
+    const bool refuse = task.existing == ExistingFrames::refuse && task.kind != RenderKind::movie;
+    if (task.existing != ExistingFrames::replace && !refuse) words.push_back("--resume");
+    if (!refuse) words.push_back("--overwrite");
+    return words;
+}
+
+fs::path movie_folder(const fs::path& movie) { return movie.string() + ".frames"; }
+
+fs::path render_files(const RenderTask& task) {
+    const fs::path target = render_target(task);
+    return task.kind == RenderKind::movie ? movie_folder(target) / "frame.######.png" : target;
+}
+
+std::vector<std::string> movie_command(const fs::path& movie, double fps) {
+    return {"ffmpeg",
+            "-y",
+            "-loglevel",
+            "error",
+            "-framerate",
+            fmt::format("{}", fps),
+            "-pattern_type",
+            "glob",
+            "-i",
+            literal_in_glob(movie_folder(movie).string()) + "/frame.*.png",
+            "-c:v",
+            "libx264",
+            "-crf",
+            "16",
+            "-preset",
+            "slow",
+            "-pix_fmt",
+            "yuv420p",
+            "-vf",
+            "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+            "-movflags",
+            "+faststart",
+            movie.string()};
+}
+
+}  // namespace astrosplat

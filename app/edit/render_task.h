@@ -1,0 +1,60 @@
+// What a rendering from the window is asked to make: of which frames, how large, where to, and what becomes
+// of files that are there. In: the dialog's values. Out: the words of a --batch command.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "edit/document.h"
+
+namespace astrosplat {
+
+enum class RenderKind { frame, range, movie };
+enum class ExistingFrames {
+    resume,   // finished frames of these settings stay, others are replaced
+    replace,  // all are rendered again
+    refuse    // nothing is rendered where one is in the way
+};
+
+struct RenderTask {
+    RenderKind kind = RenderKind::range;
+    std::string frames;                  // as --frames has them: "1-240", "12"
+    std::int64_t width = 0, height = 0;  // px
+    std::filesystem::path folder;        // absolute
+    std::string name;                    // of the file or files in it: "galaxy.####.exr", "galaxy.mp4"
+    ExistingFrames existing = ExistingFrames::resume;
+    bool operator==(const RenderTask&) const = default;
+};
+
+/// What [output] says of `kind`; a frame is that of number `frame`, next to the scene's own frames.
+RenderTask make_render_task(const Document& document, RenderKind kind, double frame);
+
+/// Of the files: a whole path, with the pattern's `#`.
+std::filesystem::path render_target(const RenderTask& task);
+
+/// Why it cannot be rendered, one line; empty: it can.
+std::string render_problem(const RenderTask& task);
+
+/// The endings that files of a kind may have, the usual one first.
+std::vector<std::string> render_endings(RenderKind kind);
+/// The name with another ending.
+std::string with_ending(const std::string& name, const std::string& ending);
+
+/// "Frames 1-240, 1920x1080", "Frame 12, ...", "Movie of 1-240, ...".
+std::string render_title(const RenderTask& task);
+
+/// Of the frames that are rendered: the target, or a movie's in its folder.
+std::filesystem::path render_files(const RenderTask& task);
+/// Where a movie's frames wait until it is written: beside it, so that what was cancelled can go on.
+std::filesystem::path movie_folder(const std::filesystem::path& movie);
+
+/// Words of --batch behind the scene: frames, size, files, and what becomes of those that are there.
+std::vector<std::string> batch_arguments(const RenderTask& task);
+
+/// ffmpeg's command, which writes a movie of the frames in its folder. Sides of odd size get a black line
+/// more, as H.264 wants it.
+std::vector<std::string> movie_command(const std::filesystem::path& movie, double fps);
+
+}  // namespace astrosplat

@@ -1,0 +1,172 @@
+// Jobs at the left, the newest last; the finished frames of the chosen one at the right.
+#include "gui/queue_dialog.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gui/dialog.h"
+#include "gui/icons.h"
+#include "gui/theme.h"
+#include "gui/widgets.h"
+
+namespace astrosplat {
+namespace {
+
+using JobState = QueuedJob::State;
+constexpr float queue_width = 940, queue_height = 520, list_width = 400, job_height = 76, card_gap = 8;
+
+const QueuedJob* chosen_job(const GuiFrame& frame) {
+    const std::vector<QueuedJob>& jobs = frame.status.jobs;
+    for (const QueuedJob& job : jobs)
+        if (job.number == frame.view.queue_job) return &job;
+    return jobs.empty() ? nullptr : &jobs.back();
+}
+
+std::string state_text(const QueuedJob& job) {
+    switch (job.state) {
+        case JobState::waiting:
+            return "Waits";
+        case JobState::running:
+            return job.seconds_left ? fmt::format("{}, {} left", job.text, duration_text(*job.seconds_left))
+                                    : job.text;
+        case JobState::done:
+            return "Done";
+        case JobState::failed:
+            return job.text;
+        default:
+            return "Cancelled; finished files are kept";
+    }
+}
+
+ImU32 state_color(JobState state) {
+    return state == JobState::failed ? color::error : state == JobState::done ? color::good : color::dim;
+}
+
+void draw_card_text(const QueuedJob& job, ImVec2 corner, float width) {
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const float x = corner.x + px(card_gap), room = width - 2 * px(card_gap);
+    list->AddText({x, corner.y + px(6)}, color::text, fitting(job.title, room).c_str());
+    ImGui::PushFont(small_font());
+    list->AddText({x, corner.y + px(28)}, color::dim, fitting(job.target.string(), room).c_str());
+    list->AddText({x, corner.y + px(46)}, state_color(job.state),
+                  fitting(state_text(job), room - px(64)).c_str());
+    ImGui::PopFont();
+    if (job.state != JobState::running) return;
+    const float y = corner.y + px(job_height) - px(8), end = x + room * std::clamp(job.progress, 0.0f, 1.0f);
+    list->AddRectFilled({x, y}, {x + room, y + px(4)}, color::field, px(2));
+    list->AddRectFilled({x, y}, {end, y + px(4)}, color::accent, px(2));
+}
+
+void card_button(GuiFrame& frame, const QueuedJob& job, ImVec2 corner, float width) {
+    const bool ends = job.state == JobState::running || job.state == JobState::waiting;
+    const float side = px(22);
+    ImGui::SetCursorScreenPos({corner.x + width - side - px(card_gap), corner.y + px(42)});
+    if (icon_button("end", Icon::cross, {side, side}, px(10), color::dim,
+                    ends ? "Cancel" : "Take off the list"))
+        request(frame, ends ? Command::Kind::cancel_job : Command::Kind::remove_job, job.number);
+    note_item(frame, fmt::format("queue/end {}", job.number));
+}
+
+void draw_job_card(GuiFrame& frame, const QueuedJob& job, bool chosen) {
+    ImGui::PushID(static_cast<int>(job.number));
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::SetItemAllowOverlap();
+    if (ImGui::InvisibleButton("card", {width, px(job_height)})) {
+        frame.view.queue_job = job.number;
+        frame.view.queue_frame = -1;
+    }
+    ImGui::SetItemAllowOverlap();
+    note_item(frame, fmt::format("queue/job {}", job.number));
+    const ImVec2 below = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + px(job_height)},
+                                              chosen ? color::selection : color::field, px(4));
+    draw_card_text(job, corner, width);
+    card_button(frame, job, corner, width);
+    ImGui::SetCursorScreenPos(below);
+    ImGui::PopID();
+}
+
+void draw_list(GuiFrame& frame, const QueuedJob* chosen) {
+    ImGui::BeginChild("jobs", {px(list_width), -px(44)}, false);
+    if (frame.status.jobs.empty())
+        ImGui::TextColored(color4(color::dim), "Nothing was rendered yet: Render > Frames...");
+    for (const QueuedJob& job : frame.status.jobs) draw_job_card(frame, job, &job == chosen);
+    ImGui::EndChild();
+}
+
+void draw_image(const FinishedFrame& shown, float width, float height) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(corner, {corner.x + width, corner.y + height}, IM_COL32_BLACK, px(3));
+    if (shown.texture && shown.aspect > 0) {
+        const float w = std::min(width, height * shown.aspect), h = w / shown.aspect;
+        const float x = corner.x + (width - w) * 0.5f, y = corner.y + (height - h) * 0.5f;
+        list->AddImage(shown.texture, {x, y}, {x + w, y + h});
+    }
+    ImGui::Dummy({width, height});
+}
+
+// At the rate of the scene, round and round.
+void play(ViewState& view, int count, double fps) {
+    if (!view.queue_playing || count < 2) return;
+    view.queue_frame = static_cast<int>(std::fmod(ImGui::GetTime() * fps, static_cast<double>(count)));
+}
+
+void draw_frames(GuiFrame& frame, const QueuedJob& job) {
+    ViewState& view = frame.view;
+    const int count = static_cast<int>(job.files.size());
+    const float width = ImGui::GetContentRegionAvail().x;
+    draw_image(frame.status.finished, width, ImGui::GetContentRegionAvail().y - px(76));
+    if (!frame.status.finished.error.empty())
+        ImGui::TextColored(color4(color::error), "%s", frame.status.finished.error.c_str());
+    if (count == 0) return ImGui::TextColored(color4(color::dim), "%s", "No frame is finished yet.");
+    play(view, count, frame.document.scene().output.fps);
+    int shown = view.queue_frame < 0 ? count - 1 : std::min(view.queue_frame, count - 1);
+    if (dialog_button(view.queue_playing ? "Pause" : "Play", false, px(64)))
+        view.queue_playing = !view.queue_playing;
+    note_item(frame, "queue/play");
+    ImGui::SameLine(0, px(card_gap));
+    ImGui::SetNextItemWidth(width - px(64) - px(card_gap));
+    if (ImGui::SliderInt("##frame", &shown, 0, std::max(1, count - 1), "", ImGuiSliderFlags_AlwaysClamp)) {
+        view.queue_frame = std::min(shown, count - 1);
+        view.queue_playing = false;
+    }
+    note_item(frame, "queue/frame");
+    ImGui::TextColored(color4(color::dim), "%s",
+                       job.files[static_cast<std::size_t>(shown)].filename().c_str());
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+    const auto whole = static_cast<std::int64_t>(std::ceil(std::max(0.0, seconds)));
+    const std::int64_t hours = whole / 3600, minutes = whole / 60 % 60;
+    return hours > 0 ? fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60)
+                     : fmt::format("{}:{:02}", minutes, whole % 60);
+}
+
+void draw_queue(GuiFrame& frame) {
+    bool& open = frame.view.queue_open;
+    if (!begin_dialog("queue", "Render queue", open, queue_width, queue_height)) return;
+    const QueuedJob* const chosen = chosen_job(frame);
+    draw_list(frame, chosen);
+    ImGui::SameLine(0, px(12));
+    ImGui::BeginChild("frames", {0, -px(44)}, false, ImGuiWindowFlags_NoScrollbar);
+    if (chosen) draw_frames(frame, *chosen);
+    ImGui::EndChild();
+    ImGui::SetCursorPosY(ImGui::GetWindowHeight() - px(44));
+    const int button = dialog_buttons(frame, "queue", {"Open folder", "Close"}, true);
+    if (button == 0 && chosen) request_path(frame, Command::Kind::open_folder, chosen->target.parent_path());
+    if (button == 1 || dialog_escape()) {
+        open = false;
+        frame.view.queue_playing = false;
+        ImGui::CloseCurrentPopup();
+    }
+    end_dialog();
+}
+
+}  // namespace astrosplat

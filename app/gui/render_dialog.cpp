@@ -1,0 +1,220 @@
+// One row a value, the label at the left; what is wrong is said where the button would be pressed.
+#include "gui/render_dialog.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.h"
+#include "gui/dialog.h"
+#include "gui/theme.h"
+#include "gui/widgets.h"
+#include "scene/frames.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float render_width = 680, label_width = 92, row_gap = 8, field_height = 26, command_height = 66;
+
+void label(const char* text) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::PushStyleColor(ImGuiCol_Text, color::dim);
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
+    ImGui::SameLine(px(label_width));
+}
+
+// True when it changed `text`.
+bool text_field(GuiFrame& frame, const char* name, std::string& text, float width) {
+    std::array<char, 4096> buffer{};
+    text.copy(buffer.data(), buffer.size() - 1);
+    ImGui::SetNextItemWidth(width);
+    const bool changed = ImGui::InputText(fmt::format("##{}", name).c_str(), buffer.data(), buffer.size());
+    note_item(frame, std::string("render/") + name);
+    if (changed) text = buffer.data();
+    return changed;
+}
+
+void side_field(GuiFrame& frame, const char* name, std::int64_t& side) {
+    int value = static_cast<int>(std::min<std::int64_t>(side, 65536));
+    ImGui::SetNextItemWidth(px(84));
+    if (ImGui::InputInt(fmt::format("##{}", name).c_str(), &value, 0)) side = value;
+    note_item(frame, std::string("render/") + name);
+}
+
+int render_choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segments, int chosen) {
+    std::array<ImVec2, 8> middles;
+    const int clicked = segmented(id, segments, chosen, px(field_height), middles.data());
+    std::size_t i = 0;
+    for (const Segment& segment : segments) {
+        note_item(frame, fmt::format("render/{}", segment.label), {middles[i].x, middles[i].y});
+        ++i;
+    }
+    return clicked;
+}
+
+void kind_row(GuiFrame& frame) {
+    RenderTask& render = frame.view.render;
+    label("Render");
+    const int clicked = render_choice(
+        frame, "kind",
+        {{"Frame", "The frame that is seen"},
+         {"Frames", "Numbered files of the scene's frames, or of others"},
+         {"Movie", frame.status.has_ffmpeg ? "A film of them" : "Needs ffmpeg, which is not installed"}},
+        static_cast<int>(render.kind));
+    if (clicked < 0 || (clicked == 2 && !frame.status.has_ffmpeg)) return;
+    const RenderTask before = render;
+    render = make_render_task(frame.document, static_cast<RenderKind>(clicked), frame.view.frame);
+    render.width = before.width;
+    render.height = before.height;
+    render.folder = before.folder;
+    render.existing = before.existing;
+}
+
+std::string count_of_frames(const RenderTask& render) {
+    try {
+        const std::size_t count = parse_frames(render.frames, "frames").size();
+        return count == 1 ? "1 frame" : fmt::format("{} frames", count);
+    } catch (const InputError&) {
+        return "such as 1-240, 1-240x10 or 1,5,9";
+    }
+}
+
+void frames_row(GuiFrame& frame) {
+    label("Frames");
+    text_field(frame, "frames", frame.view.render.frames, px(160));
+    ImGui::SameLine(0, px(row_gap));
+    ImGui::TextColored(color4(color::dim), "%s", count_of_frames(frame.view.render).c_str());
+}
+
+void size_row(GuiFrame& frame) {
+    RenderTask& render = frame.view.render;
+    const OutputParams& output = frame.document.scene().output;
+    label("Size");
+    side_field(frame, "width", render.width);
+    ImGui::SameLine(0, px(row_gap));
+    ImGui::TextUnformatted("x");
+    ImGui::SameLine(0, px(row_gap));
+    side_field(frame, "height", render.height);
+    for (const auto& [text, share] : {std::pair{"Scene", 1.0}, {"Half", 0.5}, {"Double", 2.0}}) {
+        ImGui::SameLine(0, px(row_gap));
+        if (dialog_button(text, false, px(64))) {
+            render.width = std::max<std::int64_t>(1, std::llround(share * static_cast<double>(output.width)));
+            render.height =
+                std::max<std::int64_t>(1, std::llround(share * static_cast<double>(output.height)));
+        }
+        note_item(frame, std::string("render/") + text);
+    }
+}
+
+void folder_row(GuiFrame& frame) {
+    RenderTask& render = frame.view.render;
+    label("Folder");
+    const float button = px(92);
+    std::string folder = render.folder.string();
+    if (text_field(frame, "folder", folder, ImGui::GetContentRegionAvail().x - button - px(row_gap)))
+        render.folder = folder;
+    tooltip(folder.c_str());
+    ImGui::SameLine(0, px(row_gap));
+    if (dialog_button("Choose...", false, button)) {
+        frame.view.render_open = false;  // until the file dialog has the answer
+        request(frame, Command::Kind::choose_target);
+        ImGui::CloseCurrentPopup();
+    }
+    note_item(frame, "render/Choose...");
+}
+
+void name_row(GuiFrame& frame) {
+    RenderTask& render = frame.view.render;
+    label("Name");
+    text_field(frame, "name", render.name, ImGui::GetContentRegionAvail().x - px(92) - px(row_gap));
+    ImGui::SameLine(0, px(row_gap));
+    const std::string ending = std::filesystem::path(render.name).extension().string();
+    ImGui::SetNextItemWidth(px(92));
+    if (ImGui::BeginCombo("##format", ending.c_str())) {
+        for (const std::string& other : render_endings(render.kind))
+            if (ImGui::Selectable(other.c_str(), other == ending))
+                render.name = with_ending(render.name, other);
+        close_on_escape();
+        ImGui::EndCombo();
+    }
+    note_item(frame, "render/format");
+}
+
+void existing_row(GuiFrame& frame) {
+    label("Existing");
+    const int clicked = render_choice(frame, "existing",
+                                      {{"Keep finished",
+                                        "Frames of these settings that are there already stay; "
+                                        "others are replaced"},
+                                       {"Render again", "All frames are rendered, whatever is there"},
+                                       {"Stop", "Nothing is rendered where a file is in the way"}},
+                                      static_cast<int>(frame.view.render.existing));
+    if (clicked >= 0) frame.view.render.existing = static_cast<ExistingFrames>(clicked);
+}
+
+void command_row(GuiFrame& frame) {
+    const Status& status = frame.status;
+    const bool known = !status.render_command.empty();
+    label("Command");
+    const float button = px(92), room = ImGui::GetContentRegionAvail().x - button - px(row_gap);
+    ImGui::BeginChild("command", {room, px(command_height)}, false);  // as high whatever it says
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::PushStyleColor(ImGuiCol_Text, color::dim);
+    ImGui::TextUnformatted(known ? status.render_command.c_str() : status.no_render_command.c_str());
+    ImGui::PopStyleColor();
+    ImGui::PopTextWrapPos();
+    ImGui::EndChild();
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - button);
+    ImGui::BeginDisabled(!known);
+    if (dialog_button("Copy", false, button))
+        frame.requested.push_back({Command::Kind::copy_text, {}, status.render_command, 0});
+    note_item(frame, "render/Copy");
+    ImGui::EndDisabled();
+}
+
+std::string problem(const GuiFrame& frame) {
+    const RenderTask& render = frame.view.render;
+    if (render.kind == RenderKind::movie && !frame.status.has_ffmpeg) return "a movie needs ffmpeg";
+    return render_problem(render);
+}
+
+}  // namespace
+
+void open_render_dialog(const Document& document, ViewState& view, RenderKind kind) {
+    view.render = make_render_task(document, kind, view.frame);
+    view.render_open = true;
+}
+
+void draw_render_dialog(GuiFrame& frame) {
+    bool& open = frame.view.render_open;
+    if (!begin_dialog("render", "Render to files", open, render_width, 0)) return;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(row_gap), px(row_gap)));
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(px(8), (px(field_height) - ImGui::GetFontSize()) / 2));
+    kind_row(frame);
+    frames_row(frame);
+    size_row(frame);
+    folder_row(frame);
+    name_row(frame);
+    existing_row(frame);
+    command_row(frame);
+    const std::string wrong = problem(frame);
+    ImGui::TextColored(color4(color::error), "%s", fitting(wrong, ImGui::GetContentRegionAvail().x).c_str());
+    if (!wrong.empty()) tooltip(wrong.c_str());
+    ImGui::PopStyleVar(2);
+    const char* const go = running_job(frame.status) ? "Add to the queue" : "Render";
+    const int button = dialog_buttons(frame, "render", {"Cancel", go}, true);
+    const bool render = button == 1 && wrong.empty();
+    if (render) request(frame, Command::Kind::render);
+    if (render || button == 0 || dialog_escape()) {
+        open = false;
+        ImGui::CloseCurrentPopup();
+    }
+    end_dialog();
+}
+
+}  // namespace astrosplat

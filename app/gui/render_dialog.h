@@ -1,0 +1,12 @@
+// What is rendered to files, how large and where to: a dialog that edits ViewState::render.
+#pragma once
+
+#include "gui/gui_frame.h"
+
+namespace astrosplat {
+
+/// Opens it with what the scene says.
+void open_render_dialog(const Document& document, ViewState& view, RenderKind kind);
+
+void draw_render_dialog(GuiFrame& frame);
+}  // namespace astrosplat

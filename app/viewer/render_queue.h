@@ -1,0 +1,70 @@
+// Jobs that write files for the window, one after the other: renderings, and prepared pictures. In: what the
+// person asked for and the document as it stood then. Out: how far each is, and what has come of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "edit/document.h"
+#include "edit/render_task.h"
+#include "edit/status.h"
+#include "sets/set_cache.h"
+#include "viewer/render_job.h"
+
+namespace astrosplat {
+
+class RenderQueue {
+  public:
+    explicit RenderQueue(SetCache cache) : cache_(std::move(cache)) {}
+    ~RenderQueue();  // jobs that wait are dropped
+
+    /// Renders the scene as it stands, once all before it is done. Throws InputError where the task
+    /// cannot be rendered.
+    void add(const RenderTask& task, const Document& document);
+    /// Writes a layer's prepared picture, as the command `prepare` does. Throws InputError.
+    void add_preparation(const SourceParams& source, const std::filesystem::path& folder);
+
+    /// A job that waits never begins; one that runs ends, and its finished files stay.
+    void cancel(std::uint64_t number);
+    void cancel_running() { job_.cancel(); }
+    /// Takes a job that has ended, or waits, off the list.
+    void remove(std::uint64_t number);
+    bool running() const { return job_.state() == RenderJob::State::running; }
+
+    struct News {
+        std::string text;
+        bool error = false;
+    };
+    /// Takes what the running job has said and begins the next; news where one has ended. `now` in seconds.
+    std::optional<News> poll(double now);
+    /// Oldest first.
+    const std::vector<QueuedJob>& jobs() const { return jobs_; }
+
+  private:
+    // What a job needs to begin.
+    struct Work {
+        std::filesystem::path folder;  // its own; empty: a preparation
+        std::string scene_text;
+        std::int64_t frames = 0;
+        std::vector<std::string> arguments;
+        std::optional<ProcessStep> movie;
+    };
+
+    void push(QueuedJob job, Work work);
+    void begin_next(double now);
+    void begin(const Work& work);
+    QueuedJob* running_job();
+    std::optional<News> take_end(QueuedJob& job);
+
+    SetCache cache_;
+    RenderJob job_;
+    std::vector<QueuedJob> jobs_;
+    std::vector<Work> work_;  // of each
+    std::uint64_t last_number_ = 0;
+    double began_ = 0.0;  // seconds
+};
+
+}  // namespace astrosplat

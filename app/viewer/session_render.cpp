@@ -1,0 +1,69 @@
+#include "viewer/session_render.h"
+
+#include <algorithm>
+
+#include "edit/batch_command.h"
+#include "viewer/child_process.h"
+#include "viewer/comparison.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A name is enough where every shell finds the program.
+std::string program_name() {
+    std::error_code failed;
+    const fs::path own = fs::read_symlink("/proc/self/exe", failed);
+    return failed || has_program("astrosplat") ? "astrosplat" : own.string();
+}
+
+void fill_command(Session& session) {
+    if (!session.view.render_open) return;
+    const CommandSource source{session.document.revision(), session.document.file(), session.view.render};
+    if (session.command_source == source) return;
+    session.command_source = source;
+    const BatchCommand command = render_command(session.document, session.view.render, program_name());
+    session.status.render_command = command.text;
+    session.status.no_render_command = command.reason;
+}
+
+const QueuedJob* job_looked_at(const Session& session) {
+    const std::vector<QueuedJob>& jobs = session.status.jobs;
+    const auto chosen = std::ranges::find(jobs, session.view.queue_job, &QueuedJob::number);
+    if (chosen != jobs.end()) return &*chosen;
+    return jobs.empty() ? nullptr : &jobs.back();
+}
+
+void show_finished_frame(Session& session) {
+    FinishedFrame& shown = session.status.finished;
+    const QueuedJob* const job = session.view.queue_open ? job_looked_at(session) : nullptr;
+    if (!job || job->files.empty()) {
+        shown = {};
+        return session.finished.cancel();
+    }
+    const auto last = static_cast<int>(job->files.size()) - 1;
+    const int index = session.view.queue_frame < 0 ? last : std::min(session.view.queue_frame, last);
+    const fs::path& file = job->files[static_cast<std::size_t>(index)];
+    session.finished.want(file);
+    const auto found = session.finished.found(file);
+    if (!found || found == session.finished_shown) return;  // while it is read, the last one stays
+    session.finished_shown = found;
+    shown.error = found->error;
+    if (!found->error.empty()) return;
+    session.finished_texture.upload_smooth(found->image);
+    shown.texture = to_handle(session.finished_texture.handle());
+    shown.aspect = static_cast<float>(found->image.width) / static_cast<float>(found->image.height);
+}
+
+}  // namespace
+
+void show_renderings(Session& session, double now) {
+    const auto news = session.jobs.poll(now);
+    if (news) say(session.status, news->text, news->error);
+    session.status.jobs = session.jobs.jobs();
+    fill_command(session);
+    show_finished_frame(session);
+}
+
+}  // namespace astrosplat

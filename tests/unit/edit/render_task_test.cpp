@@ -1,0 +1,71 @@
+// What a rendering from the window asks for, as words of --batch and of ffmpeg.
+#include "edit/render_task.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace astrosplat {
+namespace {
+
+RenderTask task_of(RenderKind kind, const std::string& name) {
+    RenderTask task;
+    task.kind = kind;
+    task.frames = "1-24";
+    task.width = 320;
+    task.height = 180;
+    task.folder = "/films/[one]*";
+    task.name = name;
+    return task;
+}
+
+bool has(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+TEST(RenderTask, SaysWhyItCannotBeRendered) {
+    const RenderTask good = task_of(RenderKind::range, "a.####.exr");
+    EXPECT_EQ(render_problem(good), "");
+    const auto with = [&](auto change) {
+        RenderTask task = good;
+        change(task);
+        return render_problem(task);
+    };
+    EXPECT_NE(with([](RenderTask& t) { t.width = 0; }), "");
+    EXPECT_NE(with([](RenderTask& t) { t.height = 65537; }), "");
+    EXPECT_NE(with([](RenderTask& t) { t.folder = "relative"; }), "");
+    EXPECT_NE(with([](RenderTask& t) { t.name = ""; }), "");
+    EXPECT_NE(with([](RenderTask& t) { t.name = "b/a.####.exr"; }), "");
+    EXPECT_NE(with([](RenderTask& t) { t.name = "a.####.mp4"; }), "");
+    EXPECT_NE(with([](RenderTask& t) { t.name = "a.exr"; }), "") << "24 frames in one file";
+    EXPECT_NE(with([](RenderTask& t) { t.frames = "9-"; }), "");
+    EXPECT_EQ(with([](RenderTask& t) { t.frames = "9", t.name = "a.exr"; }), "");
+    EXPECT_EQ(render_problem(task_of(RenderKind::movie, "a.mkv")), "");
+    EXPECT_NE(render_problem(task_of(RenderKind::movie, "a.exr")), "");
+}
+
+TEST(RenderTask, KeepsReplacesOrRefusesWhatIsThere) {
+    RenderTask task = task_of(RenderKind::range, "a.####.exr");
+    EXPECT_TRUE(has(batch_arguments(task), "--resume") && has(batch_arguments(task), "--overwrite"));
+    task.existing = ExistingFrames::replace;
+    EXPECT_TRUE(!has(batch_arguments(task), "--resume") && has(batch_arguments(task), "--overwrite"));
+    task.existing = ExistingFrames::refuse;
+    EXPECT_TRUE(!has(batch_arguments(task), "--resume") && !has(batch_arguments(task), "--overwrite"));
+    EXPECT_TRUE(has(batch_arguments(task), "--output=/films/[one]*/a.####.exr"));
+}
+
+TEST(RenderTask, AMoviesFramesLieBesideIt) {
+    const RenderTask task = task_of(RenderKind::movie, "a.mp4");
+    EXPECT_EQ(render_files(task), "/films/[one]*/a.mp4.frames/frame.######.png");
+    const std::vector<std::string> words = movie_command(render_target(task), 23.976);
+    EXPECT_TRUE(has(words, "/films/\\[one\\]\\*/a.mp4.frames/frame.*.png")) << "a pattern of ffmpeg";
+    EXPECT_TRUE(has(words, "23.976"));
+    EXPECT_EQ(words.back(), "/films/[one]*/a.mp4");
+}
+
+TEST(RenderTask, AnotherEndingKeepsTheName) {
+    EXPECT_EQ(with_ending("a.b.####.exr", ".png"), "a.b.####.png");
+}
+
+}  // namespace
+}  // namespace astrosplat
