@@ -315,6 +315,20 @@ void Document::go_to(std::size_t step) {
     state_->revision = next_revision();
 }
 
+namespace {
+
+// The pattern of frames, as a scene in another folder says where they go now. A scene without a file says
+// nothing yet.
+std::string pattern_from(const std::string& pattern, const fs::path& file, const fs::path& target) {
+    if (file.empty() || fs::path(pattern).is_absolute()) return pattern;
+    const fs::path from = fs::absolute(file).parent_path(), to = target.parent_path();
+    if (from == to) return pattern;
+    const fs::path moved = (from / pattern).lexically_normal().lexically_relative(to.lexically_normal());
+    return moved.empty() ? (from / pattern).lexically_normal().string() : moved.string();
+}
+
+}  // namespace
+
 std::string Document::text_for(const fs::path& file) const {
     Scene placed = scene();
     placed.file = state_->text_place;
@@ -328,6 +342,9 @@ void Document::save() {
 
 void Document::save_as(const fs::path& file) {
     const fs::path target = fs::absolute(file);
+    const std::string pattern = pattern_from(scene().output.path, state_->file, target);
+    if (pattern != scene().output.path)
+        edit("Keep where frames go", [&](Scene& moved) { moved.output.path = pattern; });
     const std::string text = text_for(target);
     write_file_atomically(target, text);
     state_->text = text;

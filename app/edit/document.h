@@ -85,7 +85,8 @@ class Document {
     /// Writes the scene's file, atomically, keeping comments and order. Throws OutputError, and InputError
     /// when untitled or a preset the scene uses cannot be read any more.
     void save();
-    /// Writes to `file`, which the document then is. Throws as save() does; the document is then as before.
+    /// Writes to `file`, which the document then is; frames go on going where they went. Throws as save()
+    /// does; the document is then as before.
     void save_as(const std::filesystem::path& file);
     /// The text that save_as(file) would write.
     std::string text_for(const std::filesystem::path& file) const;

@@ -255,6 +255,21 @@ TEST(Document, SavingElsewhereMovesTheDocument) {
     EXPECT_EQ(load_scene(target), document.scene());
 }
 
+TEST(Document, SavingElsewhereKeepsWhereFramesGo) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    const auto place = [&] {
+        return (document.file().parent_path() / document.scene().output.path).lexically_normal();
+    };
+    const std::filesystem::path before = place();
+    std::filesystem::create_directories(f.folder / "neu ü");
+    document.save_as(f.folder / "neu ü/zweite szene.toml");
+    EXPECT_EQ(place(), before);
+    EXPECT_EQ(load_scene(document.file()).output.path, document.scene().output.path);
+    document.save_as(f.folder / "neu ü/dritte szene.toml");
+    EXPECT_EQ(place(), before);
+}
+
 TEST(Document, UntitledAsksForAFile) {
     const TempFolder folder;
     Document document = Document::untitled(edit_scene, folder / "untitled.toml");
