@@ -44,7 +44,8 @@ TEST(DustInSplatFiles, IsWarnedOfWhereTheFormatCannotSayIt) {
             << warnings[0];
     }
     EXPECT_TRUE(warnings_of(set, "a.splats").empty());
-    set.absorbs = false;
+    set.absorbs = false;  // then such a color is no dust
+    EXPECT_TRUE(warnings_of(set, "a.ply").empty());
     set.color[0] = glm::vec3(0.5f);
     EXPECT_TRUE(warnings_of(set, "a.ply").empty());
 }

@@ -57,10 +57,21 @@ TEST_F(PreparePreviewTest, IsSmallAndCutsWhereThePictureIsCut) {
     const PreparedView view = prepared_view(request(), 100, {});
     ASSERT_EQ(view.after.width, 64);
     ASSERT_EQ(view.after.height, 48);
+    ASSERT_EQ(view.before.width, 64);
     EXPECT_EQ(view.after.at(1, 24)[0], 0.0f);
     EXPECT_EQ(view.after.at(32, 1)[0], 0.0f);
     EXPECT_GT(view.after.at(32, 24)[0], 0.1f);
     EXPECT_GT(view.before.at(1, 24)[0], 0.1f);
+}
+
+TEST_F(PreparePreviewTest, WhatComesLaterIsLeftOut) {
+    layer.source.texture.derive = Derived::dust;
+    layer.source.texture.smooth = 9.0;
+    layer.source.texture.mask.emplace_back().luminance = glm::dvec2(0.9, 1.0);
+    const PrepareRequest plain = request();
+    EXPECT_EQ(plain.texture.derive, Derived::none);
+    EXPECT_EQ(plain.texture.smooth, 0.0);
+    EXPECT_TRUE(plain.texture.mask.empty());
 }
 
 TEST_F(PreparePreviewTest, SaysWhyNothingCanBeShown) {
