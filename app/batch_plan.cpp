@@ -9,6 +9,7 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "estimate.h"
 #include "output/format.h"
 #include "output/frame_hash.h"
 #include "output/frame_path.h"
@@ -103,13 +104,6 @@ Region parse_region(const std::string& text, const OutputParams& output) {
     return {r[0], r[1], r[2], r[3]};
 }
 
-std::int64_t parse_memory(const std::string& text) {
-    const std::optional<double> gib = parse_double(text);
-    if (!gib || !(*gib > 0.0 && *gib < 1048576.0))
-        bad_input("--memory", "", "a size in GiB, such as 4", "'" + text + "'");
-    return static_cast<std::int64_t>(*gib * 1073741824.0);
-}
-
 Scene batch_scene(const BatchOptions& options) {
     std::vector<Assignment> assignments;
     for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
@@ -196,6 +190,9 @@ BatchPlan plan_batch(const BatchOptions& options) {
     plan.cache = options.cache;
     plan.resume = options.resume;
     check_inputs(plan.scene);
+    if (plan.memory_limit_bytes > 0)
+        for (LayerParams& layer : plan.scene.layers)
+            if (ever_visible(plan.scene, layer)) limit_bodies(layer, plan.memory_limit_bytes, plan.cache);
     FrameHasher hasher(plan.scene, plan.region);
     for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value())) {
         plan.frames.push_back({frame, frame_file(plan.scene.output.path, frame), hasher.frame_hash(frame)});

@@ -110,7 +110,10 @@ void add_batch(CLI::App& app, Invocation& call) {
     add_value(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the frame");
     add_assignments(app, batch.assignments);
     add_value(app, "--layers", batch.layers, "A,B", "Renders only these layers");
-    add_value(app, "--memory", batch.memory_gib, "GiB", "Limit of the renderer's working memory");
+    add_value(
+        app, "--memory", batch.memory_gib, "GiB",
+        "Limit of the renderer's working memory, and of what bodies are made in: pictures that would take "
+        "more are reduced");
     add_value(app, "--region", batch.region, "X,Y,W,H", "Part of the frame, from the top left, in pixels");
     app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
     app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
@@ -192,6 +195,8 @@ void add_generate(CLI::App& app, Invocation& call) {
               "The splat file to write")
         ->required();
     add_assignments(command, call.generate.assignments);
+    add_value(command, "--memory", call.generate.memory_gib, "GiB",
+              "Limit of what bodies are made in: pictures that would take more are reduced");
     command.add_flag("--overwrite", call.generate.overwrite, "Replaces the file");
     add_progress(command, call.generate.progress);
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "bodies/bodies.h"
+#include "core/error.h"
+#include "core/text.h"
 #include "generate/lattice.h"
 #include "interrupt.h"
 #include "pipeline.h"
@@ -53,6 +55,23 @@ std::int64_t frame_bytes(const BatchPlan& plan) {
 }
 
 }  // namespace
+
+std::int64_t parse_memory(const std::string& text) {
+    const std::optional<double> gib = parse_double(text);
+    if (!gib || !(*gib > 0.0 && *gib < 1048576.0))
+        bad_input("--memory", "", "a size in GiB, such as 4", "'" + text + "'");
+    return static_cast<std::int64_t>(*gib * 1073741824.0);
+}
+
+void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache) {
+    SourceParams& source = layer.source;
+    if (source.kind != SourceKind::mesh || source.structure.kind == StructureKind::columns) return;
+    std::vector<TexturedMesh> meshes = load_meshes(cache, source, Progress{{}, &interrupted()});
+    const std::int64_t largest = largest_picture(meshes);
+    reduce_pictures(meshes, source.structure, {bytes, 0}, layer.name);
+    const std::int64_t fitting = largest_picture(meshes);
+    if (fitting < largest) source.structure.most_texels = fitting;
+}
 
 JobEstimate estimate(const BatchPlan& plan) {
     JobEstimate job;

@@ -23,4 +23,12 @@ struct JobEstimate {
 /// Loads meshes where voxels are given and the set is not in the cache, nothing else. Throws InputError.
 JobEstimate estimate(const BatchPlan& plan);
 
+/// "--memory GiB" in bytes. Throws InputError.
+std::int64_t parse_memory(const std::string& text);
+
+/// Sets most_texels of a layer of bodies whose pictures would take more than `bytes`, so that it is made of
+/// smaller ones; a warning says so. The sizes follow from the pictures and `bytes` alone. Throws as
+/// load_meshes does.
+void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache);
+
 }  // namespace astrosplat

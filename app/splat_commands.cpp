@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/file_format.h"
 #include "core/text.h"
+#include "estimate.h"
 #include "interrupt.h"
 #include "places.h"
 #include "progress_report.h"
@@ -51,9 +52,11 @@ int run_generate(const GenerateOptions& options) {
     std::vector<Assignment> assignments;
     for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
     const Scene scene = load_scene(options.scene, assignments);
-    const LayerParams& layer = layer_named(scene, options.layer);
+    LayerParams layer = layer_named(scene, options.layer);
+    const std::int64_t most_bytes = options.memory_gib ? parse_memory(*options.memory_gib) : 0;
     check_splat_output(options.output, options.overwrite);
     ProgressReport report(options.progress);
+    if (most_bytes > 0) limit_bodies(layer, most_bytes, options.cache);
     const SplatSet set =
         load_source(options.cache, layer.source, layer.name, report.begin_step("generating " + layer.name))
             .set;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct GenerateOptions {
     std::filesystem::path scene, output;
     std::string layer;
     std::vector<std::string> assignments;
+    std::optional<std::string> memory_gib;  // limit of what bodies are made in
     SetCache cache;
     bool overwrite = false;
     ProgressMode progress = ProgressMode::automatic;

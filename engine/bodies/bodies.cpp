@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -96,19 +97,6 @@ PictureSplats make_dots(const PictureLight& picture, const UvSurface& surface, c
     return dots;
 }
 
-// Takes the texture's pixels.
-PictureSplats dots_of(Texture& texture, const UvSurface& surface, const StructureParams& params,
-                      std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
-    PictureLight picture = picture_light(texture, params.border);
-    texture.image.pixels = {};
-    PictureSplats dots = make_dots(picture, surface, params, seed, layer_name, progress);
-    picture.alpha = {};
-    const FrontFit fit = fit_front(dots, std::move(picture.light), progress);
-    log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", layer_name,
-                           fit.psnr_db, fit.steps));
-    return dots;
-}
-
 constexpr std::int64_t rows_per_task = 16384;
 
 // How many faces show each dot.
@@ -173,9 +161,9 @@ void put_on_surface(const UvSurface& surface, const PictureOnMesh& picture, std:
 }
 
 // The dots on the mesh, in the memory that they have.
-SplatSet on_mesh(PictureSplats dots, const UvSurface& surface, const PictureOnMesh& picture,
-                 std::uint64_t number) {
-    repeat_by_faces(faces_of(dots, surface, picture.texture().image), dots);
+SplatSet on_mesh(PictureSplats dots, const Buffer<std::uint8_t>& faces, const UvSurface& surface,
+                 const PictureOnMesh& picture, std::uint64_t number) {
+    repeat_by_faces(faces, dots);
     SplatSet set;
     set.position = std::move(dots.splats.position);
     set.color = std::move(dots.splats.color);
@@ -214,9 +202,7 @@ std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const Structure
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots) {
     // Measured. Blocks that wait for their next use are a part of it.
     constexpr std::int64_t bytes_a_texel = 120, bytes_a_dot = 44, waiting_bytes = std::int64_t{256} << 20;
-    std::int64_t largest = 0;
-    for (const PictureOnMesh& picture : pictures_of(meshes))
-        largest = std::max(largest, texels_of(picture.texture()));
+    const std::int64_t largest = largest_picture(meshes);
     return largest * bytes_a_texel + dots * bytes_a_dot + std::min(waiting_bytes, largest * bytes_a_texel);
 }
 
@@ -240,9 +226,8 @@ Texture* largest_texture(std::vector<TexturedMesh>& meshes) {
     return largest;
 }
 
-// The picture at `area` of its texels, but no less than 64 px a side.
-Image at_area(const Image& image, double area) {
-    constexpr double smallest_px = 64.0;
+// The picture at `area` of its texels, but no less than so many px a side.
+Image at_area(const Image& image, double area, double smallest_px) {
     const auto width = static_cast<double>(image.width), height = static_cast<double>(image.height);
     const double least = std::min(1.0, smallest_px / std::min(width, height));
     const double side = std::clamp(std::sqrt(area / (width * height)), least, 1.0);
@@ -257,7 +242,7 @@ void reduce(Texture& texture, double first_share, const std::function<double()>&
     double area = static_cast<double>(whole.width * whole.height), share = first_share;
     for (int i = 0; i < most_tries && (share > 1.0 || share < enough); ++i) {
         area = std::min(area * aimed_at / share, static_cast<double>(whole.width * whole.height));
-        texture.image = at_area(whole, area);
+        texture.image = at_area(whole, area, 64.0);
         share = share_now();
     }
 }
@@ -284,23 +269,121 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
     }
 }
 
+void reduce_to(std::vector<TexturedMesh>& meshes, std::int64_t most_texels, const std::string& layer_name) {
+    if (most_texels <= 0) return;
+    for (TexturedMesh& mesh : meshes) {
+        for (Texture& texture : mesh.textures) {
+            Image& image = texture.image;
+            if (texels_of(texture) <= most_texels) continue;
+            const std::int64_t width = image.width, height = image.height;
+            image = at_area(image, static_cast<double>(most_texels), 1.0);
+            log_detail(fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}", layer_name, width,
+                                   height, image.width, image.height));
+        }
+    }
+}
+
+std::int64_t largest_picture(std::span<const TexturedMesh> meshes) {
+    std::int64_t largest = 0;
+    for (const PictureOnMesh& picture : pictures_of(meshes))
+        largest = std::max(largest, texels_of(picture.texture()));
+    return largest;
+}
+
+namespace {
+
+// Dots before the fit, and how many faces show each.
+struct MadeDots {
+    PictureSplats dots;
+    Buffer<std::uint8_t> faces;
+    Image light;  // of the picture that they are to show
+};
+
+// Takes the texture's pixels, unless they might be wanted again.
+MadeDots made_dots(Texture& texture, const UvSurface& surface, const StructureParams& params,
+                   std::uint32_t seed, bool once_more, const std::string& layer_name,
+                   const Progress& progress) {
+    PictureLight picture = picture_light(texture, params.border);
+    if (!once_more) texture.image.pixels = {};
+    MadeDots made{make_dots(picture, surface, params, seed, layer_name, progress), {}, {}};
+    made.faces = faces_of(made.dots, surface, texture.image);
+    made.light = std::move(picture.light);
+    return made;
+}
+
+// The picture at `area` of its texels; one that is a line becomes a shorter line.
+Image smaller(const Image& image, double area) {
+    if (std::min(image.width, image.height) > 1) return at_area(image, area, 1.0);
+    const auto length = std::max<std::int64_t>(1, static_cast<std::int64_t>(area));
+    return reduced_by_area(image, std::min(length, image.width), std::min(length, image.height));
+}
+
+UvSurface surface_of(const PictureOnMesh& picture) {
+    const Texture& texture = picture.texture();
+    return {picture.mesh->mesh,
+            picture.material,
+            texture.image.width,
+            texture.image.height,
+            texture.wrap == TextureSettings::Wrap::repeat,
+            picture.mesh->camera ? &*picture.mesh->camera : nullptr};
+}
+
+// A picture's dots on its mesh. While they are more than `most` (0: any number), the picture is reduced.
+SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& texture, std::int64_t most,
+                   const StructureParams& params, std::uint32_t seed, const std::string& layer_name,
+                   const Progress& progress) {
+    constexpr int most_tries = 8;
+    constexpr double aimed_at = 0.97;
+    for (int tries = 1;; ++tries) {
+        const UvSurface surface = surface_of(picture);
+        MadeDots made = made_dots(texture, surface, params, seed, most > 0, layer_name, progress);
+        const std::int64_t rows = std::accumulate(made.faces.begin(), made.faces.end(), std::int64_t{0});
+        if (most > 0 && rows > most) {
+            if (tries == most_tries)
+                throw InputError(fmt::format(
+                    "source.splats: expected at least {} for {}, found {}", rows,
+                    fmt::format("a picture of {}x{} px", texture.image.width, texture.image.height), most));
+            const double area = static_cast<double>(texels_of(texture)) * aimed_at *
+                                static_cast<double>(most) / static_cast<double>(rows);
+            texture.image = smaller(texture.image, area);
+            log_detail(fmt::format("layer '{}': {} rows are more than {}, so its picture is reduced to {}x{}",
+                                   layer_name, rows, most, texture.image.width, texture.image.height));
+            continue;
+        }
+        texture.image.pixels = {};
+        const FrontFit fit = fit_front(made.dots, std::move(made.light), progress);
+        log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", layer_name,
+                               fit.psnr_db, fit.steps));
+        const std::int64_t dots = made.dots.splats.size();
+        const bool absorbs = made.dots.absorbs;
+        SplatSet set = on_mesh(std::move(made.dots), made.faces, surface, picture, number);
+        set.test_positions = dots;
+        set.absorbs = absorbs;
+        return set;
+    }
+}
+
+}  // namespace
+
 SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
-                     const std::string& layer_name, const Progress& progress) {
-    claim_memory(bodies_memory_bytes(meshes, expected_dots(meshes, params)),
+                     const std::string& layer_name, const Progress& progress, std::int64_t most_dots) {
+    const std::vector<PictureOnMesh> pictures = pictures_of(meshes);
+    std::vector<double> expected;
+    for (const PictureOnMesh& picture : pictures)
+        expected.push_back(expected_dots(picture.texture(), params));
+    const double all = std::accumulate(expected.begin(), expected.end(), 0.0);
+    claim_memory(bodies_memory_bytes(meshes, static_cast<std::int64_t>(all)),
                  fmt::format("making bodies for layer '{}'", layer_name));
     SplatSet set;
-    const std::vector<PictureOnMesh> pictures = pictures_of(meshes);
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         const PictureOnMesh& picture = pictures[i];
         Texture& texture = meshes[picture.mesh_index].textures[picture.material];
-        const UvSurface surface(picture.mesh->mesh, picture.material, texture.image.width,
-                                texture.image.height, texture.wrap == TextureSettings::Wrap::repeat,
-                                picture.mesh->camera ? &*picture.mesh->camera : nullptr);
-        PictureSplats dots =
-            dots_of(texture, surface, params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
-        set.test_positions += dots.splats.size();
-        set.absorbs = set.absorbs || dots.absorbs;
-        append(on_mesh(std::move(dots), surface, picture, i), set);
+        const auto share = static_cast<std::int64_t>(static_cast<double>(most_dots) * expected[i] / all);
+        SplatSet rows = bodies_of(picture, i, texture, most_dots > 0 ? std::max<std::int64_t>(1, share) : 0,
+                                  params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
+        set.test_positions += rows.test_positions;
+        set.absorbs = set.absorbs || rows.absorbs;
+        append(std::move(rows), set);
         if (set.credit.empty()) set.credit = texture.credit;
         progress.at(static_cast<double>(i + 1) / static_cast<double>(pictures.size()));
     }

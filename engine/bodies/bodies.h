@@ -28,15 +28,23 @@ struct BodiesLimit {
     std::int64_t most_dots = 0;  // 0: as many as there are
 };
 
+/// Reduces every picture of more texels by an area filter to so many; 0: none. Says so at detail level.
+void reduce_to(std::vector<TexturedMesh>& meshes, std::int64_t most_texels, const std::string& layer_name);
+
+/// Texels of the largest picture.
+std::int64_t largest_picture(std::span<const TexturedMesh> meshes);
+
 /// Reduces the largest picture by an area filter until make_bodies() just keeps to the limit, as far as that
 /// can be told before; then the next one where that does not suffice. A warning says so.
 void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
                      const BodiesLimit& limit, const std::string& layer_name);
 
 /// Every picture of every mesh by itself; its pixels are given back once they are read. `params.kind` is not
-/// columns. Announces its memory before taking it and says at detail level what was found. The same bits with
-/// any number of threads. Throws InputError, Cancelled.
+/// columns. A picture that becomes more than its share of `most_dots` (0: any number) is reduced and taken
+/// again. Announces its memory before taking it and says at detail level what was found. The same bits with
+/// any number of threads. Throws InputError, also where `most_dots` are too few for any picture; Cancelled.
 SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& params, std::uint32_t seed,
-                     const std::string& layer_name, const Progress& progress = {});
+                     const std::string& layer_name, const Progress& progress = {},
+                     std::int64_t most_dots = 0);
 
 }  // namespace astrosplat

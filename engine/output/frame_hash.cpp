@@ -98,8 +98,12 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
             for (const Value& each : *names) text += " " + file_text(each.text() ? *each.text() : "");
         text += "\n";
     }
-    for (const LayerParams& layer : now.layers)
-        if (layer.visible) text += own_pictures(layer);
+    for (const LayerParams& layer : now.layers) {
+        if (!layer.visible) continue;
+        text += own_pictures(layer);
+        if (const std::int64_t texels = layer.source.structure.most_texels; texels > 0)
+            text += fmt::format("layer.{}.most texels = {}\n", layer.name, texels);
+    }
     return text;
 }
 

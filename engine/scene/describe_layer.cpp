@@ -201,7 +201,8 @@ void describe_source(const Describer& d, SourceParams& s) {
            slider(1e4, 1e9), logarithmic(), never_with("kind", {"splats"}), only_with("voxels", {"auto"}),
            only_with("voxel_size", {0.0}), only_with("splats", {std::int64_t(0)}));
     lattice(s.splats, "splats", "Splats", "",
-            "In place of count: positions left after the picture's alpha and masks; 0: count.",
+            "In place of count: positions left after the picture's alpha and masks; 0: count. Pictures are "
+            "reduced until their bodies are no more.",
             range(0, 1e15), slider(1e4, 1e9), logarithmic(), only_with("voxels", {"auto"}),
             only_with("voxel_size", {0.0}), zero_is("Off"));
     lattice(s.jitter, "jitter", "Jitter", "of half a voxel", "How far positions leave the lattice.",

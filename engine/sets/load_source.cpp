@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "bodies/bodies.h"
@@ -48,9 +49,17 @@ SplatSet generate_bodies(const SourceParams& source, const std::string& layer_na
     std::vector<TexturedMesh> meshes = load_meshes(source, layer_name, progress, prepared);
     StructureParams structure = source.structure;
     structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
-    reduce_pictures(meshes, structure, {available_memory_bytes() / 10 * 9, source.splats}, layer_name);
-    return make_bodies(std::move(meshes), structure, resolved_seed(source.seed, layer_name), layer_name,
-                       progress);
+    reduce_to(meshes, structure.most_texels, layer_name);
+    if (source.splats > 0)
+        reduce_pictures(meshes, structure, {std::numeric_limits<std::int64_t>::max(), source.splats},
+                        layer_name);
+    const std::int64_t asked_for = largest_picture(meshes);
+    reduce_pictures(meshes, structure, {available_memory_bytes() / 10 * 9, 0}, layer_name);
+    const bool whole = largest_picture(meshes) == asked_for;
+    SplatSet set = make_bodies(std::move(meshes), structure, resolved_seed(source.seed, layer_name),
+                               layer_name, progress, source.splats);
+    set.of_this_machine = !whole;
+    return set;
 }
 
 SplatSet read_source(const SourceParams& source, const Progress& progress) {

@@ -129,14 +129,15 @@ std::string lattice_lines(const SourceParams& source) {
 
 // Nothing for columns, so that sets made before there was a choice keep their names.
 std::string structure_lines(const SourceParams& source) {
-    const auto& [kind, height, depth, clumps, flare, warp, stars, dust, opacity, density, border] =
-        source.structure;
+    const auto& [kind, height, depth, clumps, flare, warp, stars, dust, opacity, density, border,
+                 most_texels] = source.structure;
     if (kind == StructureKind::columns) return "";
     return fmt::format("structure {}\nheight {}\ndepth {}\nclumps {}\nstars {}\n", static_cast<int>(kind),
                        height, depth, clumps, finds_stars(source)) +
            (flare != 0.0 || warp != 0.0 ? fmt::format("flare {}\nwarp {}\n", flare, warp) : "") +
            fmt::format("dust {}\n", dust ? fmt::format("{}", *dust) : "auto") +
-           fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border);
+           fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border) +
+           (most_texels > 0 ? fmt::format("most texels {}\n", most_texels) : "");
 }
 
 std::string camera_line(const UvCamera& camera) {

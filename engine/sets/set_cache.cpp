@@ -102,7 +102,7 @@ class CachedLoad {
     /// With columns that are not wanted where the set had to be generated.
     LoadedSet bodies() const {
         LoadedSet loaded{uncached()};
-        if (is_current())
+        if (!loaded.set.of_this_machine && is_current())
             keep(cache_, {{set_file(cache_, recipe_.name), NativePart::whole, recipe_.text}}, loaded.set,
                  progress_);
         return loaded;

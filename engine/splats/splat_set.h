@@ -22,6 +22,7 @@ struct SplatSetFacts {
     std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
     bool absorbs = false;             // splats of colours below 0 absorb: see color
     std::string credit;               // from the inputs' metadata
+    bool of_this_machine = false;     // pictures were reduced for want of free memory: not to be kept
     std::string recipe;               // of an entry of the cache: what made it (sets/recipe.h)
 };
 

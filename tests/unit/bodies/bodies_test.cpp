@@ -14,6 +14,7 @@
 #include "bodies/uv_surface.h"
 #include "camera/camera.h"
 #include "core/color.h"
+#include "core/error.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/channels.h"
@@ -96,6 +97,33 @@ TEST(Bodies, PicturesOfMoreDotsThanAskedForAreReducedUntilTheyAreNot) {
         EXPECT_LE(made, asked);
         EXPECT_GE(made, asked * 85 / 100);
     }
+}
+
+// The estimate knows nothing of a mesh that shows its picture twice.
+TEST(Bodies, AreNeverMoreThanAskedFor) {
+    TexturedMesh twice = on_plane(painted::nebula(320, 200));
+    const std::vector<Mesh::Triangle> faces = twice.mesh.triangles;
+    twice.mesh.triangles.insert(twice.mesh.triangles.end(), faces.begin(), faces.end());
+    const StructureParams sheet = of_kind(StructureKind::sheet);
+    const std::int64_t all = make_bodies({twice}, sheet, 3u, "gas").size();
+    for (const std::int64_t most : {all / 2, all / 5, std::int64_t{400}}) {
+        const std::int64_t made = make_bodies({twice}, sheet, 3u, "gas", {}, most).size();
+        EXPECT_LE(made, most);
+        EXPECT_GE(made, most / 4);
+    }
+    EXPECT_LE(make_bodies({on_plane(make_image(300, 1, 3, 0.5f))}, sheet, 3u, "gas", {}, 100).size(), 100);
+    EXPECT_THROW(make_bodies({twice}, sheet, 3u, "gas", {}, 1), InputError);
+}
+
+TEST(Bodies, PicturesOfMoreTexelsThanTheMostAreReduced) {
+    std::vector<TexturedMesh> meshes{on_plane(painted::nebula(320, 200)), on_plane(painted::nebula(100, 60))};
+    const double before = sum_of(meshes[0].textures[0].image) / (320.0 * 200.0);
+    reduce_to(meshes, 0, "gas");
+    EXPECT_EQ(largest_picture(meshes), 320 * 200);
+    reduce_to(meshes, 160 * 100, "gas");
+    EXPECT_EQ(largest_picture(meshes), 160 * 100);
+    EXPECT_EQ(meshes[1].textures[0].image.width, 100);
+    EXPECT_NEAR(sum_of(meshes[0].textures[0].image) / (160.0 * 100.0), before, 0.003 * before);
 }
 
 TEST(UvSurface, ThePlaneIsThePicture) {

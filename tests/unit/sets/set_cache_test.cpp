@@ -206,6 +206,7 @@ TEST_F(SetCacheTest, EveryParameterOfASourceChangesTheName) {
         [](SourceParams& s) { s.structure.kind = StructureKind::disk; },
         [](SourceParams& s) { s.structure.kind = StructureKind::disk, s.structure.flare = 0.1; },
         [](SourceParams& s) { s.structure.kind = StructureKind::disk, s.structure.warp = 0.1; },
+        [](SourceParams& s) { s.structure.kind = StructureKind::disk, s.structure.most_texels = 1000; },
         [](SourceParams& s) { seen_from(s, 3.0); },
         [](SourceParams& s) { seen_from(s, 4.0); },
         [](SourceParams& s) { seen_from(s, 3.0).target.x = 1.0; },
