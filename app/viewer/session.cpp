@@ -189,7 +189,7 @@ void drop(Session& session, const std::vector<fs::path>& files) {
 double next_due(const Session& session, double now) {
     if (!session.sets.loader().idle() || session.jobs.running()) return 0.1;
     if (session.view.playing) return 0.0;
-    if (session.sets.following()) return 0.01;
+    if (session.sets.following()) return 0.004;
     if (!session.sets.wanted(session.document.scene())) return 0.1;
     if (!session.view_frame.exact()) return 0.02;
     const ViewFrameState reached = session.view_frame.status().state;

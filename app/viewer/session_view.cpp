@@ -21,6 +21,7 @@ void forget_what_is_not_seen(Scene& scene) {
     scene.file.clear();
     scene.provenance = {};
     scene.animation.clear();
+    for (LayerParams& layer : scene.layers) layer.source.texture = {};  // the sets have what it says
     OutputParams& output = scene.output;
     output.frames = standard.frames;
     output.fps = standard.fps;

@@ -1,5 +1,6 @@
 #include "generate/columns.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -48,9 +49,11 @@ void read_texels(std::span<const TexturedMesh> meshes, Columns& columns, const P
     const Buffer<SurfaceTriangle> surface = surface_triangles(meshes, set.spacing);
     set.color.resize(set.position.size());
     set.alpha.resize(set.position.size());
+    constexpr std::int64_t ahead = 16;  // rows whose triangles are on their way
     parallel_chunks(set.size(), rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
         progress.check();
         for (std::int64_t i = begin; i < end; ++i) {
+            __builtin_prefetch(&surface[set.face[std::min(i + ahead, end - 1)]]);
             const SurfaceTriangle& triangle = surface[set.face[i]];
             const TextureSample picture = sample(*triangle.texture, set.uv[i], triangle.box_texels);
             set.color[i] = picture.color;

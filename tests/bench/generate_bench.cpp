@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "core/buffer.h"
+#include "generate/columns.h"
 #include "generate/generate.h"
 #include "inputs.h"
 #include "measure.h"
@@ -37,6 +38,14 @@ void generate(benchmark::State& state, const GenerateInput& input) {
         static_cast<double>(peak_bytes() - before - kept * kept_bytes) / (1024.0 * 1024.0);
 }
 
+/// Colours and alphas of columns that are there, as for every level that is tried: rows a second.
+void read_texels(benchmark::State& state) {
+    const GenerateInput input = ball_input(58, 114);
+    Columns columns = make_columns(input.meshes, input.lattice, input.max_distance, 1.0, 1);
+    for (auto _ : state) astrosplat::read_texels(input.meshes, columns);
+    report_rate(state, columns.splats.size());
+}
+
 void ball_13k(benchmark::State& state) {
     static const GenerateInput input = ball_input(58, 114);
     generate(state, input);
@@ -50,6 +59,7 @@ void plane_40_percent(benchmark::State& state) {
     generate(state, input);
 }
 
+BENCHMARK(read_texels)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(ball_13k)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 BENCHMARK(ball_1M)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);
 BENCHMARK(plane_40_percent)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1);

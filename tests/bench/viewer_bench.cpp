@@ -223,6 +223,38 @@ void measure_sliders(Viewer& viewer) {
     print_wait("slider of all layers at once", "<= 80 ms", drag_slider(viewer, 0, scene.layers.size()));
 }
 
+/// How the pictures of one layer are read, to and fro, until the preview shows it.
+Times drag_level(Viewer& viewer, std::size_t layer) {
+    const auto drag_to = [&](int step) {
+        viewer.session().document.edit(
+            "Drag",
+            [&](Scene& scene) {
+                using Alpha = TextureSettings::Alpha;
+                scene.layers[layer].source.texture.alpha = step % 2 ? Alpha::luminance : Alpha::max;
+                scene.layers[layer].source.texture.softening = 0.1 + 0.01 * step;  // of FITS
+            },
+            1);
+        viewer.run_until([&] {
+            const LayerParams& now = viewer.session().document.scene().layers[layer];
+            return viewer.session().sets.layer(now)->source == now.source;
+        });
+    };
+    drag_to(0);  // reads the files
+    Times times;
+    for (int i = 1; i <= samples; ++i) times.measure([&] { drag_to(i); });
+    return times;
+}
+
+void measure_levels(Viewer& viewer) {
+    const Scene scene = viewer.session().document.scene();
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        if (scene.layers[i].source.kind != SourceKind::mesh) continue;
+        print_wait("level of layer " + scene.layers[i].name, "<= 80 ms", drag_level(viewer, i));
+        viewer.session().document.edit("Back", [&](Scene& now) { now = scene; });
+        viewer.run_until([&] { return viewer.session().sets.loaded(viewer.session().document); });
+    }
+}
+
 void measure_scrubbing(Viewer& viewer) {
     Times times;
     viewer.session().view.view = ViewKind::camera;
@@ -282,6 +314,7 @@ void measure_viewport(Viewer& viewer, const Parts& wanted) {
         print_rate("orbit, 960x540", ">= 24 frames/s, never below 12", viewer.orbit(orbit_frames),
                    shown_of(viewer.session().status.view_frame));
     if (wanted("slider")) measure_sliders(viewer);
+    if (wanted("level")) measure_levels(viewer);
     if (wanted("scrub")) measure_scrubbing(viewer);
     if (!wanted("settle")) return;
     viewer.orbit(1);
@@ -310,7 +343,8 @@ void measure_window(Viewer& viewer, const Parts& wanted) {
 
 void measure_session(const ViewerOptions& options, const GlInfo& gl, const Parts& wanted, double started,
                      double processor_started) {
-    if (wanted("start") || wanted("orbit") || wanted("slider") || wanted("scrub") || wanted("settle")) {
+    if (wanted("start") || wanted("orbit") || wanted("slider") || wanted("level") || wanted("scrub") ||
+        wanted("settle")) {
         Viewer viewer(options, gl, 960, 540, false);
         measure_start(viewer, started, processor_started);
         measure_viewport(viewer, wanted);
