@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t most_pixels = 400'000;  // of a picture in a preview: splats hardly lie closer
+constexpr std::int64_t most_pixels = 200'000;  // of a picture in a preview: splats hardly lie closer
 constexpr std::int64_t live_rows_at_once = 1 << 13;
 
 /// Every n-th pixel of every n-th row: values stay as they are, so that levels do to them what they do to

@@ -126,6 +126,13 @@ void SetList::cancel(const std::string& name) {
     entry.stage = Stage::cancelled;
 }
 
+void SetList::abandon(const std::string& name) {
+    const auto found = entries_.find(name);
+    if (found == entries_.end()) return;
+    stop(name);
+    found->second.identity.reset();
+}
+
 std::optional<SetTask> SetList::next_task() const {
     for (const SetTask task : tasks) {
         const auto queue = queues_.find(task);

@@ -47,6 +47,7 @@ class SetList {
     void outdate(const std::string& name);
     void retry(const std::string& name);
     void cancel(const std::string& name);
+    void abandon(const std::string& name);
     void cancel_job() {
         if (job_) job_->cancelled = true;
     }

@@ -107,6 +107,11 @@ void SetLoader::cancel(const std::string& layer_name) {
     list_.cancel(layer_name);
 }
 
+void SetLoader::abandon(const std::string& layer_name) {
+    const auto held = worker_.lock();
+    list_.abandon(layer_name);
+}
+
 bool SetLoader::grow() {
     std::shared_ptr<SetJob> job;
     {

@@ -39,6 +39,8 @@ class SetLoader {
     void retry(const std::string& layer_name);
     /// Stops one layer's loading; its old set, if any, stays.
     void cancel(const std::string& layer_name);
+    /// The same where the next want() is to begin again, whatever it wants.
+    void abandon(const std::string& layer_name);
     /// Lets layer() give a fresh sample of the set that is being generated, until it is there. An old set
     /// stays until the new one is about everywhere it will be. False: there is nothing new to be seen.
     bool grow();

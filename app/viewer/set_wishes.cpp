@@ -35,7 +35,7 @@ bool SetWishes::due(const Document& document, double now) {
     const std::vector<SourceParams> sources = sources_of(document.scene());
     const bool same_layers = sources.size() == wanted_sources_.size();
     const bool edited = same_layers && sources != wanted_sources_;
-    const bool moves = edited && sources != edited_sources_ && followed(document.scene());
+    const bool moves = edited && sources != edited_sources_ && abandon_followed(document.scene());
     if (edited && (source_edited_at_ < 0.0 || moves)) source_edited_at_ = now;
     edited_sources_ = sources;
     return source_edited_at_ < 0.0 || now - source_edited_at_ >= rest_s;
@@ -54,9 +54,18 @@ bool SetWishes::loaded(const Document& document) const {
 
 bool SetWishes::wanted(const Scene& scene) const { return wanted_sources_ == sources_of(scene); }
 
-bool SetWishes::followed(const Scene& scene) const {
-    return std::ranges::any_of(scene.layers,
-                               [&](const LayerParams& layer) { return base_of(loader_, layer) != nullptr; });
+/// Sets of levels that were passed on the way would hold up the preview. False: there is nothing to be
+/// followed.
+bool SetWishes::abandon_followed(const Scene& scene) {
+    bool any = false;
+    for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+        const auto base = base_of(loader_, scene.layers[i]);
+        if (!base) continue;
+        loader_.abandon(scene.layers[i].name);
+        wanted_sources_[i] = base->source;
+        any = true;
+    }
+    return any;
 }
 
 void SetWishes::follow(const Scene& scene) {

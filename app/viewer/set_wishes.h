@@ -44,7 +44,7 @@ class SetWishes {
     const SetLoader& loader() const { return loader_; }
 
   private:
-    bool followed(const Scene& scene) const;
+    bool abandon_followed(const Scene& scene);
 
     SetLoader loader_;
     LiveTexels live_;

@@ -36,8 +36,9 @@ Stored stretched_plane(const FitsPlane& plane, const ValueRange& range, const Se
     stored.display_values = stretch != Settings::Stretch::linear;
     stored.picture.credit = plane.credit;
     stored.picture.image = make_image(plane.width, plane.height, 3);
-    parallel_each(plane.values.size(), 1 << 16, [&](std::size_t i) {
-        const double value = stretched(plane.values[i], limits, stretch, settings.softening);
+    const StretchCurve curve(limits, stretch, settings.softening);
+    parallel_each(plane.values.size(), 1 << 13, [&](std::size_t i) {
+        const double value = curve(plane.values[i]);
         std::fill_n(stored.picture.image.pixels.data() + 3 * i, 3, static_cast<float>(value));
     });
     stored.picture.summary = fmt::format("{}x{} px, HDU {}{}{}, {} stretch, black {:.6g}, white {:.6g}",

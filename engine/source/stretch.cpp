@@ -50,14 +50,23 @@ Limits choose_limits(const ValueRange& range, const TextureSettings& settings, c
     return limits;
 }
 
-double stretched(double value, const Limits& limits, TextureSettings::Stretch stretch, double softening) {
+StretchCurve::StretchCurve(const Limits& limits, TextureSettings::Stretch stretch, double softening)
+    : limits_(limits), stretch_(stretch), softening_(softening) {
     assert(stretch != TextureSettings::Stretch::automatic);
+    if (stretch == TextureSettings::Stretch::asinh) of_white_ = real::asinh(1.0 / softening);
+    if (stretch == TextureSettings::Stretch::log) of_white_ = real::log(1001.0);
+}
+
+double StretchCurve::operator()(double value) const {
     if (std::isnan(value)) return value;
-    const double x = std::clamp((value - limits.black) / (limits.white - limits.black), 0.0, 1.0);
-    if (stretch == TextureSettings::Stretch::asinh)
-        return real::asinh(x / softening) / real::asinh(1.0 / softening);
-    if (stretch == TextureSettings::Stretch::log) return real::log(1000.0 * x + 1.0) / real::log(1001.0);
+    const double x = std::clamp((value - limits_.black) / (limits_.white - limits_.black), 0.0, 1.0);
+    if (stretch_ == TextureSettings::Stretch::asinh) return real::asinh(x / softening_) / of_white_;
+    if (stretch_ == TextureSettings::Stretch::log) return real::log(1000.0 * x + 1.0) / of_white_;
     return x;
+}
+
+double stretched(double value, const Limits& limits, TextureSettings::Stretch stretch, double softening) {
+    return StretchCurve(limits, stretch, softening)(value);
 }
 
 }  // namespace astrosplat

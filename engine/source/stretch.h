@@ -32,4 +32,17 @@ Limits choose_limits(const ValueRange& range, const TextureSettings& settings, c
 /// softening) or log(1000 x + 1) / log(1001) (ds9's). NaN stays NaN. `stretch` is not automatic.
 double stretched(double value, const Limits& limits, TextureSettings::Stretch stretch, double softening);
 
+/// The same for many values.
+class StretchCurve {
+  public:
+    StretchCurve(const Limits& limits, TextureSettings::Stretch stretch, double softening);
+    double operator()(double value) const;
+
+  private:
+    Limits limits_;
+    TextureSettings::Stretch stretch_;
+    double softening_;
+    double of_white_ = 1.0;  // what the curve makes of 1 before it is scaled
+};
+
 }  // namespace astrosplat

@@ -79,6 +79,20 @@ TEST_F(SetListTest, WhatComesLaterWaitsForAllSetsAndWhileItIsHeld) {
     EXPECT_TRUE(list.resting());
 }
 
+TEST_F(SetListTest, WhatIsAbandonedBeginsAgainWhenItIsWanted) {
+    add_layer("gas");
+    list.want(scene);
+    begun();
+    list.abandon("gas");
+    EXPECT_TRUE(job->cancelled);
+    EXPECT_FALSE(list.status(scene.layers[0]).loading);
+    list.end();
+    EXPECT_FALSE(list.next_task());
+    list.want(scene);
+    EXPECT_EQ(list.next_task(), SetTask::load);
+    list.abandon("nobody");
+}
+
 TEST_F(SetListTest, AGrowingSetIsShownBesideAnOldOneFromHalfOnwards) {
     add_layer("gas");
     list.want(scene);
