@@ -3,8 +3,12 @@
 
 #include <imgui.h>
 
+#include <array>
+
 #include "core/error.h"
 #include "core/log.h"
+#include "gui/theme.h"
+#include "gui/widgets.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
@@ -37,6 +41,18 @@ void note_item(GuiFrame& frame, const std::string& name) {
 }
 void note_item(GuiFrame& frame, const std::string& name, glm::vec2 middle_px) {
     frame.drawn.push_back({name, middle_px});
+}
+
+int noted_segments(GuiFrame& frame, const char* id, const std::string& prefix,
+                   std::initializer_list<Segment> segments, int chosen, float height) {
+    std::array<ImVec2, 8> middles;
+    const int clicked = segmented(id, segments, chosen, px(height), middles.data());
+    std::size_t i = 0;
+    for (const Segment& segment : segments) {
+        note_item(frame, prefix + "/" + segment.label, {middles[i].x, middles[i].y});
+        ++i;
+    }
+    return clicked;
 }
 
 FrameRange frame_range(const Scene& scene) {

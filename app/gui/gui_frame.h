@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <glm/vec2.hpp>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "gui/short_count.h"
 
 namespace astrosplat {
+
+struct Segment;  // widgets.h
 
 struct GuiFrame {
     Document& document;
@@ -36,6 +39,11 @@ Gesture new_gesture();
 /// Remembers where ImGui's last item lies, under a name ("File/Open...").
 void note_item(GuiFrame& frame, const std::string& name);
 void note_item(GuiFrame& frame, const std::string& name, glm::vec2 middle_px);
+
+/// A segmented control `height` px high at scale 1, whose buttons are remembered as "PREFIX/label": the one
+/// clicked, else -1.
+int noted_segments(GuiFrame& frame, const char* id, const std::string& prefix,
+                   std::initializer_list<Segment> segments, int chosen, float height);
 
 /// First and last frame of [output] frames; 1, 1 where they cannot be read.
 struct FrameRange {

@@ -74,7 +74,6 @@ void draw_job_card(GuiFrame& frame, const QueuedJob& job, bool chosen) {
     ImGui::PushID(static_cast<int>(job.number));
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
-    ImGui::SetItemAllowOverlap();
     if (ImGui::InvisibleButton("card", {width, px(job_height)})) {
         frame.view.queue_job = job.number;
         frame.view.queue_frame = -1;

@@ -46,14 +46,7 @@ void side_field(GuiFrame& frame, const char* name, std::int64_t& side) {
 }
 
 int render_choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segments, int chosen) {
-    std::array<ImVec2, 8> middles;
-    const int clicked = segmented(id, segments, chosen, px(field_height), middles.data());
-    std::size_t i = 0;
-    for (const Segment& segment : segments) {
-        note_item(frame, fmt::format("render/{}", segment.label), {middles[i].x, middles[i].y});
-        ++i;
-    }
-    return clicked;
+    return noted_segments(frame, id, "render", segments, chosen, field_height);
 }
 
 void kind_row(GuiFrame& frame) {

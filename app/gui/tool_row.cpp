@@ -20,16 +20,8 @@ namespace {
 
 constexpr float control_height = 24, gap = 12, small_gap = 4;
 
-// A segmented control and the names tests know its buttons by.
 int choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segments, int chosen) {
-    std::array<ImVec2, 8> middles;
-    const int clicked = segmented(id, segments, chosen, px(control_height), middles.data());
-    std::size_t i = 0;
-    for (const Segment& segment : segments) {
-        note_item(frame, std::string(id) + "/" + segment.label, {middles[i].x, middles[i].y});
-        ++i;
-    }
-    return clicked;
+    return noted_segments(frame, id, id, segments, chosen, control_height);
 }
 
 void view_choice(GuiFrame& frame) {

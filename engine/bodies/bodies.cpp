@@ -340,9 +340,9 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
         const std::int64_t rows = std::accumulate(made.faces.begin(), made.faces.end(), std::int64_t{0});
         if (most > 0 && rows > most) {
             if (tries == most_tries)
-                throw InputError(fmt::format(
-                    "source.splats: expected at least {} for {}, found {}", rows,
-                    fmt::format("a picture of {}x{} px", texture.image.width, texture.image.height), most));
+                throw InputError(
+                    fmt::format("source.splats: expected at least {} for a picture of {}x{} px, found {}",
+                                rows, texture.image.width, texture.image.height, most));
             const double area = static_cast<double>(texels_of(texture)) * aimed_at *
                                 static_cast<double>(most) / static_cast<double>(rows);
             texture.image = smaller(texture.image, area);

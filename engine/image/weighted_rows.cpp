@@ -15,8 +15,8 @@ void weighted_rows_here(std::span<const float> weights, std::span<const float* c
     const hn::ScalableTag<float> d;
     const auto lanes = static_cast<std::int64_t>(hn::Lanes(d));
     std::int64_t i = 0;
-    for (; i + 4 * lanes <= count;
-         i += 4 * lanes) {  // four at a time share the loads of weights and pointers
+    // Four at a time share the loads of weights and pointers.
+    for (; i + 4 * lanes <= count; i += 4 * lanes) {
         auto a = hn::Zero(d), b = a, c = a, e = a;
         for (std::size_t k = 0; k < weights.size(); ++k) {
             const auto weight = hn::Set(d, weights[k]);
