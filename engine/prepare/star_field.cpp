@@ -22,6 +22,7 @@ constexpr std::size_t most_telling = 1000;
 constexpr double model_error = 0.03;           // of a star's height, by which no profile is to be trusted
 constexpr double width_error = 1.3;            // of a width's logarithm, times the signal to noise
 constexpr double shaped = 20.0;                // signal to noise of stars that may have a shape of their own
+constexpr double clearly_worse = 6.0;          // misfit from which a star has no more to say
 constexpr double clearly_better = 2.0;         // by which a shape's misfit must be less than the field's
 constexpr double least_share_of_others = 0.1;  // of the light taken away before, that a later find must have
 constexpr double widest_fwhm_px = 5.2;
@@ -96,19 +97,30 @@ std::vector<std::size_t> telling_stars(const Search& search) {
     return best;
 }
 
-// What a profile leaves of these stars, all together; bright ones do not outvote the others.
-double misfit_of_all(const Search& search, const std::vector<std::size_t>& stars,
-                     const StarProfile& profile) {
-    std::vector<double> misfits(stars.size());
-    parallel_each(stars.size(), 8, [&](std::size_t k) {
-        const PictureStar& star = search.stars[stars[k]];
-        const double trust = model_error * star.signal_to_noise();
-        misfits[k] =
-            shape_misfit_of_taken(search.image, search.unusable, star, profile) / (1.0 + trust * trust);
-    });
-    double sum = 0.0;
-    for (const double misfit : misfits) sum += misfit;
-    return sum;
+// What each profile leaves of a star, in squares of what may be left: noise, and an error of the profile.
+std::vector<double> misfits_of(const Search& search, const PictureStar& star,
+                               const std::vector<StarProfile>& profiles) {
+    const double trust = model_error * star.signal_to_noise();
+    std::vector<double> misfits;
+    for (const StarProfile& profile : profiles)
+        misfits.push_back(shape_misfit_of_taken(search.image, search.unusable, star, profile) /
+                          (1.0 + trust * trust));
+    return misfits;
+}
+
+// The profile that describes most of these stars. What is far from the best of a star counts no more than
+// what is clearly worse, so that knots and stars of other widths do not outvote those that agree.
+StarProfile elected(const Search& search, const std::vector<std::size_t>& stars,
+                    const std::vector<StarProfile>& profiles) {
+    std::vector<std::vector<double>> misfits(stars.size());
+    parallel_each(stars.size(), 8,
+                  [&](std::size_t k) { misfits[k] = misfits_of(search, search.stars[stars[k]], profiles); });
+    std::vector<double> sums(profiles.size(), 0.0);
+    for (const std::vector<double>& misfit : misfits) {
+        const double best = *std::min_element(misfit.begin(), misfit.end());
+        for (std::size_t p = 0; p < sums.size(); ++p) sums[p] += std::min(misfit[p] - best, clearly_worse);
+    }
+    return profiles[static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin())];
 }
 
 // How far the widths of these stars scatter beyond what noise does, as logarithms.
@@ -130,17 +142,13 @@ void measure_profile(Search& search) {
     std::vector<double> widths;
     for (const std::size_t i : stars) widths.push_back(search.stars[i].profile.fwhm_px);
     const double middle = percentile(std::move(widths), 0.5);
-    double least = std::numeric_limits<double>::infinity();
-    for (int shape = 0; shape < star_shapes; ++shape) {
-        for (int step = -5; step <= 7; ++step) {
-            const StarProfile profile{std::max(narrowest_fwhm_px, middle * real::exp(0.06 * step)), shape};
-            const double misfit = misfit_of_all(search, stars, profile);
-            if (misfit >= least) continue;
-            least = misfit;
-            search.widths.fwhm_px = profile.fwhm_px;
-            search.widths.shape = shape;
-        }
-    }
+    std::vector<StarProfile> profiles;
+    for (int shape = 0; shape < star_shapes; ++shape)
+        for (int step = -5; step <= 7; ++step)
+            profiles.push_back({std::max(narrowest_fwhm_px, middle * real::exp(0.06 * step)), shape});
+    const StarProfile best = elected(search, stars, profiles);
+    search.widths.fwhm_px = best.fwhm_px;
+    search.widths.shape = best.shape;
     search.widths.log_spread = spread_of(search, stars);
 }
 
@@ -241,9 +249,11 @@ StarField find_stars(const Image& image, const StarSettings& settings, const Pro
     Search search = begin_search(image, settings);
     std::vector<PictureStar> saturated = take_saturated_ones(search);
     search_once(search, settings, progress);
-    measure_profile(search);
-    choose_shapes(search, progress);
-    fit_all(search, 0, progress);
+    for (int pass = 0; pass < 2; ++pass) {  // stars of another shape tell another profile
+        measure_profile(search);
+        choose_shapes(search, progress);
+        fit_all(search, 0, progress);
+    }
     measure_profile(search);
     progress.at(0.5);
     for (int pass = 0; pass < 2; ++pass) {

@@ -17,6 +17,7 @@ constexpr int most_steps = 12;
 constexpr double damping = 1e-3;          // of the diagonal
 constexpr double farthest_step_px = 0.5;  // in one step
 constexpr double farthest_move_px = 1.2;  // from where the star was seen
+constexpr double other_width = 3.0;       // times the spread: the field's width counts ever less beyond
 constexpr double faintest_share = 0.1;    // of the noise: add_star ends there
 
 // A usable pixel near a star: its place and the light of r, g, b.
@@ -81,8 +82,9 @@ std::optional<Vector<7>> next_step(const Trial& trial, const std::vector<Sample>
         const Row row = row_at(trial, unit, sample);
         sums.add(row.design, sample.mean() - row.model);
     }
-    const double weight = pixel_noise / widths.log_spread;
     const double away = real::log(trial.star.profile.fwhm_px / widths.fwhm_px);
+    const double too_far = away / (other_width * widths.log_spread);
+    const double weight = pixel_noise / (widths.log_spread * (1.0 + too_far * too_far));
     sums.add({0.0, 0.0, 0.0, weight, 0.0, 0.0, 0.0}, -weight * away);
     for (std::size_t i = 0; i < 7; ++i) sums.squares[i][i] *= 1.0 + damping;
     return solved(sums.squares, sums.products);
