@@ -20,6 +20,7 @@ void forget_what_is_not_seen(Scene& scene) {
     const OutputParams standard;
     scene.file.clear();
     scene.provenance = {};
+    scene.references.clear();
     scene.animation.clear();
     for (LayerParams& layer : scene.layers) layer.source.texture = {};  // the sets have what it says
     OutputParams& output = scene.output;

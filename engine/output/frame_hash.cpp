@@ -25,7 +25,7 @@ bool is_elsewhere(const ParameterSpec& spec) {
     constexpr std::array<std::string_view, 5> keys = {"output.path", "output.frames", "output.fps",
                                                       "output.compression", "layer.preset"};
     return std::ranges::find(keys, spec.generic_key.text()) != keys.end() ||
-           spec.generic_key.is_below("provenance");
+           spec.generic_key.is_below("provenance") || spec.generic_key.is_below("reference");
 }
 
 bool shows(const EnvironmentParams& environment) {

@@ -204,6 +204,12 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
         fmt::format("expected six pictures, in the order +x -x +y -y +z -z, found {}", e.cube.size()));
     check.require(e.image.empty() || e.cube.empty(), {"environment.image", "environment.cube"},
                   "expected image or cube, found both");
+    for (std::size_t i = 0; i < scene.references.size(); ++i) {
+        const ParameterKey key = ParameterKey("reference") / i / "frames";
+        const auto place = places.find(key);
+        if (const std::string& of = scene.references[i].frames; !of.empty())
+            parse_frames(of, (place == places.end() ? file : place->second) + ": reference.frames");
+    }
     if (scene.layers.empty())
         throw InputError(fmt::format("{}: expected at least one [[layer]], found none", file));
     for (const LayerParams& layer : scene.layers) check_layer(layer, check);

@@ -113,6 +113,24 @@ void describe_provenance(const Describer& d, ProvenanceParams& p) {
     d(p.type, "type", "Type", "", "What the pictures are.", one_of({"Artwork", "Simulation"}));
 }
 
+void describe_reference(const Describer& d, ReferenceParams& r) {
+    d(r.file, "file", "Picture", "", "Picture that the window compares the view with; it reaches no frame.");
+    const Describer placed = d.never_with("file", {""});
+    placed(
+        r.view, "view", "In view", "",
+        "The view it belongs to; any: every view. Where several fit, the first of the view itself is taken.");
+    placed(r.frames, "frames", "At frames", "", "Frames it belongs to, such as 1-100,120; empty: all.");
+    placed(r.position, "position", "Position", "of the height",
+           "Where the picture's middle lies: right of and above the frame's middle.", within(-1e6, 1e6),
+           slider(-1, 1));
+    placed(r.scale, "scale", "Scale", "of the height", "The picture's height over the frame's.",
+           within(1e-6, 1e6), slider(0.1, 10), logarithmic());
+    placed(r.rotate, "rotate", "Rotation", "degrees", "Turns the picture counter-clockwise.",
+           slider(-180, 180));
+    placed(r.mirrored, "mirrored", "Mirrored", "", "Swaps left and right, before the picture is turned.");
+    placed(r.opacity, "opacity", "Opacity", "", "Of the picture over the view.", range(0, 1));
+}
+
 }  // namespace
 
 Description describe(Scene& scene) {
@@ -128,6 +146,8 @@ Description describe(Scene& scene, const std::function<bool(const ParameterKey& 
         describe_environment(d.in("environment", true).shown_in("Camera", "Environment"), scene.environment);
     if (wanted("provenance"))
         describe_provenance(d.in("provenance", false).shown_in("Output", "Provenance"), scene.provenance);
+    if (wanted("reference"))
+        d.shown_in("Camera", "Reference").list("reference", scene.references, describe_reference);
     for (LayerParams& layer : scene.layers) {
         const ParameterKey group = layer_key(layer.name);
         if (wanted(group)) describe_layer(Describer(description, group, false), layer);
@@ -168,7 +188,7 @@ const Parameter* find_parameter(const Description& description, const ParameterK
 ParameterKey section_of(const ParameterKey& generic_key) {
     for (const std::string_view section :
          {"layer.transform", "layer.source", "layer.look", "layer.render", "layer", "output", "camera",
-          "environment", "provenance", "animation", "look", "render"})
+          "environment", "provenance", "reference", "animation", "look", "render"})
         if (generic_key.is_below(section)) return section;
     return {};
 }
@@ -176,6 +196,7 @@ ParameterKey section_of(const ParameterKey& generic_key) {
 const std::vector<ParameterRow>& parameter_rows() {
     static const std::vector<ParameterRow> rows = [] {
         Scene scene;
+        scene.references.resize(1);
         scene.layers.resize(1);
         scene.layers[0].source.meshes.resize(1);
         scene.layers[0].source.texture.mask.resize(1);

@@ -51,7 +51,8 @@ class Saver {
 
     void set(const ParameterSpec& spec, const Value& value, const Description& description) {
         const std::string written = to_toml(unresolve_paths(value, spec, folder_));
-        text_.set(path_of(spec.key, description), section_size(spec.generic_key), written);
+        const TomlPath path = path_of(spec.key, description);
+        text_.set(path, section_size(spec.generic_key, path), written);
     }
 
     /// Writes lists whose length differs, or that the text does not have, as a whole.
@@ -65,7 +66,7 @@ class Saver {
             if (same_length && (written || same_elements(list.key, base, wanted))) continue;
             const TomlPath path = path_of(list.key, wanted);
             if (!text_.is_value(path)) text_.remove(path);
-            text_.set(path, section_size(list.generic_key), list_text(list, wanted));
+            text_.set(path, section_size(list.generic_key, path), list_text(list, wanted));
         }
     }
 
@@ -82,9 +83,11 @@ class Saver {
         return std::to_string(std::ranges::find(layers_, name) - layers_.begin());
     }
 
-    static std::size_t section_size(const ParameterKey& generic_key) {
-        const TomlPath section = section_of(generic_key).parts();
-        return section.size() + (section[0] == "layer" ? 1 : 0);
+    /// Parts of `path` that are its header's: lists of tables have an index there, unless they are one table.
+    static std::size_t section_size(const ParameterKey& generic_key, const TomlPath& path) {
+        const ParameterKey section = section_of(generic_key);
+        const bool is_list = section == "layer" || section.is_below("layer") || section == "reference";
+        return std::min(section.parts().size() + (is_list ? 1 : 0), path.size() - 1);
     }
 
     static bool same_elements(const ParameterKey& list, const Description& base, const Description& wanted) {
@@ -118,7 +121,7 @@ class Saver {
             const auto holds = [&](const ParameterList* list) { return spec.key.is_below(list->key); };
             if (!spec.key.is_below(element) || std::ranges::any_of(inner, holds)) continue;
             const Value value = parameter.get();
-            const bool of_preset = !spec.generic_key.is_below("layer");
+            const bool of_preset = spec.generic_key.is_below("look");
             if (!(value ==
                   standard_value(of_preset ? ParameterKey("layer") / spec.generic_key : spec.generic_key)))
                 add(spec.key.below(element), to_toml(unresolve_paths(value, spec, folder_)));

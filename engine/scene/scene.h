@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string>
 #include <vector>
@@ -57,6 +58,23 @@ struct ProvenanceParams {
     bool operator==(const ProvenanceParams&) const = default;
 };
 
+/// A picture that the window compares the view with. Reaches no rendered file.
+struct ReferenceParams {
+    enum class View { any, camera, free, front, top, side };
+    friend constexpr auto names_of(View) {
+        return names_up_to<View::side>("any", "camera", "free", "front", "top", "side");
+    }
+    std::filesystem::path file;
+    View view = View::any;     // in which it is compared
+    std::string frames;        // at which, as OutputParams has them; empty: all
+    glm::dvec2 position{0.0};  // of its middle from the frame's, frame heights to the right and up
+    double scale = 1.0;        // its height in frame heights
+    double rotate = 0.0;       // degrees, counter-clockwise
+    bool mirrored = false;     // left to right, before it is turned
+    double opacity = 1.0;      // over the view
+    bool operator==(const ReferenceParams&) const = default;
+};
+
 struct LayerTransform {
     glm::dvec3 translate{0.0};
     glm::dvec3 rotate{0.0};  // degrees about x, then y, then z
@@ -94,6 +112,7 @@ struct Scene {
     CameraParams camera;
     EnvironmentParams environment;
     ProvenanceParams provenance;
+    std::vector<ReferenceParams> references;
     std::vector<LayerParams> layers;
     std::vector<Track> animation;
     bool operator==(const Scene&) const = default;

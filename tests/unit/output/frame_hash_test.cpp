@@ -115,6 +115,7 @@ TEST_F(FrameHashTest, IgnoresWhereAndHowOftenFramesGo) {
     EXPECT_EQ(changed([](Scene& s) { s.output.fps = 30; }), before);
     EXPECT_EQ(changed([](Scene& s) { s.output.compression = OutputParams::Compression::none; }), before);
     EXPECT_EQ(changed([](Scene& s) { s.provenance = {"a", "b", "Simulation"}; }), before);
+    EXPECT_EQ(changed([](Scene& s) { s.references.resize(1); }), before);
     EXPECT_EQ(changed([](Scene& s) { s.layers[0].preset = "old.toml"; }), before);
 }
 

@@ -38,6 +38,7 @@ class Folder {
 
 Scene defaults() {
     Scene scene;
+    scene.references.resize(1);
     LayerParams& layer = scene.layers.emplace_back();
     layer.name = "stars";
     layer.source.meshes.resize(1);

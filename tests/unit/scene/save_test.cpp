@@ -301,6 +301,36 @@ TEST(Save, ListsWithinLists) {
     saved(scene, text);
 }
 
+TEST(Save, ReferencesAreAListATableOrHeaders) {
+    Scene scene = parse(small_scene());
+    scene.references.resize(2);
+    scene.references[0].file = "m51.png";
+    scene.references[1].view = ReferenceParams::View::top;
+    std::string text = saved(scene, small_scene());
+    EXPECT_NE(text.find("reference = [{ file = \"m51.png\" }, { view = \"top\" }]\n"), std::string::npos)
+        << text;
+    scene.references[1].opacity = 0.5;
+    text = saved(scene, text);
+    EXPECT_NE(text.find("{ view = \"top\", opacity = 0.5 }"), std::string::npos) << text;
+    scene.references.clear();
+    saved(scene, text);
+
+    const std::string headers = small_scene() + "\n[[reference]]\nfile = \"a.png\"\n\n[[reference]]\n";
+    Scene two = parse(headers);
+    ASSERT_EQ(two.references.size(), 2u);
+    two.references[0].scale = 2.0;
+    two.references[1].rotate = 30.0;
+    text = saved(two, headers);
+    EXPECT_NE(text.find("[[reference]]\nfile = \"a.png\"\nscale = 2.0\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("[[reference]]\nrotate = 30.0\n"), std::string::npos) << text;
+
+    const std::string table = small_scene() + "\n[reference]\nfile = \"a.png\"\n";
+    Scene one = parse(table, {"reference.position=[0.25, 0]"});
+    ASSERT_EQ(one.references.size(), 1u);
+    EXPECT_NE(saved(one, table).find("[reference]\nfile = \"a.png\"\nposition = [0.25, 0.0]\n"),
+              std::string::npos);
+}
+
 TEST(Save, PresetsGiveBackLookAndRender) {
     Scene scene = parse(commented);
     Look& look = scene.layers[1].look;

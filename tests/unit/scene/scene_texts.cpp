@@ -46,6 +46,16 @@ title = ""
 credit = ""
 type = "Artwork"
 
+[[reference]]
+file = ""
+view = "any"
+frames = ""
+position = [0.0, 0.0]
+scale = 1.0
+rotate = 0.0
+mirrored = false
+opacity = 1.0
+
 [[layer]]
 name = "stars"
 visible = true
