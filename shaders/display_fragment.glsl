@@ -1,16 +1,20 @@
-// A pixel of a image on the screen: through exposure and view transform, or the difference of two. The transform is
-// that of engine/output/encode.cpp for frames without alpha. What is chosen per image comes as defines (a software
-// rasteriser runs both sides of a branch): VIEW and VIEW_B of the images, TAPS_A and TAPS_B reads per axis, DIFFERENCE,
-// DITHER.
+// A pixel of an image on the screen: through exposure and view transform, alone, under another one or less another one.
+// The transform is that of engine/output/encode.cpp for frames without alpha. What is chosen per image comes as defines
+// (a software rasteriser runs both sides of a branch): VIEW and VIEW_B of the images, TAPS_A and TAPS_B reads per axis,
+// DITHER; OVER lays B over A, DIFFERENCE takes it from A; MASKED: alpha is 1 where B lies, else 0.
 
 const int VIEW_LINEAR = 0;
 const int VIEW_SRGB = 1;
 const int VIEW_SOFT = 2;
 const int VIEW_NONE = 3;  // the image holds display values
+const float NOT_COMPARED = 0.25;  // a grey darker than that of no difference
 
 uniform sampler2D image_a;  // linear light, premultiplied, top row first
-#ifdef DIFFERENCE
+#if defined(DIFFERENCE) || defined(OVER)
+#define WITH_B
 uniform sampler2D image_b;
+uniform vec2 b_origin, b_right, b_down;  // place in B of A's upper left corner, and steps of a px
+uniform float b_opacity;
 uniform float difference_gain;
 #endif
 uniform vec4 place;  // upper left corner of the image in px from the target's lower left; 1 / size
@@ -18,12 +22,14 @@ uniform float gain;  // 2^exposure
 
 layout(location = 0) out vec4 shown;
 
-// Mean over the pixel of the target, whose upper left corner is uv and whose size is step.
-vec3 read_image(sampler2D image, int taps, vec2 uv, vec2 step) {
+// Mean over the pixel of the target, whose upper left corner is uv and whose sides are right and down.
+vec3 read_image(sampler2D image, int taps, vec2 uv, vec2 right, vec2 down) {
     vec3 sum = vec3(0.0);
     for (int j = 0; j < taps; ++j)
-        for (int i = 0; i < taps; ++i)
-            sum += textureLod(image, uv + step * (vec2(i, j) + 0.5) / float(taps), 0.0).rgb;
+        for (int i = 0; i < taps; ++i) {
+            vec2 at = (vec2(i, j) + 0.5) / float(taps);
+            sum += textureLod(image, uv + right * at.x + down * at.y, 0.0).rgb;
+        }
     return sum / float(taps * taps);
 }
 
@@ -54,13 +60,26 @@ vec3 dither(uvec2 px) {
 void main() {
     vec2 px = vec2(gl_FragCoord.x - place.x, place.y - gl_FragCoord.y);
     vec2 uv = (px - 0.5) * place.zw;
-    vec3 color = apply_view(VIEW, read_image(image_a, TAPS_A, uv, place.zw));
+    vec3 color = apply_view(VIEW, read_image(image_a, TAPS_A, uv, vec2(place.z, 0.0), vec2(0.0, place.w)));
+    float compared = 1.0;
+#ifdef WITH_B
+    vec2 uv_b = b_origin + b_right * (px.x - 0.5) + b_down * (px.y - 0.5);
+    vec2 middle_b = uv_b + 0.5 * (b_right + b_down);
+    compared = all(greaterThanEqual(middle_b, vec2(0.0))) && all(lessThanEqual(middle_b, vec2(1.0))) ? 1.0 : 0.0;
+    vec3 other = apply_view(VIEW_B, read_image(image_b, TAPS_B, uv_b, b_right, b_down));
+#endif
+#ifdef OVER
+    color = mix(color, other, b_opacity * compared);
+#endif
 #ifdef DIFFERENCE
-    vec3 other = apply_view(VIEW_B, read_image(image_b, TAPS_B, uv, place.zw));
-    color = abs(color - other) * difference_gain;
+    color = compared > 0.0 ? 0.5 + 0.5 * difference_gain * (color - other) : vec3(NOT_COMPARED);
 #endif
 #ifdef DITHER
     color += dither(uvec2(px)) / 255.0;
 #endif
+#ifdef MASKED
+    shown = vec4(color, compared);
+#else
     shown = vec4(color, 1.0);
+#endif
 }

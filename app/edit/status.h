@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/bounds.h"
+#include "scene/scene.h"
 
 namespace astrosplat {
 
@@ -75,6 +76,20 @@ struct PrepareStatus {
     std::string error;       // why it cannot be prepared, one line
 };
 
+/// The reference picture of the view that is seen.
+struct ReferenceStatus {
+    std::size_t index = 0;  // in the scene
+    double aspect = 0.0;    // width / height; 0: not read yet
+    std::string error;      // why it cannot be read, one line
+};
+
+/// View minus what it is compared with, where both are seen.
+struct DifferenceStatus {
+    double mean = 0.0;     // of display values, 0..1
+    double psnr_db = 0.0;  // infinite where both are the same
+    double light = 1.0;    // linear light of the view over the other's
+};
+
 struct PixelProbe {
     int x = 0, y = 0;
     float rgba[4] = {0, 0, 0, 0};  // linear, premultiplied
@@ -132,6 +147,9 @@ struct Status {
     std::vector<Snapshot> snapshots;
     int b_snapshot = -1;
     std::string b_name;
+    std::optional<ReferenceStatus> reference;    // none: the scene has none for this view
+    std::optional<DifferenceStatus> difference;  // none: not shown, or not measured yet
+    bool blink_shows_other = false;
     std::vector<QueuedJob> jobs;    // oldest first
     FinishedFrame finished;         // of the queue's dialog
     std::string render_command;     // that does what the dialog would
@@ -156,6 +174,12 @@ inline const QueuedJob* running_job(const Status& status) {
     for (const QueuedJob& job : status.jobs)
         if (job.state == QueuedJob::State::running) return &job;
     return nullptr;
+}
+
+/// The view's reference; null where it has none, or where an edit of this very frame took it away.
+inline const ReferenceParams* seen_reference(const Scene& scene, const Status& status) {
+    const bool is_there = status.reference && status.reference->index < scene.references.size();
+    return is_there ? &scene.references[status.reference->index] : nullptr;
 }
 
 }  // namespace astrosplat

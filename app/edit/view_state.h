@@ -2,7 +2,6 @@
 // or reaches a rendered file. Plain values, changed by the widgets and read by the viewer.
 #pragma once
 
-#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <set>
@@ -20,12 +19,12 @@ enum class SizeMode { fit, one_to_one };  // the viewport's size, or the output'
 enum class CompareMode {
     a,
     wipe,
-    b,
-    reference,
+    other,  // B or the reference alone
+    blink,
     difference,
     front  // where the view from the front differs from the layer's own picture
 };
-enum class DifferenceFrom { reference, b };
+enum class CompareWith { b, reference };
 enum class PanelTab { source, look, render, camera, output };
 enum class PreviewEngine { automatic, opengl, processor };
 
@@ -61,9 +60,10 @@ struct ViewState : PanelSizes {
 
     CompareMode compare = CompareMode::a;
     float wipe = 0.5f;  // 0..1 of the frame's width; A lies to the left
-    DifferenceFrom difference_from = DifferenceFrom::reference;
-    float difference_gain = 1.0f;
-    std::filesystem::path reference;  // picture to compare with
+    CompareWith compare_with = CompareWith::b;
+    float difference_gain = 4.0f;
+    float blink_hz = 2.0f;  // changes a second
+    bool placing = false;   // the mouse in the view places the reference
 
     float inspect_exposure = 0.0f;                               // stops; shown in amber while not 0
     OutputParams::View display = OutputParams::View::automatic;  // as [output] view has it
@@ -91,10 +91,15 @@ struct ViewState : PanelSizes {
     bool hint_open = false;        // "Drop a picture, mesh or splat file here. F1 shows the keys."
 };
 
-/// The frame is compared with the reference picture rather than with B.
-inline bool needs_reference(const ViewState& view) {
-    return view.compare == CompareMode::reference ||
-           (view.compare == CompareMode::difference && view.difference_from == DifferenceFrom::reference);
+/// The references that a view shows, besides those for any.
+inline ReferenceParams::View reference_view(ViewKind kind) {
+    static_assert(static_cast<int>(ReferenceParams::View::side) == static_cast<int>(ViewKind::side) + 1);
+    return static_cast<ReferenceParams::View>(static_cast<int>(kind) + 1);
+}
+
+/// Something other than the view is shown beside, over or in place of it.
+inline bool compares(const ViewState& view) {
+    return view.compare != CompareMode::a && view.compare != CompareMode::front;
 }
 
 }  // namespace astrosplat

@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat2x2.hpp>
+#include <glm/matrix.hpp>
 #include <map>
 
 #include "core/real.h"
@@ -25,7 +28,8 @@ int view_number(OutputParams::View view) { return static_cast<int>(view) - 1; }
 struct Variant {
     int view_a = 0, view_b = 0;
     int taps_a = 1, taps_b = 1;
-    bool difference = false, dither = false;
+    enum class Mix { alone, over, difference } mix = Mix::alone;
+    bool masked = false, dither = false;
     auto operator<=>(const Variant&) const = default;
 };
 
@@ -34,10 +38,12 @@ ProgramSource source_of(const Variant& v) {
                          {"screen_vertex.glsl"},
                          {"display_fragment.glsl"},
                          {}};
-    if (v.difference) {
-        source.defines.insert(source.defines.end(), {"DIFFERENCE", fmt::format("VIEW_B {}", v.view_b),
-                                                     fmt::format("TAPS_B {}", v.taps_b)});
+    if (v.mix != Variant::Mix::alone) {
+        const char* mix = v.mix == Variant::Mix::over ? "OVER" : "DIFFERENCE";
+        source.defines.insert(source.defines.end(),
+                              {mix, fmt::format("VIEW_B {}", v.view_b), fmt::format("TAPS_B {}", v.taps_b)});
     }
+    if (v.masked) source.defines.push_back("MASKED");
     if (v.dither) source.defines.push_back("DITHER");
     return source;
 }
@@ -50,14 +56,28 @@ struct ShownImage {
     int taps = 1;
 };
 
-ShownImage image_of(GLuint texture, const DisplaySettings& s) {
+ShownImage image_of(GLuint texture, float shown_width) {
     constexpr int most_taps = 4;
     GLint width = 0;
     glBindTexture(GL_TEXTURE_2D, texture);
     glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &width);
-    const double rate = double(width) / double(s.width);
+    const double rate = double(width) / double(shown_width);
     if (rate == 1.0 || rate <= 0.5) return {texture, GL_NEAREST, 1};
     return {texture, GL_LINEAR, std::clamp(static_cast<int>(std::ceil(rate / 2.0)), 1, most_taps)};
+}
+
+ShownImage image_a_of(const DisplaySettings& s) { return image_of(s.a, s.width); }
+
+/// A turned one is always smoothed.
+ShownImage image_b_of(const DisplaySettings& s) {
+    if (!s.b_place) return image_of(s.b, s.width);
+    ShownImage image = image_of(s.b, static_cast<float>(glm::length(s.b_place->right)));
+    if (s.b_place->right.y != 0.0) image.filter = GL_LINEAR;
+    return image;
+}
+
+PicturePlace place_of_b(const DisplaySettings& s) {
+    return s.b_place.value_or(PicturePlace{{s.x, s.y}, {s.width, 0.0}, {0.0, s.height}});
 }
 
 void bind(int unit, const ShownImage& image) {
@@ -79,6 +99,11 @@ PixelRect rect_of(const DisplaySettings& s, int width, int height) {
             std::clamp(rounded(s.x + s.width), 0, width), std::clamp(rounded(s.y + s.height), 0, height)};
 }
 
+void end_drawing() {
+    glDisable(GL_SCISSOR_TEST);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
 /// The line between the two sides, light where a dark one would not show.
 constexpr float line_brightness = 0.85f;
 
@@ -88,6 +113,8 @@ struct Display::State {
     std::map<Variant, std::unique_ptr<GlProgram>> programs;  // compiled when first needed
     GlVertexArray nothing;
     GlTarget target;
+    GlTarget values;        // of what is compared, as floats
+    int height = 0;         // of the target that is drawn into
     DisplaySettings drawn;  // what the target holds, when version is above 0
     std::uint64_t version = 0;
 
@@ -106,9 +133,17 @@ struct Display::State {
         return *entry;
     }
 
+    void begin_drawing(GlTarget& into) {
+        height = into.height();
+        into.bind();
+        glDisable(GL_BLEND);
+        glDisable(GL_DITHER);
+        glEnable(GL_SCISSOR_TEST);
+    }
+
     /// Draws or clears only this part of the target.
     bool cut(const PixelRect& r) const {
-        glScissor(r.x0, target.height() - r.y1, std::max(0, r.x1 - r.x0), std::max(0, r.y1 - r.y0));
+        glScissor(r.x0, height - r.y1, std::max(0, r.x1 - r.x0), std::max(0, r.y1 - r.y0));
         return r.x1 > r.x0 && r.y1 > r.y0;
     }
 
@@ -118,21 +153,34 @@ struct Display::State {
         glClear(GL_COLOR_BUFFER_BIT);
     }
 
+    static void set_b(const GlProgram& p, const DisplaySettings& s) {
+        const PicturePlace place = place_of_b(s);
+        const glm::dmat2 b_from_px = glm::inverse(glm::dmat2(place.right, place.down));
+        const glm::vec2 origin = b_from_px * (glm::dvec2(s.x, s.y) - place.corner);
+        glUniform2f(p.uniform("b_origin"), origin.x, origin.y);
+        const glm::vec2 right = b_from_px[0], down = b_from_px[1];
+        glUniform2f(p.uniform("b_right"), right.x, right.y);
+        glUniform2f(p.uniform("b_down"), down.x, down.y);
+        glUniform1f(p.uniform("b_opacity"), s.b_opacity);
+        glUniform1f(p.uniform("difference_gain"), s.difference_gain);
+    }
+
     void draw(const PixelRect& r, const Variant& variant, const DisplaySettings& s) {
         if (!cut(r)) return;
         const GlProgram& p = program(variant);
         p.use();
-        glUniform4f(p.uniform("place"), s.x, static_cast<float>(target.height()) - s.y, 1.0f / s.width,
+        glUniform4f(p.uniform("place"), s.x, static_cast<float>(height) - s.y, 1.0f / s.width,
                     1.0f / s.height);
         glUniform1f(p.uniform("gain"), float(real::pow(2.0, double(s.exposure))));
-        glUniform1f(p.uniform("difference_gain"), s.difference_gain);
+        if (variant.mix != Variant::Mix::alone) set_b(p, s);
         glBindVertexArray(nothing.get());
         glDrawArrays(GL_TRIANGLES, 0, 3);
         glBindVertexArray(0);
     }
 
     void draw_side(const PixelRect& r, bool b, const DisplaySettings& s) {
-        const ShownImage image = image_of(b ? s.b : s.a, s);
+        if (b && s.b_place && s.a != 0) return draw_both(r, Variant::Mix::over, s);
+        const ShownImage image = b ? image_of(s.b, s.width) : image_a_of(s);
         bind(0, image);
         Variant variant;
         variant.view_a = b && s.b_is_display ? view_none : view_number(s.view);
@@ -141,12 +189,12 @@ struct Display::State {
         draw(r, variant, s);
     }
 
-    void draw_difference(const PixelRect& r, const DisplaySettings& s) {
-        const ShownImage a = image_of(s.a, s), b = image_of(s.b, s);
+    void draw_both(const PixelRect& r, Variant::Mix mix, const DisplaySettings& s, bool masked = false) {
+        const ShownImage a = image_a_of(s), b = image_b_of(s);
         bind(0, a);
         bind(1, b);
         const int view = view_number(s.view);
-        draw(r, {view, s.b_is_display ? view_none : view, a.taps, b.taps, true, false}, s);
+        draw(r, {view, s.b_is_display ? view_none : view, a.taps, b.taps, mix, masked, false}, s);
     }
 
     void draw_wipe(const PixelRect& r, const DisplaySettings& s) {
@@ -169,10 +217,7 @@ unsigned Display::draw(const DisplaySettings& settings, int target_width, int ta
     state.drawn = settings;
     ++state.version;
     state.target.resize(target_width, target_height, GL_RGBA8);
-    state.target.bind();
-    glDisable(GL_BLEND);
-    glDisable(GL_DITHER);
-    glEnable(GL_SCISSOR_TEST);
+    state.begin_drawing(state.target);
     const float* around = settings.background;
     const PixelRect r = rect_of(settings, target_width, target_height);
     const bool covered = r.x0 == 0 && r.y0 == 0 && r.x1 == target_width && r.y1 == target_height;
@@ -182,15 +227,38 @@ unsigned Display::draw(const DisplaySettings& settings, int target_width, int ta
     const bool anything = settings.a != 0 || settings.b != 0;
     if (anything && settings.width > 0.0f && settings.height > 0.0f) {
         if (mode == Mode::difference)
-            state.draw_difference(r, settings);
+            state.draw_both(r, Variant::Mix::difference, settings);
         else if (mode == Mode::wipe)
             state.draw_wipe(r, settings);
         else
             state.draw_side(r, mode == Mode::b, settings);
     }
-    glDisable(GL_SCISSOR_TEST);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    end_drawing();
     return state.target.texture();
+}
+
+Display::Compared Display::read_compared(const DisplaySettings& settings, int target_width,
+                                         int target_height) {
+    const PixelRect r = rect_of(settings, target_width, target_height);
+    Compared sides{make_image(std::max(0, r.x1 - r.x0), std::max(0, r.y1 - r.y0), 4), {}};
+    sides.b = sides.a;
+    if (settings.a == 0 || settings.b == 0 || sides.a.pixels.empty()) return sides;
+    State& state = *state_;
+    state.values.resize(target_width, target_height, GL_RGBA32F);
+    state.begin_drawing(state.values);
+    DisplaySettings alone = settings;
+    alone.dither = false;
+    alone.b_opacity = 1.0f;
+    const auto read = [&](Image& side) {
+        glReadPixels(r.x0, target_height - r.y1, r.x1 - r.x0, r.y1 - r.y0, GL_RGBA, GL_FLOAT,
+                     side.pixels.data());
+    };
+    state.draw_side(r, false, alone);
+    read(sides.a);
+    state.draw_both(r, Variant::Mix::over, alone, true);
+    read(sides.b);
+    end_drawing();
+    return sides;
 }
 
 std::uint64_t Display::version() const { return state_->version; }

@@ -77,13 +77,36 @@ bool is_one_to_one(const GuiFrame& f) { return f.view.size == SizeMode::one_to_o
 
 void set_compare(GuiFrame& f, CompareMode mode) {
     f.view.compare = mode;
-    if (needs_reference(f.view) && f.view.reference.empty()) request(f, Command::Kind::set_reference);
+    if (!compares(f.view)) return;
+    if (f.view.compare_with == CompareWith::reference) {
+        if (!has_reference(f)) request(f, Command::Kind::set_reference);
+    } else if (f.status.b_snapshot < 0) {
+        say(f, "Nothing is stored as B yet: the key B stores the look as it is");
+    }
 }
+void compare_with(GuiFrame& f, CompareWith with) {
+    f.view.compare_with = with;
+    set_compare(f, f.view.compare);
+}
+void toggle_compare_with_reference(GuiFrame& f) {
+    compare_with(f, compares_with_reference(f) ? CompareWith::b : CompareWith::reference);
+}
+bool compares_with_reference(const GuiFrame& f) { return f.view.compare_with == CompareWith::reference; }
+void toggle_blink(GuiFrame& f) { set_compare(f, blinks(f) ? CompareMode::a : CompareMode::blink); }
+bool blinks(const GuiFrame& f) { return f.view.compare == CompareMode::blink; }
+bool has_reference(const GuiFrame& f) { return f.status.reference.has_value(); }
+void toggle_placing(GuiFrame& f) {
+    f.view.placing = !f.view.placing;
+    if (!f.view.placing) return;
+    f.view.compare_with = CompareWith::reference;
+    if (!compares(f.view)) f.view.compare = CompareMode::other;
+}
+bool is_placing(const GuiFrame& f) { return f.view.placing; }
 void toggle_front(GuiFrame& f) { f.view.compare = shows_front(f) ? CompareMode::a : CompareMode::front; }
 bool has_front(const GuiFrame& f) { return f.status.front.has_value(); }
 bool shows_front(const GuiFrame& f) { return f.view.compare == CompareMode::front; }
 void swap_a_b(GuiFrame& f) {
-    f.view.compare = f.view.compare == CompareMode::b ? CompareMode::a : CompareMode::b;
+    set_compare(f, f.view.compare == CompareMode::other ? CompareMode::a : CompareMode::other);
 }
 
 void duplicate_selected_layer(GuiFrame& f) {
@@ -166,6 +189,8 @@ void remove_keyframe_here(GuiFrame& f) {
 void cancel(GuiFrame& f) {
     if (f.view.help_open || f.view.log_open) {
         f.view.help_open = f.view.log_open = false;
+    } else if (is_placing(f)) {
+        toggle_placing(f);
     } else if (has_job(f)) {
         request(f, Command::Kind::cancel_render);
     } else {

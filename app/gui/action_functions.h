@@ -25,7 +25,15 @@ std::string movie_label(const GuiFrame& f);
 void three_quarter(GuiFrame& f);
 void toggle_one_to_one(GuiFrame& f);
 bool is_one_to_one(const GuiFrame& f);
-void set_compare(GuiFrame& f, CompareMode mode);  // asks for a reference where there is none yet
+void set_compare(GuiFrame& f, CompareMode mode);   // asks for a reference where there is none yet
+void compare_with(GuiFrame& f, CompareWith with);  // likewise
+void toggle_compare_with_reference(GuiFrame& f);
+bool compares_with_reference(const GuiFrame& f);
+void toggle_blink(GuiFrame& f);
+bool blinks(const GuiFrame& f);
+bool has_reference(const GuiFrame& f);
+void toggle_placing(GuiFrame& f);
+bool is_placing(const GuiFrame& f);
 void toggle_front(GuiFrame& f);
 bool has_front(const GuiFrame& f);
 bool shows_front(const GuiFrame& f);

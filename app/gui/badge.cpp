@@ -62,6 +62,34 @@ void press_button(GuiFrame& frame) {
         frame.requested.push_back({Command::Kind::copy_text, {}, frame.status.view_frame.error, 0});
 }
 
+/// "+0.3 %"; -0 becomes 0.
+std::string signed_percent(double share) {
+    return fmt::format("{:+.1f} %", std::round(share * 1000.0) / 10.0 + 0.0);
+}
+
+struct SideBadge {
+    std::string text;
+    const char* tooltip;
+    ImU32 color;
+    bool may_be_cut = false;
+};
+
+std::optional<SideBadge> side_badge(const Status& status) {
+    if (status.difference)
+        return SideBadge{
+            difference_text(*status.difference),
+            "Of what is shown less what it is compared with, where both are seen: mean of display "
+            "values,\nsignal to noise, and total light",
+            color::text};
+    if (!status.front) return std::nullopt;
+    const FrontStatus& front = *status.front;
+    return SideBadge{
+        front_text(front),
+        front.changed_by_look ? "The look or the mixing differs from what shows a picture as it is"
+                              : "The view from the front against its picture; D shows where they differ",
+        front.measured && !front.changed_by_look ? color::text : color::dim, !front.error.empty()};
+}
+
 }  // namespace
 
 BadgeText badge_text(const Scene& scene, const Status& status) {
@@ -126,22 +154,27 @@ float draw_badge(GuiFrame& frame, const Rect& area) {
 
 std::string front_text(const FrontStatus& front) {
     if (front.measured) {
-        const double light = std::round((front.light - 1.0) * 1000.0) / 10.0 + 0.0;  // %; -0 becomes 0
-        return fmt::format("Front {:.1f} dB, SSIM {:.3f}, light {:+.1f} %", front.psnr_db, front.ssim, light);
+        return fmt::format("Front {:.1f} dB, SSIM {:.3f}, light {}", front.psnr_db, front.ssim,
+                           signed_percent(front.light - 1.0));
     }
     if (!front.error.empty()) return "Front cannot be compared: " + front.error;
     if (front.working) return "Comparing the front";
     return front.changed_by_look ? "Front changed by look" : "";
 }
 
-void draw_front_badge(GuiFrame& frame, const Rect& area, float left) {
-    if (!frame.status.front) return;
-    const FrontStatus& front = *frame.status.front;
-    const std::string whole = front_text(front);
-    if (whole.empty()) return;
+std::string difference_text(const DifferenceStatus& difference) {
+    const std::string psnr =
+        std::isinf(difference.psnr_db) ? "the same" : fmt::format("{:.1f} dB", difference.psnr_db);
+    return fmt::format("Mean {}, {}, light {}", signed_percent(difference.mean), psnr,
+                       signed_percent(difference.light - 1.0));
+}
+
+void draw_side_badge(GuiFrame& frame, const Rect& area, float left) {
+    const std::optional<SideBadge> badge = side_badge(frame.status);
+    if (!badge || badge->text.empty()) return;
     ImGui::PushFont(small_font());
     const float x = left + px(gap), room = area.x + area.width - px(inset) - x - 2 * px(padding);
-    const std::string text = front.error.empty() ? whole : fitting(whole, room);
+    const std::string text = badge->may_be_cut ? fitting(badge->text, room) : badge->text;
     const float width = ImGui::CalcTextSize(text.c_str()).x + 2 * px(padding);
     if (width <= room + 2 * px(padding)) {
         const float y = area.y + area.height - px(inset) - px(height);
@@ -149,12 +182,9 @@ void draw_front_badge(GuiFrame& frame, const Rect& area, float left) {
         list->AddRectFilled({x, y}, {x + width, y + px(height)}, color::with_opacity(color::window, 0.86f),
                             px(3));
         list->AddText({x + px(padding), y + std::floor((px(height) - ImGui::GetFontSize()) * 0.5f)},
-                      front.measured && !front.changed_by_look ? color::text : color::dim, text.c_str());
+                      badge->color, text.c_str());
         if (ImGui::IsMouseHoveringRect({x, y}, {x + width, y + px(height)}))
-            ImGui::SetTooltip("%s\n%s", whole.c_str(),
-                              front.changed_by_look
-                                  ? "The look or the mixing differs from what shows a picture as it is"
-                                  : "The view from the front against its picture; D shows where they differ");
+            ImGui::SetTooltip("%s\n%s", badge->text.c_str(), badge->tooltip);
     }
     ImGui::PopFont();
 }

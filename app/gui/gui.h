@@ -28,7 +28,7 @@ struct ViewportInput {
     bool hovered = false;
     glm::dvec2 mouse_px{0.0}, delta_px{0.0};
     float wheel = 0.0f;
-    enum class Drag { none, orbit, pan, dolly, look, wipe } drag = Drag::none;
+    enum class Drag { none, orbit, pan, dolly, look, wipe, place } drag = Drag::none;
     bool drag_begins = false, drag_ends = false;
     bool double_click = false;
     glm::dvec3 fly{0.0};  // -1..1 right, up, forward while looking around

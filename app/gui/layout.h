@@ -1,7 +1,10 @@
 // Where the parts of the window and the frame in it lie. In: sizes and the view. Out: rectangles.
 #pragma once
 
+#include <algorithm>
+
 #include "edit/view_state.h"
+#include "scene/reference_place.h"
 
 namespace astrosplat {
 
@@ -23,5 +26,10 @@ Layout make_layout(const ViewState& view, float width_px, float height_px, float
 /// Where a frame of this size is shown, px of the window. Fit: as large as the viewport allows, in its
 /// middle; 1:1: zoomed and moved as `view` says. It may reach beyond the viewport.
 Rect place_frame(const ViewState& view, const Rect& viewport, int width_px, int height_px);
+
+/// The same for pictures that lie over it.
+inline FrameOnScreen frame_on_screen(const Rect& frame) {
+    return {{frame.x + 0.5 * frame.width, frame.y + 0.5 * frame.height}, std::max(1.0f, frame.height)};
+}
 
 }  // namespace astrosplat

@@ -94,8 +94,8 @@ void draw_shortcut_sheet(GuiFrame& frame) {
                       ImGuiWindowFlags_NoScrollbar);
     const float column = (ImGui::GetContentRegionAvail().x - 2 * px(28)) / 3;
     const std::array<std::vector<Group>, 3> columns{
-        {{mouse_group(), value_group()},
-         {group_of("View", {"View"}), group_of("Layer", {"Layer"}), timeline_group()},
+        {{mouse_group(), value_group(), timeline_group()},
+         {group_of("View", {"View"}), group_of("Layer", {"Layer"})},
          {group_of("Time", {""}), group_of("Scene", {"File", "Edit", "Render", "Help"})}}};
     for (std::size_t i = 0; i < columns.size(); ++i) {
         if (i > 0) ImGui::SameLine();

@@ -60,25 +60,54 @@ void combo(const char* id, Enum& value, const std::vector<const char*>& names, f
 }
 
 void compare_choice(GuiFrame& frame) {
-    const int clicked = choice(frame, "compare",
-                               {{"A", "The look as it is now (Tab)"},
-                                {"A|B", "Wipe between now and B"},
-                                {"B", "The stored look; B stores one (Tab)"},
-                                {"Ref", "Over the reference picture"},
-                                {"Diff", "Difference from the reference picture, or from B"}},
-                               static_cast<int>(frame.view.compare));
+    const bool with_reference = compares_with_reference(frame);
+    const char* const other = with_reference ? "Ref" : "B";
+    const char* const both = with_reference ? "A|Ref" : "A|B";
+    const int clicked =
+        choice(frame, "compare",
+               {{"A", "The look as it is now (Tab)"},
+                {both, "Wipe between now and what it is compared with"},
+                {other, "What it is compared with: the stored look, or the reference over the view (Tab)"},
+                {"Blink", "One after the other (X)"},
+                {"Diff", "Now minus what it is compared with; grey where they are equal"}},
+               static_cast<int>(frame.view.compare));
     if (clicked >= 0) set_compare(frame, static_cast<CompareMode>(clicked));
+}
+
+// What the chosen comparison can be told, beside it; nothing while A is seen alone.
+void compare_settings(GuiFrame& frame) {
     ViewState& view = frame.view;
+    if (!compares(view)) return;
+    CompareWith with = view.compare_with;
+    combo("##with", with, {"with B", "with Ref"}, px(76));
+    note_item(frame, "compare with");
+    tooltip("What is compared with: the stored look B, or the reference picture (Shift+B)");
+    if (with != view.compare_with) compare_with(frame, with);
+    if (view.compare == CompareMode::difference) {
+        ImGui::SameLine(0, px(small_gap));
+        drag_field("##gain", view.difference_gain, 0.02f, 0.1f, 100, "x %.1f", px(52), color::text);
+        note_item(frame, "difference gain");
+        tooltip("The difference is multiplied by this");
+    }
+    if (view.compare == CompareMode::blink) {
+        ImGui::SameLine(0, px(small_gap));
+        drag_field("##hz", view.blink_hz, 0.02f, 0.25f, 10, "%.1f /s", px(52), color::text);
+        note_item(frame, "blink rate");
+        tooltip("Changes a second");
+    }
+    if (!has_reference(frame) || !compares_with_reference(frame)) return;
     ImGui::SameLine(0, px(small_gap));
-    if (view.compare != CompareMode::difference) return;
-    const DifferenceFrom before = view.difference_from;
-    combo("##from", view.difference_from, {"from Ref", "from B"}, px(76));
-    note_item(frame, "difference from");
-    tooltip("What the difference is taken from");
-    if (view.difference_from != before) set_compare(frame, view.compare);
-    ImGui::SameLine(0, px(small_gap));
-    drag_field("##gain", view.difference_gain, 0.02f, 0.1f, 100, "x %.1f", px(52), color::text);
-    tooltip("The difference is multiplied by this");
+    if (choice(frame, "place", {{"Place", "Move, turn and scale the reference in the view (P)"}},
+               view.placing ? 0 : -1) == 0)
+        toggle_placing(frame);
+}
+
+float width_of_compare_settings(const GuiFrame& frame) {
+    const CompareMode mode = frame.view.compare;
+    if (!compares(frame.view)) return 0;
+    const bool has_number = mode == CompareMode::difference || mode == CompareMode::blink;
+    const bool has_place = has_reference(frame) && compares_with_reference(frame);
+    return 76 + (has_number ? small_gap + 52 : 0) + (has_place ? small_gap + 52 : 0);
 }
 
 void display_control(GuiFrame& frame) {
@@ -130,20 +159,30 @@ struct Tool {
 constexpr std::array<Tool, 4> right_tools{
     {{84, display_control}, {72, exposure_control}, {158, preview_control}, {96, engine_control}}};
 
-void rest_of_tools(GuiFrame& frame, std::size_t from) {
+// What had no room: the settings of the comparison where `with_compare`, and the tools from one on.
+void rest_of_tools(GuiFrame& frame, bool with_compare, std::size_t from) {
     const bool clicked = icon_button("more", Icon::dots, {px(control_height), px(control_height)}, px(12),
                                      color::dim, nullptr);
     note_item(frame, "more tools");
     if (clicked) ImGui::OpenPopup("rest");
     if (!ImGui::BeginPopup("rest")) return;
+    if (with_compare) compare_settings(frame);
     for (std::size_t i = from; i < right_tools.size(); ++i) right_tools[i].draw(frame);
     close_on_escape();
     ImGui::EndPopup();
 }
 
-void draw_right_tools(GuiFrame& frame, const Rect& area, float left_end) {
+void draw_right_tools(GuiFrame& frame, const Rect& area) {
     const float more = px(control_height) + px(small_gap);
     const float right = area.x + area.width - px(8);
+    const float settings_end =
+        ImGui::GetCursorScreenPos().x + px(small_gap + width_of_compare_settings(frame));
+    const bool has_settings = settings_end + px(gap) + more <= right;
+    if (has_settings) {
+        ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x + px(small_gap), area.y + px(4)});
+        compare_settings(frame);
+    }
+    const float left_end = has_settings ? settings_end : ImGui::GetCursorScreenPos().x;
     const auto width_of = [](std::size_t count) {
         float width = 0;
         for (std::size_t i = 0; i < count; ++i)
@@ -151,15 +190,15 @@ void draw_right_tools(GuiFrame& frame, const Rect& area, float left_end) {
         return width;
     };
     std::size_t fits = right_tools.size();
-    while (fits > 0 && left_end + px(gap) + width_of(fits) + (fits < right_tools.size() ? more : 0) > right)
-        --fits;
-    const bool rest = fits < right_tools.size();
+    const auto has_rest = [&] { return !has_settings || fits < right_tools.size(); };
+    while (fits > 0 && left_end + px(gap) + width_of(fits) + (has_rest() ? more : 0) > right) --fits;
+    const bool rest = has_rest();
     ImGui::SetCursorScreenPos({std::floor(right - width_of(fits) - (rest ? more : 0)), area.y + px(4)});
     for (std::size_t i = 0; i < fits; ++i) {
         right_tools[i].draw(frame);
         ImGui::SameLine(0, px(small_gap));
     }
-    if (rest) rest_of_tools(frame, fits);
+    if (rest) rest_of_tools(frame, !has_settings, fits);
 }
 
 }  // namespace
@@ -175,7 +214,7 @@ void draw_tool_row(GuiFrame& frame, const Rect& area) {
     ImGui::SameLine(0, px(gap));
     compare_choice(frame);
     ImGui::SameLine(0, 0);
-    draw_right_tools(frame, area, ImGui::GetCursorScreenPos().x);
+    draw_right_tools(frame, area);
     ImGui::PopStyleVar();
     ImGui::EndChild();
 }

@@ -54,8 +54,13 @@ void Viewport::begin_drag(GuiFrame& frame, const Rect& frame_area) {
     const ImGuiIO& io = ImGui::GetIO();
     for (int button = 0; button < 3; ++button)
         if (io.MouseClicked[button]) button_ = button;
-    input_.drag = button_ == 0 && near_wipe(frame, frame_area) ? ViewportInput::Drag::wipe
-                                                               : drag_of(button_, io.KeyShift, io.KeyAlt);
+    input_.drag = drag_of(button_, io.KeyShift, io.KeyAlt);
+    if (button_ == 0 && near_wipe(frame, frame_area)) {
+        input_.drag = ViewportInput::Drag::wipe;
+    } else if (button_ == 0 && !io.KeyAlt && places_reference(frame)) {
+        input_.drag = ViewportInput::Drag::place;
+        placing_.press(frame, frame_on_screen(frame_area), io.KeyShift);
+    }
     input_.drag_begins = true;
     moves_frame_ = input_.drag == ViewportInput::Drag::pan && frame.view.size == SizeMode::one_to_one;
 }
@@ -116,6 +121,7 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
             std::clamp((io.MousePos.x - frame_area.x) / std::max(frame_area.width, 1.0f), 0.0f, 1.0f);
     if (wiping || (input_.hovered && near_wipe(frame, frame_area)))
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (places_reference(frame)) placing_.read(frame, frame_on_screen(frame_area), input_);
     move_frame(frame, area);
 }
 
@@ -131,8 +137,9 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     draw_overlay_lines(frame, area);
     draw_gate(frame, area, frame_area);
     draw_wipe(frame, area, frame_area);
+    if (places_reference(frame)) draw_placing(frame, frame_on_screen(frame_area));
     draw_view_line(frame, area, frame_area);
-    draw_front_badge(frame, area, draw_badge(frame, area));
+    draw_side_badge(frame, area, draw_badge(frame, area));
     ImGui::PopClipRect();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "gui/gui_frame.h"
+#include "gui/reference_placing.h"
 
 namespace astrosplat {
 
@@ -17,6 +18,7 @@ class Viewport {
     void move_frame(GuiFrame& frame, const Rect& area);
 
     ViewportInput input_;
+    ReferencePlacing placing_;
     int button_ = -1;           // that began the drag
     bool moves_frame_ = false;  // 1:1: a pan stays in the window
 };

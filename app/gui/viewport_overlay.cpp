@@ -49,6 +49,25 @@ void shadowed(ImDrawList* list, ImVec2 at, ImU32 c, const std::string& text) {
     list->AddText(at, c, text.c_str());
 }
 
+std::string name_of_other(const GuiFrame& frame) {
+    if (frame.view.compare_with == CompareWith::b)
+        return frame.status.b_name.empty() ? "B" : "B  " + frame.status.b_name;
+    const ReferenceParams* reference = seen_reference(frame.document.scene(), frame.status);
+    return reference ? reference->file.filename().string() : "Reference";
+}
+
+/// Which of the two is seen, where the tools do not tell.
+std::string compare_text(const GuiFrame& frame) {
+    switch (frame.view.compare) {
+        case CompareMode::blink:
+            return "   blinking: " + (frame.status.blink_shows_other ? name_of_other(frame) : "A");
+        case CompareMode::difference:
+            return "   A minus " + name_of_other(frame);
+        default:
+            return "";
+    }
+}
+
 }  // namespace
 
 std::string aspect_text(std::int64_t width, std::int64_t height) {
@@ -94,7 +113,7 @@ void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
     list->AddRectFilled({grip.x - px(3), grip.y - px(18)}, {grip.x + px(3), grip.y + px(18)}, color::text,
                         px(3));
     ImGui::PushFont(small_font());
-    const std::string b = frame.status.b_name.empty() ? "B" : "B  " + frame.status.b_name;
+    const std::string b = name_of_other(frame);
     const float y = area.y + px(inset);
     shadowed(list, {x - px(inset) - ImGui::CalcTextSize("A").x, y}, color::text, "A");
     shadowed(list, {x + px(inset), y}, color::text, b);
@@ -111,6 +130,7 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_a
     if (frame.view.lock_to_camera) text += "   locked to the camera";
     if (frame.view.size == SizeMode::one_to_one)
         text += fmt::format("   {}x{} at {:.0f} %", output.width, output.height, frame.view.zoom * 100.0);
+    text += compare_text(frame);
     if (difference)
         text = "Front view: orange where it is brighter than the picture, blue where it is darker";
     ImGui::PushFont(small_font());

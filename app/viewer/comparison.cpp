@@ -1,22 +1,26 @@
 #include "viewer/comparison.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "source/texture.h"
+#include "scene/reference_place.h"
 
 namespace astrosplat {
 namespace {
 
-/// A file's pixels as display values, grey ones in all three channels.
-Image read_reference(const std::filesystem::path& file) {
-    const Image raw = load_raw_image(file);
-    Image rgba = make_image(raw.width, raw.height, 4, 1.0f);
-    for (std::int64_t y = 0; y < raw.height; ++y)
-        for (std::int64_t x = 0; x < raw.width; ++x)
-            for (int c = 0; c < 3; ++c)
-                rgba.at(x, y)[c] = raw.at(x, y)[std::min(c, raw.channels >= 3 ? 2 : 0)];
-    return rgba;
+DisplaySettings::Mode mode_of(CompareMode compare, bool blink_shows_other) {
+    using Mode = DisplaySettings::Mode;
+    switch (compare) {
+        case CompareMode::wipe:
+            return Mode::wipe;
+        case CompareMode::blink:
+            return blink_shows_other ? Mode::b : Mode::a;
+        case CompareMode::difference:
+            return Mode::difference;
+        default:
+            return Mode::b;
+    }
 }
 
 }  // namespace
@@ -73,33 +77,40 @@ void Comparison::set_b(std::size_t index) {
     if (index < snapshots_.size()) b_snapshot_ = static_cast<int>(index);
 }
 
-void Comparison::load_reference(const std::filesystem::path& file) {
-    if (file == reference_file_) return;
-    reference_.upload(read_reference(file));
-    reference_file_ = file;
-    ++references_loaded_;
+void Comparison::find_reference(const Scene& scene, const ViewState& view, Status& status) {
+    const auto index = astrosplat::find_reference(scene, reference_view(view.view), view.frame);
+    reference_.want(index ? scene.references[*index].file : std::filesystem::path());
+    status.reference.reset();
+    if (!index) return;
+    status.reference.emplace();
+    status.reference->index = *index;
+    status.reference->error = reference_.error();
+    if (const Image* picture = reference_.picture())
+        status.reference->aspect = static_cast<double>(picture->width) / static_cast<double>(picture->height);
 }
 
 void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& how, DisplaySettings& shown) {
-    using Mode = DisplaySettings::Mode;
-    comparing_ = view.compare != CompareMode::a && view.compare != CompareMode::front;
+    comparing_ = compares(view);
+    blink_shows_other_ = std::fmod(std::floor(how.now * view.blink_hz), 2.0) == 1.0;
     if (!comparing_) return;
-    const bool has_reference = reference_.handle() != 0;
-    const bool with_reference = needs_reference(view);
-    if (with_reference ? !has_reference : b_snapshot_ < 0) return;
-    if (with_reference) {
-        shown.b = reference_.handle();
+    if (view.compare_with == CompareWith::reference) {
+        const auto index = astrosplat::find_reference(scene, reference_view(view.view), view.frame);
+        const Image* picture = reference_.picture();
+        if (!index || !picture) return;
+        const ReferenceParams& reference = scene.references[*index];
+        shown.b = reference_.texture();
         shown.b_is_display = true;
+        shown.b_place = place_of(reference, double(picture->width) / double(picture->height), how.frame);
+        shown.b_opacity = static_cast<float>(reference.opacity);
     } else {
+        if (b_snapshot_ < 0) return;
         const StoredLook& look = snapshots_[static_cast<std::size_t>(b_snapshot_)].look;
         PreviewChoice choice = how.choice;
         choice.refined = false;  // two sums of whole sets would take twice the memory
         b_.show(how.request_for(with_look_of(scene, *look.scene)), choice, how.may_settle, how.now);
         shown.b = b_.texture();
     }
-    shown.mode = view.compare == CompareMode::b            ? Mode::b
-                 : view.compare == CompareMode::difference ? Mode::difference
-                                                           : Mode::wipe;
+    shown.mode = mode_of(view.compare, blink_shows_other_);
     shown.difference_gain = view.difference_gain;
 }
 

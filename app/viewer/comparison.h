@@ -13,6 +13,7 @@
 #include "edit/status.h"
 #include "gl/display.h"
 #include "gl/image_texture.h"
+#include "viewer/reference_picture.h"
 #include "viewer/view_frame.h"
 
 namespace astrosplat {
@@ -36,28 +37,32 @@ class Comparison {
     void set_b(std::size_t index);
     void set_b_to_last() { set_b(snapshots_.size() - 1); }
 
-    /// Reads the picture to compare with, unless it is there already. Throws InputError.
-    void load_reference(const std::filesystem::path& file);
-    /// The file was changed: the next load_reference() reads it again.
-    void forget_reference() { reference_file_.clear(); }
-    const std::filesystem::path& reference_file() const { return reference_file_; }
+    /// Chooses the reference of the view, reads its picture in the background, and says in `status` which it
+    /// is. Call it every frame.
+    void find_reference(const Scene& scene, const ViewState& view, Status& status);
+    ReferencePicture& reference() { return reference_; }
+    const ReferencePicture& reference() const { return reference_; }
 
-    /// How B's frame is made: the request for any scene as A's is made, and how it is drawn.
+    /// How what is compared with is made: B's request for any scene as A's is made, how it is drawn; and the
+    /// frame that the reference lies over, px of the display.
     struct ViewOfB {
         std::function<ViewRequest(const Scene&)> request_for;
         PreviewChoice choice;
         bool may_settle = false;
         double now = 0.0;  // seconds
+        FrameOnScreen frame;
     };
-    /// Puts B beside A in `shown`, as `view` compares them.
+    /// Puts B or the reference beside A in `shown`, as `view` compares them.
     void show(const Scene& scene, const ViewState& view, const ViewOfB& how, DisplaySettings& shown);
+    /// Of blinking: the other is shown now, not A.
+    bool blink_shows_other() const { return blink_shows_other_; }
 
     /// B's frame is on its way.
     bool waiting() const { return comparing_ && b_.waiting(); }
     /// B's status while it is refined; else null.
     const ViewFrameStatus* refining() const;
     /// Grows whenever the pixels of B or the reference change.
-    std::uint64_t version() const { return b_.version() + references_loaded_; }
+    std::uint64_t version() const { return b_.version() + reference_.version(); }
     void fill(Status& status) const;
 
   private:
@@ -74,9 +79,8 @@ class Comparison {
     std::vector<StoredView> snapshots_;
     int b_snapshot_ = -1, snapshots_taken_ = 0;
     bool comparing_ = false;  // the last show() showed more than A
-    ImageTexture reference_;
-    std::filesystem::path reference_file_;  // what `reference_` holds
-    std::uint64_t references_loaded_ = 0;
+    bool blink_shows_other_ = false;
+    ReferencePicture reference_;
 };
 
 /// A texture as the widgets name it.

@@ -1,6 +1,7 @@
 #include "viewer/session.h"
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <utility>
 
@@ -54,14 +55,13 @@ void read_again(Session& session, const std::vector<fs::path>& files) {
     session.files->forget(files);
     say(session.status, files.size() == 1 ? "Read again: " + files[0].filename().string()
                                           : "Read again: " + std::to_string(files.size()) + " files");
-    const fs::path reference = session.comparison.reference_file();
-    if (std::find(files.begin(), files.end(), reference) == files.end()) return;
-    session.comparison.forget_reference();
-    attempt(session.status, [&] { session.comparison.load_reference(reference); });
+    ReferencePicture& reference = session.comparison.reference();
+    if (std::find(files.begin(), files.end(), reference.file()) != files.end()) reference.forget();
 }
 
 void watch_files(Session& session) {
-    session.disk.watch(session.document.scene(), session.sets.loader(), session.comparison.reference_file());
+    session.disk.watch(session.document.scene(), session.sets.loader(),
+                       session.comparison.reference().file());
 }
 
 void check_disk(Session& session, double now) {
@@ -195,6 +195,9 @@ double next_due(const Session& session, double now) {
     const ViewFrameState reached = session.view_frame.status().state;
     if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;
     if (reached == ViewFrameState::preview && session.view.settle) return session.view_frame.due(now);
+    if (session.difference.waiting() || session.comparison.reference().working()) return 0.1;
+    if (session.view.compare == CompareMode::blink)
+        return (std::floor(now * session.view.blink_hz) + 1.0) / session.view.blink_hz - now;
     if (session.front.working() || session.preparation.working() || session.finished.working()) return 0.1;
     return 1.0;  // to look at the disk and autosave
 }

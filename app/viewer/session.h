@@ -24,6 +24,7 @@
 #include "viewer/camera_overlay.h"
 #include "viewer/child_process.h"
 #include "viewer/comparison.h"
+#include "viewer/difference_meter.h"
 #include "viewer/disk_watch.h"
 #include "viewer/finished_frames.h"
 #include "viewer/front_check.h"
@@ -60,6 +61,7 @@ struct Session {
     std::shared_ptr<PictureFiles> files = std::make_shared<PictureFiles>();
     ViewFrame view_frame{files};  // A
     Comparison comparison{files};
+    DifferenceMeter difference;
     FrontCheck front;
     std::shared_ptr<const FrontFound> front_shown;  // whose difference is in the texture
     ImageTexture front_texture;

@@ -12,6 +12,7 @@
 #include "edit/layers.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "scene/reference_place.h"
 #include "scene/save.h"
 #include "source/write_image.h"
 
@@ -76,10 +77,15 @@ void import_file(State& s, const Command& c) {
     s.document.edit("Add layer", [&](Scene& scene) { s.view.layer = add_layer(scene, c.path); });
 }
 
+/// In place of the one that the view has, or a new one.
 void set_reference(State& s, const Command& c) {
-    s.comparison.load_reference(c.path);
-    s.view.reference = c.path;
-    s.view.compare = CompareMode::reference;
+    s.document.edit("Reference " + c.path.filename().string(), [&](Scene& scene) {
+        const auto index = find_reference(scene, reference_view(s.view.view), s.view.frame);
+        if (!index) scene.references.emplace_back();
+        (index ? scene.references[*index] : scene.references.back()).file = std::filesystem::absolute(c.path);
+    });
+    s.view.compare_with = CompareWith::reference;
+    if (!compares(s.view)) s.view.compare = CompareMode::other;
 }
 
 void save_look(State& s, const Command& c) {

@@ -41,6 +41,8 @@ void fill_status(Session& session) {
                                 ? fmt::format("OpenGL {}.{}, {}", gl.major, gl.minor, gl.renderer)
                                 : "processor";
     session.comparison.fill(session.status);
+    session.status.blink_shows_other =
+        session.view.compare == CompareMode::blink && session.comparison.blink_shows_other();
     say_new_errors(session.status, session.said_errors);
 }
 
@@ -48,6 +50,7 @@ void say_new_errors(Status& status, std::set<std::string>& said) {
     std::set<std::string> errors;
     if (status.view_frame.state == ViewFrameState::failed) errors.insert(status.view_frame.error);
     for (const LayerStatus& layer : status.layers) errors.insert(layer.error);
+    if (status.reference) errors.insert(status.reference->error);
     errors.erase("");
     for (const std::string& error : errors)
         if (!said.count(error)) say(status, error, true);

@@ -172,6 +172,14 @@ void show_front(Session& session, const std::shared_ptr<const FrontFound>& found
     shown.y = std::round(0.5f * (port.y - shown.height));
 }
 
+void measure_difference(Session& session, const DisplaySettings& shown, double now) {
+    if (session.view.compare == CompareMode::difference && shown.b != 0)
+        session.difference.measure(session.display, shown, session.viewport_px, now);
+    else
+        session.difference.clear();
+    session.status.difference = session.difference.found();
+}
+
 }  // namespace
 
 Scene evaluated(const Scene& scene, const ViewState& view) {
@@ -222,12 +230,15 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
         wanted.region = session.request.region;
         return wanted;
     };
+    session.comparison.find_reference(session.document.scene(), session.view, session.status);
     session.comparison.show(session.document.scene(), session.view,
-                            {request_for, choice, may_settle && a_is_done, now}, shown);
+                            {request_for, choice, may_settle && a_is_done, now, frame_on_screen(whole)},
+                            shown);
     const std::shared_ptr<const FrontFound> front = check_front(session, scene);
     if (front && session.view.compare == CompareMode::front) show_front(session, front, shown);
     show_preparation(session);
     shown.content = 1 + session.view_frame.version() + session.comparison.version() + session.fronts_shown;
+    measure_difference(session, shown, now);
     session.status.viewport_texture =
         to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "gl/gl_fixture.h"
@@ -171,7 +172,7 @@ TEST_F(DisplayPicture, WipeShowsAToTheLeftAndBToTheRightOfALine) {
     EXPECT_EQ(int(show(settings).at(0, 0)[0]), 191);
 }
 
-TEST_F(DisplayPicture, DifferenceIsOfDisplayValuesTimesGain) {
+TEST_F(DisplayPicture, DifferenceIsOfDisplayValuesTimesGainAboutGrey) {
     ImageTexture a, b;
     a.upload(make_image(width, height, 4, 0.5f));
     b.upload(make_image(width, height, 4, 0.7f));
@@ -181,10 +182,70 @@ TEST_F(DisplayPicture, DifferenceIsOfDisplayValuesTimesGain) {
     settings.difference_gain = 2.0f;
     const float srgb_half = apply_view(OutputParams::View::srgb, 0.5f);
     const float srgb_other = apply_view(OutputParams::View::srgb, 0.7f);
-    EXPECT_NEAR(float(show(settings).at(7, 7)[1]), 510.0f * (srgb_other - srgb_half), 0.6f);
+    EXPECT_NEAR(float(show(settings).at(7, 7)[1]), 127.5f + 255.0f * (srgb_half - srgb_other), 0.6f);
     settings.b_is_display = true;
     settings.difference_gain = 10.0f;
-    EXPECT_NEAR(float(show(settings).at(7, 7)[1]), 2550.0f * std::fabs(0.7f - srgb_half), 0.6f);
+    EXPECT_NEAR(float(show(settings).at(7, 7)[1]), 127.5f + 1275.0f * (srgb_half - 0.7f), 0.6f);
+    settings.b = a.handle();
+    settings.b_is_display = false;
+    EXPECT_EQ(int(show(settings).at(7, 7)[1]), 128) << "equal pictures are grey, not black";
+}
+
+/// Half as wide as the frame, a quarter turn counter-clockwise: its upper left corner lies at the lower left.
+TEST_F(DisplayPicture, APlacedPictureLiesOverAWhereItIsPut) {
+    Image picture = make_image(2, 2, 4, 0.0f);
+    picture.at(0, 0)[0] = 1.0f;  // upper left: red
+    picture.at(1, 0)[1] = 1.0f;  // upper right: green
+    ImageTexture a, b;
+    a.upload(make_image(width, height, 4, 0.25f));
+    b.upload(picture);
+    DisplaySettings settings = whole(a);
+    settings.view = View::linear;
+    settings.b = b.handle();
+    settings.b_is_display = true;
+    settings.mode = Mode::b;
+    settings.b_place = PicturePlace{{20.0, 50.0}, {0.0, -40.0}, {40.0, 0.0}};
+    const auto color = [](const Shown& shown, int x, int y) {
+        return std::array{int(shown.at(x, y)[0]), int(shown.at(x, y)[1]), int(shown.at(x, y)[2])};
+    };
+    const Shown shown = show(settings);
+    EXPECT_EQ(color(shown, 22, 47), (std::array{255, 0, 0}));
+    EXPECT_EQ(color(shown, 22, 12), (std::array{0, 255, 0}));
+    EXPECT_EQ(color(shown, 57, 47), (std::array{0, 0, 0}));
+    EXPECT_EQ(color(shown, 19, 47), (std::array{64, 64, 64})) << "A shows around it";
+    EXPECT_EQ(color(shown, 22, 51), (std::array{64, 64, 64}));
+    settings.b_opacity = 0.5f;
+    EXPECT_EQ(color(show(settings), 22, 47), (std::array{159, 32, 32}));
+    settings.mode = Mode::difference;
+    EXPECT_EQ(color(show(settings), 22, 47), (std::array{32, 159, 159})) << "as if it were opaque";
+    EXPECT_EQ(color(show(settings), 5, 5), (std::array{64, 64, 64})) << "not compared";
+}
+
+TEST_F(DisplayPicture, WhatIsComparedCanBeReadWithTheMaskOfB) {
+    ImageTexture a, b;
+    a.upload(make_image(width, height, 4, 0.5f));
+    b.upload(make_image(8, 8, 4, 0.75f));
+    DisplaySettings settings = whole(a);
+    settings.view = View::linear;
+    settings.x = 10.0f;
+    settings.b = b.handle();
+    settings.b_is_display = true;
+    settings.b_opacity = 0.1f;
+    settings.b_place = PicturePlace{{20.0, 0.0}, {16.0, 0.0}, {0.0, 16.0}};
+    Display display;
+    const Display::Compared sides = display.read_compared(settings, width, height);
+    ASSERT_EQ(sides.a.width, width - 10);
+    ASSERT_EQ(sides.b.height, height);
+    int inside = 0;
+    for (std::int64_t y = 0; y < height; ++y)
+        for (std::int64_t x = 0; x < width - 10; ++x) {
+            ASSERT_EQ(sides.a.at(x, y)[1], 0.5f);
+            const float* p = sides.b.at(x, y);
+            inside += p[3] == 1.0f;
+            ASSERT_EQ(p[1], p[3] == 1.0f ? 0.75f : 0.5f);
+        }
+    EXPECT_EQ(inside, 16 * 16);
+    EXPECT_EQ(sides.b.at(10, height - 1)[3], 1.0f) << "rows begin at the bottom";
 }
 
 TEST_F(DisplayPicture, ATileAloneIsReplaced) {

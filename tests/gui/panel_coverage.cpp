@@ -11,6 +11,7 @@ namespace {
 
 std::set<std::string> keys_drawn(const std::string& toml, const std::set<PanelTab>& tabs) {
     PanelDriver d(toml, 360.0f, 900.0f);
+    d.status.reference = ReferenceStatus{0, 1.5, ""};
     Scene scene = d.document.scene();
     const Description description = describe(scene);
     std::set<std::string> keys;
@@ -46,7 +47,9 @@ std::vector<std::string> telling_scenes() {
               "thickness = { map = \"m.png\", keys = [ { color = [1, 0, 0], shape = \"curve\", points = [[0, "
               "1], [1, 0]] },"
               "{ shape = \"exponential\" }, { shape = \"gaussian\" } ] }",
-              "", "[camera]\nprojection = \"orthographic\"\nposition = [0, 0, 9]\n"),
+              "",
+              "[camera]\nprojection = \"orthographic\"\nposition = [0, 0, 9]\n[[reference]]\nfile = "
+              "\"b.png\"\n"),
         layer(mesh + "\nstructure = { kind = \"walls\" }", "", "blend = \"absorb\""),
         layer("meshes = [ { mesh = \"sheet\" }, { mesh = \"hourglass\" }, { mesh = \"shell\" }, { mesh = "
               "\"bubble\" },"

@@ -73,20 +73,49 @@ TEST(Menus, TheHistoryGoesToAnyStep) {
     EXPECT_FALSE(window.document.can_undo());
 }
 
-/// B and the reference are two things: storing B does not change what the difference is taken from.
-TEST(ToolRow, TheDifferenceIsFromWhatIsChosen) {
+/// B and the reference are two things, each chosen by name.
+TEST(ToolRow, WhatIsComparedWithIsChosen) {
     TestWindow window(example_document());
-    window.view.reference = "telescope.png";
     window.status.b_snapshot = 0;
     window.click("compare/Diff");
-    EXPECT_TRUE(needs_reference(window.view));
-    window.view.difference_from = DifferenceFrom::b;
-    window.frame();
-    EXPECT_FALSE(needs_reference(window.view));
-    EXPECT_TRUE(window.has("difference from"));
+    EXPECT_EQ(window.view.compare_with, CompareWith::b);
+    EXPECT_TRUE(window.has("compare with"));
+    EXPECT_TRUE(window.has("difference gain"));
+    EXPECT_FALSE(window.has("place/Place"));
     EXPECT_TRUE(window.take_commands().empty());
-    window.click("compare/Ref");
-    EXPECT_TRUE(needs_reference(window.view));
+    window.status.reference = ReferenceStatus{0, 1.5, ""};
+    window.tap('B', false, true);
+    EXPECT_EQ(window.view.compare_with, CompareWith::reference);
+    window.frame();
+    window.click("compare/A|Ref");
+    EXPECT_EQ(window.view.compare, CompareMode::wipe);
+    EXPECT_TRUE(window.has("place/Place"));
+    EXPECT_TRUE(window.take_commands().empty());
+}
+
+TEST(ToolRow, WhatIsMissingIsAskedForOrSaid) {
+    TestWindow window(example_document());
+    window.click("compare/A|B");
+    Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Command::Kind>{Command::Kind::say});
+    EXPECT_EQ(commands[0].text, "Nothing is stored as B yet: the key B stores the look as it is");
+    window.tap('B', false, true);
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/path")) << "there is no reference yet";
+}
+
+TEST(ToolRow, BlinkingHasAKeyAButtonAndARate) {
+    TestWindow window(example_document());
+    window.status.b_snapshot = 0;
+    window.tap('X');
+    EXPECT_EQ(window.view.compare, CompareMode::blink);
+    window.frame();
+    window.drag(window.at("blink rate"), {40.0f, 0.0f});
+    EXPECT_GT(window.view.blink_hz, 2.5f);
+    window.tap('X');
+    EXPECT_EQ(window.view.compare, CompareMode::a);
+    window.click("compare/Blink");
+    EXPECT_EQ(window.view.compare, CompareMode::blink);
 }
 
 TEST(Shortcuts, FramesAndKeyframes) {
@@ -183,7 +212,7 @@ TEST(Shortcuts, ViewsAndSwitches) {
     window.tap('Z');
     EXPECT_EQ(window.view.size, SizeMode::one_to_one);
     window.tap(key_code::tab);
-    EXPECT_EQ(window.view.compare, CompareMode::b);
+    EXPECT_EQ(window.view.compare, CompareMode::other);
     window.tap('S');
     EXPECT_EQ(window.view.solo.count("dust"), 1U);
     window.tap('H');

@@ -1,8 +1,11 @@
 // The viewport: drags, flying, wipe, 1:1, and the badge.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "gui/badge.h"
 #include "gui/gui_frame.h"
+#include "gui/key_codes.h"
 #include "gui/test_window.h"
 #include "gui/viewport.h"
 #include "gui/viewport_overlay.h"
@@ -94,6 +97,87 @@ TEST(Viewport, TheWipeIsDragged) {
     window.drag(middle, {200, 0});
     EXPECT_GT(window.view.wipe, 0.6f);
     EXPECT_LT(window.view.wipe, 0.7f);
+}
+
+/// A square reference as high as the frame, being placed.
+class Placing : public testing::Test {
+  protected:
+    Placing() {
+        window.document.edit("Reference", [](Scene& scene) {
+            scene.references.resize(1);
+            scene.references[0].file = "m51.png";
+        });
+        window.status.reference = ReferenceStatus{0, 1.0, ""};
+        window.frame();
+        window.tap('P');
+        window.frame();
+        const Rect picture = make_layout(window.view, 1600.0f, 900.0f, 1.0f).viewport;
+        const ViewFrameStatus& shown = window.status.view_frame;
+        frame = frame_on_screen(place_frame(window.view, picture, shown.width, shown.height));
+    }
+    const ReferenceParams& placed() const { return window.document.scene().references[0]; }
+    float h() const { return static_cast<float>(frame.height); }
+    double px() const { return 1.0 / frame.height; }  // the mouse lies on whole ones
+
+    TestWindow window{example_document()};
+    FrameOnScreen frame;
+};
+
+TEST_F(Placing, ShowsTheReferenceAndEndsByEscape) {
+    EXPECT_TRUE(window.view.placing);
+    EXPECT_EQ(window.view.compare, CompareMode::other);
+    EXPECT_EQ(window.view.compare_with, CompareWith::reference);
+    window.tap(key_code::escape);
+    EXPECT_FALSE(window.view.placing);
+    window.drag(frame.middle, {40.0f, 0.0f});
+    EXPECT_EQ(placed().position, glm::dvec2(0.0)) << "the mouse is the camera's again";
+}
+
+TEST_F(Placing, TheInsideMovesItAsOneUndoStep) {
+    window.drag(frame.middle, {0.25f * h(), -0.125f * h()});
+    EXPECT_NEAR(placed().position.x, 0.25, px());
+    EXPECT_NEAR(placed().position.y, 0.125, px());
+    EXPECT_EQ(placed().scale, 1.0);
+    EXPECT_EQ(placed().rotate, 0.0);
+    EXPECT_EQ(window.document.undo_name(), "Place reference");
+    EXPECT_EQ(window.view.view, ViewKind::camera) << "the camera stays";
+    window.tap('Z', true);
+    EXPECT_EQ(placed().position, glm::dvec2(0.0));
+    EXPECT_EQ(placed().file, "m51.png");
+}
+
+TEST_F(Placing, ACornerScalesAndTheOutsideOrShiftTurns) {
+    window.document.edit("Smaller", [](Scene& scene) { scene.references[0].scale = 0.5; });
+    window.frame();
+    const glm::vec2 corner{0.25f * h(), 0.25f * h()};  // from the middle, lower right
+    window.drag(glm::vec2(frame.middle) + corner, 0.5f * corner);
+    EXPECT_NEAR(placed().scale, 0.75, 2.0 * px());
+    EXPECT_EQ(placed().position, glm::dvec2(0.0));
+    const glm::vec2 right{0.45f * h(), 0.0f}, up{0.0f, -0.45f * h()};
+    window.drag(glm::vec2(frame.middle) + right, up - right);
+    EXPECT_NEAR(placed().rotate, 90.0, 0.4) << "a pixel at the mouse";
+    window.hold(false, true, false);
+    window.drag(glm::vec2(frame.middle) + 0.25f * up, 0.25f * (right - up));
+    window.hold(false, false, false);
+    EXPECT_NEAR(placed().rotate, 0.0, 0.8);
+}
+
+TEST_F(Placing, TheWheelScalesItAboutTheMouseAndNotTheCamera) {
+    window.move(glm::vec2(frame.middle) + glm::vec2(0.25f * h(), 0.0f));
+    window.frame(2);
+    window.wheel(1.0f);
+    EXPECT_NEAR(placed().scale, 1.05, 1e-5);
+    EXPECT_NEAR(placed().position.x, 0.25 - 0.25 * 1.05, 0.05 * px());
+    EXPECT_EQ(window.gui.viewport_input().wheel, 0.0f);
+    window.wheel(1.0f);
+    window.tap('Z', true);
+    EXPECT_EQ(placed().scale, 1.0) << "notches in a row are one step";
+}
+
+TEST(Viewport, TheDifferenceIsSaidInNumbers) {
+    EXPECT_EQ(difference_text({0.0041, 31.24, 0.9699}), "Mean +0.4 %, 31.2 dB, light -3.0 %");
+    EXPECT_EQ(difference_text({-0.0, std::numeric_limits<double>::infinity(), 1.0}),
+              "Mean +0.0 %, the same, light +0.0 %");
 }
 
 TEST(Viewport, OneToOneZoomsAboutTheMouseAndMoves) {

@@ -143,6 +143,41 @@ std::string environment_state(const Context& context) {
     return environment.visible ? environment.image.filename().string() : "hidden";
 }
 
+std::string reference_state(const Context& context) {
+    const ReferenceParams* reference = seen_reference(context.scene(), context.status);
+    return reference ? reference->file.filename().string() : "none";
+}
+
+void change_references(Context& context, const std::string& name,
+                       const std::function<void(std::vector<ReferenceParams>&)>& change) {
+    edit(context, "reference", name, [&](Scene& scene) { change(scene.references); });
+}
+
+void reference_buttons(Context& context) {
+    const ReferenceParams* reference = seen_reference(context.scene(), context.status);
+    if (!reference) {
+        note("No picture to compare this view with.");
+        if (button_line({"Load a reference..."}) == 0)
+            context.commands.push_back({Command::Kind::set_reference, {}, "", 0});
+        return;
+    }
+    if (!context.status.reference->error.empty()) note(context.status.reference->error, color::error);
+    const auto index = static_cast<std::ptrdiff_t>(context.status.reference->index);
+    const ReferenceParams::View view = reference_view(context.view.view);
+    const int clicked = button_line({"Replace...", "Another for this view", "Remove"});
+    if (clicked == 0) context.commands.push_back({Command::Kind::set_reference, {}, "", 0});
+    if (clicked == 1)
+        change_references(context, "Another reference", [&](std::vector<ReferenceParams>& references) {
+            ReferenceParams another = references[static_cast<std::size_t>(index)];
+            another.view = view;
+            references.insert(references.begin(), another);
+        });
+    if (clicked == 2)
+        change_references(context, "Remove reference", [&](std::vector<ReferenceParams>& references) {
+            references.erase(references.begin() + index);
+        });
+}
+
 std::string resolution_state(const Context& context) {
     const OutputParams& output = context.scene().output;
     return fmt::format("{} x {}", output.width, output.height);
@@ -198,6 +233,7 @@ const TabSection sections[] = {
     {"Camera", "Place", unfolded, place_state, {"camera.position", "camera.rotation"}},
     {"Camera", "Lens", unfolded, lens_state},
     {"Camera", "Environment", nullptr, environment_state, {"environment.visible"}},
+    {"Camera", "Reference", nullptr, reference_state, {}, reference_buttons},
     {"Output", "Frame", unfolded, resolution_state},
     {"Output", "Frames", unfolded, frames_state},
     {"Output", "File format", nullptr, format_state},
@@ -218,6 +254,9 @@ std::size_t rank_in(const TabSection& section, const ParameterSpec& spec) {
 }
 
 bool suits_layer(const Context& context, const ParameterSpec& spec) {
+    if (spec.key.is_below("reference"))
+        return context.status.reference &&
+               spec.key.is_below(ParameterKey("reference") / context.status.reference->index);
     if (covers("layer.look.pdf", spec)) return context.layer().look.thickness.stops.empty();
     if (spec.generic_key == "layer.source.hdu" || spec.generic_key == "layer.source.plane")
         return is_fits(context);

@@ -24,8 +24,9 @@ std::span<const TabSection> tab_sections();
 /// The place of a row in its section: smaller ones come first, equal ones as described.
 std::size_t rank_in(const TabSection& section, const ParameterSpec& spec);
 
-/// Whether a parameter makes sense for the selected layer, where that takes more than other parameters'
-/// values to say (ParameterSpec::conditions): those of FITS files, and a density that stops replace.
+/// Whether a parameter makes sense for the selected layer and the view, where that takes more than other
+/// parameters' values to say (ParameterSpec::conditions): those of FITS files, a density that stops replace,
+/// and references of other views.
 bool suits_layer(const Context& context, const ParameterSpec& spec);
 
 // At the top of tabs.
