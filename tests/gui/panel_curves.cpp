@@ -86,18 +86,34 @@ TEST(PanelCurves, AtMostSixteenPoints) {
     EXPECT_EQ(d.panel.message(), "");
 }
 
-TEST(PanelCurves, BlackAndWhiteAreDraggedOverTheHistogram) {
-    PanelDriver d(curves_scene);
+const std::string black = "layer.dust.source.black", white = "layer.dust.source.white";
+
+void tell_values(PanelDriver& d, double lo, double hi) {
     auto histograms = std::make_shared<LayerHistograms>();
     histograms->values.share.assign(64, 0.5f);
-    histograms->values.lo = 0.0;
-    histograms->values.hi = 1000.0;
-    histograms->values.black = 100.0;
-    histograms->values.white = 900.0;
+    histograms->values.lo = lo;
+    histograms->values.hi = hi;
+    histograms->values.black = lo + 0.1 * (hi - lo);
+    histograms->values.white = hi - 0.1 * (hi - lo);
     d.status.layers.resize(1);
     d.status.layers[0].histograms = histograms;
+}
+
+TEST(PanelCurves, RowsOfLevelsAreDraggedAsFastAsTheDataIsWide) {
+    for (const double wide : {1e-3, 1e5}) {
+        PanelDriver d(curves_scene);
+        tell_values(d, 0.0, wide);
+        d.document.set(black, 0.5 * wide, 1.0);
+        d.show(PanelTab::source);
+        d.drag(d.row(black).value, {-50.0f, 0.0f});
+        EXPECT_NEAR(d.value(black).number() / wide, 0.3, 0.005) << "250 px are the whole range";
+    }
+}
+
+TEST(PanelCurves, BlackAndWhiteAreDraggedOverTheHistogram) {
+    PanelDriver d(curves_scene);
+    tell_values(d, 0.0, 1000.0);
     d.show(PanelTab::source);
-    const std::string black = "layer.dust.source.black", white = "layer.dust.source.white";
     EXPECT_EQ(d.value(black), Value("auto"));
     const glm::vec4 plot = d.panel.plot_area(black);
     const float middle = plot.y + plot.w * 0.5f;

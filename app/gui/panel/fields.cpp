@@ -48,6 +48,18 @@ BoxContent number_content(const ParameterSpec& spec, double value) {
     return content;
 }
 
+// Black and white point go over the values of the picture, whose range the description cannot know.
+void follow_data(const Context& context, const ParameterSpec& spec, BoxContent& content) {
+    const auto& histograms = context.layer_status().histograms;
+    const bool level = spec.generic_key == "layer.source.black" || spec.generic_key == "layer.source.white";
+    if (!level || !histograms || histograms->values.share.empty()) return;
+    ParameterSpec of_data = spec;
+    of_data.slider_min = histograms->values.lo;
+    of_data.slider_max = histograms->values.hi;
+    content.step = drag_step(of_data, content.value);
+    content.fill = static_cast<float>(filled(of_data, content.value));
+}
+
 Value as_number(const ParameterSpec& spec, double value) {
     if (spec.type == Type::integer) return static_cast<std::int64_t>(std::llround(value));
     return value;
@@ -76,6 +88,7 @@ void number_field(Context& context, const Row& row) {
     const ParameterSpec& spec = row.parameter.spec;
     if (!row.value.is_number()) return text_field(context, row, row.layout.value);
     BoxContent content = number_content(spec, row.value.number());
+    follow_data(context, spec, content);
     content.unit = spec.unit;
     const std::string words =
         row.value.number() == 0.0 && !spec.zero.empty() ? zero_in_words(context, spec) : "";

@@ -277,7 +277,10 @@ void source_state(Context& context) {
         if (progress_line(width, 0.0f, "Source changed", "Regenerate"))
             context.commands.push_back({Command::Kind::regenerate, {}, "", context.view.layer});
     } else {
-        note("Changing these regenerates the splats.");
+        const SourceParams& source = context.layer().source;
+        const bool live = source.kind == SourceKind::mesh && !prepares(source.texture.prepare);
+        note(live ? "Levels and masks show at once; the rest regenerates."
+                  : "Changing these regenerates the splats.");
     }
     if (!status.error.empty()) note(status.error, color::error);
     ImGui::Dummy({0.0f, px(4)});
