@@ -124,6 +124,8 @@ TEST(Bodies, PicturesOfMoreTexelsThanTheMostAreReduced) {
     EXPECT_EQ(largest_picture(meshes), 160 * 100);
     EXPECT_EQ(meshes[1].textures[0].image.width, 100);
     EXPECT_NEAR(sum_of(meshes[0].textures[0].image) / (160.0 * 100.0), before, 0.003 * before);
+    reduce_to(meshes, 15'000, "gas");
+    EXPECT_NEAR(static_cast<double>(largest_picture(meshes)), 15'000.0, 150.0);
 }
 
 TEST(UvSurface, ThePlaneIsThePicture) {

@@ -197,6 +197,37 @@ TEST(Merge, NothingIsDividedThatLooksSmallEnough) {
     EXPECT_GT(coarse, 1);
 }
 
+/// 4096 splats evenly spaced along 64 px.
+Cloud thread(const glm::vec3& direction) {
+    constexpr float length = 64.0f * 3.0f / float(height);
+    Cloud cloud;
+    for (int i = 0; i < 4096; ++i)
+        cloud.add(direction * length * ((float(i) + 0.5f) / 4096.0f - 0.5f), glm::vec3(1.0f), 0.1f, 1e-4f);
+    return cloud;
+}
+
+TEST(Merge, AThreadIsHalvedUntilItsPartsLookSmallEnough) {
+    for (const glm::vec3 direction : {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)}) {
+        const MergedSplats merged = thread(direction).merged();
+        const auto dots = [&](float least_px) { return cut_of(merged, 4096, {}, camera(), least_px).size(); };
+        EXPECT_EQ(dots(66.0f), 1);
+        EXPECT_EQ(dots(62.0f), 2) << "its length counts";
+        EXPECT_EQ(dots(33.0f), 2);
+        EXPECT_EQ(dots(5.0f), 16);
+        EXPECT_EQ(dots(3.0f), 32);
+    }
+    EXPECT_EQ(cut_of(thread({0, 0, 1}).merged(), 4096, {}, camera(), 5.0f).size(), 1) << "seen along it";
+}
+
+TEST(Merge, WhereAllThatLooksLargeIsDividedMoreRoomChangesNothing) {
+    const MergedSplats merged = random_cloud(20000, glm::vec3(0.1f), 0.001f, 0.5f).merged();
+    const std::int64_t enough = cut_of(merged, 20000, {}, camera(), 3.0f).size();
+    EXPECT_GT(enough, 100);
+    EXPECT_LT(enough, 5000);
+    for (const std::int64_t more : {enough + enough / 10, enough + enough / 2, 4 * enough})
+        EXPECT_EQ(cut_of(merged, more, {}, camera(), 3.0f).size(), enough) << more;
+}
+
 TEST(Merge, WhatTheFrameDoesNotShowTakesNoDots) {
     const Cloud cloud = random_cloud(20000, glm::vec3(1.0f), 0.001f, 0.5f);
     const ShadedSplats cut = cut_of(cloud.merged(), 2000, {}, camera(0.1));

@@ -62,6 +62,24 @@ TEST_F(LoadSourceTest, MeshesWithoutPicturesSaySo) {
               std::string::npos);
 }
 
+TEST_F(LoadSourceTest, BodiesKeepToTexelsAndSplats) {
+    std::string pixels;
+    for (int i = 0; i < 120 * 80 * 3; ++i) pixels += static_cast<char>(40 + i * 7 % 60);
+    SourceParams source = mesh_source("plane", {write("gas.ppm", "P6\n120 80\n255\n" + pixels)});
+    source.count = 0;
+    source.structure.kind = StructureKind::sheet;
+    const std::int64_t all = load_source(source, "gas").size();
+    ASSERT_GT(all, 8000);
+    source.structure.most_texels = 2400;
+    const std::int64_t few = load_source(source, "gas").size();
+    EXPECT_LT(few, all / 3);
+    EXPECT_GT(few, all / 6);
+    source.structure.most_texels = 0;
+    source.splats = 2000;
+    EXPECT_LE(load_source(source, "gas").size(), 2000);
+    EXPECT_NE(lines_.find("would be more than"), std::string::npos) << lines_;
+}
+
 TEST_F(LoadSourceTest, SplatFilesAreSortedAndKnowTheirLargestDistance) {
     SplatSet set;
     for (int i = 0; i < 4; ++i) {

@@ -8,6 +8,7 @@
 
 #include "core/color.h"
 #include "source/prepared_picture.h"
+#include "support/fits_text.h"
 #include "support/starry_picture.h"
 #include "support/temp_folder.h"
 
@@ -62,6 +63,29 @@ TEST_F(PreparePreviewTest, IsSmallAndCutsWhereThePictureIsCut) {
     EXPECT_EQ(view.after.at(32, 1)[0], 0.0f);
     EXPECT_GT(view.after.at(32, 24)[0], 0.1f);
     EXPECT_GT(view.before.at(1, 24)[0], 0.1f);
+}
+
+// A picture of 20 x 20 px with a bright upper half, seen upside down and half as fine by the one it is put
+// on.
+TEST_F(PreparePreviewTest, BothSidesAreAligned) {
+    const auto bright_above = [](int, int y) { return y >= 10 ? 900.0 : 100.0; };
+    const auto own = folder.file(
+        "own.fits", fits_file(20, 20, fits_sky(10.5, 10.5, 10.0, 41.0, 0.001, 180.0), bright_above));
+    layer.source.texture.prepare = {};
+    layer.source.texture.prepare.align = folder.file(
+        "other.fits", fits_file(20, 12, fits_sky(10.5, 6.5, 10.0, 41.0, 0.002, 0.0), bright_above));
+    layer.source.texture.stretch = TextureSettings::Stretch::linear;
+    layer.source.texture.black = 0.0;
+    layer.source.texture.white = 1000.0;
+    layer.source.meshes[0].texture = {own};
+    const PreparedView view = prepared_view(request(), 400, {});
+    for (const Image* side : {&view.before, &view.after}) {
+        ASSERT_EQ(side->width, 20);
+        ASSERT_EQ(side->height, 12);
+        EXPECT_GT(side->at(10, 8)[0], 0.8f) << "below the middle";
+        EXPECT_NEAR(side->at(10, 3)[0], 0.35f, 0.02f) << "above";
+        EXPECT_EQ(side->at(2, 6)[0], 0.0f) << "what the picture does not show";
+    }
 }
 
 TEST_F(PreparePreviewTest, WhatComesLaterIsLeftOut) {
