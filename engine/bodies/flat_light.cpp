@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bodies/spread_kernel.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "image/blur.h"
@@ -24,39 +25,6 @@ constexpr float largest_factor = 3.0f;
 constexpr double fine_sigma = 1.5;            // texels, up to which dots are sharpened
 constexpr double around = 16.0;               // times the variance of what a dot sees
 constexpr double narrowest_halved_px = 1.25;  // its profile need not be exact
-
-// Quadratic B-spline weights of the step that a place >= 0 lies in and of its neighbours.
-struct Spline {
-    std::int64_t middle;
-    float weight[3];
-    explicit Spline(float place) : middle(static_cast<std::int64_t>(place)) {
-        const float t = place - static_cast<float>(middle) - 0.5f;
-        weight[0] = 0.5f * (0.5f - t) * (0.5f - t);
-        weight[1] = 0.75f - t * t;
-        weight[2] = 0.5f * (0.5f + t) * (0.5f + t);
-    }
-};
-
-// Adds to the rows [first_row, end_row); beyond its edges a picture is mirrored.
-void add(const glm::vec3& light, const Spline& x, const Spline& y, std::int64_t first_row,
-         std::int64_t end_row, Image& sum) {
-    float across[12] = {};  // and a pixel more, of 0, so that they fill vectors
-    for (int n = 0; n < 9; ++n) across[n] = light[n % 3] * x.weight[n / 3];
-    const bool inside = x.middle > 0 && x.middle + 2 < sum.width;
-    for (std::int64_t j = 0; j < 3; ++j) {
-        const std::int64_t row = std::clamp<std::int64_t>(y.middle + j - 1, 0, sum.height - 1);
-        if (row < first_row || row >= end_row) continue;
-        if (inside) {
-            float* const four = sum.at(x.middle - 1, row);
-            for (int n = 0; n < 12; ++n) four[n] += across[n] * y.weight[j];
-            continue;
-        }
-        for (int n = 0; n < 9; ++n) {
-            const std::int64_t column = std::clamp<std::int64_t>(x.middle + n / 3 - 1, 0, sum.width - 1);
-            sum.at(column, row)[n % 3] += across[n] * y.weight[j];
-        }
-    }
-}
 
 float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, largest_factor); }
 
@@ -87,7 +55,7 @@ Image sharpening_factor_of(const Fraction& fraction, double blur_px) {
 }  // namespace
 
 FlatLight::FlatLight(PictureSplats& dots, std::int64_t width, std::int64_t height, double filter_px)
-    : dots_(dots), filter_variance_(filter_px * filter_px) {
+    : dots_(dots), middle_(0.5f * glm::vec2(width, height)), filter_variance_(filter_px * filter_px) {
     grids_.push_back({width, height, 1.0});
     while (std::min(grids_.back().width, grids_.back().height) > smallest_grid) {
         const Grid& finer = grids_.back();
@@ -115,8 +83,7 @@ void FlatLight::add_range(const DotRange& dots) {
 // From the top left corner.
 glm::vec2 FlatLight::texel(std::size_t dot) const {
     const glm::vec3& p = dots_.splats.position[dot];
-    return {p.x + 0.5f * static_cast<float>(grids_[0].width),
-            0.5f * static_cast<float>(grids_[0].height) - p.y};
+    return {p.x + middle_.x, middle_.y - p.y};
 }
 
 // The coarsest on which a Gaussian so narrow is still smooth.
@@ -131,16 +98,17 @@ void FlatLight::spread(const Range& range, double step, Image& sum) const {
     const auto flux = static_cast<float>(static_cast<double>(footprint_share) * 2.0 * real::pi * range.sigma *
                                          range.sigma / (step * step));
     parallel_chunks(sum.height, rows_per_strip, [&](std::int64_t first_row, std::int64_t end_row, int) {
+        SpreadRows rows(sum.width, first_row, end_row);
         const auto top = static_cast<float>(static_cast<double>(first_row - 1) * step),
                    bottom = static_cast<float>(static_cast<double>(end_row + 1) * step);
         for (const Chunk& chunk : range.chunks) {
             if (chunk.bottom < top || chunk.top > bottom) continue;
-            for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
-                const glm::vec2 at = texel(i) * scale;
-                const glm::vec3 light = dots_.splats.color[i] * (flux * dots_.splats.alpha[i]);
-                add(light, Spline(at.x), Spline(at.y), first_row, end_row, sum);
-            }
+            const ShadedSplats& all = dots_.splats;
+            spread_dots({&all.position[chunk.begin], &all.color[chunk.begin], &all.alpha[chunk.begin],
+                         chunk.end - chunk.begin, middle_.x, middle_.y, scale, flux},
+                        rows);
         }
+        rows.add_to(sum);
     });
 }
 

@@ -53,6 +53,7 @@ class FlatLight {
     void multiply(const Range& range, const Image& factor, double step);
 
     PictureSplats& dots_;
+    glm::vec2 middle_;           // of the picture, texels
     double filter_variance_;     // texels^2
     std::vector<Grid> grids_;    // fine to coarse
     std::vector<Range> ranges_;  // in order of their sigmas

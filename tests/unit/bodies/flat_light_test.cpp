@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/vector_target.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {
@@ -47,6 +48,20 @@ PictureSplats one_dot(float x, float y, float sigma) {
     dots.splats.radius.push_back(radius_sigmas * sigma);
     dots.ranges.push_back({0, 1, sigma});
     return dots;
+}
+
+TEST(FlatLight, IsTheSameOnEveryInstructionSet) {
+    PictureSplats dots = some_dots();
+    const FlatLight flat(dots, width, height, filter_px);
+    const Image best = flat.sum();
+    ASSERT_GT(vector_targets().size(), 1u);
+    for (const std::string& target : vector_targets()) {
+        set_vector_target(target);
+        const Image here = flat.sum();
+        for (std::size_t i = 0; i < best.pixels.size(); ++i)
+            ASSERT_EQ(here.pixels[i], best.pixels[i]) << target;
+    }
+    set_vector_target("best");
 }
 
 // Flux, centre and variance along the axes of one dot, on every grid.
