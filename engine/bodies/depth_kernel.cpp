@@ -5,6 +5,9 @@
 // after foreach_target
 #include <hwy/highway.h>
 
+#include <climits>
+#include <vector>
+
 #include "bodies/depth_kernel.h"
 #include "core/glsl.h"
 
@@ -45,6 +48,90 @@ ASTROSPLAT_DEPTH_LOOP add_octave(const NoiseStack& noise, int octave, const Dept
     const float frequency = noise.frequency[octave], gain = noise.gain[octave] * unit_deviation;
     for (int i = 0; i < block.count; ++i)
         sum[i] = sum[i] + gain * as_noise_octave(block.x[i], block.y[i], z[i], frequency, noise.seed, octave);
+}
+
+// What a plane of a noise's lattice contributes in the columns of a block's dots: on the plane, and how much
+// more a unit above it.
+struct NoisePlane {
+    Lane value, slope;
+};
+
+// One octave in those columns. Candidates for a dot differ in z alone, so the lattice is asked once for every
+// plane: in between, noise is the sum of what the two planes contribute, faded with the distance.
+struct ColumnNoise {
+    float frequency, gain, shift;
+    Lane lowest;  // of the planes that count for a dot
+    std::vector<NoisePlane> planes;
+};
+
+ASTROSPLAT_DEPTH_LOOP fill_plane(const NoiseStack& noise, int octave, const DepthBlock& block, int number,
+                                 const float* HWY_RESTRICT lowest, NoisePlane& plane) {
+    const float frequency = noise.frequency[octave];
+    const float shift_x = as_noise_shift(noise.seed, octave, 0u),
+                shift_y = as_noise_shift(noise.seed, octave, 1u);
+    const uint field = as_noise_field(noise.seed, octave);
+    for (int i = 0; i < block.count; ++i) {
+        const float x = block.x[i] * frequency + shift_x, y = block.y[i] * frequency + shift_y;
+        const float x0 = floor(x), y0 = floor(y);
+        const uint key_x = uint(int(x0)) * AS_NOISE_KEY_X, key_y = uint(int(y0)) * AS_NOISE_KEY_Y,
+                   key_z = uint(int(lowest[i]) + number) * AS_NOISE_KEY_Z + field;
+        plane.value[i] = as_noise_plane(key_x, key_y, key_z, x - x0, y - y0, 0.0f);
+        plane.slope[i] = as_noise_plane(key_x, key_y, key_z, x - x0, y - y0, 1.0f) - plane.value[i];
+    }
+}
+
+// The range of whole numbers below values >= 0.
+struct Cells {
+    int first, last;
+};
+HWY_FLATTEN Cells cells_of(const float* HWY_RESTRICT values, int count) {
+    Cells cells{INT_MAX, 0};
+    for (int i = 0; i < count; ++i) {
+        cells.first = min(cells.first, int(values[i]));
+        cells.last = max(cells.last, int(values[i]));
+    }
+    return cells;
+}
+
+ASTROSPLAT_DEPTH_LOOP heights_above_lowest(const ColumnNoise& column, const float* HWY_RESTRICT z, int count,
+                                           float* HWY_RESTRICT height) {
+    for (int i = 0; i < count; ++i) height[i] = z[i] * column.frequency + column.shift - column.lowest[i];
+}
+
+// For places from `lowest` to `highest`.
+ColumnNoise column_noise(const NoiseStack& noise, int octave, const DepthBlock& block, const float* lowest,
+                         const float* highest) {
+    ColumnNoise column;
+    column.frequency = noise.frequency[octave];
+    column.gain = noise.gain[octave] * unit_deviation * AS_NOISE_SCALE;
+    column.shift = as_noise_shift(noise.seed, octave, 2u);
+    for (int i = 0; i < block.count; ++i)
+        column.lowest[i] = floor(lowest[i] * column.frequency + column.shift);
+    Lane height;
+    heights_above_lowest(column, highest, block.count, height);
+    column.planes.resize(static_cast<std::size_t>(cells_of(height, block.count).last) + 2);
+    for (std::size_t n = 0; n < column.planes.size(); ++n)
+        fill_plane(noise, octave, block, static_cast<int>(n), column.lowest, column.planes[n]);
+    return column;
+}
+
+ASTROSPLAT_DEPTH_LOOP add_plane(const NoisePlane& plane, float number, float gain, int count,
+                                const float* HWY_RESTRICT height, float* HWY_RESTRICT sum) {
+    for (int i = 0; i < count; ++i) {
+        const float above = height[i] - number;
+        const float share = as_noise_fade(max(0.0f, 1.0f - abs(above)));
+        sum[i] = sum[i] + gain * ((plane.value[i] + plane.slope[i] * above) * share);
+    }
+}
+
+void add_column(const ColumnNoise& column, const float* z, int count, float* sum) {
+    Lane height;
+    heights_above_lowest(column, z, count, height);
+    const Cells cells = cells_of(height, count);
+    const int end = min(cells.last + 2, static_cast<int>(column.planes.size()));
+    for (int n = cells.first; n < end; ++n)
+        add_plane(column.planes[static_cast<std::size_t>(n)], static_cast<float>(n), column.gain, count,
+                  height, sum);
 }
 
 ASTROSPLAT_DEPTH_LOOP clear(float* HWY_RESTRICT values, int count) {
@@ -89,18 +176,21 @@ ASTROSPLAT_DEPTH_LOOP choose(const float* HWY_RESTRICT weight, const float* HWY_
     }
 }
 
-// One draw among `candidates` places, with octaves [first, end) as weights.
+// One draw among `candidates` places, which rise, with octaves [first, end) as weights.
 template <int candidates, class Places>
 void draw(const NoiseStack& noise, int first, int end, int which, DepthBlock& block, Places places) {
     Lane place[candidates], weight[candidates], rest;
-    clear(rest, block.count);
     for (int candidate = 0; candidate < candidates; ++candidate) {
         places(candidate, place[candidate]);
         clear(weight[candidate], block.count);
-        for (int octave = first; octave < end; ++octave)
-            add_octave(noise, octave, block, place[candidate], weight[candidate]);
-        weights(block, weight[candidate], rest);
     }
+    for (int octave = first; octave < end; ++octave) {
+        const ColumnNoise column = column_noise(noise, octave, block, place[0], place[candidates - 1]);
+        for (int candidate = 0; candidate < candidates; ++candidate)
+            add_column(column, place[candidate], block.count, weight[candidate]);
+    }
+    clear(rest, block.count);
+    for (int candidate = 0; candidate < candidates; ++candidate) weights(block, weight[candidate], rest);
     start_choice(block, which, rest);
     for (int candidate = 0; candidate < candidates; ++candidate)
         choose(weight[candidate], place[candidate], rest, block.z, block.count);

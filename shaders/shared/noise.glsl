@@ -20,44 +20,47 @@ float as_noise_lerp(float a, float b, float t) { return a + t * (b - a); }
 // Largest sum eight gradients can make anywhere in a cell is 1.0364 (a test climbs to it); 1 over a little more.
 const float AS_NOISE_SCALE = 0.9645f;
 
+// Odd multipliers near 2^32 over powers of the plastic number spread lattice points before mixing.
+const uint AS_NOISE_KEY_X = 0xd1b54a33u, AS_NOISE_KEY_Y = 0xabc98389u, AS_NOISE_KEY_Z = 0x8cb92ba7u;
+
+// What the lattice points of one plane z = const contribute at (dx, dy) in a cell and dz above the plane; keys are
+// those of the cell's corner. Linear in dz.
+float as_noise_plane(uint key_x, uint key_y, uint key_z, float dx, float dy, float dz) {
+    uint next_x = key_x + AS_NOISE_KEY_X;
+    uint next_y = key_y + AS_NOISE_KEY_Y;
+    float g00 = as_noise_corner(as_mix(key_x + key_y + key_z), dx, dy, dz);
+    float g10 = as_noise_corner(as_mix(next_x + key_y + key_z), dx - 1.0f, dy, dz);
+    float g01 = as_noise_corner(as_mix(key_x + next_y + key_z), dx, dy - 1.0f, dz);
+    float g11 = as_noise_corner(as_mix(next_x + next_y + key_z), dx - 1.0f, dy - 1.0f, dz);
+    float sx = as_noise_fade(dx);
+    float sy = as_noise_fade(dy);
+    return as_noise_lerp(as_noise_lerp(g00, g10, sx), as_noise_lerp(g01, g11, sx), sy);
+}
+
 // Gradient noise in [-1, 1], mean 0, one feature per unit; 0 on the integer lattice. |x|, |y|, |z| < 2^31.
 float as_noise(float x, float y, float z, uint seed) {
     float x0 = floor(x);
     float y0 = floor(y);
     float z0 = floor(z);
-    float dx = x - x0;
-    float dy = y - y0;
+    uint key_x = uint(int(x0)) * AS_NOISE_KEY_X;
+    uint key_y = uint(int(y0)) * AS_NOISE_KEY_Y;
+    uint key_z = uint(int(z0)) * AS_NOISE_KEY_Z + seed;
     float dz = z - z0;
-    // Odd multipliers near 2^32 over powers of the plastic number spread lattice points before mixing.
-    uint kx0 = uint(int(x0)) * 0xd1b54a33u;
-    uint ky0 = uint(int(y0)) * 0xabc98389u;
-    uint kz0 = uint(int(z0)) * 0x8cb92ba7u + seed;
-    uint kx1 = kx0 + 0xd1b54a33u;
-    uint ky1 = ky0 + 0xabc98389u;
-    uint kz1 = kz0 + 0x8cb92ba7u;
-    float g000 = as_noise_corner(as_mix(kx0 + ky0 + kz0), dx, dy, dz);
-    float g100 = as_noise_corner(as_mix(kx1 + ky0 + kz0), dx - 1.0f, dy, dz);
-    float g010 = as_noise_corner(as_mix(kx0 + ky1 + kz0), dx, dy - 1.0f, dz);
-    float g110 = as_noise_corner(as_mix(kx1 + ky1 + kz0), dx - 1.0f, dy - 1.0f, dz);
-    float g001 = as_noise_corner(as_mix(kx0 + ky0 + kz1), dx, dy, dz - 1.0f);
-    float g101 = as_noise_corner(as_mix(kx1 + ky0 + kz1), dx - 1.0f, dy, dz - 1.0f);
-    float g011 = as_noise_corner(as_mix(kx0 + ky1 + kz1), dx, dy - 1.0f, dz - 1.0f);
-    float g111 = as_noise_corner(as_mix(kx1 + ky1 + kz1), dx - 1.0f, dy - 1.0f, dz - 1.0f);
-    float sx = as_noise_fade(dx);
-    float sy = as_noise_fade(dy);
-    float near_z = as_noise_lerp(as_noise_lerp(g000, g100, sx), as_noise_lerp(g010, g110, sx), sy);
-    float far_z = as_noise_lerp(as_noise_lerp(g001, g101, sx), as_noise_lerp(g011, g111, sx), sy);
+    float near_z = as_noise_plane(key_x, key_y, key_z, x - x0, y - y0, dz);
+    float far_z = as_noise_plane(key_x, key_y, key_z + AS_NOISE_KEY_Z, x - x0, y - y0, dz - 1.0f);
     return as_noise_lerp(near_z, far_z, as_noise_fade(dz)) * AS_NOISE_SCALE;
 }
 
-// Octave i of a fractal sum: its own field, shifted by less than a cell so that the zeros of the lattices of several
-// octaves do not fall together (all of them would in the plane through the origin, where thin layers lie).
+// Where octave i of a fractal sum is: its own field, shifted by less than a cell so that the zeros of the lattices of
+// several octaves do not fall together (all of them would in the plane through the origin, where thin layers lie).
+uint as_noise_field(uint seed, int octave) { return as_hash(seed, uint(octave), 3u, PURPOSE_NOISE); }
+float as_noise_shift(uint seed, int octave, uint axis) {
+    return as_uniform(as_hash(seed, uint(octave), axis, PURPOSE_NOISE));
+}
+
 float as_noise_octave(float x, float y, float z, float frequency, uint seed, int octave) {
-    float shift_x = as_uniform(as_hash(seed, uint(octave), 0u, PURPOSE_NOISE));
-    float shift_y = as_uniform(as_hash(seed, uint(octave), 1u, PURPOSE_NOISE));
-    float shift_z = as_uniform(as_hash(seed, uint(octave), 2u, PURPOSE_NOISE));
-    uint field = as_hash(seed, uint(octave), 3u, PURPOSE_NOISE);
-    return as_noise(x * frequency + shift_x, y * frequency + shift_y, z * frequency + shift_z, field);
+    return as_noise(x * frequency + as_noise_shift(seed, octave, 0u), y * frequency + as_noise_shift(seed, octave, 1u),
+                    z * frequency + as_noise_shift(seed, octave, 2u), as_noise_field(seed, octave));
 }
 
 const int AS_NOISE_MAX_OCTAVES = 16;

@@ -89,6 +89,48 @@ TEST(Depths, GatherWhereTheNoiseIsHigh) {
     EXPECT_GT(fine / count, 0.1);
 }
 
+// The first of the two draws, candidate by candidate.
+float drawn_plainly(const NoiseStack& noise, const DepthBlock& block, int i) {
+    constexpr int candidates = 24;
+    const auto random = [&](int which) {
+        return shared::as_uniform(
+            shared::as_mix(block.random[i] + static_cast<std::uint32_t>(which) * 0x9e3779b9u));
+    };
+    double place[candidates], weight[candidates], sum = 0.0;
+    for (int c = 0; c < candidates; ++c) {
+        const double u = 0.015 + 0.97 * (c + static_cast<double>(random(c))) / candidates;
+        place[c] = 0.5 * static_cast<double>(block.height[i]) * std::log(u / (1.0 - u));
+        double energy = 0.0;
+        for (int k = 0; k < noise.count; ++k)
+            energy +=
+                static_cast<double>(noise.gain[k]) / 0.26 *
+                static_cast<double>(painted::field::as_noise_octave(
+                    block.x[i], block.y[i], static_cast<float>(place[c]), noise.frequency[k], noise.seed, k));
+        weight[c] = std::exp(static_cast<double>(block.clumping[i]) * energy);
+        sum += weight[c];
+    }
+    double rest = sum * static_cast<double>(random(32));
+    int chosen = 0;
+    for (int c = 0; c < candidates && rest >= 0.0; rest -= weight[c++]) chosen = c;
+    return static_cast<float>(place[chosen]);
+}
+
+// Heights of .1 to 3 times the longest wave: few planes of the noise's lattice, and many.
+TEST(Depths, AreThoseOfTheNoiseItself) {
+    const NoiseStack noise = octaves(3, 1.5f);
+    int others = 0, count = 0;
+    for (auto& block : scattered(8, 20.0f)) {
+        for (int i = 0; i < block->count; ++i) {
+            block->height[i] = 8.0f * static_cast<float>(1 + i % 30);
+            block->clumping[i] = i % 3 == 0 ? 0.4f : 1.0f;
+        }
+        disk_depths(noise, *block);
+        for (int i = 0; i < block->count; ++i, ++count)
+            others += std::fabs(block->z[i] - drawn_plainly(noise, *block, i)) > 1e-3f ? 1 : 0;
+    }
+    EXPECT_LE(others, count / 1000);  // where a sum's rounding decides
+}
+
 TEST(Depths, AnOctaveHasTheDeviationThatGainsCount) {
     double sum = 0.0, squares = 0.0;
     int count = 0;
