@@ -17,19 +17,8 @@ constexpr int most_shift = 64;    // pictures that one face may span
 
 double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-/// Twice the area of (a, b, p), the same number but for its sign from both faces of the edge.
-double edge_area(glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) {
-    if (std::pair(b.x, b.y) < std::pair(a.x, a.y)) return -cross(a - b, p - b);
-    return cross(b - a, p - a);
-}
-
 /// Of a place on the edge itself: whether the face to the edge's left has it.
 bool owns(glm::dvec2 a, glm::dvec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); }
-
-bool inside(double area, double orientation, glm::dvec2 a, glm::dvec2 b) {
-    const double signed_area = area * orientation;
-    return signed_area > 0.0 || (signed_area == 0.0 && (orientation > 0.0 ? owns(a, b) : owns(b, a)));
-}
 
 bool shows(const Mesh::Triangle& triangle, const Mesh& mesh, std::uint32_t material) {
     return (mesh.maps.empty() || triangle.material == material) && triangle.uv[0] != Mesh::no_uv;
@@ -39,12 +28,17 @@ bool shows(const Mesh::Triangle& triangle, const Mesh& mesh, std::uint32_t mater
 
 UvSurface::UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t width, std::int64_t height,
                      bool repeats, const Camera* camera)
-    : mesh_(mesh), camera_(camera), height_(static_cast<double>(height)) {
+    : mesh_(mesh), camera_(camera) {
     measure(mesh, material, {static_cast<double>(width), static_cast<double>(height)});
+    if (camera) {
+        texel_at_depth_1_ = picture_height_at(*camera, 1.0) / static_cast<double>(height);
+        for (const glm::vec3& corner : mesh.positions)
+            depths_.push_back(glm::dot(camera->world_from_camera[2], camera->eye - glm::dvec3(corner)));
+    }
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const Mesh::Triangle& triangle = mesh.triangles[i];
         if (!shows(triangle, mesh, material)) continue;
-        Face face{{}, i};
+        Face face{{}, i, {}};
         for (int k = 0; k < 3; ++k)
             face.uv[k] = glm::dvec2(mesh.uvs[triangle.uv[static_cast<std::size_t>(k)]]);
         const glm::dvec2 lo = glm::min(face.uv[0], glm::min(face.uv[1], face.uv[2]));
@@ -62,7 +56,21 @@ UvSurface::UvSurface(const Mesh& mesh, std::uint32_t material, std::int64_t widt
             }
         }
     }
+    for (Face& face : faces_) set_edges(face);
     fill_grid();
+}
+
+// From one end to the other in the same order for both faces of an edge, so that a place has the same number
+// but for its sign from both.
+void UvSurface::set_edges(Face& face) {
+    const double whole = cross(face.uv[1] - face.uv[0], face.uv[2] - face.uv[0]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const glm::dvec2 a = face.uv[(k + 1) % 3], b = face.uv[(k + 2) % 3];
+        const bool turned = std::pair(b.x, b.y) < std::pair(a.x, a.y);
+        const double sign = whole > 0.0 ? 1.0 : whole < 0.0 ? -1.0 : 0.0;
+        face.edges[k] = {turned ? b : a, turned ? a - b : b - a, turned ? -sign : sign,
+                         whole > 0.0 ? owns(a, b) : owns(b, a)};
+    }
 }
 
 void UvSurface::measure(const Mesh& mesh, std::uint32_t material, glm::dvec2 texels) {
@@ -147,13 +155,13 @@ void UvSurface::for_each_face_at(glm::vec2 uv, Visit visit) const {
     const auto here = static_cast<std::size_t>(cell(p.y) * cells_ + cell(p.x));
     for (std::uint32_t i = first_face_[here]; i < first_face_[here + 1]; ++i) {
         const Face& face = faces_[cell_faces_[i]];
-        const glm::dvec2 &a = face.uv[0], &b = face.uv[1], &c = face.uv[2];
-        const double whole = cross(b - a, c - a);
-        if (whole == 0.0) continue;
-        const double of_a = edge_area(b, c, p), of_b = edge_area(c, a, p), of_c = edge_area(a, b, p);
-        if (!inside(of_a, whole, b, c) || !inside(of_b, whole, c, a) || !inside(of_c, whole, a, b)) continue;
-        const double sum = of_a + of_b + of_c;
-        visit(face, {of_a / sum, of_b / sum, of_c / sum});
+        glm::dvec3 areas;
+        const auto is_inside = [&](int k) {
+            const Edge& edge = face.edges[static_cast<std::size_t>(k)];
+            areas[k] = edge.sign * cross(edge.along, p - edge.from);
+            return areas[k] > 0.0 || (areas[k] == 0.0 && edge.owned && edge.sign != 0.0);
+        };
+        if (is_inside(0) && is_inside(1) && is_inside(2)) visit(face, areas / (areas.x + areas.y + areas.z));
     }
 }
 
@@ -202,13 +210,12 @@ SurfacePlace UvSurface::seen_on(const Face& face, const glm::dvec3& weights) con
     glm::dvec3 on_face;
     for (int k = 0; k < 3; ++k) {
         const auto vertex = mesh_.triangles[face.triangle].position[static_cast<std::size_t>(k)];
-        const glm::dvec3 corner(mesh_.positions[vertex]);
-        on_face[k] = parallel ? weights[k] : weights[k] / glm::dot(back, camera_->eye - corner);
+        on_face[k] = parallel ? weights[k] : weights[k] / depths_[vertex];
     }
     SurfacePlace place = place_on(face, on_face / (on_face[0] + on_face[1] + on_face[2]));
     const glm::dvec3 to_eye = camera_->eye - glm::dvec3(place.position);
     const double depth = glm::dot(back, to_eye),
-                 units_per_texel = picture_height_at(*camera_, depth) / height_;
+                 units_per_texel = parallel ? texel_at_depth_1_ : texel_at_depth_1_ * depth;
     place.depth = static_cast<float>(depth);
     place.units_per_texel = static_cast<float>(units_per_texel);
     place.rise = glm::vec3(parallel ? back : to_eye / depth);

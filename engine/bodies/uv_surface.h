@@ -45,12 +45,19 @@ class UvSurface {
     bool flat() const { return flat_; }
 
   private:
+    struct Edge {
+        glm::dvec2 from, along;
+        double sign;  // of the area that a place within the face has with it; 0 of a face without area
+        bool owned;   // the face has the places on it
+    };
     struct Face {
         glm::dvec2 uv[3];  // shifted by whole pictures so that it lies over 0..1
         std::uint32_t triangle;
+        Edge edges[3];  // across from the corners
     };
 
     void measure(const Mesh& mesh, std::uint32_t material, glm::dvec2 texels);
+    static void set_edges(Face& face);
     void fill_grid();
     template <class Visit>
     void for_each_cell(const Face& face, Visit visit) const;
@@ -64,7 +71,8 @@ class UvSurface {
 
     const Mesh& mesh_;
     const Camera* camera_;
-    double height_;                       // texels
+    double texel_at_depth_1_ = 0.0;       // scene units, if there is a camera
+    std::vector<double> depths_;          // before it, of the mesh's positions
     std::vector<glm::vec3> normals_;      // of the mesh's positions
     std::vector<float> units_per_texel_;  // of the same
     double texels_per_unit_ = 0.0;
