@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "bodies/picture_light.h"
@@ -27,18 +29,34 @@ constexpr float wing_share = 0.5f;    // of the peak, that the light at 2 to 3 p
 constexpr float least_level = 0.01f;  // of the displayed white, below which a pixel is left as it is
 constexpr float uneven_share = 0.3f;  // of the peak, that this light may differ by around the star
 
+constexpr std::size_t window_px = (2 * median_reach + 1) * (2 * median_reach + 1);
+
+// The value with `rank` smaller ones, of values >= 0, whose bits are in the same order: found bit by bit,
+// which takes a third of the time of a partial sort.
+float value_of_rank(const std::array<std::int32_t, window_px>& bits, std::int32_t rank) {
+    std::int32_t found = 0;
+    for (int bit = 30; bit >= 0; --bit) {
+        const std::int32_t candidate = found | std::int32_t{1} << bit;
+        std::int32_t smaller = 0;
+        for (const std::int32_t value : bits) smaller += value < candidate ? 1 : 0;
+        if (smaller <= rank) found = candidate;
+    }
+    return std::bit_cast<float>(found);
+}
+
 /// Median of the brightness over the window about a pixel.
 float background(const Image& brightest, std::int64_t x, std::int64_t y) {
-    std::array<float, (2 * median_reach + 1) * (2 * median_reach + 1)> values;
+    std::array<std::int32_t, window_px> bits;
     std::size_t count = 0;
     for (std::int64_t j = y - median_reach; j <= y + median_reach; ++j) {
         if (j < 0 || j >= brightest.height) continue;
         for (std::int64_t i = x - median_reach; i <= x + median_reach; ++i)
-            if (i >= 0 && i < brightest.width) values[count++] = *brightest.at(i, j);
+            if (i >= 0 && i < brightest.width)
+                bits[count++] = std::bit_cast<std::int32_t>(*brightest.at(i, j));
     }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
-    return *middle;
+    std::fill(bits.begin() + static_cast<std::ptrdiff_t>(count), bits.end(),
+              std::numeric_limits<std::int32_t>::max());
+    return value_of_rank(bits, static_cast<std::int32_t>(count / 2));
 }
 
 // Mean excess over the background around each place, on the grid of noise_step.
