@@ -66,9 +66,10 @@ void add(const Image& light, Image& sum) {
     });
 }
 
-// All dots of a picture, with their colours as they would be if nothing hid anything.
-PictureSplats make_dots(const PictureLight& picture, const UvSurface& surface, const StructureParams& params,
-                        std::uint32_t seed, const std::string& layer_name, const Progress& progress) {
+// Adds all dots of a picture, with their colours as they would be if nothing hid anything.
+void add_dots(const PictureLight& picture, const UvSurface& surface, const StructureParams& params,
+              std::uint32_t seed, const std::string& layer_name, const Progress& progress,
+              PictureSplats& dots) {
     Image rest = picture.light;
     const std::vector<Star> stars =
         params.stars != StructureParams::Stars::no ? take_stars(rest) : std::vector<Star>{};
@@ -80,7 +81,6 @@ PictureSplats make_dots(const PictureLight& picture, const UvSurface& surface, c
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
     Image emission = make_image(dust > 0.0 ? rest.width : 0, rest.height, 3);
-    PictureSplats dots;
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
         if (dust > 0.0) add(light, emission);
@@ -94,7 +94,6 @@ PictureSplats make_dots(const PictureLight& picture, const UvSurface& surface, c
                            human_count(static_cast<double>(dots.splats.size())),
                            counted(static_cast<std::int64_t>(stars.size()), "star"),
                            counted(static_cast<std::int64_t>(bands.size()), "band")));
-    return dots;
 }
 
 constexpr std::int64_t rows_per_task = 16384;
@@ -299,13 +298,17 @@ struct MadeDots {
     Image light;  // of the picture that they are to show
 };
 
+constexpr double most_expected = 1.08;  // times as many dots as are expected
+
 // Takes the texture's pixels, unless they might be wanted again.
 MadeDots made_dots(Texture& texture, const UvSurface& surface, const StructureParams& params,
-                   std::uint32_t seed, bool once_more, const std::string& layer_name,
+                   std::uint32_t seed, double expected, bool once_more, const std::string& layer_name,
                    const Progress& progress) {
     PictureLight picture = picture_light(texture, params.border);
     if (!once_more) texture.image.pixels = {};
-    MadeDots made{make_dots(picture, surface, params, seed, layer_name, progress), {}, {}};
+    MadeDots made;
+    reserve_dots(made.dots, static_cast<std::int64_t>(most_expected * expected));
+    add_dots(picture, surface, params, seed, layer_name, progress, made.dots);
     made.faces = faces_of(made.dots, surface, texture.image);
     made.light = std::move(picture.light);
     return made;
@@ -329,14 +332,14 @@ UvSurface surface_of(const PictureOnMesh& picture) {
 }
 
 // A picture's dots on its mesh. While they are more than `most` (0: any number), the picture is reduced.
-SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& texture, std::int64_t most,
-                   const StructureParams& params, std::uint32_t seed, const std::string& layer_name,
-                   const Progress& progress) {
+SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& texture, double expected,
+                   std::int64_t most, const StructureParams& params, std::uint32_t seed,
+                   const std::string& layer_name, const Progress& progress) {
     constexpr int most_tries = 8;
     constexpr double aimed_at = 0.97;
     for (int tries = 1;; ++tries) {
         const UvSurface surface = surface_of(picture);
-        MadeDots made = made_dots(texture, surface, params, seed, most > 0, layer_name, progress);
+        MadeDots made = made_dots(texture, surface, params, seed, expected, most > 0, layer_name, progress);
         const std::int64_t rows = std::accumulate(made.faces.begin(), made.faces.end(), std::int64_t{0});
         if (most > 0 && rows > most) {
             if (tries == most_tries)
@@ -379,8 +382,9 @@ SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& pa
         const PictureOnMesh& picture = pictures[i];
         Texture& texture = meshes[picture.mesh_index].textures[picture.material];
         const auto share = static_cast<std::int64_t>(static_cast<double>(most_dots) * expected[i] / all);
-        SplatSet rows = bodies_of(picture, i, texture, most_dots > 0 ? std::max<std::int64_t>(1, share) : 0,
-                                  params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
+        SplatSet rows =
+            bodies_of(picture, i, texture, expected[i], most_dots > 0 ? std::max<std::int64_t>(1, share) : 0,
+                      params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
         set.test_positions += rows.test_positions;
         set.absorbs = set.absorbs || rows.absorbs;
         append(std::move(rows), set);

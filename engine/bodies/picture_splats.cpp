@@ -152,13 +152,15 @@ class DotsOfBand {
 
 }  // namespace
 
+void reserve_dots(PictureSplats& set, std::int64_t count) {
+    const auto size = static_cast<std::size_t>(count);
+    for_each_array(set.splats, [&](auto& values) { values.reserve(size); });
+    set.distance.reserve(size);
+}
+
 void resize_dots(PictureSplats& set, std::int64_t count) {
     const auto size = static_cast<std::size_t>(count);
-    set.splats.position.resize(size);
-    set.splats.color.resize(size);
-    set.splats.alpha.resize(size);
-    set.splats.radius.resize(size);
-    set.splats.id.resize(size);
+    for_each_array(set.splats, [&](auto& values) { values.resize(size); });
     set.distance.resize(size);
 }
 

@@ -29,6 +29,9 @@ struct PictureSplats {
     bool absorbs = false;          // there is dust: dots of colours below 0 (blend.glsl)
 };
 
+/// Takes the memory of so many dots at once, which are more than there are.
+void reserve_dots(PictureSplats& set, std::int64_t count);
+
 /// Makes room for more dots, whose values are not set.
 void resize_dots(PictureSplats& set, std::int64_t count);
 
