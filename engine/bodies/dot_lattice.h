@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,31 +30,64 @@ struct DotLattice {
     }
 };
 
+/// Which cells of some rows have a dot.
+struct DotRows {
+    std::int64_t begin = 0, columns = 0;
+    std::vector<bool> dots;  // of all cells from row `begin` on
+    std::int64_t count = 0;
+
+    /// Calls visit(cells) for those that have, up to DepthBlock::size at once.
+    template <class Visit>
+    void for_each_block(const Visit& visit) const {
+        std::array<DotCell, DepthBlock::size> cells;
+        std::size_t found = 0;
+        std::int64_t left = count;
+        for (std::int64_t i = 0; left > 0; ++i) {
+            if (!dots[static_cast<std::size_t>(i)]) continue;
+            cells[found++] = {i % columns, begin + i / columns};
+            if (--left > 0 && found < cells.size()) continue;
+            visit(std::span<const DotCell>(cells.data(), found));
+            found = 0;
+        }
+    }
+};
+
+/// has_dot(cell) of all cells, a few rows at a time.
+template <class HasDot>
+std::vector<DotRows> find_dots(const DotLattice& lattice, const HasDot& has_dot) {
+    constexpr std::int64_t rows_at_once = 16;
+    std::vector<DotRows> parts(static_cast<std::size_t>((lattice.rows + rows_at_once - 1) / rows_at_once));
+    parallel_chunks(lattice.rows, rows_at_once, [&](std::int64_t begin, std::int64_t end, int) {
+        DotRows part{begin, lattice.columns, {}, 0};
+        part.dots.reserve(static_cast<std::size_t>((end - begin) * lattice.columns));
+        for (DotCell cell{0, begin}; cell.row < end; ++cell.row) {
+            for (cell.column = 0; cell.column < lattice.columns; ++cell.column) {
+                part.dots.push_back(has_dot(cell));
+                part.count += part.dots.back() ? 1 : 0;
+            }
+        }
+        parts[static_cast<std::size_t>(begin / rows_at_once)] = std::move(part);
+    });
+    return parts;
+}
+
 /// Appends a dot of that size for every cell for which has_dot(cell) is true. make_dots(cells, first) fills
 /// in the values of at most DepthBlock::size dots, from row `first` of the arrays on, but for their radii.
 /// Both are called on several threads.
 template <class HasDot, class MakeDots>
 DotRange add_lattice_dots(const DotLattice& lattice, float sigma, const HasDot& has_dot,
                           const MakeDots& make_dots, PictureSplats& out) {
-    constexpr std::int64_t rows_per_chunk = 16;
-    constexpr std::size_t cells_per_block = DepthBlock::size;
-    const std::int64_t chunks = (lattice.rows + rows_per_chunk - 1) / rows_per_chunk;
-    std::vector<std::vector<DotCell>> cells(static_cast<std::size_t>(chunks));
-    parallel_chunks(lattice.rows, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
-        std::vector<DotCell>& found = cells[static_cast<std::size_t>(begin / rows_per_chunk)];
-        for (DotCell cell{0, begin}; cell.row < end; ++cell.row)
-            for (cell.column = 0; cell.column < lattice.columns; ++cell.column)
-                if (has_dot(cell)) found.push_back(cell);
-    });
+    const std::vector<DotRows> parts = find_dots(lattice, has_dot);
     std::vector<std::int64_t> first{out.splats.size()};
-    for (const auto& found : cells) first.push_back(first.back() + static_cast<std::int64_t>(found.size()));
+    for (const DotRows& part : parts) first.push_back(first.back() + part.count);
     resize_dots(out, first.back());
-    parallel_for(chunks, [&](std::int64_t chunk, int) {
-        const std::span<const DotCell> found(cells[static_cast<std::size_t>(chunk)]);
-        const auto begin = static_cast<std::size_t>(first[static_cast<std::size_t>(chunk)]);
-        for (std::size_t i = 0; i < found.size(); i += cells_per_block)
-            make_dots(found.subspan(i, std::min(cells_per_block, found.size() - i)), begin + i);
-        std::fill_n(out.splats.radius.data() + begin, found.size(), radius_sigmas * sigma);
+    parallel_each(parts.size(), 1, [&](std::size_t i) {
+        auto next = static_cast<std::size_t>(first[i]);
+        std::fill_n(out.splats.radius.data() + next, parts[i].count, radius_sigmas * sigma);
+        parts[i].for_each_block([&](std::span<const DotCell> cells) {
+            make_dots(cells, next);
+            next += cells.size();
+        });
     });
     return {first.front(), first.back(), sigma};
 }
