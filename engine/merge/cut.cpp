@@ -151,6 +151,8 @@ class Cutter {
     /// So few pieces are larger that dividing them has room.
     std::optional<Round> round_with_room(float largest) const {
         const float lowest = std::max(0.8f * largest, settings_.least_px);
+        if (!(largest > lowest))
+            return std::nullopt;  // a round that divides nothing would be the next one, too
         const float bins_per_px = bins / (largest - lowest);
         std::array<std::int64_t, bins> more{};
         for (const Piece& piece : pieces_)
