@@ -7,10 +7,12 @@
 #include "bodies/bodies.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "generate/generate.h"
 #include "generate/lattice.h"
 #include "interrupt.h"
 #include "pipeline.h"
 #include "scene/animate.h"
+#include "sets/load_source.h"
 #include "sets/prepared_cache.h"
 
 namespace astrosplat {
@@ -26,24 +28,39 @@ constexpr std::int64_t file_bytes_per_splat =
 // More than any machine holds, few enough that bytes of many layers still fit 63 bits.
 constexpr std::int64_t most_splats = 1'000'000'000'000'000;
 
-std::int64_t splats_of(const SetCache& cache, const SourceParams& source) {
-    if (source.kind == SourceKind::splats) {
-        std::error_code ignored;
-        const auto size = std::filesystem::file_size(source.file, ignored);
-        return ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat;
-    }
-    const bool bodies = source.structure.kind != StructureKind::columns;
-    if (!bodies && !source.voxels && source.voxel_size <= 0.0)
-        return source.splats > 0 ? source.splats : source.count;
-    const std::vector<TexturedMesh> meshes = load_meshes(cache, source, Progress{{}, &interrupted()});
-    if (bodies)
-        return std::min(expected_dots(meshes, source.structure),
-                        source.splats > 0 ? source.splats : most_splats);
+struct Expected {
+    std::int64_t splats = 0;
+    std::int64_t making_bytes = 0;  // while the set is made
+};
+
+bool has_automatic_voxels(const SourceParams& source) { return !source.voxels && source.voxel_size <= 0.0; }
+
+Expected expected_columns(const SourceParams& source, const std::vector<TexturedMesh>& meshes) {
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
     const double max_distance = resolved_max_distance(source, box);
     const Lattice lattice = make_lattice(source, meshes, max_distance);
-    return static_cast<std::int64_t>(expected_kept(lattice, meshes, max_distance));
+    const bool asked_for = source.splats > 0 && has_automatic_voxels(source);
+    return {
+        asked_for ? source.splats : static_cast<std::int64_t>(expected_kept(lattice, meshes, max_distance)),
+        columns_memory_bytes(meshes, lattice, max_distance)};
+}
+
+Expected expected_of(const SetCache& cache, const LayerParams& layer) {
+    const SourceParams& source = layer.source;
+    if (source.kind == SourceKind::splats) {
+        std::error_code ignored;
+        const auto size = std::filesystem::file_size(source.file, ignored);
+        return {ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat};
+    }
+    const bool bodies = source.structure.kind != StructureKind::columns;
+    if (!bodies && has_automatic_voxels(source) && source.splats <= 0) return {source.count};
+    std::vector<TexturedMesh> meshes = load_meshes(cache, source, Progress{{}, &interrupted()});
+    if (!bodies) return expected_columns(source, meshes);
+    const BodiesPlan plan = plan_bodies(source, std::move(meshes), layer.name);
+    const std::int64_t dots = expected_dots(plan.meshes, plan.structure);
+    return {std::min(dots, source.splats > 0 ? source.splats : most_splats),
+            bodies_memory_bytes(plan.meshes, dots)};
 }
 
 std::int64_t frame_bytes(const BatchPlan& plan) {
@@ -75,16 +92,19 @@ void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache)
 
 JobEstimate estimate(const BatchPlan& plan) {
     JobEstimate job;
+    std::int64_t making = 0;  // bytes, at its peak
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
         const auto cached = cached_splats(plan.cache, layer.source, layer.name);
-        const std::int64_t splats = cached ? *cached : splats_of(plan.cache, layer.source);
-        job.layers.push_back({layer.name, std::min(splats, most_splats)});
+        const Expected expected = cached ? Expected{*cached} : expected_of(plan.cache, layer);
+        making = std::max(making, job.splats * set_bytes + expected.making_bytes);
+        job.layers.push_back({layer.name, std::min(expected.splats, most_splats)});
         job.splats += job.layers.back().splats;
     }
     std::int64_t screen = job.splats * screen_bytes;
     if (plan.memory_limit_bytes > 0) screen = std::min(screen, plan.memory_limit_bytes);
-    job.bytes = program_bytes + job.splats * (set_bytes + shaded_bytes) + screen + frame_bytes(plan);
+    const std::int64_t rendering = job.splats * (set_bytes + shaded_bytes) + screen + frame_bytes(plan);
+    job.bytes = program_bytes + std::max(making, rendering);
     return job;
 }
 

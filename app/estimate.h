@@ -9,8 +9,8 @@
 
 namespace astrosplat {
 
-/// About how many splats the layers will have, and how many bytes sets, shaded splats, screen splats and
-/// pictures take.
+/// About how many splats the layers will have, and how many bytes are taken at most: while sets are made, or
+/// by sets, shaded splats, screen splats and pictures.
 struct JobEstimate {
     struct Layer {
         std::string name;
@@ -20,7 +20,8 @@ struct JobEstimate {
     std::int64_t splats = 0;
     std::int64_t bytes = 0;
 };
-/// Loads meshes where voxels are given and the set is not in the cache, nothing else. Throws InputError.
+/// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache, nothing else.
+/// Throws InputError.
 JobEstimate estimate(const BatchPlan& plan);
 
 /// "--memory GiB" in bytes. Throws InputError.

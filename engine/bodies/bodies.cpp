@@ -207,6 +207,14 @@ std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int6
 
 namespace {
 
+// What no pictures of their sizes take more than.
+std::int64_t most_bytes(std::span<const TexturedMesh> meshes, const StructureParams& params) {
+    double dots = 0.0;
+    for (const PictureOnMesh& picture : pictures_of(meshes))
+        dots += most_dots(picture.texture().image.width, picture.texture().image.height, params);
+    return bodies_memory_bytes(meshes, static_cast<std::int64_t>(dots));
+}
+
 // How much of the limit is used; more than 1 is too much.
 double used_share(std::span<const TexturedMesh> meshes, const StructureParams& params,
                   const BodiesLimit& limit) {
@@ -250,6 +258,7 @@ void reduce(Texture& texture, double first_share, const std::function<double()>&
 
 void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
                      const BodiesLimit& limit, const std::string& layer_name) {
+    if (limit.most_dots <= 0 && most_bytes(meshes, params) <= limit.room_bytes) return;
     const auto share_now = [&] { return used_share(meshes, params, limit); };
     std::vector<const Texture*> reduced;
     for (double share = share_now(); share > 1.0; share = share_now()) {

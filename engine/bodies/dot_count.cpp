@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -88,6 +89,20 @@ Samples samples_of(std::int64_t size) {
 }
 
 }  // namespace
+
+double most_dots(std::int64_t width, std::int64_t height, const StructureParams& params) {
+    const Placement placement = placement_without_fields(width, height, params, 0.0);
+    double each_texel = dust_of(params) > 0.0 ? static_cast<double>(expected_dust_dots(0.0f, 1.0)) : 0.0;
+    const std::vector<Band> bands = make_bands(width);
+    for (const Band& band : bands) {
+        const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
+        float spacing = std::numeric_limits<float>::infinity();  // a place has dots of one size
+        for (const BandDots& size : band_dots(band, coarsest, placement))
+            spacing = std::min(spacing, size.spacing);
+        each_texel += 1.0 / static_cast<double>(spacing * spacing);
+    }
+    return each_texel * static_cast<double>(width * height);
+}
 
 double expected_dots(const Texture& texture, const StructureParams& params) {
     const Image& image = texture.image;

@@ -46,19 +46,10 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const std::str
 
 SplatSet generate_bodies(const SourceParams& source, const std::string& layer_name, const Progress& progress,
                          const PictureMaker& prepared) {
-    std::vector<TexturedMesh> meshes = load_meshes(source, layer_name, progress, prepared);
-    StructureParams structure = source.structure;
-    structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
-    reduce_to(meshes, structure.most_texels, layer_name);
-    if (source.splats > 0)
-        reduce_pictures(meshes, structure, {std::numeric_limits<std::int64_t>::max(), source.splats},
-                        layer_name);
-    const std::int64_t asked_for = largest_picture(meshes);
-    reduce_pictures(meshes, structure, {available_memory_bytes() / 10 * 9, 0}, layer_name);
-    const bool whole = largest_picture(meshes) == asked_for;
-    SplatSet set = make_bodies(std::move(meshes), structure, resolved_seed(source.seed, layer_name),
+    BodiesPlan plan = plan_bodies(source, load_meshes(source, layer_name, progress, prepared), layer_name);
+    SplatSet set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                                layer_name, progress, source.splats);
-    set.of_this_machine = !whole;
+    set.of_this_machine = !plan.fits_memory;
     return set;
 }
 
@@ -72,6 +63,20 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
 }
 
 }  // namespace
+
+BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> meshes,
+                       const std::string& layer_name) {
+    BodiesPlan plan{std::move(meshes), source.structure};
+    plan.structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
+    reduce_to(plan.meshes, plan.structure.most_texels, layer_name);
+    if (source.splats > 0)
+        reduce_pictures(plan.meshes, plan.structure,
+                        {std::numeric_limits<std::int64_t>::max(), source.splats}, layer_name);
+    const std::int64_t asked_for = largest_picture(plan.meshes);
+    reduce_pictures(plan.meshes, plan.structure, {available_memory_bytes() / 10 * 9, 0}, layer_name);
+    plan.fits_memory = largest_picture(plan.meshes) == asked_for;
+    return plan;
+}
 
 ColumnPlan plan_columns(const SourceParams& source, const std::string& layer_name, const Progress& progress,
                         const PictureMaker& prepared) try {

@@ -28,6 +28,18 @@ inline bool makes_columns(const SourceParams& source) {
     return source.kind == SourceKind::mesh && source.structure.kind == StructureKind::columns;
 }
 
+/// All that bodies are made of.
+struct BodiesPlan {
+    std::vector<TexturedMesh> meshes;
+    StructureParams structure;
+    bool fits_memory = true;  // else pictures are smaller than the scene asks for
+};
+
+/// Reduces a source's pictures until they are no more than the scene asks for and this machine's memory has
+/// room for; a warning says so.
+BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> meshes,
+                       const std::string& layer_name);
+
 /// All that columns are made of.
 struct ColumnPlan {
     std::vector<TexturedMesh> meshes;

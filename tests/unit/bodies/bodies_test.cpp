@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bodies/dot_count.h"
 #include "bodies/front_fit.h"
 #include "bodies/picture_splats.h"
 #include "bodies/uv_surface.h"
@@ -96,6 +97,20 @@ TEST(Bodies, PicturesOfMoreDotsThanAskedForAreReducedUntilTheyAreNot) {
         const std::int64_t made = make_bodies(meshes, of_kind(kind), 3u, "gas").size();
         EXPECT_LE(made, asked);
         EXPECT_GE(made, asked * 85 / 100);
+    }
+}
+
+// Noise on black sky: dots of every band nearly everywhere.
+TEST(Bodies, AreNeverMoreThanTheMostForTheirSize) {
+    Image noise = painted::galaxy(320, 200);
+    for (std::size_t i = 0; i < noise.pixels.size(); ++i)
+        noise.pixels[i] = static_cast<float>(painted::random(static_cast<std::uint32_t>(i), 1));
+    for (const StructureKind kind : {StructureKind::sheet, StructureKind::disk}) {
+        const auto made =
+            static_cast<double>(make_bodies({on_plane(noise)}, of_kind(kind), 3u, "gas").size());
+        const double most = most_dots(320, 200, of_kind(kind));
+        EXPECT_LE(made, most);
+        EXPECT_GE(made, 0.5 * most);
     }
 }
 
