@@ -1,0 +1,311 @@
+// Two steps. The search correlates the pictures at about 32 px, for every turn and scale with all shifts at
+// once by Fourier transforms, each shift normalised over what overlaps there (Padfield, IEEE CVPR 2010). The
+// best places are then refined from level to level of a pyramid by Gauss-Newton steps on shift, turn, scale,
+// gain and offset.
+#include "prepare/registration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/real.h"
+#include "image/blur.h"
+#include "image/channels.h"
+#include "prepare/fourier.h"
+#include "prepare/least_squares.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t searched_px = 32, refined_px = 512;  // longest sides of the levels that are compared
+constexpr std::int64_t smallest_px = 8;                     // of the moving picture's pyramid
+constexpr double noticeable = 0.002;  // likeness by which another place must be better than the first
+constexpr double least_likeness = 0.5, least_overlap = 1.0 / 3.0;
+constexpr float least_spread = 2e-3f;  // standard deviation of display values; below, a picture is flat
+
+using Pyramid = std::vector<Image>;  // from large to small
+
+std::int64_t longest_side(const Image& image) { return std::max(image.width, image.height); }
+
+Pyramid pyramid_of(const Image& image, std::int64_t smallest_px) {
+    Pyramid levels{image};
+    while (longest_side(levels.back()) > smallest_px) levels.push_back(halved(levels.back()));
+    return levels;
+}
+
+glm::dvec2 size_of(const Image& image) {
+    return {static_cast<double>(image.width), static_cast<double>(image.height)};
+}
+
+/// The same place where `fixed` is `factor` times as large.
+PictureOnPicture zoomed(PictureOnPicture place, double factor) {
+    place.middle *= factor;
+    place.scale *= factor;
+    return place;
+}
+
+/// `moving` as it lies on a grid of width x height px, and where it is: 1 inside, 0 outside.
+struct Laid {
+    Image values, mask;
+};
+
+/// Of the pyramid the level is read whose pixels are about as large as the grid's.
+Laid laid(const Pyramid& moving, const PictureOnPicture& place, std::int64_t width, std::int64_t height) {
+    const double reduction = std::max(0.0, real::log(1.0 / place.scale) / real::log(2.0));
+    const auto level = std::min(static_cast<std::size_t>(std::lround(reduction)), moving.size() - 1);
+    const Image& image = moving[level];
+    const double reduced = std::ldexp(1.0, -static_cast<int>(level)),
+                 texels = reduced / place.scale;  // per px
+    const glm::dvec2 middle = 0.5 * reduced * size_of(moving[0]);
+    const double angle = real::radians(place.turn_deg), c = real::cos(angle) * texels,
+                 s = real::sin(angle) * texels;
+    Laid result{make_image(width, height, 1), make_image(width, height, 1)};
+    for (std::int64_t y = 0; y < height; ++y)
+        for (std::int64_t x = 0; x < width; ++x) {
+            const double dx = double(x) + 0.5 - place.middle.x, dy = double(y) + 0.5 - place.middle.y;
+            const double u = middle.x + c * dx - s * dy, v = middle.y + s * dx + c * dy;
+            if (u < 0.0 || v < 0.0 || u > size_of(image).x || v > size_of(image).y) continue;
+            *result.values.at(x, y) = bilinear(image, 0, static_cast<float>(u), static_cast<float>(v));
+            *result.mask.at(x, y) = 1.0f;
+        }
+    return result;
+}
+
+/// Sums over the pixels that two pictures share.
+struct Sums {
+    double count = 0.0, f = 0.0, t = 0.0, ff = 0.0, tt = 0.0, ft = 0.0;
+    double correlation() const {
+        const double spread_f = ff - f * f / count, spread_t = tt - t * t / count;
+        const double least = count * double(least_spread) * double(least_spread);
+        return count > 0.0 && spread_f > least && spread_t > least
+                   ? (ft - f * t / count) / std::sqrt(spread_f * spread_t)
+                   : -1.0;
+    }
+};
+
+double likeness_of(const Image& fixed, const Laid& moving) {
+    Sums sums;
+    for (std::size_t i = 0; i < fixed.pixels.size(); ++i) {
+        if (moving.mask.pixels[i] == 0.0f) continue;
+        const double f = fixed.pixels[i], t = moving.values.pixels[i];
+        sums.count += 1.0;
+        sums.f += f;
+        sums.t += t;
+        sums.ff += f * f;
+        sums.tt += t * t;
+        sums.ft += f * t;
+    }
+    return sums.correlation();
+}
+
+// ---- The search.
+
+struct Found {
+    PictureOnPicture place;
+    double score = -std::numeric_limits<double>::infinity();
+};
+
+/// The spectra of what is correlated with every template: the picture, its square, and where it is.
+class FixedSpectra {
+  public:
+    explicit FixedSpectra(const Image& fixed) : width(fixed.width), height(fixed.height) {
+        for (std::int64_t y = 0; y < height; ++y)
+            for (std::int64_t x = 0; x < width; ++x) {
+                const std::size_t i = std::size_t(y * side + x);
+                value.re[i] = *fixed.at(x, y);
+                square.re[i] = value.re[i] * value.re[i];
+                place.re[i] = 1.0f;
+            }
+        for (ComplexGrid* grid : {&value, &square, &place}) transform(*grid);
+    }
+    static constexpr int side = 128;  // of pictures of at most 32 px and templates of at most 96 px
+    std::int64_t width, height;
+    ComplexGrid value{side}, square{side}, place{side};
+};
+
+/// Two correlations a * conj(b) and c * conj(d), as the real and the imaginary part.
+ComplexGrid correlated(const ComplexGrid& a, const ComplexGrid& b, const ComplexGrid& c,
+                       const ComplexGrid& d) {
+    ComplexGrid sum(a.side);
+    for (std::size_t i = 0; i < sum.re.size(); ++i) {
+        const float re = a.re[i] * b.re[i] + a.im[i] * b.im[i], im = a.im[i] * b.re[i] - a.re[i] * b.im[i];
+        const float re2 = c.re[i] * d.re[i] + c.im[i] * d.im[i], im2 = c.im[i] * d.re[i] - c.re[i] * d.im[i];
+        sum.re[i] = re - im2;
+        sum.im[i] = im + re2;
+    }
+    transform_back(sum);
+    return sum;
+}
+
+/// The best shift of the moving picture with this turn and scale; `place.middle` is not looked at.
+Found best_shift(const FixedSpectra& fixed, const Pyramid& moving, PictureOnPicture place) {
+    constexpr int side = FixedSpectra::side, most = 96;
+    place.middle = {0.5 * most, 0.5 * most};
+    const Laid laid_out = laid(moving, place, most, most);
+    ComplexGrid value(side), square(side), mask(side);
+    double area = 0.0;
+    for (int y = 0; y < most; ++y)
+        for (int x = 0; x < most; ++x) {
+            const std::size_t i = std::size_t(y) * side + std::size_t(x);
+            value.re[i] = *laid_out.values.at(x, y);
+            square.re[i] = value.re[i] * value.re[i];
+            mask.re[i] = *laid_out.mask.at(x, y);
+            area += mask.re[i];
+        }
+    for (ComplexGrid* grid : {&value, &square, &mask}) transform(*grid);
+    const ComplexGrid counts = correlated(fixed.place, mask, fixed.value, mask);
+    const ComplexGrid squares = correlated(fixed.square, mask, fixed.place, square);
+    const ComplexGrid products = correlated(fixed.value, value, fixed.place, value);
+    const double smaller = std::min(area, static_cast<double>(fixed.width * fixed.height));
+    Found best;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const std::size_t i = std::size_t(y) * side + std::size_t(x);
+            const Sums sums{counts.re[i],  counts.im[i],  products.im[i],
+                            squares.re[i], squares.im[i], products.re[i]};
+            if (sums.count < least_overlap * smaller) continue;
+            const double score = sums.correlation() * std::sqrt(sums.count / smaller);
+            if (score <= best.score) continue;
+            // The template's corner lies at (x, y); beyond the picture it is left of it or above.
+            const double left = x < fixed.width ? x : x - side, top = y < fixed.height ? y : y - side;
+            best = {place, score};
+            best.place.middle = {left + 0.5 * most, top + 0.5 * most};
+        }
+    return best;
+}
+
+std::vector<Found> searched(const Image& fixed, const Pyramid& moving, const PictureOnPicture& start,
+                            const Progress& progress) {
+    constexpr int turns = 36, scales = 13;
+    constexpr double scale_step = 1.14;
+    const FixedSpectra spectra(fixed);
+    std::vector<Found> found(turns * scales);
+    parallel_for(turns * scales, [&](std::int64_t i, int) {
+        progress.check();
+        PictureOnPicture place = start;
+        place.turn_deg += double(i % turns) * (360.0 / turns);
+        place.scale *= real::pow(scale_step, double(i / turns - scales / 2));
+        found[std::size_t(i)] = best_shift(spectra, moving, place);
+    });
+    std::ranges::stable_sort(found, std::greater{}, &Found::score);
+    return found;
+}
+
+// ---- Refinement.
+
+/// What a step changes: shift x, shift y, log of the scale, turn (radians), gain less 1, offset.
+constexpr std::size_t unknowns = 6;
+
+/// The normal equations of `fixed` = gain * moving, moved + offset. Every pixel says how the values there
+/// change as the picture moves under it.
+LeastSquares<unknowns> equations_of(const Image& fixed, const Laid& moving, const PictureOnPicture& place) {
+    LeastSquares<unknowns> system;
+    const Image &t = moving.values, &m = moving.mask;
+    for (std::int64_t y = 1; y + 1 < fixed.height; ++y)
+        for (std::int64_t x = 1; x + 1 < fixed.width; ++x) {
+            const bool inside =
+                *m.at(x, y) * *m.at(x - 1, y) * *m.at(x + 1, y) * *m.at(x, y - 1) * *m.at(x, y + 1) > 0.0f;
+            if (!inside) continue;
+            const double gx = 0.5 * (double(*t.at(x + 1, y)) - double(*t.at(x - 1, y)));
+            const double gy = 0.5 * (double(*t.at(x, y + 1)) - double(*t.at(x, y - 1)));
+            const double dx = double(x) + 0.5 - place.middle.x, dy = double(y) + 0.5 - place.middle.y;
+            const Vector<unknowns> row{
+                -gx, -gy, -(gx * dx + gy * dy), -(gx * dy - gy * dx), double(*t.at(x, y)), 1.0};
+            system.add(row, double(*fixed.at(x, y)));
+        }
+    return system;
+}
+
+/// The place after one step; empty where the pictures say nothing.
+std::optional<PictureOnPicture> stepped(const Image& fixed, const Laid& moving, PictureOnPicture place) {
+    LeastSquares<unknowns> system = equations_of(fixed, moving, place);
+    // A turn of something round, or a shift along an edge, stays: each costs a little.
+    constexpr double damping = 1e-3;
+    const double shifts = damping * (system.squares[0][0] + system.squares[1][1]);
+    const double quarter = 0.25 * static_cast<double>(longest_side(fixed));
+    for (std::size_t i = 0; i < 4; ++i) system.squares[i][i] += i < 2 ? shifts : shifts * quarter * quarter;
+    const std::optional<Vector<unknowns>> solution = solved(system.squares, system.products);
+    if (!solution || !((*solution)[4] > 1e-3)) return std::nullopt;
+    const auto change = [&](std::size_t i, double most) {
+        return std::clamp((*solution)[i] / (*solution)[4], -most, most);
+    };
+    place.middle += glm::dvec2(change(0, 3.0), change(1, 3.0));
+    place.scale *= real::exp(change(2, 0.1));
+    place.turn_deg += real::degrees(change(3, 0.1));
+    return place;
+}
+
+/// From `place`, in px of `fixed`; the score is the likeness.
+Found refined(const Image& fixed, const Pyramid& moving, PictureOnPicture place) {
+    constexpr int steps = 15;
+    constexpr double still = 1e-4;  // px
+    Found best;
+    for (int step = 0; step < steps; ++step) {
+        const Laid now = laid(moving, place, fixed.width, fixed.height);
+        if (const double likeness = likeness_of(fixed, now); likeness > best.score) best = {place, likeness};
+        const std::optional<PictureOnPicture> next = stepped(fixed, now, place);
+        if (!next) break;
+        const double moved =
+            std::fabs(next->middle.x - place.middle.x) + std::fabs(next->middle.y - place.middle.y);
+        place = *next;
+        if (moved < still && std::fabs(place.scale / best.place.scale - 1.0) < 1e-5) break;
+    }
+    return best;
+}
+
+double overlap_of(const Image& fixed, const Pyramid& moving, const PictureOnPicture& place) {
+    const Laid now = laid(moving, place, fixed.width, fixed.height);
+    double shared = 0.0;
+    for (const float inside : now.mask.pixels) shared += inside;
+    const double area = size_of(moving[0]).x * size_of(moving[0]).y * place.scale * place.scale;
+    return shared / std::min(area, double(fixed.width * fixed.height));
+}
+
+bool is_flat(const Image& image) {
+    Sums sums;
+    for (const float value : image.pixels) {
+        sums.count += 1.0;
+        sums.f += double(value);
+        sums.ff += double(value) * double(value);
+    }
+    return sums.ff / sums.count - sums.f * sums.f / (sums.count * sums.count) <
+           double(least_spread) * double(least_spread);
+}
+
+double turn_within_half(double degrees) { return degrees - 360.0 * std::floor((degrees + 180.0) / 360.0); }
+
+}  // namespace
+
+std::optional<Registration> registered(const Image& fixed, const Image& moving, const PictureOnPicture& start,
+                                       const Progress& progress) {
+    if (is_flat(fixed) || is_flat(moving)) return std::nullopt;
+    const Pyramid views = pyramid_of(fixed, searched_px), pictures = pyramid_of(moving, smallest_px);
+    std::size_t level = views.size() - 1, kept = 12;
+    const PictureOnPicture small_start = zoomed(start, std::ldexp(1.0, -static_cast<int>(level)));
+    std::vector<Found> found = searched(views[level], pictures, small_start, progress);
+    found.resize(std::min(found.size(), kept));
+    found.insert(found.begin(), {small_start});
+    for (;; --level) {
+        for (Found& each : found) {
+            progress.check();
+            each = refined(views[level], pictures, each.place);
+        }
+        std::stable_sort(found.begin() + 1, found.end(),
+                         [](const Found& a, const Found& b) { return a.score > b.score; });
+        kept = std::max<std::size_t>(1, kept / 3);
+        found.resize(std::min(found.size(), kept + 1));
+        if (level == 0 || longest_side(views[level]) * 2 > refined_px) break;
+        for (Found& each : found) each.place = zoomed(each.place, 2.0);
+    }
+    const Found& best = found[1].score > found[0].score + noticeable ? found[1] : found[0];
+    if (best.score < least_likeness || overlap_of(views[level], pictures, best.place) < least_overlap)
+        return std::nullopt;
+    Registration result{zoomed(best.place, std::ldexp(1.0, static_cast<int>(level))), best.score};
+    result.place.turn_deg = turn_within_half(result.place.turn_deg);
+    return result;
+}
+
+}  // namespace astrosplat
