@@ -22,6 +22,7 @@ struct Command {
         quit,             // unsaved changes already answered for
         import_file,      // path: as a new layer
         set_reference,    // path
+        align_reference,  // to what the view shows
         save_look,        // path: of the selected layer
         apply_look,       // path: to the selected layer
         regenerate,       // index: layer whose set is stale
@@ -38,8 +39,10 @@ struct Command {
         store_b,          // the look now becomes B
         take_snapshot,
         restore_snapshot,  // index
+        rename_snapshot,   // index, text
         delete_snapshot,   // index
         compare_snapshot,  // index becomes B
+        show_snapshot,     // likewise, and is seen in place of A
         copy_batch_command,
         copy_text,    // text
         say,          // text: for the message line

@@ -24,8 +24,8 @@ bool is_of_look(const ParameterKey& key, const Scene& scene, const Scene& stored
 
 }  // namespace
 
-StoredLook store_look(const std::string& name, const Document& document, const ViewState& view) {
-    return {name, std::make_shared<const Scene>(document.scene()), view.frame, view};
+StoredLook store_look(const std::string& name, const Document& document, double frame) {
+    return {name, std::make_shared<const Scene>(document.scene()), frame};
 }
 
 Scene with_look_of(const Scene& scene, const Scene& stored) {

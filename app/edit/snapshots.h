@@ -1,11 +1,10 @@
-// A named look, kept beside the document to compare with and to go back to. Lives as long as the session.
+// A named look, kept beside the document to compare with and to go back to (on disk: snapshot_files.h).
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "edit/document.h"
-#include "edit/view_state.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -15,10 +14,9 @@ struct StoredLook {
     std::string name;
     std::shared_ptr<const Scene> scene;
     double frame = 1.0;
-    ViewState view;
 };
 
-StoredLook store_look(const std::string& name, const Document& document, const ViewState& view);
+StoredLook store_look(const std::string& name, const Document& document, double frame);
 
 /// `scene` with the look of `stored`: look, render and visibility of the layers that both have by name, the
 /// output's exposure, and the animation of all these. Camera, sources, transforms and layers that `stored`

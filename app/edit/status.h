@@ -81,6 +81,7 @@ struct ReferenceStatus {
     std::size_t index = 0;  // in the scene
     double aspect = 0.0;    // width / height; 0: not read yet
     std::string error;      // why it cannot be read, one line
+    bool aligning = false;
 };
 
 /// View minus what it is compared with, where both are seen.

@@ -80,6 +80,8 @@ struct ViewState : PanelSizes {
     std::string hovered_parameter;  // of the panel's row under the mouse, set every frame; K sets a keyframe
     bool preparation_open = false;  // the panel shows before and after; set every frame
     bool snapshots_open = false;
+    int renamed_snapshot = -1;  // whose name is being typed; -1: none
+    std::string typed_name;     // so far
     bool help_open = false, log_open = false;
     bool render_open = false;  // the dialog of:
     RenderTask render;
@@ -100,6 +102,12 @@ inline ReferenceParams::View reference_view(ViewKind kind) {
 /// Something other than the view is shown beside, over or in place of it.
 inline bool compares(const ViewState& view) {
     return view.compare != CompareMode::a && view.compare != CompareMode::front;
+}
+
+/// The reference is compared with, over the view where nothing was compared so far.
+inline void show_reference(ViewState& view) {
+    view.compare_with = CompareWith::reference;
+    if (!compares(view)) view.compare = CompareMode::other;
 }
 
 }  // namespace astrosplat

@@ -97,9 +97,7 @@ bool blinks(const GuiFrame& f) { return f.view.compare == CompareMode::blink; }
 bool has_reference(const GuiFrame& f) { return f.status.reference.has_value(); }
 void toggle_placing(GuiFrame& f) {
     f.view.placing = !f.view.placing;
-    if (!f.view.placing) return;
-    f.view.compare_with = CompareWith::reference;
-    if (!compares(f.view)) f.view.compare = CompareMode::other;
+    if (f.view.placing) show_reference(f.view);
 }
 bool is_placing(const GuiFrame& f) { return f.view.placing; }
 void toggle_front(GuiFrame& f) { f.view.compare = shows_front(f) ? CompareMode::a : CompareMode::front; }

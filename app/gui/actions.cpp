@@ -115,6 +115,7 @@ const Action table[] = {
     {"View", "Front against its picture", plain('D'), toggle_front, has_front, shows_front},
     below_line({"View", "Load reference...", {}, ask<Kind::set_reference>}),
     {"View", "Place reference", plain('P'), toggle_placing, has_reference, is_placing},
+    {"View", "Align reference to this view", {}, ask<Kind::align_reference>, has_reference},
     below_line(flip<&ViewState::gate>("View", "Gate", plain('G'))),
     flip<&ViewState::safe_areas>("View", "Safe areas"),
     flip<&ViewState::camera_path>("View", "Camera path"),

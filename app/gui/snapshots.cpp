@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include <cmath>
 
@@ -31,19 +32,44 @@ void draw_thumbnail(ImDrawList* list, const Snapshot& snapshot, ImVec2 corner) {
     list->AddImage(snapshot.thumbnail, {x, y}, {x + shown_w, y + shown_h}, {0, 1}, {1, 0});
 }
 
+void begin_renaming(GuiFrame& frame, std::size_t index) {
+    frame.view.renamed_snapshot = static_cast<int>(index);
+    frame.view.typed_name = frame.status.snapshots[index].name;
+}
+
+// In place of the name: Enter takes what was typed, Escape or a click elsewhere drops it.
+void name_entry(GuiFrame& frame, std::size_t index, ImVec2 corner) {
+    ViewState& view = frame.view;
+    ImGui::SetCursorScreenPos(corner);
+    ImGui::SetNextItemWidth(px(thumbnail_width));
+    const bool popup =
+        ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    if (!popup && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputText(
+        "##name", &view.typed_name, ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
+    note_item(frame, "snapshot name");
+    if (entered && !view.typed_name.empty())
+        frame.requested.push_back({Command::Kind::rename_snapshot, {}, view.typed_name, index});
+    if (ImGui::IsItemDeactivated()) view.renamed_snapshot = -1;
+}
+
 void card_menu(GuiFrame& frame, std::size_t index) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), px(8)));
     const bool open = ImGui::BeginPopupContextItem("card menu");
     ImGui::PopStyleVar();
     if (!open) return;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(12), px(8)));
-    if (ImGui::MenuItem("Compare as B")) request(frame, Command::Kind::compare_snapshot, index);
-    note_item(frame, "snapshot/Compare as B");
-    if (ImGui::MenuItem("Restore")) request(frame, Command::Kind::restore_snapshot, index);
-    note_item(frame, "snapshot/Restore");
+    const auto entry = [&](const char* label) {
+        const bool chosen = ImGui::MenuItem(label);
+        note_item(frame, std::string("snapshot/") + label);
+        return chosen;
+    };
+    if (entry("Show")) request(frame, Command::Kind::show_snapshot, index);
+    if (entry("Compare as B")) request(frame, Command::Kind::compare_snapshot, index);
+    if (entry("Restore")) request(frame, Command::Kind::restore_snapshot, index);
     ImGui::Separator();
-    if (ImGui::MenuItem("Delete")) request(frame, Command::Kind::delete_snapshot, index);
-    note_item(frame, "snapshot/Delete");
+    if (entry("Rename")) begin_renaming(frame, index);
+    if (entry("Delete")) request(frame, Command::Kind::delete_snapshot, index);
     close_on_escape();
     ImGui::PopStyleVar();
     ImGui::EndPopup();
@@ -52,23 +78,29 @@ void card_menu(GuiFrame& frame, std::size_t index) {
 void draw_card(GuiFrame& frame, std::size_t index) {
     const Snapshot& snapshot = frame.status.snapshots[index];
     ImGui::PushID(static_cast<int>(index));
+    ImGui::BeginGroup();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     if (ImGui::InvisibleButton("card", {px(thumbnail_width), px(card_height)}))
         request(frame, Command::Kind::compare_snapshot, index);
     note_item(frame, fmt::format("snapshot {}", index));
     const bool hovered = ImGui::IsItemHovered(), is_b = frame.status.b_snapshot == static_cast<int>(index);
-    tooltip("Click: compare as B. Right click: restore, delete");
+    tooltip("Click: compare as B. Right click: show, restore, rename, delete");
+    ImGui::SetItemAllowOverlap();
     ImDrawList* list = ImGui::GetWindowDrawList();
     draw_thumbnail(list, snapshot, corner);
     const ImVec2 end{corner.x + px(thumbnail_width), corner.y + px(thumbnail_height)};
     if (is_b || hovered) list->AddRect(corner, end, is_b ? color::accent : color::dim, px(3), 0, px(1.5f));
     ImGui::PushFont(small_font());
+    const bool is_renamed = frame.view.renamed_snapshot == static_cast<int>(index);
     const std::string name = (is_b ? "B  " : "") + snapshot.name;
-    list->AddText({corner.x, end.y + px(3)}, is_b ? color::accent : color::text,
-                  fitting(name, px(thumbnail_width)).c_str());
+    if (!is_renamed)
+        list->AddText({corner.x, end.y + px(3)}, is_b ? color::accent : color::text,
+                      fitting(name, px(thumbnail_width)).c_str());
     list->AddText({corner.x, end.y + px(18)}, color::dim, snapshot_line(snapshot).c_str());
     ImGui::PopFont();
     card_menu(frame, index);
+    if (is_renamed) name_entry(frame, index, {corner.x, end.y + px(2)});
+    ImGui::EndGroup();
     ImGui::PopID();
 }
 

@@ -41,36 +41,15 @@ Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height
     return small;
 }
 
-void Comparison::take_snapshot(const Document& document, const ViewState& view, const Display& display,
-                               glm::ivec2 size_px, const ViewFrameStatus& frame) {
-    constexpr std::size_t most = 24;
-    constexpr int thumbnail_px = 192;
-    StoredView stored;
-    stored.look = store_look("Look " + std::to_string(++snapshots_taken_), document, view);
-    const Image small = thumbnail_of(display.read(), size_px.x, size_px.y, thumbnail_px);
-    stored.thumbnail.upload(small);
-    stored.aspect = static_cast<float>(small.width) / static_cast<float>(small.height);
-    const bool final = frame.state == ViewFrameState::final;
-    stored.splats = final ? frame.total : frame.shown;
-    stored.seconds = final ? frame.seconds : 0.0;
-    snapshots_.push_back(std::move(stored));
-    if (snapshots_.size() > most) delete_snapshot(0);
-}
-
-void Comparison::delete_snapshot(std::size_t index) {
-    if (index >= snapshots_.size()) return;
-    snapshots_.erase(snapshots_.begin() + static_cast<std::ptrdiff_t>(index));
-    if (b_snapshot_ == static_cast<int>(index)) b_snapshot_ = -1;
-    if (b_snapshot_ > static_cast<int>(index)) --b_snapshot_;
-}
-
-void Comparison::clear_snapshots() {
-    snapshots_.clear();
+void Comparison::open_snapshots(const std::filesystem::path& scene_file, std::vector<std::string>& problems) {
+    snapshots_.open(scene_file, problems);
     b_snapshot_ = -1;
 }
 
-const StoredLook* Comparison::snapshot(std::size_t index) const {
-    return index < snapshots_.size() ? &snapshots_[index].look : nullptr;
+void Comparison::delete_snapshot(std::size_t index) {
+    snapshots_.remove(index);
+    if (b_snapshot_ == static_cast<int>(index)) b_snapshot_ = -1;
+    if (b_snapshot_ > static_cast<int>(index)) --b_snapshot_;
 }
 
 void Comparison::set_b(std::size_t index) {
@@ -104,7 +83,7 @@ void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& 
         shown.b_opacity = static_cast<float>(reference.opacity);
     } else {
         if (b_snapshot_ < 0) return;
-        const StoredLook& look = snapshots_[static_cast<std::size_t>(b_snapshot_)].look;
+        const StoredLook& look = snapshots_.look(static_cast<std::size_t>(b_snapshot_));
         PreviewChoice choice = how.choice;
         choice.refined = false;  // two sums of whole sets would take twice the memory
         b_.show(how.request_for(with_look_of(scene, *look.scene)), choice, how.may_settle, how.now);
@@ -119,12 +98,9 @@ const ViewFrameStatus* Comparison::refining() const {
 }
 
 void Comparison::fill(Status& status) const {
-    status.snapshots.clear();
-    for (const StoredView& stored : snapshots_)
-        status.snapshots.push_back({stored.look.name, to_handle(stored.thumbnail.handle()), stored.aspect,
-                                    stored.splats, stored.seconds});
+    status.snapshots = snapshots_.cards();
     status.b_snapshot = b_snapshot_;
-    status.b_name = b_snapshot_ >= 0 ? snapshots_[static_cast<std::size_t>(b_snapshot_)].look.name : "";
+    status.b_name = b_snapshot_ >= 0 ? snapshots_.look(static_cast<std::size_t>(b_snapshot_)).name : "";
 }
 
 }  // namespace astrosplat

@@ -9,11 +9,10 @@
 #include <memory>
 #include <vector>
 
-#include "edit/snapshots.h"
 #include "edit/status.h"
 #include "gl/display.h"
-#include "gl/image_texture.h"
 #include "viewer/reference_picture.h"
+#include "viewer/snapshot_list.h"
 #include "viewer/view_frame.h"
 
 namespace astrosplat {
@@ -25,17 +24,14 @@ class Comparison {
   public:
     explicit Comparison(std::shared_ptr<PictureFiles> files) : b_(std::move(files)) {}
 
-    /// Keeps the look as it is, with a thumbnail of what `display` shows at this size in px and the facts of
-    /// that picture. The oldest of more than 24 goes.
-    void take_snapshot(const Document& document, const ViewState& view, const Display& display,
-                       glm::ivec2 size_px, const ViewFrameStatus& frame);
+    SnapshotList& snapshots() { return snapshots_; }
+    const SnapshotList& snapshots() const { return snapshots_; }
+    /// Those of another scene; what cannot be read becomes a line of `problems`.
+    void open_snapshots(const std::filesystem::path& scene_file, std::vector<std::string>& problems);
+    /// Throws as SnapshotList::remove() does.
     void delete_snapshot(std::size_t index);
-    void clear_snapshots();
-    /// Null where there is none of this number.
-    const StoredLook* snapshot(std::size_t index) const;
     /// Makes a snapshot B; numbers that there are not change nothing.
     void set_b(std::size_t index);
-    void set_b_to_last() { set_b(snapshots_.size() - 1); }
 
     /// Chooses the reference of the view, reads its picture in the background, and says in `status` which it
     /// is. Call it every frame.
@@ -66,26 +62,12 @@ class Comparison {
     void fill(Status& status) const;
 
   private:
-    /// A stored look with a thumbnail of it.
-    struct StoredView {
-        StoredLook look;
-        ImageTexture thumbnail;
-        float aspect = 1.0f;
-        std::int64_t splats = 0;
-        double seconds = 0.0;
-    };
-
     ViewFrame b_;
-    std::vector<StoredView> snapshots_;
-    int b_snapshot_ = -1, snapshots_taken_ = 0;
+    SnapshotList snapshots_;
+    int b_snapshot_ = -1;
     bool comparing_ = false;  // the last show() showed more than A
     bool blink_shows_other_ = false;
     ReferencePicture reference_;
 };
-
-/// A texture as the widgets name it.
-inline void* to_handle(unsigned texture) {
-    return reinterpret_cast<void*>(static_cast<std::uintptr_t>(texture));
-}
 
 }  // namespace astrosplat

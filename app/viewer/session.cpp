@@ -9,9 +9,11 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/text.h"
 #include "edit/new_from_file.h"
 #include "source/write_image.h"
 #include "viewer/session_commands.h"
+#include "viewer/session_reference.h"
 #include "viewer/session_render.h"
 #include "viewer/session_status.h"
 
@@ -79,6 +81,15 @@ void want_sets(Session& session, double now) {
     session.sets.want(session.document);
 }
 
+void open_snapshots(Session& session) {
+    std::vector<std::string> problems;
+    session.comparison.open_snapshots(session.document.file(), problems);
+    for (const std::string& problem : problems) say(session.status, problem, true);
+    const auto count = static_cast<std::int64_t>(session.comparison.snapshots().size());
+    if (count > 0 && problems.empty() && !session.view.snapshots_open)
+        say(session.status, counted(count, "snapshot") + " of this scene: View > Snapshots shows them");
+}
+
 Command::Kind command_for(FileKind kind, bool fresh) {
     if (kind == FileKind::scene) return Command::Kind::open;
     if (kind == FileKind::look) return Command::Kind::apply_look;
@@ -103,6 +114,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     find_recoveries(status);
     status.has_ffmpeg = has_program("ffmpeg");
     status.recent = preferences.recent;
+    open_snapshots(*this);
 }
 
 void say(Status& status, const std::string& text, bool error) {
@@ -121,7 +133,7 @@ void take_document(Session& session, Document next) {
     view.solo.clear();
     view.playing = false;
     view.hint_open = session.fresh_demo = false;
-    session.comparison.clear_snapshots();
+    open_snapshots(session);
     session.autosave.remove();
     if (!session.document.file().empty()) add_recent(session.preferences, session.document.file());
     session.status.recent = session.preferences.recent;
@@ -156,6 +168,7 @@ void advance(Session& session, double now) {
     if (!for_screenshot) session.sets.show_growth(now);
     check_disk(session, now);
     attempt(session.status, [&] { show_renderings(session, now); });
+    attempt(session.status, [&] { take_alignment(session); });
     session.autosave.update(session.document);
     fill_status(session);
 }
@@ -195,7 +208,9 @@ double next_due(const Session& session, double now) {
     const ViewFrameState reached = session.view_frame.status().state;
     if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;
     if (reached == ViewFrameState::preview && session.view.settle) return session.view_frame.due(now);
-    if (session.difference.waiting() || session.comparison.reference().working()) return 0.1;
+    if (session.difference.waiting() || session.comparison.reference().working() ||
+        session.alignment.working())
+        return 0.1;
     if (session.view.compare == CompareMode::blink)
         return (std::floor(now * session.view.blink_hz) + 1.0) / session.view.blink_hz - now;
     if (session.front.working() || session.preparation.working() || session.finished.working()) return 0.1;

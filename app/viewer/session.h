@@ -31,6 +31,7 @@
 #include "viewer/navigator.h"
 #include "viewer/playback.h"
 #include "viewer/prepare_preview.h"
+#include "viewer/reference_alignment.h"
 #include "viewer/render_queue.h"
 #include "viewer/run_viewer.h"
 #include "viewer/set_wishes.h"
@@ -62,6 +63,7 @@ struct Session {
     ViewFrame view_frame{files};  // A
     Comparison comparison{files};
     DifferenceMeter difference;
+    ReferenceAlignment alignment;
     FrontCheck front;
     std::shared_ptr<const FrontFound> front_shown;  // whose difference is in the texture
     ImageTexture front_texture;
@@ -93,6 +95,7 @@ struct Session {
     // Of the last draw_viewport():
     ViewRequest request;
     glm::ivec2 viewport_px{0};
+    DisplaySettings displayed;
 
     ShownView shown() const { return {request, viewport_px, status.box}; }
 };

@@ -15,6 +15,7 @@
 #include "scene/reference_place.h"
 #include "scene/save.h"
 #include "source/write_image.h"
+#include "viewer/session_reference.h"
 
 namespace astrosplat {
 namespace {
@@ -50,6 +51,7 @@ void save_as(State& s, const Command& c) {
     add_recent(s.preferences, s.document.file());
     s.status.recent = s.preferences.recent;
     note_saved(s);
+    s.comparison.snapshots().move_to(s.document.file());
 }
 
 void reload(State& s, const Command&) {
@@ -84,9 +86,10 @@ void set_reference(State& s, const Command& c) {
         if (!index) scene.references.emplace_back();
         (index ? scene.references[*index] : scene.references.back()).file = std::filesystem::absolute(c.path);
     });
-    s.view.compare_with = CompareWith::reference;
-    if (!compares(s.view)) s.view.compare = CompareMode::other;
+    show_reference(s.view);
 }
+
+void align_reference(State& s, const Command&) { begin_alignment(s); }
 
 void save_look(State& s, const Command& c) {
     const LayerParams* layer = layer_at(s, s.view.layer);
@@ -149,22 +152,41 @@ void save_view(State& s, const Command& c) {
 }
 void take_screenshot(State& s, const Command& c) { s.screenshot = c.path; }
 
+/// With a thumbnail of what is shown, and the facts of that picture.
 void snapshot(State& s, const Command&) {
-    s.comparison.take_snapshot(s.document, s.view, s.display, s.viewport_px, s.view_frame.status());
+    constexpr int thumbnail_px = 192;
+    SnapshotList& snapshots = s.comparison.snapshots();
+    const ViewFrameStatus& shown = s.view_frame.status();
+    const bool final = shown.state == ViewFrameState::final;
+    snapshots.add(store_look(snapshots.next_name(), s.document, s.view.frame),
+                  thumbnail_of(s.display.read(), s.viewport_px.x, s.viewport_px.y, thumbnail_px),
+                  final ? shown.total : shown.shown, final ? shown.seconds : 0.0);
 }
 
 void store_b(State& s, const Command& c) {
-    snapshot(s, c);
-    s.comparison.set_b_to_last();
+    const std::size_t index = s.comparison.snapshots().size();
     say(s.status, "B is the look as it is now; Tab shows A or B");
+    try {
+        snapshot(s, c);
+    } catch (const OutputError& error) {
+        say(s.status, error.what(), true);
+    }
+    s.comparison.set_b(index);
 }
 
 void restore_snapshot(State& s, const Command& c) {
-    if (const StoredLook* look = s.comparison.snapshot(c.index)) restore_look(s.document, *look);
+    if (c.index < s.comparison.snapshots().size())
+        restore_look(s.document, s.comparison.snapshots().look(c.index));
 }
 
+void rename_snapshot(State& s, const Command& c) { s.comparison.snapshots().rename(c.index, c.text); }
 void delete_snapshot(State& s, const Command& c) { s.comparison.delete_snapshot(c.index); }
 void compare_snapshot(State& s, const Command& c) { s.comparison.set_b(c.index); }
+void show_snapshot(State& s, const Command& c) {
+    s.comparison.set_b(c.index);
+    s.view.compare_with = CompareWith::b;
+    s.view.compare = CompareMode::other;
+}
 
 /// The command line that renders what the viewport shows.
 void copy_batch_command(State& s, const Command&) {
@@ -223,6 +245,7 @@ constexpr Entry entries[] = {{Kind::new_from_file, open_path},
                              {Kind::quit, quit},
                              {Kind::import_file, import_file},
                              {Kind::set_reference, set_reference},
+                             {Kind::align_reference, align_reference},
                              {Kind::save_look, save_look},
                              {Kind::apply_look, apply_look_file},
                              {Kind::regenerate, regenerate},
@@ -239,8 +262,10 @@ constexpr Entry entries[] = {{Kind::new_from_file, open_path},
                              {Kind::store_b, store_b},
                              {Kind::take_snapshot, snapshot},
                              {Kind::restore_snapshot, restore_snapshot},
+                             {Kind::rename_snapshot, rename_snapshot},
                              {Kind::delete_snapshot, delete_snapshot},
                              {Kind::compare_snapshot, compare_snapshot},
+                             {Kind::show_snapshot, show_snapshot},
                              {Kind::copy_batch_command, copy_batch_command},
                              {Kind::copy_text, copy_text},
                              {Kind::say, say_text},

@@ -231,6 +231,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
         return wanted;
     };
     session.comparison.find_reference(session.document.scene(), session.view, session.status);
+    if (session.status.reference) session.status.reference->aligning = session.alignment.working();
     session.comparison.show(session.document.scene(), session.view,
                             {request_for, choice, may_settle && a_is_done, now, frame_on_screen(whole)},
                             shown);
@@ -239,6 +240,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     show_preparation(session);
     shown.content = 1 + session.view_frame.version() + session.comparison.version() + session.fronts_shown;
     measure_difference(session, shown, now);
+    session.displayed = shown;
     session.status.viewport_texture =
         to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));
 }

@@ -219,5 +219,32 @@ TEST(Snapshots, BecomeBAndAreTaken) {
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::restore_snapshot});
 }
 
+TEST(Snapshots, AreRenamedInTheirCard) {
+    TestWindow window(example_document());
+    window.view.snapshots_open = true;
+    window.status.snapshots = {{"One", nullptr, 1.78f, 100, 0.5}, {"Two", nullptr, 1.78f, 100, 0}};
+    window.frame(2);
+    const auto begin_renaming = [&] {
+        window.click(window.at("snapshot 1"), 1);
+        window.frame(3);
+        window.click("snapshot/Rename");
+        window.frame(4);
+    };
+    begin_renaming();
+    window.type("Kälter");
+    window.tap(key_code::enter);
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::rename_snapshot});
+    EXPECT_EQ(commands[0].text, "Kälter");
+    EXPECT_EQ(commands[0].index, 1U);
+    EXPECT_FALSE(window.has("snapshot name"));
+    begin_renaming();
+    window.type("x");
+    window.tap(key_code::escape);
+    window.frame();
+    EXPECT_FALSE(window.has("snapshot name"));
+    EXPECT_TRUE(window.take_commands().empty()) << "Escape drops what was typed";
+}
+
 }  // namespace
 }  // namespace astrosplat

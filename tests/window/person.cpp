@@ -34,9 +34,10 @@ void Person::move(glm::vec2 at) const {
     act(words);
 }
 
-void Person::click(glm::vec2 at) const {
+void Person::click(glm::vec2 at, int button) const {
+    const std::string pressed = std::to_string(button);
     Words words = to(at);
-    add(words, {"sleep", "0.2", "mousedown", "1", "sleep", "0.15", "mouseup", "1", "sleep", "0.15"});
+    add(words, {"sleep", "0.2", "mousedown", pressed, "sleep", "0.15", "mouseup", pressed, "sleep", "0.15"});
     act(words);
 }
 

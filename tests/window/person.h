@@ -13,7 +13,7 @@ class Person {
     explicit Person(std::string display) : display_(std::move(display)) {}
 
     void move(glm::vec2 to) const;
-    void click(glm::vec2 at) const;
+    void click(glm::vec2 at, int button = 1) const;  // 3: the right one
     void double_click(glm::vec2 at) const;
     /// With the left button, in steps; rests before letting go.
     void drag(glm::vec2 from, glm::vec2 by) const;

@@ -162,6 +162,14 @@ void reference_buttons(Context& context) {
         return;
     }
     if (!context.status.reference->error.empty()) note(context.status.reference->error, color::error);
+    const char* const align = context.status.reference->aligning ? "Aligning..." : "Align to this view";
+    const int placed = button_line({"Place in the view", align});
+    if (placed == 0) {
+        context.view.placing = true;
+        show_reference(context.view);
+    }
+    if (placed == 1 && !context.status.reference->aligning)
+        context.commands.push_back({Command::Kind::align_reference, {}, "", 0});
     const auto index = static_cast<std::ptrdiff_t>(context.status.reference->index);
     const ReferenceParams::View view = reference_view(context.view.view);
     const int clicked = button_line({"Replace...", "Another for this view", "Remove"});

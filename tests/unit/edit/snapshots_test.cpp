@@ -17,13 +17,11 @@ const std::string power = "layer.dust.look.alpha.power";
 struct Snapshots : testing::Test {
     test::SceneFolder f;
     Document document = Document::open(f.file);
-    ViewState view;
-    StoredLook first = store_look("Erster Blick", document, view);
+    StoredLook first = store_look("Erster Blick", document, 1.0);
 };
 
 TEST_F(Snapshots, HoldTheMoment) {
-    view.frame = 12.0;
-    const StoredLook later = store_look("Later", document, view);
+    const StoredLook later = store_look("Later", document, 12.0);
     document.set(opacity, 0.25, 1.0);
     EXPECT_EQ(later.name, "Later");
     EXPECT_EQ(later.frame, 12.0);
