@@ -99,7 +99,7 @@ struct PixelProbe {
 
 struct Snapshot {
     std::string name;
-    void* thumbnail = nullptr;  // texture handle for the widgets
+    void* thumbnail = nullptr;  // texture handle for the widgets, top row first
     float aspect = 1.0f;
     std::int64_t splats = 0;
     double seconds = 0.0;  // render time; 0: from the preview

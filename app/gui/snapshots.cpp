@@ -22,14 +22,14 @@ std::string snapshot_line(const Snapshot& snapshot) {
                                 : splats + ", preview";
 }
 
-// The thumbnail as large as its frame allows; its first row is the lowest.
+// The thumbnail as large as its frame allows.
 void draw_thumbnail(ImDrawList* list, const Snapshot& snapshot, ImVec2 corner) {
     const float w = px(thumbnail_width), h = px(thumbnail_height);
     list->AddRectFilled(corner, {corner.x + w, corner.y + h}, IM_COL32_BLACK, px(3));
     if (!snapshot.thumbnail || snapshot.aspect <= 0) return;
     const float shown_w = std::min(w, h * snapshot.aspect), shown_h = shown_w / snapshot.aspect;
     const float x = corner.x + (w - shown_w) * 0.5f, y = corner.y + (h - shown_h) * 0.5f;
-    list->AddImage(snapshot.thumbnail, {x, y}, {x + shown_w, y + shown_h}, {0, 1}, {1, 0});
+    list->AddImage(snapshot.thumbnail, {x, y}, {x + shown_w, y + shown_h});
 }
 
 void begin_renaming(GuiFrame& frame, std::size_t index) {

@@ -219,6 +219,20 @@ TEST(Snapshots, BecomeBAndAreTaken) {
     EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::restore_snapshot});
 }
 
+TEST(Snapshots, StandUpright) {
+    TestWindow window(example_document());
+    Picture8 thumbnail(8, 4);
+    for (int x = 0; x < 8; ++x) thumbnail.at(x, 0) = thumbnail.at(x, 1) = {255, 0, 0, 255};
+    window.view.snapshots_open = true;
+    window.status.snapshots = {{"One", &thumbnail, 2.0f, 100, 0.5}};
+    window.frame(2);
+    const glm::vec2 card = window.at("snapshot 0");
+    const Picture8 picture = window.picture();
+    const auto red = [&](float below) { return picture.at(int(card.x), int(card.y + below)).r; };
+    EXPECT_EQ(red(-42.0f), 255) << "its first row is at the top";
+    EXPECT_EQ(red(6.0f), 0);
+}
+
 TEST(Snapshots, AreRenamedInTheirCard) {
     TestWindow window(example_document());
     window.view.snapshots_open = true;

@@ -82,6 +82,29 @@ TEST_F(WindowReference, OneThatCannotBeReadIsSaid) {
     EXPECT_EQ(frame_pixels(), before);
 }
 
+/// The frame itself, as a picture that lies elsewhere.
+TEST_F(WindowReference, IsAlignedToTheView) {
+    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "-o", "frame.png", "--no-cache"}).code, 0);
+    std::string text = text_of(scene_file);
+    text.replace(text.find("ferner Nebel"), text.size(),
+                 "frame.png\"\nposition = [0.1, -0.05]\nscale = 0.8\n");
+    write_text(scene_file, text);
+    start();
+    settled_frame();
+    same_widgets().status.reference = ReferenceStatus{0, 16.0 / 9.0, ""};
+    same_widgets().frame(2);
+    choose("View/Align reference to this view");
+    expect_title("scene.toml - edited");
+    person->press("ctrl+s");
+    expect_title("scene.toml");
+    const ReferenceParams found = saved().references.at(0);
+    EXPECT_NEAR(found.position.x, 0.0, 1.0 / frame().height);
+    EXPECT_NEAR(found.position.y, 0.0, 1.0 / frame().height);
+    EXPECT_NEAR(found.scale, 1.0, 0.005);
+    person->press("ctrl+z");
+    expect_title("scene.toml - edited");
+}
+
 /// What equals B is grey in the difference, whatever is stored as B; changes are seen about that grey.
 TEST_F(WindowReference, TheDifferenceFromBIsNeverBlack) {
     start();
