@@ -256,6 +256,23 @@ void reduce(Texture& texture, double first_share, const std::function<double()>&
 
 }  // namespace
 
+void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name) {
+    constexpr std::int64_t most_texels = 1920 * 1200;
+    constexpr int most_times = 4;
+    for (TexturedMesh& mesh : meshes) {
+        for (Texture& texture : mesh.textures) {
+            const std::int64_t texels = texels_of(texture);
+            int times = 1;
+            while (times < most_times && texels * (times + 1) * (times + 1) <= most_texels) ++times;
+            if (times == 1 || texels == 0) continue;
+            log_detail(fmt::format("layer '{}': a picture of {}x{} px is enlarged {} times", layer_name,
+                                   texture.image.width, texture.image.height, times));
+            texture.image = enlarged(texture.image, times);
+            texture.times = times;
+        }
+    }
+}
+
 void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& params,
                      const BodiesLimit& limit, const std::string& layer_name) {
     if (limit.most_dots <= 0 && most_bytes(meshes, params) <= limit.room_bytes) return;
@@ -264,7 +281,8 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
     for (double share = share_now(); share > 1.0; share = share_now()) {
         Texture* const largest = largest_texture(meshes);
         if (!largest || std::ranges::count(reduced, largest) > 0) return;
-        const std::int64_t width = largest->image.width, height = largest->image.height;
+        const std::int64_t width = largest->image.width / largest->times,
+                           height = largest->image.height / largest->times;
         reduce(*largest, share, share_now);
         reduced.push_back(largest);
         const bool few = limit.most_dots <= 0 || expected_dots(meshes, params) < limit.most_dots * 4 / 5;
@@ -272,8 +290,10 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
             few ? fmt::format("would not fit into {} of memory",
                               human_bytes(static_cast<double>(limit.room_bytes)))
                 : fmt::format("would be more than {}", human_count(limit.most_dots, "dot"));
-        log_warning(fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies {}",
-                                layer_name, width, height, largest->image.width, largest->image.height, why));
+        const std::string message =
+            fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}, for its bodies {}",
+                        layer_name, width, height, largest->image.width, largest->image.height, why);
+        if (largest->image.width < width) log_warning(message);  // else it was only enlarged too much
     }
 }
 

@@ -28,6 +28,10 @@ struct BodiesLimit {
     std::int64_t most_dots = 0;  // 0: as many as there are
 };
 
+/// Enlarges pictures that are small by whole numbers, to no more than a picture of 1920x1200 has: a texel is
+/// then several dots, which together show it as sharp as it was. Says so at detail level.
+void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name);
+
 /// Reduces every picture of more texels by an area filter to so many; 0: none. Says so at detail level.
 void reduce_to(std::vector<TexturedMesh>& meshes, std::int64_t most_texels, const std::string& layer_name);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "core/parallel.h"
@@ -29,6 +30,38 @@ Cover cover_of(std::int64_t i, std::int64_t before, std::int64_t after) {
     return cover;
 }
 
+float light(float value) { return value > 0.0f && std::isfinite(value) ? value : 0.0f; }
+
+// Towards its neighbours, linearly: a pixel's values at the middles of its parts, row by row.
+class Parts {
+  public:
+    explicit Parts(int times) : values(static_cast<std::size_t>(times) * static_cast<std::size_t>(times)) {
+        for (int i = 0; i < times; ++i)
+            offsets_.push_back((static_cast<float>(i) + 0.5f) / static_cast<float>(times) - 0.5f);
+    }
+
+    void set(const float (&around)[3][3]) {
+        std::size_t at = 0;
+        for (const float y : offsets_) {
+            const int row = y < 0.0f ? 0 : 2;
+            for (const float x : offsets_) {
+                const int column = x < 0.0f ? 0 : 2;
+                const float a = std::fabs(x), b = std::fabs(y);
+                values[at++] = (1.0f - b) * ((1.0f - a) * around[1][1] + a * around[1][column]) +
+                               b * ((1.0f - a) * around[row][1] + a * around[row][column]);
+            }
+        }
+        const float sum = std::accumulate(values.begin(), values.end(), 0.0f);
+        const float gain = sum > 0.0f ? around[1][1] * static_cast<float>(values.size()) / sum : 0.0f;
+        for (float& value : values) value *= gain;
+    }
+
+    std::vector<float> values;
+
+  private:
+    std::vector<float> offsets_;  // of the parts' middles, in pixels
+};
+
 }  // namespace
 
 Image reduced_by_area(const Image& image, std::int64_t width, std::int64_t height) {
@@ -50,6 +83,29 @@ Image reduced_by_area(const Image& image, std::int64_t width, std::int64_t heigh
                 for (int c = 0; c < image.channels; ++c)
                     out.at(x, y)[c] +=
                         column.shares[k] * row.at(column.first + static_cast<std::int64_t>(k), 0)[c];
+        }
+    });
+    return out;
+}
+
+Image enlarged(const Image& image, int times) {
+    Image out = unfilled_image(image.width * times, image.height * times, image.channels);
+    parallel_each(image.height, 16, [&](std::int64_t y) {
+        Parts parts(times);
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            for (int c = 0; c < image.channels; ++c) {
+                float around[3][3];
+                for (int j = 0; j < 3; ++j)
+                    for (int i = 0; i < 3; ++i)
+                        around[j][i] =
+                            light(image.at(std::clamp(x + i - 1, std::int64_t{0}, image.width - 1),
+                                           std::clamp(y + j - 1, std::int64_t{0}, image.height - 1))[c]);
+                parts.set(around);
+                for (int j = 0; j < times; ++j)
+                    for (int i = 0; i < times; ++i)
+                        out.at(x * times + i, y * times + j)[c] =
+                            parts.values[static_cast<std::size_t>(j * times + i)];
+            }
         }
     });
     return out;

@@ -68,6 +68,7 @@ BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> mes
                        const std::string& layer_name) {
     BodiesPlan plan{std::move(meshes), source.structure};
     plan.structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
+    enlarge_small_pictures(plan.meshes, layer_name);
     reduce_to(plan.meshes, plan.structure.most_texels, layer_name);
     if (source.splats > 0)
         reduce_pictures(plan.meshes, plan.structure,

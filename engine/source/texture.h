@@ -25,7 +25,8 @@ struct PictureReaders {
 };
 
 struct Texture {
-    Image image;  // RGBA, linear, premultiplied; row 0 is the top (v = 1)
+    Image image;    // RGBA, linear, premultiplied; row 0 is the top (v = 1)
+    int times = 1;  // as wide and high as the picture that was read (enlarge_small_pictures, bodies.h)
     TextureSettings::Filter filter = TextureSettings::Filter::bilinear;
     TextureSettings::Wrap wrap = TextureSettings::Wrap::clamp;  // never automatic once loaded
     bool divided =

@@ -70,7 +70,7 @@ TEST_F(LoadSourceTest, BodiesKeepToTexelsAndSplats) {
     source.structure.kind = StructureKind::sheet;
     const std::int64_t all = load_source(source, "gas").size();
     ASSERT_GT(all, 8000);
-    source.structure.most_texels = 2400;
+    source.structure.most_texels = 480 * 320 / 4;  // of the enlarged picture
     const std::int64_t few = load_source(source, "gas").size();
     EXPECT_LT(few, all / 3);
     EXPECT_GT(few, all / 6);
