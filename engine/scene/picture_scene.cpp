@@ -48,7 +48,7 @@ name = {name}
 meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
 uv        = "camera"              # depth goes along the rays to this camera, so that from there one sees the picture:
 uv_camera = {{ position = [0, {distance}, 0], up = [0, 0, -1], fov = {fov} }}
-structure = {{ kind = {kind}, depth = {depth}, clumps = 1.0,{bend} opacity = {opacity}, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
+structure = {{ kind = {kind}, depth = {depth}, clumps = 1.0,{bend} {opacity}, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
@@ -134,11 +134,11 @@ double split_above_px(StructureKind structure, double longest_over_height) {
            longest_over_height * 1080.0;
 }
 
-// Power of brightness. Low for a disk, whose dim parts are then not as bright as its middle from the edge,
-// and lower for walls, which are all edge.
+// Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
+// edge, and the middle does not burn out from aslant. Walls are all edge.
 std::string_view opacity_of(StructureKind structure) {
-    if (structure == StructureKind::walls) return "0.3";
-    return structure == StructureKind::disk ? "0.4" : "0.55";
+    if (structure == StructureKind::walls) return "opacity = 0.3";
+    return structure == StructureKind::disk ? "opacity = 0.42, density = 0.95" : "opacity = 0.55";
 }
 
 }  // namespace
