@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "image/resample.h"
+#include "look/apply.h"
 #include "pipeline.h"
 #include "scene/front_picture.h"
 #include "scene/layer_setup.h"
@@ -51,11 +52,10 @@ using LayerSets = std::vector<std::shared_ptr<const SplatSet>>;
 LayerSets load_sets(const Scene& now, const SetCache& cache, const Progress& progress) {
     LayerSets sets;
     for (const LayerParams& layer : now.layers) {
-        OptionalColumns wanted{false, false, false};
-        wanted.uv = !layer.look.thickness.map.empty();
         sets.push_back(nullptr);
         if (!layer.visible) continue;
-        LoadedSet loaded = load_source(cache, layer.source, layer.name, progress, nullptr, wanted);
+        LoadedSet loaded =
+            load_source(cache, layer.source, layer.name, progress, nullptr, columns_read(layer.look));
         sets.back() = std::make_shared<const SplatSet>(std::move(loaded.set));
     }
     return sets;

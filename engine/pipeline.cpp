@@ -94,9 +94,8 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     counts.name = params.name;
     if (!ever_visible(scene, params)) return;
     const auto start = Clock::now();
-    OptionalColumns wanted{false, false, false};  // what no look reads
-    wanted.uv = !params.look.thickness.map.empty();
-    LoadedSet loaded = load_source(cache, params.source, params.name, progress, nullptr, wanted);
+    LoadedSet loaded =
+        load_source(cache, params.source, params.name, progress, nullptr, columns_read(params.look));
     const auto set = std::make_shared<SplatSet>(std::move(loaded.set));
     layer.set = set;
     if (shaded_alike(scene, params.name)) layer.to_use_up = set;

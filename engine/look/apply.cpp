@@ -101,6 +101,11 @@ void finish(const ShadedSplats& shaded, Clock::time_point start, LookStatistics*
 
 }  // namespace
 
+OptionalColumns columns_read(const Look& look) {
+    const bool cells = look.vertical.match == VerticalAlpha::Match::picture;
+    return {cells || !look.thickness.map.empty(), false, cells};
+}
+
 void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs, ShadedSplats& shaded,
                 const Progress& progress, LookStatistics* statistics) {
     const auto start = Clock::now();

@@ -27,6 +27,9 @@ struct LookInputs {
     bool operator==(const LookInputs&) const = default;
 };
 
+/// What the look reads of a set that can do without some columns.
+OptionalColumns columns_read(const Look& look);
+
 struct LookStatistics {
     std::int64_t kept = 0;
     double seconds = 0.0;

@@ -78,6 +78,21 @@ TEST_F(Cache, TheSecondRunTakesTheSetAndGivesTheSamePixels) {
     EXPECT_EQ(names_in("sets").size(), 2u);
 }
 
+TEST_F(Cache, CellsOfThePictureAreMatchedInCachedSetsToo) {
+    const auto matched = [&](const char* match, std::vector<std::string> more = {}) {
+        more.insert(more.end(),
+                    {"--set", fmt::format("layer.gas.look.vertical.match=\"{}\"", match), "--set",
+                     "layer.gas.look.density=0.3", "--set",
+                     "layer.gas.source.meshes=[{ mesh = \"plane\", texture = \"picture.ppm\" }, { mesh = "
+                     "\"sphere\", texture = \"picture.ppm\" }]"});
+        return figures(more).sha256;
+    };
+    const std::string first = matched("picture");
+    EXPECT_EQ(matched("picture"), first);
+    EXPECT_EQ(matched("picture", {"--no-cache"}), first);
+    EXPECT_NE(matched("coverage"), first);
+}
+
 TEST_F(Cache, ScenesThatDifferInTheirLevelsShareTheirGeometry) {
     figures({});
     std::string picture = small_picture();
