@@ -24,7 +24,28 @@ int choice(GuiFrame& frame, const char* id, std::initializer_list<Segment> segme
     return noted_segments(frame, id, id, segments, chosen, control_height);
 }
 
-void view_choice(GuiFrame& frame) {
+// A field that opens a list of choices.
+template <class Enum>
+void combo(const char* id, Enum& value, const std::vector<const char*>& names, float width) {
+    ImGui::SetNextItemWidth(width);
+    const auto index = static_cast<std::size_t>(value);
+    ImGui::PushStyleColor(ImGuiCol_Text, index == 0 ? color::dim : color::text);
+    const bool open = ImGui::BeginCombo(id, names[index], ImGuiComboFlags_NoArrowButton);
+    ImGui::PopStyleColor();
+    if (!open) return;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (ImGui::Selectable(names[i], i == index)) value = static_cast<Enum>(i);
+    close_on_escape();
+    ImGui::EndCombo();
+}
+
+// A field in a narrow row.
+void view_choice(GuiFrame& frame, bool is_narrow) {
+    if (is_narrow) {
+        combo("##view", frame.view.view, {"Camera", "Free", "Front", "Top", "Side"}, px(84));
+        note_item(frame, "view");
+        return tooltip("What is seen through (0, 1, 7, 3)");
+    }
     const int clicked = choice(frame, "view",
                                {{"Camera", "Through the scene's camera (0)"},
                                 {"Free", "A camera of the window, the scene's stays (drag in the view)"},
@@ -42,21 +63,6 @@ void size_choice(GuiFrame& frame) {
                 {"1:1", "The frame at the size of the output: wheel zooms, middle drag moves (Z)"}},
                static_cast<int>(frame.view.size));
     if (clicked >= 0 && clicked != static_cast<int>(frame.view.size)) toggle_one_to_one(frame);
-}
-
-// A field that opens a list of choices.
-template <class Enum>
-void combo(const char* id, Enum& value, const std::vector<const char*>& names, float width) {
-    ImGui::SetNextItemWidth(width);
-    const auto index = static_cast<std::size_t>(value);
-    ImGui::PushStyleColor(ImGuiCol_Text, index == 0 ? color::dim : color::text);
-    const bool open = ImGui::BeginCombo(id, names[index], ImGuiComboFlags_NoArrowButton);
-    ImGui::PopStyleColor();
-    if (!open) return;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (ImGui::Selectable(names[i], i == index)) value = static_cast<Enum>(i);
-    close_on_escape();
-    ImGui::EndCombo();
 }
 
 void compare_choice(GuiFrame& frame) {
@@ -208,7 +214,8 @@ void draw_tool_row(GuiFrame& frame, const Rect& area) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(px(8), (px(control_height) - ImGui::GetFontSize()) / 2));
     ImGui::SetCursorScreenPos({area.x + px(8), area.y + px(4)});
-    view_choice(frame);
+    constexpr float narrow = 620;
+    view_choice(frame, area.width < px(narrow));
     ImGui::SameLine(0, px(gap));
     size_choice(frame);
     ImGui::SameLine(0, px(gap));

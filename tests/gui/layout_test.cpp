@@ -60,6 +60,20 @@ TEST(Layout, APictureOfTheViewportsSizeIsShownPixelByPixel) {
     EXPECT_EQ(zoomed.width, 200);
 }
 
+/// In the smallest window, with the longest words.
+TEST(Tools, DoNotLieOverEachOther) {
+    TestWindow window(example_document(), 900, 600);
+    window.status.reference = ReferenceStatus{0, 1.5, ""};
+    window.view.compare_with = CompareWith::reference;
+    window.view.compare = CompareMode::difference;
+    window.frame(2);
+    EXPECT_LT(window.at("compare/Diff").x + 30.0f, window.at("more tools").x);
+    window.click("more tools");
+    window.frame(2);
+    EXPECT_TRUE(window.has("compare with"));
+    EXPECT_TRUE(window.has("place/Place"));
+}
+
 TEST(Tools, ChooseViewSizeAndComparison) {
     TestWindow window(example_document());
     window.click("view/Side");
