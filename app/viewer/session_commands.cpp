@@ -152,12 +152,15 @@ void save_view(State& s, const Command& c) {
 }
 void take_screenshot(State& s, const Command& c) { s.screenshot = c.path; }
 
-/// With a thumbnail of what is shown, and the facts of that picture.
+/// With a thumbnail of A, whatever it is compared with, and the facts of that picture.
 void snapshot(State& s, const Command&) {
     constexpr int thumbnail_px = 192;
     SnapshotList& snapshots = s.comparison.snapshots();
     const ViewFrameStatus& shown = s.view_frame.status();
     const bool final = shown.state == ViewFrameState::final;
+    DisplaySettings alone = s.displayed;
+    alone.b = 0;
+    s.display.draw(alone, s.viewport_px.x, s.viewport_px.y);
     snapshots.add(store_look(snapshots.next_name(), s.document, s.view.frame),
                   thumbnail_of(s.display.read(), s.viewport_px.x, s.viewport_px.y, thumbnail_px),
                   final ? shown.total : shown.shown, final ? shown.seconds : 0.0);
@@ -165,7 +168,9 @@ void snapshot(State& s, const Command&) {
 
 void store_b(State& s, const Command& c) {
     const std::size_t index = s.comparison.snapshots().size();
-    say(s.status, "B is the look as it is now; Tab shows A or B");
+    say(s.status,
+        std::string("B is the look as it is now; ") +
+            (s.view.compare_with == CompareWith::b ? "Tab shows A or B" : "Shift+B compares with it"));
     try {
         snapshot(s, c);
     } catch (const OutputError& error) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "gui/theme.h"
+#include "source/texture.h"
 #include "source/write_image.h"
 #include "window/window_test.h"
 
@@ -54,6 +55,20 @@ TEST_F(WindowReference, IsPlacedByTheMouseSavedAndUndone) {
     person->press("Tab");
     expect_settled(before);
     EXPECT_EQ(end(SIGTERM).code, 143);
+}
+
+TEST_F(WindowReference, IsNotInThePictureOfASnapshot) {
+    start();
+    settled_frame();
+    person->press("shift+b");
+    person->press("Tab");
+    EXPECT_TRUE(comes_true([&] { return seen() > 0; }));
+    person->press("b");
+    const fs::path picture = folder / "scene.snapshots/0001.png";
+    ASSERT_TRUE(comes_true([&] { return fs::exists(picture); }));
+    const Image thumbnail = load_raw_image(picture);
+    const float* const middle = thumbnail.at(thumbnail.width / 2, thumbnail.height / 2);
+    EXPECT_GT(std::fabs(middle[0] - 200.0f / 255.0f) + std::fabs(middle[2] - 50.0f / 255.0f), 0.1f);
 }
 
 TEST_F(WindowReference, BlinksAndStops) {
