@@ -35,6 +35,7 @@ struct SplatBits {
 
 /// How a splat's opacity s hides what lies behind it, under the general fold.
 enum class Hiding : std::uint8_t {
+    plain,         // s, of all channels
     proportional,  // s times the occlusion colour
     clamped,       // that, at most 1 a channel: a screen splat brighter than white
     absorbing,     // 1 - (1 - s)^occlusion

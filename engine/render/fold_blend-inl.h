@@ -300,16 +300,32 @@ struct GeneralPixels {
     }
     template <bool kMayClose>
     HWY_INLINE void fold(const FoldStep& step, V s, V weight, V stop) {
-        const M is_open = kMayClose ? open(stop) : hn::Eq(s, s);
-        const auto if_open = [&](V v) { return kMayClose ? hn::IfThenElseZero(is_open, v) : v; };
+        const Hiding hiding = step.batch.hiding[step.i];
+        if (hiding == Hiding::plain) {
+            const V hidden[4] = {s, s, s, s};
+            return fold_hidden<kMayClose>(step, s, weight, stop, hidden);
+        }
         V hidden[4];
         for (int k = 0; k < 4; ++k) hidden[k] = hn::Mul(s, all(step.batch.occlusion[k][step.i]));
-        const Hiding hiding = step.batch.hiding[step.i];
         if (hiding != Hiding::proportional) {  // else s and the occlusions are at most 1
             for (int k = 0; k < 3; ++k) hidden[k] = clamp_one(hidden[k]);
             if (hiding == Hiding::absorbing) absorb(step.batch, step.i, clamp_one(s), hidden);
             hidden[3] = hn::Div(hn::Add(hn::Add(hidden[0], hidden[1]), hidden[2]), all(3.0f));
         }
+        fold_hidden<kMayClose>(step, s, weight, stop, hidden);
+    }
+    HWY_INLINE void close(V stop) {
+        const M is_open = open(stop);
+        alpha = hn::IfThenElse(is_open, alpha, hn::Sub(all(1.0f), held));
+        for (int k = 0; k < 4; ++k) t[k] = hn::IfThenElseZero(is_open, t[k]);
+    }
+
+  private:
+    /// `hidden`: what of the light behind it does not arrive, r, g, b and alpha.
+    template <bool kMayClose>
+    HWY_INLINE void fold_hidden(const FoldStep& step, V s, V weight, V stop, const V (&hidden)[4]) {
+        const M is_open = kMayClose ? open(stop) : hn::Eq(s, s);
+        const auto if_open = [&](V v) { return kMayClose ? hn::IfThenElseZero(is_open, v) : v; };
         for (int k = 0; k < 3; ++k) {
             const V reached = if_open(hn::Mul(t[k], s));
             const V light = hn::Mul(reached, all(step.batch.color[k][step.i]));
@@ -324,11 +340,6 @@ struct GeneralPixels {
         t[3] = hn::Mul(t[3], hn::Sub(all(1.0f), hidden[3]));
         if (kAovs) accumulate(step.layer_light[3], shown);
         more.fold(step, s, weight, shown, is_open);
-    }
-    HWY_INLINE void close(V stop) {
-        const M is_open = open(stop);
-        alpha = hn::IfThenElse(is_open, alpha, hn::Sub(all(1.0f), held));
-        for (int k = 0; k < 4; ++k) t[k] = hn::IfThenElseZero(is_open, t[k]);
     }
 };
 

@@ -191,7 +191,11 @@ HWY_INLINE void prepare_occlusion(const ScreenSplat& splat, const FoldLayer& lay
         bright = bright || (blend == shared::BLEND_SCREEN && splat.color[k] > 1.0f);
     }
     batch.occlusion[3][i] = sum / 3.0f;
-    batch.hiding[i] = absorbs ? Hiding::absorbing : bright ? Hiding::clamped : Hiding::proportional;
+    const bool plain = blend == shared::BLEND_OVER && !absorbs;
+    batch.hiding[i] = plain     ? Hiding::plain
+                      : absorbs ? Hiding::absorbing
+                      : bright  ? Hiding::clamped
+                                : Hiding::proportional;
 }
 
 /// The same for `lanes` splats that are all screens.
