@@ -335,6 +335,7 @@ MadeDots made_dots(Texture& texture, const UvSurface& surface, const StructurePa
                    const Progress& progress) {
     PictureLight picture = picture_light(texture, params.border);
     if (!once_more) texture.image.pixels = {};
+    release_spare_pages();  // of reading: the largest blocks there are, and none like them is wanted soon
     MadeDots made;
     reserve_dots(made.dots, static_cast<std::int64_t>(most_expected * expected));
     add_dots(picture, surface, params, seed, layer_name, progress, made.dots);
@@ -383,6 +384,7 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
             continue;
         }
         texture.image.pixels = {};
+        release_spare_pages();  // of the bands
         const FrontFit fit = fit_front(made.dots, std::move(made.light), progress);
         log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", layer_name,
                                fit.psnr_db, fit.steps));

@@ -25,6 +25,7 @@ constexpr float largest_factor = 3.0f;
 constexpr double fine_sigma = 1.5;            // texels, up to which dots are sharpened
 constexpr double around = 16.0;               // times the variance of what a dot sees
 constexpr double narrowest_halved_px = 1.25;  // its profile need not be exact
+constexpr double narrowest_blur_px = 0.4;     // a narrower one leaves 97 % of a pixel where it is
 
 float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, largest_factor); }
 
@@ -140,8 +141,7 @@ void FlatLight::multiply(const Range& range, const Image& factor, double step) {
         for (std::size_t i = range.chunks[c].begin; i < range.chunks[c].end; ++i) {
             const glm::vec2 at = texel(i) * scale;
             const LinearSample place(factor, at.x, at.y);
-            for (int channel = 0; channel < 3; ++channel)
-                dots_.splats.color[i][channel] *= place.of(factor, channel);
+            dots_.splats.color[i] *= glm::vec3(place.of(factor, 0), place.of(factor, 1), place.of(factor, 2));
         }
     });
 }
@@ -162,7 +162,7 @@ void FlatLight::correct(Fraction fraction, bool overshoot) {
         }
         const double step = grids_[grid].step;
         const auto missing_px = [&](double wanted) { return std::sqrt(wanted - variance) / step; };
-        if (seen > variance) {
+        if (missing_px(std::max(seen, variance)) > narrowest_blur_px) {
             fraction.wanted = gaussian_blur(fraction.wanted, missing_px(seen));
             fraction.seen = gaussian_blur(fraction.seen, missing_px(seen));
             variance = seen;

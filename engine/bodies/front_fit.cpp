@@ -29,7 +29,7 @@ constexpr double share_blur_px = 2.0;           // coarse pixels, of the share t
 constexpr std::int64_t cell_px = 32;
 // Of the rendering's records; with more it takes its picture in parts.
 constexpr std::int64_t least_projected_bytes = std::int64_t{64} << 20, projected_bytes_a_texel = 24;
-constexpr std::int64_t psnr_step = 4;  // rows between those that the PSNR is measured on
+constexpr std::int64_t psnr_step = 16;  // rows between those that the PSNR is measured on
 
 glm::dvec3 light_of_cell(const Image& image, std::int64_t column, std::int64_t row) {
     glm::dvec3 sum(0.0);
@@ -114,7 +114,7 @@ class FrontView {
     RenderSettings settings_;
     RenderLayer layer_;
     Camera camera_;
-    Image share_;  // of the flat light that reaches the viewer, at half the picture's size
+    Image share_;  // of the flat light that reaches the viewer, as smooth as at half the picture's size
 };
 
 Image FrontView::supposed() {
@@ -122,20 +122,20 @@ Image FrontView::supposed() {
     share_ = share_of(halved(target_), halved(flat));
     parallel_each(share_.pixels.size(), 65536,
                   [&](std::size_t i) { share_.pixels[i] = std::min(share_.pixels[i], 1.0f); });
-    share_ = gaussian_blur(share_, share_blur_px);
+    share_ = doubled(gaussian_blur(share_, share_blur_px), flat.width, flat.height);
     return shown(std::move(flat));
 }
 
 Image FrontView::rendered(const Progress& progress) {
+    share_ = {};
     Image flat = flat_.sum();
     const Image beauty = render({&layer_, 1}, camera_, nullptr, settings_, progress).beauty;
-    share_ = share_of(halved(beauty), halved(flat));
+    share_ = doubled(share_of(halved(beauty), halved(flat)), flat.width, flat.height);
     return shown(std::move(flat));
 }
 
 Image FrontView::shown(Image flat) const {
-    const Image share = doubled(share_, flat.width, flat.height);
-    parallel_each(flat.pixels.size(), 65536, [&](std::size_t i) { flat.pixels[i] *= share.pixels[i]; });
+    parallel_each(flat.pixels.size(), 65536, [&](std::size_t i) { flat.pixels[i] *= share_.pixels[i]; });
     return flat;
 }
 

@@ -32,7 +32,8 @@ Image difference(const Image& a, const Image& b) {
 }
 
 Image magnitude(Image image) {
-    for (float& v : image.pixels) v = std::fabs(v);
+    parallel_each(image.pixels.size(), 65536,
+                  [&](std::size_t i) { image.pixels[i] = std::fabs(image.pixels[i]); });
     return image;
 }
 
@@ -117,8 +118,12 @@ Knots find_knots(const Image& brightest) {
                      [](const Peak& a, const Peak& b) { return a.contrast > b.contrast; });
     Knots result;
     const auto pixels = static_cast<std::size_t>(brightest.width * brightest.height);
-    result.owner.assign(pixels, -1);
-    result.weight.assign(pixels, 0.0f);
+    result.owner.resize(pixels);
+    result.weight.resize(pixels);
+    parallel_each(pixels, 65536, [&](std::size_t i) {
+        result.owner[i] = -1;
+        result.weight[i] = 0.0f;
+    });
     for (const Peak& peak : peaks_found) {
         const Knot& knot = peak.knot;
         const auto at = static_cast<std::size_t>(static_cast<std::int64_t>(knot.y) * brightest.width +

@@ -100,11 +100,15 @@ void SpreadRows::add_to(Image& sum) const {
     for (std::int64_t row = first - 1; row <= end; ++row) {
         const std::int64_t to = std::clamp<std::int64_t>(row, 0, sum.height - 1);
         if (to < first || to >= end) continue;
-        for (std::int64_t column = -1; column <= width; ++column) {
-            const float* const here = pixels.at(column + margin, row - first + margin);
-            float* const there = sum.at(std::clamp<std::int64_t>(column, 0, width - 1), to);
-            for (int channel = 0; channel < 3; ++channel) there[channel] += here[channel];
-        }
+        const float* const here = pixels.at(margin, row - first + margin);
+        float* const there = sum.at(0, to);
+        const auto add = [&](std::int64_t column, std::int64_t to_column) {
+            for (int channel = 0; channel < 3; ++channel)
+                there[3 * to_column + channel] += here[4 * column + channel];
+        };
+        add(-1, 0);
+        for (std::int64_t column = 0; column < width; ++column) add(column, column);
+        add(width, width - 1);
     }
 }
 
