@@ -17,24 +17,15 @@ constexpr float contrast_share = 0.5f;                 // of the deviation that 
 constexpr double finest_hole_px = 2.0;
 constexpr float least_share = 0.25f;  // of the mean that the coarser band gets
 
-// The brightest channel and its square: blurred together, they give mean and deviation.
-Image moments_of(const Image& light) {
-    Image out = unfilled_image(light.width, light.height, 2);
-    parallel_each(light.width * light.height, 65536, [&](std::int64_t i) {
-        const float* const p = light.pixels.data() + 3 * i;
-        const float brightest = std::max({p[0], p[1], p[2]});
-        out.pixels[static_cast<std::size_t>(2 * i)] = brightest;
-        out.pixels[static_cast<std::size_t>(2 * i + 1)] = brightest * brightest;
-    });
-    return out;
-}
-
 // The share of the mean that the coarser bands get.
 Image common_share(const Image& light, double blur) {
-    const Image moments = gaussian_blur(moments_of(light), blur);
-    Image share = unfilled_image(light.width, light.height, 1);
+    Image brightest = brightest_channel(light);
+    const Image means = gaussian_blur(brightest, blur);
+    parallel_each(brightest.pixels.size(), 65536,
+                  [&](std::size_t i) { brightest.pixels[i] *= brightest.pixels[i]; });
+    Image share = gaussian_blur(brightest, blur);
     parallel_each(share.pixels.size(), 65536, [&](std::size_t i) {
-        const float mean = moments.pixels[2 * i], square = moments.pixels[2 * i + 1];
+        const float mean = means.pixels[i], square = share.pixels[i];
         const float deviation = std::sqrt(std::max(0.0f, square - mean * mean));
         share.pixels[i] =
             std::clamp(1.0f - contrast_share * deviation / std::max(1e-6f, mean), least_share, 1.0f);

@@ -81,6 +81,7 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
     Image emission = make_image(dust > 0.0 ? rest.width : 0, rest.height, 3);
+    release_spare_pages();  // of reading and of the fields: bands and their dots are the most there is
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();
         if (dust > 0.0) add(light, emission);
@@ -200,9 +201,10 @@ std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const Structure
 
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots) {
     // Measured. Blocks that wait for their next use are a part of it.
-    constexpr std::int64_t bytes_a_texel = 120, bytes_a_dot = 44, waiting_bytes = std::int64_t{256} << 20;
-    const std::int64_t largest = largest_picture(meshes);
-    return largest * bytes_a_texel + dots * bytes_a_dot + std::min(waiting_bytes, largest * bytes_a_texel);
+    constexpr std::int64_t bytes_a_texel = 92, bytes_a_dot = 44, bytes_on_mesh = 68;
+    constexpr std::int64_t waiting_bytes = std::int64_t{256} << 20;
+    const std::int64_t images = largest_picture(meshes) * bytes_a_texel;
+    return std::max(images + dots * bytes_a_dot, dots * bytes_on_mesh) + std::min(waiting_bytes, images);
 }
 
 namespace {
@@ -335,7 +337,6 @@ MadeDots made_dots(Texture& texture, const UvSurface& surface, const StructurePa
                    const Progress& progress) {
     PictureLight picture = picture_light(texture, params.border);
     if (!once_more) texture.image.pixels = {};
-    release_spare_pages();  // of reading: the largest blocks there are, and none like them is wanted soon
     MadeDots made;
     reserve_dots(made.dots, static_cast<std::int64_t>(most_expected * expected));
     add_dots(picture, surface, params, seed, layer_name, progress, made.dots);

@@ -28,7 +28,7 @@ constexpr int first_steps = 4, last_steps = 3;  // before the rendering and afte
 constexpr double share_blur_px = 2.0;           // coarse pixels, of the share that is supposed
 constexpr std::int64_t cell_px = 32;
 // Of the rendering's records; with more it takes its picture in parts.
-constexpr std::int64_t least_projected_bytes = std::int64_t{64} << 20, projected_bytes_a_texel = 24;
+constexpr std::int64_t least_projected_bytes = std::int64_t{64} << 20, projected_bytes_a_texel = 12;
 constexpr std::int64_t psnr_step = 16;  // rows between those that the PSNR is measured on
 
 glm::dvec3 light_of_cell(const Image& image, std::int64_t column, std::int64_t row) {
@@ -129,8 +129,11 @@ Image FrontView::supposed() {
 Image FrontView::rendered(const Progress& progress) {
     share_ = {};
     Image flat = flat_.sum();
-    const Image beauty = render({&layer_, 1}, camera_, nullptr, settings_, progress).beauty;
+    release_spare_pages();  // of the steps
+    Image beauty = render({&layer_, 1}, camera_, nullptr, settings_, progress).beauty;
     share_ = doubled(share_of(halved(beauty), halved(flat)), flat.width, flat.height);
+    beauty = {};
+    release_spare_pages();
     return shown(std::move(flat));
 }
 
