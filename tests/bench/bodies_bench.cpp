@@ -36,6 +36,7 @@ void bodies(benchmark::State& state) {
     state.counters["texel_B"] = static_cast<double>(peak_bytes() - before) / texels;
     state.counters["told_B"] =
         static_cast<double>(bodies_memory_bytes(meshes, expected_dots(meshes, params))) / texels;
+    state.counters["Mpx"] = 1e-6 * texels;
     state.counters["Mdots"] = 1e-6 * static_cast<double>(dots);
 }
 
