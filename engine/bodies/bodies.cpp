@@ -200,11 +200,12 @@ std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const Structure
 }
 
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots) {
-    // Measured. Blocks that wait for their next use are a part of it.
+    // Measured. Blocks that wait for their next use are a part of it (core/buffer.cpp).
     constexpr std::int64_t bytes_a_texel = 92, bytes_a_dot = 44, bytes_on_mesh = 68;
-    constexpr std::int64_t waiting_bytes = std::int64_t{256} << 20;
+    constexpr std::int64_t most_waiting = std::int64_t{256} << 20;
     const std::int64_t images = largest_picture(meshes) * bytes_a_texel;
-    return std::max(images + dots * bytes_a_dot, dots * bytes_on_mesh) + std::min(waiting_bytes, images);
+    const std::int64_t used = std::max(images + dots * bytes_a_dot, dots * bytes_on_mesh);
+    return used + std::max(used / 8, std::min(most_waiting, images));
 }
 
 namespace {
@@ -387,6 +388,7 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
         texture.image.pixels = {};
         release_spare_pages();  // of the bands
         const FrontFit fit = fit_front(made.dots, std::move(made.light), progress);
+        release_spare_pages();  // of the fit
         log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", layer_name,
                                fit.psnr_db, fit.steps));
         const std::int64_t dots = made.dots.splats.size();
