@@ -260,7 +260,7 @@ void reduce(Texture& texture, double first_share, const std::function<double()>&
 }  // namespace
 
 void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name) {
-    constexpr std::int64_t most_texels = 1920 * 1200;
+    constexpr std::int64_t most_texels = 2048 * 2048;
     constexpr int most_times = 4;
     for (TexturedMesh& mesh : meshes) {
         for (Texture& texture : mesh.textures) {

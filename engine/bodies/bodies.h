@@ -28,7 +28,7 @@ struct BodiesLimit {
     std::int64_t most_dots = 0;  // 0: as many as there are
 };
 
-/// Enlarges pictures that are small by whole numbers, to no more than a picture of 1920x1200 has: a texel is
+/// Enlarges pictures that are small by whole numbers, to no more than a picture of 2048x2048 has: a texel is
 /// then several dots, which together show it as sharp as it was. Says so at detail level.
 void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name);
 

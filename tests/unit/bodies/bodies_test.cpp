@@ -143,16 +143,16 @@ TEST(Bodies, PicturesOfMoreTexelsThanTheMostAreReduced) {
     EXPECT_NEAR(static_cast<double>(largest_picture(meshes)), 15'000.0, 150.0);
 }
 
-TEST(Bodies, SmallPicturesAreEnlargedUpToThoseOf1920x1200) {
+TEST(Bodies, SmallPicturesAreEnlargedUpToThoseOf2048x2048) {
     std::vector<TexturedMesh> meshes;
-    for (const auto& [width, height] : {std::pair{300, 200}, {700, 500}, {1000, 576}, {1000, 577}})
+    for (const auto& [width, height] : {std::pair{300, 200}, {700, 500}, {1024, 1024}, {1024, 1025}})
         meshes.push_back(on_plane(make_image(width, height, 4, 0.5f)));
     enlarge_small_pictures(meshes, "gas");
     EXPECT_EQ(meshes[0].textures[0].image.width, 1200);
-    EXPECT_EQ(meshes[1].textures[0].image.width, 1400);
-    EXPECT_EQ(meshes[2].textures[0].image.width, 2000);
-    EXPECT_EQ(meshes[3].textures[0].image.width, 1000);
-    EXPECT_EQ(meshes[1].textures[0].image.height, 1000);
+    EXPECT_EQ(meshes[1].textures[0].image.width, 2100);
+    EXPECT_EQ(meshes[2].textures[0].image.width, 2048);
+    EXPECT_EQ(meshes[3].textures[0].image.width, 1024);
+    EXPECT_EQ(meshes[1].textures[0].image.height, 1500);
 }
 
 TEST(UvSurface, ThePlaneIsThePicture) {
