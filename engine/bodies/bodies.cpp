@@ -74,6 +74,7 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
     const std::vector<Star> stars =
         params.stars != StructureParams::Stars::no ? take_stars(rest) : std::vector<Star>{};
     progress.check();
+    progress.at(0.1);
     const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
     const Placement placement =
         make_placement(without_stars, params, surface.texels_per_unit(), surface.flat(), seed);
@@ -88,6 +89,7 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
         const bool coarsest = band.index + 1 == static_cast<int>(bands.size());
         for (const BandDots& size : band_dots(band, coarsest, placement))
             add_band(light, size, brightest, picture.alpha, placement, opacity, dots);
+        progress.at(0.2 + 0.7 * (band.index + 1.0) / static_cast<double>(bands.size()));
     });
     if (dust > 0.0) add_dust(transmittance_of(without_stars, emission, picture.alpha), dust, placement, dots);
     add_stars(stars, placement, opacity, dots);
@@ -368,10 +370,11 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
                    std::int64_t most, const StructureParams& params, std::uint32_t seed,
                    const std::string& layer_name, const Progress& progress) {
     constexpr int most_tries = 8;
-    constexpr double aimed_at = 0.97;
+    constexpr double aimed_at = 0.97, made_share = 0.4;  // of the time, that making the dots takes
     for (int tries = 1;; ++tries) {
         const UvSurface surface = surface_of(picture);
-        MadeDots made = made_dots(texture, surface, params, seed, expected, most > 0, layer_name, progress);
+        MadeDots made = made_dots(texture, surface, params, seed, expected, most > 0, layer_name,
+                                  progress.part(0.0, made_share));
         const std::int64_t rows = std::accumulate(made.faces.begin(), made.faces.end(), std::int64_t{0});
         if (most > 0 && rows > most) {
             if (tries == most_tries)
@@ -387,7 +390,7 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
         }
         texture.image.pixels = {};
         release_spare_pages();  // of the bands
-        const FrontFit fit = fit_front(made.dots, std::move(made.light), progress);
+        const FrontFit fit = fit_front(made.dots, std::move(made.light), progress.part(made_share, 1.0));
         release_spare_pages();  // of the fit
         log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", layer_name,
                                fit.psnr_db, fit.steps));
@@ -418,12 +421,13 @@ SplatSet make_bodies(std::vector<TexturedMesh> meshes, const StructureParams& pa
         const auto share = static_cast<std::int64_t>(static_cast<double>(most_dots) * expected[i] / all);
         SplatSet rows =
             bodies_of(picture, i, texture, expected[i], most_dots > 0 ? std::max<std::int64_t>(1, share) : 0,
-                      params, seed + static_cast<std::uint32_t>(i), layer_name, progress);
+                      params, seed + static_cast<std::uint32_t>(i), layer_name,
+                      progress.part(static_cast<double>(i) / static_cast<double>(pictures.size()),
+                                    static_cast<double>(i + 1) / static_cast<double>(pictures.size())));
         set.test_positions += rows.test_positions;
         set.absorbs = set.absorbs || rows.absorbs;
         append(std::move(rows), set);
         if (set.credit.empty()) set.credit = texture.credit;
-        progress.at(static_cast<double>(i + 1) / static_cast<double>(pictures.size()));
     }
     sort_by_id(set);
     for (const float distance : set.distance)

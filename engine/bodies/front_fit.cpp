@@ -183,11 +183,13 @@ FrontFit fit_front(PictureSplats& dots, Image light, const Progress& progress) {
     for (int step = 0; step < first_steps; ++step) {
         progress.check();
         view.step_from(step == 0 ? std::move(seen) : view.seen(), true);
+        progress.at(0.3 * (step + 1) / first_steps);
     }
-    seen = view.rendered(progress);
+    seen = view.rendered(progress.part(0.3, 0.7));
     for (int step = 0; step < last_steps; ++step) {
         progress.check();
         view.step_from(std::move(seen), step + 1 < last_steps);
+        progress.at(0.7 + 0.3 * (step + 1) / last_steps);
         seen = view.seen();  // after the last step the light of wide areas is right, too
     }
     view.match_cells(seen);

@@ -16,6 +16,12 @@ struct Progress {
     void at(double fraction) const {
         if (report) report(fraction);
     }
+    /// That of work which is the part from `begin` to `end` of this one.
+    Progress part(double begin, double end) const {
+        if (!report) return *this;
+        return {[whole = report, begin, end](double fraction) { whole(begin + fraction * (end - begin)); },
+                cancelled};
+    }
     bool stop() const { return cancelled && cancelled->load(std::memory_order_relaxed); }
     /// Throws Cancelled after a request to stop.
     void check() const {

@@ -155,6 +155,22 @@ TEST(Bodies, SmallPicturesAreEnlargedUpToThoseOf2048x2048) {
     EXPECT_EQ(meshes[1].textures[0].image.height, 1500);
 }
 
+TEST(Bodies, TellHowFarTheyAre) {
+    std::vector<double> told;
+    const Progress progress{[&](double fraction) { told.push_back(fraction); }, nullptr};
+    set_thread_count(1);  // several tell it in any order
+    make_bodies({on_plane(painted::nebula(200, 120)), on_plane(painted::nebula(100, 60))},
+                of_kind(StructureKind::sheet), 3u, "gas", progress);
+    set_thread_count(0);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    ASSERT_GT(told.size(), 20u);
+    EXPECT_LT(told.front(), 0.1);
+    EXPECT_DOUBLE_EQ(told.back(), 1.0);
+    double widest = 0.0;
+    for (std::size_t i = 1; i < told.size(); ++i) widest = std::max(widest, told[i] - told[i - 1]);
+    EXPECT_LT(widest, 0.15);
+}
+
 TEST(UvSurface, ThePlaneIsThePicture) {
     const Mesh plane = builtin_mesh("plane", 1.6);
     const UvSurface surface(plane, 0, 1600, 1000, false);
