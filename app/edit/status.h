@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/camera.h"
 #include "core/bounds.h"
 #include "scene/scene.h"
 
@@ -32,6 +33,7 @@ struct LayerHistograms {
 
 struct LayerStatus {
     std::int64_t splats = 0;  // in the set
+    Bounds box;               // of these, in layer space; empty: not known
     std::int64_t kept = 0;    // by the look, estimated from the preview's share; -1: not known
     std::int64_t shown = 0;   // by the preview
     bool loading = false;
@@ -167,6 +169,8 @@ struct Status {
 
     double viewport_aspect = 0.0;      // width / height; 0: not known
     void* viewport_texture = nullptr;  // the viewport with the frame in its place, bottom row first
+    std::optional<Camera>
+        viewport_camera;  // what the view looks through, in px of the viewport; none: nothing
     std::vector<std::vector<glm::vec2>> overlay_lines;  // camera path, frustum; px of the viewport
 };
 

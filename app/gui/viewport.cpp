@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "gui/badge.h"
 #include "gui/theme.h"
@@ -13,7 +14,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr float wipe_grip = 6;  // px at either side
+constexpr float wipe_grip = 6;    // px at either side
+constexpr float click_reach = 4;  // px that the mouse may move between pressing and letting go
 constexpr double zoom_least = 1.0 / 16, zoom_most = 32;
 constexpr double notch_zoom = 1.189207115002721;  // a quarter of doubling, for a notch of the wheel
 
@@ -87,6 +89,22 @@ void Viewport::move_frame(GuiFrame& frame, const Rect& area) {
     input_.wheel = 0.0f;
 }
 
+/// A press that was no drag, let go again.
+void Viewport::read_click() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto moved_px = [](const glm::dvec2& by) {
+        return glm::length(by) > static_cast<double>(px(click_reach));
+    };
+    if (input_.drag_begins)
+        may_click_ = input_.drag == ViewportInput::Drag::orbit && !io.KeyAlt && !input_.double_click;
+    may_click_ = may_click_ && std::sqrt(io.MouseDragMaxDistanceSqr[0]) <= px(click_reach);
+    if (!may_click_ || !io.MouseReleased[0]) return;
+    may_click_ = false;
+    const bool again = !moved_px(input_.mouse_px - clicked_px_);
+    input_.click = io.KeyCtrl || again ? ViewportInput::Click::behind : ViewportInput::Click::in_front;
+    clicked_px_ = input_.mouse_px;
+}
+
 void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     const ImGuiIO& io = ImGui::GetIO();
     const ViewportInput::Drag before = input_.drag;
@@ -111,6 +129,7 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
         input_.drag_ends = before != ViewportInput::Drag::none;
         moves_frame_ = false;
     }
+    read_click();
     if (input_.drag == ViewportInput::Drag::look) {
         input_.fly = fly_direction();
         input_.speed = io.KeyShift ? 10.0 : io.KeyAlt ? 0.1 : 1.0;

@@ -16,11 +16,14 @@ class Viewport {
     void read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_area);
     void begin_drag(GuiFrame& frame, const Rect& frame_area);
     void move_frame(GuiFrame& frame, const Rect& area);
+    void read_click();
 
     ViewportInput input_;
     ReferencePlacing placing_;
-    int button_ = -1;           // that began the drag
-    bool moves_frame_ = false;  // 1:1: a pan stays in the window
+    int button_ = -1;              // that began the drag
+    bool moves_frame_ = false;     // 1:1: a pan stays in the window
+    bool may_click_ = false;       // the button that is down began nothing else
+    glm::dvec2 clicked_px_{-1e9};  // where the last click was
 };
 
 /// Which drag a press of this mouse button (ImGuiMouseButton) begins.

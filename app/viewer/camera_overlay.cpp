@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 
 #include "camera/projection.h"
 #include "core/error.h"
+#include "edit/project_line.h"
 #include "scene/animate.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
 namespace {
-
-glm::vec2 to_px(const Camera& camera, const glm::dvec3& p) {
-    const exact::Instance at = exact::instance_of(make_exact_lens(camera), p);
-    return {static_cast<float>(at.x_px), static_cast<float>(at.y_px)};
-}
 
 /// Of a scene all that its camera's path depends on, to notice when that changes; the rest at its defaults.
 Scene camera_part(const Scene& scene) {
@@ -62,33 +57,6 @@ std::vector<std::vector<glm::dvec3>> frustum(const Camera& camera, double width_
     lines.push_back({corner(0.4 * width_px, -0.04 * height_px), corner(0.5 * width_px, -0.16 * height_px),
                      corner(0.6 * width_px, -0.04 * height_px), corner(0.4 * width_px, -0.04 * height_px)});
     return lines;
-}
-
-/// A line in the world as lines in px of the frame, cut where it passes behind the eye.
-std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std::vector<glm::dvec3>& line) {
-    const glm::dmat3 camera_from_world = glm::transpose(camera.world_from_camera);
-    const double front =
-        exact::has_parallel_rays(make_exact_lens(camera)) ? 1e300 : -std::max(1e-6, camera.near);
-    std::vector<std::vector<glm::vec2>> parts;
-    bool open = false;
-    glm::dvec3 before(0.0);
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        const glm::dvec3 p = camera_from_world * (line[i] - camera.eye);
-        const bool seen = p.z <= front;
-        if (i > 0 && seen != (before.z <= front)) {
-            const glm::dvec3 cut = before + (p - before) * ((front - before.z) / (p.z - before.z));
-            if (!open) parts.emplace_back();
-            parts.back().push_back(to_px(camera, cut));
-            open = seen;
-        }
-        if (seen) {
-            if (!open) parts.emplace_back();
-            open = true;
-            parts.back().push_back(to_px(camera, p));
-        }
-        before = p;
-    }
-    return parts;
 }
 
 }  // namespace

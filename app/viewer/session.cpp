@@ -15,6 +15,7 @@
 #include "viewer/session_commands.h"
 #include "viewer/session_reference.h"
 #include "viewer/session_render.h"
+#include "viewer/session_select.h"
 #include "viewer/session_status.h"
 
 namespace astrosplat {
@@ -176,6 +177,10 @@ void advance(Session& session, double now) {
 void navigate(Session& session, const ViewportInput& input, double now) {
     if (session.request.width <= 0) return;
     probe(session, input.hovered ? input.mouse_px : glm::dvec2(-1.0));
+    if (input.click != ViewportInput::Click::none)
+        attempt(session.status, [&] {
+            select_layer_at(session, input.mouse_px, input.click == ViewportInput::Click::behind);
+        });
     if (session.view.size == SizeMode::one_to_one) return;  // the widgets move and zoom the frame
     attempt(session.status, [&] {
         if (session.navigator.navigate(input, session.shown(), now, session.document, session.view))

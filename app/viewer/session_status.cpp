@@ -24,8 +24,9 @@ void fill_layers(Session& session, const Scene& now) {
         if (i < shown.size()) status.layers[i].shown = shown[i];
         status.layers[i].kept = i < kept.size() ? kept[i] : -1;
         const auto loaded = loader.layer(now.layers[i].name);
-        if (loaded && now.layers[i].visible)
-            status.box.add(world_bounds(loaded->box, render_layer(now.layers[i])));
+        if (!loaded) continue;
+        status.layers[i].box = loaded->box;
+        if (now.layers[i].visible) status.box.add(world_bounds(loaded->box, render_layer(now.layers[i])));
     }
 }
 
@@ -57,20 +58,26 @@ void say_new_errors(Status& status, std::set<std::string>& said) {
     said = std::move(errors);
 }
 
+FramePixel frame_pixel(const Session& session, glm::dvec2 mouse_px) {
+    const ViewRequest& request = session.request;
+    const glm::vec2 port(session.viewport_px);
+    const Rect place = place_frame(session.view, {0, 0, port.x, port.y}, request.width, request.height);
+    const auto pixel = [](double px, float begin, float size, int count) {
+        return static_cast<std::int64_t>(std::floor((px - begin) / size * count));
+    };
+    return {pixel(mouse_px.x, place.x, place.width, request.width),
+            pixel(mouse_px.y, place.y, place.height, request.height)};
+}
+
 void probe(Session& session, glm::dvec2 mouse_px) {
     const ViewRequest& request = session.request;
     session.status.probe.reset();
     if (request.width <= 0 || session.view_frame.texture() == 0) return;
-    const glm::vec2 port(session.viewport_px);
-    const Rect place = place_frame(session.view, {0, 0, port.x, port.y}, request.width, request.height);
-    const auto x =
-        static_cast<std::int64_t>(std::floor((mouse_px.x - place.x) / place.width * request.width));
-    const auto y =
-        static_cast<std::int64_t>(std::floor((mouse_px.y - place.y) / place.height * request.height));
+    const FramePixel at = frame_pixel(session, mouse_px);
     const Image* pixels = session.view_frame.pixels();
     if (!pixels) return;
     const std::shared_ptr<const RenderedFrame> final = session.view_frame.final_frame();
-    session.status.probe = probe_of(*pixels, final ? &final->depth : nullptr, request.region, x, y);
+    session.status.probe = probe_of(*pixels, final ? &final->depth : nullptr, request.region, at.x, at.y);
 }
 
 std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, const Region& region,

@@ -17,6 +17,12 @@ void fill_status(Session& session);
 /// do.
 void say_new_errors(Status& status, std::set<std::string>& said);
 
+/// The pixel of the whole frame at a place of the viewport, px; outside of the frame where that is.
+struct FramePixel {
+    std::int64_t x = 0, y = 0;
+};
+FramePixel frame_pixel(const Session& session, glm::dvec2 mouse_px);
+
 /// Fills Status::probe with the linear pixel under the mouse, px of the viewport.
 void probe(Session& session, glm::dvec2 mouse_px);
 

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
+#include "edit/project_line.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
@@ -180,6 +182,15 @@ void measure_difference(Session& session, const DisplaySettings& shown, double n
     session.status.difference = session.difference.found();
 }
 
+/// What the viewport looks through; none where no camera can be made, as the frame's badge says.
+std::optional<Camera> camera_in_viewport(const ViewRequest& request, const Rect& place) {
+    try {
+        return camera_on_screen(camera_of(request), {place.x, place.y}, double(place.width) / request.width);
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
 }  // namespace
 
 Scene evaluated(const Scene& scene, const ViewState& view) {
@@ -204,6 +215,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     keep_free_camera(session.view, session.shown());
     const Rect whole = place_frame(session.view, {0, 0, port_px.x, port_px.y}, session.request.width,
                                    session.request.height);
+    session.status.viewport_camera = camera_in_viewport(session.request, whole);
     const bool from_outside = session.view.view != ViewKind::camera && session.view.camera_path;
     session.status.overlay_lines.clear();
     if (from_outside)

@@ -81,16 +81,15 @@ bool ViewFrame::draws_whole_sets() const {
 }
 
 /// Gives the layers their splats, and notes how many their looks keep.
-void ViewFrame::cut(std::vector<PreviewLayer>& layers, const Camera& camera, int width, int height,
-                    float pixel_filter) {
+void ViewFrame::cut(std::vector<PreviewLayer>& layers, const PreviewView& view) {
     CutSettings settings;
     settings.budget = dots_wanted();
-    settings.width = width;
-    settings.height = height;
+    settings.width = static_cast<int>(view.width);
+    settings.height = static_cast<int>(view.height);
     if (choice_.share >= 1.0f) settings.least_px = 0.0f;
     std::vector<std::shared_ptr<const LoadedLayer>> loaded;
     for (const std::size_t place : places_) loaded.push_back(request_->layers[place]);
-    dots_.cut(layers, loaded, camera, settings, pixel_filter);
+    dots_.cut(layers, loaded, view.camera, settings, view.pixel_filter);
     const std::vector<double> kept = dots_.kept();
     for (std::size_t n = 0; n < places_.size(); ++n)
         kept_[places_[n]] = std::llround(kept[n] * static_cast<double>(loaded[n]->splats));
@@ -130,29 +129,39 @@ bool ViewFrame::refine() {
            dots_.refine();
 }
 
+/// The part of the frame that is seen, as a frame of its own.
+PreviewView ViewFrame::preview_view() const {
+    PreviewView view;
+    const Region part = whole(*request_);
+    view.camera = camera_of(*request_);
+    view.camera.center_x_px -= static_cast<double>(part.x);
+    view.camera.center_y_px -= static_cast<double>(part.y);
+    view.environment = environment_.get();
+    view.width = part.width;
+    view.height = part.height;
+    view.pixel_filter = static_cast<float>(request_->scene.output.pixel_filter);
+    return view;
+}
+
 void ViewFrame::draw_preview(double now) {
     const auto start = Clock::now();
     const double target_ms = pace_.target_ms(now, choice_.target_ms);
     ++version_;
-    Camera camera = camera_of(*request_);
-    const Region part = whole(*request_);
-    camera.center_x_px -= static_cast<double>(part.x);
-    camera.center_y_px -= static_cast<double>(part.y);
-    std::vector<PreviewLayer> layers = preview_layers();
+    layers_ = preview_layers();
     const bool whole_sets = draws_whole_sets();
     environment_ = files_->environment(request_->scene.environment);
-    const auto filter = static_cast<float>(request_->scene.output.pixel_filter);
-    const int width = static_cast<int>(part.width), height = static_cast<int>(part.height);
-    if (!whole_sets) cut(layers, camera, width, height, filter);
+    const PreviewView view = preview_view();
+    if (!whole_sets) cut(layers_, view);
     status_.shown = 0;
-    for (std::size_t n = 0; n < layers.size(); ++n)
-        status_.shown += shown_[places_[n]] = shown_count(layers[n]);
+    for (std::size_t n = 0; n < layers_.size(); ++n)
+        status_.shown += shown_[places_[n]] = shown_count(layers_[n]);
+    const int width = static_cast<int>(view.width), height = static_cast<int>(view.height);
     if (choice_.opengl) {
         if (!gl_) gl_ = std::make_unique<GlPreview>();
-        texture_ = gl_->draw(layers, camera, environment_.get(), width, height, filter);
+        texture_ = gl_->draw(layers_, view.camera, view.environment, width, height, view.pixel_filter);
         drawn_ = nullptr;
     } else {
-        drawn_ = &cpu_.draw(layers, camera, environment_.get(), width, height, filter);
+        drawn_ = &cpu_.draw(layers_, view.camera, view.environment, width, height, view.pixel_filter);
         canvas_texture_.upload(*drawn_);
         texture_ = canvas_texture_.handle();
     }
@@ -248,6 +257,18 @@ double ViewFrame::due(double now) const { return std::max(0.0, changed_at_ + res
 bool ViewFrame::exact() const {
     const bool lacks_sums = choice_.refined && !draws_whole_sets() && dots_.lacks_sums();
     return request_ && !files_->loading() && !(gl_ && gl_->sorting()) && !lacks_sums;
+}
+
+std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
+    std::vector<float> light(request_ ? request_->layers.size() : 0);
+    if (!request_ || status_.state == ViewFrameState::failed) return light;
+    const PreviewView view = preview_view();
+    std::vector<PreviewLayer> layers = layers_;
+    if (draws_whole_sets()) cut(layers, view);
+    const Region part = whole(*request_);
+    const std::vector<float> drawn = light_of_layers(layers, view, x - part.x, y - part.y);
+    for (std::size_t n = 0; n < drawn.size(); ++n) light[places_[n]] = drawn[n];
+    return light;
 }
 
 std::shared_ptr<const RenderedFrame> ViewFrame::final_frame() const {

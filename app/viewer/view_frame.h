@@ -16,6 +16,7 @@
 #include "scene/scene.h"
 #include "viewer/cpu_preview.h"
 #include "viewer/final_frame.h"
+#include "viewer/layers_at_pixel.h"
 #include "viewer/picture_files.h"
 #include "viewer/preview_budget.h"
 #include "viewer/preview_dots.h"
@@ -76,15 +77,18 @@ class ViewFrame {
     const Image* pixels() const;
     /// The same, read back from the GPU where need be.
     Image read() const;
+    /// Light of every layer of the scene at a pixel of the whole frame, by the splats of the preview
+    /// (layers_at_pixel.h).
+    std::vector<float> layer_light(std::int64_t x, std::int64_t y);
     /// The final frame, when status says so.
     std::shared_ptr<const RenderedFrame> final_frame() const;
 
   private:
     std::vector<PreviewLayer> preview_layers();
+    PreviewView preview_view() const;
     std::int64_t dots_wanted() const;
     bool draws_whole_sets() const;
-    void cut(std::vector<PreviewLayer>& layers, const Camera& camera, int width, int height,
-             float pixel_filter);
+    void cut(std::vector<PreviewLayer>& layers, const PreviewView& view);
     void note_time(double milliseconds, double target_ms, bool whole_sets);
     bool refine();
     bool environment_arrived();
@@ -112,8 +116,9 @@ class ViewFrame {
     std::uint64_t version_ = 0;  // of its pixels
     ViewFrameStatus status_;
     std::vector<std::int64_t> shown_, kept_;
-    std::vector<std::size_t> places_;  // in the scene, of the layers that the last preview drew
-    int slow_frames_ = 0;              // of whole sets, one after the other
+    std::vector<PreviewLayer> layers_;                                  // that the last preview drew
+    std::vector<std::size_t> places_;                                   // of these in the scene
+    int slow_frames_ = 0;                                               // of whole sets, one after the other
     std::int64_t too_many_ = std::numeric_limits<std::int64_t>::max();  // splats to be drawn whole
 };
 

@@ -54,6 +54,50 @@ TEST(Viewport, ADragBeginsMovesAndEnds) {
     EXPECT_FALSE(window.gui.viewport_input().drag_ends);
 }
 
+/// A click, `by` px from the middle of the view; the mouse may slip a little between press and release.
+ViewportInput::Click click_in_view(TestWindow& window, glm::vec2 by, float slip = 0.0f) {
+    const glm::vec2 at = window.at("frame in view") + by;
+    window.frame(60);  // no double click of the last one
+    window.move(at);
+    window.frame(2);
+    window.press(0);
+    EXPECT_EQ(window.gui.viewport_input().click, ViewportInput::Click::none);
+    window.move(at + glm::vec2(slip, 0.0f));
+    window.frame();
+    window.release(0);
+    const ViewportInput::Click click = window.gui.viewport_input().click;
+    window.frame();
+    EXPECT_EQ(window.gui.viewport_input().click, ViewportInput::Click::none);
+    return click;
+}
+
+TEST(Viewport, APressWithoutADragIsAClick) {
+    using Click = ViewportInput::Click;
+    TestWindow window(example_document());
+    EXPECT_EQ(click_in_view(window, {0, 0}), Click::in_front);
+    EXPECT_EQ(click_in_view(window, {40, 0}), Click::in_front);
+    EXPECT_EQ(click_in_view(window, {42, 1}), Click::behind) << "in the same place again";
+    EXPECT_EQ(click_in_view(window, {0, 0}, 2.0f), Click::in_front);
+    EXPECT_EQ(click_in_view(window, {80, 0}, 30.0f), Click::none);
+    window.hold(true, false, false);
+    EXPECT_EQ(click_in_view(window, {120, 0}), Click::behind);
+    window.hold(false, true, false);
+    EXPECT_EQ(click_in_view(window, {160, 0}), Click::none) << "Shift pans";
+    window.hold(false, false, true);
+    EXPECT_EQ(click_in_view(window, {200, 0}), Click::none);
+}
+
+TEST(Viewport, ADoubleClickIsOneClickOnly) {
+    TestWindow window(example_document());
+    const glm::vec2 at = window.at("frame in view");
+    window.frame(60);
+    window.click(at);
+    window.press(0);
+    EXPECT_TRUE(window.gui.viewport_input().double_click);
+    window.release(0);
+    EXPECT_EQ(window.gui.viewport_input().click, ViewportInput::Click::none);
+}
+
 TEST(Viewport, LettersFlyOnlyWhileLookingAround) {
     TestWindow window(example_document());
     window.move(window.at("frame in view"));

@@ -65,6 +65,7 @@ struct Memory {
     int selected_point = -1;
     std::string renaming;  // layer whose name is typed
     int dragged_layer = -1;
+    std::size_t layer_in_sight = 0;  // selected in the last frame
     std::optional<CopiedLook> copied;
     std::vector<NoiseSketch> noises;  // by entry of the list
     float preparation_line = 0.5f;    // between before and after, 0..1 of the width

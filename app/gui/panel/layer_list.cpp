@@ -270,6 +270,17 @@ void draw_merge_bracket(const Context& context, const std::vector<Area>& rows) {
         ImGui::SetTooltip("Merged by depth: the order of these does not matter");
 }
 
+// A layer that was selected in the picture comes into sight.
+void scroll_to_selected(Context& context, const std::vector<Area>& rows) {
+    Memory& memory = context.memory;
+    if (memory.layer_in_sight == context.view.layer || context.view.layer >= rows.size()) return;
+    memory.layer_in_sight = context.view.layer;
+    const Area& row = rows[context.view.layer];
+    const float top = ImGui::GetWindowPos().y;
+    if (row.corner.y < top || row.end().y > top + ImGui::GetWindowHeight())
+        ImGui::SetScrollFromPosY(row.corner.y - top);
+}
+
 void list_head(Context& context, float width) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImGui::PushFont(medium_font());
@@ -312,6 +323,7 @@ void layer_list(Context& context, float height) {
         draw_layer(context, i, rows[i]);
         ImGui::PopID();
     }
+    scroll_to_selected(context, rows);
     if (!rows.empty()) draw_merge_bracket(context, rows);
     reorder(context, rows);
     ImGui::SetCursorScreenPos(at);
