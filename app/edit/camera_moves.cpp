@@ -11,6 +11,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "core/real.h"
+#include "core/rotation.h"
 #include "edit/keyframes.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"

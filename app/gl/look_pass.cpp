@@ -23,7 +23,7 @@ LookLimits limits_for(const LookUniforms& look) {
     for (int k = 0; k < look.noise_count; ++k) octaves = std::max(octaves, look.noises[k].octaves);
     return {step_up(look.stop_count, {1, 3, LOOK_MAX_STOPS}),
             step_up(look.noise_count, {1, 2, LOOK_MAX_NOISES}), curve ? LOOK_MAX_POINTS : 1,
-            step_up(octaves, {0, 4, 6, 16})};
+            step_up(octaves, {0, 4, 6, 16}), step_up(look.crop_count, {0, 2, LOOK_MAX_CROPS})};
 }
 
 ProgramSource LookPass::source_for(const LookLimits& limits) {
@@ -34,6 +34,7 @@ ProgramSource LookPass::source_for(const LookLimits& limits) {
             {{"LOOK_STOPS", limits.stops},
              {"LOOK_NOISES", limits.noises},
              {"LOOK_POINTS", limits.points},
+             {"LOOK_CROPS", limits.crops},
              {"AS_NOISE_MAX_OCTAVES", limits.octaves}}};
 }
 

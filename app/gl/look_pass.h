@@ -21,6 +21,7 @@ struct LookLimits {
     int noises = shared_types::LOOK_MAX_NOISES;
     int points = shared_types::LOOK_MAX_POINTS;
     int octaves = 16;  // of a noise
+    int crops = shared_types::LOOK_MAX_CROPS;
     auto operator<=>(const LookLimits&) const = default;
 };
 

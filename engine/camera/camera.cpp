@@ -228,14 +228,4 @@ glm::dmat3 rotation_from_quaternion(const glm::dvec4& q) {
                       2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y));
 }
 
-glm::dmat3 rotation_from_degrees(const glm::dvec3& degrees) {
-    double cx = real::cos(real::radians(degrees.x)), sx = real::sin(real::radians(degrees.x));
-    double cy = real::cos(real::radians(degrees.y)), sy = real::sin(real::radians(degrees.y));
-    double cz = real::cos(real::radians(degrees.z)), sz = real::sin(real::radians(degrees.z));
-    glm::dmat3 about_x(1.0, 0.0, 0.0, 0.0, cx, sx, 0.0, -sx, cx);
-    glm::dmat3 about_y(cy, 0.0, -sy, 0.0, 1.0, 0.0, sy, 0.0, cy);
-    glm::dmat3 about_z(cz, sz, 0.0, -sz, cz, 0.0, 0.0, 0.0, 1.0);
-    return about_z * about_y * about_x;
-}
-
 }  // namespace astrosplat

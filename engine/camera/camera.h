@@ -93,9 +93,7 @@ struct ExrMatrices {
 };
 ExrMatrices exr_matrices(const Camera& camera, double width_px, double height_px);
 
-/// Rotation matrix from a quaternion x y z w of any length (0: InputError); rotation about x, then y, then z
-/// by degrees. With the engine's own trigonometry.
+/// Rotation matrix from a quaternion x y z w of any length (0: InputError).
 glm::dmat3 rotation_from_quaternion(const glm::dvec4& q);
-glm::dmat3 rotation_from_degrees(const glm::dvec3& degrees);
 
 }  // namespace astrosplat

@@ -45,6 +45,7 @@ struct Block {
     Lane weight[LOOK_MAX_STOPS], sum;  // of the thickness stops
     Lane r, g, b;                      // map value, later colour
     Lane probability, bites;
+    Lane cropped;  // what the crops leave of alpha; read where there are any
     Lane alpha, alpha_factor, color_factor, radius_factor, radius, f;
     int keep[block_size];
 };

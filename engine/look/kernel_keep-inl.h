@@ -107,6 +107,17 @@ ASTROSPLAT_LOOP decide(Block& b, float density, uint seed) {
     }
 }
 
+ASTROSPLAT_LOOP crop_away(LookCrop crop, Block& b) {
+    for (int i = 0; i < b.count; ++i)
+        b.cropped[i] = b.cropped[i] * look_crop(crop, b.px[i], b.py[i], b.pz[i]);
+}
+
+void crop(const LookUniforms& u, Block& b) {
+    fill(b.cropped, 1.0f, b.count);
+    for (int j = 0; j < u.crop_count; ++j) crop_away(u.crops[j], b);
+    for (int i = 0; i < b.count; ++i) b.keep[i] = b.keep[i] && b.cropped[i] > 0.0f ? 1 : 0;
+}
+
 template <class T>
 void gather(T* values, const int* from, int count) {
     for (int i = 0; i < count; ++i) values[i] = values[from[i]];  // from[i] >= i
@@ -128,6 +139,7 @@ void compact(const LookUniforms& u, bool positions, Block& b) {
     gather(b.x, b.from, kept);
     gather(b.reach, b.from, kept);
     gather(b.column, b.from, kept);
+    if (u.crop_count > 0) gather(b.cropped, b.from, kept);
     if (!positions) return;
     gather(b.px, b.from, kept);
     gather(b.py, b.from, kept);

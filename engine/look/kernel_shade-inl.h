@@ -69,6 +69,11 @@ void alphas(const LookUniforms& u, Block& b, float* out) {
     finish_alpha(b, out);
 }
 
+// Last of all, and of splats that absorb, too.
+ASTROSPLAT_LOOP fade_at_crops(const Block& b, float* HWY_RESTRICT alpha) {
+    for (int i = 0; i < b.count; ++i) alpha[i] = alpha[i] * b.cropped[i];
+}
+
 // --- 6: radius ---
 
 ASTROSPLAT_LOOP uniform_radii(Block& b, float radius_min, float radius_max, uint seed) {

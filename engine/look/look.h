@@ -108,12 +108,30 @@ struct Grade {
     bool operator==(const Grade&) const = default;
 };
 
+/// A volume of layer space outside of which (or within it) splats are cut away, before they are displaced.
+/// Opacity falls over a band of `soft` scene units that lies half inside. Of several, all hold. At most 8.
+struct Crop {
+    enum class Shape { box, sphere };
+    friend constexpr auto names_of(Shape) { return names_up_to<Shape::sphere>("box", "sphere"); }
+    enum class Keep { inside, outside };
+    friend constexpr auto names_of(Keep) { return names_up_to<Keep::outside>("inside", "outside"); }
+    Shape shape = Shape::box;
+    glm::vec3 center{0.0f};  // scene units
+    glm::vec3 size{1.0f};    // scene units, of a box from side to side, > 0
+    glm::vec3 rotate{0.0f};  // of a box, degrees about x, then y, then z
+    float radius = 1.0f;     // scene units, of a sphere, > 0
+    float soft = 0.0f;       // scene units
+    Keep keep = Keep::inside;
+    bool operator==(const Crop&) const = default;
+};
+
 struct Look {
     float density = 1.0f;
     float reach = 0.0f;  // scene units; 0: the set's max_distance
     DensityCurve pdf;
     Thickness thickness;
     std::vector<Noise> noise;  // empty: none
+    std::vector<Crop> crop;    // empty: none
     HorizontalAlpha alpha;
     VerticalAlpha vertical;
     Radius radius;

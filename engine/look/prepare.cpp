@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
+#include "core/rotation.h"
 #include "look/columns.h"
 #include "look/curves.h"
 #include "look/shared_look.h"
@@ -109,6 +110,35 @@ void prepare_noises(const Look& look, LookUniforms& u) {
                       fmt::format("{}", look.noise.size()));
         u.noises[u.noise_count++] = prepare_noise(noise);
     }
+}
+
+LookCrop prepare_crop(const Crop& crop) {
+    LookCrop c{};
+    c.center = crop.center;
+    c.x = vec3(1.0f, 0.0f, 0.0f);
+    c.y = vec3(0.0f, 1.0f, 0.0f);
+    c.z = vec3(0.0f, 0.0f, 1.0f);
+    c.soft = crop.soft;
+    c.outside = crop.keep == Crop::Keep::outside ? 1 : 0;
+    if (crop.shape == Crop::Shape::sphere) {
+        c.radius = crop.radius;
+        return c;
+    }
+    const glm::dmat3 sides = rotation_from_degrees(glm::dvec3(crop.rotate));
+    c.x = vec3(sides[0]);
+    c.y = vec3(sides[1]);
+    c.z = vec3(sides[2]);
+    c.half_x = 0.5f * crop.size.x;
+    c.half_y = 0.5f * crop.size.y;
+    c.half_z = 0.5f * crop.size.z;
+    return c;
+}
+
+void prepare_crops(const Look& look, LookUniforms& u) {
+    if (look.crop.size() > std::size_t(LOOK_MAX_CROPS))
+        bad_input("look.crop", "", fmt::format("at most {} crops", LOOK_MAX_CROPS),
+                  fmt::format("{}", look.crop.size()));
+    for (const Crop& crop : look.crop) u.crops[u.crop_count++] = prepare_crop(crop);
 }
 
 void prepare_alpha(const SplatSet& set, const Look& look, LookUniforms& u) {
@@ -235,6 +265,7 @@ LookUniforms prepare_look(const SplatSet& set, const Look& look, const LookInput
     u.density = look.density;
     prepare_stops(set, look, inputs, u);
     prepare_noises(look, u);
+    prepare_crops(look, u);
     prepare_alpha(set, look, u);
     prepare_radius(set, look.radius, u);
     prepare_grade(look.grade, u);

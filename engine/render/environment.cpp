@@ -15,6 +15,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/rotation.h"
 #include "source/texture.h"
 
 namespace astrosplat {

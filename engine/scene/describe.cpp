@@ -203,6 +203,7 @@ const std::vector<ParameterRow>& parameter_rows() {
         scene.layers[0].source.texture.mask[0].any.resize(1);
         scene.layers[0].look.thickness.stops.resize(1);
         scene.layers[0].look.noise.resize(1);
+        scene.layers[0].look.crop.resize(1);
         std::vector<ParameterRow> result;
         for (const Parameter& parameter : describe(scene).parameters) {
             result.push_back({parameter.spec, parameter.get()});

@@ -45,6 +45,21 @@ void describe_noise(const Describer& d, Noise& n) {
       within(-1e6, 1e6), slider(0, 1));
 }
 
+void describe_crop(const Describer& d, Crop& c) {
+    d(c.shape, "shape", "Crop", "", "What is kept of the layer, or cut from it.", shown_as("Shape"));
+    d(c.keep, "keep", "Keeps", "", "Which side of the shape stays.");
+    d(c.center, "center", "Centre", "scene units", "Of the shape, in the layer's own space.",
+      as(Type::position), slider(-10, 10));
+    d(c.size, "size", "Size", "scene units", "Of the box, from side to side.", within(1e-6, 1e12),
+      slider(0, 10), only_with("shape", {"box"}));
+    d(c.rotate, "rotate", "Rotation", "degrees", "Turns the box about x, then y, then z.", within(-1e6, 1e6),
+      slider(-180, 180), only_with("shape", {"box"}));
+    d(c.radius, "radius", "Radius", "scene units", "Of the sphere.", within(1e-6, 1e12), slider(0, 10),
+      only_with("shape", {"sphere"}));
+    d(c.soft, "soft", "Soft edge", "scene units",
+      "Width of the band at the surface over which opacity falls.", at_least(0), slider(0, 2));
+}
+
 void describe_alpha(const Describer& d, HorizontalAlpha& a) {
     d(a.power, "power", "Opacity at soft edges", "", "Opacity below the threshold is raised to this power.",
       within(0, 1e6), slider(0.1, 10), logarithmic(), shown_as("Power"));
@@ -110,6 +125,7 @@ void describe_look(const Describer& d, Look& look) {
                                      never_with("map", {""}));
     thickness.list("thickness.keys", look.thickness.stops, describe_thickness_stop);
     section("Noise").list("noise", look.noise, describe_noise);
+    section("Crop").list("crop", look.crop, describe_crop);
     describe_alpha(section("Opacity at soft edges").in("alpha", true), look.alpha);
     describe_vertical(section("Opacity with distance").in("vertical", true), look.vertical);
     describe_radius(section("Size").in("radius", true), look.radius);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/rotation.h"
 #include "generate/lattice.h"
 #include "render/falloff.h"
 

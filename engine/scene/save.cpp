@@ -256,6 +256,7 @@ std::string save_preset_text(const Look& look, const LayerRender& render, const 
     const Description wanted = describe_preset(wanted_look, wanted_render);
     saver.set_lists(describe_preset(base_look, base_render), wanted);
     base_look.noise = look.noise;
+    base_look.crop = look.crop;
     base_look.thickness.stops = look.thickness.stops;
     saver.set_values(describe_preset(base_look, base_render), wanted);
     return saver.text().text();

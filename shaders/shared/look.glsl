@@ -6,6 +6,7 @@
 const int LOOK_STOPS = LOOK_MAX_STOPS;
 const int LOOK_NOISES = LOOK_MAX_NOISES;
 const int LOOK_POINTS = LOOK_MAX_POINTS;
+const int LOOK_CROPS = LOOK_MAX_CROPS;
 
 // --- profiles over x ---
 
@@ -91,6 +92,29 @@ float look_x(float splat_distance, float reach) {
 
 bool look_keep(float x, float probability, uint seed, uint id_low, uint id_high) {
     return x <= 1.0f && as_uniform(as_hash(seed, id_low, id_high, PURPOSE_DENSITY)) < probability;
+}
+
+// Distance from the surface of a crop, below 0 inside; a, b and c are along the sides of its box.
+float look_crop_distance(LookCrop crop, float px, float py, float pz) {
+    float dx = px - crop.center.x;
+    float dy = py - crop.center.y;
+    float dz = pz - crop.center.z;
+    float a = abs(dx * crop.x.x + dy * crop.x.y + dz * crop.x.z) - crop.half_x;
+    float b = abs(dx * crop.y.x + dy * crop.y.y + dz * crop.y.z) - crop.half_y;
+    float c = abs(dx * crop.z.x + dy * crop.z.y + dz * crop.z.z) - crop.half_z;
+    float oa = max(a, 0.0f);
+    float ob = max(b, 0.0f);
+    float oc = max(c, 0.0f);
+    return sqrt(oa * oa + ob * ob + oc * oc) + min(max(a, max(b, c)), 0.0f) - crop.radius;
+}
+
+// What a crop leaves of a splat's alpha there. With a band of no width the surface itself is inside.
+float look_crop(LookCrop crop, float px, float py, float pz) {
+    float d = look_crop_distance(crop, px, py, pz);
+    float hard = d <= 0.0f ? 1.0f : 0.0f;
+    float t = crop.soft > 0.0f ? clamp(0.5f - d / crop.soft, 0.0f, 1.0f) : hard;
+    float inside = t * t * (3.0f - 2.0f * t);
+    return crop.outside != 0 ? 1.0f - inside : inside;
 }
 
 // --- 4: horizontal alpha ---
@@ -236,13 +260,17 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     }
     reach = u.reach * scale * reach;
     float x = look_x(s.from_surface, reach);
+    float cropped = 1.0f;
+    for (int j = 0; j < LOOK_CROPS; ++j) {
+        if (j < u.crop_count) cropped = cropped * look_crop(u.crops[j], s.position.x, s.position.y, s.position.z);
+    }
     for (int k = 0; k < LOOK_STOPS; ++k) {
         if (k < u.stop_count) density = density + weight[k] * look_profile(u.stops[k].pdf, x);
     }
 
     LookOutput result;
     float probability = u.density * density * culled;
-    result.keep = look_keep(x, probability, u.seed, s.id_low, s.id_high);
+    result.keep = look_keep(x, probability, u.seed, s.id_low, s.id_high) && cropped > 0.0f;
     result.probability = x <= 1.0f ? clamp(probability, 0.0f, 1.0f) : 0.0f;
     result.position = s.position + u.axis * along;
 
@@ -254,6 +282,7 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     float mean = look_column(u.match, column, reach, radius_factor);
     bool absorbs = u.absorbs != 0 && s.color.x < 0.0f;
     result.alpha = absorbs ? s.alpha : clamp(look_matched(u.match, alpha, f, mean) * alpha_factor, 0.0f, 1.0f);
+    result.alpha = result.alpha * cropped;
 
     float radius = look_uniform_radius(u.radius_min, u.radius_max, u.seed, s.id_low, s.id_high);
     radius = u.own_radius != 0 ? s.radius : radius;

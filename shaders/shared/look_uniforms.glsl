@@ -6,6 +6,7 @@
 const int LOOK_MAX_STOPS = 8;     // thickness stops
 const int LOOK_MAX_NOISES = 4;   // entries of the noise list
 const int LOOK_MAX_POINTS = 16;  // points of one curve
+const int LOOK_MAX_CROPS = 8;
 
 // Shapes of a profile over x = distance / reach.
 const int PROFILE_CONSTANT = 0;
@@ -68,6 +69,26 @@ struct LookNoise {
     int unused_0;
 };
 
+// A box with rounded edges: of a sphere nothing but the rounding is left.
+struct LookCrop {
+    vec3 center;   // layer space
+    float radius;  // of the rounding
+
+    vec3 x;  // unit vectors along the box's sides, and half of their lengths
+    float half_x;
+
+    vec3 y;
+    float half_y;
+
+    vec3 z;
+    float half_z;
+
+    float soft;   // scene units, width of the band over which opacity falls
+    int outside;  // 1: what lies outside is kept
+    int unused_0;
+    int unused_1;
+};
+
 struct LookUniforms {
     vec3 axis;    // unit vector
     float reach;  // scene units
@@ -97,10 +118,11 @@ struct LookUniforms {
 
     float inverse_gamma;
     int absorbs;  // 1: colours below 0 mean splats that absorb, whose colour and alpha stay
-    int unused_1;
+    int crop_count;
     int unused_2;
 
     LookProfile vertical;
     LookStop stops[LOOK_MAX_STOPS];
     LookNoise noises[LOOK_MAX_NOISES];
+    LookCrop crops[LOOK_MAX_CROPS];
 };

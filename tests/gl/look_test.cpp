@@ -144,6 +144,18 @@ std::vector<LookCase> all_cases() {
         match_case("coverage", Match::coverage, ColumnLaw::transmittance),
         match_case("coverage of light", Match::coverage, ColumnLaw::sum),
         match_case("light under screen", Match::picture, ColumnLaw::screen),
+        {"crops",
+         [](SplatSet&, Look& look, LookInputs&) {
+             look.crop.resize(3);
+             look.crop[0].size = glm::vec3(1.5f);
+             look.crop[0].rotate = {10.0f, 20.0f, 30.0f};
+             look.crop[0].soft = 0.4f;
+             look.crop[1].shape = Crop::Shape::sphere;
+             look.crop[1].radius = 0.3f;
+             look.crop[1].soft = 0.2f;
+             look.crop[1].keep = Crop::Keep::outside;
+             look.crop[2].size = glm::vec3(1.2f);
+         }},
         {"own radii", [](SplatSet&, Look& look, LookInputs&) { look.radius = {}; }},
         {"grade",
          [](SplatSet&, Look& look, LookInputs&) {
@@ -298,9 +310,10 @@ TEST_F(GpuLook, EveryMemberArrivesWhereOpenGlLooksForIt) {
 TEST(LookLimits, HoldTheLook) {
     LookUniforms look{};
     look.stop_count = 1;
-    EXPECT_EQ(limits_for(look), (LookLimits{1, 1, 1, 0}));
+    EXPECT_EQ(limits_for(look), (LookLimits{1, 1, 1, 0, 0}));
     look.stop_count = 4;
     look.noise_count = 3;
+    look.crop_count = 5;
     look.noises[2].octaves = 7;
     look.stops[3].pdf.shape = shared_types::PROFILE_CURVE;
     EXPECT_EQ(limits_for(look), LookLimits{});

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/rotation.h"
 #include "gl/gl_fixture.h"
 #include "gl/picture_scenes.h"
 #include "merge/cut.h"

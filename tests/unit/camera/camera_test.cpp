@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/real.h"
+#include "core/rotation.h"
 
 namespace astrosplat {
 namespace {

@@ -57,6 +57,12 @@ void use_everything(Case& c) {
     c.look.thickness.stops[2].pdf.points = {{0.1f, 0.9f}, {0.5f, 0.2f}, {0.8f, 0.7f}};
     c.look.noise = {{1.3f, 4, 2.1f, 0.5f, 3, 0.6f, 0.4f, 0.1f, 0.5f, 0.2f},
                     {5.3f, 2, 2.0f, 0.7f, 8, 0.0f, 0.0f, 0.05f, 0.3f, 0.4f}};
+    c.look.crop.resize(2);
+    c.look.crop[0].size = {6.0f, 0.8f, 7.0f};
+    c.look.crop[0].rotate = {3.0f, 20.0f, 4.0f};
+    c.look.crop[0].soft = 0.4f;
+    c.look.crop[1].shape = Crop::Shape::sphere;
+    c.look.crop[1].keep = Crop::Keep::outside;
     c.look.alpha = {1.7f, 0.9f, true, 1.2f};
     c.look.vertical.shape = VerticalAlpha::Shape::exponential;
     c.look.vertical.reach = 0.9f;

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/rotation.h"
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
 #include "render/shape.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"
+#include "core/rotation.h"
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
 #include "unit/render/scenes.h"

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/rotation.h"
 #include "scene/front_picture.h"
 #include "source/picture_camera.h"
 #include "support/errors.h"
