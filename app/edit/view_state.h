@@ -28,6 +28,9 @@ enum class CompareWith { b, reference };
 enum class PanelTab { source, look, render, camera, output };
 enum class PreviewEngine { automatic, opengl, processor };
 
+enum class HandleTool { none, move, rotate, scale };
+enum class HandleTarget { layer, crop, camera_target };  // the selected layer's placement, one of its crops
+
 /// A camera that belongs to the window, not to the scene.
 struct FreeCamera {
     glm::dvec3 position{0.0, 0.0, 10.0}, pivot{0.0}, up{0.0, 1.0, 0.0};
@@ -68,6 +71,11 @@ struct ViewState : PanelSizes {
     float inspect_exposure = 0.0f;                               // stops; shown in amber while not 0
     OutputParams::View display = OutputParams::View::automatic;  // as [output] view has it
     bool gate = true, safe_areas = false, camera_path = true;
+    bool selected_box = false, all_boxes = false;  // bounding boxes of layers
+    bool grid = false, axes = false;
+    HandleTool tool = HandleTool::none;  // handles in the view
+    HandleTarget handle_target = HandleTarget::layer;
+    std::size_t handle_crop = 0;  // of the selected layer
     PreviewEngine engine = PreviewEngine::automatic;
     float preview_share = 0.0f;  // 0: sized to hold the frame rate; else 0..1 of every layer
     bool settle = true;          // the final frame follows by itself

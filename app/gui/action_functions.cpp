@@ -184,11 +184,38 @@ void remove_keyframe_here(GuiFrame& f) {
                 remove_keyframe(scene, animated, f.view.frame);
     });
 }
+void choose_handles(GuiFrame& f, HandleTool tool) {
+    ViewState& view = f.view;
+    const bool of_layer = view.handle_target != HandleTarget::camera_target;
+    view.tool = view.tool == tool && of_layer ? HandleTool::none : tool;
+    if (!of_layer) view.handle_target = HandleTarget::layer;
+}
+bool moves_camera_target(const GuiFrame& f) {
+    return f.view.tool == HandleTool::move && f.view.handle_target == HandleTarget::camera_target;
+}
+void move_camera_target(GuiFrame& f) {
+    const bool was_on = moves_camera_target(f);
+    f.view.tool = was_on ? HandleTool::none : HandleTool::move;
+    f.view.handle_target = was_on ? HandleTarget::layer : HandleTarget::camera_target;
+    const CameraParams& camera = f.document.scene().camera;
+    if (was_on || (camera.position && !camera.rotation)) return;
+    if (camera.rotation) return say(f, "This camera looks along camera.rotation, which has no target");
+    ViewState through_camera;
+    through_camera.frame = f.view.frame;
+    edit(f, "Place of the camera",
+         [&](Scene& scene) { scene.camera = seen_camera(scene, through_camera, f.status); });
+}
+
 void cancel(GuiFrame& f) {
     if (f.view.help_open || f.view.log_open) {
         f.view.help_open = f.view.log_open = false;
     } else if (is_placing(f)) {
         toggle_placing(f);
+    } else if (f.view.tool != HandleTool::none) {
+        f.view.tool = HandleTool::none;
+        f.view.handle_target = HandleTarget::layer;
+    } else if (f.view.selected_box) {
+        f.view.selected_box = false;
     } else if (has_job(f)) {
         request(f, Command::Kind::cancel_render);
     } else {

@@ -65,4 +65,18 @@ void set_keyframe_here(GuiFrame& f);
 void remove_keyframe_here(GuiFrame& f);
 void cancel(GuiFrame& f);
 
+/// Handles in the view: on for this tool, or off where it is at work.
+void choose_handles(GuiFrame& f, HandleTool tool);
+template <HandleTool tool>
+void toggle_handles(GuiFrame& f) {
+    choose_handles(f, tool);
+}
+template <HandleTool tool>
+bool has_handles(const GuiFrame& f) {
+    return f.view.tool == tool && f.view.handle_target != HandleTarget::camera_target;
+}
+/// Of the scene's camera, which gets a place of its own where it has none.
+void move_camera_target(GuiFrame& f);
+bool moves_camera_target(const GuiFrame& f);
+
 }  // namespace astrosplat

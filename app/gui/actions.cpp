@@ -72,6 +72,16 @@ Action compare(const char* label) {
             .checked = [](C f) { return f.view.compare == mode; }};
 }
 
+template <HandleTool tool>
+Action handles(const char* label, int code) {
+    return {.menu = "Layer",
+            .label = label,
+            .shortcut = plain(code),
+            .run = toggle_handles<tool>,
+            .enabled = has_layer,
+            .checked = has_handles<tool>};
+}
+
 template <CameraMove move>
 Action add_move() {
     constexpr auto index = static_cast<std::size_t>(move);
@@ -119,6 +129,10 @@ const Action table[] = {
     below_line(flip<&ViewState::gate>("View", "Gate", plain('G'))),
     flip<&ViewState::safe_areas>("View", "Safe areas"),
     flip<&ViewState::camera_path>("View", "Camera path"),
+    flip<&ViewState::selected_box>("View/Guides", "Box of the selected layer"),
+    flip<&ViewState::all_boxes>("View/Guides", "Boxes of all layers"),
+    flip<&ViewState::grid>("View/Guides", "Grid"),
+    flip<&ViewState::axes>("View/Guides", "Axes"),
     flip<&ViewState::settle>("View", "Settle to the final frame"),
     below_line(flip<&ViewState::timeline_open>("View", "Timeline")),
     flip<&ViewState::snapshots_open>("View", "Snapshots"),
@@ -131,10 +145,14 @@ const Action table[] = {
     {"Layer", "Solo", plain('S'), solo_layer, has_layer, layer_solo},
     below_line({"Layer", "Move up", {}, move_layer_up, can_move_up}),
     {"Layer", "Move down", {}, move_layer_down, can_move_down},
+    below_line(handles<HandleTool::move>("Move in the view", 'W')),
+    handles<HandleTool::rotate>("Rotate in the view", 'E'),
+    handles<HandleTool::scale>("Scale in the view", 'R'),
     below_line({"Layer", "Regenerate", {}, ask_for_layer<Kind::regenerate>, layer_stale}),
 
     {"Camera", "Key camera here", {}, set_camera_keyframe_here},
     {"Camera", "Camera from this view", {}, camera_from_view, in_free_view},
+    {"Camera", "Move the target in the view", {}, move_camera_target, nullptr, moves_camera_target},
     add_move<CameraMove::orbit>(),
     add_move<CameraMove::fly_in>(),
     add_move<CameraMove::face_on_to_edge_on>(),

@@ -28,7 +28,8 @@ struct Group {
 
 const Group& mouse_group() {
     static const Group group{"Mouse in the view",
-                             {{"Orbit about the pivot", "Left"},
+                             {{"Select a layer, the next behind", "Click, Ctrl+click"},
+                              {"Orbit about the pivot", "Left"},
                               {"Move", "Middle, Shift+Left"},
                               {"Nearer, to the cursor", "Wheel"},
                               {"Look around", "Right"},

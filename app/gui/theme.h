@@ -20,6 +20,8 @@ inline constexpr ImU32 attention =
     IM_COL32(0xD9, 0xA4, 0x41, 255);  // keyframes of an animation, and what is unusual
 inline constexpr ImU32 good = IM_COL32(0x6A, 0xA8, 0x7A, 255);
 inline constexpr ImU32 error = IM_COL32(0xCF, 0x6B, 0x5B, 255);
+inline constexpr ImU32 axes[] = {IM_COL32(0xC4, 0x6A, 0x60, 255), IM_COL32(0x7C, 0xA8, 0x66, 255),
+                                 IM_COL32(0x62, 0x8F, 0xC4, 255)};  // x, y, z
 inline constexpr ImU32 none = IM_COL32(0, 0, 0, 0);
 /// `opacity` 0..1 replaces the colour's own.
 constexpr ImU32 with_opacity(ImU32 c, float opacity) {

@@ -9,6 +9,7 @@
 
 #include "gui/badge.h"
 #include "gui/theme.h"
+#include "gui/view_marks.h"
 #include "gui/viewport_overlay.h"
 
 namespace astrosplat {
@@ -62,6 +63,8 @@ void Viewport::begin_drag(GuiFrame& frame, const Rect& frame_area) {
     } else if (button_ == 0 && !io.KeyAlt && places_reference(frame)) {
         input_.drag = ViewportInput::Drag::place;
         placing_.press(frame, frame_on_screen(frame_area), io.KeyShift);
+    } else if (button_ == 0 && !io.KeyAlt && !io.KeyShift && handles_.press(frame, input_.mouse_px)) {
+        input_.drag = ViewportInput::Drag::handle;
     }
     input_.drag_begins = true;
     moves_frame_ = input_.drag == ViewportInput::Drag::pan && frame.view.size == SizeMode::one_to_one;
@@ -141,6 +144,7 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
     if (wiping || (input_.hovered && near_wipe(frame, frame_area)))
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (places_reference(frame)) placing_.read(frame, frame_on_screen(frame_area), input_);
+    handles_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::handle);
     move_frame(frame, area);
 }
 
@@ -153,7 +157,9 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     const Rect frame_area = place();
     ImGui::PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
     draw_frame_in_view(frame, area);
+    draw_view_marks(frame, area);
     draw_overlay_lines(frame, area);
+    handles_.draw(frame, area, input_.mouse_px);
     draw_gate(frame, area, frame_area);
     draw_wipe(frame, area, frame_area);
     if (places_reference(frame)) draw_placing(frame, frame_on_screen(frame_area));

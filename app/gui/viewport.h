@@ -3,6 +3,7 @@
 #pragma once
 
 #include "gui/gui_frame.h"
+#include "gui/handles.h"
 #include "gui/reference_placing.h"
 
 namespace astrosplat {
@@ -20,6 +21,7 @@ class Viewport {
 
     ViewportInput input_;
     ReferencePlacing placing_;
+    Handles handles_;
     int button_ = -1;              // that began the drag
     bool moves_frame_ = false;     // 1:1: a pan stays in the window
     bool may_click_ = false;       // the button that is down began nothing else

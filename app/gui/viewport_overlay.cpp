@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "edit/scene_marks.h"
 #include "edit/view_camera.h"
 #include "gui/icons.h"
 #include "gui/theme.h"
@@ -133,6 +134,9 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_a
     text += compare_text(frame);
     if (difference)
         text = "Front view: orange where it is brighter than the picture, blue where it is darker";
+    if (frame.view.grid && frame.status.viewport_camera)
+        text +=
+            fmt::format("   grid {:g} scene units", grid_around(frame.status.box, frame.view.view).spacing);
     ImGui::PushFont(small_font());
     // Inside the gate, clear of its line.
     const bool gated = frame.view.view == ViewKind::camera && frame.view.gate && !difference;

@@ -16,7 +16,8 @@ namespace {
 
 bool moves(const ViewportInput& input) {
     using Drag = ViewportInput::Drag;
-    const bool of_camera = input.drag != Drag::none && input.drag != Drag::wipe && input.drag != Drag::place;
+    const bool of_camera = input.drag == Drag::orbit || input.drag == Drag::pan ||
+                           input.drag == Drag::dolly || input.drag == Drag::look;
     const bool dragged = of_camera && (input.delta_px != glm::dvec2(0.0) || input.fly != glm::dvec3(0.0));
     return dragged || (input.wheel != 0.0f && input.hovered) || input.double_click;
 }

@@ -16,8 +16,10 @@ void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind) {
     const std::vector<std::size_t> seen = seen_layers(session.view_frame.layer_light(at.x, at.y));
     const std::optional<std::size_t> clicked = clicked_layer(seen, session.view.layer, behind);
     const std::vector<LayerParams>& layers = session.document.scene().layers;
+    session.view.selected_box = clicked.has_value();
     if (!clicked || *clicked >= layers.size()) return;
     session.view.layer = *clicked;
+    session.view.handle_target = HandleTarget::layer;
     std::string text = layers[*clicked].name + " is selected";
     if (seen.size() > 1) {
         const auto place = std::ranges::find(seen, *clicked) - seen.begin() + 1;

@@ -40,7 +40,7 @@ std::vector<std::string> telling_scenes() {
     return {
         layer(mesh,
               "pdf = { shape = \"exponential\" }\nvertical = { shape = \"exponential\" }\n"
-              "noise = { cull = 0.5 }",
+              "noise = { cull = 0.5 }\ncrop = [ {}, { shape = \"sphere\" } ]",
               "falloff = \"trapezoid\"\nblend = \"hybrid\""),
         layer(mesh,
               "pdf = { shape = \"gaussian\" }\nvertical = { shape = \"curve\", points = [[0, 1], [1, 0]] }\n"

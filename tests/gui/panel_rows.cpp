@@ -67,6 +67,22 @@ TEST(PanelRows, TheFirstThicknessStopChangesNothing) {
     EXPECT_TRUE(stops().empty());
 }
 
+TEST(PanelRows, ANewCropIsABoxAroundTheLayerWithHandles) {
+    PanelDriver d(rows_scene);
+    d.status.layers.resize(1);
+    d.status.layers[0].box = {{-5.0, -1.0, -5.0}, {15.0, 1.0, 5.0}};
+    d.document.edit("Crop", [](Scene& scene) { scene.layers[0].look.crop.resize(1); });
+    d.show(PanelTab::look);
+    d.click(d.row("layer.dust.look.crop.0.soft").label + glm::vec2(-20.0f, 26.0f));  // the line below
+    const std::vector<Crop>& crops = d.document.scene().layers[0].look.crop;
+    ASSERT_EQ(crops.size(), 2u);
+    EXPECT_EQ(crops[1].center, glm::vec3(5.0f, 0.0f, 0.0f));
+    EXPECT_EQ(crops[1].size, glm::vec3(22.0f, 2.2f, 11.0f)) << "a tenth larger than the layer";
+    EXPECT_EQ(d.view.handle_target, HandleTarget::crop);
+    EXPECT_EQ(d.view.handle_crop, 1u);
+    EXPECT_NE(d.view.tool, HandleTool::none);
+}
+
 TEST(PanelRows, AMeshIsAShapeOrAFile) {
     PanelDriver d(rows_scene);
     d.show(PanelTab::source);

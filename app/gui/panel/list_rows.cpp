@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "gui/panel/section.h"
+#include "gui/panel/words.h"
 
 namespace astrosplat::panel {
 namespace {
@@ -16,7 +17,7 @@ void erase_at(std::vector<T>& list, std::size_t index) {
 }
 
 /// The first stop changes nothing.
-void add_thickness_stop(LayerParams& layer) {
+void add_thickness_stop(LayerParams& layer, const LayerStatus&) {
     Look& look = layer.look;
     ThicknessStop stop;
     if (look.thickness.stops.empty()) stop.pdf = look.pdf;
@@ -26,6 +27,26 @@ void add_thickness_stop(LayerParams& layer) {
 bool can_take_thickness_stop(const LayerParams& layer) {
     const Thickness& thickness = layer.look.thickness;
     return thickness.stops.empty() || (!thickness.map.empty() && thickness.stops.size() < 8);
+}
+
+/// A box around the whole layer: nothing is cut until it is moved or made smaller.
+void add_crop(LayerParams& layer, const LayerStatus& status) {
+    Crop crop;
+    if (!status.box.empty()) {
+        const glm::dvec3 size = glm::max(status.box.extent(), glm::dvec3(1e-3));
+        for (int i = 0; i < 3; ++i) {
+            crop.center[i] = static_cast<float>(rounded_to_step(status.box.center()[i], 1e-2 * size[i]));
+            crop.size[i] = static_cast<float>(rounded_to_step(1.1 * size[i], 1e-2 * size[i]));
+        }
+    }
+    layer.look.crop.push_back(crop);
+}
+
+/// It is there to be dragged.
+void handle_last_crop(ViewState& view, const LayerParams& layer) {
+    view.tool = HandleTool::scale;
+    view.handle_target = HandleTarget::crop;
+    view.handle_crop = layer.look.crop.size() - 1;
 }
 
 std::vector<MaskParams>& masks_of(LayerParams& layer) { return layer.source.texture.mask; }
@@ -47,7 +68,7 @@ const ListRows lists[] = {
      .least = 1,
      .size = [](const LayerParams& layer) { return layer.source.meshes.size(); },
      .add =
-         [](LayerParams& layer) {
+         [](LayerParams& layer, const LayerStatus&) {
              layer.source.meshes.push_back({"plane", {}, 0.15});
          },
      .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.source.meshes, i); },
@@ -59,7 +80,7 @@ const ListRows lists[] = {
      .element = "mask",
      .least = 0,
      .size = [](const LayerParams& layer) { return layer.source.texture.mask.size(); },
-     .add = [](LayerParams& layer) { masks_of(layer).emplace_back(); },
+     .add = [](LayerParams& layer, const LayerStatus&) { masks_of(layer).emplace_back(); },
      .remove = [](LayerParams& layer, std::size_t i) { erase_at(masks_of(layer), i); },
      .is_shown = [](const LayerParams& layer) { return layer.source.kind == SourceKind::mesh; },
      .inner = &mask_alternatives},
@@ -70,9 +91,20 @@ const ListRows lists[] = {
      .element = "noise",
      .least = 0,
      .size = [](const LayerParams& layer) { return layer.look.noise.size(); },
-     .add = [](LayerParams& layer) { layer.look.noise.emplace_back(); },
+     .add = [](LayerParams& layer, const LayerStatus&) { layer.look.noise.emplace_back(); },
      .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.noise, i); },
      .can_grow = [](const LayerParams& layer) { return layer.look.noise.size() < 4; }},
+    {.key = "layer.look.crop",
+     .section = "Crop",
+     .after = "",
+     .title = "Crop",
+     .element = "crop",
+     .least = 0,
+     .size = [](const LayerParams& layer) { return layer.look.crop.size(); },
+     .add = add_crop,
+     .remove = [](LayerParams& layer, std::size_t i) { erase_at(layer.look.crop, i); },
+     .added = handle_last_crop,
+     .can_grow = [](const LayerParams& layer) { return layer.look.crop.size() < 8; }},
     {.key = "layer.look.thickness.keys",
      .section = "Thickness map",
      .after = "layer.look.thickness.map",
@@ -132,7 +164,8 @@ void list_add_line(Context& context, const ListRows& list) {
     if (full || !add_line(label.c_str())) return;
     const std::size_t layer = context.view.layer;
     edit(context, context.layer_key(), std::string("Add ") + list.element,
-         [&](Scene& scene) { list.add(scene.layers[layer]); });
+         [&](Scene& scene) { list.add(scene.layers[layer], context.layer_status()); });
+    if (list.added) list.added(context.view, context.document.scene().layers[layer]);
 }
 
 }  // namespace astrosplat::panel

@@ -26,11 +26,12 @@ struct ListRows {
     const char* element;  // in the names of edits
     std::size_t least;    // so many stay, and have no head while there are no more
     std::size_t (*size)(const LayerParams&);
-    void (*add)(LayerParams&);
+    void (*add)(LayerParams&, const LayerStatus&);
     void (*remove)(LayerParams&, std::size_t index);
-    bool (*can_grow)(const LayerParams&) = nullptr;  // nullptr: always
-    bool (*is_shown)(const LayerParams&) = nullptr;  // likewise
-    const InnerRows* inner = nullptr;                // nullptr: none
+    void (*added)(ViewState&, const LayerParams&) = nullptr;  // what the view does then
+    bool (*can_grow)(const LayerParams&) = nullptr;           // nullptr: always
+    bool (*is_shown)(const LayerParams&) = nullptr;           // likewise
+    const InnerRows* inner = nullptr;                         // nullptr: none
 };
 
 std::span<const ListRows> list_rows();

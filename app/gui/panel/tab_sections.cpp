@@ -107,6 +107,34 @@ std::string noise_state(const Context& context) {
     return noise.empty() ? "off" : fmt::format("{}", noise.size());
 }
 
+std::string crop_state(const Context& context) {
+    const std::size_t count = context.layer().look.crop.size();
+    return count == 0 ? "off" : fmt::format("{}", count);
+}
+
+/// Move, Rotate and Scale in one line: handles in the view that act on `target`.
+void handle_buttons(Context& context, HandleTarget target, std::size_t crop) {
+    const int clicked = button_line({"Move", "Rotate", "Scale"});
+    if (clicked < 0) return;
+    context.view.tool = static_cast<HandleTool>(clicked + 1);
+    context.view.handle_target = target;
+    context.view.handle_crop = crop;
+}
+
+void placement_buttons(Context& context) {
+    note("Handles in the view: W, E and R");
+    handle_buttons(context, HandleTarget::layer, 0);
+}
+
+void crop_buttons(Context& context) {
+    for (std::size_t i = 0; i < context.layer().look.crop.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        note(fmt::format("Handles of crop {} in the view", i));
+        handle_buttons(context, HandleTarget::crop, i);
+        ImGui::PopID();
+    }
+}
+
 std::string thickness_state(const Context& context) {
     const Thickness& thickness = context.layer().look.thickness;
     const std::size_t count = thickness.stops.size();
@@ -216,7 +244,7 @@ const TabSection sections[] = {
      unfolded,
      splats_state,
      {"layer.source.count", "layer.source.max_distance", "layer.source.voxels", "layer.source.voxel_size"}},
-    {"Source", "Placement", nullptr, placement_state, {"layer.transform"}},
+    {"Source", "Placement", nullptr, placement_state, {"layer.transform"}, placement_buttons},
     {"Source", "Layer", nullptr, layer_state},
     {"Look", "Density with distance", unfolded, kept_state, {"layer.look.pdf"}, kept_note},
     {"Look",
@@ -228,6 +256,7 @@ const TabSection sections[] = {
     {"Look", "Size", unfolded, size_state},
     {"Look", "Noise", nullptr, noise_state},
     {"Look", "Thickness map", nullptr, thickness_state},
+    {"Look", "Crop", nullptr, crop_state, {}, crop_buttons},
     {"Look", "Colour", nullptr, color_state},
     {"Look", "Whole look", nullptr, whole_look_state, {}, look_buttons},
     {"Render", "Dot profile", unfolded, value_of<falloff>},

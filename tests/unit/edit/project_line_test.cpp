@@ -5,8 +5,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "support/printing.h"
-
 namespace astrosplat {
 namespace {
 
@@ -22,36 +20,39 @@ Camera camera_of(Projection projection) {
     return make_camera(params, width, height, {});
 }
 
-class ProjectPoint : public testing::TestWithParam<Projection> {
-  protected:
-    Camera camera = camera_of(GetParam());
-};
-INSTANTIATE_TEST_SUITE_P(Cameras, ProjectPoint,
-                         testing::Values(Projection::perspective, Projection::orthographic),
-                         [](const auto& instance) { return std::string(name_of(instance.param)); });
+constexpr Projection projections[] = {Projection::perspective, Projection::orthographic};
 
-TEST_P(ProjectPoint, APlaneOfFourUnitsFillsTheFramesHeight) {
-    const auto at = project_point(camera, {1.0, 2.0, 0.0});
-    ASSERT_TRUE(at);
-    EXPECT_NEAR(at->x, 250.0f, 1e-4f);
-    EXPECT_NEAR(at->y, 0.0f, 1e-4f);
-    EXPECT_NEAR(units_per_px(camera, {1.0, 2.0, 0.0}), 4.0 / height, 1e-12);
-    EXPECT_NEAR(view_depth(camera, {1.0, 2.0, 3.0}), 7.0, 1e-12);
+TEST(ProjectPoint, APlaneOfFourUnitsFillsTheFramesHeight) {
+    for (const Projection projection : projections) {
+        const Camera camera = camera_of(projection);
+        const auto at = project_point(camera, {1.0, 2.0, 0.0});
+        ASSERT_TRUE(at);
+        EXPECT_NEAR(at->x, 250.0f, 1e-4f);
+        EXPECT_NEAR(at->y, 0.0f, 1e-4f);
+        EXPECT_NEAR(units_per_px(camera, {1.0, 2.0, 0.0}), 4.0 / height, 1e-12);
+        EXPECT_NEAR(view_depth(camera, {1.0, 2.0, 3.0}), 7.0, 1e-12);
+    }
 }
 
-TEST_P(ProjectPoint, TheRayThroughItMeetsThePoint) {
-    const glm::dvec3 point(1.5, -0.7, 3.0);
-    const ViewRay ray = ray_through(camera, glm::dvec2(*project_point(camera, point)));
-    EXPECT_NEAR(glm::length(ray.direction), 1.0, 1e-12);
-    EXPECT_LT(glm::length(glm::cross(point - ray.origin, ray.direction)), 1e-5);
+TEST(ProjectPoint, TheRayThroughItMeetsThePoint) {
+    for (const Projection projection : projections) {
+        const Camera camera = camera_of(projection);
+        const glm::dvec3 point(1.5, -0.7, 3.0);
+        const ViewRay ray = ray_through(camera, glm::dvec2(*project_point(camera, point)));
+        EXPECT_NEAR(glm::length(ray.direction), 1.0, 1e-12);
+        EXPECT_LT(glm::length(glm::cross(point - ray.origin, ray.direction)), 1e-5);
+    }
 }
 
-TEST_P(ProjectPoint, OnScreenItIsScaledAndMoved) {
-    const Camera shown = camera_on_screen(camera, {30.0, 40.0}, 0.5);
-    const auto at = project_point(shown, {1.0, 2.0, 0.0});
-    ASSERT_TRUE(at);
-    EXPECT_NEAR(at->x, 30.0f + 125.0f, 1e-4f);
-    EXPECT_NEAR(at->y, 40.0f, 1e-4f);
+TEST(ProjectPoint, OnScreenItIsScaledAndMoved) {
+    for (const Projection projection : projections) {
+        const Camera camera = camera_of(projection);
+        const Camera shown = camera_on_screen(camera, {30.0, 40.0}, 0.5);
+        const auto at = project_point(shown, {1.0, 2.0, 0.0});
+        ASSERT_TRUE(at);
+        EXPECT_NEAR(at->x, 30.0f + 125.0f, 1e-4f);
+        EXPECT_NEAR(at->y, 40.0f, 1e-4f);
+    }
 }
 
 TEST(ProjectLine, BehindTheEyeItIsCut) {
