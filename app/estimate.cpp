@@ -55,7 +55,8 @@ Expected expected_of(const SetCache& cache, const LayerParams& layer) {
     }
     const bool bodies = source.structure.kind != StructureKind::columns;
     if (!bodies && has_automatic_voxels(source) && source.splats <= 0) return {source.count};
-    std::vector<TexturedMesh> meshes = load_meshes(cache, source, Progress{{}, &interrupted()});
+    std::vector<TexturedMesh> meshes =
+        load_meshes(cache, source, Progress{{}, &interrupted()}, most_texels_read(source, room_for_bodies()));
     if (!bodies) return expected_columns(source, meshes);
     const BodiesPlan plan = plan_bodies(source, std::move(meshes), layer.name);
     const std::int64_t dots = expected_dots(plan.meshes, plan.structure);
@@ -83,7 +84,8 @@ std::int64_t parse_memory(const std::string& text) {
 void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache) {
     SourceParams& source = layer.source;
     if (source.kind != SourceKind::mesh || source.structure.kind == StructureKind::columns) return;
-    std::vector<TexturedMesh> meshes = load_meshes(cache, source, Progress{{}, &interrupted()});
+    std::vector<TexturedMesh> meshes =
+        load_meshes(cache, source, Progress{{}, &interrupted()}, most_texels_read(source, bytes));
     enlarge_small_pictures(meshes, layer.name);
     const std::int64_t largest = largest_picture(meshes);
     reduce_pictures(meshes, source.structure, {bytes, 0}, layer.name);

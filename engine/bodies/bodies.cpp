@@ -29,7 +29,8 @@
 namespace astrosplat {
 namespace {
 
-constexpr int most_pictures = 255;  // ids hold 8 bits of their number
+constexpr std::int64_t bytes_a_texel = 92;  // while bodies are made, measured
+constexpr int most_pictures = 255;          // ids hold 8 bits of their number
 constexpr int picture_bit = 56, instance_bit = 42;
 constexpr int most_faces = 64;             // that show one dot: ids hold 6 bits of which
 constexpr float nearest_approach = 0.95f;  // of the way to the picture's camera that a dot comes at most
@@ -201,9 +202,13 @@ std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const Structure
     return static_cast<std::int64_t>(dots);
 }
 
+std::int64_t most_texels_within(std::int64_t bytes) {
+    return std::max<std::int64_t>(1, bytes / bytes_a_texel);
+}
+
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots) {
     // Measured. Blocks that wait for their next use are a part of it (core/buffer.cpp).
-    constexpr std::int64_t bytes_a_texel = 92, bytes_a_dot = 44, bytes_on_mesh = 68;
+    constexpr std::int64_t bytes_a_dot = 44, bytes_on_mesh = 68;
     constexpr std::int64_t most_waiting = std::int64_t{256} << 20;
     const std::int64_t images = largest_picture(meshes) * bytes_a_texel;
     const std::int64_t used = std::max(images + dots * bytes_a_dot, dots * bytes_on_mesh);
@@ -240,10 +245,23 @@ Texture* largest_texture(std::vector<TexturedMesh>& meshes) {
 
 // The picture at `area` of its texels, but no less than so many px a side.
 Image at_area(const Image& image, double area, double smallest_px) {
-    const auto width = static_cast<double>(image.width), height = static_cast<double>(image.height);
-    const double least = std::min(1.0, smallest_px / std::min(width, height));
-    const double side = std::clamp(std::sqrt(area / (width * height)), least, 1.0);
-    return reduced_by_area(image, std::llround(side * width), std::llround(side * height));
+    const ImageSize size = size_of_area(image.width, image.height, area, smallest_px);
+    return reduced_by_area(image, size.width, size.height);
+}
+
+// Before it was reduced as it was read, or enlarged.
+ImageSize size_in_file(const Texture& texture) {
+    if (texture.file_width > 0) return {texture.file_width, texture.file_height};
+    return {texture.image.width / texture.times, texture.image.height / texture.times};
+}
+
+// What reduce_to() makes of a picture.
+ImageSize size_within(const Texture& texture, std::int64_t most_texels) {
+    const bool enlarged_before = texture.times > 1;
+    const ImageSize whole =
+        enlarged_before ? ImageSize{texture.image.width, texture.image.height} : size_in_file(texture);
+    if (most_texels <= 0) return whole;
+    return size_of_area(whole.width, whole.height, static_cast<double>(most_texels), 1.0);
 }
 
 // Reduces one picture until the limit is just kept, as far as this one can do it.
@@ -262,14 +280,14 @@ void reduce(Texture& texture, double first_share, const std::function<double()>&
 }  // namespace
 
 void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name) {
-    constexpr std::int64_t most_texels = 2048 * 2048;
+    constexpr std::int64_t most_texels = 4 * texels_read_whole;
     constexpr int most_times = 4;
     for (TexturedMesh& mesh : meshes) {
         for (Texture& texture : mesh.textures) {
             const std::int64_t texels = texels_of(texture);
             int times = 1;
             while (times < most_times && texels * (times + 1) * (times + 1) <= most_texels) ++times;
-            if (times == 1 || texels == 0) continue;
+            if (times == 1 || texels == 0 || texture.file_width > 0) continue;
             log_detail(fmt::format("layer '{}': a picture of {}x{} px is enlarged {} times", layer_name,
                                    texture.image.width, texture.image.height, times));
             texture.image = enlarged(texture.image, times);
@@ -286,8 +304,7 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
     for (double share = share_now(); share > 1.0; share = share_now()) {
         Texture* const largest = largest_texture(meshes);
         if (!largest || std::ranges::count(reduced, largest) > 0) return;
-        const std::int64_t width = largest->image.width / largest->times,
-                           height = largest->image.height / largest->times;
+        const auto [width, height] = size_in_file(*largest);
         reduce(*largest, share, share_now);
         reduced.push_back(largest);
         const bool few = limit.most_dots <= 0 || expected_dots(meshes, params) < limit.most_dots * 4 / 5;
@@ -303,17 +320,24 @@ void reduce_pictures(std::vector<TexturedMesh>& meshes, const StructureParams& p
 }
 
 void reduce_to(std::vector<TexturedMesh>& meshes, std::int64_t most_texels, const std::string& layer_name) {
-    if (most_texels <= 0) return;
     for (TexturedMesh& mesh : meshes) {
         for (Texture& texture : mesh.textures) {
             Image& image = texture.image;
-            if (texels_of(texture) <= most_texels) continue;
-            const std::int64_t width = image.width, height = image.height;
-            image = at_area(image, static_cast<double>(most_texels), 1.0);
-            log_detail(fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}", layer_name, width,
-                                   height, image.width, image.height));
+            const ImageSize before = size_in_file(texture), size = size_within(texture, most_texels);
+            if (size.width < image.width || size.height < image.height)
+                image = reduced_by_area(image, size.width, size.height);
+            if (image.width < before.width || image.height < before.height)
+                log_detail(fmt::format("layer '{}': a picture of {}x{} px is reduced to {}x{}", layer_name,
+                                       before.width, before.height, image.width, image.height));
         }
     }
+}
+
+bool have_all_texels(std::span<const TexturedMesh> meshes, std::int64_t most_texels) {
+    return std::ranges::all_of(pictures_of(meshes), [&](const PictureOnMesh& picture) {
+        const ImageSize size = size_within(picture.texture(), most_texels);
+        return picture.texture().image.width >= size.width && picture.texture().image.height >= size.height;
+    });
 }
 
 std::int64_t largest_picture(std::span<const TexturedMesh> meshes) {

@@ -23,6 +23,9 @@ std::int64_t expected_dots(std::span<const TexturedMesh> meshes, const Structure
 /// about 15 %.
 std::int64_t bodies_memory_bytes(std::span<const TexturedMesh> meshes, std::int64_t dots);
 
+/// No picture of more texels could be made bodies of in so many bytes.
+std::int64_t most_texels_within(std::int64_t bytes);
+
 struct BodiesLimit {
     std::int64_t room_bytes = 0;
     std::int64_t most_dots = 0;  // 0: as many as there are
@@ -32,8 +35,12 @@ struct BodiesLimit {
 /// then several dots, which together show it as sharp as it was. Says so at detail level.
 void enlarge_small_pictures(std::vector<TexturedMesh>& meshes, const std::string& layer_name);
 
-/// Reduces every picture of more texels by an area filter to so many; 0: none. Says so at detail level.
+/// Reduces every picture of more texels by an area filter to so many; 0: none. Says so at detail level, also
+/// of those that were reduced as they were read.
 void reduce_to(std::vector<TexturedMesh>& meshes, std::int64_t most_texels, const std::string& layer_name);
+
+/// Whether all pictures are at least as large as reduce_to() makes their files.
+bool have_all_texels(std::span<const TexturedMesh> meshes, std::int64_t most_texels);
 
 /// Texels of the largest picture.
 std::int64_t largest_picture(std::span<const TexturedMesh> meshes);

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <numeric>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
@@ -64,28 +67,124 @@ class Parts {
 
 }  // namespace
 
-Image reduced_by_area(const Image& image, std::int64_t width, std::int64_t height) {
-    assert(0 < width && width <= image.width && 0 < height && height <= image.height);
-    std::vector<Cover> columns;
-    for (std::int64_t x = 0; x < width; ++x) columns.push_back(cover_of(x, image.width, width));
-    Image out = make_image(width, height, image.channels);
-    parallel_each(height, 16, [&](std::int64_t y) {
-        const Cover rows = cover_of(y, image.height, height);
-        std::vector<const float*> covered;
-        for (std::size_t k = 0; k < rows.shares.size(); ++k)
-            covered.push_back(image.at(0, rows.first + static_cast<std::int64_t>(k)));
-        Image row{image.width, 1, image.channels, {}};
-        row.pixels.resize(static_cast<std::size_t>(image.width * image.channels));
-        weighted_rows(rows.shares, covered, image.width * image.channels, row.pixels.data());
-        for (std::int64_t x = 0; x < width; ++x) {
-            const Cover& column = columns[static_cast<std::size_t>(x)];
+namespace {
+
+class Reduction {
+  public:
+    Reduction(std::int64_t width_before, std::int64_t height_before, int channels, std::int64_t width,
+              std::int64_t height)
+        : width_before_(width_before),
+          height_before_(height_before),
+          out_(make_image(width, height, channels)) {
+        assert(0 < width && width <= width_before && 0 < height && height <= height_before);
+        for (std::int64_t x = 0; x < width; ++x) columns_.push_back(cover_of(x, width_before, width));
+    }
+
+    Cover rows_under(std::int64_t y) const { return cover_of(y, height_before_, out_.height); }
+
+    // Rows of the result; row(y) gives those of the image that they cover.
+    template <class Row>
+    void make(std::int64_t begin, std::int64_t end, const Row& row) {
+        parallel_each(end - begin, 4, [&](std::int64_t i) {
+            const Cover under = rows_under(begin + i);
+            std::vector<const float*> covered;
+            for (std::size_t k = 0; k < under.shares.size(); ++k)
+                covered.push_back(row(under.first + static_cast<std::int64_t>(k)));
+            make_row(under, covered, begin + i);
+        });
+    }
+
+    Image take() { return std::move(out_); }
+
+  private:
+    void make_row(const Cover& under, std::span<const float* const> covered, std::int64_t y) {
+        Image row = unfilled_image(width_before_, 1, out_.channels);
+        weighted_rows(under.shares, covered, width_before_ * out_.channels, row.pixels.data());
+        for (std::int64_t x = 0; x < out_.width; ++x) {
+            const Cover& column = columns_[static_cast<std::size_t>(x)];
             for (std::size_t k = 0; k < column.shares.size(); ++k)
-                for (int c = 0; c < image.channels; ++c)
-                    out.at(x, y)[c] +=
+                for (int c = 0; c < out_.channels; ++c)
+                    out_.at(x, y)[c] +=
                         column.shares[k] * row.at(column.first + static_cast<std::int64_t>(k), 0)[c];
         }
-    });
-    return out;
+    }
+
+    std::int64_t width_before_, height_before_;
+    std::vector<Cover> columns_;
+    Image out_;
+};
+
+// Rows of an image in order, of which only those are held that are still to be used.
+class RowWindow {
+  public:
+    explicit RowWindow(const ImageRows& rows) : rows_(rows), row_floats_(rows.width * rows.channels) {}
+
+    // Begins no earlier, and ends no earlier, than the last time.
+    void move_to(std::int64_t begin, std::int64_t end) {
+        const std::int64_t kept = std::max<std::int64_t>(0, end_ - begin);
+        std::copy(values_.end() - kept * row_floats_, values_.end(), values_.begin());
+        values_.resize(static_cast<std::size_t>((end - begin) * row_floats_));
+        rows_.read(begin + kept, end, values_.data() + kept * row_floats_);
+        begin_ = begin;
+        end_ = end;
+    }
+    const float* row(std::int64_t y) const { return values_.data() + (y - begin_) * row_floats_; }
+
+  private:
+    const ImageRows& rows_;
+    std::int64_t row_floats_, begin_ = 0, end_ = 0;
+    Buffer<float> values_;
+};
+
+}  // namespace
+
+ImageRows rows_of(Image image) {
+    const auto held = std::make_shared<const Image>(std::move(image));
+    return {held->width, held->height, held->channels,
+            [held](std::int64_t begin, std::int64_t end, float* rows) {
+                std::copy(held->at(0, begin), held->at(0, end), rows);
+            }};
+}
+
+Image read_whole(const ImageRows& rows) {
+    Image image = unfilled_image(rows.width, rows.height, rows.channels);
+    const std::int64_t at_once = strip_rows(rows);
+    for (std::int64_t begin = 0; begin < rows.height; begin += at_once)
+        rows.read(begin, std::min(rows.height, begin + at_once), image.at(0, begin));
+    return image;
+}
+
+ImageSize size_of_area(std::int64_t width, std::int64_t height, double area, double smallest_px) {
+    const auto w = static_cast<double>(width), h = static_cast<double>(height);
+    const double least = std::min(1.0, smallest_px / std::min(w, h));
+    const double side = std::clamp(std::sqrt(area / (w * h)), least, 1.0);
+    return {std::llround(side * w), std::llround(side * h)};
+}
+
+std::int64_t strip_rows(const ImageRows& rows) {
+    constexpr std::int64_t floats = std::int64_t{1} << 23;
+    return std::clamp<std::int64_t>(floats / std::max<std::int64_t>(1, rows.width * rows.channels), 1,
+                                    rows.height);
+}
+
+Image reduced_by_area(const ImageRows& rows, std::int64_t width, std::int64_t height) {
+    Reduction reduction(rows.width, rows.height, rows.channels, width, height);
+    RowWindow window(rows);
+    const std::int64_t at_once = std::max<std::int64_t>(1, strip_rows(rows) * height / rows.height);
+    for (std::int64_t begin = 0; begin < height; begin += at_once) {
+        const std::int64_t end = std::min(height, begin + at_once);
+        const Cover last = reduction.rows_under(end - 1);
+        window.move_to(reduction.rows_under(begin).first,
+                       last.first + static_cast<std::int64_t>(last.shares.size()));
+        reduction.make(begin, end, [&](std::int64_t y) { return window.row(y); });
+    }
+    return reduction.take();
+}
+
+Image reduced_by_area(const Image& image, std::int64_t width, std::int64_t height) {
+    Reduction reduction(image.width, image.height, image.channels, width, height);
+    reduction.make(0, height, [&](std::int64_t y) { return image.at(0, y); });
+    return reduction.take();
 }
 
 Image enlarged(const Image& image, int times) {

@@ -145,8 +145,12 @@ std::string_view opacity_of(StructureKind structure) {
 
 PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
                            std::string& why, const Progress& progress) {
-    const Texture texture = load_texture({image}, {}, TextureSettings::Wrap::clamp, progress);
-    PictureScene scene{image, texture.image.width, texture.image.height};
+    constexpr std::int64_t most_texels = 4096 * 4096;  // more do not change what is seen in it
+    const Texture texture =
+        load_texture({image}, {}, TextureSettings::Wrap::clamp, progress, {make_prepared, {}, most_texels});
+    const bool reduced = texture.file_width > 0;
+    PictureScene scene{image, reduced ? texture.file_width : texture.image.width,
+                       reduced ? texture.file_height : texture.image.height};
     why.clear();
     if (structure) {
         scene.structure = *structure;

@@ -36,7 +36,8 @@ Progress cancel_only(const Progress& progress) { return {{}, progress.cancelled}
 
 std::vector<TexturedMesh> load_meshes(const SourceParams& source, const std::string& layer_name,
                                       const Progress& progress, const PictureMaker& prepared) {
-    std::vector<TexturedMesh> meshes = load_meshes(source, cancel_only(progress), PictureReaders{prepared});
+    std::vector<TexturedMesh> meshes = load_meshes(
+        source, cancel_only(progress), {prepared, {}, most_texels_read(source, room_for_bodies())});
     for (const TexturedMesh& m : meshes)
         for (const Texture& texture : m.textures)
             if (!texture.summary.empty())
@@ -64,18 +65,27 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
 
 }  // namespace
 
+std::int64_t room_for_bodies() { return available_memory_bytes() / 10 * 9; }
+
+std::int64_t most_texels_read(const SourceParams& source, std::int64_t room_bytes) {
+    if (makes_columns(source)) return 0;
+    const std::int64_t asked_for = source.structure.most_texels, most = most_texels_within(room_bytes);
+    return asked_for > 0 ? std::min(asked_for, most) : most;
+}
+
 BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> meshes,
                        const std::string& layer_name) {
     BodiesPlan plan{std::move(meshes), source.structure};
     plan.structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
+    const bool read_whole = have_all_texels(plan.meshes, source.structure.most_texels);
     enlarge_small_pictures(plan.meshes, layer_name);
     reduce_to(plan.meshes, plan.structure.most_texels, layer_name);
     if (source.splats > 0)
         reduce_pictures(plan.meshes, plan.structure,
                         {std::numeric_limits<std::int64_t>::max(), source.splats}, layer_name);
     const std::int64_t asked_for = largest_picture(plan.meshes);
-    reduce_pictures(plan.meshes, plan.structure, {available_memory_bytes() / 10 * 9, 0}, layer_name);
-    plan.fits_memory = largest_picture(plan.meshes) == asked_for;
+    reduce_pictures(plan.meshes, plan.structure, {room_for_bodies(), 0}, layer_name);
+    plan.fits_memory = read_whole && largest_picture(plan.meshes) == asked_for;
     return plan;
 }
 

@@ -35,6 +35,13 @@ struct BodiesPlan {
     bool fits_memory = true;  // else pictures are smaller than the scene asks for
 };
 
+/// To which a larger file of a source's pictures is reduced while it is read, for PictureReaders: what the
+/// scene asks for, and no more than `room_bytes` could make bodies of. 0: to none, as for columns.
+std::int64_t most_texels_read(const SourceParams& source, std::int64_t room_bytes);
+
+/// Of this machine's memory, what bodies may take.
+std::int64_t room_for_bodies();
+
 /// Reduces a source's pictures until they are no more than the scene asks for and this machine's memory has
 /// room for; a warning says so.
 BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> meshes,

@@ -67,8 +67,8 @@ PictureMaker kept_pictures(const SetCache& cache) {
 }
 
 std::vector<TexturedMesh> load_meshes(const SetCache& cache, const SourceParams& source,
-                                      const Progress& progress) {
-    return load_meshes(source, progress, PictureReaders{kept_pictures(cache)});
+                                      const Progress& progress, std::int64_t most_texels) {
+    return load_meshes(source, progress, {kept_pictures(cache), {}, most_texels});
 }
 
 }  // namespace astrosplat

@@ -15,8 +15,8 @@ namespace astrosplat {
 /// is made again; a folder that cannot be written costs a warning.
 PictureMaker kept_pictures(const SetCache& cache);
 
-/// load_meshes() with them.
+/// load_meshes() with them, and larger files reduced to so many texels; 0: none.
 std::vector<TexturedMesh> load_meshes(const SetCache& cache, const SourceParams& source,
-                                      const Progress& progress = {});
+                                      const Progress& progress = {}, std::int64_t most_texels = 0);
 
 }  // namespace astrosplat

@@ -104,25 +104,30 @@ std::int64_t product(const fs::path& file, const std::vector<std::int64_t>& axes
 }
 
 // `count` physical values of the current HDU from element `first` (from 0) on; NaN where undefined.
-Buffer<double> read_values(const fs::path& file, fitsfile* in, std::int64_t first, std::int64_t count,
-                           const Progress& progress) {
-    if (count > std::numeric_limits<std::int64_t>::max() / 64)
-        bad_input(file.string(), "", "a picture that fits into memory", fmt::format("{} values", count));
-    claim_memory(count * 24,
-                 fmt::format("reading {}", file.string()));  // and a copy or two for the percentiles
-    int ignored = 0;
-    if (fits_is_compressed_image(in, &ignored)) check_gzip_tiles(file, in);
-    Buffer<double> values(static_cast<std::size_t>(count));
+void read_into(const fs::path& file, fitsfile* in, std::int64_t first, std::int64_t count,
+               const Progress& progress, double* values) {
     double undefined = std::numeric_limits<double>::quiet_NaN();
     int any_undefined = 0, status = 0;
     constexpr std::int64_t portion = std::int64_t{1} << 22;
     for (std::int64_t done = 0; done < count && status == 0; done += portion) {
         progress.check();
         fits_read_img(in, TDOUBLE, first + done + 1, std::min(portion, count - done), &undefined,
-                      values.data() + done, &any_undefined, &status);
+                      values + done, &any_undefined, &status);
     }
     if (status != 0) fail(file, "reading the pixels", status);
-    return values;
+}
+
+void check_tiles(const fs::path& file, fitsfile* in) {
+    int ignored = 0;
+    if (fits_is_compressed_image(in, &ignored)) check_gzip_tiles(file, in);
+}
+
+// Memory for so many values, announced.
+Buffer<double> room_for(const fs::path& file, std::int64_t count) {
+    if (count > std::numeric_limits<std::int64_t>::max() / 64)
+        bad_input(file.string(), "", "a picture that fits into memory", fmt::format("{} values", count));
+    claim_memory(count * 8, fmt::format("reading {}", file.string()));
+    return Buffer<double>(static_cast<std::size_t>(count));
 }
 
 FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted) {
@@ -147,10 +152,10 @@ FitsHdu find_hdu(const fs::path& file, fitsfile* in, const std::string& wanted) 
               fmt::format("none in {} HDUs", count));
 }
 
-void swap_rows(FitsPlane& plane) {
-    const auto row = [&](std::int64_t y) { return plane.values.begin() + y * plane.width; };
-    for (std::int64_t y = 0; y < plane.height / 2; ++y)
-        std::swap_ranges(row(y), row(y + 1), row(plane.height - 1 - y));
+// A plane's rows lie from its lowest one on.
+void swap_rows(std::int64_t width, std::int64_t rows, double* values) {
+    for (std::int64_t y = 0; y < rows / 2; ++y)
+        std::swap_ranges(values + y * width, values + (y + 1) * width, values + (rows - 1 - y) * width);
 }
 
 std::optional<double> number_keyword(fitsfile* in, const char* keyword) {
@@ -216,7 +221,9 @@ std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progres
     for (int i = 0; i < count; ++i) {
         FitsHdu hdu = go_to_hdu(file, in.get(), i);
         if (hdu.kind == "image" || hdu.kind == "compressed image") {
-            const Buffer<double> values = read_values(file, in.get(), 0, product(file, hdu.axes), progress);
+            Buffer<double> values = room_for(file, product(file, hdu.axes));
+            check_tiles(file, in.get());
+            read_into(file, in.get(), 0, std::ssize(values), progress, values.data());
             hdu.range = value_range(values);
             hdu.nan_count = std::ranges::count_if(values, [](double v) { return std::isnan(v); });
         }
@@ -225,8 +232,8 @@ std::vector<FitsHdu> describe_fits(const fs::path& file, const Progress& progres
     return hdus;
 }
 
-FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
-    const Handle in = open_fits(file);
+FitsRows open_fits_rows(const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
+    const std::shared_ptr<fitsfile> in(open_fits(file));
     const FitsHdu found = find_hdu(file, in.get(), hdu);
     const std::vector<std::int64_t> axes = picture_axes(found.axes);
     const std::int64_t pixels = product(file, {axes[0], axes[1]});
@@ -234,16 +241,28 @@ FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, con
     if (plane < 0 || plane >= planes)
         bad_input(file.string(), fmt::format("HDU {}", found.number),
                   fmt::format("a plane from 0 to {}", planes - 1), fmt::format("plane = {}", plane));
-    FitsPlane result;
-    result.width = axes[0];
-    result.height = axes[1];
-    result.values = read_values(file, in.get(), pixels * plane, pixels, progress);
-    result.hdu = found.number;
-    result.name = found.name;
-    result.credit = text_keyword(in.get(), "AUTHOR");
-    if (result.credit.empty()) result.credit = text_keyword(in.get(), "ORIGIN");
-    result.sky = sky_of(in.get());
-    swap_rows(result);
+    FitsRows rows;
+    rows.plane.width = axes[0];
+    rows.plane.height = axes[1];
+    rows.plane.hdu = found.number;
+    rows.plane.name = found.name;
+    rows.plane.credit = text_keyword(in.get(), "AUTHOR");
+    if (rows.plane.credit.empty()) rows.plane.credit = text_keyword(in.get(), "ORIGIN");
+    rows.plane.sky = sky_of(in.get());
+    check_tiles(file, in.get());
+    rows.read = [=, width = axes[0], height = axes[1]](std::int64_t begin, std::int64_t end, double* values) {
+        read_into(file, in.get(), pixels * plane + (height - end) * width, (end - begin) * width, progress,
+                  values);
+        swap_rows(width, end - begin, values);
+    };
+    return rows;
+}
+
+FitsPlane read_fits(const fs::path& file, const std::string& hdu, int plane, const Progress& progress) {
+    FitsRows rows = open_fits_rows(file, hdu, plane, progress);
+    FitsPlane result = std::move(rows.plane);
+    result.values = room_for(file, result.width * result.height);
+    rows.read(0, result.height, result.values.data());
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,8 +53,17 @@ struct FitsPlane {
     std::optional<FitsSky> sky;  // where the header tells it
 };
 
+/// A plane that is handed out by rows.
+struct FitsRows {
+    FitsPlane plane;  // without its values
+    /// Writes rows from `begin` to `end`, from the top. Throws InputError, Cancelled.
+    std::function<void(std::int64_t begin, std::int64_t end, double* values)> read;
+};
+
 /// `hdu`: "auto" (the first with a picture), a number from 0 (the primary HDU), or an EXTNAME in any case.
 /// `plane` counts from 0 over the axes beyond two. Throws InputError, Cancelled.
+FitsRows open_fits_rows(const std::filesystem::path& file, const std::string& hdu, int plane,
+                        const Progress& progress = {});
 FitsPlane read_fits(const std::filesystem::path& file, const std::string& hdu, int plane,
                     const Progress& progress = {});
 

@@ -62,33 +62,71 @@ Channels choose_channels(const ImageSpec& spec) {
     return c;
 }
 
+// How many rows of a file are read at once: whole tiles and strips, of some 32 MiB.
+std::int64_t band_rows(const ImageSpec& spec) {
+    constexpr std::int64_t floats = std::int64_t{1} << 23, most_floats = 8 * floats;
+    const std::int64_t row = std::int64_t{spec.width} * spec.nchannels;
+    const std::int64_t strip = std::max(1, spec.get_int_attribute("tiff:RowsPerStrip", 1));
+    const std::int64_t step = spec.tile_height > 0         ? spec.tile_height
+                              : strip <= most_floats / row ? strip
+                                                           : 1;
+    return std::max<std::int64_t>(1, floats / row / step) * step;
+}
+
 void check_spec(const fs::path& file, const ImageSpec& spec) {
     if (spec.deep) fail_picture(file, "it holds deep samples");
     if (spec.depth > 1) fail_picture(file, "it is a volume");
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) fail_picture(file, "it has no pixels");
-    const double bytes = 4.0 * (spec.nchannels + 4) *
-                         (static_cast<double>(spec.width) * spec.height +
-                          static_cast<double>(spec.full_width) * spec.full_height);
-    claim_memory(static_cast<std::int64_t>(std::min(bytes, 9e18)), fmt::format("reading {}", file.string()));
+    claim_memory(band_rows(spec) * spec.width * spec.nchannels * 4,
+                 fmt::format("a band of {}", file.string()));
 }
 
-// OpenImageIO asks this between bands of rows; true ends the reading.
-bool report_progress(void* progress, float fraction) {
-    static_cast<const Progress*>(progress)->at(static_cast<double>(fraction));
-    return static_cast<const Progress*>(progress)->stop();
-}
+// The rows of a file, of which a band is held.
+class Bands {
+  public:
+    Bands(fs::path file, std::unique_ptr<ImageInput> in, Progress progress)
+        : file_(std::move(file)),
+          in_(std::move(in)),
+          spec_(in_->spec()),
+          progress_(std::move(progress)),
+          rows_(band_rows(spec_)) {}
 
-Image read_all(const fs::path& file, ImageInput& in, const ImageSpec& spec, const Progress& progress) {
-    Image all{spec.width, spec.height, spec.nchannels, {}};
-    all.pixels.resize(all.width * all.height * all.channels);
-    const QuietStderr quiet;
-    const bool read =
-        in.read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, all.pixels.data(), OIIO::AutoStride,
-                      OIIO::AutoStride, OIIO::AutoStride, report_progress, const_cast<Progress*>(&progress));
-    progress.check();
-    if (!read) fail_picture(file, in.geterror());
-    return all;
-}
+    const ImageSpec& spec() const { return spec_; }
+    std::int64_t begin() const { return begin_; }
+    std::int64_t end() const { return begin_ + band_.height; }
+    // A row of the band that is held, counted from the file's first one.
+    const float* row(std::int64_t y) const { return band_.at(0, y - begin_); }
+
+    // Takes the band with this row.
+    void read(std::int64_t y) {
+        progress_.check();
+        begin_ = y / rows_ * rows_;
+        band_ = {spec_.width, std::min<std::int64_t>(rows_, spec_.height - begin_), spec_.nchannels,
+                 std::move(band_.pixels)};
+        band_.pixels.resize(static_cast<std::size_t>(band_.width * band_.height * band_.channels));
+        const QuietStderr quiet;
+        if (!read_rows(spec_.y + static_cast<int>(begin_), spec_.y + static_cast<int>(end())))
+            fail_picture(file_, in_->geterror());
+        progress_.at(static_cast<double>(end()) / spec_.height);
+        progress_.check();
+    }
+
+  private:
+    bool read_rows(int begin, int end) {
+        if (spec_.tile_width == 0)
+            return in_->read_scanlines(0, 0, begin, end, spec_.z, 0, spec_.nchannels, OIIO::TypeFloat,
+                                       band_.pixels.data());
+        return in_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, begin, end, spec_.z, spec_.z + 1, 0,
+                               spec_.nchannels, OIIO::TypeFloat, band_.pixels.data());
+    }
+
+    fs::path file_;
+    std::unique_ptr<ImageInput> in_;
+    ImageSpec spec_;
+    Progress progress_;
+    std::int64_t rows_, begin_ = 0;
+    Image band_;  // from row begin_ on
+};
 
 // OpenEXR's luminance/chroma: RY = (R - Y) / Y, BY = (B - Y) / Y, Y the luminance for Rec. 709 primaries.
 void to_rgb(float* c) {
@@ -115,23 +153,49 @@ Region display_window(const ImageSpec& spec) {
     return meet ? display : data;
 }
 
-Image pick_channels(const Image& all, const ImageSpec& spec, const Channels& channels) {
-    const Region window = display_window(spec);
+// One row of the window from a row of the file.
+void pick_channels(const float* from_row, const ImageSpec& spec, const Channels& channels,
+                   const Region& window, float* to_row) {
     const int count = channels.alpha >= 0 ? 4 : 3;
-    Image image = make_image(window.width, window.height, count);
-    parallel_each(window.height, 64, [&](std::int64_t y) {
-        const std::int64_t from_y = window.y + y - spec.y;
-        if (from_y < 0 || from_y >= all.height) return;
-        const std::int64_t shift = window.x - spec.x;
-        for (std::int64_t x = std::max<std::int64_t>(0, -shift);
-             x < std::min(window.width, all.width - shift); ++x) {
-            const float* from = all.at(x + shift, from_y);
-            float* to = image.at(x, y);
-            for (int c = 0; c < 3; ++c) to[c] = from[channels.color[c]];
-            if (channels.luma_chroma) to_rgb(to);
-            if (count == 4) to[3] = from[channels.alpha];
+    const std::int64_t shift = window.x - spec.x;
+    for (std::int64_t x = std::max<std::int64_t>(0, -shift); x < std::min(window.width, spec.width - shift);
+         ++x) {
+        const float* const from = from_row + (x + shift) * spec.nchannels;
+        float* const to = to_row + x * count;
+        for (int c = 0; c < 3; ++c) to[c] = from[channels.color[c]];
+        if (channels.luma_chroma) to_rgb(to);
+        if (count == 4) to[3] = from[channels.alpha];
+    }
+}
+
+// Rows of the picture as the file has it, not turned.
+ImageRows rows_of_file(const std::shared_ptr<Bands>& bands, const Channels& channels) {
+    const Region window = display_window(bands->spec());
+    const int count = channels.alpha >= 0 ? 4 : 3;
+    const auto read = [=](std::int64_t begin, std::int64_t end, float* rows) {
+        const ImageSpec& spec = bands->spec();
+        const std::int64_t row_floats = window.width * count, up = window.y - spec.y;
+        std::fill_n(rows, (end - begin) * row_floats, 0.0f);  // where the file has nothing
+        const std::int64_t last = std::min<std::int64_t>(end + up, spec.height);
+        for (std::int64_t y = std::max<std::int64_t>(begin + up, 0); y < last;) {
+            if (y < bands->begin() || y >= bands->end()) bands->read(y);
+            const std::int64_t next = std::min(last, bands->end());
+            parallel_each(next - y, 16, [&](std::int64_t i) {
+                pick_channels(bands->row(y + i), spec, channels, window,
+                              rows + (y + i - up - begin) * row_floats);
+            });
+            y = next;
         }
-    });
+    };
+    return {window.width, window.height, count, read};
+}
+
+Image all_rows(const ImageRows& rows, const fs::path& file) {
+    const double bytes =
+        4.0 * rows.channels * static_cast<double>(rows.width) * static_cast<double>(rows.height);
+    claim_memory(static_cast<std::int64_t>(std::min(bytes, 9e18)), fmt::format("reading {}", file.string()));
+    Image image = unfilled_image(rows.width, rows.height, rows.channels);
+    rows.read(0, rows.height, image.pixels.data());
     return image;
 }
 
@@ -152,8 +216,7 @@ int orientation_of(const ImageSpec& spec) {
     return orientation >= 1 && orientation <= 8 ? orientation : 1;
 }
 
-Image turned(Image image, int orientation) {
-    if (orientation == 1) return image;
+Image turned(const Image& image, int orientation) {
     const bool swaps = orientation >= 5;  // rows become columns
     const bool from_right = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
     const bool from_below = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
@@ -194,27 +257,35 @@ std::string find_credit(const fs::path& file, const ImageSpec& spec) {
 
 }  // namespace
 
-Picture read_picture(const fs::path& file, const Progress& progress) {
-    const std::unique_ptr<ImageInput> in = open_picture(file);
+PictureRows open_picture_rows(const fs::path& file, const Progress& progress) {
+    std::unique_ptr<ImageInput> in = open_picture(file);
     const ImageSpec spec = in->spec();
     check_spec(file, spec);
     if (std::string_view(in->format_name()) == "jpeg" && !jpeg_is_whole(file))
         fail_picture(file, "the file ends before the picture does");
     const Channels channels = choose_channels(spec);
-    const Image all = read_all(file, *in, spec, progress);
-    const int orientation = orientation_of(spec);
-    const char* const turn = orientations[orientation];
-    Picture picture;
-    picture.image = turned(pick_channels(all, spec, channels), orientation);
+    PictureRows result;
+    result.rows = rows_of_file(std::make_shared<Bands>(file, std::move(in), progress), channels);
+    if (const int orientation = orientation_of(spec); orientation != 1) {
+        result.rows = rows_of(turned(all_rows(result.rows, file), orientation));
+        log_info(fmt::format("{}: {}, as its orientation {} says", file.string(), orientations[orientation],
+                             orientation));
+    }
+    Picture& picture = result.picture;
+    picture.image = {result.rows.width, result.rows.height, result.rows.channels, {}};
     picture.max_integer = largest_integer(spec);
     picture.associated = channels.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     picture.cube = is_cube_map(spec);
     picture.credit = find_credit(file, spec);
     picture.summary =
         fmt::format("{}x{} px, {}", picture.image.width, picture.image.height, spec.format.c_str());
-    if (orientation != 1)
-        log_info(fmt::format("{}: {}, as its orientation {} says", file.string(), turn, orientation));
-    return picture;
+    return result;
+}
+
+Picture read_picture(const fs::path& file, const Progress& progress) {
+    PictureRows rows = open_picture_rows(file, progress);
+    rows.picture.image = all_rows(rows.rows, file);
+    return std::move(rows.picture);
 }
 
 void require_picture(const fs::path& file) {

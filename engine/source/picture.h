@@ -6,6 +6,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
+#include "image/area.h"
 
 namespace astrosplat {
 
@@ -25,6 +26,13 @@ struct Picture {
 /// differs from its display window, the display window is filled with what lies in it (empty elsewhere).
 /// Throws InputError, Cancelled.
 Picture read_picture(const std::filesystem::path& file, const Progress& progress = {});
+
+/// The same by rows, which `progress` hears of. A picture that has to be turned is held as a whole.
+struct PictureRows {
+    Picture picture;  // without its pixels
+    ImageRows rows;   // throw InputError, Cancelled
+};
+PictureRows open_picture_rows(const std::filesystem::path& file, const Progress& progress = {});
 
 /// Throws InputError unless the file's headers promise a picture, also in FITS.
 void require_picture(const std::filesystem::path& file);

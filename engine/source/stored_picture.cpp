@@ -28,23 +28,63 @@ void for_each_stored(Image& image, const PerPixel& change) {
     });
 }
 
-Stored stretched_plane(const FitsPlane& plane, const ValueRange& range, const Settings& settings,
-                       const fs::path& file) {
-    const Limits limits = choose_limits(range, settings, file.string());
-    const Settings::Stretch stretch = stretch_of(settings);
+// What is known of a plane's picture before its pixels are.
+Stored stored_without_pixels(const FitsPlane& plane, const Limits& limits, Settings::Stretch stretch) {
     Stored stored;
     stored.display_values = stretch != Settings::Stretch::linear;
     stored.picture.credit = plane.credit;
-    stored.picture.image = make_image(plane.width, plane.height, 3);
-    const StretchCurve curve(limits, stretch, settings.softening);
-    parallel_each(plane.values.size(), 1 << 13, [&](std::size_t i) {
-        const double value = curve(plane.values[i]);
-        std::fill_n(stored.picture.image.pixels.data() + 3 * i, 3, static_cast<float>(value));
-    });
+    stored.picture.image = {plane.width, plane.height, 3, {}};
     stored.picture.summary = fmt::format("{}x{} px, HDU {}{}{}, {} stretch, black {:.6g}, white {:.6g}",
                                          plane.width, plane.height, plane.hdu, plane.name.empty() ? "" : " ",
                                          plane.name, name_of(stretch), limits.black, limits.white);
     return stored;
+}
+
+// As r = g = b.
+void stretch_values(std::span<const double> values, const StretchCurve& curve, float* rgb) {
+    parallel_each(values.size(), 1 << 13,
+                  [&](std::size_t i) { std::fill_n(rgb + 3 * i, 3, static_cast<float>(curve(values[i]))); });
+}
+
+Stored stretched_plane(const FitsPlane& plane, const ValueRange& range, const Settings& settings,
+                       const fs::path& file) {
+    const Limits limits = choose_limits(range, settings, file.string());
+    Stored stored = stored_without_pixels(plane, limits, stretch_of(settings));
+    Image& image = stored.picture.image;
+    image = unfilled_image(plane.width, plane.height, 3);
+    stretch_values(plane.values, StretchCurve(limits, stretch_of(settings), settings.softening),
+                   image.pixels.data());
+    return stored;
+}
+
+// Hands out all values of a plane, some rows at a time.
+void hand_out(const FitsRows& rows, const ValueTaker& take) {
+    constexpr std::int64_t values_at_once = std::int64_t{1} << 22;
+    const std::int64_t width = rows.plane.width, height = rows.plane.height;
+    const std::int64_t at_once = std::clamp<std::int64_t>(values_at_once / width, 1, height);
+    Buffer<double> values(static_cast<std::size_t>(at_once * width));
+    for (std::int64_t begin = 0; begin < height; begin += at_once) {
+        const std::int64_t end = std::min(height, begin + at_once);
+        rows.read(begin, end, values.data());
+        take({values.data(), static_cast<std::size_t>((end - begin) * width)});
+    }
+}
+
+StoredRows stretched_rows(const FitsRows& plane, const Settings& settings, const fs::path& file) {
+    const bool limits_are_set = settings.black && settings.white;
+    const ValueRange range =
+        limits_are_set ? ValueRange{} : value_range([&](const ValueTaker& take) { hand_out(plane, take); });
+    const Limits limits = choose_limits(range, settings, file.string());
+    const StretchCurve curve(limits, stretch_of(settings), settings.softening);
+    StoredRows result;
+    result.stored = stored_without_pixels(plane.plane, limits, stretch_of(settings));
+    result.rows = {plane.plane.width, plane.plane.height, 3,
+                   [=](std::int64_t begin, std::int64_t end, float* rgb) {
+                       Buffer<double> values(static_cast<std::size_t>((end - begin) * plane.plane.width));
+                       plane.read(begin, end, values.data());
+                       stretch_values(values, curve, rgb);
+                   }};
+    return result;
 }
 
 // Linear light of each of an integer file's values.
@@ -57,8 +97,9 @@ std::vector<float> linear_table(double max_integer) {
 
 // Decodes the sRGB curve of colours that are not multiplied by alpha.
 void linearise(Image& image, double max_integer) {
-    const bool tabled = max_integer > 0.0 && max_integer <= 65535.0;
-    const std::vector<float> table = tabled ? linear_table(max_integer) : std::vector<float>();
+    static const std::vector<float> of_bytes = linear_table(255.0), of_words = linear_table(65535.0);
+    const bool tabled = max_integer == 255.0 || max_integer == 65535.0;
+    const std::vector<float>& table = max_integer == 255.0 ? of_bytes : of_words;
     const float scale = static_cast<float>(max_integer);
     for_each_stored(image, [&](float* p) {
         const bool grey = p[0] == p[1] && p[1] == p[2];
@@ -104,6 +145,27 @@ Stored stored_of(RawPicture raw, const Settings& settings, const fs::path& file)
     stored.picture = std::move(raw.picture);
     stored.display_values = stored.picture.max_integer > 0.0;
     return stored;
+}
+
+StoredRows rows_of(Stored stored) {
+    StoredRows result;
+    Image& image = stored.picture.image;
+    const Image empty{image.width, image.height, image.channels, {}};
+    result.rows = rows_of(std::exchange(image, empty));
+    result.stored = std::move(stored);
+    return result;
+}
+
+StoredRows open_stored(const fs::path& file, const Settings& settings, const Progress& progress,
+                       std::int64_t most_held) {
+    if (!is_fits(file)) {
+        PictureRows picture = open_picture_rows(file, progress);
+        const bool integers = picture.picture.max_integer > 0.0;
+        return {{std::move(picture.picture), integers}, std::move(picture.rows)};
+    }
+    const FitsRows plane = open_fits_rows(file, settings.hdu, settings.plane, progress);
+    if (plane.plane.width * plane.plane.height > most_held) return stretched_rows(plane, settings, file);
+    return rows_of(read_stored(file, settings, progress));
 }
 
 Stored read_stored(const fs::path& file, const Settings& settings, const Progress& progress) {

@@ -40,7 +40,17 @@ TextureSettings::Stretch stretch_of(const TextureSettings& settings);
 /// FITS is stretched between its limits. Throws InputError, which names `file`.
 Stored stored_of(RawPicture raw, const TextureSettings& settings, const std::filesystem::path& file);
 
-/// Both together. Throws InputError, Cancelled.
+/// A picture's values by rows. A FITS plane of more than `most_held` values is not held: it is read five
+/// times for its limits, where they are not set, and once more.
+struct StoredRows {
+    Stored stored;   // without its pixels
+    ImageRows rows;  // throw InputError, Cancelled
+};
+StoredRows rows_of(Stored stored);
+StoredRows open_stored(const std::filesystem::path& file, const TextureSettings& settings,
+                       const Progress& progress, std::int64_t most_held = std::int64_t{1} << 26);
+
+/// The same at once. Throws InputError, Cancelled.
 Stored read_stored(const std::filesystem::path& file, const TextureSettings& settings,
                    const Progress& progress);
 

@@ -1,11 +1,14 @@
-// Percentiles by selection, and the three curves with the engine's own functions.
+// Percentiles by counting digits, and the three curves with the engine's own functions.
 #include "source/stretch.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/error.h"
@@ -14,29 +17,97 @@
 namespace astrosplat {
 namespace {
 
-// Reorders the values.
-double percentile(std::vector<double>& values, double fraction) {
-    const double rank = fraction * static_cast<double>(values.size() - 1);
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::floor(rank));
-    std::nth_element(values.begin(), at, values.end());
-    const double part = rank - std::floor(rank);
-    if (part == 0.0) return *at;
-    const double next = *std::min_element(at + 1, values.end());
-    return *at + (next - *at) * part;
+constexpr int digit_bits = 16, digits = 4;
+
+// Of a finite value: orders as the values do.
+std::uint64_t key_of(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 is 0
+    constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
+    return bits & sign ? ~bits : bits | sign;
 }
+
+double value_of(std::uint64_t key) {
+    constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
+    return std::bit_cast<double>(key & sign ? key & ~sign : ~key);
+}
+
+// The value of one rank, found digit by digit: those of the values that begin as it does are counted by
+// their next one.
+class RankSearch {
+  public:
+    explicit RankSearch(std::int64_t rank) : rank_(rank), counts_(std::size_t{1} << digit_bits) {}
+
+    void count(std::uint64_t key) {
+        const int below = 64 - known_ * digit_bits;  // bits that are not known
+        if (known_ > 0 && key >> below != prefix_) return;
+        ++counts_[key >> (below - digit_bits) & (counts_.size() - 1)];
+    }
+    void next_digit() {
+        std::size_t digit = 0;
+        for (; rank_ >= counts_[digit]; ++digit) rank_ -= counts_[digit];
+        prefix_ = prefix_ << digit_bits | digit;
+        ++known_;
+        std::ranges::fill(counts_, 0);
+    }
+    double value() const { return value_of(prefix_); }
+
+  private:
+    std::int64_t rank_;  // among the values that begin with the prefix
+    std::vector<std::int64_t> counts_;
+    std::uint64_t prefix_ = 0;
+    int known_ = 0;
+};
+
+// A place between two ranks.
+struct Percentile {
+    Percentile(double fraction, std::int64_t count)
+        : rank(fraction * static_cast<double>(count - 1)),
+          below(static_cast<std::int64_t>(rank)),
+          above(std::min(static_cast<std::int64_t>(rank) + 1, count - 1)) {}
+
+    double value() const {
+        const double part = rank - std::floor(rank);
+        return part == 0.0 ? below.value() : below.value() + (above.value() - below.value()) * part;
+    }
+
+    double rank;
+    RankSearch below, above;
+};
 
 }  // namespace
 
 ValueRange value_range(std::span<const double> values) {
-    std::vector<double> finite;
-    finite.reserve(values.size());
-    std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
-                 [](double v) { return std::isfinite(v); });
-    if (finite.empty()) return {};
-    const auto [min, max] = std::ranges::minmax_element(finite);
-    ValueRange range{*min, *max, 0.0, 0.0};
-    range.black = percentile(finite, 0.0025);
-    range.white = percentile(finite, 0.9975);
+    return value_range([&](const ValueTaker& take) { take(values); });
+}
+
+ValueRange value_range(const std::function<void(const ValueTaker&)>& hand_out) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::int64_t count = 0;
+    ValueRange range{infinity, -infinity, 0.0, 0.0};
+    const auto each_finite = [&](const auto& visit) {
+        hand_out([&](std::span<const double> values) {
+            for (const double value : values)
+                if (std::isfinite(value)) visit(value);
+        });
+    };
+    each_finite([&](double value) {
+        ++count;
+        range.min = std::min(range.min, value);
+        range.max = std::max(range.max, value);
+    });
+    if (count == 0) return {};
+    Percentile black(0.0025, count), white(0.9975, count);
+    for (int digit = 0; digit < digits; ++digit) {
+        each_finite([&](double value) {
+            const std::uint64_t key = key_of(value);
+            for (RankSearch* search : {&black.below, &black.above, &white.below, &white.above})
+                search->count(key);
+        });
+        for (RankSearch* search : {&black.below, &black.above, &white.below, &white.above})
+            search->next_digit();
+    }
+    range.black = black.value();
+    range.white = white.value();
     return range;
 }
 

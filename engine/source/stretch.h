@@ -1,6 +1,7 @@
 // Data values of a telescope picture as numbers from 0 (black) to 1 (white).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -17,6 +18,11 @@ struct ValueRange {
 
 /// Percentiles are exact, interpolated linearly between ranks p (n - 1) as numpy does.
 ValueRange value_range(std::span<const double> values);
+
+/// The same of values that need not be held: `hand_out` gives all of them to its argument, in parts. It is
+/// called five times.
+using ValueTaker = std::function<void(std::span<const double>)>;
+ValueRange value_range(const std::function<void(const ValueTaker& take)>& hand_out);
 
 struct Limits {
     double black = 0.0;

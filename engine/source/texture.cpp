@@ -37,27 +37,38 @@ void for_each_pixel(Image& image, const PerPixel& change) {
 }
 
 // Red of the first, green of the second, blue of the third.
-Stored combine(const std::vector<fs::path>& files, const std::function<Stored(const fs::path&)>& read) {
-    Stored first = read(files[0]);
-    Image rgb = make_image(first.picture.image.width, first.picture.image.height, 3);
-    for (int c = 0; c < 3; ++c) {
-        const fs::path& file = files[c];
-        const Stored one = c == 0 ? std::move(first) : read(file);
-        const Image& from = one.picture.image;
-        if (from.width != rgb.width || from.height != rgb.height)
+StoredRows combine(const std::vector<fs::path>& files,
+                   const std::function<StoredRows(const fs::path&)>& open) {
+    std::vector<ImageRows> channels;
+    StoredRows rgb;
+    for (const fs::path& file : files) {
+        StoredRows one = open(file);
+        channels.push_back(std::move(one.rows));
+        const ImageRows &first = channels.front(), &here = channels.back();
+        if (here.width != first.width || here.height != first.height)
             bad_input(file.string(), "",
-                      fmt::format("{}x{} px like {}", rgb.width, rgb.height, files[0].string()),
-                      fmt::format("{}x{} px", from.width, from.height));
-        for (std::int64_t i = 0; i < from.width * from.height; ++i)
-            rgb.pixels[3 * i + c] = from.pixels[i * from.channels + c];
-        if (c == 0) first.display_values = one.display_values;
-        if (c == 0) first.picture.credit = one.picture.credit;
-        first.picture.summary = (c == 0 ? "" : first.picture.summary + "; ") + one.picture.summary;
+                      fmt::format("{}x{} px like {}", first.width, first.height, files[0].string()),
+                      fmt::format("{}x{} px", here.width, here.height));
+        if (channels.size() == 1)
+            rgb.stored = std::move(one.stored);
+        else
+            rgb.stored.picture.summary += "; " + one.stored.picture.summary;
     }
-    first.picture.image = std::move(rgb);
-    first.picture.max_integer = 0.0;
-    first.picture.associated = false;
-    return first;
+    Picture& picture = rgb.stored.picture;
+    picture.image.channels = 3;
+    picture.max_integer = 0.0;
+    picture.associated = false;
+    const auto read = [channels](std::int64_t begin, std::int64_t end, float* rows) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const ImageRows& from = channels[c];
+            Image strip = unfilled_image(from.width, end - begin, from.channels);
+            from.read(begin, end, strip.pixels.data());
+            for (std::int64_t i = 0; i < strip.width * strip.height; ++i)
+                rows[3 * i + static_cast<std::int64_t>(c)] = strip.pixels[i * strip.channels];
+        }
+    };
+    rgb.rows = {picture.image.width, picture.image.height, 3, read};
+    return rgb;
 }
 
 // NaN anywhere makes a pixel empty (returns false); light is not negative and not infinite.
@@ -97,28 +108,52 @@ Settings::Alpha choose_alpha(const fs::path& file, const Picture& picture, Setti
     return wanted;
 }
 
-// Linear stored colours -> premultiplied RGBA.
-Image apply_alpha(const Image& stored, Settings::Alpha alpha, bool premultiplied) {
-    Image image = make_image(stored.width, stored.height, 4);
+// Linear stored colours -> premultiplied RGBA. Returns how many pixels have no value: they are empty.
+std::int64_t apply_alpha(const Image& stored, Settings::Alpha alpha, bool premultiplied, float* rgba) {
     std::atomic<std::int64_t> empty{0};
-    parallel_chunks(image.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+    parallel_chunks(stored.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         std::int64_t nans = 0;
-        for (std::int64_t i = begin * image.width; i < end * image.width; ++i) {
+        for (std::int64_t i = begin * stored.width; i < end * stored.width; ++i) {
             float p[4] = {0.0f, 0.0f, 0.0f, 1.0f};
             std::copy_n(stored.pixels.data() + i * stored.channels, stored.channels, p);
+            float* const to = rgba + i * 4;
             if (!make_sane(p, stored.channels)) {
                 ++nans;
+                std::fill_n(to, 4, 0.0f);
                 continue;
             }
             const float a = std::clamp(alpha_of(p, alpha), 0.0f, 1.0f);
-            float* to = image.pixels.data() + i * 4;
             for (int c = 0; c < 3; ++c) to[c] = premultiplied ? p[c] : p[c] * a;
             to[3] = a;
         }
         empty.fetch_add(nans, std::memory_order_relaxed);
     });
-    if (empty > 0) log_detail(fmt::format("{} pixels without a value (NaN) are empty", empty.load()));
+    return empty;
+}
+
+// The picture as premultiplied RGBA of linear light, on `size`, which is no larger than it is. Strip by
+// strip: only what comes out is held as a whole.
+Image linear_picture(const StoredRows& from, const Settings& settings, Settings::Alpha alpha,
+                     bool premultiplied, const ImageSize& size) {
+    std::int64_t empty = 0;
+    const ImageRows rgba{
+        from.rows.width, from.rows.height, 4, [&](std::int64_t begin, std::int64_t end, float* rows) {
+            Stored strip = from.stored;
+            strip.picture.image = unfilled_image(from.rows.width, end - begin, from.rows.channels);
+            from.rows.read(begin, end, strip.picture.image.pixels.data());
+            make_linear(strip, settings.colorspace, premultiplied);
+            empty += apply_alpha(strip.picture.image, alpha, premultiplied, rows);
+        }};
+    const bool whole = size.width == rgba.width && size.height == rgba.height;
+    Image image = whole ? read_whole(rgba) : reduced_by_area(rgba, size.width, size.height);
+    if (empty > 0) log_detail(fmt::format("{} pixels without a value (NaN) are empty", empty));
     return image;
+}
+
+// What a picture has when it is read.
+ImageSize size_to_read(const ImageRows& rows, std::int64_t most_texels) {
+    if (most_texels <= 0 || rows.width * rows.height <= texels_read_whole) return {rows.width, rows.height};
+    return size_of_area(rows.width, rows.height, static_cast<double>(most_texels), 1.0);
 }
 
 // Alpha that was made of the light follows what became of it; a file's alpha stays.
@@ -204,17 +239,27 @@ Texture load_texture(const std::vector<fs::path>& files, const TextureSettings& 
             fmt::format("expected one texture, or three for red, green and blue, found {}", files.size()));
     const bool is_prepared = prepares(asked.prepare);
     const TextureSettings settings = is_prepared ? settings_after_preparation(asked) : asked;
-    const auto read = [&](const fs::path& file) {
-        return stored_of(readers.raw(file, settings.hdu, settings.plane, progress), settings, file);
+    const auto open = [&](const fs::path& file) {
+        if (!readers.raw) return open_stored(file, settings, progress);
+        return rows_of(stored_of(readers.raw(file, settings.hdu, settings.plane, progress), settings, file));
     };
-    Stored stored = is_prepared         ? as_stored(readers.prepared(files, asked, progress))
-                    : files.size() == 1 ? read(files[0])
-                                        : combine(files, read);
+    StoredRows rows = is_prepared         ? rows_of(as_stored(readers.prepared(files, asked, progress)))
+                      : files.size() == 1 ? open(files[0])
+                                          : combine(files, open);
+    const Stored stored = rows.stored;
     const Settings::Alpha alpha = choose_alpha(files[0], stored.picture, settings.alpha);
     const bool premultiplied = colors_are_premultiplied(stored.picture, settings, alpha);
-    make_linear(stored, settings.colorspace, premultiplied);
     Texture texture;
-    texture.image = apply_alpha(stored.picture.image, alpha, premultiplied);
+    const ImageSize size = size_to_read(rows.rows, is_prepared ? 0 : readers.most_texels);
+    if (size.width < rows.rows.width || size.height < rows.rows.height) {
+        texture.file_width = rows.rows.width;
+        texture.file_height = rows.rows.height;
+    }
+    claim_memory(static_cast<std::int64_t>(std::min(
+                     16.0 * static_cast<double>(size.width) * static_cast<double>(size.height), 9e18)),
+                 fmt::format("reading {}", files[0].string()));
+    texture.image = linear_picture(rows, settings, alpha, premultiplied, size);
+    rows = {};
     texture.filter = settings.filter;
     texture.wrap = settings.wrap == Settings::Wrap::automatic ? default_wrap : settings.wrap;
     texture.divided = premultiplied;

@@ -18,15 +18,20 @@
 
 namespace astrosplat {
 
+/// So many are never reduced while they are read: pictures that are small enough to be enlarged.
+inline constexpr std::int64_t texels_read_whole = 1024 * 1024;
+
 /// Where load_texture() has files from, and prepared pictures where settings.prepare wants something.
 struct PictureReaders {
     PictureMaker prepared = make_prepared;
-    RawReader raw = read_raw;
+    RawReader raw = {};            // none: files are read by rows
+    std::int64_t most_texels = 0;  // to which a larger file is reduced while it is read; 0: none
 };
 
 struct Texture {
     Image image;    // RGBA, linear, premultiplied; row 0 is the top (v = 1)
     int times = 1;  // as wide and high as the picture that was read (enlarge_small_pictures, bodies.h)
+    std::int64_t file_width = 0, file_height = 0;  // px, of a file that was reduced while it was read; else 0
     TextureSettings::Filter filter = TextureSettings::Filter::bilinear;
     TextureSettings::Wrap wrap = TextureSettings::Wrap::clamp;  // never automatic once loaded
     bool divided =

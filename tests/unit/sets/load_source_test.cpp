@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "bodies/bodies.h"
 #include "core/log.h"
 #include "sets/load_source.h"
 #include "source/textured_mesh.h"
@@ -78,6 +79,30 @@ TEST_F(LoadSourceTest, BodiesKeepToTexelsAndSplats) {
     source.splats = 2000;
     EXPECT_LE(load_source(source, "gas").size(), 2000);
     EXPECT_NE(lines_.find("would be more than"), std::string::npos) << lines_;
+}
+
+TEST_F(LoadSourceTest, LargePicturesAreReducedWhileTheyAreRead) {
+    std::string pixels;
+    for (int i = 0; i < 1300 * 900 * 3; ++i) pixels += static_cast<char>(40 + i * 7 % 60);
+    SourceParams source = mesh_source("plane", {write("gas.ppm", "P6\n1300 900\n255\n" + pixels)});
+    source.count = 0;
+    source.structure.kind = StructureKind::sheet;
+    source.structure.most_texels = 90'000;
+    const auto plan = [&](std::int64_t most_texels) {
+        return plan_bodies(source, load_meshes(source, {}, {make_prepared, {}, most_texels}), "gas");
+    };
+    const BodiesPlan afterwards = plan(0), while_read = plan(most_texels_read(source, std::int64_t{1} << 40));
+    EXPECT_EQ(while_read.meshes[0].textures[0].image.width, 361);
+    EXPECT_EQ(while_read.meshes[0].textures[0].image.pixels, afterwards.meshes[0].textures[0].image.pixels);
+    EXPECT_TRUE(while_read.fits_memory);
+    const std::int64_t within = most_texels_read(source, 4'000'000);  // less than the scene asks for
+    EXPECT_LT(within, 50'000);
+    BodiesPlan smaller = plan(within);
+    EXPECT_FALSE(smaller.fits_memory);
+    reduce_pictures(smaller.meshes, smaller.structure, {4'000'000, 0}, "gas");
+    EXPECT_NE(lines_.find("a picture of 1300x900 px is reduced to"), std::string::npos) << lines_;
+    source.structure.kind = StructureKind::columns;
+    EXPECT_EQ(most_texels_read(source, 4'000'000), 0);
 }
 
 TEST_F(LoadSourceTest, SplatFilesAreSortedAndKnowTheirLargestDistance) {
