@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -19,6 +20,8 @@ constexpr std::int64_t tile_px = 64;     // more than twice the reach of a star
 constexpr double kernel_sigma_px = 1.2;  // of the kernel that finds candidates
 constexpr double telling = 8.0;          // signal to noise of stars that together tell the field's profile
 constexpr std::size_t most_telling = 1000;
+constexpr double wider = 1.5;  // times the field's width: stars from which on may have one of their own
+constexpr std::size_t fewest_wider = 200, most_telling_of_wider = 4000;
 constexpr double model_error = 0.03;           // of a star's height, by which no profile is to be trusted
 constexpr double width_error = 1.3;            // of a width's logarithm, times the signal to noise
 constexpr double shaped = 20.0;                // signal to noise of stars that may have a shape of their own
@@ -36,10 +39,18 @@ struct Search {
     Cells noise;         // of heights
     PixelMask unusable;  // saturated or covered pixels
     PixelMask covered;
-    StarWidths widths;
+    StarWidths widths;                   // of most stars
+    std::optional<StarWidths> of_wider;  // of those that are clearly wider, where there are many
     std::vector<PictureStar> stars;
     std::vector<unsigned char> lost;  // 1: not a star
 };
+
+// What a star is fitted with: that which its own width is nearer to, as a ratio.
+const StarWidths& widths_for(const Search& search, const PictureStar& star) {
+    const double width = star.profile.fwhm_px;
+    const bool is_wider = search.of_wider && width * width > search.widths.fwhm_px * search.of_wider->fwhm_px;
+    return is_wider ? *search.of_wider : search.widths;
+}
 
 // Calls visit(star index) for the stars [first, ..) of each tile, the brightest first.
 template <class Visit>
@@ -78,22 +89,25 @@ void fit_all(Search& search, std::size_t first, const Progress& progress) {
         PictureStar& star = search.stars[i];
         add_star(search.image, star, 1.0f);
         const bool before = star.mean_amplitude() > 0.0;
-        const bool found = fit_star(search.image, search.unusable, search.widths, star);
+        const bool found = fit_star(search.image, search.unusable, widths_for(search, star), star);
         search.lost[i] = !found && !before;
         if (!search.lost[i]) add_star(search.image, star, -1.0f);
     });
 }
 
-// The stars that tell most about the field's profile, the strongest first.
-std::vector<std::size_t> telling_stars(const Search& search) {
+// The stars wider than `least_fwhm_px` that tell most about their profile, the strongest first.
+std::vector<std::size_t> telling_stars(const Search& search, double least_fwhm_px, std::size_t most) {
     std::vector<std::size_t> best;
-    for (std::size_t i = 0; i < search.stars.size(); ++i)
-        if (!search.lost[i] && !search.stars[i].saturated && search.stars[i].signal_to_noise() > telling)
+    for (std::size_t i = 0; i < search.stars.size(); ++i) {
+        const PictureStar& star = search.stars[i];
+        if (!search.lost[i] && !star.saturated && star.signal_to_noise() > telling &&
+            star.profile.fwhm_px > least_fwhm_px)
             best.push_back(i);
+    }
     std::stable_sort(best.begin(), best.end(), [&](std::size_t a, std::size_t b) {
         return search.stars[a].signal_to_noise() > search.stars[b].signal_to_noise();
     });
-    if (best.size() > most_telling) best.resize(most_telling);
+    if (best.size() > most) best.resize(most);
     return best;
 }
 
@@ -124,10 +138,10 @@ StarProfile elected(const Search& search, const std::vector<std::size_t>& stars,
 }
 
 // How far the widths of these stars scatter beyond what noise does, as logarithms.
-double spread_of(const Search& search, const std::vector<std::size_t>& stars) {
+double spread_of(const Search& search, const std::vector<std::size_t>& stars, double fwhm_px) {
     std::vector<double> away, errors;
     for (const std::size_t i : stars) {
-        away.push_back(std::fabs(real::log(search.stars[i].profile.fwhm_px / search.widths.fwhm_px)));
+        away.push_back(std::fabs(real::log(search.stars[i].profile.fwhm_px / fwhm_px)));
         errors.push_back(width_error / search.stars[i].signal_to_noise());
     }
     const double spread = 1.4826 * percentile(std::move(away), 0.5),
@@ -135,10 +149,8 @@ double spread_of(const Search& search, const std::vector<std::size_t>& stars) {
     return std::clamp(std::sqrt(std::max(0.0, spread * spread - error * error)), 0.05, 0.4);
 }
 
-// The shape and width that describe the telling stars best, and every star's shape from it.
-void measure_profile(Search& search) {
-    const std::vector<std::size_t> stars = telling_stars(search);
-    if (stars.size() < 8) return;
+// The shape and width that describe these stars best.
+StarWidths widths_of(const Search& search, const std::vector<std::size_t>& stars) {
     std::vector<double> widths;
     for (const std::size_t i : stars) widths.push_back(search.stars[i].profile.fwhm_px);
     const double middle = percentile(std::move(widths), 0.5);
@@ -147,9 +159,20 @@ void measure_profile(Search& search) {
         for (int step = -5; step <= 7; ++step)
             profiles.push_back({std::max(narrowest_fwhm_px, middle * real::exp(0.06 * step)), shape});
     const StarProfile best = elected(search, stars, profiles);
-    search.widths.fwhm_px = best.fwhm_px;
-    search.widths.shape = best.shape;
-    search.widths.log_spread = spread_of(search, stars);
+    return {best.shape, best.fwhm_px, spread_of(search, stars, best.fwhm_px)};
+}
+
+// What the stars have in common, and what those have that are clearly wider: in a galaxy that is resolved
+// into points as narrow as a pixel, these are many more than the stars before it. A faint star alone does not
+// tell its shape, and with the points' it would lose its wings.
+void measure_profile(Search& search) {
+    const std::vector<std::size_t> stars = telling_stars(search, 0.0, most_telling);
+    if (stars.size() < 8) return;
+    search.widths = widths_of(search, stars);
+    const std::vector<std::size_t> others =
+        telling_stars(search, wider * search.widths.fwhm_px, most_telling_of_wider);
+    search.of_wider.reset();
+    if (others.size() >= fewest_wider) search.of_wider = widths_of(search, others);
 }
 
 // Another shape of the same star, of free width.
@@ -164,11 +187,12 @@ PictureStar reshaped(const Search& search, PictureStar star, int shape) {
 void choose_shapes(Search& search, const Progress& progress) {
     for_each_by_tiles(search, 0, progress, [&](std::size_t i) {
         add_star(search.image, search.stars[i], 1.0f);
-        const PictureStar first = reshaped(search, search.stars[i], search.widths.shape);
+        const PictureStar first =
+            reshaped(search, search.stars[i], widths_for(search, search.stars[i]).shape);
         PictureStar best = first;
         double least = shape_misfit(search.image, search.unusable, first, first.profile) - clearly_better;
         for (int shape = 0; shape < star_shapes && first.signal_to_noise() > shaped; ++shape) {
-            if (shape == search.widths.shape) continue;
+            if (shape == first.profile.shape) continue;
             const PictureStar other = reshaped(search, first, shape);
             const double misfit = shape_misfit(search.image, search.unusable, other, first.profile);
             if (misfit >= least) continue;

@@ -17,7 +17,7 @@ struct StarSettings {
 
 struct StarField {
     std::vector<PictureStar> stars;  // saturated ones first, then by rows of their first sighting
-    StarWidths widths;               // of those that are not saturated
+    StarWidths widths;               // of most that are not saturated
     Image image;                     // the picture less every star's profile
     PixelMask covered;  // pixels of saturated cores and their spikes: the image tells nothing there
 };

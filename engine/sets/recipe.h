@@ -17,7 +17,7 @@ namespace astrosplat {
 inline constexpr int set_version = 16;
 
 /// The same of the preparation of pictures.
-inline constexpr int prepare_version = 2;
+inline constexpr int prepare_version = 3;
 
 /// What is hashed, line by line: versions, the bytes of meshes and pictures (of a mesh without a named
 /// picture also its material libraries and their pictures), and the parameters in use, with the seed
