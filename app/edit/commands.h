@@ -11,6 +11,7 @@ namespace astrosplat {
 struct Command {
     enum class Kind {
         new_from_file,  // path: picture, mesh or splats become an untitled scene
+        new_scene,      // text: a built-in shape; empty: a scene without layers
         open,           // path: a scene
         open_demo,
         save,
@@ -21,6 +22,8 @@ struct Command {
         discard_recovery,
         quit,             // unsaved changes already answered for
         import_file,      // path: as a new layer
+        add_shape,        // text: a built-in shape, as a new layer
+        choose_picture,   // path: of a layer's first mesh, index: layer
         set_reference,    // path
         align_reference,  // to what the view shows
         save_look,        // path: of the selected layer

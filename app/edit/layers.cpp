@@ -23,6 +23,18 @@ bool is_taken(const Scene& scene, const std::string& name) {
 
 bool belongs_to(const Track& track, const std::string& layer) { return track.key.layer() == layer; }
 
+fs::path place_of(const Scene& scene) {
+    return scene.file.empty() ? fs::absolute("untitled.toml") : scene.file;
+}
+
+/// Of a scene's text.
+std::size_t add_first_layer(Scene& scene, const std::string& text, const fs::path& place) {
+    LayerParams layer = parse_scene(text, place).layers.at(0);
+    layer.name = free_layer_name(scene, layer.name);
+    scene.layers.push_back(std::move(layer));
+    return scene.layers.size() - 1;
+}
+
 void rekey(Track& track, const std::string& from, const std::string& to) {
     track.key = track.key.moved(layer_key(from), layer_key(to));
 }
@@ -39,11 +51,12 @@ std::string free_layer_name(const Scene& scene, const std::string& wanted) {
 }
 
 std::size_t add_layer(Scene& scene, const fs::path& file) {
-    const fs::path place = scene.file.empty() ? fs::absolute("untitled.toml") : scene.file;
-    LayerParams layer = parse_scene(scene_text_for(file, place), place).layers.at(0);
-    layer.name = free_layer_name(scene, layer.name);
-    scene.layers.push_back(std::move(layer));
-    return scene.layers.size() - 1;
+    const fs::path place = place_of(scene);
+    return add_first_layer(scene, scene_text_for(file, place), place);
+}
+
+std::size_t add_shape(Scene& scene, const std::string& shape) {
+    return add_first_layer(scene, shape_scene_text(shape), place_of(scene));
 }
 
 std::size_t duplicate_layer(Scene& scene, std::size_t index) {

@@ -14,6 +14,8 @@ std::string free_layer_name(const Scene& scene, const std::string& wanted);
 /// A layer for a picture (on the built-in plane), a mesh (with its own texture) or a splat file, at the end
 /// of the list. Throws InputError for another kind of file. Returns its index.
 std::size_t add_layer(Scene& scene, const std::filesystem::path& file);
+/// The same of one of shape_names (new_from_file.h), in neutral grey.
+std::size_t add_shape(Scene& scene, const std::string& shape);
 std::size_t duplicate_layer(Scene& scene, std::size_t index);
 void remove_layer(Scene& scene, std::size_t index);
 void move_layer(Scene& scene, std::size_t from, std::size_t to);

@@ -56,15 +56,16 @@ path       = {path}  # the ending chooses the format: .exr .tif .png
 
 [camera]                          # without a position it frames everything, from 35 degrees above
 fov = 40.0                        # degrees, vertical
-
-[[layer]]
-name = "{name}"
 {layer})";
+
+std::string scene_text(const std::string& name, const std::string& layer) {
+    return fmt::format(scene_format, fmt::arg("name", name),
+                       fmt::arg("path", to_toml("frames/" + name + ".####.exr")), fmt::arg("layer", layer));
+}
 
 std::string scene_text(const fs::path& file, const std::string& layer) {
     const std::string name = layer_name_of(file.stem().string());
-    return fmt::format(scene_format, fmt::arg("name", name),
-                       fmt::arg("path", to_toml("frames/" + name + ".####.exr")), fmt::arg("layer", layer));
+    return scene_text(name, fmt::format("\n[[layer]]\nname = \"{}\"\n{}", name, layer));
 }
 
 bool has_own_pictures(const Mesh& mesh) {
@@ -100,15 +101,7 @@ std::string projection_lines(const Mesh& mesh) {
 std::string mesh_scene_text(const fs::path& file, const fs::path& place) {
     const Mesh mesh = load_obj(file);
     fs::path picture;
-    if (!has_own_pictures(mesh)) {
-        picture = picture_beside(file);
-        if (picture.empty())
-            bad_input(file.string(), "",
-                      fmt::format("a picture for every face: map_Kd in its material, or a picture beside the "
-                                  "mesh, such as '{}.png'",
-                                  file.stem().string()),
-                      "neither");
-    }
+    if (!has_own_pictures(mesh)) picture = picture_beside(file);
     return scene_text(
         file, fmt::format("\n[layer.source]\nmeshes = [ {{ mesh = {}, texture = {} }} ]\n{}",
                           path_from(file, place), picture.empty() ? "\"\"" : path_from(picture, place),
@@ -145,6 +138,23 @@ std::string splat_scene_text(const fs::path& file, const fs::path& place) {
 FileKind kind_of_file(const fs::path& file) {
     const FileKind kind = kind_of(format_of_file(file));
     return kind == FileKind::scene && is_look(file) ? FileKind::look : kind;
+}
+
+bool lacks_picture(const LayerParams& layer) {
+    const SourceParams& source = layer.source;
+    if (source.kind != SourceKind::mesh || source.meshes.empty() || !source.meshes[0].texture.empty())
+        return false;
+    const fs::path& mesh = source.meshes[0].mesh;
+    return is_builtin_mesh(mesh) || !has_own_pictures(load_obj(mesh));
+}
+
+std::string empty_scene_text() { return scene_text(std::string("scene"), ""); }
+
+std::string shape_scene_text(const std::string& shape) {
+    return scene_text(
+        shape, fmt::format("\n[[layer]]\nname = \"{0}\"\n\n[layer.source]\nmeshes = [ {{ mesh = \"{0}\" }} ]"
+                           "  # texture = \"picture.jpg\" colours it\ncount = 500000\n",
+                           shape));
 }
 
 std::string scene_text_for(const fs::path& file, const fs::path& place) {

@@ -98,6 +98,7 @@ struct ViewState : PanelSizes {
     int queue_frame = -1;         // the finished frame that is seen; -1: the newest
     bool queue_playing = false;
     bool changed_on_disk = false;  // the line that offers Reload or Keep is shown
+    std::string grey_layer;        // whose mesh has no picture: the line that offers to choose one is shown
     bool hint_open = false;        // "Drop a picture, mesh or splat file here. F1 shows the keys."
 };
 

@@ -55,6 +55,8 @@ void take_snapshot(GuiFrame& f) {
     f.view.snapshots_open = true;
 }
 
+void new_empty_scene(GuiFrame& f) { request(f, Command::Kind::new_scene); }
+
 bool has_file(const GuiFrame& f) { return !f.document.file().empty(); }
 bool has_layer(const GuiFrame& f) { return f.view.layer < f.document.scene().layers.size(); }
 bool has_box(const GuiFrame& f) { return !f.status.box.empty(); }

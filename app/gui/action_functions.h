@@ -14,6 +14,7 @@ bool can_redo(const GuiFrame& f);
 std::string undo_label(const GuiFrame& f);  // "Undo Opacity of dust"
 std::string redo_label(const GuiFrame& f);
 void take_snapshot(GuiFrame& f);
+void new_empty_scene(GuiFrame& f);
 
 bool has_file(const GuiFrame& f);
 bool has_layer(const GuiFrame& f);

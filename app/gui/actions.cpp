@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "edit/camera_moves.h"
+#include "edit/new_from_file.h"
 #include "gui/action_functions.h"
 #include "gui/key_codes.h"
 #include "gui/render_dialog.h"
@@ -72,6 +73,14 @@ Action compare(const char* label) {
             .checked = [](C f) { return f.view.compare == mode; }};
 }
 
+/// A built-in shape, by its place in shape_labels.
+template <Kind kind, std::size_t index>
+Action shape(const char* menu) {
+    return {menu, shape_labels[index], {}, [](F f) {
+                f.requested.push_back({kind, {}, shape_names[index], 0});
+            }};
+}
+
 template <HandleTool tool>
 Action handles(const char* label, int code) {
     return {.menu = "Layer",
@@ -89,6 +98,15 @@ Action add_move() {
 }
 
 const Action table[] = {
+    {"File/New", "Empty scene", {}, new_empty_scene},
+    shape<Kind::new_scene, 0>("File/New"),
+    shape<Kind::new_scene, 1>("File/New"),
+    shape<Kind::new_scene, 2>("File/New"),
+    shape<Kind::new_scene, 3>("File/New"),
+    shape<Kind::new_scene, 4>("File/New"),
+    shape<Kind::new_scene, 5>("File/New"),
+    shape<Kind::new_scene, 6>("File/New"),
+    shape<Kind::new_scene, 7>("File/New"),
     {"File", "New from picture...", {}, ask<Kind::new_from_file>},
     {"File", "Open...", ctrl('O'), ask<Kind::open>},
     {"File", "Open the demo", {}, ask<Kind::open_demo>},
@@ -139,6 +157,14 @@ const Action table[] = {
     flip<&ViewState::panels>("View", "Panels", plain(key_code::f11)),
 
     {"Layer", "Add...", {}, ask<Kind::import_file>},
+    shape<Kind::add_shape, 0>("Layer/Add shape"),
+    shape<Kind::add_shape, 1>("Layer/Add shape"),
+    shape<Kind::add_shape, 2>("Layer/Add shape"),
+    shape<Kind::add_shape, 3>("Layer/Add shape"),
+    shape<Kind::add_shape, 4>("Layer/Add shape"),
+    shape<Kind::add_shape, 5>("Layer/Add shape"),
+    shape<Kind::add_shape, 6>("Layer/Add shape"),
+    shape<Kind::add_shape, 7>("Layer/Add shape"),
     {"Layer", "Duplicate", {}, duplicate_selected_layer, has_layer},
     {"Layer", "Remove", {}, remove_selected_layer, has_layer},
     below_line({"Layer", "Visible", plain('H'), hide_layer, has_layer, layer_visible}),

@@ -16,7 +16,7 @@ using Kind = Command::Kind;
 
 bool replaces_scene(Kind kind) {
     return kind == Kind::quit || kind == Kind::open || kind == Kind::open_demo ||
-           kind == Kind::new_from_file || kind == Kind::recover;
+           kind == Kind::new_from_file || kind == Kind::new_scene || kind == Kind::recover;
 }
 
 // Saving can go where the scene lies; an installed demo's folder is read-only.
@@ -29,6 +29,7 @@ const char* before_what(Kind kind) {
         case Kind::quit:
             return " before leaving?";
         case Kind::new_from_file:
+        case Kind::new_scene:
             return " before making a new scene?";
         default:
             return " before opening another scene?";

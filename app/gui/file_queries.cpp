@@ -41,6 +41,8 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
             return reading("Open a scene", "scenes", scenes, document);
         case Kind::import_file:
             return reading("Import as a layer", "pictures, meshes or splats", sources, document);
+        case Kind::choose_picture:
+            return reading("Picture on the mesh", "pictures", pictures, document);
         case Kind::set_reference:
             return reading("Picture to compare with", "pictures", pictures, document);
         case Kind::apply_look:

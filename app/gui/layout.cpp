@@ -46,7 +46,8 @@ Layout make_layout(const ViewState& view, float width_px, float height_px, float
     layout.status = cut_bottom(rest, scaled(status_height));
     layout.panel = cut_right(rest, view.panels ? scaled(view.panel_width) : 0.0f);
     layout.tools = cut_top(rest, view.panels ? scaled(tool_height) : 0.0f);
-    layout.notice = cut_top(rest, view.hint_open || view.changed_on_disk ? scaled(notice_height) : 0.0f);
+    const bool notice = view.hint_open || view.changed_on_disk || !view.grey_layer.empty();
+    layout.notice = cut_top(rest, notice ? scaled(notice_height) : 0.0f);
     const float most = std::max(rest.height - scaled(smallest_viewport), scaled(timeline_closed));
     layout.timeline = cut_bottom(rest, std::min(scaled(timeline_size(view)), view.panels ? most : 0.0f));
     layout.snapshots = cut_bottom(rest, view.panels && view.snapshots_open ? scaled(snapshots_height) : 0.0f);

@@ -3,6 +3,8 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 #include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
@@ -32,6 +34,22 @@ void draw_disk_notice(GuiFrame& frame, const Rect& area) {
     }
 }
 
+void draw_grey_notice(GuiFrame& frame, const Rect& area) {
+    const std::vector<LayerParams>& layers = frame.document.scene().layers;
+    const auto layer = std::ranges::find(layers, frame.view.grey_layer, &LayerParams::name);
+    row_text(frame.view.grey_layer + " has no picture and is neutral grey", area.height, color::text);
+    for (const bool chooses : {true, false}) {
+        ImGui::SameLine(0, px(chooses ? 16 : 8));
+        ImGui::SetCursorScreenPos({ImGui::GetCursorScreenPos().x, area.y + (area.height - px(22)) * 0.5f});
+        const bool clicked =
+            chooses ? small_button(frame, "Choose a picture...", "Colours the splats of this mesh")
+                    : small_button(frame, "Keep grey", "A picture can be chosen under Source, too");
+        if (clicked && chooses && layer != layers.end())
+            request(frame, Command::Kind::choose_picture, static_cast<std::size_t>(layer - layers.begin()));
+        if (clicked && !chooses) frame.view.grey_layer.clear();
+    }
+}
+
 void draw_hint(GuiFrame& frame, const Rect& area) {
     row_text("Drop a picture, mesh or splat file here. F1 shows the keys.", area.height, color::text);
     ImGui::SetCursorScreenPos({area.x + area.width - area.height - px(4), area.y});
@@ -50,6 +68,8 @@ void draw_notice(GuiFrame& frame, const Rect& area) {
     ImGui::SetCursorScreenPos({area.x + px(12), area.y});
     if (frame.view.changed_on_disk)
         draw_disk_notice(frame, area);
+    else if (!frame.view.grey_layer.empty())
+        draw_grey_notice(frame, area);
     else
         draw_hint(frame, area);
     ImGui::EndChild();

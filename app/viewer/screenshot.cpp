@@ -13,6 +13,7 @@
 #include "core/text.h"
 #include "exit_code.h"
 #include "output/write.h"
+#include "scene/check.h"
 #include "source/write_image.h"
 #include "viewer/session.h"
 #include "viewer/session_view.h"
@@ -123,6 +124,7 @@ void take(const ScreenshotOptions& options, const GlInfo& gl) {
         bad_input("--screenshot", "", "no --ui with an .exr file, which holds the picture's light",
                   options.output.string());
     Session session(options.scene, gl);
+    check_renderable(session.document.scene(), {});
     if (options.frame) session.view.frame = parse_frame(*options.frame);
     session.view.settle = options.settled;
     session.view.hint_open = false;

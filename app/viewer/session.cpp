@@ -112,6 +112,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     static_cast<PanelSizes&>(view) = preferences;
     view.frame = first_frame(document.scene());
     if (!options.input.empty()) choose_first_view(view, options.input);
+    if (!options.input.empty() && kind_of_file(options.input) == FileKind::mesh) offer_picture(*this, 0);
     find_recoveries(status);
     status.has_ffmpeg = has_program("ffmpeg");
     status.recent = preferences.recent;
@@ -134,6 +135,7 @@ void take_document(Session& session, Document next) {
     view.solo.clear();
     view.playing = false;
     view.hint_open = session.fresh_demo = false;
+    view.grey_layer.clear();
     open_snapshots(session);
     session.autosave.remove();
     if (!session.document.file().empty()) add_recent(session.preferences, session.document.file());
@@ -143,6 +145,13 @@ void take_document(Session& session, Document next) {
 void open_file(Session& session, const fs::path& file) {
     take_document(session, document_for(file));
     choose_first_view(session.view, file);
+    if (kind_of_file(file) == FileKind::mesh) offer_picture(session, 0);
+}
+
+void offer_picture(Session& session, std::size_t layer) {
+    const std::vector<LayerParams>& layers = session.document.scene().layers;
+    session.view.grey_layer.clear();
+    if (layer < layers.size() && lacks_picture(layers[layer])) session.view.grey_layer = layers[layer].name;
 }
 
 void find_recoveries(Status& status) {

@@ -121,6 +121,8 @@ std::string title(const Session& session);
 void say(Status& status, const std::string& text, bool error = false);
 /// Another document in place of the one that is open.
 void take_document(Session& session, Document next);
+/// Offers to choose a picture for a layer whose mesh has none; takes an older offer back.
+void offer_picture(Session& session, std::size_t layer);
 /// A scene, or anything that becomes one. Throws InputError.
 void open_file(Session& session, const std::filesystem::path& file);
 /// Fills Status::recoveries.

@@ -10,6 +10,7 @@
 #include "edit/batch_command.h"
 #include "edit/camera_moves.h"
 #include "edit/layers.h"
+#include "edit/new_from_file.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "scene/reference_place.h"
@@ -75,8 +76,28 @@ void discard(State& s, const Command& c) {
 
 void quit(State& s, const Command&) { s.quitting = true; }
 
+void new_scene(State& s, const Command& c) {
+    const std::string text = c.text.empty() ? empty_scene_text() : shape_scene_text(c.text);
+    take_document(s, Document::untitled(text, std::filesystem::absolute("untitled.toml")));
+    offer_picture(s, 0);
+}
+
 void import_file(State& s, const Command& c) {
     s.document.edit("Add layer", [&](Scene& scene) { s.view.layer = add_layer(scene, c.path); });
+    offer_picture(s, s.view.layer);
+}
+
+void add_shape_layer(State& s, const Command& c) {
+    s.document.edit("Add " + c.text, [&](Scene& scene) { s.view.layer = add_shape(scene, c.text); });
+    offer_picture(s, s.view.layer);
+}
+
+void choose_picture(State& s, const Command& c) {
+    const LayerParams* layer = layer_at(s, c.index);
+    if (!layer || layer->source.meshes.empty()) return;
+    const std::string key = layer_key(layer->name) / "source.meshes.0.texture";
+    s.document.set(key, std::filesystem::absolute(c.path).string(), s.view.frame);
+    s.view.grey_layer.clear();
 }
 
 /// In place of the one that the view has, or a new one.
@@ -239,6 +260,7 @@ struct Entry {
 };
 
 constexpr Entry entries[] = {{Kind::new_from_file, open_path},
+                             {Kind::new_scene, new_scene},
                              {Kind::open, open_path},
                              {Kind::open_demo, open_demo},
                              {Kind::save, save},
@@ -249,6 +271,8 @@ constexpr Entry entries[] = {{Kind::new_from_file, open_path},
                              {Kind::discard_recovery, discard},
                              {Kind::quit, quit},
                              {Kind::import_file, import_file},
+                             {Kind::add_shape, add_shape_layer},
+                             {Kind::choose_picture, choose_picture},
                              {Kind::set_reference, set_reference},
                              {Kind::align_reference, align_reference},
                              {Kind::save_look, save_look},

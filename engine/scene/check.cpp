@@ -158,6 +158,8 @@ std::optional<KeyProblem> problem_of(const PrepareParams& prepare) {
 
 void check_renderable(const Scene& scene, const Places& places) {
     const Checker check{scene.file.string(), places};
+    if (scene.layers.empty())
+        throw InputError(fmt::format("{}: expected at least one [[layer]], found none", check.file));
     try {
         check_supported(scene.camera);
     } catch (const InputError& error) {  // which names the key, but does not know the line
@@ -210,8 +212,6 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
         if (const std::string& of = scene.references[i].frames; !of.empty())
             parse_frames(of, (place == places.end() ? file : place->second) + ": reference.frames");
     }
-    if (scene.layers.empty())
-        throw InputError(fmt::format("{}: expected at least one [[layer]], found none", file));
     for (const LayerParams& layer : scene.layers) check_layer(layer, check);
 }
 

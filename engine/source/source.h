@@ -141,7 +141,7 @@ struct ShapeParams {
 struct MeshInput {
     std::filesystem::path mesh;
     std::vector<std::filesystem::path>
-        texture;           // empty: the mesh's own map_Kd; three: one picture from r, g, b
+        texture;           // empty: the mesh's own map_Kd, else neutral grey; three: one picture from r, g, b
     double relief = 0.15;  // "relief": height as a fraction of the plane's width
     ShapeParams shape = {};
     bool operator==(const MeshInput&) const = default;

@@ -1,10 +1,12 @@
 #include "source/textured_mesh.h"
 
+#include <algorithm>
 #include <cassert>
 #include <functional>
 #include <utility>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "source/obj.h"
 #include "source/picture_camera.h"
 #include "source/planar_uv.h"
@@ -15,6 +17,8 @@ namespace astrosplat {
 namespace {
 
 using Wrap = TextureSettings::Wrap;
+
+constexpr const char* neutral_summary = "neutral grey";
 
 // Beyond a picture of a given width lies nothing; one that is stretched over the mesh has no beyond.
 Wrap default_wrap(const SourceParams& source, Wrap of_own_uv) {
@@ -41,7 +45,6 @@ using PictureLoader = std::function<Texture(const std::vector<std::filesystem::p
 
 TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, const PictureLoader& load) {
     const std::string name = input.mesh.string();
-    if (input.texture.empty()) bad_input(name, "texture", "a picture, which built-in meshes need", "none");
     TexturedMesh loaded;
     loaded.textures.push_back(load(input.texture, default_wrap(source, own_wrap(input))));
     const Texture& texture = loaded.textures.front();
@@ -53,6 +56,32 @@ TexturedMesh load_builtin(const MeshInput& input, const SourceParams& source, co
     return loaded;
 }
 
+// Of a material; none where it names no picture.
+std::vector<std::filesystem::path> map_of(const Mesh& mesh, std::size_t material) {
+    if (material >= mesh.maps.size() || mesh.maps[material].empty()) return {};
+    return {mesh.maps[material]};
+}
+
+// Stands for the picture that a mesh has not.
+Texture neutral_grey() {
+    constexpr float grey = 0.18f;  // as reflective as the world is on average
+    Texture texture;
+    texture.image = make_image(16, 16, 4);
+    for (std::size_t i = 0; i < texture.image.pixels.size(); ++i)
+        texture.image.pixels[i] = i % 4 == 3 ? 1.0f : grey;
+    texture.summary = neutral_summary;
+    return texture;
+}
+
+bool is_neutral(const Texture& texture) { return texture.summary == neutral_summary; }
+
+// The picture of a mesh as its source wants it read.
+Texture load_picture(const std::vector<std::filesystem::path>& files, const SourceParams& source, Wrap wrap,
+                     const Progress& progress, const PictureReaders& readers) {
+    if (files.empty()) return neutral_grey();
+    return load_texture(files, source.texture, wrap, progress, readers);
+}
+
 // One picture per material that a face uses; others get an empty one, so that indices stay.
 std::vector<Texture> load_maps(const Mesh& mesh, Wrap wrap, const PictureLoader& load) {
     std::vector<bool> used(std::max<std::size_t>(1, mesh.maps.size()), false);
@@ -60,11 +89,7 @@ std::vector<Texture> load_maps(const Mesh& mesh, Wrap wrap, const PictureLoader&
     std::vector<Texture> textures(used.size());
     for (std::size_t i = 0; i < used.size(); ++i) {
         if (!used[i]) continue;
-        if (i >= mesh.maps.size() || mesh.maps[i].empty()) {
-            bad_input(mesh.name, "", "a texture in the scene, or a material with map_Kd for every face",
-                      "neither");
-        }
-        textures[i] = load({mesh.maps[i]}, wrap);
+        textures[i] = load(map_of(mesh, i), wrap);
     }
     return textures;
 }
@@ -94,13 +119,16 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const Progress
                                       const PictureReaders& readers) {
     if (source.meshes.empty()) bad_input("source.meshes", "", "at least one mesh", "none");
     const PictureLoader load = [&](const std::vector<std::filesystem::path>& files, Wrap wrap) {
-        return load_texture(files, source.texture, wrap, progress, readers);
+        return load_picture(files, source, wrap, progress, readers);
     };
     std::vector<TexturedMesh> meshes;
     for (const MeshInput& input : source.meshes) {
         meshes.push_back(is_builtin_mesh(input.mesh) ? load_builtin(input, source, load)
                                                      : load_file(input, source, load, progress));
     }
+    for (const TexturedMesh& m : meshes)
+        if (std::ranges::any_of(m.textures, is_neutral))
+            log_warning(m.mesh.name + " has no picture, for which neutral grey stands");
     const Bounds box = bounds(meshes);
     for (TexturedMesh& m : meshes) {
         if (source.uv == UvMode::camera) {
@@ -122,9 +150,8 @@ void reload_pictures(const SourceParams& source, std::vector<TexturedMesh>& mesh
         for (std::size_t i = 0; i < meshes[m].textures.size(); ++i) {
             Texture& texture = meshes[m].textures[i];
             if (texture.image.width == 0) continue;  // no face uses it
-            const auto files = input.texture.empty() ? std::vector{meshes[m].mesh.maps[i]} : input.texture;
-            texture =
-                load_texture(files, source.texture, default_wrap(source, own_wrap(input)), progress, readers);
+            const auto files = input.texture.empty() ? map_of(meshes[m].mesh, i) : input.texture;
+            texture = load_picture(files, source, default_wrap(source, own_wrap(input)), progress, readers);
             apply_mask(texture);
         }
     }

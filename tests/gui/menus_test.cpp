@@ -64,6 +64,39 @@ TEST(Menus, ItemsWithoutAFileAskForIt) {
     }
 }
 
+TEST(Menus, NewScenesBeginEmptyOrWithAShape) {
+    TestWindow window(example_document());
+    for (const auto& [path, text] : {std::pair{"File/New/Empty scene", ""}, {"File/New/Ring", "ring"}}) {
+        window.click("File");
+        window.move(window.at("File/New"));
+        window.frame(30);
+        window.click(path);
+        const Commands commands = window.take_commands();
+        ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::new_scene}) << path;
+        EXPECT_EQ(commands[0].text, text);
+    }
+    make_edited(window);
+    window.click("File");
+    window.move(window.at("File/New"));
+    window.frame(30);
+    window.click("File/New/Ring");
+    EXPECT_TRUE(window.take_commands().empty()) << "what is not saved is asked about";
+}
+
+TEST(Menus, AMeshWithoutAPictureOffersToChooseOne) {
+    TestWindow window(example_document());
+    window.view.grey_layer = "stars";
+    window.frame(2);
+    window.click("notice/Choose a picture...");
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/path"));
+    window.click("file/Cancel");
+    window.click("notice/Keep grey");
+    EXPECT_TRUE(window.view.grey_layer.empty());
+    window.frame(2);
+    EXPECT_FALSE(window.has("notice/Keep grey"));
+}
+
 TEST(Menus, RecentFilesOpen) {
     TestWindow window(example_document());
     window.click("File");

@@ -10,6 +10,7 @@
 
 #include "core/color.h"
 #include "edit/layers.h"
+#include "edit/new_from_file.h"
 #include "gui/icons.h"
 #include "gui/panel/row.h"
 #include "gui/panel/section.h"
@@ -146,7 +147,7 @@ void layer_menu(Context& context, std::size_t i) {
     if (!begin_popup("layer")) return;
     if (ImGui::MenuItem("Rename")) begin_renaming(context, i);
     if (ImGui::MenuItem("Duplicate")) duplicate(context, i);
-    if (ImGui::MenuItem("Delete", nullptr, false, context.scene().layers.size() > 1)) remove(context, i);
+    if (ImGui::MenuItem("Delete")) remove(context, i);
     ImGui::Separator();
     if (ImGui::MenuItem("Frame", "F")) context.commands.push_back({Command::Kind::frame_layer, {}, "", i});
     if (ImGui::MenuItem("Regenerate")) context.commands.push_back({Command::Kind::regenerate, {}, "", i});
@@ -281,6 +282,16 @@ void scroll_to_selected(Context& context, const std::vector<Area>& rows) {
         ImGui::SetScrollFromPosY(row.corner.y - top);
 }
 
+void add_menu(Context& context) {
+    if (!begin_popup("add layer")) return;
+    if (ImGui::MenuItem("File...")) context.commands.push_back({Command::Kind::import_file, {}, "", 0});
+    ImGui::Separator();
+    for (std::size_t i = 0; i < shape_names.size(); ++i)
+        if (ImGui::MenuItem(shape_labels[i]))
+            context.commands.push_back({Command::Kind::add_shape, {}, shape_names[i], 0});
+    end_popup();
+}
+
 void list_head(Context& context, float width) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImGui::PushFont(medium_font());
@@ -289,8 +300,9 @@ void list_head(Context& context, float width) {
     ImGui::PopFont();
     ImGui::SetCursorScreenPos({corner.x + width - px(margin) - px(20), corner.y + px(4)});
     if (icon_button("add", Icon::plus, {px(26), px(24)}, px(11), color::text,
-                    "Add a picture, mesh or splat file"))
-        context.commands.push_back({Command::Kind::import_file, {}, "", 0});
+                    "Add a picture, mesh or splat file, or a shape"))
+        ImGui::OpenPopup("add layer");
+    add_menu(context);
     ImGui::SetCursorScreenPos({corner.x, corner.y + px(32)});
 }
 

@@ -66,11 +66,8 @@ TEST_F(NewFromFile, AMeshTakesItsOwnPictures) {
 
 TEST_F(NewFromFile, AMeshWithoutPicturesTakesTheOneBesideIt) {
     const fs::path mesh = folder.file("netz.obj", std::string(square) + "f 1 2 3 4\n");
-    EXPECT_EQ(
-        message_of<InputError>([&] { scene_text_for(mesh, place); }),
-        mesh.string() +
-            ": expected a picture for every face: map_Kd in its material, or a picture beside the mesh, "
-            "such as 'netz.png', found neither");
+    EXPECT_TRUE(lacks_picture(scene_for(mesh).layers[0]));
+    EXPECT_TRUE(scene_for(mesh).layers[0].source.meshes[0].texture.empty());
     const fs::path picture = folder.file("netz.png", "x");
     const Scene scene = scene_for(mesh);
     EXPECT_EQ(scene.layers[0].source.meshes[0].texture, std::vector<fs::path>{picture});
@@ -82,7 +79,19 @@ TEST_F(NewFromFile, TheOnlyPictureOfAFolderWillDo) {
     const fs::path only = folder.file("bild ä.jpg", "x");
     EXPECT_EQ(scene_for(mesh).layers[0].source.meshes[0].texture, std::vector<fs::path>{only});
     folder.file("zweites.jpg", "x");
-    EXPECT_THROW(scene_text_for(mesh, place), InputError);  // which one?
+    EXPECT_TRUE(lacks_picture(scene_for(mesh).layers[0]));  // which one?
+}
+
+TEST_F(NewFromFile, ShapesAreScenesOfTheirOwn) {
+    for (const std::string shape : shape_names) {
+        const Scene scene = parse_scene(shape_scene_text(shape), place);
+        ASSERT_EQ(scene.layers.size(), 1u);
+        EXPECT_EQ(scene.layers[0].name, shape);
+        EXPECT_EQ(scene.layers[0].source.meshes[0].mesh, shape);
+        EXPECT_TRUE(is_builtin_mesh(shape));
+        EXPECT_TRUE(lacks_picture(scene.layers[0]));
+    }
+    EXPECT_TRUE(parse_scene(empty_scene_text(), place).layers.empty());
 }
 
 TEST_F(NewFromFile, RealFiles) {

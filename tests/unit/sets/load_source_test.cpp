@@ -51,16 +51,18 @@ TEST_F(LoadSourceTest, NeedsAMesh) {
               "layer 'dust': source.meshes: expected at least one mesh, found none");
 }
 
-TEST_F(LoadSourceTest, BuiltInMeshesNeedAPicture) {
-    EXPECT_EQ(error_of(mesh_source("plane")),
-              "layer 'dust': plane:texture: expected a picture, which built-in meshes need, found none");
-}
-
-TEST_F(LoadSourceTest, MeshesWithoutPicturesSaySo) {
+TEST_F(LoadSourceTest, MeshesWithoutPicturesAreNeutralGrey) {
     const auto obj = write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
-    EXPECT_NE(error_of(mesh_source(obj))
-                  .find("bare.obj: expected a texture in the scene, or a material with map_Kd"),
-              std::string::npos);
+    for (const std::filesystem::path& mesh : {std::filesystem::path("sphere"), std::filesystem::path(obj)}) {
+        SourceParams source = mesh_source(mesh);
+        source.count = 2000;
+        const SplatSet set = load_source(source, "dust");
+        ASSERT_GT(set.size(), 0);
+        for (std::size_t i = 0; i < set.color.size(); ++i) {
+            EXPECT_EQ(set.color[i], glm::vec3(0.18f));
+            EXPECT_EQ(set.alpha[i], 1.0f);
+        }
+    }
 }
 
 TEST_F(LoadSourceTest, BodiesKeepToTexelsAndSplats) {
