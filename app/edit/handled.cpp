@@ -7,6 +7,7 @@
 #include "core/rotation.h"
 #include "edit/placement.h"
 #include "edit/project_line.h"
+#include "edit/rounding.h"
 #include "scene/parameter.h"
 
 namespace astrosplat {
@@ -26,24 +27,18 @@ glm::dmat3 axes_of(const Crop& crop) {
     return turns ? rotation_from_degrees(glm::dvec3(crop.rotate)) : glm::dmat3(1.0);
 }
 
-/// To whole multiples of the power of ten that is not above `step`.
-double rounded(double value, double step) {
-    const double digits = std::floor(std::log10(step)), power = std::pow(10.0, std::fabs(digits));
-    return digits < 0.0 ? std::round(value * power) / power : std::round(value / power) * power;
-}
-
 /// Where `now` differs from `before`, rounded; the rest stays as it was.
 Value rounded_list(const glm::dvec3& before, const glm::dvec3& now, double step) {
     Value::List list;
     for (int i = 0; i < 3; ++i) {
         const bool stays = std::fabs(now[i] - before[i]) < 1e-3 * step;
-        list.emplace_back(stays ? before[i] : rounded(now[i], step));
+        list.emplace_back(stays ? before[i] : rounded_to_step(now[i], step));
     }
     return list;
 }
 
 Value rounded_product(double size, double factor) {
-    return rounded(size * factor, std::max(1e-9, size * factor * share_step));
+    return rounded_to_step(size * factor, std::max(1e-9, size * factor * share_step));
 }
 
 NewValue dragged_layer(const LayerParams& layer, HandleTool tool, const Camera& camera,

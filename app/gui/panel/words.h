@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "edit/rounding.h"
 #include "gui/short_count.h"
 #include "scene/parameter.h"
 
@@ -33,8 +34,5 @@ std::string set_option(const std::string& key, const Value& value);
 /// How much a parameter changes per pixel of dragging at `value`: a share of its range where that is short,
 /// of itself where it spans magnitudes.
 double drag_step(const ParameterSpec& spec, double value);
-
-/// `value` without the digits that a step this small cannot mean.
-double rounded_to_step(double value, double step);
 
 }  // namespace astrosplat::panel
