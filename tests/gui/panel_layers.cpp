@@ -140,6 +140,25 @@ TEST(PanelLayers, PlusAsksForAFileOrTakesAShape) {
     EXPECT_EQ(d.commands[1].text, "sphere");
 }
 
+TEST(PanelLayers, NothingMovesUnderTheHeldMouse) {
+    PanelDriver d(layers_scene);
+    d.status.layers.resize(3);
+    d.show(PanelTab::source);
+    const std::string count = "layer.disk.source.count";
+    const glm::vec2 before = d.row(count).value;
+    d.move(before);
+    d.frames(2);
+    d.press();
+    d.status.layers[0].loading = true;
+    d.status.layers[0].progress = 0.3f;
+    d.status.layers[1].error = "no such file";
+    d.frames(2);
+    EXPECT_EQ(d.row(count).value, before);
+    d.release();
+    d.frames(2);
+    EXPECT_NE(d.row(count).value, before) << "then there is room for the progress and the error";
+}
+
 TEST(PanelLayers, TheLastLayerCanBeDeleted) {
     PanelDriver d(
         "astrosplat = 1\n[[layer]]\nname = \"only\"\n[layer.source]\nmeshes = [ { mesh = \"disk\" } ]\n");

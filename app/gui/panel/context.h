@@ -7,6 +7,8 @@
 
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <unordered_map>
 
 #include "gui/panel/panel.h"
@@ -65,7 +67,8 @@ struct Memory {
     int selected_point = -1;
     std::string renaming;  // layer whose name is typed
     int dragged_layer = -1;
-    std::size_t layer_in_sight = 0;  // selected in the last frame
+    std::size_t layer_in_sight = 0;      // selected in the last frame
+    std::set<std::string> second_lines;  // layers whose row has one
     std::optional<CopiedLook> copied;
     std::vector<NoiseSketch> noises;  // by entry of the list
     float preparation_line = 0.5f;    // between before and after, 0..1 of the width

@@ -7,6 +7,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <set>
 
 #include "core/color.h"
 #include "edit/layers.h"
@@ -28,9 +29,21 @@ const LayerStatus* status_of(const Context& context, std::size_t i) {
     return i < context.status.layers.size() ? &context.status.layers[i] : nullptr;
 }
 
-bool has_second_line(const Context& context, std::size_t i) {
-    const LayerStatus* status = status_of(context, i);
+bool wants_second_line(const LayerStatus* status) {
     return status && (status->loading || status->stale || !status->error.empty());
+}
+
+// Lines come and go only while no button is held: what is dragged stays under the mouse.
+void choose_second_lines(const Context& context) {
+    if (ImGui::IsAnyMouseDown()) return;
+    std::set<std::string>& names = context.memory.second_lines;
+    names.clear();
+    for (std::size_t i = 0; i < context.scene().layers.size(); ++i)
+        if (wants_second_line(status_of(context, i))) names.insert(context.scene().layers[i].name);
+}
+
+bool has_second_line(const Context& context, std::size_t i) {
+    return context.memory.second_lines.count(context.scene().layers[i].name) > 0;
 }
 
 bool merged(const LayerParams& layer) {
@@ -252,7 +265,7 @@ void draw_layer(Context& context, std::size_t i, const Area& row) {
     else
         clipped_text(list, name, 0.0f, shown ? color::text : color::dim, layer.name);
     switches(context, i, row);
-    if (has_second_line(context, i)) second_line(context, i, row);
+    if (has_second_line(context, i) && wants_second_line(status_of(context, i))) second_line(context, i, row);
 }
 
 // The bracket reaches from the first merged layer to the last; isolated ones between have no tick.
@@ -309,6 +322,7 @@ void list_head(Context& context, float width) {
 }  // namespace
 
 float layer_list_height(const Context& context) {
+    choose_second_lines(context);
     float height = px(32);
     for (std::size_t i = 0; i < context.scene().layers.size(); ++i)
         height += px(has_second_line(context, i) ? line_height + row_height + 4.0f : line_height);

@@ -304,7 +304,7 @@ bool suits_layer(const Context& context, const ParameterSpec& spec) {
 
 void source_state(Context& context) {
     const LayerStatus& status = context.layer_status();
-    const float width = ImGui::GetContentRegionAvail().x;
+    const float width = ImGui::GetContentRegionAvail().x, top = ImGui::GetCursorPosY();
     if (status.loading) {
         const std::string text =
             status.found > 0 ? "Generating, " + splat_count(status.found) : std::string("Generating");
@@ -319,6 +319,8 @@ void source_state(Context& context) {
         note(live ? "Levels and masks show at once; the rest regenerates."
                   : "Changing these regenerates the splats.");
     }
+    // As high whatever it says, or the rows below would move under the mouse that drags one.
+    ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), top + px(row_height + row_gap)));
     if (!status.error.empty()) note(status.error, color::error);
     ImGui::Dummy({0.0f, px(4)});
 }
