@@ -11,7 +11,8 @@ double rounded_to_step(double value, double step) {
     // Dividing by a whole power of ten gives the double nearest to the short decimal; multiplying by 0.001
     // does not.
     const double power = std::pow(10.0, std::abs(digits));
-    return digits < 0 ? std::round(value * power) / power : std::round(value / power) * power;
+    const double rounded = digits < 0 ? std::round(value * power) / power : std::round(value / power) * power;
+    return rounded + 0.0;  // never -0
 }
 
 }  // namespace astrosplat

@@ -11,6 +11,7 @@
 #include "core/rotation.h"
 #include "edit/handled.h"
 #include "edit/project_line.h"
+#include "edit/rounding.h"
 #include "unit/edit/scenes.h"
 
 namespace astrosplat {
@@ -150,6 +151,13 @@ TEST_F(HandlesTest, TheCamerasTargetIsDragged) {
     view.tool = HandleTool::move;
     scene.camera.rotation = glm::dvec4(0.0, 0.0, 0.0, 1.0);
     EXPECT_FALSE(handled_in(scene, view)) << "a camera turned by a rotation looks at no target";
+}
+
+TEST(Rounding, LeavesTheDigitsOfTheStepAndNoSignOfZero) {
+    EXPECT_EQ(rounded_to_step(0.123456, 0.005), 0.123);
+    EXPECT_EQ(rounded_to_step(1234.5, 20.0), 1230.0);
+    EXPECT_EQ(rounded_to_step(1.5, 0.0), 1.5);
+    EXPECT_FALSE(std::signbit(rounded_to_step(-0.001, 0.1)));
 }
 
 TEST_F(HandlesTest, CropsAreOutlinedWhereTheyAre) {
