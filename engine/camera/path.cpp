@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 
+#include "camera/handles.h"
 #include "core/real.h"
 
 namespace astrosplat {
@@ -51,15 +52,6 @@ T hermite(const T& a, const T& tangent_a, const T& b, const T& tangent_b, double
            tangent_b * (u3 - u2);
 }
 
-// Tangent per frame at keyframe i of the values value(0), value(1), ...
-template <class T, class Value>
-double tangent(std::span<const Keyframe<T>> keyframes, const Value& value, std::size_t i, Ends ends) {
-    bool end = i == 0 || i + 1 == keyframes.size();
-    if (end && ends == Ends::ease) return 0.0;
-    std::size_t before = i == 0 ? 0 : i - 1, after = std::min(i + 1, keyframes.size() - 1);
-    return (value(after) - value(before)) / (keyframes[after].frame - keyframes[before].frame);
-}
-
 // Travelled parameter at `frame`, within [0, 1] of segment i, for ascending travelled(0), travelled(1), ...:
 // a cubic with the tangents above, limited to three times the neighbouring slopes so that it stays monotone
 // (Fritsch and Carlson, 1980).
@@ -84,14 +76,15 @@ double smooth_fraction(std::span<const Keyframe<T>> keyframes, const Travelled& 
 // the distance.
 struct Curve {
     std::span<const Keyframe<glm::dvec3>> keyframes;
+    Ends ends;
     std::vector<double> knot;
 
     double interval(std::size_t i) const { return knot[i + 1] - knot[i]; }
     const glm::dvec3& point(std::size_t i) const { return keyframes[i].value; }
 };
 
-Curve make_curve(std::span<const Keyframe<glm::dvec3>> keyframes) {
-    Curve curve{keyframes, std::vector<double>(keyframes.size(), 0.0)};
+Curve make_curve(std::span<const Keyframe<glm::dvec3>> keyframes, Ends ends) {
+    Curve curve{keyframes, ends, std::vector<double>(keyframes.size(), 0.0)};
     for (std::size_t i = 0; i + 1 < keyframes.size(); ++i)
         curve.knot[i + 1] =
             curve.knot[i] + std::sqrt(glm::distance(keyframes[i].value, keyframes[i + 1].value));
@@ -116,6 +109,8 @@ glm::dvec3 curve_point(const Curve& curve, std::size_t i, double u) {
     const glm::dvec3 &a = curve.point(i), &b = curve.point(i + 1);
     if (curve.keyframes[i].interpolation == Interpolation::step) return u < 1.0 ? a : b;
     if (curve.keyframes[i].interpolation == Interpolation::linear) return a + (b - a) * u;
+    if (curve.keyframes[i].interpolation == Interpolation::bezier)
+        return bezier_segment(curve.keyframes, i, curve.ends).at(u);
     double h = curve.interval(i);
     return hermite(a, curve_tangent(curve, i) * h, b, curve_tangent(curve, i + 1) * h, u);
 }
@@ -124,6 +119,8 @@ double curve_speed(const Curve& curve, std::size_t i, double u) {
     const glm::dvec3 &a = curve.point(i), &b = curve.point(i + 1);
     if (curve.keyframes[i].interpolation == Interpolation::step) return 0.0;
     if (curve.keyframes[i].interpolation == Interpolation::linear) return glm::distance(a, b);
+    if (curve.keyframes[i].interpolation == Interpolation::bezier)
+        return glm::length(bezier_segment(curve.keyframes, i, curve.ends).slope(u));
     double h = curve.interval(i);
     glm::dvec3 ta = curve_tangent(curve, i) * h, tb = curve_tangent(curve, i + 1) * h;
     double u2 = u * u;
@@ -167,7 +164,8 @@ glm::dvec3 at_constant_speed(const Curve& curve, double frame, Ends ends) {
     std::span<const Keyframe<glm::dvec3>> keyframes = curve.keyframes;
     std::size_t segments = keyframes.size() - 1;
     auto eased = [&](std::size_t i) {
-        return ends == Ends::ease && keyframes[i].interpolation == Interpolation::smooth;
+        const Interpolation way = keyframes[i].interpolation;
+        return ends == Ends::ease && (way == Interpolation::smooth || way == Interpolation::bezier);
     };
     double u = (frame - keyframes.front().frame) / (keyframes.back().frame - keyframes.front().frame);
     std::vector<double> length(segments * pieces_per_segment);
@@ -217,6 +215,10 @@ double evaluate_scalar(std::span<const Keyframe<double>> keyframes, double frame
     double a = keyframes[i].value, b = keyframes[i + 1].value, u = fraction_in(keyframes, i, frame);
     if (keyframes[i].interpolation == Interpolation::step) return a;
     if (keyframes[i].interpolation == Interpolation::linear) return a + (b - a) * u;
+    if (keyframes[i].interpolation == Interpolation::bezier) {
+        const BezierSegment<double> segment = bezier_segment(keyframes, i, ends);
+        return segment.at(segment.parameter(u));
+    }
     double span = keyframes[i + 1].frame - keyframes[i].frame;
     auto value = [&](std::size_t k) { return keyframes[k].value; };
     double smooth = hermite(a, tangent(keyframes, value, i, ends) * span, b,
@@ -228,7 +230,7 @@ glm::dvec3 evaluate_position(std::span<const Keyframe<glm::dvec3>> keyframes, do
                              bool constant_speed) {
     assert(!keyframes.empty());
     if (outside(keyframes, frame)) return held(keyframes, frame);
-    Curve curve = make_curve(keyframes);
+    Curve curve = make_curve(keyframes, ends);
     if (constant_speed) return at_constant_speed(curve, frame, ends);
     std::size_t i = segment_of(keyframes, frame);
     double u = fraction_in(keyframes, i, frame);
@@ -236,6 +238,8 @@ glm::dvec3 evaluate_position(std::span<const Keyframe<glm::dvec3>> keyframes, do
         auto travelled = [&](std::size_t k) { return curve.knot[k]; };
         u = smooth_fraction(keyframes, travelled, i, frame, ends);
     }
+    if (keyframes[i].interpolation == Interpolation::bezier)
+        u = bezier_segment(keyframes, i, ends).parameter(u);
     return curve_point(curve, i, u);
 }
 
@@ -249,7 +253,8 @@ glm::dvec4 evaluate_rotation(std::span<const Keyframe<glm::dvec4>> keyframes, do
     std::size_t i = segment_of(keyframes, frame);
     double u = fraction_in(keyframes, i, frame);
     if (turn[i].interpolation == Interpolation::step) return turn[i].value;
-    if (turn[i].interpolation == Interpolation::smooth) {
+    const Interpolation way = turn[i].interpolation;
+    if (way == Interpolation::smooth || way == Interpolation::bezier) {
         auto travelled = [&](std::size_t k) { return angle[k]; };
         u = smooth_fraction(keyframes, travelled, i, frame, ends);
     }

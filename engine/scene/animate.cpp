@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/handles.h"
 #include "scene/describe.h"
 
 namespace astrosplat {
@@ -12,21 +13,29 @@ namespace {
 
 using Keyframes = std::vector<Keyframe<std::vector<double>>>;
 
+/// Keyframes of another type: `value` makes one of the numbers of a keyframe or of a handle.
+template <class T, class Read>
+std::vector<Keyframe<T>> converted(const Keyframes& keyframes, const Read& value) {
+    const auto handle = [&](const Handle<std::vector<double>>& h) {
+        return Handle<T>{h.kind, h.frames, h.kind == HandleKind::free ? value(h.value) : T(0)};
+    };
+    std::vector<Keyframe<T>> result;
+    for (const auto& k : keyframes)
+        result.push_back({k.frame, value(k.value), k.interpolation, handle(k.in), handle(k.out)});
+    return result;
+}
+
 std::vector<Keyframe<double>> component(const Keyframes& keyframes, std::size_t index, bool steps) {
-    std::vector<Keyframe<double>> scalar;
-    for (const auto& keyframe : keyframes)
-        scalar.push_back(
-            {keyframe.frame, keyframe.value.at(index), steps ? Interpolation::step : keyframe.interpolation});
+    std::vector<Keyframe<double>> scalar =
+        converted<double>(keyframes, [&](const std::vector<double>& numbers) { return numbers.at(index); });
+    if (steps)
+        for (Keyframe<double>& keyframe : scalar) keyframe.interpolation = Interpolation::step;
     return scalar;
 }
 
 std::vector<double> evaluate_position_track(const Track& track, double frame) {
-    std::vector<Keyframe<glm::dvec3>> keyframes;
-    for (const auto& keyframe : track.keyframes)
-        keyframes.push_back({keyframe.frame,
-                             {keyframe.value.at(0), keyframe.value.at(1), keyframe.value.at(2)},
-                             keyframe.interpolation});
-    const glm::dvec3 p = evaluate_position(keyframes, frame, track.ends, track.constant_speed);
+    const glm::dvec3 p =
+        evaluate_position(position_keyframes(track), frame, track.ends, track.constant_speed);
     return {p.x, p.y, p.z};
 }
 
@@ -43,6 +52,37 @@ std::vector<double> evaluate_rotation_track(const Track& track, double frame) {
 }
 
 }  // namespace
+
+std::vector<Keyframe<glm::dvec3>> position_keyframes(const Track& track) {
+    return converted<glm::dvec3>(track.keyframes, [](const std::vector<double>& numbers) {
+        return glm::dvec3(numbers.at(0), numbers.at(1), numbers.at(2));
+    });
+}
+
+std::vector<TrackHandles> handles_of(const Track& track, const ParameterSpec& spec) {
+    std::vector<TrackHandles> result(track.keyframes.size());
+    const auto fill = [&](const auto& keyframes, const auto& add) {
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            add(result[i].in, handle_before(std::span(keyframes), i, track.ends));
+            add(result[i].out, handle_after(std::span(keyframes), i, track.ends));
+        }
+    };
+    if (spec.type == ParameterType::position) {
+        const std::vector<Keyframe<glm::dvec3>> keyframes = position_keyframes(track);
+        fill(keyframes, [](Handle<std::vector<double>>& handle, const Handle<glm::dvec3>& h) {
+            handle = {h.kind, h.frames, {h.value.x, h.value.y, h.value.z}};
+        });
+        return result;
+    }
+    for (std::size_t c = 0; c < track.keyframes.front().value.size(); ++c)
+        fill(component(track.keyframes, c, false),
+             [](Handle<std::vector<double>>& handle, const Handle<double>& h) {
+                 handle.kind = h.kind;
+                 handle.frames = h.frames;
+                 handle.value.push_back(h.value);
+             });
+    return result;
+}
 
 std::vector<double> track_at(const Track& track, const ParameterSpec& spec, double frame) {
     if (spec.type == ParameterType::position) return evaluate_position_track(track, frame);

@@ -1,6 +1,7 @@
 // Animation: the scene as it stands at one frame.
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <vector>
 
 #include "scene/parameter.h"
@@ -14,6 +15,16 @@ Scene scene_at(const Scene& scene, double frame);
 /// The numbers of one track at `frame`, before they are fitted to the parameter's type and range. The track
 /// has at least one keyframe and belongs to a parameter of this kind.
 std::vector<double> track_at(const Track& track, const ParameterSpec& spec, double frame);
+
+/// The keyframes of a position's track as places.
+std::vector<Keyframe<glm::dvec3>> position_keyframes(const Track& track);
+
+/// The handles of every keyframe as they act (camera/handles.h), worked out where they are automatic. The
+/// track has at least one keyframe.
+struct TrackHandles {
+    Handle<std::vector<double>> in, out;
+};
+std::vector<TrackHandles> handles_of(const Track& track, const ParameterSpec& spec);
 
 /// Whether a layer is drawn in some frame: visible as it stands, or switched on by a keyframe of the
 /// animation.

@@ -11,22 +11,15 @@
 #include "scene/describe.h"
 #include "scene/entries.h"
 #include "scene/suggest.h"
+#include "scene/track_handles.h"
 
 namespace astrosplat {
 namespace {
 
 const std::vector<std::string> track_settings{"keys", "interpolation", "ends", "constant_speed"};
 
-struct Place {
-    std::string place;
-    ParameterKey key;
-    [[noreturn]] void fail(const std::string& message) const {
-        throw InputError(fmt::format("{}: {}: {}", place, key, message));
-    }
-};
-
 template <NamedEnum E>
-E read_name(const toml::node& node, const std::string& what, const Place& at) {
+E read_name(const toml::node& node, const std::string& what, const TrackPlace& at) {
     const std::vector<std::string> names = all_names<E>();
     const auto* text = node.as_string();
     const auto found = std::ranges::find(names, text ? text->get() : "");
@@ -36,16 +29,21 @@ E read_name(const toml::node& node, const std::string& what, const Place& at) {
                         text ? did_you_mean(text->get(), names) : ""));
 }
 
+void check_bezier(Interpolation way, const ParameterSpec& spec, const TrackPlace& at) {
+    if (way == Interpolation::bezier && spec.type == ParameterType::rotation)
+        at.fail("expected linear, smooth or step for a rotation, found bezier");
+}
+
 Keyframe<std::vector<double>> read_keyframe(const toml::node& node, const Parameter& parameter,
-                                            const Track& track, const Place& at) {
+                                            const Track& track, const TrackPlace& at) {
     const toml::array* parts = node.as_array();
-    if (!parts || parts->size() < 2 || parts->size() > 3)
+    if (!parts || parts->size() < 2 || parts->size() > 4)
         at.fail(fmt::format("expected keyframes [frame, value] or [frame, value, \"smooth\"], found {}",
                             kind_of(node)));
     const auto frame = (*parts)[0].value<double>();
     if (!frame || !(*parts)[0].is_number() || !std::isfinite(*frame))
         at.fail(fmt::format("expected a frame number first in a keyframe, found {}", kind_of((*parts)[0])));
-    Keyframe<std::vector<double>> keyframe{*frame, {}, track.interpolation};
+    Keyframe<std::vector<double>> keyframe{*frame, {}, track.interpolation, {}, {}};
     try {
         const Value value = value_of((*parts)[1]);
         parameter.set(value);
@@ -59,12 +57,14 @@ Keyframe<std::vector<double>> read_keyframe(const toml::node& node, const Parame
     } catch (const ValueError& error) {
         at.fail(fmt::format("frame {}: {}", short_number(*frame), error.what()));
     }
-    if (parts->size() == 3)
+    if (parts->size() > 2)
         keyframe.interpolation = read_name<Interpolation>((*parts)[2], "the way to the next keyframe", at);
+    check_bezier(keyframe.interpolation, parameter.spec, at);
+    if (parts->size() == 4) read_handles((*parts)[3], keyframe, at);
     return keyframe;
 }
 
-void check_order(const Track& track, const Place& at) {
+void check_order(const Track& track, const TrackPlace& at) {
     for (std::size_t i = 1; i < track.keyframes.size(); ++i) {
         const double before = track.keyframes[i - 1].frame, frame = track.keyframes[i].frame;
         if (frame == before)
@@ -77,7 +77,7 @@ void check_order(const Track& track, const Place& at) {
     }
 }
 
-void read_settings(const toml::table& table, const ParameterSpec& spec, Track& track, const Place& at) {
+void read_settings(const toml::table& table, const ParameterSpec& spec, Track& track, const TrackPlace& at) {
     for (const auto& [name, node] : table) {
         const std::string key(name.str());
         if (key == "interpolation")
@@ -97,7 +97,8 @@ void read_settings(const toml::table& table, const ParameterSpec& spec, Track& t
 }
 
 /// The animatable parameter of a key in a copy of the scene, or an error that helps.
-const Parameter& animated_parameter(const Description& description, const Scene& scene, const Place& at) {
+const Parameter& animated_parameter(const Description& description, const Scene& scene,
+                                    const TrackPlace& at) {
     if (const Parameter* parameter = find_parameter(description, at.key)) {
         if (parameter->spec.animation == Animation::no) at.fail("this parameter cannot be animated");
         return *parameter;
@@ -114,7 +115,7 @@ const Parameter& animated_parameter(const Description& description, const Scene&
 }  // namespace
 
 Track read_track(const ParameterKey& key, const toml::node& node, Scene& scene, const std::string& place) {
-    const Place at{place, key};
+    const TrackPlace at{place, key};
     try {
         extend_lists(describe(scene), key);
     } catch (const ValueError& error) {
@@ -165,8 +166,10 @@ std::string track_to_toml(const Track& track, const ParameterSpec& spec) {
     for (const auto& keyframe : track.keyframes) {
         list += fmt::format("{}[{}, {}", list.empty() ? "" : ", ", short_number(keyframe.frame),
                             to_toml(from_numbers(spec, keyframe.value)));
-        const bool usual = keyframe.interpolation == track.interpolation;
-        list += usual ? "]" : fmt::format(", \"{}\"]", name_of(keyframe.interpolation));
+        const std::string handles = handles_to_toml(keyframe);
+        if (keyframe.interpolation != track.interpolation || !handles.empty())
+            list += fmt::format(", \"{}\"", name_of(keyframe.interpolation));
+        list += handles.empty() ? "]" : ", " + handles + "]";
     }
     std::string text = "{ keys = [" + list + "]";
     if (track.interpolation != Interpolation::linear)

@@ -75,6 +75,30 @@ TEST(Save, BackToTheDefaultIsWritten) {
     EXPECT_EQ(saved(scene), replaced(commented, "cull = 0.25", "cull = 0.0"));
 }
 
+TEST(Save, BezierHandlesAreWrittenAndReadAgain) {
+    Scene scene = parse(commented);
+    using Numbers = std::vector<double>;
+    constexpr Interpolation bezier = Interpolation::bezier;
+    const Handle<Numbers> flat{HandleKind::flat, 0.0, {}};
+    scene.animation[0].keyframes = {
+        {1.0, {20.0}, bezier, {}, {HandleKind::free, 2.5, {-1.0}}},
+        {5.0, {30.0}, bezier, flat, flat},
+        {9.0, {40.0}, Interpolation::linear, {HandleKind::free, -2.0, {0.125}}, {}, true}};
+    Track path{"camera.position", {}, bezier, Ends::through, false};
+    path.keyframes = {{1.0, {0, 0, 9}, bezier, {}, {HandleKind::free, 10.0, {1.0, 0.0, -0.5}}},
+                      {40.0, {3, 0, 9}, bezier}};
+    scene.animation.push_back(path);
+    const std::string text = saved(scene);
+    EXPECT_NE(text.find("[1, 20.0, \"bezier\", { out = [2.5, -1.0] }], [5, 30.0, \"bezier\", \"flat\"], "
+                        "[9, 40.0, \"linear\", { in = [-2, 0.125], broken = true }]"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(
+        text.find("{ out = [10, [1.0, 0.0, -0.5]] }], [40, [3.0, 0.0, 9.0]]], interpolation = \"bezier\""),
+        std::string::npos)
+        << text;
+}
+
 TEST(Save, NewKeysGoToTheirTable) {
     Scene scene = parse(commented);
     scene.layers[0].look.alpha.threshold = 0.5f;
