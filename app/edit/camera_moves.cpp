@@ -1,5 +1,5 @@
-// A move is sampled so densely that the smooth curve through its keyframes is round to 0.1 % of its radius;
-// the easing is in the samples, so keyframes outside the move keep their own timing.
+// A move is a few Bezier keyframes that follow it to 0.1 % of its distance; the easing is in their handles,
+// so keyframes outside the move keep their own timing.
 #include "edit/camera_moves.h"
 
 #include <fmt/format.h>
@@ -9,9 +9,11 @@
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <set>
 
 #include "core/real.h"
 #include "core/rotation.h"
+#include "edit/fit_path.h"
 #include "edit/keyframes.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
@@ -22,7 +24,7 @@ namespace astrosplat {
 namespace {
 
 constexpr double move_seconds = 10.0;
-constexpr double samples_per_move = 48.0;
+constexpr double tolerance = 8e-4;        // of the distance to the middle
 constexpr double fly_in_share = 0.15;     // of the distance that is left at the end
 constexpr double face_on_tilt_deg = 0.1;  // exactly face-on, "up" would be undefined
 
@@ -57,18 +59,64 @@ using Path = std::function<glm::dvec3(double)>;
 
 double ease(double t) { return t * t * (3.0 - 2.0 * t); }
 
-void remove_keyframes_between(Scene& scene, const std::string& key, double first, double last) {
+template <class Gone>
+void remove_keyframes(Scene& scene, const std::string& key, const Gone& gone) {
     for (Track& track : scene.animation)
         if (track.key == key)
-            std::erase_if(track.keyframes, [&](const auto& keyframe) {
-                return keyframe.frame >= first && keyframe.frame <= last;
-            });
+            std::erase_if(track.keyframes, [&](const auto& keyframe) { return gone(keyframe.frame); });
+}
+
+void remove_empty_tracks(Scene& scene) {
     std::erase_if(scene.animation, [](const Track& track) { return track.keyframes.empty(); });
+}
+
+bool is_camera_track(const Track& track) { return track.key.is_below("camera"); }
+
+/// Makes room for a move of `frames` frames from `frame` on. What is animated only later stays as it was at
+/// `frame`.
+void make_room(Scene& scene, double frame, double frames, LaterKeys later) {
+    const Scene now = scene_at(scene, frame);
+    for (Track& track : scene.animation) {
+        if (!is_camera_track(track)) continue;
+        if (later == LaterKeys::replace)
+            remove_keyframes(scene, track.key, [&](double at) { return at > frame; });
+        if (later == LaterKeys::shift)
+            for (auto& keyframe : track.keyframes)
+                if (keyframe.frame > frame) keyframe.frame += frames;
+        if (track.keyframes.empty()) scene.camera = now.camera;
+    }
+    for (const char* key : {position_key, target_key})
+        remove_keyframes(scene, key, [&](double at) { return at >= frame && at <= frame + frames; });
+    remove_empty_tracks(scene);
 }
 
 void set_smooth_keyframe(Scene& scene, const char* key, double frame, const glm::dvec3& value) {
     set_keyframe(scene, key, frame, vector_value(value));
     set_interpolation(scene, key, frame, Interpolation::smooth);
+}
+
+/// In order, where no keyframe of that time is left.
+void insert_positions(Scene& scene, const std::vector<Keyframe<glm::dvec3>>& keyframes) {
+    set_smooth_keyframe(scene, position_key, keyframes.front().frame, keyframes.front().value);
+    for (Track& track : scene.animation) {
+        if (track.key != position_key) continue;
+        track.constant_speed = false;  // the handles carry the speed
+        auto at = std::ranges::find(track.keyframes, keyframes.front().frame,
+                                    &Keyframe<std::vector<double>>::frame);
+        at = track.keyframes.erase(at);
+        for (const Keyframe<glm::dvec3>& k : keyframes) {
+            const auto numbers = [](const glm::dvec3& v) { return std::vector<double>{v.x, v.y, v.z}; };
+            const auto handle = [&](const Handle<glm::dvec3>& h) {
+                return h.kind == HandleKind::free
+                           ? Handle<std::vector<double>>{h.kind, h.frames, numbers(h.value)}
+                           : Handle<std::vector<double>>{};
+            };
+            at = track.keyframes.insert(
+                at, {k.frame, numbers(k.value), k.interpolation, handle(k.in), handle(k.out)});
+            ++at;
+        }
+        (at - 1)->interpolation = Interpolation::smooth;
+    }
 }
 
 /// The frames to render reach to the end of the move, whose last keyframe is where a loop would begin again.
@@ -82,23 +130,21 @@ void extend_frames(Scene& scene, std::int64_t first, std::int64_t last) {
         scene.output.frames += fmt::format(",{}-{}", first, last);
 }
 
-void add_path(Scene& scene, const Path& path, const glm::dvec3& target, double frame) {
+void add_path(Scene& scene, const Path& path, const glm::dvec3& target, double frame, LaterKeys later) {
     const double frames = std::fmax(1.0, std::floor(move_seconds * scene.output.fps + 0.5));
-    const double step = std::fmax(1.0, std::floor(frames / samples_per_move + 0.5));
+    const bool shifts = later == LaterKeys::shift && camera_keyframes_after(scene, frame) > 0;
+    const double end =
+        shifts ? static_cast<double>(parse_frames(scene.output.frames, "output.frames").back()) + frames
+               : frame + frames - 1.0;
     remove_track(scene, rotation_key);  // it would replace the target
     scene.camera.rotation.reset();
-    for (const char* key : {position_key, target_key})
-        remove_keyframes_between(scene, key, frame, frame + frames);
-    for (double at = 0.0; at < frames + step; at += step) {
-        const double done = std::fmin(at, frames);
-        set_smooth_keyframe(scene, position_key, frame + done, path(ease(done / frames)));
-        if (at >= frames) break;
-    }
+    make_room(scene, frame, frames, later);
+    const auto place = [&](double at) { return path(ease((at - frame) / frames)); };
+    const double distance = glm::distance(path(0.0), target);
+    insert_positions(scene, fit_path(place, frame, frame + frames, tolerance * std::fmax(distance, 1e-9)));
     set_smooth_keyframe(scene, target_key, frame, target);
     set_smooth_keyframe(scene, target_key, frame + frames, target);
-    for (Track& track : scene.animation)
-        if (track.key == position_key) track.constant_speed = false;  // the samples carry the speed
-    extend_frames(scene, std::llround(frame), std::llround(frame + frames) - 1);
+    extend_frames(scene, std::llround(frame), std::llround(end));
 }
 
 /// Where the camera is at a frame; a camera without a position frames the box.
@@ -151,8 +197,7 @@ Path face_on_path(const Scene& scene, const Bounds& box, const glm::dvec3& start
 }  // namespace
 
 void set_camera_keyframe(Scene& scene, const CameraParams& camera, double frame) {
-    const bool moves = std::any_of(scene.animation.begin(), scene.animation.end(),
-                                   [](const Track& track) { return track.key.is_below("camera"); });
+    const bool moves = std::ranges::any_of(scene.animation, is_camera_track);
     if (!moves) set_lens_and_up(scene.camera, camera);
     if (camera.position) set_keyframe(scene, position_key, frame, vector_value(*camera.position));
     set_orientation_keyframe(scene, camera, frame);
@@ -170,14 +215,23 @@ void set_keyframe_of_seen_camera(Scene& scene, const ViewState& view, const Stat
     set_camera_keyframe(scene, seen_camera(scene, view, status), std::round(view.frame));
 }
 
-void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame) {
+std::size_t camera_keyframes_after(const Scene& scene, double frame) {
+    std::set<double> frames;
+    for (const Track& track : scene.animation)
+        if (is_camera_track(track))
+            for (const auto& keyframe : track.keyframes)
+                if (keyframe.frame > frame) frames.insert(keyframe.frame);
+    return frames.size();
+}
+
+void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame, LaterKeys later) {
     Bounds seen = box;
     if (seen.empty()) seen.add(glm::dvec3(0.0));
     const glm::dvec3 middle = seen.center(), start = camera_place(scene, seen, frame);
     const Path path = move == CameraMove::orbit    ? orbit_path(middle, start)
                       : move == CameraMove::fly_in ? fly_in_path(middle, start)
                                                    : face_on_path(scene, seen, start);
-    add_path(scene, path, middle, frame);
+    add_path(scene, path, middle, frame, later);
 }
 
 }  // namespace astrosplat

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "core/bounds.h"
 #include "edit/status.h"
@@ -20,10 +21,13 @@ void set_camera_keyframe(Scene& scene, const CameraParams& camera, double frame)
 /// does.
 void set_keyframe_of_seen_camera(Scene& scene, const ViewState& view, const Status& status);
 
-enum class CameraMove { orbit, fly_in, face_on_to_edge_on };
 inline constexpr std::array<const char*, 3> camera_move_names{"Orbit", "Fly in", "Face-on to edge-on"};
 /// Ten seconds of an eased move around `box` (the visible layers' bounds in world space), beginning at
-/// `frame`; replaces the camera's tracks over that time, and lets [output] frames reach to its end.
-void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame);
+/// `frame`; takes the place of the camera's position and target over that time, and lets [output] frames
+/// reach to its end.
+void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame,
+                     LaterKeys later = LaterKeys::keep);
+/// How many frames after `frame` have keyframes of the camera.
+std::size_t camera_keyframes_after(const Scene& scene, double frame);
 
 }  // namespace astrosplat

@@ -32,6 +32,14 @@ void insert_keyframe(Track& track, TrackKeyframe keyframe) {
     track.keyframes.insert(after, std::move(keyframe));
 }
 
+/// Of a new keyframe: within a Bezier segment it is Bezier, too.
+Interpolation way_at(const Track& track, double frame) {
+    const auto after = std::ranges::upper_bound(track.keyframes, frame, {}, &TrackKeyframe::frame);
+    const bool within = after != track.keyframes.begin() && after != track.keyframes.end();
+    const bool bends = within && (after - 1)->interpolation == Interpolation::bezier;
+    return bends ? Interpolation::bezier : track.interpolation;
+}
+
 /// The numbers of a value that fits the parameter; sets it in passing.
 std::vector<double> numbers_for(const Parameter& parameter, const Value& value) {
     try {
@@ -93,8 +101,10 @@ void set_keyframe(Scene& scene, const std::string& key, double frame, const Valu
         throw InputError(parameter->spec.key.text() +
                          ": expected as many points as in the other keyframes, found " + "another number");
     const auto old = keyframe_at(*track, frame);
-    const Interpolation way = old == track->keyframes.end() ? track->interpolation : old->interpolation;
-    insert_keyframe(*track, {frame, std::move(numbers), way});
+    if (old != track->keyframes.end())
+        old->value = std::move(numbers);
+    else
+        insert_keyframe(*track, {frame, numbers, way_at(*track, frame)});
 }
 
 void remove_keyframe(Scene& scene, const std::string& key, double frame) {

@@ -167,6 +167,10 @@ struct Status {
     bool has_ffmpeg = false;
     std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
 
+    double played_fps = 0.0;     // frames a second that playing reaches; 0: not playing
+    std::string rendered_frame;  // name of the file shown in place of the preview; empty: none
+    std::string missing_frame;   // name of the one that is not there, where one is wanted
+
     double viewport_aspect = 0.0;      // width / height; 0: not known
     void* viewport_texture = nullptr;  // the viewport with the frame in its place, bottom row first
     std::optional<Camera>

@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +14,11 @@
 #include "scene/scene.h"
 
 namespace astrosplat {
+
+enum class CameraMove { orbit, fly_in, face_on_to_edge_on };
+/// What becomes of the camera's keyframes after the one at which a move begins: those later than its end
+/// stay, all are moved to after it, or all are removed.
+enum class LaterKeys { keep, shift, replace };
 
 enum class ViewKind { camera, free, front, top, side };
 enum class SizeMode { fit, one_to_one };  // the viewport's size, or the output's resolution
@@ -26,6 +32,7 @@ enum class CompareMode {
 };
 enum class CompareWith { b, reference };
 enum class PanelTab { source, look, render, camera, output };
+enum class PlayMode { loop, ping_pong, once };
 enum class PreviewEngine { automatic, opengl, processor };
 
 enum class HandleTool { none, move, rotate, scale };
@@ -53,6 +60,10 @@ struct ViewState : PanelSizes {
     PanelTab tab = PanelTab::look;
     double frame = 1.0;
     bool playing = false;
+    PlayMode play_mode = PlayMode::loop;
+    std::optional<double> play_first, play_last;  // in and out points; none: the ends of the frames
+    bool every_frame = false;                     // playing leaves none out, however long it takes
+    bool show_rendered = false;                   // frames of the output's files in place of the preview
 
     ViewKind view = ViewKind::camera;
     FreeCamera free;
@@ -84,12 +95,15 @@ struct ViewState : PanelSizes {
 
     bool panels = true;  // F11
     bool graph_open = false;
-    std::string graph_parameter;    // parameter shown in the timeline's graph
+    std::string graph_parameter;            // parameter shown in the timeline's graph
+    std::set<std::string> hidden_channels;  // of graphs: "camera.position 1"
     std::string hovered_parameter;  // of the panel's row under the mouse, set every frame; K sets a keyframe
     bool preparation_open = false;  // the panel shows before and after; set every frame
     bool snapshots_open = false;
-    int renamed_snapshot = -1;  // whose name is being typed; -1: none
-    std::string typed_name;     // so far
+    int renamed_snapshot = -1;               // whose name is being typed; -1: none
+    std::string typed_name;                  // so far
+    std::optional<CameraMove> asked_move;    // the dialog of adding it is open
+    LaterKeys later_keys = LaterKeys::keep;  // what that says
     bool help_open = false, log_open = false;
     bool render_open = false;  // the dialog of:
     RenderTask render;

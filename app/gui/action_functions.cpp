@@ -169,6 +169,19 @@ void previous_keyframe(GuiFrame& f) {
 void first_frame(GuiFrame& f) { f.view.frame = frame_range(f.document.scene()).first; }
 void last_frame(GuiFrame& f) { f.view.frame = frame_range(f.document.scene()).last; }
 
+void set_in_point(GuiFrame& f) {
+    f.view.play_first = f.view.frame;
+    if (f.view.play_last && *f.view.play_last <= f.view.frame) f.view.play_last.reset();
+}
+void set_out_point(GuiFrame& f) {
+    f.view.play_last = f.view.frame;
+    if (f.view.play_first && *f.view.play_first >= f.view.frame) f.view.play_first.reset();
+}
+void clear_in_and_out(GuiFrame& f) {
+    f.view.play_first.reset();
+    f.view.play_last.reset();
+}
+
 void set_keyframe_here(GuiFrame& f) {
     const std::string key = f.view.hovered_parameter;
     if (key.empty()) return set_camera_keyframe_here(f);

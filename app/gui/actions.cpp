@@ -7,6 +7,7 @@
 #include "edit/new_from_file.h"
 #include "gui/action_functions.h"
 #include "gui/key_codes.h"
+#include "gui/move_dialog.h"
 #include "gui/render_dialog.h"
 
 namespace astrosplat {
@@ -16,9 +17,9 @@ using Kind = Command::Kind;
 using F = GuiFrame&;
 using C = const GuiFrame&;
 
-template <Kind kind, std::size_t index = 0>
+template <Kind kind>
 void ask(F f) {
-    request(f, kind, index);
+    request(f, kind);
 }
 template <Kind kind>
 void ask_for_layer(F f) {
@@ -93,8 +94,11 @@ Action handles(const char* label, int code) {
 
 template <CameraMove move>
 Action add_move() {
-    constexpr auto index = static_cast<std::size_t>(move);
-    return {"Camera/Add move", camera_move_names[index], {}, ask<Kind::add_move, index>, has_box};
+    return {"Camera/Add move",
+            camera_move_names[static_cast<std::size_t>(move)],
+            {},
+            [](F f) { begin_move(f, move); },
+            has_box};
 }
 
 const Action table[] = {
@@ -199,6 +203,9 @@ const Action table[] = {
     repeated("Previous frame", key_code::left, previous_frame),
     repeated("Next keyframe", key_code::up, next_keyframe),
     repeated("Previous keyframe", key_code::down, previous_keyframe),
+    {"", "Play from this frame on", plain('I'), set_in_point},
+    {"", "Play up to this frame", plain('O'), set_out_point},
+    {"", "Play all frames", shift('I'), clear_in_and_out},
     {"", "First frame", ctrl(key_code::left), first_frame},
     {"", "Last frame", ctrl(key_code::right), last_frame},
     {"", "Keyframe of the hovered row, or the camera", plain('K'), set_keyframe_here},

@@ -94,6 +94,7 @@ std::optional<SideBadge> side_badge(const Status& status) {
 
 BadgeText badge_text(const Scene& scene, const Status& status) {
     const ViewFrameStatus& shown = status.view_frame;
+    if (!status.rendered_frame.empty()) return {"Rendered", status.rendered_frame, color::good};
     std::size_t index = 0;
     if (const LayerStatus* layer = loading_layer(status, index)) {
         const std::string name = index < scene.layers.size() ? scene.layers[index].name : "layer";

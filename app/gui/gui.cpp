@@ -8,6 +8,7 @@
 #include "gui/actions.h"
 #include "gui/command_flow.h"
 #include "gui/menu_bar.h"
+#include "gui/move_dialog.h"
 #include "gui/notice.h"
 #include "gui/panel/panel.h"
 #include "gui/queue_dialog.h"
@@ -96,6 +97,7 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
     draw_log(frame);
     draw_render_dialog(frame);
     draw_queue(frame);
+    draw_move_dialog(frame);
     flow.run(frame, panel, commands);
 }
 

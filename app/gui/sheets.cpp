@@ -55,7 +55,9 @@ const Group& timeline_group() {
                               {"Copy keyframes", "Ctrl+drag"},
                               {"Select more", "Shift+click, box"},
                               {"Remove keyframes", "Del"},
-                              {"Zoom", "Wheel on the ruler"}}};
+                              {"Zoom", "Wheel on the ruler"},
+                              {"Zoom and move the graph", "Wheel, Middle"},
+                              {"Break a handle", "Alt+drag"}}};
     return group;
 }
 
@@ -88,7 +90,7 @@ void draw_group(const Group& group) {
 
 void draw_shortcut_sheet(GuiFrame& frame) {
     bool& open = frame.view.help_open;
-    if (!begin_dialog("shortcuts", "Shortcuts and mouse", open, 1040, 592)) return;
+    if (!begin_dialog("shortcuts", "Shortcuts and mouse", open, 1040, 656)) return;
     const float bottom = px(40);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(28), 0));
     ImGui::BeginChild("groups", {0, ImGui::GetContentRegionAvail().y - bottom}, false,
@@ -101,7 +103,7 @@ void draw_shortcut_sheet(GuiFrame& frame) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
         if (i > 0) ImGui::SameLine();
         ImGui::BeginGroup();
-        ImGui::BeginChild(static_cast<ImGuiID>(i + 1), {column, 0}, false, ImGuiWindowFlags_NoScrollbar);
+        ImGui::BeginChild(static_cast<ImGuiID>(i + 1), {column, 0});
         for (const Group& group : columns[i]) draw_group(group);
         ImGui::EndChild();
         ImGui::EndGroup();

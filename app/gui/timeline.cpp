@@ -10,6 +10,7 @@
 
 #include "gui/icons.h"
 #include "gui/theme.h"
+#include "gui/timeline_header.h"
 #include "gui/timeline_rows.h"
 #include "gui/widgets.h"
 #include "scene/describe.h"
@@ -18,24 +19,8 @@ namespace astrosplat {
 namespace {
 
 constexpr float header_height = 36, ruler_height = 22;
+constexpr float point_half = 3, point_reach = 5;  // tabs of in and out points
 constexpr double zoom_step = 1.25;
-
-std::string seconds_text(const Scene& scene, double frame) {
-    const double fps = scene.output.fps > 0 ? scene.output.fps : 24.0;
-    return fmt::format("{:.2f} s", (frame - frame_range(scene).first) / fps);
-}
-
-void frame_entry(GuiFrame& frame) {
-    const FrameRange range = frame_range(frame.document.scene());
-    auto value = static_cast<float>(frame.view.frame);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(8), (px(24) - ImGui::GetFontSize()) * 0.5f));
-    const bool changed = drag_field("##frame", value, 0.25f, static_cast<float>(range.first),
-                                    static_cast<float>(range.last), "%.0f", px(56), color::text);
-    ImGui::PopStyleVar();
-    note_item(frame, "frame");
-    tooltip("Frame. Drag, or double click to type");
-    if (changed) frame.view.frame = std::round(static_cast<double>(value));
-}
 
 void refresh(TimelineState& t, const Document& document) {
     const FrameRange range = frame_range(document.scene());
@@ -56,52 +41,54 @@ void refresh(TimelineState& t, const Document& document) {
             t.specs[track.key] = parameter->spec;
 }
 
-void draw_header(GuiFrame& frame, const Rect& area) {
-    ViewState& view = frame.view;
-    const Scene& scene = frame.document.scene();
-    const float control = px(24), y = area.y + px(6);
-    ImGui::SetCursorScreenPos({area.x + px(8), y});
-    const char* says = view.playing ? "Pause (Space)" : "Play (Space)";
-    if (icon_button("play", view.playing ? Icon::pause : Icon::play, {control, control}, px(11), color::text,
-                    says))
-        view.playing = !view.playing;
-    note_item(frame, "play");
-    ImGui::SameLine(0, px(8));
-    frame_entry(frame);
-    for (const std::string& text :
-         {fitting(scene.output.frames, px(140)), fmt::format("{:g} fps", scene.output.fps),
-          seconds_text(scene, view.frame)}) {
-        ImGui::SameLine(0, px(16));
-        row_text(text, control, color::dim);
-    }
-    const float right = area.x + area.width - px(8);
-    ImGui::SetCursorScreenPos({right - 2 * control - px(4), y});
-    if (icon_button("graph", Icon::curve, {control, control}, px(13),
-                    view.graph_open ? color::accent : color::dim, "Graph of the selected parameter")) {
-        view.graph_open = !view.graph_open;
-        if (view.graph_open) view.timeline_open = true;
-    }
-    note_item(frame, "graph");
-    ImGui::SetCursorScreenPos({right - control, y});
-    if (icon_button("fold timeline", view.timeline_open ? Icon::chevron_down : Icon::chevron_right,
-                    {control, control}, px(10), color::dim, view.timeline_open ? "Close" : "Open"))
-        view.timeline_open = !view.timeline_open;
-    note_item(frame, "fold timeline");
-}
-
 void zoom_with_wheel(TimelineState& t, const Rect& area) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool inside =
         ImGui::IsMouseHoveringRect({area.x, area.y}, {area.x + area.width, area.y + area.height});
     if (!inside || io.MouseWheel == 0.0f) return;
-    const double middle = t.scale.frame_at(io.MousePos.x);
-    const double factor = io.MouseWheel > 0 ? 1.0 / zoom_step : zoom_step;
-    const double least = 4.0, most = 4.0 * std::max(t.fitted.last - t.fitted.first, least);
-    const double span = std::clamp((t.scale.last - t.scale.first) * factor, least, most);
-    const double ratio = span / (t.scale.last - t.scale.first);
-    t.scale.first = middle - (middle - t.scale.first) * ratio;
-    t.scale.last = t.scale.first + span;
-    t.zoomed = true;
+    zoom_frames(t, t.scale.frame_at(io.MousePos.x), io.MouseWheel > 0 ? 1.0 / zoom_step : zoom_step);
+}
+
+double first_played(const TimelineState& t, const ViewState& view) {
+    return view.play_first.value_or(t.fitted.first);
+}
+double last_played(const TimelineState& t, const ViewState& view) {
+    return view.play_last.value_or(t.fitted.last);
+}
+
+/// A press on the tab of an in or out point takes that, any other the playhead.
+TimelineState::Drag drag_from_ruler(const TimelineState& t, const ViewState& view) {
+    const float x = ImGui::GetIO().MousePos.x, reach = px(point_reach);
+    if (view.play_first && std::fabs(t.scale.x_of(*view.play_first) - px(point_half) - x) <= reach)
+        return TimelineState::Drag::in_point;
+    if (view.play_last && std::fabs(t.scale.x_of(*view.play_last) + px(point_half) - x) <= reach)
+        return TimelineState::Drag::out_point;
+    return TimelineState::Drag::scrub;
+}
+
+void drag_on_ruler(const TimelineState& t, ViewState& view) {
+    const double at =
+        std::clamp(std::round(t.scale.frame_at(ImGui::GetIO().MousePos.x)), t.fitted.first, t.fitted.last);
+    if (t.drag == TimelineState::Drag::scrub) view.frame = at;
+    if (t.drag == TimelineState::Drag::in_point) view.play_first = std::min(at, last_played(t, view));
+    if (t.drag == TimelineState::Drag::out_point) view.play_last = std::max(at, first_played(t, view));
+}
+
+/// What is not played is dimmed; a tab at either end that was set.
+void draw_in_and_out(const TimelineState& t, GuiFrame& frame, const Rect& area) {
+    const ViewState& view = frame.view;
+    if (!view.play_first && !view.play_last) return;
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const float bottom = area.y + area.height;
+    const float first = t.scale.x_of(first_played(t, view)), last = t.scale.x_of(last_played(t, view));
+    list->AddRectFilled({first, bottom - px(3)}, {last, bottom}, color::with_opacity(color::good, 0.8f));
+    const auto tab = [&](const char* name, float x, float side) {
+        list->AddRectFilled({std::min(x, x + side), area.y + px(3)}, {std::max(x, x + side), bottom},
+                            color::good, px(2));
+        note_item(frame, name, {x + 0.5f * side, area.y + 0.5f * area.height});
+    };
+    if (view.play_first) tab("in point", first, -px(2 * point_half));
+    if (view.play_last) tab("out point", last, px(2 * point_half));
 }
 
 void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
@@ -109,12 +96,10 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     ImGui::InvisibleButton("ruler", {t.scale.x1 - t.scale.x0 + 2 * px(timeline_margin), area.height});
     note_item(frame, "ruler");
     if (ImGui::IsItemActivated()) {
-        t.drag = TimelineState::Drag::scrub;
-        frame.view.playing = false;
+        t.drag = drag_from_ruler(t, frame.view);
+        if (t.drag == TimelineState::Drag::scrub) frame.view.playing = false;
     }
-    if (ImGui::IsItemActive() && t.drag == TimelineState::Drag::scrub)
-        frame.view.frame = std::clamp(std::round(t.scale.frame_at(ImGui::GetIO().MousePos.x)), t.fitted.first,
-                                      t.fitted.last);
+    if (ImGui::IsItemActive()) drag_on_ruler(t, frame.view);
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) t.zoomed = false;
     zoom_with_wheel(t, {t.scale.x0, area.y, t.scale.x1 - t.scale.x0, area.height});
 
@@ -134,6 +119,7 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
                       color::dim, text.c_str());
     }
     ImGui::PopFont();
+    draw_in_and_out(t, frame, area);
 }
 
 void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ruler) {
@@ -153,11 +139,33 @@ void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ru
 
 void end_drag(TimelineState& t) {
     if (t.drag == TimelineState::Drag::none || ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+    if (t.drag == TimelineState::Drag::pan) return;  // by another button
     t.drag = TimelineState::Drag::none;
     t.before.clear();
 }
 
 }  // namespace
+
+bool is_selected(const TimelineState& t, const KeyframePlace& place) {
+    return std::find(t.selected.begin(), t.selected.end(), place) != t.selected.end();
+}
+
+void select_keyframe(TimelineState& t, const KeyframePlace& place) {
+    if (!ImGui::GetIO().KeyShift) {
+        if (!is_selected(t, place)) t.selected = {place};
+    } else if (std::erase(t.selected, place) == 0) {
+        t.selected.push_back(place);
+    }
+}
+
+void zoom_frames(TimelineState& t, double middle, double factor) {
+    const double least = 4.0, most = 4.0 * std::max(t.fitted.last - t.fitted.first, least);
+    const double span = std::clamp((t.scale.last - t.scale.first) * factor, least, most);
+    const double ratio = span / (t.scale.last - t.scale.first);
+    t.scale.first = middle - (middle - t.scale.first) * ratio;
+    t.scale.last = t.scale.first + span;
+    t.zoomed = true;
+}
 
 double ruler_step(const TimeScale& scale, float least_px) {
     const double px_per_frame = static_cast<double>(scale.x1 - scale.x0) / (scale.last - scale.first);
@@ -181,7 +189,7 @@ void Timeline::draw(GuiFrame& frame, const Rect& area) {
     if (!begin_part("timeline", area, still)) return;
     refresh(state_, frame.document);
     end_drag(state_);
-    draw_header(frame, area);
+    draw_timeline_header(state_, frame, area);
     const Rect ruler{area.x, area.y + px(header_height), area.width, px(ruler_height)};
     const float bottom = area.y + area.height;
     if (bottom > ruler.y + ruler.height) {

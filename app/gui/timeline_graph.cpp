@@ -5,9 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
 
+#include "edit/keyframe_handles.h"
 #include "edit/keyframes.h"
+#include "gui/key_codes.h"
 #include "gui/theme.h"
+#include "gui/timeline_channels.h"
 #include "gui/widgets.h"
 #include "scene/animate.h"
 
@@ -15,13 +21,6 @@ namespace astrosplat {
 namespace {
 
 constexpr float point_reach = 7, sample_px = 3, margin_y = 10;
-
-// x, y, z, w or r, g, b: told apart, not shouting.
-ImU32 component_color(std::size_t component, std::size_t count) {
-    constexpr ImU32 colors[4] = {IM_COL32(0xC9, 0x84, 0x7C, 255), IM_COL32(0x84, 0xB3, 0x8A, 255),
-                                 IM_COL32(0x84, 0x9C, 0xC9, 255), IM_COL32(0xB0, 0xA0, 0xBE, 255)};
-    return count == 1 ? color::text : colors[component % 4];
-}
 
 std::string axis_text(double value, double span) {
     return fmt::format("{:.{}f}", value, span >= 100 ? 0 : span >= 10 ? 1 : span >= 1 ? 2 : 3);
@@ -32,74 +31,207 @@ float y_of(const TimelineState& t, double value, const Rect& area) {
     return area.y + area.height - px(margin_y) - static_cast<float>(share) * (area.height - 2 * px(margin_y));
 }
 
-void sample_graph(TimelineState& t, const Track& track, const ParameterSpec& spec, std::uint64_t revision) {
-    const bool same_scale = t.graph.scale.first == t.scale.first && t.graph.scale.last == t.scale.last &&
-                            t.graph.scale.x0 == t.scale.x0 && t.graph.scale.x1 == t.scale.x1;
-    if (t.graph.key == track.key && t.graph.revision == revision && same_scale) return;
-    t.graph.key = track.key;
-    t.graph.revision = revision;
-    t.graph.scale = t.scale;
-    t.graph.samples.assign(track.keyframes.front().value.size(), {});
-    const int count = std::max(2, static_cast<int>((t.scale.x1 - t.scale.x0) / px(sample_px)));
-    double low = track.keyframes.front().value.front(), high = low;
-    for (int i = 0; i <= count; ++i) {
-        const double frame = t.scale.first + (t.scale.last - t.scale.first) * i / count;
-        const std::vector<double> numbers = track_at(track, spec, frame);
-        for (std::size_t c = 0; c < t.graph.samples.size(); ++c) {
-            t.graph.samples[c].push_back(numbers[c]);
-            low = std::min(low, numbers[c]);
-            high = std::max(high, numbers[c]);
-        }
+double value_at(const TimelineState& t, float y, const Rect& area) {
+    const float share = (area.y + area.height - px(margin_y) - y) / (area.height - 2 * px(margin_y));
+    return t.graph.low + static_cast<double>(share) * (t.graph.high - t.graph.low);
+}
+
+void fit_values(TimelineState& t) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t c = 0; c < t.graph.samples.size(); ++c) {
+        if (t.graph.hidden[c]) continue;
+        const auto [least, most] = std::ranges::minmax(t.graph.samples[c]);
+        low = std::min(low, least);
+        high = std::max(high, most);
     }
-    if (t.drag == TimelineState::Drag::value) return;  // the axis stands still under the mouse
+    if (!(low <= high)) low = 0.0, high = 1.0;
     const double least = std::max(1e-6, 1e-3 * std::max(std::fabs(low), std::fabs(high)));
     const double pad = std::max(least - (high - low), 0.0) * 0.5;
     t.graph.low = low - pad;
     t.graph.high = high + pad;
 }
 
+void sample_graph(TimelineState& t, const Track& track, const ParameterSpec& spec, const ViewState& view,
+                  std::uint64_t revision) {
+    std::vector<bool> hidden;
+    for (std::size_t c = 0; c < track.keyframes.front().value.size(); ++c)
+        hidden.push_back(channel_hidden(view, track, c));
+    const bool same_scale = t.graph.scale.first == t.scale.first && t.graph.scale.last == t.scale.last &&
+                            t.graph.scale.x0 == t.scale.x0 && t.graph.scale.x1 == t.scale.x1;
+    if (t.graph.key == track.key && t.graph.revision == revision && same_scale && t.graph.hidden == hidden)
+        return;
+    t.graph.zoomed = t.graph.zoomed && t.graph.key == track.key;
+    t.graph.hidden = hidden;
+    t.graph.key = track.key;
+    t.graph.revision = revision;
+    t.graph.scale = t.scale;
+    t.graph.samples.assign(track.keyframes.front().value.size(), {});
+    const int count = std::max(2, static_cast<int>((t.scale.x1 - t.scale.x0) / px(sample_px)));
+    for (int i = 0; i <= count; ++i) {
+        const double frame = t.scale.first + (t.scale.last - t.scale.first) * i / count;
+        const std::vector<double> numbers = track_at(track, spec, frame);
+        for (std::size_t c = 0; c < t.graph.samples.size(); ++c) t.graph.samples[c].push_back(numbers[c]);
+    }
+    const bool dragged = t.drag == TimelineState::Drag::value || t.drag == TimelineState::Drag::handle;
+    if (!dragged && !t.graph.zoomed) fit_values(t);  // the axis stands still under the mouse
+}
+
+/// One undo step a drag; Escape takes it back.
+void edit_by_drag(TimelineState& t, GuiFrame& frame, const std::string& name,
+                  const std::function<void(Scene&)>& change) {
+    if (ImGui::IsKeyPressed(key_code::escape, false)) {
+        if (std::exchange(t.graph.edited, false)) frame.document.undo();
+        t.drag = TimelineState::Drag::none;
+        return;
+    }
+    const std::uint64_t before = frame.document.revision();
+    try_edit([&] { frame.document.edit(name, change, t.gesture); });
+    t.graph.edited = t.graph.edited || frame.document.revision() != before;
+}
+
 void drag_value(TimelineState& t, GuiFrame& frame, const Track& track, const Rect& area) {
-    const float share =
-        (area.y + area.height - px(margin_y) - ImGui::GetIO().MousePos.y) / (area.height - 2 * px(margin_y));
-    const double value = t.graph.low + static_cast<double>(share) * (t.graph.high - t.graph.low);
+    const double value = value_at(t, ImGui::GetIO().MousePos.y, area);
     const ParameterSpec& spec = t.specs.at(track.key);
-    try_edit([&] {
-        frame.document.edit(
-            "Keyframe of " + spec.label,
-            [&](Scene& scene) {
-                for (const auto& keyframe : track.keyframes) {
-                    if (keyframe.frame != t.graph.grabbed_keyframe) continue;
-                    std::vector<double> numbers = keyframe.value;
-                    numbers[t.graph.component] = value;
-                    set_keyframe(scene, track.key, keyframe.frame, from_numbers(spec, numbers));
-                }
-            },
-            t.gesture);
+    edit_by_drag(t, frame, "Keyframe of " + spec.label, [&](Scene& scene) {
+        for (const auto& keyframe : track.keyframes) {
+            if (keyframe.frame != t.graph.grabbed_keyframe) continue;
+            std::vector<double> numbers = keyframe.value;
+            numbers[t.graph.component] = value;
+            set_keyframe(scene, track.key, keyframe.frame, from_numbers(spec, numbers));
+        }
     });
+}
+
+/// The other channels of the handle keep their slopes; with Alt it is broken from the other one.
+void drag_handle(TimelineState& t, GuiFrame& frame, const Track& track, const Rect& area) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto found =
+        std::ranges::find(track.keyframes, t.graph.grabbed_keyframe, &Keyframe<std::vector<double>>::frame);
+    if (found == track.keyframes.end()) return;
+    const ParameterSpec& spec = t.specs.at(track.key);
+    const TrackHandles handles =
+        handles_of(track, spec)[static_cast<std::size_t>(found - track.keyframes.begin())];
+    const Handle<std::vector<double>>& held = t.graph.side == HandleSide::in ? handles.in : handles.out;
+    const double frames = t.scale.frame_at(io.MousePos.x) - found->frame;
+    std::vector<double> numbers = held.value;
+    if (held.frames != 0.0 && frames * held.frames > 0.0)
+        for (double& number : numbers) number *= frames / held.frames;
+    numbers[t.graph.component] = value_at(t, io.MousePos.y, area) - found->value[t.graph.component];
+    edit_by_drag(t, frame, "Handle of " + spec.label, [&](Scene& scene) {
+        if (io.KeyAlt) set_broken(scene, track.key, found->frame, true);
+        set_handle(scene, track.key, found->frame, t.graph.side, frames, numbers);
+    });
+}
+
+void grab(TimelineState& t, TimelineState::Drag drag, double keyframe, std::size_t component) {
+    t.drag = drag;
+    t.gesture = new_gesture();
+    t.graph.edited = false;
+    t.graph.grabbed_keyframe = keyframe;
+    t.graph.component = component;
+}
+
+bool is_near(ImVec2 at) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    return std::hypot(at.x - mouse.x, at.y - mouse.y) <= px(point_reach);
+}
+
+/// Of the selected keyframes, where they have a Bezier segment.
+void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const Rect& area) {
+    const bool hovered = ImGui::IsItemHovered();
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const std::vector<TrackHandles> handles = handles_of(track, t.specs.at(track.key));
+    for (std::size_t i = 0; i < handles.size(); ++i) {
+        const auto& keyframe = track.keyframes[i];
+        if (!is_selected(t, {track.key, keyframe.frame})) continue;
+        for (const HandleSide side : {HandleSide::in, HandleSide::out}) {
+            if (!has_handle(track, i, side)) continue;
+            const Handle<std::vector<double>>& h = side == HandleSide::in ? handles[i].in : handles[i].out;
+            for (std::size_t c = 0; c < keyframe.value.size(); ++c) {
+                if (t.graph.hidden[c]) continue;
+                const ImVec2 from{t.scale.x_of(keyframe.frame), y_of(t, keyframe.value[c], area)};
+                const ImVec2 at{t.scale.x_of(keyframe.frame + h.frames),
+                                y_of(t, keyframe.value[c] + h.value[c], area)};
+                const bool near = hovered && is_near(at);
+                list->AddLine(from, at, color::with_opacity(color::text, 0.55f), px(1));
+                list->AddRectFilled({at.x - px(3), at.y - px(3)}, {at.x + px(3), at.y + px(3)},
+                                    near ? color::attention : color::text);
+                note_item(frame,
+                          fmt::format("handle {} {:g} {} {}", track.key, keyframe.frame, c,
+                                      side == HandleSide::in ? "in" : "out"),
+                          {at.x, at.y});
+                if (near && t.drag == TimelineState::Drag::none &&
+                    ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+                    grab(t, TimelineState::Drag::handle, keyframe.frame, c);
+                    t.graph.side = side;
+                }
+            }
+        }
+    }
+}
+
+/// Wheel: values; with Ctrl: frames. The middle button moves both, a double click shows all.
+void zoom_and_pan(TimelineState& t, const Rect& area) {
+    constexpr double notch = 1.25;
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool hovered = ImGui::IsItemHovered();
+    if (hovered && io.MouseWheel != 0.0f) {
+        const double factor = io.MouseWheel > 0 ? 1.0 / notch : notch;
+        const double middle = value_at(t, io.MousePos.y, area);
+        if (io.KeyCtrl) {
+            zoom_frames(t, t.scale.frame_at(io.MousePos.x), factor);
+        } else if ((t.graph.high - t.graph.low) * factor > 1e-9) {
+            t.graph.low = middle - (middle - t.graph.low) * factor;
+            t.graph.high = middle + (t.graph.high - middle) * factor;
+            t.graph.zoomed = true;
+        }
+    }
+    if (hovered && t.drag == TimelineState::Drag::none && io.MouseDoubleClicked[ImGuiMouseButton_Left])
+        t.graph.zoomed = t.zoomed = false;
+    if (hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Middle)) t.drag = TimelineState::Drag::pan;
+    if (t.drag != TimelineState::Drag::pan) return;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Middle)) {
+        t.drag = TimelineState::Drag::none;
+        return;
+    }
+    const double values =
+        value_at(t, io.MousePos.y - io.MouseDelta.y, area) - value_at(t, io.MousePos.y, area);
+    const double frames = t.scale.frame_at(io.MousePos.x - io.MouseDelta.x) - t.scale.frame_at(io.MousePos.x);
+    t.graph.low += values;
+    t.graph.high += values;
+    t.scale.first += frames;
+    t.scale.last += frames;
+    t.graph.zoomed = t.zoomed = true;
 }
 
 void draw_graph_keyframes(TimelineState& t, GuiFrame& frame, const Track& track, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
     const bool hovered = ImGui::IsItemHovered();
-    for (const auto& keyframe : track.keyframes)
+    for (const auto& keyframe : track.keyframes) {
+        const KeyframePlace place{track.key, keyframe.frame};
+        const bool selected = is_selected(t, place);
         for (std::size_t c = 0; c < keyframe.value.size(); ++c) {
+            if (t.graph.hidden[c]) continue;
             const ImVec2 at{t.scale.x_of(keyframe.frame), y_of(t, keyframe.value[c], area)};
             const bool held = t.drag == TimelineState::Drag::value &&
                               t.graph.grabbed_keyframe == keyframe.frame && t.graph.component == c;
-            const bool near = hovered && std::hypot(at.x - mouse.x, at.y - mouse.y) <= px(point_reach);
+            const bool near = hovered && is_near(at);
             if (near && t.drag == TimelineState::Drag::none && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-                t.drag = TimelineState::Drag::value;
-                t.gesture = new_gesture();
-                t.graph.grabbed_keyframe = keyframe.frame;
-                t.graph.component = c;
+                grab(t, TimelineState::Drag::value, keyframe.frame, c);
+                select_keyframe(t, place);
             }
-            list->AddCircleFilled(at, px(held || near ? 5.5f : 4.5f), color::line, 16);
+            if (near && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
+                if (!selected) t.selected = {place};
+                ImGui::OpenPopup("keyframe menu");
+            }
+            list->AddCircleFilled(at, px(held || near ? 5.5f : 4.5f), selected ? color::text : color::line,
+                                  16);
             list->AddCircleFilled(at, px(held || near ? 4.5f : 3.5f), color::attention, 16);
             note_item(frame, fmt::format("graph {} {:g} {}", track.key, keyframe.frame, c), {at.x, at.y});
             if (near && t.drag == TimelineState::Drag::none)
                 tooltip(fmt::format("Frame {:g}: {:.4g}", keyframe.frame, keyframe.value[c]).c_str());
         }
+    }
 }
 
 }  // namespace
@@ -111,7 +243,7 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     const Track track = *find_track(scene, frame.view.graph_parameter);
     const auto spec = t.specs.find(track.key);
     if (spec == t.specs.end()) return;
-    sample_graph(t, track, spec->second, frame.document.revision());
+    sample_graph(t, track, spec->second, frame.view, frame.document.revision());
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 low{area.x, area.y}, high{area.x + area.width, area.y + area.height};
     list->AddRectFilled(low, high, color::window);
@@ -125,19 +257,26 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     }
     ImGui::PopFont();
     ImGui::SetCursorScreenPos(low);
-    ImGui::InvisibleButton("graph", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)});
+    ImGui::InvisibleButton("graph", {std::max(area.width, 1.0f), std::max(area.height, 1.0f)},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                               ImGuiButtonFlags_MouseButtonMiddle);
+    note_item(frame, "graph area");
+    zoom_and_pan(t, area);
     ImGui::PushClipRect(low, high, true);
     for (std::size_t c = 0; c < t.graph.samples.size(); ++c) {
+        if (t.graph.hidden[c]) continue;
         const std::vector<double>& samples = t.graph.samples[c];
         const auto last = static_cast<float>(samples.size() - 1);
         for (std::size_t i = 0; i < samples.size(); ++i)
             list->PathLineTo({t.scale.x0 + (t.scale.x1 - t.scale.x0) * static_cast<float>(i) / last,
                               y_of(t, samples[i], area)});
-        list->PathStroke(component_color(c, t.graph.samples.size()), ImDrawFlags_None, px(1.5f));
+        list->PathStroke(channel_color(c, t.graph.samples.size()), ImDrawFlags_None, px(1.5f));
     }
+    draw_handles(t, frame, track, area);
     draw_graph_keyframes(t, frame, track, area);
     ImGui::PopClipRect();
     if (t.drag == TimelineState::Drag::value) drag_value(t, frame, track, area);
+    if (t.drag == TimelineState::Drag::handle) drag_handle(t, frame, track, area);
 }
 
 }  // namespace astrosplat

@@ -12,6 +12,7 @@
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/timeline.h"
+#include "gui/timeline_channels.h"
 #include "gui/timeline_graph.h"
 #include "gui/timeline_menu.h"
 #include "gui/widgets.h"
@@ -21,12 +22,16 @@ namespace {
 
 constexpr float row_height = 26, keyframe_reach = 7, name_width = 160, value_gutter = 56;
 
-// Diamond: linear; disc: smooth; square: step.
+// Diamond: linear; disc: smooth; square: step; hourglass: Bezier.
 void draw_keyframe_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation, bool selected) {
     const float half = px(5);
     const auto mark = [&](float size, ImU32 c) {
         if (interpolation == Interpolation::smooth)
             list->AddCircleFilled(at, size * 0.9f, c, 20);
+        else if (interpolation == Interpolation::bezier)
+            for (const float side : {-1.1f, 1.1f})
+                list->AddTriangleFilled({at.x - side * 0.2f, at.y}, {at.x + side * size, at.y - size},
+                                        {at.x + side * size, at.y + size}, c);
         else if (interpolation == Interpolation::step)
             list->AddRectFilled({at.x - size * 0.8f, at.y - size * 0.8f},
                                 {at.x + size * 0.8f, at.y + size * 0.8f}, c);
@@ -43,10 +48,6 @@ std::string value_text(const std::vector<double>& numbers) {
     std::string text;
     for (const double n : numbers) text += (text.empty() ? "" : ", ") + fmt::format("{:.4g}", n);
     return text;
-}
-
-bool is_selected(const TimelineState& t, const KeyframePlace& place) {
-    return std::find(t.selected.begin(), t.selected.end(), place) != t.selected.end();
 }
 
 std::optional<KeyframePlace> keyframe_under_mouse(const TimelineState& t, const Scene& scene, float rows_y) {
@@ -66,14 +67,7 @@ std::optional<KeyframePlace> keyframe_under_mouse(const TimelineState& t, const 
 }
 
 void press_keyframe(TimelineState& t, GuiFrame& frame, const KeyframePlace& place) {
-    if (ImGui::GetIO().KeyShift) {
-        if (is_selected(t, place))
-            std::erase(t.selected, place);
-        else
-            t.selected.push_back(place);
-    } else if (!is_selected(t, place)) {
-        t.selected = {place};
-    }
+    select_keyframe(t, place);
     frame.view.graph_parameter = place.key;
     t.drag = TimelineState::Drag::keyframes;
     t.gesture = new_gesture();
@@ -131,6 +125,7 @@ void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, f
     ImGui::PushID(track.key.text().c_str());
     ImGui::SetCursorScreenPos({x, y});
     if (ImGui::InvisibleButton("name", {width, px(row_height)})) frame.view.graph_parameter = track.key;
+    ImGui::SetItemAllowOverlap();
     note_item(frame, "track " + track.key.text());
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 low{x, y}, high{x + width, y + px(row_height)};
@@ -141,10 +136,14 @@ void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, f
         list->AddRectFilled(low, high, color::hover);
     const auto spec = t.specs.find(track.key);
     const std::string whole = spec == t.specs.end() ? track.key.text() : track_label(track.key, spec->second);
-    const std::string text = fitting(whole, width - px(20));
+    const bool has_channels = chosen && frame.view.graph_open && track.keyframes[0].value.size() > 1;
+    const float room = has_channels ? channels_width(track) : 0.0f;
+    const std::string text = fitting(whole, width - px(20) - room);
     const float text_y = y + std::floor((px(row_height) - ImGui::GetFontSize()) * 0.5f);
     list->AddText({x + px(12), text_y}, chosen ? color::text : color::dim, text.c_str());
     tooltip((whole + "\n" + track.key.text()).c_str());
+    if (has_channels && spec != t.specs.end())
+        draw_channels(frame, track, spec->second, x + width - room, y, px(row_height));
     ImGui::PopID();
 }
 

@@ -53,7 +53,7 @@ ViewportInput::Drag drag_of(int button, bool shift, bool alt) {
     return button == 2 ? Drag::pan : Drag::look;
 }
 
-void Viewport::begin_drag(GuiFrame& frame, const Rect& frame_area) {
+void Viewport::begin_drag(GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     const ImGuiIO& io = ImGui::GetIO();
     for (int button = 0; button < 3; ++button)
         if (io.MouseClicked[button]) button_ = button;
@@ -63,6 +63,8 @@ void Viewport::begin_drag(GuiFrame& frame, const Rect& frame_area) {
     } else if (button_ == 0 && !io.KeyAlt && places_reference(frame)) {
         input_.drag = ViewportInput::Drag::place;
         placing_.press(frame, frame_on_screen(frame_area), io.KeyShift);
+    } else if (button_ == 0 && !io.KeyAlt && path_points_.press(frame, area)) {
+        input_.drag = ViewportInput::Drag::path;
     } else if (button_ == 0 && !io.KeyAlt && !io.KeyShift && handles_.press(frame, input_.mouse_px)) {
         input_.drag = ViewportInput::Drag::handle;
     }
@@ -124,7 +126,7 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
     input_.double_click = input_.hovered && io.MouseDoubleClicked[0] && !io.KeyAlt && !io.KeyShift;
     if (input_.hovered || ImGui::IsItemActive()) input_.wheel = io.MouseWheel;
     if (ImGui::IsItemActivated()) {
-        begin_drag(frame, frame_area);
+        begin_drag(frame, area, frame_area);
     } else if (ImGui::IsItemActive()) {
         input_.drag = moved_before ? ViewportInput::Drag::pan : before;
         input_.delta_px = {io.MouseDelta.x, io.MouseDelta.y};
@@ -145,6 +147,11 @@ void Viewport::read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_a
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (places_reference(frame)) placing_.read(frame, frame_on_screen(frame_area), input_);
     handles_.read(frame, input_.mouse_px, input_.drag == ViewportInput::Drag::handle);
+    if (input_.drag == ViewportInput::Drag::path) {
+        input_.double_click = false;
+        if (!input_.drag_begins) path_points_.drag(frame);
+    }
+    if (input_.drag_ends && before == ViewportInput::Drag::path) path_points_.release(frame);
     move_frame(frame, area);
 }
 
@@ -160,6 +167,7 @@ void Viewport::draw(GuiFrame& frame, const Rect& area) {
     draw_view_marks(frame, area);
     draw_overlay_lines(frame, area);
     handles_.draw(frame, area, input_.mouse_px);
+    path_points_.draw(frame, area);
     draw_gate(frame, area, frame_area);
     draw_wipe(frame, area, frame_area);
     if (places_reference(frame)) draw_placing(frame, frame_on_screen(frame_area));

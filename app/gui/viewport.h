@@ -4,6 +4,7 @@
 
 #include "gui/gui_frame.h"
 #include "gui/handles.h"
+#include "gui/path_points.h"
 #include "gui/reference_placing.h"
 
 namespace astrosplat {
@@ -15,13 +16,14 @@ class Viewport {
 
   private:
     void read_mouse(GuiFrame& frame, const Rect& area, const Rect& frame_area);
-    void begin_drag(GuiFrame& frame, const Rect& frame_area);
+    void begin_drag(GuiFrame& frame, const Rect& area, const Rect& frame_area);
     void move_frame(GuiFrame& frame, const Rect& area);
     void read_click();
 
     ViewportInput input_;
     ReferencePlacing placing_;
     Handles handles_;
+    PathPoints path_points_;
     int button_ = -1;              // that began the drag
     bool moves_frame_ = false;     // 1:1: a pan stays in the window
     bool may_click_ = false;       // the button that is down began nothing else

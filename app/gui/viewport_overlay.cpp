@@ -132,6 +132,8 @@ void draw_view_line(const GuiFrame& frame, const Rect& area, const Rect& frame_a
     if (frame.view.size == SizeMode::one_to_one)
         text += fmt::format("   {}x{} at {:.0f} %", output.width, output.height, frame.view.zoom * 100.0);
     text += compare_text(frame);
+    if (!frame.status.missing_frame.empty())
+        text += "   " + frame.status.missing_frame + " is not rendered: preview";
     if (difference)
         text = "Front view: orange where it is brighter than the picture, blue where it is darker";
     if (frame.view.grid && frame.status.viewport_camera)

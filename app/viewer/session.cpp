@@ -134,6 +134,8 @@ void take_document(Session& session, Document next) {
     view.view = ViewKind::camera;
     view.solo.clear();
     view.playing = false;
+    view.play_first.reset();
+    view.play_last.reset();
     view.hint_open = session.fresh_demo = false;
     view.grey_layer.clear();
     open_snapshots(session);
@@ -173,6 +175,7 @@ Document demo_document(std::span<const Assignment> assignments) {
 void advance(Session& session, double now) {
     const bool for_screenshot = session.fixed_splats > 0;
     session.playback.advance(session.view, session.document.scene().output, now);
+    session.status.played_fps = session.playback.shown_fps();
     want_sets(session, now);
     session.sets.follow(session.document.scene());
     if (!for_screenshot) session.sets.show_growth(now);
@@ -216,6 +219,7 @@ void drop(Session& session, const std::vector<fs::path>& files) {
 double next_due(const Session& session, double now) {
     if (!session.sets.loader().idle() || session.jobs.running()) return 0.1;
     if (session.view.playing) return 0.0;
+    if (!session.status.rendered_frame.empty()) return session.rendered.working() ? 0.03 : 1.0;
     if (session.sets.following()) return 0.004;
     if (!session.sets.wanted(session.document.scene())) return 0.1;
     if (!session.view_frame.exact()) return 0.02;

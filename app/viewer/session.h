@@ -33,6 +33,7 @@
 #include "viewer/prepare_preview.h"
 #include "viewer/reference_alignment.h"
 #include "viewer/render_queue.h"
+#include "viewer/rendered_frames.h"
 #include "viewer/run_viewer.h"
 #include "viewer/set_wishes.h"
 #include "viewer/view_frame.h"
@@ -81,6 +82,10 @@ struct Session {
     FinishedFrames finished;
     std::shared_ptr<const FinishedView> finished_shown;  // in the texture
     ImageTexture finished_texture;
+    RenderedFrames rendered;
+    std::shared_ptr<const RenderedFrame8> rendered_shown;  // in the texture; null: none
+    ImageTexture rendered_texture;
+    std::uint64_t rendered_uploads = 0;
     std::optional<ChildProcess> file_manager;  // that a folder was opened with
     Autosave autosave{autosave_folder(), autosave_interval()};
 

@@ -250,7 +250,8 @@ void frame_all(State& s, const Command&) { frame_box_in_view(s, s.status.box); }
 
 void add_move(State& s, const Command& c) {
     s.document.edit("Add camera move", [&](Scene& scene) {
-        add_camera_move(scene, static_cast<CameraMove>(c.index), s.status.box, s.view.frame);
+        add_camera_move(scene, static_cast<CameraMove>(c.index), s.status.box, s.view.frame,
+                        s.view.later_keys);
     });
 }
 

@@ -73,6 +73,7 @@ void probe(Session& session, glm::dvec2 mouse_px) {
     const ViewRequest& request = session.request;
     session.status.probe.reset();
     if (request.width <= 0 || session.view_frame.texture() == 0) return;
+    if (!session.status.rendered_frame.empty()) return;  // another picture is seen
     const FramePixel at = frame_pixel(session, mouse_px);
     const Image* pixels = session.view_frame.pixels();
     if (!pixels) return;

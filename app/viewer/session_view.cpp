@@ -13,6 +13,7 @@
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "viewer/session_prepare.h"
+#include "viewer/session_rendered.h"
 
 namespace astrosplat {
 namespace {
@@ -228,8 +229,10 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     const bool may_settle = session.view.settle && !session.view.playing &&
                             session.sets.loader().sets_there() &&
                             session.sets.wanted(session.document.scene());
+    DisplaySettings rendered;
+    const bool from_disk = show_rendered_frame(session, whole, rendered);
     const double start = thread_seconds();
-    session.view_frame.show(session.request, choice, may_settle, now, hurry);
+    if (!from_disk) session.view_frame.show(session.request, choice, may_settle, now, hurry);
     if (new_sets) session.sets.drew_new_sets(thread_seconds() - start);
     const ViewFrameState reached = session.view_frame.status().state;
     session.sets.loader().hold(reached == ViewFrameState::refining);
@@ -250,7 +253,13 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     const std::shared_ptr<const FrontFound> front = check_front(session, scene);
     if (front && session.view.compare == CompareMode::front) show_front(session, front, shown);
     show_preparation(session);
-    shown.content = 1 + session.view_frame.version() + session.comparison.version() + session.fronts_shown;
+    if (from_disk) {
+        rendered.view = shown.view;
+        rendered.a = shown.a;
+        shown = rendered;
+    }
+    shown.content = 1 + session.rendered_uploads + session.view_frame.version() +
+                    session.comparison.version() + session.fronts_shown;
     measure_difference(session, shown, now);
     session.displayed = shown;
     session.status.viewport_texture =

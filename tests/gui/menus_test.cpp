@@ -130,15 +130,43 @@ TEST(Menus, LayersMoveAsFarAsTheListGoes) {
     }
 }
 
-TEST(Menus, CameraMoves) {
-    TestWindow window(example_document());
+void choose_move(TestWindow& window, const std::string& name) {
     window.click("Camera");
     window.move(window.at("Camera/Add move"));
     window.frame(30);
-    window.click("Camera/Add move/Fly in");
+    window.click("Camera/Add move/" + name);
+    window.frame(3);
+}
+
+TEST(Menus, CameraMoves) {
+    TestWindow window(example_document());
+    window.view.frame = 240;  // no keyframe of the camera comes later
+    choose_move(window, "Fly in");
     const Commands commands = window.take_commands();
     ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::add_move});
     EXPECT_EQ(commands[0].index, static_cast<std::size_t>(CameraMove::fly_in));
+}
+
+TEST(Menus, AMoveAsksAboutLaterKeyframes) {
+    TestWindow window(example_document());
+    window.view.frame = 24;
+    choose_move(window, "Orbit");
+    EXPECT_TRUE(window.take_commands().empty());
+    window.keep_screen("move");
+    window.click("move/shift");
+    window.click("move/Add");
+    window.frame(2);
+    const Commands commands = window.take_commands();
+    ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::add_move});
+    EXPECT_EQ(commands[0].index, static_cast<std::size_t>(CameraMove::orbit));
+    EXPECT_EQ(window.view.later_keys, LaterKeys::shift);
+    EXPECT_FALSE(window.view.asked_move);
+
+    choose_move(window, "Orbit");
+    window.tap(key_code::escape);
+    window.frame(2);
+    EXPECT_TRUE(window.take_commands().empty());
+    EXPECT_FALSE(window.view.asked_move);
 }
 
 }  // namespace

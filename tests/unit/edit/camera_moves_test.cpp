@@ -122,6 +122,74 @@ TEST_F(CameraMoves, KeyframesOutsideTheMoveStay) {
     EXPECT_FALSE(scene.camera.rotation);  // it would replace the target
 }
 
+TEST_F(CameraMoves, AFewKeyframesDescribeAMove) {
+    add_camera_move(scene, CameraMove::orbit, box, 1.0);
+    EXPECT_LE(find_track(scene, "camera.position")->keyframes.size(), 8u);
+    add_camera_move(scene, CameraMove::face_on_to_edge_on, box, 1.0);
+    EXPECT_LE(find_track(scene, "camera.position")->keyframes.size(), 4u);
+    add_camera_move(scene, CameraMove::fly_in, box, 1.0);
+    EXPECT_LE(find_track(scene, "camera.position")->keyframes.size(), 5u);
+}
+
+/// At every frame, where the eased circle is at that frame.
+TEST_F(CameraMoves, OrbitIsWhereTheExactOneIs) {
+    add_camera_move(scene, CameraMove::orbit, box, 10.0);
+    const glm::dvec3 arm(-1.0, 4.0, 9.0), across(9.0, 0.0, 1.0);
+    for (int step = 0; step <= 480; ++step) {
+        const double t = step / 480.0, angle = 2.0 * real::pi * t * t * (3.0 - 2.0 * t);
+        const glm::dvec3 exact = middle + glm::dvec3(arm.x, 0, arm.z) * real::cos(angle) +
+                                 across * real::sin(angle) + glm::dvec3(0, 4, 0);
+        EXPECT_LT(glm::distance(position(10.0 + step * 0.5), exact), 1e-3 * std::sqrt(82.0)) << step;
+    }
+}
+
+struct LaterKeyframes : CameraMoves {
+    LaterKeyframes() {
+        scene.output.frames = "1-480";
+        for (const double frame : {1.0, 48.0, 100.0, 400.0}) {
+            set_keyframe(scene, "camera.position", frame, Value::List{frame, 4.0, 10.0});
+            set_keyframe(scene, "camera.fov", frame, 20.0 + frame / 40.0);
+        }
+        set_keyframe(scene, "camera.roll", 300.0, 5.0);
+    }
+    std::vector<double> frames_of(const std::string& key) const {
+        std::vector<double> frames;
+        if (const Track* track = find_track(scene, key))
+            for (const auto& keyframe : track->keyframes) frames.push_back(keyframe.frame);
+        return frames;
+    }
+    using Frames = std::vector<double>;
+};
+
+TEST_F(LaterKeyframes, AreKeptBeyondTheMove) {
+    EXPECT_EQ(camera_keyframes_after(scene, 48.0), 3u);
+    add_camera_move(scene, CameraMove::orbit, box, 48.0, LaterKeys::keep);
+    const Frames positions = frames_of("camera.position");
+    EXPECT_EQ(positions.front(), 1.0);
+    EXPECT_EQ(*(positions.end() - 2), 288.0);
+    EXPECT_EQ(positions.back(), 400.0);
+    EXPECT_EQ(frames_of("camera.fov"), (Frames{1, 48, 100, 400}));
+    EXPECT_EQ(scene.output.frames, "1-480");
+}
+
+TEST_F(LaterKeyframes, AreShiftedBehindTheMove) {
+    const glm::dvec3 before = position(100.0);
+    add_camera_move(scene, CameraMove::orbit, box, 48.0, LaterKeys::shift);
+    EXPECT_EQ(frames_of("camera.fov"), (Frames{1, 48, 340, 640}));
+    EXPECT_EQ(frames_of("camera.roll"), (Frames{540}));
+    EXPECT_EQ(frames_of("camera.position").back(), 640.0);
+    EXPECT_EQ(position(340.0), before);
+    EXPECT_EQ(scene.output.frames, "1-720");
+}
+
+TEST_F(LaterKeyframes, AreReplacedByTheMove) {
+    add_camera_move(scene, CameraMove::orbit, box, 48.0, LaterKeys::replace);
+    EXPECT_EQ(frames_of("camera.fov"), (Frames{1, 48}));
+    EXPECT_EQ(frames_of("camera.roll"), Frames{});
+    EXPECT_EQ(scene.camera.roll, 5.0);
+    EXPECT_EQ(frames_of("camera.position").back(), 288.0);
+}
+
 TEST_F(CameraMoves, ACameraThatFramesTheBoxBeginsThere) {
     scene.camera.position.reset();
     add_camera_move(scene, CameraMove::orbit, box, 1.0);
