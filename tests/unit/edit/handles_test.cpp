@@ -126,6 +126,9 @@ TEST_F(HandlesTest, ACropIsDraggedInTheLayersOwnSpace) {
     EXPECT_LT(glm::length(handled_in(scene, view)->origin - glm::dvec3(1.0, 1.0, 0.0)), 1e-9);
     EXPECT_EQ(dragged(layer() + ".look.crop.0.center", drag(Grip::x, {1.0, 1.5, 0.0}, {1.0, 2.5, 0.0})),
               (Values{1.0, 0.0, 0.0}));
+    EXPECT_EQ(dragged(layer() + ".look.crop.0.center", drag(Grip::x, {1.0, 1.5, 0.0}, {1.0, 2.506, 0.0})),
+              (Values{1.003, 0.0, 0.0}))
+        << "rounded to a pixel, which is half as large in the layer";
     view.tool = HandleTool::scale;
     EXPECT_EQ(dragged(layer() + ".look.crop.0.size", drag(Grip::x, {1.0, 1.5, 0.0}, {1.0, 2.0, 0.0})),
               (Values{2.0, 1.0, 1.0}));

@@ -48,6 +48,13 @@ TEST(Placement, OfAllAnglesTheNearestOnesAreTaken) {
     }
 }
 
+/// At a pole x and z turn about one line: x stays as it was.
+TEST(Placement, AtAPoleTheAnglesStay) {
+    const glm::dmat3 turned(0.0, 0.0, -1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.0);  // by 90 degrees about y
+    expect_near(degrees_of(turned, {40.0, 90.0, 40.0}), {40.0, 90.0, 40.0});
+    expect_near(degrees_of(turned, {0.0, 90.0, 0.0}), {0.0, 90.0, 0.0});
+}
+
 TEST(Placement, RotationsFollowTheRightHand) {
     expect_near(rotation_about({0.0, 0.0, 1.0}, real::radians(90.0)) * glm::dvec3(1.0, 0.0, 0.0),
                 {0.0, 1.0, 0.0});
