@@ -46,7 +46,7 @@ void range_entry(TimelineState& t, GuiFrame& frame) {
     std::array<char, 256> text{};
     (t.typing_frames ? t.typed_frames : frames).copy(text.data(), text.size() - 1);
     ImGui::SameLine(0, px(entry_gap));
-    ImGui::SetNextItemWidth(px(92));
+    ImGui::SetNextItemWidth(px(76));
     push_entry_padding();
     ImGui::InputText("##range", text.data(), text.size());
     ImGui::PopStyleVar();
@@ -63,11 +63,17 @@ void rate_entry(TimelineState& t, GuiFrame& frame) {
     auto fps = static_cast<float>(frame.document.scene().output.fps);
     ImGui::SameLine(0, px(entry_gap));
     push_entry_padding();
-    const bool changed = drag_field("##fps", fps, 0.1f, 1.0f, 240.0f, "%g fps", px(72), color::text);
+    const double reached = frame.status.played_fps;
+    const std::string format = reached > 0.0 ? fmt::format("{:.1f}/%g fps", reached) : "%g fps";
+    const bool slow = reached > 0.0 && reached < 0.9 * frame.document.scene().output.fps;
+    const bool changed = drag_field("##fps", fps, 0.1f, 1.0f, 240.0f, format.c_str(), px(96),
+                                    slow ? color::attention : color::text);
     ImGui::PopStyleVar();
     if (ImGui::IsItemActivated()) t.rate_gesture = new_gesture();
     note_item(frame, "fps");
-    tooltip("Frames a second of playing and of movies. Drag, or double click to type");
+    tooltip(
+        "Frames a second of playing and of movies, while it plays after those that are reached. Drag, or "
+        "double click to type");
     if (changed)
         try_edit([&] {
             frame.document.set("output.fps", std::round(static_cast<double>(fps) * 1000.0) / 1000.0,
@@ -109,17 +115,12 @@ void play_choices(GuiFrame& frame) {
         view.show_rendered = !view.show_rendered;
 }
 
-/// What there is room for: the time, and while it plays the rate that is reached.
-void facts(const GuiFrame& frame, float right) {
-    const auto add = [&](const std::string& text, ImU32 shade) {
-        ImGui::SameLine(0, px(12));
-        if (ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(text.c_str()).x <= right)
-            row_text(text, px(header_control), shade);
-    };
-    const OutputParams& output = frame.document.scene().output;
-    if (const double reached = frame.status.played_fps; reached > 0.0)
-        add(fmt::format("{:.1f} fps", reached), reached < 0.9 * output.fps ? color::attention : color::good);
-    add(seconds_text(frame.document.scene(), frame.view.frame), color::dim);
+/// Where there is room for it.
+void time_text(const GuiFrame& frame, float right) {
+    const std::string text = seconds_text(frame.document.scene(), frame.view.frame);
+    ImGui::SameLine(0, px(12));
+    if (ImGui::GetCursorScreenPos().x + ImGui::CalcTextSize(text.c_str()).x <= right)
+        row_text(text, px(header_control), color::dim);
 }
 
 }  // namespace
@@ -139,7 +140,7 @@ void draw_timeline_header(TimelineState& t, GuiFrame& frame, const Rect& area) {
     range_entry(t, frame);
     rate_entry(t, frame);
     play_choices(frame);
-    facts(frame, right - 2 * control - px(12));
+    time_text(frame, right - 2 * control - px(12));
     ImGui::SetCursorScreenPos({right - 2 * control - px(4), y});
     if (icon_button("graph", Icon::curve, {control, control}, px(13),
                     view.graph_open ? color::accent : color::dim, "Graph of the selected parameter")) {
