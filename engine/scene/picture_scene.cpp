@@ -48,7 +48,7 @@ name = {name}
 meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
 uv        = "camera"              # depth goes along the rays to this camera, so that from there one sees the picture:
 uv_camera = {{ position = [0, {distance}, 0], up = [0, 0, -1], fov = {fov} }}
-structure = {{ kind = {kind}, depth = {depth}, clumps = 1.0,{bend} {opacity}, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
+structure = {{ kind = {kind}, clumps = 1.0, {extent}, {opacity}, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
@@ -141,6 +141,12 @@ std::string_view opacity_of(StructureKind structure) {
     return structure == StructureKind::disk ? "opacity = 0.42, density = 0.95" : "opacity = 0.55";
 }
 
+// How far bodies reach along the line of sight.
+std::string_view extent_of(StructureKind structure) {
+    if (structure == StructureKind::disk) return "flare = 0.2, warp = 0.01";
+    return structure == StructureKind::walls ? "depth = 0.18" : "depth = 0.15";
+}
+
 }  // namespace
 
 PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
@@ -180,8 +186,7 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height))),
-        fmt::arg("depth", scene.structure == StructureKind::walls ? "0.18" : "0.15"),
-        fmt::arg("bend", scene.structure == StructureKind::disk ? " flare = 0.2, warp = 0.01," : ""),
+        fmt::arg("extent", extent_of(scene.structure)),
         fmt::arg("opacity", opacity_of(scene.structure)));
     return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
 }
