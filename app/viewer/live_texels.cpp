@@ -95,7 +95,7 @@ std::vector<Image> blurred_pictures(const std::vector<TexturedMesh>& meshes) {
 }
 
 glm::vec3 light_at(const Image& picture, glm::vec2 uv) {
-    const glm::vec2 at(uv.x - std::floor(uv.x), uv.y - std::floor(uv.y));
+    const glm::vec2 at = 1.0f - glm::abs(glm::mod(uv, 2.0f) - 1.0f);  // mirrored beyond the edges
     const LinearSample place(picture, at.x * static_cast<float>(picture.width),
                              (1.0f - at.y) * static_cast<float>(picture.height));
     return {place.of(picture, 0), place.of(picture, 1), place.of(picture, 2)};

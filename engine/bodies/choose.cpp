@@ -26,6 +26,9 @@ constexpr double too_lopsided = 0.4;
 constexpr double dark_edge = 0.3;    // of the mean light
 constexpr double alone_edge = 0.45;  // of the same, for what has a glow around it
 
+constexpr double rim_share = 0.02;  // of the width
+constexpr double dark_rim = 0.004;  // displayed as a twentieth of white
+
 struct Pixel {
     double radius, light, red, blue;
     bool edge;
@@ -154,6 +157,19 @@ StructureChoice choose_structure(const Image& light) {
         return {StructureKind::walls, "it stands alone on a dark sky and is not much brighter in the middle"};
     return {StructureKind::sheet, dark ? "it has a bright middle that is bluer than what is around it"
                                        : "its light goes on to the picture's edges"};
+}
+
+bool goes_on_beyond_edges(const Image& light) {
+    const Image brightest = brightest_channel(light);
+    const auto rim = static_cast<std::int64_t>(rim_share * static_cast<double>(light.width));
+    std::vector<double> values;
+    for (std::int64_t y = 0; y < light.height; ++y) {
+        const bool whole_row = y <= rim || y >= light.height - 1 - rim;
+        for (std::int64_t x = 0; x < light.width; ++x)
+            if (whole_row || x <= rim || x >= light.width - 1 - rim)
+                values.push_back(double{*brightest.at(x, y)});
+    }
+    return percentile(std::move(values), 0.5) > dark_rim;
 }
 
 }  // namespace astrosplat

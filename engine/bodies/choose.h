@@ -18,4 +18,7 @@ struct StructureChoice {
 /// sheet for everything else. `light`: RGB, linear, >= 0.
 StructureChoice choose_structure(const Image& light);
 
+/// Whether what a picture shows goes on beyond its edges: half of its rim shows more than a dark sky.
+bool goes_on_beyond_edges(const Image& light);
+
 }  // namespace astrosplat

@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 
 #include "bodies/fields.h"
+#include "bodies/margin.h"
 #include "bodies/picture_light.h"
 #include "core/parallel.h"
 #include "core/real.h"
@@ -196,10 +197,11 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
     placement.kind = params.kind;
     placement.picture_width = width;
     placement.picture_height = height;
-    placement.scale = static_cast<double>(width) / 1920.0;
+    const double width_without_margin = static_cast<double>(width) / (1.0 + 2.0 * params.margin);
+    placement.scale = width_without_margin / 1920.0;
     placement.height = params.height > 0.0 ? params.height * texels_per_unit
                                            : share * static_cast<double>(std::max(width, height));
-    placement.depth = 0.5 * params.depth * static_cast<double>(width);
+    placement.depth = 0.5 * params.depth * width_without_margin;
     placement.clumps = params.clumps;
     return placement;
 }
@@ -210,7 +212,10 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
         placement_without_fields(brightest.width, brightest.height, params, texels_per_unit);
     placement.field_halvings = field_halvings(brightest);
     placement.seed = seed;
-    placement.thickness = thickness_field(brightest, placement.height);
+    // Fields follow what the picture shows, not how its margin fades.
+    const Image mirrored = params.margin > 0.0 ? mirrored_margin(brightest, params.margin) : Image();
+    const Image& shown = params.margin > 0.0 ? mirrored : brightest;
+    placement.thickness = thickness_field(shown, placement.height);
     if (params.kind == StructureKind::disk) {
         placement.warp = params.warp * static_cast<double>(brightest.width);
         placement.flare = params.flare;
@@ -223,9 +228,9 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
                 *field.at(x, y) *= flare_at(placement, middle(x), middle(y));
         });
     }
-    if (params.kind == StructureKind::walls) placement.relief = relief_field(brightest, placement.depth, 0.7);
+    if (params.kind == StructureKind::walls) placement.relief = relief_field(shown, placement.depth, 0.7);
     if (params.kind == StructureKind::sheet && flat)
-        placement.relief = relief_field(brightest, placement.depth, 0.6);  // counts twice
+        placement.relief = relief_field(shown, placement.depth, 0.6);  // counts twice
     placement.knots = find_knots(brightest);
     set_knot_depths(placement);
     return placement;

@@ -166,6 +166,11 @@ void describe_structure(const Describer& d, StructureParams& s) {
     bodies(s.density, "density", "Density", "", "Opacity of white.", within(0, 1), slider(0.1, 0.98));
     bodies(s.border, "border", "Soft border", "of the width",
            "Light fades over this share towards the picture's edges.", within(0, 0.5), slider(0, 0.2));
+    bodies(
+        s.margin, "margin", "Margin", "of the width",
+        "How far a picture on a plane goes on beyond its edges, mirrored and fading: without straight edges "
+        "from aslant, and whole from the front.",
+        within(0, 0.5), slider(0, 0.3));
 }
 
 void describe_uv_camera(const Describer& d, UvCamera& c) {

@@ -48,7 +48,7 @@ name = {name}
 meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
 uv        = "camera"              # depth goes along the rays to this camera, so that from there one sees the picture:
 uv_camera = {{ position = [0, {distance}, 0], up = [0, 0, -1], fov = {fov} }}
-structure = {{ kind = {kind}, clumps = 1.0, {extent}, {opacity}, border = 0.03 }}  # disk, sheet, walls; columns extrudes it
+structure = {{ kind = {kind}, clumps = 1.0, {extent}, {opacity}, {edges} }}  # disk, sheet, walls; columns extrudes it
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
@@ -126,12 +126,12 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
 }
 
 // Pixels at 1080 lines that the widest dots have from the front, and a little more: there they stay whole.
-double split_above_px(StructureKind structure, double longest_over_height) {
+double split_above_px(StructureKind structure, double longest_over_height, double margin) {
     const double thickness = structure == StructureKind::disk
                                  ? disk_thickness * static_cast<double>(wider_in_bulges[1])
                                  : sheet_thickness;
-    return 1.1 * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma_share * thickness *
-           longest_over_height * 1080.0;
+    return 1.1 * (1.0 + 2.0 * margin) * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma_share *
+           thickness * longest_over_height * 1080.0;
 }
 
 // Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
@@ -147,6 +147,12 @@ std::string_view extent_of(StructureKind structure) {
     return structure == StructureKind::walls ? "depth = 0.18" : "depth = 0.15";
 }
 
+// Of the picture's width. One of many pixels fades within its own edges: a margin would need too much memory.
+double margin_of(const PictureScene& scene) {
+    constexpr std::int64_t most_px = std::int64_t{24} << 20;
+    return scene.goes_on && scene.width_px * scene.height_px <= most_px ? 0.08 : 0.0;
+}
+
 }  // namespace
 
 PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
@@ -157,11 +163,13 @@ PictureScene picture_scene(const std::filesystem::path& image, std::optional<Str
     const bool reduced = texture.file_width > 0;
     PictureScene scene{image, reduced ? texture.file_width : texture.image.width,
                        reduced ? texture.file_height : texture.image.height};
+    const Image light = picture_light(texture, 0.0).light;
+    scene.goes_on = goes_on_beyond_edges(light);
     why.clear();
     if (structure) {
         scene.structure = *structure;
     } else {
-        const StructureChoice choice = choose_structure(picture_light(texture, 0.0).light);
+        const StructureChoice choice = choose_structure(light);
         scene.structure = choice.kind;
         why = choice.why;
     }
@@ -173,6 +181,7 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
     const std::int64_t longest = std::max(scene.width_px, scene.height_px);
     const double height = longest_side * static_cast<double>(scene.height_px) / static_cast<double>(longest);
     const double distance = 0.5 * height / real::tan(real::radians(0.5 * field_of_view));
+    const double margin = margin_of(scene);
     std::string text = fmt::format(
         text_format, fmt::arg("title", name), fmt::arg("name", to_toml(name)),
         fmt::arg("width", side_px(scene.width_px, longest)),
@@ -185,9 +194,9 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("fov", fmt::format("{:.1f}", field_of_view)),
         fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
-        fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height))),
-        fmt::arg("extent", extent_of(scene.structure)),
-        fmt::arg("opacity", opacity_of(scene.structure)));
+        fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height, margin))),
+        fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
+        fmt::arg("extent", extent_of(scene.structure)), fmt::arg("opacity", opacity_of(scene.structure)));
     return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
 }
 

@@ -4,17 +4,22 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "bodies/bodies.h"
+#include "bodies/margin.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "generate/generate.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {
 namespace {
+
+constexpr std::int64_t rows_per_task = 16384;
 
 std::string describe_lattice(const Lattice& lattice, double max_distance, std::int64_t bytes) {
     const glm::dvec3 voxel = lattice.spacing();
@@ -45,11 +50,22 @@ std::vector<TexturedMesh> load_meshes(const SourceParams& source, const std::str
     return meshes;
 }
 
+bool is_one(const glm::dvec2& times) { return times == glm::dvec2(1.0); }
+
+// From places in the pictures with their margins to places in the pictures, which are 0..1 there.
+void uv_of_pictures(std::span<const glm::dvec2> times, SplatSet& set) {
+    if (std::ranges::all_of(times, is_one)) return;
+    parallel_each(set.uv.size(), rows_per_task, [&](std::size_t i) {
+        set.uv[i] = (set.uv[i] - 0.5f) * glm::vec2(times[set.mesh[i]]) + 0.5f;
+    });
+}
+
 SplatSet generate_bodies(const SourceParams& source, const std::string& layer_name, const Progress& progress,
                          const PictureMaker& prepared) {
     BodiesPlan plan = plan_bodies(source, load_meshes(source, layer_name, progress, prepared), layer_name);
     SplatSet set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                                layer_name, progress, source.splats);
+    uv_of_pictures(plan.times, set);
     set.of_this_machine = !plan.fits_memory;
     return set;
 }
@@ -75,10 +91,12 @@ std::int64_t most_texels_read(const SourceParams& source, std::int64_t room_byte
 
 BodiesPlan plan_bodies(const SourceParams& source, std::vector<TexturedMesh> meshes,
                        const std::string& layer_name) {
-    BodiesPlan plan{std::move(meshes), source.structure};
+    BodiesPlan plan{std::move(meshes), source.structure, {}};
     plan.structure.stars = finds_stars(source) ? StructureParams::Stars::yes : StructureParams::Stars::no;
     const bool read_whole = have_all_texels(plan.meshes, source.structure.most_texels);
     enlarge_small_pictures(plan.meshes, layer_name);
+    plan.times = add_margins(plan.meshes, plan.structure.margin, layer_name);
+    if (std::ranges::all_of(plan.times, is_one)) plan.structure.margin = 0.0;
     reduce_to(plan.meshes, plan.structure.most_texels, layer_name);
     if (source.splats > 0)
         reduce_pictures(plan.meshes, plan.structure,

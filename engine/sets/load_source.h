@@ -32,7 +32,8 @@ inline bool makes_columns(const SourceParams& source) {
 struct BodiesPlan {
     std::vector<TexturedMesh> meshes;
     StructureParams structure;
-    bool fits_memory = true;  // else pictures are smaller than the scene asks for
+    std::vector<glm::dvec2> times;  // as wide and high as the pictures, of each mesh (structure.margin)
+    bool fits_memory = true;        // else pictures are smaller than the scene asks for
 };
 
 /// To which a larger file of a source's pictures is reduced while it is read, for PictureReaders: what the

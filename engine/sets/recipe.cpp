@@ -129,7 +129,7 @@ std::string lattice_lines(const SourceParams& source) {
 
 // Nothing for columns, so that sets made before there was a choice keep their names.
 std::string structure_lines(const SourceParams& source) {
-    const auto& [kind, height, depth, clumps, flare, warp, stars, dust, opacity, density, border,
+    const auto& [kind, height, depth, clumps, flare, warp, stars, dust, opacity, density, border, margin,
                  most_texels] = source.structure;
     if (kind == StructureKind::columns) return "";
     return fmt::format("structure {}\nheight {}\ndepth {}\nclumps {}\nstars {}\n", static_cast<int>(kind),
@@ -137,6 +137,7 @@ std::string structure_lines(const SourceParams& source) {
            (flare != 0.0 || warp != 0.0 ? fmt::format("flare {}\nwarp {}\n", flare, warp) : "") +
            fmt::format("dust {}\n", dust ? fmt::format("{}", *dust) : "auto") +
            fmt::format("opacity {}\ndensity {}\nborder {}\n", opacity, density, border) +
+           (margin > 0.0 ? fmt::format("margin {}\n", margin) : "") +
            (most_texels > 0 ? fmt::format("most texels {}\n", most_texels) : "");
 }
 

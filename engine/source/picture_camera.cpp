@@ -51,6 +51,13 @@ double picture_height_at(const Camera& camera, double depth) {
     return (parallel ? 1.0 : depth) / camera.focal_px;
 }
 
+Camera widened(Camera camera, glm::dvec2 times) {
+    camera.focal_px /= times.y;
+    camera.aspect *= times.x / times.y;
+    camera.center_x_px = 0.5 * camera.aspect;
+    return camera;
+}
+
 void apply_camera_uv(Mesh& mesh, const Camera& camera) {
     std::vector<bool> seen;
     mesh.uvs.clear();

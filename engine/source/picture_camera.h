@@ -27,6 +27,9 @@ std::optional<PicturePlace> place_in_picture(const Camera& camera, const glm::dv
 /// Scene units from the picture's bottom to its top at a depth.
 double picture_height_at(const Camera& camera, double depth);
 
+/// The camera of a picture that is so many times as wide and high, with what this one sees in its middle.
+Camera widened(Camera camera, glm::dvec2 times);
+
 /// Gives every vertex the place where the picture shows it, and none to faces not wholly before the eye.
 void apply_camera_uv(Mesh& mesh, const Camera& camera);
 

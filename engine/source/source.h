@@ -197,6 +197,7 @@ struct StructureParams {
     double opacity = 0.55;  // power of brightness that opacity grows with
     double density = 0.75;  // opacity of white
     double border = 0.0;    // of the width, over which light fades towards the picture's edges
+    double margin = 0.0;    // of the width, by which the picture is continued beyond its edges
     std::int64_t most_texels = 0;  // that a picture is reduced to; 0: all. Not a key: follows from --memory
     bool operator==(const StructureParams&) const = default;
 };

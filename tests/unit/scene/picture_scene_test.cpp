@@ -76,5 +76,17 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
     }
 }
 
+TEST(PictureScene, PicturesThatGoOnAreContinued) {
+    PictureScene picture{"a.png", 1600, 1000, StructureKind::sheet};
+    const auto structure = [&] { return parsed(picture).layers.at(0).source.structure; };
+    EXPECT_EQ(structure().margin, 0.0);
+    EXPECT_GT(structure().border, 0.0);
+    picture.goes_on = true;
+    EXPECT_GT(structure().margin, 0.0);
+    EXPECT_EQ(structure().border, 0.0) << "all of the picture is seen";
+    picture.width_px = picture.height_px = 8192;
+    EXPECT_EQ(structure().margin, 0.0) << "no room";
+}
+
 }  // namespace
 }  // namespace astrosplat

@@ -107,6 +107,37 @@ TEST_F(LoadSourceTest, LargePicturesAreReducedWhileTheyAreRead) {
     EXPECT_EQ(most_texels_read(source, 4'000'000), 0);
 }
 
+TEST_F(LoadSourceTest, BodiesOfAMarginLieBeyondThePictureAndTheOthersWhereTheyWere) {
+    std::string pixels;
+    for (int i = 0; i < 120 * 80 * 3; ++i) pixels += static_cast<char>(40 + i * 7 % 60);
+    SourceParams source = mesh_source("plane", {write("gas.ppm", "P6\n120 80\n255\n" + pixels)});
+    source.count = 0;
+    source.structure.kind = StructureKind::sheet;
+    source.structure.margin = 0.1;
+    const SplatSet set = load_source(source, "gas");
+    std::int64_t outside = 0;
+    for (std::size_t i = 0; i < set.uv.size(); ++i) {
+        // A plane of 10 units by 6.67, whose picture reads along +x and -z.
+        ASSERT_NEAR(set.position[i].x, (set.uv[i].x - 0.5f) * 10.0f, 1e-4f) << i;
+        ASSERT_NEAR(set.position[i].z, (0.5f - set.uv[i].y) * 10.0f * 80.0f / 120.0f, 1e-4f) << i;
+        if (set.uv[i].x < 0.0f || set.uv[i].x > 1.0f || set.uv[i].y < 0.0f || set.uv[i].y > 1.0f) ++outside;
+    }
+    EXPECT_GT(outside, set.size() / 50);
+    EXPECT_LT(outside, set.size() / 2);
+    EXPECT_NEAR(bounds(set).extent().x, 12.0, 0.5);
+}
+
+TEST_F(LoadSourceTest, AMarginOfAnotherMeshThanAPlaneIsNamed) {
+    SourceParams source = mesh_source("sphere", {write("gas.ppm", "P6\n2 1\n255\nabcdef")});
+    source.count = 0;
+    source.structure.kind = StructureKind::sheet;
+    source.structure.margin = 0.1;
+    load_source(source, "gas");
+    EXPECT_NE(lines_.find("layer 'gas': source.structure.margin acts on planes only, not on 'sphere'"),
+              std::string::npos)
+        << lines_;
+}
+
 TEST_F(LoadSourceTest, SplatFilesAreSortedAndKnowTheirLargestDistance) {
     SplatSet set;
     for (int i = 0; i < 4; ++i) {
