@@ -127,11 +127,11 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
 
 // Pixels at 1080 lines that the widest dots have from the front, and a little more: there they stay whole.
 double split_above_px(StructureKind structure, double longest_over_height, double margin) {
-    const double thickness = structure == StructureKind::disk
-                                 ? disk_thickness * static_cast<double>(wider_in_bulges[1])
-                                 : sheet_thickness;
-    return 1.1 * (1.0 + 2.0 * margin) * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma_share *
-           thickness * longest_over_height * 1080.0;
+    const bool disk = structure == StructureKind::disk;  // is thicker with its margin
+    const double thickness =
+        disk ? disk_thickness * static_cast<double>(wider_in_bulges[1]) : sheet_thickness;
+    return 1.1 * (disk ? 1.0 + 2.0 * margin : 1.0) * 2.0 * static_cast<double>(radius_sigmas) *
+           widest_sigma_share * thickness * longest_over_height * 1080.0;
 }
 
 // Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
@@ -150,7 +150,7 @@ std::string_view extent_of(StructureKind structure) {
 // Of the picture's width. One of many pixels fades within its own edges: a margin would need too much memory.
 double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
-    return scene.goes_on && scene.width_px * scene.height_px <= most_px ? 0.08 : 0.0;
+    return scene.goes_on && scene.width_px * scene.height_px <= most_px ? 0.05 : 0.0;
 }
 
 }  // namespace
