@@ -17,7 +17,7 @@ struct PictureScene {
     std::int64_t width_px = 0, height_px = 0;  // the picture's
     StructureKind structure = StructureKind::disk;
     bool goes_on = false;  // beyond its edges, as far as one can see
-    bool film = false;  // with a camera move of ten seconds
+    bool film = false;     // with a camera move of ten seconds
 };
 
 /// Reads the picture, for its size and, unless `structure` is given, to choose one; `why` then says why in
