@@ -37,6 +37,15 @@ class LoadSourceTest : public SplatFileTest {
         return source;
     }
 
+    SourceParams sheet_of_gas(int width, int height) const {
+        std::string pixels = "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n";
+        for (int i = 0; i < width * height * 3; ++i) pixels += static_cast<char>(40 + i * 7 % 60);
+        SourceParams source = mesh_source("plane", {write("gas.ppm", pixels)});
+        source.count = 0;
+        source.structure.kind = StructureKind::sheet;
+        return source;
+    }
+
     std::string lines_;
 };
 
@@ -66,11 +75,7 @@ TEST_F(LoadSourceTest, MeshesWithoutPicturesAreNeutralGrey) {
 }
 
 TEST_F(LoadSourceTest, BodiesKeepToTexelsAndSplats) {
-    std::string pixels;
-    for (int i = 0; i < 120 * 80 * 3; ++i) pixels += static_cast<char>(40 + i * 7 % 60);
-    SourceParams source = mesh_source("plane", {write("gas.ppm", "P6\n120 80\n255\n" + pixels)});
-    source.count = 0;
-    source.structure.kind = StructureKind::sheet;
+    SourceParams source = sheet_of_gas(120, 80);
     const std::int64_t all = load_source(source, "gas").size();
     ASSERT_GT(all, 8000);
     source.structure.most_texels = 480 * 320 / 4;  // of the enlarged picture
@@ -84,11 +89,7 @@ TEST_F(LoadSourceTest, BodiesKeepToTexelsAndSplats) {
 }
 
 TEST_F(LoadSourceTest, LargePicturesAreReducedWhileTheyAreRead) {
-    std::string pixels;
-    for (int i = 0; i < 1300 * 900 * 3; ++i) pixels += static_cast<char>(40 + i * 7 % 60);
-    SourceParams source = mesh_source("plane", {write("gas.ppm", "P6\n1300 900\n255\n" + pixels)});
-    source.count = 0;
-    source.structure.kind = StructureKind::sheet;
+    SourceParams source = sheet_of_gas(1300, 900);
     source.structure.most_texels = 90'000;
     const auto plan = [&](std::int64_t most_texels) {
         return plan_bodies(source, load_meshes(source, {}, {make_prepared, {}, most_texels}), "gas");
@@ -108,11 +109,7 @@ TEST_F(LoadSourceTest, LargePicturesAreReducedWhileTheyAreRead) {
 }
 
 TEST_F(LoadSourceTest, BodiesOfAMarginLieBeyondThePictureAndTheOthersWhereTheyWere) {
-    std::string pixels;
-    for (int i = 0; i < 120 * 80 * 3; ++i) pixels += static_cast<char>(40 + i * 7 % 60);
-    SourceParams source = mesh_source("plane", {write("gas.ppm", "P6\n120 80\n255\n" + pixels)});
-    source.count = 0;
-    source.structure.kind = StructureKind::sheet;
+    SourceParams source = sheet_of_gas(120, 80);
     source.structure.margin = 0.1;
     const SplatSet set = load_source(source, "gas");
     std::int64_t outside = 0;
