@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vec3.hpp>
 #include <utility>
 
 #include "core/log.h"
 #include "core/parallel.h"
+#include "core/shared_maths.h"
 #include "core/shared_noise.h"
 #include "image/area.h"
 #include "image/channels.h"
@@ -52,48 +54,97 @@ std::int64_t mirrored(std::int64_t i, std::int64_t count) {
 
 float smooth_step(float t) { return t * t * (3.0f - 2.0f * t); }
 
-// 1 at the picture's edge, 0 at most `margin` px away from it: an outline with bays of several sizes, nearer
-// to the picture at its corners. In: px from the middle, as shares of half the picture; px from the picture.
-float fade_at(glm::vec2 from_middle, glm::vec2 px, float away_px, float margin_px) {
-    constexpr float bays[] = {0.45f, 0.3f, 0.2f}, raggedness = 0.8f, steepness = 1.0f;
-    float noise = 0.0f, frequency = 0.5f / margin_px;
+// What a texel beyond the picture is made of, besides the picture itself.
+struct Surroundings {
+    Image local;             // brightness, as fourth roots
+    float to_local = 1.0f;   // pixels of `local` in one of the picture
+    float brightest = 0.0f;  // of `local` along the rim, as light
+    glm::vec2 middle{0.0f};  // of the picture, px
+    float margin_px = 0.0f;
+
+    glm::vec3 light_at(std::int64_t x, std::int64_t y) const {
+        const LinearSample near(local, (static_cast<float>(x) + 0.5f) * to_local,
+                                (static_cast<float>(y) + 0.5f) * to_local);
+        const glm::vec3 root(near.of(local, 0), near.of(local, 1), near.of(local, 2));
+        return root * root * root * root;
+    }
+};
+
+float brightest_of(const glm::vec3& light) { return std::max({light.r, light.g, light.b}); }
+
+Surroundings surroundings_of(const Image& image, std::int64_t margin_px) {
+    Surroundings around;
+    around.local = local_brightness(image);
+    around.to_local = static_cast<float>(around.local.width) / static_cast<float>(image.width);
+    around.middle = 0.5f * glm::vec2(static_cast<float>(image.width), static_cast<float>(image.height));
+    around.margin_px = static_cast<float>(margin_px);
+    for (std::int64_t x = 0; x < image.width; ++x)
+        for (const std::int64_t y : {std::int64_t{0}, image.height - 1})
+            around.brightest = std::max(around.brightest, brightest_of(around.light_at(x, y)));
+    for (std::int64_t y = 0; y < image.height; ++y)
+        for (const std::int64_t x : {std::int64_t{0}, image.width - 1})
+            around.brightest = std::max(around.brightest, brightest_of(around.light_at(x, y)));
+    return around;
+}
+
+// How far light goes on from a place on the rim, as a share of the margin: as far as a disk whose light falls
+// exponentially takes to grow dark, so that outlines follow the galaxy and not the frame of its picture.
+float reach_of(float rim_light, float brightest_rim) {
+    constexpr float dark = 0.004f, least = 0.2f;
+    if (brightest_rim <= dark) return least;
+    const float share =
+        shared::as_log(std::max(rim_light, dark) / dark) / shared::as_log(brightest_rim / dark);
+    return least + (1.0f - least) * std::min(share, 1.0f);
+}
+
+// 1 at the picture's edge, 0 at most `reach_px` away from it: an outline with bays of several sizes, nearer
+// to the picture at its corners. In: px from the picture's upper left.
+float fade_at(const Surroundings& around, glm::vec2 px, float away_px, float reach_px) {
+    constexpr float bays[] = {0.45f, 0.3f, 0.2f}, raggedness = 1.1f, steepness = 1.0f;
+    float noise = 0.0f, frequency = 0.5f / around.margin_px;
     for (std::uint32_t octave = 0; octave < 3; ++octave, frequency *= 2.2f)
         noise +=
             bays[octave] * shared::as_noise(px.x * frequency, px.y * frequency, 0.5f, outline_seed + octave);
-    const float corner = std::fabs(from_middle.x * from_middle.y), way = away_px / margin_px;
+    const glm::vec2 from_middle = px / around.middle - 1.0f;
+    const float corner = std::fabs(from_middle.x * from_middle.y), way = away_px / reach_px;
     const float ragged = way * (steepness + corner * corner + raggedness * std::clamp(noise, -1.0f, 1.0f));
-    const float fade =
-        smooth_step(1.0f - std::clamp(ragged, 0.0f, 1.0f)) * smooth_step(1.0f - std::min(way, 1.0f));
-    return fade * std::sqrt(fade);
+    return smooth_step(1.0f - std::clamp(ragged, 0.0f, 1.0f)) * smooth_step(1.0f - std::min(way, 1.0f));
+}
+
+// The texel at x, y of the picture, which lies beyond it: its mirrored details on the light of the rim, which
+// would otherwise rise again towards a galaxy mirrored.
+void continue_texel(const Surroundings& around, const Image& image, std::int64_t x, std::int64_t y,
+                    float* to) {
+    const std::int64_t from_x = mirrored(x, image.width), from_y = mirrored(y, image.height);
+    const auto dx = static_cast<float>(beyond(x, image.width)),
+               dy = static_cast<float>(beyond(y, image.height));
+    const glm::vec3 rim = around.light_at(std::clamp<std::int64_t>(x, 0, image.width - 1),
+                                          std::clamp<std::int64_t>(y, 0, image.height - 1));
+    const glm::vec3 near = around.light_at(from_x, from_y);
+    const float reach_px = around.margin_px * reach_of(brightest_of(rim), around.brightest);
+    const glm::vec2 px(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+    const float fade = fade_at(around, px, std::sqrt(dx * dx + dy * dy), reach_px);
+    for (int c = 0; c < 3; ++c) {
+        const float level = std::min(rim[c], near[c]);
+        to[c] = fade * level * std::min(to[c] / std::max(near[c], 1e-12f), brightest_detail);
+    }
+    to[3] *= fade;
 }
 
 Image continued(const Texture& texture, std::int64_t margin_px) {
     const Image& image = texture.image;
-    const Image local = local_brightness(image);
+    const Surroundings around = surroundings_of(image, margin_px);
     Image out = unfilled_image(image.width + 2 * margin_px, image.height + 2 * margin_px, image.channels);
-    const glm::vec2 middle(0.5f * static_cast<float>(image.width), 0.5f * static_cast<float>(image.height));
-    const float to_local = static_cast<float>(local.width) / static_cast<float>(image.width);
     parallel_chunks(out.height, margin_rows, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t row = begin; row < end; ++row) {
             for (std::int64_t column = 0; column < out.width; ++column) {
                 const std::int64_t x = column - margin_px, y = row - margin_px;
-                const std::int64_t from_x = mirrored(x, image.width), from_y = mirrored(y, image.height);
-                const std::int64_t dx = beyond(x, image.width), dy = beyond(y, image.height);
-                const float* const in = image.at(from_x, from_y);
+                const bool inside = beyond(x, image.width) == 0 && beyond(y, image.height) == 0;
                 float* const to = out.at(column, row);
-                std::copy_n(in, image.channels, to);
+                std::copy_n(image.at(mirrored(x, image.width), mirrored(y, image.height)), image.channels,
+                            to);
                 if (texture.alpha_from_light) to[3] = 1.0f;
-                if (dx == 0 && dy == 0) continue;
-                const float away = std::sqrt(static_cast<float>(dx * dx + dy * dy));
-                const glm::vec2 px(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                const float fade = fade_at(px / middle - 1.0f, px, away, static_cast<float>(margin_px));
-                const LinearSample near(local, (static_cast<float>(from_x) + 0.5f) * to_local,
-                                        (static_cast<float>(from_y) + 0.5f) * to_local);
-                for (int c = 0; c < 3; ++c) {
-                    const float root = near.of(local, c);
-                    to[c] = fade * std::min(to[c], brightest_detail * root * root * root * root);
-                }
-                to[3] *= fade;
+                if (!inside) continue_texel(around, image, x, y, to);
             }
         }
     });

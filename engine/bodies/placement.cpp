@@ -199,12 +199,11 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
     placement.picture_height = height;
     const double width_without_margin = static_cast<double>(width) / (1.0 + 2.0 * params.margin);
     placement.scale = width_without_margin / 1920.0;
-    // A disk that goes on is a larger disk, and so a thicker one.
+    const double longest_of_picture = std::max(
+        width_without_margin, static_cast<double>(height) - 2.0 * params.margin * width_without_margin);
+    // A disk that goes on is a larger disk, and so a thicker one: half of its margin is lit.
     const double longest =
-        params.kind == StructureKind::disk
-            ? static_cast<double>(std::max(width, height))
-            : std::max(width_without_margin,
-                       static_cast<double>(height) - 2.0 * params.margin * width_without_margin);
+        (params.kind == StructureKind::disk ? 1.0 + params.margin : 1.0) * longest_of_picture;
     placement.height = params.height > 0.0 ? params.height * texels_per_unit : share * longest;
     placement.depth = 0.5 * params.depth * width_without_margin;
     placement.clumps = params.clumps;

@@ -130,8 +130,8 @@ double split_above_px(StructureKind structure, double longest_over_height, doubl
     const bool disk = structure == StructureKind::disk;  // is thicker with its margin
     const double thickness =
         disk ? disk_thickness * static_cast<double>(wider_in_bulges[1]) : sheet_thickness;
-    return 1.1 * (disk ? 1.0 + 2.0 * margin : 1.0) * 2.0 * static_cast<double>(radius_sigmas) *
-           widest_sigma_share * thickness * longest_over_height * 1080.0;
+    return 1.1 * (disk ? 1.0 + margin : 1.0) * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma_share *
+           thickness * longest_over_height * 1080.0;
 }
 
 // Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
@@ -147,10 +147,12 @@ std::string_view extent_of(StructureKind structure) {
     return structure == StructureKind::walls ? "depth = 0.18" : "depth = 0.15";
 }
 
-// Of the picture's width. One of many pixels fades within its own edges: a margin would need too much memory.
+// Of the picture's width: room for a galaxy to end round, and for a cloud to fray. One of many pixels fades
+// within its own edges: a margin would need too much memory.
 double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
-    return scene.goes_on && scene.width_px * scene.height_px <= most_px ? 0.05 : 0.0;
+    if (!scene.goes_on || scene.width_px * scene.height_px > most_px) return 0.0;
+    return scene.structure == StructureKind::disk ? 0.08 : 0.05;
 }
 
 }  // namespace

@@ -83,6 +83,40 @@ TEST(Margin, HasARaggedOutline) {
     EXPECT_GT(most, 3.0f * least);
 }
 
+// A galaxy's outline is round where its picture's is straight: its light goes on where it is bright.
+TEST(Margin, ReachesFartherWhereTheRimIsBrighter) {
+    Image light = even_light();
+    for (std::int64_t y = 0; y < picture_height; ++y)
+        for (std::int64_t x = picture_width / 2; x < picture_width; ++x)
+            for (int c = 0; c < 3; ++c) light.at(x, y)[c] = 0.01f;
+    const Texture texture = continued(light)[0].textures[0];
+    const auto share_left = [&](std::int64_t begin, std::int64_t end, float rim) {  // above the picture
+        double sum = 0.0;
+        for (std::int64_t x = begin; x < end; ++x)
+            sum += texture.image.at(x + margin_px, margin_px / 2)[1] / rim;
+        return sum / static_cast<double>(end - begin);
+    };
+    EXPECT_GT(share_left(20, 80, 0.2f), 3.0 * share_left(120, 180, 0.01f));
+}
+
+// What is mirrored is brighter again towards the middle.
+TEST(Margin, DoesNotGrowBrighterBeyondADimEdge) {
+    Image light = make_image(picture_width, picture_height, 3, 0.0f);
+    for (std::int64_t y = 0; y < picture_height; ++y)
+        for (std::int64_t x = 0; x < picture_width; ++x)
+            for (int c = 0; c < 3; ++c)
+                light.at(x, y)[c] = 0.02f + 0.02f * static_cast<float>(std::min({x, y, picture_width - 1 - x,
+                                                                                 picture_height - 1 - y}));
+    const Texture texture = continued(light)[0].textures[0];
+    const auto mean_at = [&](std::int64_t px_away) {  // above the picture
+        double sum = 0.0;
+        for (std::int64_t x = 0; x < picture_width; ++x)
+            sum += static_cast<double>(texture.image.at(x + margin_px, margin_px - px_away)[1]);
+        return sum / static_cast<double>(picture_width);
+    };
+    EXPECT_LT(mean_at(8), 2.0 * mean_at(1)) << "what is mirrored there has eight times the light of the rim";
+}
+
 TEST(Margin, AStarByTheEdgeIsNotSeenTwice) {
     Image light = even_light();
     constexpr std::int64_t star_x = 100, star_y = 3;
