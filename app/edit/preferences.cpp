@@ -28,6 +28,33 @@ void read(const Json& json, const char* name, Number& value, double lo, double h
     if (number >= lo && number <= hi) value = static_cast<Number>(number);
 }
 
+// Absolute paths, as long as they are there.
+std::vector<fs::path> paths_of(const Json& json, const char* name, std::size_t most,
+                               bool (*is_there)(const fs::path&, std::error_code&) noexcept) {
+    std::vector<fs::path> paths;
+    if (!json.contains(name) || !json[name].is_array()) return paths;
+    for (const Json& entry : json[name]) {
+        if (!entry.is_string() || paths.size() == most) continue;
+        const fs::path path = entry.get<std::string>();
+        std::error_code ignored;
+        if (is_there(path, ignored)) paths.push_back(path);
+    }
+    return paths;
+}
+
+Json json_of(const std::vector<fs::path>& paths) {
+    Json json = Json::array();
+    for (const fs::path& path : paths) json.push_back(path.string());
+    return json;
+}
+
+void add_first(std::vector<fs::path>& paths, const fs::path& path, std::size_t most) {
+    const fs::path full = fs::absolute(path).lexically_normal();
+    std::erase(paths, full);
+    paths.insert(paths.begin(), full);
+    if (paths.size() > most) paths.resize(most);
+}
+
 Preferences from_json(const Json& json) {
     Preferences p;
     read(json, "window_width", p.window_width, 100, 65536);
@@ -35,22 +62,19 @@ Preferences from_json(const Json& json) {
     read(json, "panel_width", p.panel_width, 300, 520);
     read(json, "timeline_height", p.timeline_height, 36, 2000);
     read(json, "timeline_open", p.timeline_open);
-    if (!json.contains("recent") || !json["recent"].is_array()) return p;
-    for (const Json& entry : json["recent"]) {
-        if (!entry.is_string() || p.recent.size() == Preferences::most_recent_files) continue;
-        const fs::path file = entry.get<std::string>();
-        std::error_code ignored;
-        if (fs::is_regular_file(file, ignored)) p.recent.push_back(file);
-    }
+    p.recent = paths_of(json, "recent", Preferences::most_recent_files, fs::is_regular_file);
+    p.recent_folders = paths_of(json, "recent_folders", Preferences::most_recent_folders, fs::is_directory);
     return p;
 }
 
 Json to_json(const Preferences& p) {
-    Json recent = Json::array();
-    for (const fs::path& file : p.recent) recent.push_back(file.string());
-    return {{"window_width", p.window_width},   {"window_height", p.window_height},
-            {"panel_width", p.panel_width},     {"timeline_height", p.timeline_height},
-            {"timeline_open", p.timeline_open}, {"recent", recent}};
+    return {{"window_width", p.window_width},
+            {"window_height", p.window_height},
+            {"panel_width", p.panel_width},
+            {"timeline_height", p.timeline_height},
+            {"timeline_open", p.timeline_open},
+            {"recent", json_of(p.recent)},
+            {"recent_folders", json_of(p.recent_folders)}};
 }
 
 }  // namespace
@@ -88,11 +112,11 @@ void save_preferences(const Preferences& preferences, const fs::path& file) {
 }
 
 void add_recent(Preferences& preferences, const fs::path& file) {
-    const fs::path full = fs::absolute(file).lexically_normal();
-    auto& recent = preferences.recent;
-    std::erase(recent, full);
-    recent.insert(recent.begin(), full);
-    if (recent.size() > Preferences::most_recent_files) recent.resize(Preferences::most_recent_files);
+    add_first(preferences.recent, file, Preferences::most_recent_files);
+}
+
+void add_recent_folder(PanelSizes& window, const fs::path& folder) {
+    add_first(window.recent_folders, folder, Preferences::most_recent_folders);
 }
 
 }  // namespace astrosplat

@@ -2,6 +2,7 @@
 // or reaches a rendered file. Plain values, changed by the widgets and read by the viewer.
 #pragma once
 
+#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -52,6 +53,7 @@ struct FreeCamera {
 struct PanelSizes {
     float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
     bool timeline_open = true;
+    std::vector<std::filesystem::path> recent_folders;  // that files were chosen in, newest first
     bool operator==(const PanelSizes&) const = default;
 };
 

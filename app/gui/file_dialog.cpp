@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edit/preferences.h"
 #include "gui/dialog.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
@@ -18,7 +19,9 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr float dialog_width = 760, dialog_height = 520, places_width = 168, row_height = 26;
+constexpr float dialog_width = 820, dialog_height = 520, places_width = 168, row_height = 26;
+constexpr float time_width = 128, size_width = 76;
+constexpr std::size_t most_places = 12;
 
 std::string size_text(std::uintmax_t bytes) {
     const double n = static_cast<double>(bytes);
@@ -41,7 +44,8 @@ int on_tab(ImGuiInputTextCallbackData* data) {
 struct Click {
     bool once = false, twice = false;
 };
-Click icon_row(const char* id, Icon icon, const std::string& text, const std::string& beside, bool chosen) {
+Click icon_row(const char* id, Icon icon, const std::string& text, bool chosen, const std::string& time = "",
+               const std::string& size = "") {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float row = px(row_height), room = ImGui::GetContentRegionAvail().x;
     Click click;
@@ -52,10 +56,11 @@ Click icon_row(const char* id, Icon icon, const std::string& text, const std::st
     list->AddRectFilled(corner, {corner.x + room, corner.y + row}, back, px(3));
     draw_icon(list, icon, {corner.x + px(14), corner.y + row * 0.5f}, px(13), color::dim);
     const float y = corner.y + std::floor((row - ImGui::GetFontSize()) * 0.5f);
-    const float beside_width = beside.empty() ? 0.0f : ImGui::CalcTextSize(beside.c_str()).x + px(20);
-    list->AddText({corner.x + px(28), y}, color::text, fitting(text, room - px(36) - beside_width).c_str());
-    if (!beside.empty())
-        list->AddText({corner.x + room - beside_width + px(12), y}, color::dim, beside.c_str());
+    const float beside = time.empty() ? 0.0f : px(time_width + size_width);
+    list->AddText({corner.x + px(28), y}, color::text, fitting(text, room - px(36) - beside).c_str());
+    list->AddText({corner.x + room - beside, y}, color::dim, time.c_str());
+    const float size_x = corner.x + room - px(8) - ImGui::CalcTextSize(size.c_str()).x;
+    list->AddText({size_x, y}, color::dim, size.c_str());
     return click;
 }
 
@@ -74,25 +79,31 @@ void FileDialog::open(const FileQuery& query) {
 void FileDialog::go_to(const fs::path& folder) {
     std::error_code ignored;
     folder_ = fs::weakly_canonical(folder, ignored);
-    entries_ = list_folder(folder_, all_files_ ? std::vector<std::string>{} : query_.extensions);
+    list_entries();
     complaint_.clear();
     if (!query_.saving) typed_.clear();
 }
 
-void FileDialog::draw_places(const GuiFrame& frame) {
+void FileDialog::list_entries() {
+    entries_ = list_folder(folder_, all_files_ ? std::vector<std::string>{} : query_.extensions);
+    sort_entries(entries_, order_, backwards_);
+}
+
+void FileDialog::draw_places(GuiFrame& frame) {
     std::vector<std::pair<std::string, fs::path>> places;
     if (!frame.document.file().empty())
         places.emplace_back("Scene folder", frame.document.file().parent_path());
     places.emplace_back("Home", home_folder());
     places.emplace_back("Computer", "/");
-    for (const fs::path& file : frame.status.recent) {
-        const fs::path folder = file.parent_path();
-        const bool known =
-            std::any_of(places.begin(), places.end(), [&](const auto& p) { return p.second == folder; });
-        if (!known && places.size() < 9) places.emplace_back(folder.filename().string(), folder);
-    }
+    const auto add = [&](const fs::path& folder) {
+        const bool known = std::ranges::any_of(places, [&](const auto& p) { return p.second == folder; });
+        if (!known && places.size() < most_places) places.emplace_back(folder.filename().string(), folder);
+    };
+    for (const fs::path& folder : frame.view.recent_folders) add(folder);
+    for (const fs::path& file : frame.status.recent) add(file.parent_path());
     for (const auto& [name, folder] : places) {
-        if (icon_row(folder.c_str(), Icon::folder, name, "", folder == folder_).once) go_to(folder);
+        if (icon_row(folder.c_str(), Icon::folder, name, folder == folder_).once) go_to(folder);
+        note_item(frame, "place/" + folder.string());
         tooltip(folder.c_str());
     }
 }
@@ -118,12 +129,43 @@ void FileDialog::draw_path(GuiFrame& frame) {
     }
 }
 
+// Clicked again, a column lists the other way round.
+void FileDialog::draw_columns(GuiFrame& frame) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const float room = ImGui::GetContentRegionAvail().x, row = px(row_height);
+    const float time_x = room - px(time_width + size_width), size_x = room - px(size_width);
+    const auto column = [&](const char* label, FileOrder order, float x, float width, bool at_right) {
+        ImGui::SetCursorScreenPos({corner.x + x, corner.y});
+        if (ImGui::InvisibleButton(label, {width, row})) {
+            backwards_ = order_ == order && !backwards_;
+            order_ = order;
+            sort_entries(entries_, order_, backwards_);
+        }
+        const ImU32 text_color = order_ == order || ImGui::IsItemHovered() ? color::text : color::dim;
+        note_item(frame, std::string("file/by ") + label);
+        const float text_width = ImGui::CalcTextSize(label).x;
+        const float text_x = corner.x + x + (at_right ? width - px(8) - text_width : 0.0f);
+        const float middle = corner.y + row * 0.5f;
+        ImDrawList* list = ImGui::GetWindowDrawList();
+        list->AddText({text_x, middle - std::floor(ImGui::GetFontSize() * 0.5f)}, text_color, label);
+        const float arrow_x = at_right ? text_x - px(12) : text_x + text_width + px(12);
+        if (order_ == order)
+            draw_icon(list, backwards_ ? Icon::chevron_up : Icon::chevron_down, {arrow_x, middle}, px(9),
+                      color::dim);
+    };
+    column("Name", FileOrder::name, px(28), time_x - px(28), false);
+    column("Changed", FileOrder::changed, time_x, px(time_width), false);
+    column("Size", FileOrder::size, size_x, px(size_width), true);
+    ImGui::SetCursorScreenPos({corner.x, corner.y + row});
+}
+
 bool FileDialog::draw_entries(GuiFrame& frame) {
     bool chosen = false;
     fs::path enter;
     for (const FileEntry& entry : entries_) {
         const Click click = icon_row(entry.name.c_str(), entry.folder ? Icon::folder : Icon::file, entry.name,
-                                     entry.folder ? "" : size_text(entry.bytes), entry.name == typed_);
+                                     entry.name == typed_, time_text(entry.changed),
+                                     entry.folder ? "" : size_text(entry.bytes));
         note_item(frame, "file/" + entry.name);
         if (entry.folder && click.once) enter = folder_ / entry.name;
         if (!entry.folder && click.once) {
@@ -175,8 +217,7 @@ FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
         row_text(fitting(complaint_, px(400)), px(28), color::attention);
     else if (!query_.extensions.empty()) {
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(4), px(4)));
-        if (ImGui::Checkbox("All files", &all_files_))
-            entries_ = list_folder(folder_, all_files_ ? std::vector<std::string>{} : query_.extensions);
+        if (ImGui::Checkbox("All files", &all_files_)) list_entries();
         ImGui::PopStyleVar();
         note_item(frame, "file/All files");
     }
@@ -201,12 +242,16 @@ FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     draw_places(frame);
     ImGui::EndChild();
     ImGui::SameLine(0, px(8));
-    ImGui::BeginChild("entries", {0, list_height});
+    ImGui::BeginChild("files", {0, list_height});
+    draw_columns(frame);
+    ImGui::BeginChild("entries");
     const bool chosen = draw_entries(frame);
+    ImGui::EndChild();
     ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::PopStyleColor();
     const Answer answer = draw_bottom(frame, chosen);
+    if (answer.file) add_recent_folder(frame.view, answer.file->parent_path());
     if (answer.done) {
         open_ = false;
         ImGui::CloseCurrentPopup();

@@ -1,5 +1,5 @@
 // The window's own file dialog: a path that completes with Tab, the folder's files of the wanted kind, places
-// to jump to, and a question before a file is replaced.
+// to jump to, and a question before a file is replaced. It lists by name, time or size.
 #pragma once
 
 #include <filesystem>
@@ -27,8 +27,10 @@ class FileDialog {
 
   private:
     void go_to(const std::filesystem::path& folder);
-    void draw_places(const GuiFrame& frame);
+    void draw_places(GuiFrame& frame);
     void draw_path(GuiFrame& frame);
+    void draw_columns(GuiFrame& frame);
+    void list_entries();
     bool draw_entries(GuiFrame& frame);
     Answer draw_bottom(GuiFrame& frame, bool chosen);
     std::optional<std::filesystem::path> accept();
@@ -39,6 +41,8 @@ class FileDialog {
     std::filesystem::path folder_;
     std::string typed_, complaint_;
     std::vector<FileEntry> entries_;
+    FileOrder order_ = FileOrder::name;  // stays for the next file
+    bool backwards_ = false;
 };
 
 }  // namespace astrosplat

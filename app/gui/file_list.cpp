@@ -2,7 +2,9 @@
 #include "gui/file_list.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <ctime>
 
 #include "core/text.h"
 
@@ -38,14 +40,32 @@ std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std
             entry.bytes = it->file_size(ignored);
             if (ignored) entry.bytes = 0;
         }
+        entry.changed = it->last_write_time(ignored);
         entries.push_back(std::move(entry));
     }
-    std::sort(entries.begin(), entries.end(), [](const FileEntry& a, const FileEntry& b) {
-        if (a.folder != b.folder) return a.folder;
-        const std::string la = lower_case(a.name), lb = lower_case(b.name);
-        return la != lb ? la < lb : a.name < b.name;
-    });
+    sort_entries(entries, FileOrder::name, false);
     return entries;
+}
+
+void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool backwards) {
+    std::sort(entries.begin(), entries.end(), [&](const FileEntry& a, const FileEntry& b) {
+        if (a.folder != b.folder) return a.folder;
+        if (order == FileOrder::changed && a.changed != b.changed)
+            return (a.changed > b.changed) != backwards;
+        if (order == FileOrder::size && a.bytes != b.bytes) return (a.bytes > b.bytes) != backwards;
+        const std::string la = lower_case(a.name), lb = lower_case(b.name);
+        const bool backwards_names = backwards && order == FileOrder::name;
+        return (la != lb ? la < lb : a.name < b.name) != (backwards_names && a.name != b.name);
+    });
+}
+
+std::string time_text(fs::file_time_type time) {
+    const auto since_1970 = std::chrono::file_clock::to_sys(time).time_since_epoch();
+    const std::time_t seconds = std::chrono::duration_cast<std::chrono::seconds>(since_1970).count();
+    std::tm local{};
+    if (!localtime_r(&seconds, &local)) return {};
+    char text[32];
+    return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%d %H:%M", &local));
 }
 
 fs::path home_folder() {

@@ -13,12 +13,22 @@ struct FileEntry {
     std::string name;
     bool folder = false;
     std::uintmax_t bytes = 0;
+    std::filesystem::file_time_type changed{};
 };
+
+enum class FileOrder { name, changed, size };
 
 /// Folders first, then files, each by name without regard to case; hidden ones left out. `extensions`
 /// (".toml", lower case) limit the files; empty: all. An unreadable folder is empty.
 std::vector<FileEntry> list_folder(const std::filesystem::path& folder,
                                    const std::vector<std::string>& extensions);
+
+/// Folders first; each by `order`, then by name without regard to case. What is newer or larger comes first,
+/// unless `backwards`.
+void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool backwards);
+
+/// "2026-03-01 18:30", on this machine's clock.
+std::string time_text(std::filesystem::file_time_type time);
 
 /// `typed` as a path: "~/x" in the home folder, relative ones in `folder`.
 std::filesystem::path typed_path(const std::string& typed, const std::filesystem::path& folder);

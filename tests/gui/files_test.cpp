@@ -32,6 +32,30 @@ TEST(FileList, FoldersFirstThenTheWantedFiles) {
     EXPECT_TRUE(list_folder(folder / "nothing", {}).empty());
 }
 
+TEST(FileList, SortsByTimeAndSizeAndBackwards) {
+    const TempFolder folder;
+    fs::create_directory(folder / "zoom");
+    const auto now = fs::file_time_type::clock::now();
+    const auto add = [&](const std::string& name, const std::string& text, int hours_ago) {
+        folder.file(name, text);
+        fs::last_write_time(folder / name, now - std::chrono::hours(hours_ago));
+    };
+    add("a", "12", 1);
+    add("b", "1", 3);
+    add("c", "123", 2);
+    std::vector<FileEntry> entries = list_folder(folder.path(), {});
+    const auto sorted = [&](FileOrder order, bool backwards) {
+        sort_entries(entries, order, backwards);
+        return names(entries);
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(sorted(FileOrder::changed, false), (Names{"zoom", "a", "c", "b"}));
+    EXPECT_EQ(sorted(FileOrder::changed, true), (Names{"zoom", "b", "c", "a"}));
+    EXPECT_EQ(sorted(FileOrder::size, false), (Names{"zoom", "c", "a", "b"}));
+    EXPECT_EQ(sorted(FileOrder::name, true), (Names{"zoom", "c", "b", "a"}));
+    EXPECT_EQ(sorted(FileOrder::name, false), (Names{"zoom", "a", "b", "c"}));
+}
+
 TEST(FileList, CompletesAsFarAsThereIsNoChoice) {
     const TempFolder folder;
     fs::create_directory(folder / "scenes");
@@ -111,8 +135,41 @@ TEST_F(FileDialogTest, SizesHaveTheUnitThatKeepsThemShort) {
     window.frame(2);
     const glm::vec2 first = window.at("file/a.toml"), last = window.at("file/e.toml");
     const int top = static_cast<int>(first.y) - 12, bottom = static_cast<int>(last.y) + 12;
-    expect_like_reference("file_sizes", cropped(window.picture(Style::schematic), static_cast<int>(first.x),
-                                                top, 270, bottom - top));
+    expect_like_reference("file_sizes", cropped(window.picture(Style::schematic),
+                                                static_cast<int>(first.x) + 200, top, 90, bottom - top));
+}
+
+TEST_F(FileDialogTest, AColumnSortsAndClickedAgainTheOtherWayRound) {
+    folder.file("scenes/new.toml", "12345");
+    window.choose("File/Open...");
+    window.frame(2);
+    type_path((folder / "scenes").string());
+    window.tap(key_code::enter);
+    window.frame(2);
+    const auto old_is_first = [&] { return window.at("file/old.toml").y < window.at("file/new.toml").y; };
+    EXPECT_FALSE(old_is_first());
+    window.click("file/by Size");
+    EXPECT_FALSE(old_is_first()) << "larger first";
+    window.click("file/by Size");
+    EXPECT_TRUE(old_is_first());
+    window.click("file/by Name");
+    EXPECT_FALSE(old_is_first());
+}
+
+TEST_F(FileDialogTest, FoldersThatFilesWereChosenInArePlaces) {
+    const std::string place = "place/" + (folder / "scenes").string();
+    window.choose("File/Open...");
+    window.frame(2);
+    EXPECT_FALSE(window.has(place));
+    type_path((folder / "scenes/old.toml").string());
+    window.tap(key_code::enter);
+    window.frame(2);
+    window.take_commands();
+    window.choose("File/Open...");
+    window.frame(2);
+    window.click(place);
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/old.toml"));
 }
 
 TEST_F(FileDialogTest, AMissingFileIsSaid) {

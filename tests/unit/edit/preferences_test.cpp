@@ -37,6 +37,7 @@ TEST(Preferences, RoundTrip) {
     p.timeline_height = 200.25f;
     p.timeline_open = false;
     add_recent(p, folder.file("a \"b\" ä.toml", "x"));
+    add_recent_folder(p, folder.path());
     const fs::path file = folder / "neu/tiefer/viewer.json";
     EXPECT_TRUE(warnings_of([&] { save_preferences(p, file); }).empty());
     EXPECT_EQ(load_preferences(file), p);
@@ -66,7 +67,7 @@ TEST(Preferences, SingleValuesThatAreWrongHaveTheirDefault) {
     const fs::path file =
         folder.file("viewer.json",
                     "{\"window_width\": \"wide\", \"window_height\": -5, \"panel_width\": 1e9,"
-                    " \"timeline_open\": 3, \"recent\": [1, \"/gone\"]}");
+                    " \"timeline_open\": 3, \"recent\": [1, \"/gone\"], \"recent_folders\": [\"/gone\"]}");
     EXPECT_EQ(load_preferences(file), Preferences{});
 }
 
@@ -91,6 +92,22 @@ TEST(Preferences, TwelveRecentFilesNewestFirstEachOnce) {
     const Preferences loaded = load_preferences(folder / "viewer.json");
     EXPECT_EQ(loaded.recent.size(), 11u);  // existing ones only
     EXPECT_EQ(loaded.recent[1], folder / "scene 13.toml");
+}
+
+TEST(Preferences, EightRecentFoldersNewestFirstEachOnce) {
+    const TempFolder folder;
+    Preferences p;
+    for (int i = 0; i < 10; ++i) {
+        fs::create_directory(folder / std::to_string(i));
+        add_recent_folder(p, folder / std::to_string(i));
+    }
+    add_recent_folder(p, folder / "5");
+    ASSERT_EQ(p.recent_folders.size(), 8u);
+    EXPECT_EQ(p.recent_folders[0], folder / "5");
+    EXPECT_EQ(p.recent_folders[1], folder / "9");
+    save_preferences(p, folder / "viewer.json");
+    fs::remove(folder / "9");
+    EXPECT_EQ(load_preferences(folder / "viewer.json").recent_folders.size(), 7u) << "existing ones only";
 }
 
 TEST(Preferences, PanelsGoIntoAViewAndBack) {
