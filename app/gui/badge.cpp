@@ -110,6 +110,8 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
         case ViewFrameState::final:
             if (const std::string why = lacking(scene, status); !why.empty())
                 return {why, total, color::error};
+            if (shown.total == 0)
+                return {"Empty", scene.layers.empty() ? "no layer yet" : "no splats to show", color::dim};
             return {fmt::format("Final {:.1f} s", shown.seconds), total, color::good};
         case ViewFrameState::failed:
             return {"Cannot render: " + shown.error, "", color::error};

@@ -239,6 +239,18 @@ TEST(Viewport, OneToOneZoomsAboutTheMouseAndMoves) {
     EXPECT_EQ(window.view.pan_px, glm::dvec2(40, 20));
 }
 
+TEST(Viewport, APictureOfNothingIsNotCalledFinal) {
+    Status status;
+    status.view_frame.state = ViewFrameState::final;
+    Scene scene;
+    EXPECT_EQ(badge_text(scene, status).text, "Empty");
+    EXPECT_EQ(badge_text(scene, status).beside, "no layer yet");
+    scene.layers.emplace_back();
+    EXPECT_EQ(badge_text(scene, status).beside, "no splats to show");
+    status.view_frame.total = 1;
+    EXPECT_NE(badge_text(scene, status).text, "Empty");
+}
+
 TEST(Viewport, TheBadgeSaysHowFinalItIs) {
     const Document document = example_document();
     Status status = example_status();
