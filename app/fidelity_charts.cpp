@@ -79,6 +79,7 @@ std::string image_url(const Image& linear) {
                              OutputParams::Compression::deflate,
                              OutputParams::Alpha::none,
                              OutputParams::View::srgb,
+                             OutputParams::Primaries::rec709,
                              0.0};
     return png_url(linear, encode_8bit(format, opaque(linear), 0, 0));
 }

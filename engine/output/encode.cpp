@@ -6,6 +6,7 @@
 
 #include "core/color.h"
 #include "core/parallel.h"
+#include "core/primaries.h"
 #include "core/real.h"
 
 namespace astrosplat {
@@ -98,11 +99,18 @@ std::vector<std::uint16_t> encode_16bit(const FrameFormat& format, const Image& 
 }
 
 Image encode_float(const FrameFormat& format, const Image& image) {
+    const bool converted = format.primaries == OutputParams::Primaries::acescg;
+    const glm::dmat3 matrix = primaries_matrix(rec709_chromaticities, acescg_chromaticities);
     Image result{image.width, image.height, stored_channels(format), {}};
     result.pixels.resize(image.width * image.height * result.channels);
     parallel_each(image.height, 16, [&](std::int64_t y) {
-        for (std::int64_t x = 0; x < image.width; ++x)
-            encode_pixel(format, 1.0f, image.at(x, y), result.at(x, y));
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            float* const stored = result.at(x, y);
+            encode_pixel(format, 1.0f, image.at(x, y), stored);
+            if (!converted) continue;
+            const glm::dvec3 light = matrix * glm::dvec3(stored[0], stored[1], stored[2]);
+            for (int c = 0; c < 3; ++c) stored[c] = static_cast<float>(light[c]);
+        }
     });
     return result;
 }

@@ -33,7 +33,8 @@ std::vector<std::uint8_t> encode_8bit(const FrameFormat& format, const Image& im
                                       std::int64_t y0);
 std::vector<std::uint16_t> encode_16bit(const FrameFormat& format, const Image& image);
 
-/// Interleaved floats with stored_channels(format) channels: scene light, alpha rule applied.
+/// Interleaved floats with stored_channels(format) channels: scene light in the format's primaries, alpha
+/// rule applied.
 Image encode_float(const FrameFormat& format, const Image& image);
 
 }  // namespace astrosplat

@@ -108,6 +108,12 @@ FrameFormat resolve_format(const OutputParams& output, const std::filesystem::pa
     if (format.holds_view()) {
         format.view = output.view == View::automatic ? View::srgb : output.view;
         format.exposure = output.exposure;
+    } else if (format.kind == FrameKind::exr) {
+        format.primaries = output.primaries;
+    } else if (output.primaries != OutputParams::Primaries::rec709) {
+        // Float tif has no place to say so.
+        throw InputError(fmt::format("output.primaries: expected rec709 in float {} files, found {}",
+                                     rule.name, name_of(output.primaries)));
     }
     return format;
 }

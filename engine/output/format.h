@@ -15,6 +15,7 @@ struct FrameFormat {
     OutputParams::Compression compression = OutputParams::Compression::zip;  // never automatic; unused by png
     OutputParams::Alpha alpha = OutputParams::Alpha::premultiplied;          // never automatic
     OutputParams::View view = OutputParams::View::linear;                    // never automatic
+    OutputParams::Primaries primaries = OutputParams::Primaries::rec709;     // rec709 in all but exr
     double exposure = 0.0;  // stops; 0 in files that hold scene light
 
     /// 8 and 16 bit files hold a view of the scene; exr and float tif hold the scene's own light.
@@ -23,7 +24,7 @@ struct FrameFormat {
     }
 };
 
-/// Throws InputError, one line, when ending, depth, compression, alpha or aovs do not fit together.
+/// Throws InputError, one line, when ending, depth, compression, primaries or aovs do not fit together.
 FrameFormat resolve_format(const OutputParams& output, const std::filesystem::path& file);
 
 /// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits").

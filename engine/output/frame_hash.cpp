@@ -33,6 +33,9 @@ bool shows(const EnvironmentParams& environment) {
 }
 
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
+    // Frames from before there was a choice keep their hash.
+    if (spec.generic_key.text() == "output.primaries")
+        return now.output.primaries == OutputParams::Primaries::rec709;
     if (spec.generic_key.is_below("environment")) return !shows(now.environment);
     return std::ranges::any_of(now.layers, [&](const LayerParams& layer) {
         return !layer.visible && spec.key.layer() == layer.name;

@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/primaries.h"
 #include "core/sha256.h"
 #include "output/encode.h"
 #include "output/format.h"
@@ -84,9 +85,16 @@ void set_text(OIIO::ImageSpec& spec, const FrameFormat& format, const FrameMetad
     spec.attribute("DateTime", "");
 }
 
+void set_chromaticities(OIIO::ImageSpec& spec, OutputParams::Primaries primaries) {
+    const bool acescg = primaries == OutputParams::Primaries::acescg;
+    const Chromaticities& set = acescg ? acescg_chromaticities : rec709_chromaticities;
+    float values[8];  // r g b white, x y
+    for (int i = 0; const glm::dvec2& each : {set.red, set.green, set.blue, set.white})
+        for (int c = 0; c < 2; ++c) values[i++] = static_cast<float>(each[c]);
+    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), values);
+}
+
 void set_exr_attributes(OIIO::ImageSpec& spec, const FrameMetadata& metadata) {
-    const float rec709[8] = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};  // r g b white, x y
-    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), rec709);
     Rational fps = rational_fps(metadata.fps);
     const int rational[2] = {fps.numerator, fps.denominator};
     spec.attribute("framesPerSecond", OIIO::TypeRational, rational);
@@ -175,6 +183,7 @@ void write_exr(const FrameFile& target, const FrameFormat& format, const Rendere
         exr_channels(beauty, layers, frame, target, format.depth == Depth::half_float);
     name_channels(spec, channels);
     set_windows(spec, target);
+    set_chromaticities(spec, format.primaries);
     set_exr_attributes(spec, metadata);
     OIIO::attribute("exr_threads", thread_count());
     PictureFile file(target.file, "openexr", spec, target.existing);

@@ -54,6 +54,8 @@ void describe_output(const Describer& d, OutputParams& o) {
     format(o.compression, "compression", "Compression", "",
            "exr: zip zips piz dwaa none; tif: deflate lzw none.");
     format(o.alpha, "alpha", "Alpha", "", "auto: exr and tif premultiplied, png none (opaque over black).");
+    format(o.primaries, "primaries", "Primaries", "",
+           "Of scene light in exr, told in its header: rec709 (D65) or acescg (AP1). Views stay rec709.");
     format(o.aovs, "aovs", "Extra channels", "", "Of depth, coverage, count and layers; exr only.",
            one_of({OutputParams::known_aovs.begin(), OutputParams::known_aovs.end()}));
     picture(o.view, "view", "View", "", "auto: linear in exr and float tif, srgb in 8 and 16 bit.");

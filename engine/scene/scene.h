@@ -37,6 +37,8 @@ struct OutputParams {
     }
     enum class View { automatic, linear, srgb, soft };
     friend constexpr auto names_of(View) { return names_up_to<View::soft>("auto", "linear", "srgb", "soft"); }
+    enum class Primaries { rec709, acescg };
+    friend constexpr auto names_of(Primaries) { return names_up_to<Primaries::acescg>("rec709", "acescg"); }
     std::int64_t width = 1920, height = 1080;  // resolution, px
     std::string frames = "1-240";
     double fps = 24.0;
@@ -44,6 +46,7 @@ struct OutputParams {
     Depth depth = Depth::automatic;
     Compression compression = Compression::automatic;
     Alpha alpha = Alpha::automatic;
+    Primaries primaries = Primaries::rec709;  // of scene light in exr
     static constexpr std::array<const char*, 4> known_aovs{"depth", "coverage", "count", "layers"};
     std::vector<std::string> aovs;  // of known_aovs
     View view = View::automatic;

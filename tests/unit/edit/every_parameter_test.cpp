@@ -111,6 +111,16 @@ bool try_set(Document& document, const std::string& key, const Value& value, dou
     }
 }
 
+/// Rules between parameters may refuse these: curves without points, half of a pair such as radius.min above
+/// max, a cube that is none, places that need a camera or a file beside them.
+bool may_be_refused(const std::string& key) {
+    return std::ranges::any_of(
+        std::initializer_list<const char*>{".shape", ".radius.min", ".radius.max", ".source.kind",
+                                           ".source.uv", ".prepare.alpha", ".thickness.map",
+                                           "environment.cube"},
+        [&](const char* ending) { return key.ends_with(ending); });
+}
+
 TEST(EveryParameter, GoesForthAndBackAndThroughTheFile) {
     const SceneFolder f;
     f.folder.file("vorlage.toml", "[look]\nnoise = { cull = 0.5 }\n[render]\ncore = 0.25\n");
@@ -123,6 +133,7 @@ TEST(EveryParameter, GoesForthAndBackAndThroughTheFile) {
         const Value value = random_value(spec, numbers);
         if (!try_set(document, spec.key, value, 5.0)) {
             ++refused;
+            EXPECT_TRUE(may_be_refused(spec.key)) << spec.key << " = " << to_toml(value);
             continue;
         }
         const Scene edited = document.scene();
@@ -138,7 +149,7 @@ TEST(EveryParameter, GoesForthAndBackAndThroughTheFile) {
         document.undo();
     }
     EXPECT_GT(specs.size(), 150u);
-    EXPECT_LE(refused, 8u);  // curves without points, half of a pair such as radius.min above max
+    EXPECT_LE(refused, specs.size() / 10) << "what is refused is not tried";
 }
 
 TEST(EveryParameter, ThousandsOfEditsUndoneRedoneAndSaved) {

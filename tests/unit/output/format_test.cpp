@@ -62,6 +62,19 @@ TEST(Format, FilesOfSceneLightTakeNoViewAndNoExposure) {
     EXPECT_EQ(resolve_format(output, "a.tif").view, View::soft);
 }
 
+TEST(Format, OnlyExrHoldsOtherPrimaries) {
+    OutputParams output = to("a.exr");
+    output.primaries = OutputParams::Primaries::acescg;
+    EXPECT_EQ(resolve_format(output, "a.exr").primaries, OutputParams::Primaries::acescg);
+    EXPECT_EQ(resolve_format(output, "a.png").primaries, OutputParams::Primaries::rec709);
+    EXPECT_EQ(resolve_format(output, "a.tif").primaries, OutputParams::Primaries::rec709);
+    output = to("a.tif");
+    output.depth = Depth::float32;
+    EXPECT_EQ(error_of(output), "no error");
+    output.primaries = OutputParams::Primaries::acescg;
+    EXPECT_EQ(error_of(output), "output.primaries: expected rec709 in float tif files, found acescg");
+}
+
 TEST(Format, EveryGoodCombinationPasses) {
     for (Compression c :
          {Compression::zip, Compression::zips, Compression::piz, Compression::dwaa, Compression::none}) {

@@ -146,6 +146,11 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
     EXPECT_GT(tried, 60);
 }
 
+TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("primaries"), std::string::npos);
+    EXPECT_NE(changed([](Scene& s) { s.output.primaries = OutputParams::Primaries::acescg; }), hash(scene()));
+}
+
 TEST_F(FrameHashTest, OnlyTheFramesAKeyframeReachesChange) {
     const auto move_last_keyframe = [](Scene& s) {
         for (Track& track : s.animation)

@@ -134,6 +134,40 @@ TEST_F(WriteTest, FloatExrHoldsTheExactLight) {
     }
 }
 
+TEST_F(WriteTest, ExrSaysItsPrimariesAndHoldsLightInThem) {
+    // Rows of the published matrix from Rec. 709 to ACEScg.
+    const float acescg[3][3] = {{0.613097f, 0.339523f, 0.047379f},
+                                {0.070194f, 0.916354f, 0.013452f},
+                                {0.020616f, 0.109570f, 0.869815f}};
+    OutputParams output;
+    output.depth = Depth::float32;
+    output.aovs = {"depth", "coverage", "count", "layers"};
+    const RenderedFrame frame = soft_frame(9, 6);
+    const RawFile plain = read_raw(write("a.exr", output, frame));
+    output.primaries = OutputParams::Primaries::acescg;
+    const RawFile wide = read_raw(write("b.exr", output, frame));
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 9; ++x) {
+            for (const std::string layer : {"", "stars.", "dust."})
+                for (int k = 0; k < 3; ++k) {
+                    float expected = 0.0f;
+                    for (int c = 0; c < 3; ++c) expected += acescg[k][c] * plain.at(x, y, layer + "RGB"[c]);
+                    ASSERT_NEAR(wide.at(x, y, layer + "RGB"[k]), expected, 5e-6f) << layer;
+                }
+            for (const char* same : {"A", "stars.A", "dust.A", "Z", "coverage", "count"})
+                ASSERT_EQ(wide.at(x, y, same), plain.at(x, y, same)) << same;
+        }
+    const auto told = [](const RawFile& raw) {
+        const OIIO::ParamValue* value =
+            raw.spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+        std::vector<float> all;
+        for (int i = 0; value && i < 8; ++i) all.push_back(value->get_float_indexed(i));
+        return all;
+    };
+    EXPECT_EQ(told(plain), (std::vector{0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f}));
+    EXPECT_EQ(told(wide), (std::vector{0.713f, 0.293f, 0.165f, 0.830f, 0.128f, 0.044f, 0.32168f, 0.33767f}));
+}
+
 TEST_F(WriteTest, HalfExrRoundsAndStaysFinite) {
     RenderedFrame frame = soft_frame(4, 4);
     frame.beauty.at(0, 0)[0] = 1e9f;

@@ -12,6 +12,7 @@ path = "frames/shot.####.exr"
 depth = "auto"
 compression = "auto"
 alpha = "auto"
+primaries = "rec709"
 aovs = []
 view = "auto"
 exposure = 0.0
