@@ -10,6 +10,7 @@
 
 #include "edit/preferences.h"
 #include "gui/dialog.h"
+#include "gui/file_rows.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
@@ -19,17 +20,8 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr float dialog_width = 820, dialog_height = 520, places_width = 168, row_height = 26;
-constexpr float time_width = 128, size_width = 76;
+constexpr float dialog_width = 820, dialog_height = 520, places_width = 168;
 constexpr std::size_t most_places = 12;
-
-std::string size_text(std::uintmax_t bytes) {
-    const double n = static_cast<double>(bytes);
-    if (n < 1e3) return fmt::format("{} B", bytes);
-    if (n < 1e6) return fmt::format("{:.0f} kB", n / 1e3);
-    if (n < 1e9) return fmt::format("{:.1f} MB", n / 1e6);
-    return fmt::format("{:.1f} GB", n / 1e9);
-}
 
 // Tab: lengthens what is typed; `folder` is what relative paths are relative to.
 int on_tab(ImGuiInputTextCallbackData* data) {
@@ -38,30 +30,6 @@ int on_tab(ImGuiInputTextCallbackData* data) {
     data->DeleteChars(0, data->BufTextLen);
     data->InsertChars(0, longer.c_str());
     return 0;
-}
-
-// A row with an icon: clicked once or twice.
-struct Click {
-    bool once = false, twice = false;
-};
-Click icon_row(const char* id, Icon icon, const std::string& text, bool chosen, const std::string& time = "",
-               const std::string& size = "") {
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float row = px(row_height), room = ImGui::GetContentRegionAvail().x;
-    Click click;
-    click.once = ImGui::InvisibleButton(id, {room, row});
-    click.twice = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImU32 back = chosen ? color::selection : ImGui::IsItemHovered() ? color::hover : color::none;
-    list->AddRectFilled(corner, {corner.x + room, corner.y + row}, back, px(3));
-    draw_icon(list, icon, {corner.x + px(14), corner.y + row * 0.5f}, px(13), color::dim);
-    const float y = corner.y + std::floor((row - ImGui::GetFontSize()) * 0.5f);
-    const float beside = time.empty() ? 0.0f : px(time_width + size_width);
-    list->AddText({corner.x + px(28), y}, color::text, fitting(text, room - px(36) - beside).c_str());
-    list->AddText({corner.x + room - beside, y}, color::dim, time.c_str());
-    const float size_x = corner.x + room - px(8) - ImGui::CalcTextSize(size.c_str()).x;
-    list->AddText({size_x, y}, color::dim, size.c_str());
-    return click;
 }
 
 }  // namespace
@@ -102,7 +70,7 @@ void FileDialog::draw_places(GuiFrame& frame) {
     for (const fs::path& folder : frame.view.recent_folders) add(folder);
     for (const fs::path& file : frame.status.recent) add(file.parent_path());
     for (const auto& [name, folder] : places) {
-        if (icon_row(folder.c_str(), Icon::folder, name, folder == folder_).once) go_to(folder);
+        if (file_row(folder.c_str(), Icon::folder, name, folder == folder_).once) go_to(folder);
         note_item(frame, "place/" + folder.string());
         tooltip(folder.c_str());
     }
@@ -129,43 +97,13 @@ void FileDialog::draw_path(GuiFrame& frame) {
     }
 }
 
-// Clicked again, a column lists the other way round.
-void FileDialog::draw_columns(GuiFrame& frame) {
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float room = ImGui::GetContentRegionAvail().x, row = px(row_height);
-    const float time_x = room - px(time_width + size_width), size_x = room - px(size_width);
-    const auto column = [&](const char* label, FileOrder order, float x, float width, bool at_right) {
-        ImGui::SetCursorScreenPos({corner.x + x, corner.y});
-        if (ImGui::InvisibleButton(label, {width, row})) {
-            backwards_ = order_ == order && !backwards_;
-            order_ = order;
-            sort_entries(entries_, order_, backwards_);
-        }
-        const ImU32 text_color = order_ == order || ImGui::IsItemHovered() ? color::text : color::dim;
-        note_item(frame, std::string("file/by ") + label);
-        const float text_width = ImGui::CalcTextSize(label).x;
-        const float text_x = corner.x + x + (at_right ? width - px(8) - text_width : 0.0f);
-        const float middle = corner.y + row * 0.5f;
-        ImDrawList* list = ImGui::GetWindowDrawList();
-        list->AddText({text_x, middle - std::floor(ImGui::GetFontSize() * 0.5f)}, text_color, label);
-        const float arrow_x = at_right ? text_x - px(12) : text_x + text_width + px(12);
-        if (order_ == order)
-            draw_icon(list, backwards_ ? Icon::chevron_up : Icon::chevron_down, {arrow_x, middle}, px(9),
-                      color::dim);
-    };
-    column("Name", FileOrder::name, px(28), time_x - px(28), false);
-    column("Changed", FileOrder::changed, time_x, px(time_width), false);
-    column("Size", FileOrder::size, size_x, px(size_width), true);
-    ImGui::SetCursorScreenPos({corner.x, corner.y + row});
-}
-
 bool FileDialog::draw_entries(GuiFrame& frame) {
     bool chosen = false;
     fs::path enter;
     for (const FileEntry& entry : entries_) {
-        const Click click = icon_row(entry.name.c_str(), entry.folder ? Icon::folder : Icon::file, entry.name,
-                                     entry.name == typed_, time_text(entry.changed),
-                                     entry.folder ? "" : size_text(entry.bytes));
+        const FileClick click = file_row(entry.name.c_str(), entry.folder ? Icon::folder : Icon::file,
+                                         entry.name, entry.name == typed_, time_text(entry.changed),
+                                         entry.folder ? "" : size_text(entry.bytes));
         note_item(frame, "file/" + entry.name);
         if (entry.folder && click.once) enter = folder_ / entry.name;
         if (!entry.folder && click.once) {
@@ -176,7 +114,7 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
     }
     if (entries_.empty()) {
         ImGui::SetCursorPosX(px(12));
-        row_text(all_files_ ? "This folder is empty." : "No " + query_.kind + " here.", px(row_height),
+        row_text(all_files_ ? "This folder is empty." : "No " + query_.kind + " here.", px(file_row_height),
                  color::dim);
     }
     if (!enter.empty()) go_to(enter);
@@ -243,7 +181,7 @@ FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     ImGui::EndChild();
     ImGui::SameLine(0, px(8));
     ImGui::BeginChild("files", {0, list_height});
-    draw_columns(frame);
+    if (draw_file_columns(frame, order_, backwards_)) sort_entries(entries_, order_, backwards_);
     ImGui::BeginChild("entries");
     const bool chosen = draw_entries(frame);
     ImGui::EndChild();

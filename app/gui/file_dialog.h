@@ -29,7 +29,6 @@ class FileDialog {
     void go_to(const std::filesystem::path& folder);
     void draw_places(GuiFrame& frame);
     void draw_path(GuiFrame& frame);
-    void draw_columns(GuiFrame& frame);
     void list_entries();
     bool draw_entries(GuiFrame& frame);
     Answer draw_bottom(GuiFrame& frame, bool chosen);

@@ -20,7 +20,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr float point_reach = 7, sample_px = 3, margin_y = 10;
+constexpr float key_reach = 7, sample_px = 3, margin_y = 10;
 
 std::string axis_text(double value, double span) {
     return fmt::format("{:.{}f}", value, span >= 100 ? 0 : span >= 10 ? 1 : span >= 1 ? 2 : 3);
@@ -133,7 +133,7 @@ void grab(TimelineState& t, TimelineState::Drag drag, double keyframe, std::size
 
 bool is_near(ImVec2 at) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    return std::hypot(at.x - mouse.x, at.y - mouse.y) <= px(point_reach);
+    return std::hypot(at.x - mouse.x, at.y - mouse.y) <= px(key_reach);
 }
 
 /// Of the selected keyframes, where they have a Bezier segment.
