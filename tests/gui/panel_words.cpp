@@ -18,6 +18,19 @@ TEST(PanelWords, FiguresAreThreeAtLeastAndFiveAtMost) {
     EXPECT_EQ(figures(1e-9), short_number(1e-9));
 }
 
+TEST(PanelWords, ANarrowBoxShowsFewerFigures) {
+    const auto within = [](std::size_t most) {
+        return [most](const std::string& text) { return text.size() <= most; };
+    };
+    EXPECT_EQ(figures_that_fit(-12.3456, within(9)), "-12.346");
+    EXPECT_EQ(figures_that_fit(-12.3456, within(6)), "-12.35");
+    EXPECT_EQ(figures_that_fit(-12.3456, within(5)), "-12.3");
+    EXPECT_EQ(figures_that_fit(0.008, within(5)), "0.008");
+    EXPECT_EQ(figures_that_fit(1234.5, within(5)), "1234");
+    EXPECT_EQ(figures_that_fit(-81234.0, within(3)),
+              "-81 234");  // never other than what it is: the box ends it
+}
+
 TEST(PanelWords, LargeIntegersAreGrouped) {
     EXPECT_EQ(figures(std::int64_t{4096}), "4096");
     EXPECT_EQ(figures(std::int64_t{2000000}), "2 000 000");

@@ -47,6 +47,8 @@ BoxEvent type_value(Context& context, const char* id, const Area& area) {
     return {BoxEvent::Kind::typed, 0.0, touch.text};
 }
 
+float padding_of(const Area& area) { return area.size.x < px(80) ? px(5) : px(8); }
+
 void draw_box(const Area& area, const BoxContent& content, bool hovered, bool active) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float radius = px(3);
@@ -58,7 +60,7 @@ void draw_box(const Area& area, const BoxContent& content, bool hovered, bool ac
             content.fill < 0.99f ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersAll);
     }
     if (active) list->AddRect(area.corner, area.end(), color::accent, radius);
-    const float padding = area.size.x < px(80) ? px(5) : px(8);
+    const float padding = padding_of(area);
     const float needed = ImGui::CalcTextSize(content.shown.c_str()).x + 2.0f * padding;
     const float unit = unit_text(list, area, content.unit, needed);
     const Area rest{area.corner, {area.size.x - unit, area.size.y}};
@@ -114,6 +116,11 @@ BoxEvent value_box(Context& context, const char* id, const Area& area, const Box
     if (content.step == 0.0) return {};
     if (hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     return drag_value(context, content);
+}
+
+bool fits_box(const Area& area, const std::string& text) {
+    const float padding = padding_of(area);
+    return ImGui::CalcTextSize(text.c_str()).x <= area.size.x - padding - std::min(padding, px(4));
 }
 
 float clipped_text(ImDrawList* list, const Area& area, float padding, ImU32 color, const std::string& text) {

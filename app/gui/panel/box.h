@@ -33,6 +33,9 @@ struct BoxEvent {
 
 BoxEvent value_box(Context& context, const char* id, const Area& area, const BoxContent& content);
 
+/// Whether a box of this size shows all of the text, without a unit.
+bool fits_box(const Area& area, const std::string& text);
+
 /// Text at the left, ended by "..." where it is too long; returns its width.
 float clipped_text(ImDrawList* list, const Area& area, float padding, ImU32 color, const std::string& text);
 

@@ -116,6 +116,9 @@ void component_field(Context& context, const Row& row, const Area& area, std::si
     ImGui::PushID(static_cast<int>(index));
     BoxContent content = number_content(spec, values[index].number());
     content.fill = -1.0f;
+    if (!content.whole)
+        content.shown =
+            figures_that_fit(content.value, [&](const std::string& text) { return fits_box(area, text); });
     const BoxEvent event = value_box(context, "component", area, content);
     ImGui::PopID();
     if (event.kind == BoxEvent::Kind::none) return;

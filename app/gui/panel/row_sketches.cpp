@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "generate/lattice.h"
 #include "gui/panel/companions.h"
 #include "gui/panel/curve_plot.h"
 #include "gui/panel/levels.h"
@@ -140,6 +141,9 @@ std::string zero_in_words(const Context& context, const ParameterSpec& spec) {
         used = spec.generic_key == "layer.look.radius.min" ? status.radius_min : status.radius_max;
     } else if (spec.generic_key == "layer.look.reach" || spec.generic_key == "layer.look.vertical.reach") {
         used = reach_of(context);
+    } else if (spec.generic_key == "layer.source.seed") {
+        const std::uint32_t seed = resolved_seed(0, context.layer().name);
+        return fmt::format("{} ({})", spec.zero, seed);
     }
     const std::string words(spec.zero);
     return used > 0.0 ? fmt::format("{} ({})", words, figures(used)) : words;

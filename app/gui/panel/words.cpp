@@ -50,6 +50,16 @@ std::string figures(double number) {
 
 std::string figures(std::int64_t number) { return grouped(fmt::format("{}", number)); }
 
+std::string figures_that_fit(double number, const std::function<bool(const std::string&)>& fits) {
+    std::string shortest = figures(number);
+    for (int count = 4; count >= 1 && !fits(shortest); --count) {
+        std::string fewer = fmt::format("{:.{}g}", number, count);
+        if (fewer.find('e') == std::string::npos && fewer.size() < shortest.size())
+            shortest = std::move(fewer);
+    }
+    return shortest;
+}
+
 std::string percent(double share) {
     const double p = share * 100.0;
     return p > 0.0 && p < 1.0 ? fmt::format("{:.1f} %", p) : fmt::format("{:.0f} %", p);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "edit/rounding.h"
@@ -15,6 +16,10 @@ std::string figures(double number);
 
 /// Of an integer: groups of three from 10,000 on.
 std::string figures(std::int64_t number);
+
+/// As above, with fewer figures (4, 3, 2, 1) until `fits` says yes; the shortest of them where none fits. In
+/// a narrow box 1.2346 is "1.23"; digits before the point are never dropped.
+std::string figures_that_fit(double number, const std::function<bool(const std::string&)>& fits);
 
 /// "61 %"; `share` 0..1.
 std::string percent(double share);
