@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/image.h"
 #include "render/layer_render.h"
+#include "render/star_psf.h"
 #include "splats/shaded_splats.h"
 
 namespace astrosplat {
@@ -27,6 +29,9 @@ struct RenderLayer {
     /// Some splats may have colours below 0: these add no light and let (1 - s)^-color through, whatever the
     /// layer's blend.
     bool absorbs = false;
+    /// Stars: the splats' colours are their light over all pixels as seen from the layer's origin, radii and
+    /// alphas are not used. Stars at infinity lie 1e15 units or more away.
+    std::optional<StarPsf> stars;
 };
 
 struct RenderSettings {
