@@ -42,7 +42,8 @@ TEST_P(Replay, DamageIsAnsweredWithOneLine) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Readers, Replay, testing::Values("pda", "ply", "splats", "obj", "toml", "fits"),
+INSTANTIATE_TEST_SUITE_P(Readers, Replay,
+                         testing::Values("pda", "ply", "splats", "obj", "toml", "fits", "stars"),
                          [](const auto& reader) { return reader.param; });
 
 }  // namespace

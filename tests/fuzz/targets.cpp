@@ -13,6 +13,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "fuzz/catalogues.h"
 #include "scene/load.h"
 #include "source/mesh.h"
 #include "source/obj.h"
@@ -232,6 +233,7 @@ const std::vector<Target>& targets() {
         {"obj", {obj}, read_obj_bytes},
         {"toml", {toml}, read_toml_bytes},
         {"fits", fits_seeds(), read_fits_bytes},
+        {"stars", catalogue_seeds(), read_catalogue_bytes},
     };
     return all;
 }

@@ -3,12 +3,11 @@
 
 #include <sys/resource.h>
 
-#include <clocale>
 #include <csignal>
-#include <locale>
 #include <string>
 
 #include "core/log.h"
+#include "support/comma_locale.h"
 #include "support/test_data.h"
 #include "unit/splat_files/file_support.h"
 
@@ -78,24 +77,6 @@ TEST_F(Pda, ThreadsDoNotChangeBytes) {
     EXPECT_EQ(bytes_of(path("one.pda")), bytes_of(path("five.pda")));
     expect_same_splats(read_pda(path("five.pda")), one);
 }
-
-/// Decimal comma and grouped digits, for C++ streams; and for C where such a locale is installed.
-struct CommaLocale {
-    struct Punctuation : std::numpunct<char> {
-        char do_decimal_point() const override { return ','; }
-        char do_thousands_sep() const override { return '.'; }
-        std::string do_grouping() const override { return "\3"; }
-    };
-    std::locale before = std::locale::global(std::locale(std::locale::classic(), new Punctuation));
-    CommaLocale() {
-        for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8"})
-            if (std::setlocale(LC_NUMERIC, name)) break;
-    }
-    ~CommaLocale() {
-        std::locale::global(before);
-        std::setlocale(LC_NUMERIC, "C");
-    }
-};
 
 TEST_F(Pda, LocaleDoesNotMatter) {
     const SplatSet set = awkward_set(2000);
