@@ -24,6 +24,7 @@ constexpr std::int64_t set_bytes = 64, shaded_bytes = 40, screen_bytes = 64;
 constexpr std::int64_t program_bytes = 140'000'000;  // with its libraries, before any scene
 constexpr std::int64_t file_bytes_per_splat =
     100;  // a row of a PDA with colour, opacity, distance and radius
+constexpr std::int64_t catalogue_bytes_per_star = 100;  // HYG; Hipparcos, compressed
 
 // More than any machine holds, few enough that bytes of many layers still fit 63 bits.
 constexpr std::int64_t most_splats = 1'000'000'000'000'000;
@@ -52,6 +53,11 @@ Expected expected_of(const SetCache& cache, const LayerParams& layer) {
         std::error_code ignored;
         const auto size = std::filesystem::file_size(source.file, ignored);
         return {ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat};
+    }
+    if (source.kind == SourceKind::stars) {
+        std::error_code ignored;
+        const auto size = std::filesystem::file_size(source.stars.catalogue, ignored);
+        return {ignored ? 0 : static_cast<std::int64_t>(size) / catalogue_bytes_per_star};
     }
     const bool bodies = source.structure.kind != StructureKind::columns;
     if (!bodies && has_automatic_voxels(source) && source.splats <= 0) return {source.count};

@@ -123,6 +123,7 @@ Report describe_layer(const LayerParams& layer) {
                      {"visible", layer.visible},
                      {"kind", kinds[static_cast<std::size_t>(layer.source.kind)]}};
     if (layer.source.kind == SourceKind::splats) report["file"] = layer.source.file.string();
+    if (layer.source.kind == SourceKind::stars) report["catalogue"] = layer.source.stars.catalogue.string();
     Report meshes = Report::array();
     for (const MeshInput& input : layer.source.meshes) {
         Report textures = Report::array();

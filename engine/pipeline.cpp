@@ -95,13 +95,13 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     if (!ever_visible(scene, params)) return;
     const auto start = Clock::now();
     LoadedSet loaded =
-        load_source(cache, params.source, params.name, progress, nullptr, columns_read(params.look));
+        load_source(cache, params.source, params.name, progress, nullptr, columns_read(look_of(params)));
     const auto set = std::make_shared<SplatSet>(std::move(loaded.set));
     layer.set = set;
     if (shaded_alike(scene, params.name)) layer.to_use_up = set;
     layer.box = bounds(*layer.set);
     check_extent(layer.box, params.name);
-    load_thickness_map(layer, params.look.thickness);
+    load_thickness_map(layer, look_of(params).thickness);
     count_set(*layer.set, counts);
     counts.cached = loaded.cached;
     counts.geometry_cached = loaded.geometry_cached;
@@ -128,10 +128,10 @@ LayerState Pipeline::State::take_layer(const std::string& name, const std::share
 void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Progress& progress) {
     LayerState& layer = layers[index];
     LookInputs inputs = look_inputs(params);
-    const ShadingInputs shading{params.look, inputs.axis, inputs.seed, inputs.falloff_integral,
+    const ShadingInputs shading{look_of(params), inputs.axis, inputs.seed, inputs.falloff_integral,
                                 inputs.column};
     if (layer.shaded_with == shading) return;
-    load_thickness_map(layer, params.look.thickness);
+    load_thickness_map(layer, shading.look.thickness);
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
     layer.shaded_with.reset();  // should an exception below leave old splats
     LookStatistics counts;

@@ -45,8 +45,22 @@ MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_f
     return source;
 }
 
+// Stars are drawn as they are, however many: no dot could stand for several.
+LoadedLayer star_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
+                       const std::string& name) {
+    MergeSource all;
+    all.set = set;
+    LoadedLayer layer = layer_of(std::move(all), source, name);
+    layer.box = bounds(*set);
+    layer.splats = set->size();
+    layer.arranged = true;
+    layer.set = std::move(set);
+    return layer;
+}
+
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
                         const std::string& name, std::int64_t sample_limit) {
+    if (set->stars) return star_layer(std::move(set), source, name);
     const std::int64_t splats = set->size();
     const auto sample =
         splats <= sample_limit ? set : std::make_shared<const SplatSet>(sample_rows(*set, sample_limit));

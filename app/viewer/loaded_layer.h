@@ -21,8 +21,8 @@ namespace astrosplat {
 
 struct LoadedLayer {
     std::shared_ptr<const SplatSet> set;  // for the final frame; null while it grows
-    MergeSource sample;                   // of it, for a preview at once; where that suffices, the set itself
-    MergeSource whole;        // for previews at rest; comes a little later, where `sample` is not all
+    MergeSource sample;  // of it, for a preview at once; where that suffices, the set itself; stars: no tree
+    MergeSource whole;   // for previews at rest; comes a little later, where `sample` is not all
     ColumnSample columns;     // of which live_texels.h makes a preview under other levels
     std::int64_t splats = 0;  // of the whole set; while it grows those there are so far
     bool arranged = false;    // nothing of the above is on its way

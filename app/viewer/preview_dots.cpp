@@ -43,6 +43,14 @@ void PreviewDots::merge(Layer& layer, const PreviewLayer& wanted) {
     layer.shading = std::move(shading);
 }
 
+void PreviewDots::show_stars(Layer& layer, const PreviewLayer& wanted) {
+    Shading shading = shading_of(wanted);
+    if (layer.shading == shading) return;
+    layer.shading.reset();
+    apply_look(*layer.sample.set, shading.look, shading.inputs, layer.splats);
+    layer.shading = std::move(shading);
+}
+
 void PreviewDots::cut(std::vector<PreviewLayer>& layers,
                       std::span<const std::shared_ptr<const LoadedLayer>> loaded, const Camera& camera,
                       const CutSettings& settings, float pixel_filter) {
@@ -50,20 +58,26 @@ void PreviewDots::cut(std::vector<PreviewLayer>& layers,
     frame.width = settings.width;
     frame.height = settings.height;
     frame.pixel_filter = pixel_filter;
-    for (std::size_t i = 0; i < layers.size(); ++i) merge(layer_at(i, *loaded[i]), layers[i]);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        Layer& layer = layer_at(i, *loaded[i]);
+        layers[i].layer.stars ? show_stars(layer, layers[i]) : merge(layer, layers[i]);
+    }
     layers_.resize(layers.size());
     std::vector<CutLayer> seen;
+    std::vector<std::size_t> places;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const Layer& layer = layers_[i];
+        if (layers[i].layer.stars) continue;
+        places.push_back(i);
         seen.push_back({&layer.best(), &*layer.dots,
                         make_projection(layers[i].layer, static_cast<std::uint16_t>(i), camera, frame)});
     }
     std::vector<ShadedSplats> splats = cut_splats(seen, settings);
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        layers_[i].splats = std::move(splats[i]);
-        layers[i].layer.splats = &layers_[i].splats;
-        layers[i].layer.render.opacity = 1.0f;
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        layers_[places[n]].splats = std::move(splats[n]);
+        layers[places[n]].layer.render.opacity = 1.0f;
     }
+    for (std::size_t i = 0; i < layers.size(); ++i) layers[i].layer.splats = &layers_[i].splats;
 }
 
 std::optional<SumsRequest> PreviewDots::missing() const {
@@ -88,7 +102,8 @@ std::vector<double> PreviewDots::kept() const {
     std::vector<double> shares;
     for (const Layer& layer : layers_) {
         const auto rows = static_cast<double>(std::max<std::int64_t>(1, layer.sample.set->size()));
-        shares.push_back(static_cast<double>(layer.of_sample.splats.size()) / rows);
+        const std::int64_t seen = layer.sample.tree ? layer.of_sample.splats.size() : layer.splats.size();
+        shares.push_back(static_cast<double>(seen) / rows);
     }
     return shares;
 }

@@ -32,7 +32,8 @@ class PreviewDots {
   public:
     PreviewDots();
 
-    /// Gives every layer its splats, which stay until the next call, with the layer's opacity in them.
+    /// Gives every layer its splats, which stay until the next call, with the layer's opacity in them; of
+    /// stars all, without it.
     /// `loaded`: what each layer is made of. Throws InputError where a look cannot be applied.
     void cut(std::vector<PreviewLayer>& layers, std::span<const std::shared_ptr<const LoadedLayer>> loaded,
              const Camera& camera, const CutSettings& settings, float pixel_filter);
@@ -59,6 +60,7 @@ class PreviewDots {
 
     Layer& layer_at(std::size_t index, const LoadedLayer& loaded);
     void merge(Layer& layer, const PreviewLayer& wanted);
+    void show_stars(Layer& layer, const PreviewLayer& wanted);
     std::optional<SumsRequest> missing() const;
 
     std::vector<Layer> layers_;

@@ -22,6 +22,10 @@ constexpr float everywhere = 0.5f;
 SourceParams identity_of(const SourceParams& source, const std::string& name) {
     SourceParams identity = source;
     identity.seed = source.kind == SourceKind::mesh ? resolved_seed(source.seed, name) : 0;
+    const StarsParams unused;
+    identity.stars.psf = unused.psf;  // how stars look is the renderer's
+    identity.stars.wings = unused.wings;
+    identity.stars.spikes = unused.spikes;
     return identity;
 }
 

@@ -54,11 +54,10 @@ std::vector<PreviewLayer> ViewFrame::preview_layers() {
         layer.layer = render_layer(params);
         layer.set = loaded->set ? loaded->set : loaded->sample.set;
         layer.layer.absorbs = layer.set->absorbs;
-        layer.look = params.look;
+        layer.look = look_of(params);
         layer.inputs = look_inputs(params);
-        if (!params.look.thickness.map.empty())
-            layer.inputs.thickness_map =
-                &files_->map(params.look.thickness.map, params.look.thickness.derive);
+        if (const Thickness& thickness = layer.look.thickness; !thickness.map.empty())
+            layer.inputs.thickness_map = &files_->map(thickness.map, thickness.derive);
         status_.total += loaded->splats;
         places_.push_back(i);
         layers.push_back(std::move(layer));
@@ -72,11 +71,19 @@ std::int64_t ViewFrame::dots_wanted() const {
     return choice_.splats > 0 ? choice_.splats : budget_.splats;
 }
 
+/// Stars are drawn by the engine's own compositor alone.
+bool ViewFrame::draws_by_opengl() const {
+    const auto are_stars = [](const LayerParams& layer) {
+        return layer.visible && layer.source.kind == SourceKind::stars;
+    };
+    return choice_.opengl && std::ranges::none_of(request_->scene.layers, are_stars);
+}
+
 bool ViewFrame::draws_whole_sets() const {
     const auto is_whole = [](const std::shared_ptr<const LoadedLayer>& layer) {
         return !layer || layer->set;
     };
-    return choice_.opengl && choice_.whole_sets && choice_.share == 0.0f && status_.total < too_many_ &&
+    return draws_by_opengl() && choice_.whole_sets && choice_.share == 0.0f && status_.total < too_many_ &&
            std::ranges::all_of(request_->layers, is_whole);
 }
 
@@ -156,7 +163,7 @@ void ViewFrame::draw_preview(double now) {
     for (std::size_t n = 0; n < layers_.size(); ++n)
         status_.shown += shown_[places_[n]] = shown_count(layers_[n]);
     const int width = static_cast<int>(view.width), height = static_cast<int>(view.height);
-    if (choice_.opengl) {
+    if (draws_by_opengl()) {
         if (!gl_) gl_ = std::make_unique<GlPreview>();
         texture_ = gl_->draw(layers_, view.camera, view.environment, width, height, view.pixel_filter);
         drawn_ = nullptr;

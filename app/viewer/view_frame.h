@@ -87,6 +87,7 @@ class ViewFrame {
     std::vector<PreviewLayer> preview_layers();
     PreviewView preview_view() const;
     std::int64_t dots_wanted() const;
+    bool draws_by_opengl() const;
     bool draws_whole_sets() const;
     void cut(std::vector<PreviewLayer>& layers, const PreviewView& view);
     void note_time(double milliseconds, double target_ms, bool whole_sets);

@@ -32,10 +32,23 @@ bool shows(const EnvironmentParams& environment) {
     return environment.visible && !(environment.image.empty() && environment.cube.empty());
 }
 
+// Keys that came with the stars; frames without stars, from before, keep their hash.
+bool shapes_stars(const ParameterSpec& spec) {
+    return spec.generic_key.is_below("layer.source.wings") ||
+           spec.generic_key.is_below("layer.source.spikes");
+}
+
+bool has_stars(const Scene& now, const std::string& layer_name) {
+    return std::ranges::any_of(now.layers, [&](const LayerParams& layer) {
+        return layer.name == layer_name && layer.source.kind == SourceKind::stars;
+    });
+}
+
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
     // Frames from before there was a choice keep their hash.
     if (spec.generic_key.text() == "output.primaries")
         return now.output.primaries == OutputParams::Primaries::rec709;
+    if (shapes_stars(spec) && !has_stars(now, spec.key.layer())) return true;
     if (spec.generic_key.is_below("environment")) return !shows(now.environment);
     return std::ranges::any_of(now.layers, [&](const LayerParams& layer) {
         return !layer.visible && spec.key.layer() == layer.name;

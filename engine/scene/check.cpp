@@ -97,6 +97,14 @@ void check_prepare(const PrepareParams& prepare, const ParameterKey& at, const C
     if (problem) check.require(false, {at / problem->key}, problem->message);
 }
 
+void check_stars(const StarsParams& stars, const ParameterKey& at, const Checker& check) {
+    check.require(!stars.catalogue.empty(), {at / "catalogue", at / "kind"},
+                  "expected a star catalogue for kind \"stars\", found none");
+    check.require(stars.wings.share + stars.spikes.share <= 1.0, {at / "wings.share", at / "spikes.share"},
+                  fmt::format("expected shares of wings and spikes of at most 1 together, found {} and {}",
+                              short_number(stars.wings.share), short_number(stars.spikes.share)));
+}
+
 void check_source(const SourceParams& source, const ParameterKey& at, const Checker& check) {
     check.require(source.kind != SourceKind::mesh || !source.meshes.empty(), {at / "meshes", at / "kind"},
                   "expected at least one mesh, found none");
@@ -117,6 +125,7 @@ void check_source(const SourceParams& source, const ParameterKey& at, const Chec
     }
     check.require(source.kind != SourceKind::splats || !source.file.empty(), {at / "file", at / "kind"},
                   "expected a splat file for kind \"splats\", found none");
+    if (source.kind == SourceKind::stars) check_stars(source.stars, at, check);
     check.require(!source.voxels || source.voxel_size == 0.0, {at / "voxels", at / "voxel_size"},
                   "expected voxels or voxel_size, found both");
     check.require(source.splats == 0 || source.count == SourceParams().count, {at / "count", at / "splats"},
@@ -170,8 +179,8 @@ void check_renderable(const Scene& scene, const Places& places) {
         if (!ever_visible(scene, layer)) continue;
         const ParameterKey at = layer_key(layer.name) / "source";
         const SourceParams& source = layer.source;
-        check.require(source.kind != SourceKind::stars, {at / "kind"},
-                      "expected mesh or splats (stars come with a later release), found stars");
+        check.require(source.kind != SourceKind::stars || source.stars.along.empty(), {at / "along"},
+                      "expected a catalogue alone (random stars come with a later release), found camera");
         check.require(
             source.kind != SourceKind::splats || kind_of(format_of_file(source.file)) == FileKind::splats,
             {at / "file"},

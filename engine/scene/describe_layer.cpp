@@ -122,19 +122,43 @@ void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
 }
 
 void describe_stars(const Describer& d, StarsParams& stars) {
-    d(stars.catalogue, "catalogue", "Catalogue", "", "Star catalogue, .dat or .csv.");
+    d(stars.catalogue, "catalogue", "Catalogue", "",
+      "Stars: Hipparcos (hip_main.dat), HYG, or a table with ra, dec and mag; .gz too.");
     d(stars.unit, "unit", "Parsec", "scene units", "Scene units per parsec.", within(1e-9, 1e9),
       slider(0.001, 1000), logarithmic());
-    d(stars.limit, "limit", "Faintest star", "magnitude", "Stars fainter than this are left out.",
-      slider(-2, 20));
-    d(stars.zero_point, "zero_point", "Zero point", "magnitude", "Magnitude of a star of flux 1.",
-      slider(-2, 20));
+    d(stars.limit, "limit", "Faintest star", "magnitude",
+      "Stars fainter than this, seen from the layer's origin, are left out.", slider(-2, 20));
+    d(stars.zero_point, "zero_point", "Zero point", "magnitude",
+      "Magnitude of a star whose light, summed over all pixels, is that of one white pixel.",
+      within(-100, 100), slider(-2, 20));
     d(stars.along, "along", "Along", "", "Random stars along this instead of a catalogue: camera.",
       one_of({"", "camera"}));
     d(stars.spread, "spread", "Spread", "scene units", "How far random stars lie from the path.",
       at_least(1e-9), slider(0.1, 1000), logarithmic());
-    d(stars.psf, "psf", "Star size", "px", "Standard deviation of a star's disc.", within(0.01, 1e6),
-      slider(0.3, 5));
+}
+
+/// How stars look, which changes no set.
+void describe_star_image(const Describer& d, StarsParams& stars) {
+    d(stars.psf, "psf", "Star size", "px", "Standard deviation of a star's disc, in any frame size.",
+      within(0.01, 100), slider(0.3, 5));
+    const Describer wings = d.in("wings", true), spikes = d.in("spikes", true);
+    wings(stars.wings.share, "share", "Wings", "",
+          "Share of a star's light in the faint wings around its disc.", range(0, 1));
+    const Describer winged = wings.never_with("share", {0.0});
+    winged(stars.wings.px, "px", "Width of wings", "px", "The wings fall as (1 + (r / width)^2)^-power.",
+           within(0.01, 1000), slider(0.5, 30));
+    winged(stars.wings.power, "power", "Power of wings", "", "How steeply the wings fall.", within(1.01, 20),
+           slider(1.1, 5));
+    spikes(stars.spikes.share, "share", "Spikes", "", "Share of a star's light in diffraction spikes.",
+           range(0, 1));
+    const Describer spiked = spikes.never_with("share", {0.0});
+    spiked(stars.spikes.vanes, "vanes", "Vanes", "",
+           "That hold the telescope's secondary mirror: an odd number makes twice as many spikes.",
+           range(1, 16));
+    spiked(stars.spikes.angle, "angle", "Angle of spikes", "degrees", "Turns the spikes counter-clockwise.",
+           slider(-90, 90));
+    spiked(stars.spikes.px, "px", "Length of spikes", "px", "Where a spike has fallen to 1/e.",
+           within(0.1, 10000), slider(1, 200));
 }
 
 void describe_structure(const Describer& d, StructureParams& s) {
@@ -235,6 +259,7 @@ void describe_source(const Describer& d, SourceParams& s) {
     files(s.file, "file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.",
           only_with("kind", {"splats"}));
     describe_stars(files.only_with("kind", {"stars"}), s.stars);
+    describe_star_image(d.shown_in("Source", "Star image").only_with("kind", {"stars"}).animated(), s.stars);
 }
 
 }  // namespace

@@ -9,7 +9,9 @@ namespace astrosplat {
 namespace fs = std::filesystem;
 
 std::vector<fs::path> named_files(const SourceParams& source) {
-    if (source.kind != SourceKind::mesh) return {source.file};
+    if (source.kind == SourceKind::splats) return {source.file};
+    if (source.kind == SourceKind::stars)
+        return source.stars.catalogue.empty() ? std::vector<fs::path>() : std::vector{source.stars.catalogue};
     std::vector<fs::path> files;
     for (const MeshInput& input : source.meshes) {
         if (!is_builtin_mesh(input.mesh)) files.push_back(input.mesh);

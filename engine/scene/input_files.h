@@ -8,7 +8,8 @@
 
 namespace astrosplat {
 
-/// The files that a source names: meshes, textures, pictures of masks, splats. Not what is built in.
+/// The files that a source names: meshes, textures, pictures of masks, splats, catalogues. Not what is built
+/// in.
 std::vector<std::filesystem::path> named_files(const SourceParams& source);
 /// The same with what an OBJ brings of its own: material libraries and their pictures. Reads it.
 std::vector<std::filesystem::path> all_files(const SourceParams& source);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -28,6 +29,19 @@ ColumnLaw column_law(Blend blend) {
     return ColumnLaw::transmittance;
 }
 
+StarPsf star_psf(const StarsParams& stars) {
+    StarPsf psf;
+    psf.core_px = static_cast<float>(stars.psf);
+    psf.wing_share = static_cast<float>(stars.wings.share);
+    psf.wing_px = static_cast<float>(stars.wings.px);
+    psf.wing_power = static_cast<float>(stars.wings.power);
+    psf.spike_share = std::min(static_cast<float>(stars.spikes.share), 1.0f - psf.wing_share);
+    psf.vanes = stars.spikes.vanes;
+    psf.vane_deg = static_cast<float>(stars.spikes.angle);
+    psf.spike_px = static_cast<float>(stars.spikes.px);
+    return psf;
+}
+
 }  // namespace
 
 RenderLayer render_layer(const LayerParams& params) {
@@ -39,7 +53,15 @@ RenderLayer render_layer(const LayerParams& params) {
     layer.translate = params.transform.translate;
     layer.axis = params.axis;
     layer.seed = resolved_seed(params.source.seed, params.name);
+    if (params.source.kind == SourceKind::stars) layer.stars = star_psf(params.source.stars);
     return layer;
+}
+
+Look look_of(const LayerParams& params) {
+    if (params.source.kind != SourceKind::stars) return params.look;
+    Look look;
+    look.grade = params.look.grade;
+    return look;
 }
 
 LookInputs look_inputs(const LayerParams& params) {

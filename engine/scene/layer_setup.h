@@ -13,6 +13,9 @@ namespace astrosplat {
 /// The layer without its splats.
 RenderLayer render_layer(const LayerParams& params);
 
+/// The look that the layer's splats get: of stars, whose size and opacity are not theirs, only its grade.
+Look look_of(const LayerParams& params);
+
 /// What the look needs beside the set; the thickness map is left null.
 LookInputs look_inputs(const LayerParams& params);
 

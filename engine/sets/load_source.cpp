@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "generate/generate.h"
 #include "splat_files/splat_file.h"
+#include "stars/star_set.h"
 
 namespace astrosplat {
 namespace {
@@ -76,6 +77,28 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
     if (set.max_distance <= 0.0 && !set.distance.empty()) {
         set.max_distance = *std::ranges::max_element(set.distance);
     }
+    return set;
+}
+
+std::string star_summary(const StarCounts& counts, const StarsParams& stars) {
+    std::string text = human_count(counts.kept, "star");
+    if (counts.too_faint > 0)
+        text += fmt::format(", {} fainter than magnitude {} left out",
+                            human_count(static_cast<double>(counts.too_faint)), stars.limit);
+    if (counts.infinite > 0)
+        text += fmt::format(", {} without a distance at infinity",
+                            human_count(static_cast<double>(counts.infinite)));
+    return text;
+}
+
+SplatSet read_stars(const StarsParams& stars, const std::string& layer_name, const Progress& progress) {
+    const StarCatalogue catalogue = read_catalogue(stars.catalogue, progress);
+    if (catalogue.bad.count > 0)
+        log_warning(fmt::format("layer '{}': {}: {}", layer_name, stars.catalogue.string(),
+                                catalogue.bad.text(catalogue.rows)));
+    StarCounts counts;
+    SplatSet set = star_set(catalogue, {stars.unit, stars.limit, stars.zero_point}, &counts);
+    log_info(fmt::format("layer '{}': {}", layer_name, star_summary(counts, stars)));
     return set;
 }
 
@@ -142,7 +165,7 @@ SplatSet load_source(const SourceParams& source, const std::string& layer_name, 
     try {
         if (source.kind == SourceKind::mesh) return generate_bodies(source, layer_name, progress, prepared);
         if (source.kind == SourceKind::splats) return read_source(source, progress);
-        throw InputError("kind = \"stars\" comes with a later release");
+        return read_stars(source.stars, layer_name, progress);
     } catch (const InputError& error) {
         fail(layer_name, error);
     }

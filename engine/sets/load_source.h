@@ -17,8 +17,8 @@ namespace astrosplat {
 
 class KeptWatcher;
 
-/// The whole of a source: kind mesh as above, kind splats by reading the file (sorted by id). Prints at info
-/// level what was chosen. Throws InputError; kind stars is refused in one clear line until it exists.
+/// The whole of a source: kind mesh as above, kind splats by reading the file (sorted by id), kind stars by
+/// reading the catalogue. Prints at info level what was chosen. Throws InputError.
 /// `prepared` gives the pictures that source.prepare asks for.
 SplatSet load_source(const SourceParams& source, const std::string& layer_name, const Progress& progress = {},
                      KeptWatcher* watcher = nullptr, const PictureMaker& prepared = make_prepared);

@@ -147,6 +147,21 @@ struct MeshInput {
     bool operator==(const MeshInput&) const = default;
 };
 
+/// What a star's image has beside its core, each with its share of the light.
+struct StarWings {
+    double share = 0.0;  // 0..1
+    double px = 3.0;
+    double power = 2.5;  // > 1: (1 + (r / px)^2)^-power
+    bool operator==(const StarWings&) const = default;
+};
+struct StarSpikes {
+    double share = 0.0;  // 0..1
+    int vanes = 4;
+    double angle = 0.0;  // degrees
+    double px = 40.0;    // length at which a spike has fallen to 1/e
+    bool operator==(const StarSpikes&) const = default;
+};
+
 /// kind stars: a catalogue, or `SourceParams::count` random stars along something.
 struct StarsParams {
     std::filesystem::path catalogue;
@@ -156,6 +171,8 @@ struct StarsParams {
     std::string along;        // "camera": random stars around the camera's path; empty: the catalogue
     double spread = 10.0;     // scene units around the path
     double psf = 1.0;         // px, standard deviation
+    StarWings wings;
+    StarSpikes spikes;
     bool operator==(const StarsParams&) const = default;
 };
 

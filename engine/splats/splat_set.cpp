@@ -80,7 +80,7 @@ Bounds bounds(const SplatSet& set) {
         Bounds box;  // kept apart from its neighbours in `parts`, which other threads write
         const std::int64_t end = std::min(set.size(), (part + 1) * splats_per_chunk);
         for (std::int64_t i = part * splats_per_chunk; i < end; ++i) {
-            box.add(glm::dvec3(set.position[i]));
+            if (!set.stars || !is_direction(set.position[i])) box.add(glm::dvec3(set.position[i]));
         }
         parts[part] = box;
     });

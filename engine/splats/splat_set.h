@@ -21,9 +21,11 @@ struct SplatSetFacts {
     std::int64_t test_positions = 0;  // lattice positions looked at, 0 for files
     std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
     bool absorbs = false;             // splats of colours below 0 absorb: see color
-    std::string credit;               // from the inputs' metadata
-    bool of_this_machine = false;     // pictures were reduced for want of free memory: not to be kept
-    std::string recipe;               // of an entry of the cache: what made it (sets/recipe.h)
+    bool stars =
+        false;  // colours are light summed over all pixels, as seen from the origin; see is_direction
+    std::string credit;            // from the inputs' metadata
+    bool of_this_machine = false;  // pictures were reduced for want of free memory: not to be kept
+    std::string recipe;            // of an entry of the cache: what made it (sets/recipe.h)
 };
 
 /// Arrays either have size() entries or are empty ("not known"); position, color, alpha, distance and id are
@@ -101,7 +103,14 @@ void drop_columns(SplatSet& set, const OptionalColumns& wanted);
 /// Gives back the memory of all splats; what is known of the set as a whole stays.
 void drop_splats(SplatSet& set);
 
-/// Bounds of all positions.
+/// Whether the position of a star stands for a direction: it is infinitely far away.
+inline bool is_direction(const glm::vec3& position) {
+    constexpr float far = 1e15f;  // scene units
+    const auto beyond = [](float x) { return x >= far || x <= -far; };
+    return beyond(position.x) || beyond(position.y) || beyond(position.z);
+}
+
+/// Bounds of all positions, without directions of stars.
 Bounds bounds(const SplatSet& set);
 
 /// Brings all arrays into ascending order of id; stable for equal ids. Cheap when already sorted.

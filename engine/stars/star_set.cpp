@@ -41,6 +41,7 @@ SplatSet star_set(const StarCatalogue& catalogue, const StarScale& scale, StarCo
         set.id.push_back(static_cast<std::uint64_t>(star.row));
         if (!known) ++count.infinite;
     }
+    set.stars = true;
     count.kept = set.size();
     set.alpha.assign(set.position.size(), 1.0f);
     set.distance.assign(set.position.size(), 0.0f);

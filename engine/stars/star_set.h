@@ -25,7 +25,7 @@ struct StarScale {
 /// What became of a catalogue's stars.
 struct StarCounts {
     std::int64_t kept = 0, too_faint = 0;
-    std::int64_t infinite = 0;  // of those kept: at infinity
+    std::int64_t infinite = 0;  // of those kept: at infinity, without a usable distance
 };
 
 /// Unit vector: x = cos d cos a, y = sin d, z = -cos d sin a. From inside, north up, east is to the left.
@@ -36,12 +36,5 @@ double star_flux(double magnitude, double zero_point);
 
 /// Alpha is 1, distance and radius 0, id the row. The luminance of a colour is the star's flux.
 SplatSet star_set(const StarCatalogue& catalogue, const StarScale& scale, StarCounts* counts = nullptr);
-
-/// Whether a position of such a set stands for a direction.
-inline bool is_infinitely_far(const glm::vec3& position) {
-    constexpr float nearer = 1e15f;
-    const glm::vec3 size = glm::abs(position);
-    return size.x > nearer || size.y > nearer || size.z > nearer;
-}
 
 }  // namespace astrosplat

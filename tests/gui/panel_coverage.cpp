@@ -64,7 +64,8 @@ std::vector<std::string> telling_scenes() {
         layer("kind = \"splats\"\nfile = \"a.ply\"",
               "pdf = { shape = \"gaussian\" }\nradius = { min = 0.1, max = 0.2 }", "",
               "[camera]\nprojection = \"fisheye\"\n"),
-        layer("kind = \"stars\"\ncatalogue = \"c.csv\"",
+        layer("kind = \"stars\"\ncatalogue = \"c.csv\"\n"
+              "wings = { share = 0.1 }\nspikes = { share = 0.1 }",
               "pdf = { shape = \"curve\", points = [[0, 1], [1, 0]] }", "",
               "[camera]\nfocal_length = 50.0\n")};
 }

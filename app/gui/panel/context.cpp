@@ -63,6 +63,18 @@ void attempt(Context& context, const ParameterKey& key, const std::function<void
     }
 }
 
+// A kind of source that begins with a file: whoever wishes for one of them gets both.
+struct KindWithFile {
+    const char *kind, *key;
+    SourceKind value;
+};
+constexpr KindWithFile kinds_with_file[] = {{"splats", "source.file", SourceKind::splats},
+                                            {"stars", "source.catalogue", SourceKind::stars}};
+
+bool has_file(const SourceParams& source, SourceKind kind) {
+    return !(kind == SourceKind::splats ? source.file : source.stars.catalogue).empty();
+}
+
 // Things that are one wish of a person but need more than one parameter, or a file first. True when done.
 bool set_specially(Context& context, const Parameter& parameter, const Value& value) {
     const ParameterKey& key = parameter.spec.key;
@@ -76,9 +88,11 @@ bool set_specially(Context& context, const Parameter& parameter, const Value& va
         });
         return true;
     }
-    const bool to_file = parameter.spec.generic_key == "layer.source.kind" && value == Value("splats");
-    if (!to_file || !context.layer().source.file.empty()) return false;
-    context.memory.request = context.layer_key() / "source.file";
+    if (parameter.spec.generic_key != "layer.source.kind") return false;
+    const auto wanted =
+        std::ranges::find_if(kinds_with_file, [&](const auto& k) { return value == Value(k.kind); });
+    if (wanted == std::end(kinds_with_file) || has_file(context.layer().source, wanted->value)) return false;
+    context.memory.request = context.layer_key() / wanted->key;
     return true;
 }
 
@@ -88,15 +102,17 @@ void set_value(Context& context, const ParameterKey& key, const Value& value, Ge
     const Parameter* parameter = find(context, key);
     if (parameter && set_specially(context, *parameter, value)) return;
     std::vector<Companion> others = companions(context.scene(), key, value);
-    if (key == context.layer_key() / "source.file" && context.layer().source.kind != SourceKind::splats)
-        others.push_back({key, value});                                     // and then the kind
+    const auto of_kind = std::ranges::find_if(kinds_with_file, [&](const auto& k) {
+        return key == context.layer_key() / k.key && context.layer().source.kind != k.value;
+    });
+    const bool sets_kind = of_kind != std::end(kinds_with_file);
+    if (sets_kind) others.push_back({key, value});                          // and then the kind
     if (!others.empty() && gesture == 0) gesture = begin_gesture(context);  // all of it is one undo step
     attempt(context, key, [&] {
         for (const Companion& other : others)
             context.document.set(other.key, other.value, context.view.frame, gesture);
-        const bool kind = !others.empty() && others.back().key == key;
-        context.document.set(kind ? context.layer_key() / "source.kind" : key, kind ? Value("splats") : value,
-                             context.view.frame, gesture);
+        context.document.set(sets_kind ? context.layer_key() / "source.kind" : key,
+                             sets_kind ? Value(of_kind->kind) : value, context.view.frame, gesture);
     });
 }
 

@@ -43,6 +43,10 @@ std::string files_state(const Context& context) {
     return source.meshes.empty() ? "none" : source.meshes.front().mesh.filename().string();
 }
 
+std::string star_image_state(const Context& context) {
+    return fmt::format("{:.3g} px", context.layer().source.stars.psf);
+}
+
 std::string picture_state(const Context& context) { return is_fits(context) ? "FITS" : ""; }
 
 bool has_pictures(const Context& context) { return context.layer().source.kind == SourceKind::mesh; }
@@ -230,6 +234,7 @@ std::string provenance_state(const Context& context) { return context.scene().pr
 
 const TabSection sections[] = {
     {"Source", "Files", unfolded, files_state},
+    {"Source", "Star image", unfolded, star_image_state},
     {"Source",
      "Picture",
      is_fits,

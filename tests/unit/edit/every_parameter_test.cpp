@@ -117,7 +117,7 @@ bool may_be_refused(const std::string& key) {
     return std::ranges::any_of(
         std::initializer_list<const char*>{".shape", ".radius.min", ".radius.max", ".source.kind",
                                            ".source.uv", ".prepare.alpha", ".thickness.map",
-                                           "environment.cube"},
+                                           ".hybrid.from_deg", ".hybrid.to_deg", "environment.cube"},
         [&](const char* ending) { return key.ends_with(ending); });
 }
 

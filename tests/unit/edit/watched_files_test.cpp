@@ -72,6 +72,11 @@ TEST_F(WatchedFilesTest, FilesOfAScene) {
     Scene scene;
     SourceParams source;
     source.meshes = {{"plane", {a}, 0.15}, {folder / "m.obj", {}, 0.15}};
+    source.kind = SourceKind::stars;
+    EXPECT_EQ(named_files(source), Paths{});
+    source.stars.catalogue = folder / "m.obj";
+    EXPECT_EQ(named_files(source), Paths{folder / "m.obj"});
+    source.kind = SourceKind::mesh;
     EXPECT_EQ(named_files(source), (Paths{a, folder / "m.obj"}));
     folder.file("m.obj", "mtllib m.mtl\nv 0 0 0\n");
     folder.file("m.mtl", "newmtl one\nmap_Kd b.png\n");

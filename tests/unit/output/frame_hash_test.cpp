@@ -131,6 +131,7 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
         const std::string& key = parameter.spec.generic_key;
         if (key == "output.fps" || parameter.spec.key == "layer.dust.visible" || key == "camera.position")
             continue;
+        if (parameter.spec.section == "Star image") continue;  // of layers that are stars
         const Value value = parameter.get();
         if (parameter.spec.type != ParameterType::number && parameter.spec.type != ParameterType::boolean)
             continue;
@@ -149,6 +150,16 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
 TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
     EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("primaries"), std::string::npos);
     EXPECT_NE(changed([](Scene& s) { s.output.primaries = OutputParams::Primaries::acescg; }), hash(scene()));
+}
+
+TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("wings"), std::string::npos);
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("spikes"), std::string::npos);
+    const auto stars = [](Scene& s) { s.layers[0].source.kind = SourceKind::stars; };
+    const std::string before = changed(stars);
+    EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.psf = 2.0; }));
+    EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.wings.share = 0.25; }));
+    EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.spikes.vanes = 3; }));
 }
 
 TEST_F(FrameHashTest, OnlyTheFramesAKeyframeReachesChange) {

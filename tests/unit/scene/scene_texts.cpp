@@ -110,6 +110,8 @@ zero_point = 4.0
 along = ""
 spread = 10.0
 psf = 1.0
+wings = { share = 0.0, px = 3.0, power = 2.5 }
+spikes = { share = 0.0, vanes = 4, angle = 0.0, px = 40.0 }
 
 [layer.look]
 density = 1.0

@@ -49,10 +49,46 @@ class LoadSourceTest : public SplatFileTest {
     std::string lines_;
 };
 
-TEST_F(LoadSourceTest, StarsComeLater) {
+TEST_F(LoadSourceTest, StarsComeFromACatalogue) {
     SourceParams source;
     source.kind = SourceKind::stars;
-    EXPECT_EQ(error_of(source), "layer 'dust': kind = \"stars\" comes with a later release");
+    source.stars.catalogue =
+        write("near.csv", "ra,dec,dist,mag\n0,0,10,1\n90,0,10,5.5\n0,90,0,2\n0,90,,2\n0,90,x,2\n0,0,10,9\n");
+    source.stars.unit = 2.0;
+    source.stars.limit = 6.0;
+    const SplatSet set = load_source(source, "sky");
+    ASSERT_EQ(set.size(), 4);
+    EXPECT_TRUE(set.stars);
+    EXPECT_EQ(set.position[0], glm::vec3(20.0f, 0.0f, 0.0f));
+    EXPECT_EQ(set.radius[0], 0.0f);
+    const std::string file = source.stars.catalogue.string();
+    EXPECT_NE(
+        lines_.find("layer 'sky': " + file +
+                    ": 1 of 6 rows cannot be used, at line 6 (line 6: expected a number for the distance, "
+                    "found 'x')\n"),
+        std::string::npos)
+        << lines_;
+    EXPECT_NE(
+        lines_.find("layer 'sky': 4 stars, 1 fainter than magnitude 6 left out, 2 without a distance at "
+                    "infinity\n"),
+        std::string::npos)
+        << lines_;
+}
+
+TEST_F(LoadSourceTest, ACatalogueThatIsNoneIsRefused) {
+    SourceParams source;
+    source.kind = SourceKind::stars;
+    source.stars.catalogue = write("none.csv", "");
+    EXPECT_EQ(error_of(source), "layer 'dust': " + source.stars.catalogue.string() +
+                                    ": expected a star catalogue, found an empty file");
+}
+
+TEST_F(LoadSourceTest, ALimitMayLeaveNoStar) {
+    SourceParams source;
+    source.kind = SourceKind::stars;
+    source.stars.catalogue = write("faint.csv", "ra,dec,mag\n1,2,13\n");
+    EXPECT_EQ(load_source(source, "dust").size(), 0);
+    EXPECT_NE(lines_.find("0 stars, 1 fainter than magnitude 12 left out"), std::string::npos) << lines_;
 }
 
 TEST_F(LoadSourceTest, NeedsAMesh) {

@@ -90,8 +90,10 @@ TEST(StarSet, WithoutADistanceStarsAreInfinitelyFarAndCounted) {
     EXPECT_EQ(counts.infinite, 2);  // the last is beyond all that has a place
     EXPECT_NEAR(set.position[0].z, -1e18, 1e12);
     EXPECT_NEAR(set.position[2].y, 1e18, 1e12);
-    EXPECT_TRUE(is_infinitely_far(set.position[0]));
-    EXPECT_FALSE(is_infinitely_far(set.position[1]));
+    EXPECT_TRUE(is_direction(set.position[0]));
+    EXPECT_FALSE(is_direction(set.position[1]));
+    EXPECT_EQ(bounds(set).hi, glm::dvec3(1e7, 0.0, 0.0));  // of what has a place
+    EXPECT_EQ(bounds(set).lo, bounds(set).hi);
 }
 
 TEST(StarSet, TheOtherColumnsAreConstant) {

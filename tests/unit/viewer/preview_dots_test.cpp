@@ -26,17 +26,19 @@ constexpr std::int64_t all = 1'000'000;
 class PreviewDotsTest : public testing::Test {
   protected:
     explicit PreviewDotsTest(std::int64_t sample_limit = all) {
-        for (const LayerParams& params : small.scene.layers) {
-            const auto set = std::make_shared<const SplatSet>(load_source(params.source, params.name));
-            PreviewLayer layer;
-            layer.layer = render_layer(params);
-            layer.set = set;
-            layer.look = params.look;
-            layer.inputs = look_inputs(params);
-            layers.push_back(layer);
-            loaded.push_back(std::make_shared<const LoadedLayer>(
-                whole_layer(set, params.source, params.name, sample_limit)));
-        }
+        for (const LayerParams& params : small.scene.layers) add(params, sample_limit);
+    }
+
+    void add(const LayerParams& params, std::int64_t sample_limit = all) {
+        const auto set = std::make_shared<const SplatSet>(load_source(params.source, params.name));
+        PreviewLayer layer;
+        layer.layer = render_layer(params);
+        layer.set = set;
+        layer.look = look_of(params);
+        layer.inputs = look_inputs(params);
+        layers.push_back(layer);
+        loaded.push_back(
+            std::make_shared<const LoadedLayer>(whole_layer(set, params.source, params.name, sample_limit)));
     }
 
     Camera camera() const {
@@ -90,6 +92,33 @@ double light_of(const Image& picture) {
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         if (i % 4 != 3) sum += picture.pixels[i];
     return sum;
+}
+
+TEST_F(PreviewDotsTest, StarsAreNeverMergedOrLeftOut) {
+    LayerParams stars;
+    stars.name = "sky";
+    stars.source.kind = SourceKind::stars;
+    std::string rows = "ra,dec,dist,mag\n10,20,,1\n";  // one at infinity
+    for (int i = 0; i < 300; ++i) rows += std::to_string(i) + ",-10,5,3\n";
+    stars.source.stars.catalogue = small.folder.file("near.csv", rows);
+    add(stars, 10);
+    EXPECT_LT(loaded.back()->box.hi.x, 6.0);  // of those that have a place
+    EXPECT_TRUE(loaded.back()->arranged);
+    std::swap(layers[0], layers[2]);
+    std::swap(loaded[0], loaded[2]);
+    PreviewDots dots;
+    const Image picture = draw(dots), wanted = rendered();
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        ASSERT_NEAR(picture.pixels[i], wanted.pixels[i], 1e-5f * std::max(1.0f, wanted.pixels[i]));
+    budget = 10;
+    std::vector<PreviewLayer> seen = layers;
+    seen[0].look.grade.gain = 2.0f;
+    dots.cut(seen, loaded, camera(), settings(), 0.5f);
+    EXPECT_EQ(seen[0].layer.splats->size(), 301);
+    EXPECT_EQ(seen[0].layer.splats->color[0], 2.0f * loaded[0]->set->color[0]);
+    EXPECT_LE(seen[1].layer.splats->size() + seen[2].layer.splats->size(), 10);
+    EXPECT_EQ(dots.kept()[0], 1.0);
+    EXPECT_FALSE(dots.refine());
 }
 
 TEST_F(PreviewDotsTest, WithRoomForAllSplatsTheFrameIsTheRenderers) {

@@ -57,6 +57,24 @@ TEST_F(SetListTest, TheNewestWishComesFirst) {
     EXPECT_TRUE(list.resting());
 }
 
+TEST_F(SetListTest, HowStarsLookMakesNoOtherSet) {
+    add_layer("sky");
+    StarsParams& stars = scene.layers[0].source.stars;
+    scene.layers[0].source.kind = SourceKind::stars;
+    list.want(scene);
+    EXPECT_EQ(begun(), "load sky");
+    keep(true);
+    stars.psf = 2.0;
+    stars.wings.share = 0.1;
+    stars.spikes.share = 0.1;
+    list.want(scene);
+    EXPECT_EQ(begun(), "");
+    EXPECT_FALSE(list.status(scene.layers[0]).stale);
+    stars.limit = 5.0;
+    list.want(scene);
+    EXPECT_EQ(begun(), "load sky");
+}
+
 TEST_F(SetListTest, WhatComesLaterWaitsForAllSetsAndWhileItIsHeld) {
     add_layer("gas");
     add_layer("dust");
