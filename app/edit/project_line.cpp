@@ -20,7 +20,13 @@ glm::dvec3 in_camera(const Camera& camera, const glm::dvec3& point) {
 
 /// Points of camera space up to here are seen.
 double front_of(const Camera& camera) {
-    return exact::has_parallel_rays(make_exact_lens(camera)) ? 1e300 : -std::max(1e-6, camera.near);
+    const bool all = exact::has_parallel_rays(make_exact_lens(camera)) || is_onto_sphere(camera.projection);
+    return all ? 1e300 : -std::max(1e-6, camera.near);
+}
+
+/// A line between the two goes round what lies behind a fisheye or across a panorama's seam.
+bool is_torn(const Camera& camera, const glm::vec2& from, const glm::vec2& to) {
+    return is_onto_sphere(camera.projection) && glm::distance(from, to) > 2.0f * float(camera.focal_px);
 }
 
 }  // namespace
@@ -33,7 +39,10 @@ Camera camera_on_screen(const Camera& camera, const glm::dvec2& corner, double s
     return shown;
 }
 
-double view_depth(const Camera& camera, const glm::dvec3& point) { return -in_camera(camera, point).z; }
+double view_depth(const Camera& camera, const glm::dvec3& point) {
+    const glm::dvec3 p = in_camera(camera, point);
+    return is_onto_sphere(camera.projection) ? glm::length(p) : -p.z;
+}
 
 std::optional<glm::vec2> project_point(const Camera& camera, const glm::dvec3& point) {
     const glm::dvec3 p = in_camera(camera, point);
@@ -56,9 +65,10 @@ std::vector<std::vector<glm::vec2>> project_line(const Camera& camera, const std
             open = seen;
         }
         if (seen) {
-            if (!open) parts.emplace_back();
+            const glm::vec2 px = to_px(camera, p);
+            if (!open || is_torn(camera, parts.back().back(), px)) parts.emplace_back();
             open = true;
-            parts.back().push_back(to_px(camera, p));
+            parts.back().push_back(px);
         }
         before = p;
     }

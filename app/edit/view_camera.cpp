@@ -26,6 +26,8 @@ FreeCamera lens_of(const Camera& camera, const CameraParams& params) {
     free.projection = camera.projection;
     if (has_parallel_rays(free))
         free.height = 1.0 / camera.focal_px;
+    else if (is_onto_sphere(camera.projection))
+        free.fov_deg = params.fov;
     else
         free.fov_deg = 2.0 * real::degrees(real::atan(0.5 / camera.focal_px));
     free.near = params.near;
@@ -56,6 +58,7 @@ ViewAxes view_axes(const FreeCamera& camera) {
 CameraParams camera_params(const FreeCamera& camera) {
     CameraParams params;
     set_place(params, camera);
+    if (is_onto_sphere(camera.projection)) params.projection = Projection::perspective;
     params.fov = camera.fov_deg;
     params.height = camera.height;
     params.near = camera.near;
@@ -82,7 +85,9 @@ CameraParams view_camera(const Scene& scene, const ViewState& view, const Bounds
 }
 
 FreeCamera free_camera(const CameraParams& params, const Bounds& box, double aspect) {
-    const Camera camera = make_camera(params, aspect, 1.0, box);
+    CameraParams level = params;
+    level.fisheye_tilt = 0.0;
+    const Camera camera = make_camera(level, aspect, 1.0, box);
     const glm::dvec3 forward = -camera.world_from_camera[2];
     FreeCamera free = lens_of(camera, params);
     free.position = camera.eye;
@@ -104,6 +109,7 @@ CameraParams moved_camera(const CameraParams& base, const FreeCamera& camera, do
     };
     CameraParams params = base;
     set_place(params, camera);
+    if (is_onto_sphere(camera.projection)) return params;
     const double tan_y = real::tan(real::radians(camera.fov_deg) * 0.5);
     if (has_parallel_rays(camera))
         params.height = keep_or(base.height, camera.height);

@@ -17,13 +17,12 @@ struct LayerBlock {
 };
 struct Block {
     Lens lens;
-    float unused;
     glm::vec4 target;
     std::int32_t layers_used[4];
     std::int32_t first_splat[DrawPass::most_layers];
     LayerBlock layers[DrawPass::most_layers];
 };
-static_assert(sizeof(LayerBlock) == 8 * 16 && sizeof(Lens) == 28 &&
+static_assert(sizeof(LayerBlock) == 8 * 16 && sizeof(Lens) == 32 &&
               sizeof(Block) == 4 * 16 + 64 * 4 + 64 * 8 * 16);
 
 constexpr int profiles_unit = 0, nodes_unit = 1, places_unit = 2;  // and 3: colours

@@ -62,6 +62,7 @@ void EnvironmentPass::draw(const Environment& environment, const Camera& camera)
     glUniform1f(program_.uniform("lens.focal_px"), lens.focal_px);
     glUniform1f(program_.uniform("lens.center_x_px"), lens.center_x_px);
     glUniform1f(program_.uniform("lens.center_y_px"), lens.center_y_px);
+    glUniform1f(program_.uniform("lens.edge"), lens.edge);
     glUniform1f(program_.uniform("coarse_share"), float(level - double(fine)));
     glUniform1f(program_.uniform("gain"), environment.gain);
     glDisable(GL_BLEND);

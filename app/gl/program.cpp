@@ -106,8 +106,9 @@ std::string readable_log(const std::string& log, const std::vector<FileStart>& f
 }
 
 std::vector<std::string> after_projections(const std::vector<std::string>& more) {
-    std::vector<std::string> files = {"lens.glsl", "instance.glsl", "perspective.glsl", "orthographic.glsl",
-                                      "projection.glsl"};
+    std::vector<std::string> files = {"lens.glsl",        "instance.glsl",     "angles.glsl",
+                                      "perspective.glsl", "orthographic.glsl", "fisheye.glsl",
+                                      "panorama.glsl",    "projection.glsl"};
     files.insert(files.end(), more.begin(), more.end());
     return files;
 }

@@ -202,6 +202,8 @@ Scene evaluated(const Scene& scene, const ViewState& view) {
 }
 
 bool draws_by_opengl(const Session& session) {
+    // Vertex shaders draw no discs of the sphere.
+    if (is_onto_sphere(session.request.scene.camera.projection)) return false;
     return session.view.engine == PreviewEngine::opengl ||
            (session.view.engine == PreviewEngine::automatic && !session.gl.software);
 }

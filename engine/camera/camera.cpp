@@ -35,6 +35,11 @@ void check(const CameraParams& params) {
         expect(params.focal_length >= 0.0, "camera.focal_length", "0 or more mm", params.focal_length);
         expect(params.film_width > 0.0, "camera.film_width", "more than 0 mm", params.film_width);
     }
+    if (params.projection == Projection::fisheye)
+        expect(params.fisheye_fov > 0.0 && params.fisheye_fov <= 360.0, "camera.fisheye_fov",
+               "degrees above 0, at most 360", params.fisheye_fov);
+    expect(params.panorama_fov > 0.0 && params.panorama_fov <= 360.0, "camera.panorama_fov",
+           "degrees above 0, at most 360", params.panorama_fov);
     expect(params.far == 0.0 || params.far > params.near, "camera.far", "0, or more than camera.near",
            params.far);
 }
@@ -87,6 +92,14 @@ glm::dmat3 framing_direction() {
     return {glm::dvec3(1.0, 0.0, 0.0), glm::dvec3(0.0, back.z, -back.y), back};
 }
 
+/// Turned about its x axis, so that it looks higher.
+glm::dmat3 tilted_up(const glm::dmat3& world_from_camera, double degrees) {
+    if (degrees == 0.0) return world_from_camera;
+    const double c = real::cos(real::radians(degrees)), s = real::sin(real::radians(degrees));
+    const glm::dvec3 &above = world_from_camera[1], &back = world_from_camera[2];
+    return {world_from_camera[0], above * c + back * s, back * c - above * s};
+}
+
 glm::dmat3 orientation(const CameraParams& params, const glm::dvec3& position, const glm::dvec3& target) {
     if (params.rotation) return rotation_from_quaternion(*params.rotation);
     glm::dvec3 view = target - position;
@@ -106,13 +119,6 @@ void check_supported(const CameraParams& params) {
             "camera.file: expected no file (camera paths can be imported from a later release on), "
             "found '{}'",
             params.file.string()));
-    const bool flat =
-        params.projection == Projection::perspective || params.projection == Projection::orthographic;
-    if (!flat)
-        throw InputError(fmt::format(
-            "camera.projection: expected perspective or orthographic (other projections come with a "
-            "later release), found {}",
-            name_of(params.projection)));
 }
 
 Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box) {
@@ -132,10 +138,28 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
         height = framing.height;
     }
     camera.world_from_camera = orientation(params, camera.eye, target);
-    camera.focal_px =
-        params.projection == Projection::orthographic ? height_px / height : 0.5 * height_px / tan_y;
     camera.center_x_px = 0.5 * width_px;
     camera.center_y_px = 0.5 * height_px;
+    switch (params.projection) {
+        case Projection::perspective:
+            camera.focal_px = 0.5 * height_px / tan_y;
+            camera.center_x_px -= params.shift.x * width_px;
+            camera.center_y_px += params.shift.y * height_px;
+            break;
+        case Projection::orthographic:
+            camera.focal_px = height_px / height;
+            break;
+        case Projection::fisheye:
+            camera.edge = 0.5 * real::radians(params.fisheye_fov);
+            camera.focal_px = 0.5 * std::fmin(width_px, height_px) / camera.edge;
+            camera.world_from_camera = tilted_up(camera.world_from_camera, params.fisheye_tilt);
+            break;
+        case Projection::equirectangular:
+        case Projection::cylindrical:
+            camera.edge = 0.5 * real::radians(params.panorama_fov);
+            camera.focal_px = 0.5 * width_px / camera.edge;
+            break;
+    }
     camera.near = params.near;
     camera.far = params.far;
     camera.near_fade = params.near_fade;
@@ -147,18 +171,25 @@ namespace {
 template <class AnyLens>
 AnyLens lens_of(const Camera& camera) {
     static_assert(static_cast<int>(Projection::perspective) == shared::PROJECTION_PERSPECTIVE &&
-                  static_cast<int>(Projection::orthographic) == shared::PROJECTION_ORTHOGRAPHIC);
+                  static_cast<int>(Projection::orthographic) == shared::PROJECTION_ORTHOGRAPHIC &&
+                  static_cast<int>(Projection::fisheye) == shared::PROJECTION_FISHEYE &&
+                  static_cast<int>(Projection::equirectangular) == shared::PROJECTION_EQUIRECTANGULAR &&
+                  static_cast<int>(Projection::cylindrical) == shared::PROJECTION_CYLINDRICAL);
     using Number = decltype(AnyLens::near);
     return {static_cast<int>(camera.projection),     static_cast<Number>(camera.focal_px),
             static_cast<Number>(camera.center_x_px), static_cast<Number>(camera.center_y_px),
             static_cast<Number>(camera.near),        static_cast<Number>(camera.far),
-            static_cast<Number>(camera.near_fade)};
+            static_cast<Number>(camera.near_fade),   static_cast<Number>(camera.edge)};
 }
 
 }  // namespace
 
 Lens make_lens(const Camera& camera) { return lens_of<Lens>(camera); }
 ExactLens make_exact_lens(const Camera& camera) { return lens_of<ExactLens>(camera); }
+
+bool shows(const Camera& camera, double x_px, double y_px) {
+    return exact::shows(make_exact_lens(camera), x_px, y_px);
+}
 
 glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px) {
     const ExactLens lens = make_exact_lens(camera);

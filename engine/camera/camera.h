@@ -15,11 +15,14 @@
 
 namespace astrosplat {
 
-enum class Projection { perspective, orthographic, fisheye, equirectangular };
+enum class Projection { perspective, orthographic, fisheye, equirectangular, cylindrical };
 constexpr auto names_of(Projection) {
-    return names_up_to<Projection::equirectangular>("perspective", "orthographic", "fisheye",
-                                                    "equirectangular");
+    return names_up_to<Projection::cylindrical>("perspective", "orthographic", "fisheye", "equirectangular",
+                                                "cylindrical");
 }
+
+/// The frame shows directions, not points of a plane.
+constexpr bool is_onto_sphere(Projection projection) { return projection >= Projection::fisheye; }
 
 struct CameraParams {
     Projection projection = Projection::perspective;
@@ -28,15 +31,20 @@ struct CameraParams {
     glm::dvec3 up{0.0, 1.0, 0.0};
     /// Quaternion x y z w, world from camera; replaces target, up and roll.
     std::optional<glm::dvec4> rotation;
-    double roll = 0.0;           // degrees; > 0 turns the camera clockwise as seen from behind it
-    double fov = 45.0;           // degrees, vertical
-    double focal_length = 0.0;   // mm; > 0 replaces fov, with film_width
-    double film_width = 36.0;    // mm
-    double fisheye_fov = 180.0;  // degrees, full cone
-    double height = 10.0;        // scene units, orthographic
-    double near = 0.01;          // scene units
-    double far = 0.0;            // scene units; 0: none
-    double near_fade = 0.0;      // scene units; 0: one radius of the splat
+    double roll = 0.0;          // degrees; > 0 turns the camera clockwise as seen from behind it
+    double fov = 45.0;          // degrees, vertical
+    double focal_length = 0.0;  // mm; > 0 replaces fov, with film_width
+    double film_width = 36.0;   // mm
+    glm::dvec2 shift{0.0};  // of what the frame shows, its widths to the right and heights up; perspective
+    double fisheye_fov = 180.0;  // degrees, full cone: the frame's shorter side
+    /// Degrees by which a fisheye's axis points above the target; at 90 the target lies on the lower rim of
+    /// a dome that is level.
+    double fisheye_tilt = 0.0;
+    double panorama_fov = 360.0;  // degrees, from the left to the right of a panorama
+    double height = 10.0;         // scene units, orthographic
+    double near = 0.01;           // scene units
+    double far = 0.0;             // scene units; 0: none
+    double near_fade = 0.0;       // scene units; 0: one radius of the splat
     std::filesystem::path file;
     bool operator==(const CameraParams&) const = default;
 };
@@ -45,29 +53,34 @@ struct Camera {
     Projection projection = Projection::perspective;
     glm::dvec3 eye{0.0};
     glm::dmat3 world_from_camera{1.0};  // rotation only; columns are the camera's x, y, z axes in world space
-    double focal_px = 1.0;              // perspective: px per unit of x/z; orthographic: px per scene unit
+    /// Perspective: px per unit of x/z; orthographic: px per scene unit; onto the sphere: px per radian.
+    double focal_px = 1.0;
     double center_x_px = 0.0, center_y_px = 0.0;  // where the optical axis meets the frame (y down)
     double near = 0.01, far = 0.0, near_fade = 0.0;
+    double edge = 0.0;    // as in Lens
     double aspect = 1.0;  // width / height
 };
 
-/// Throws InputError for what a later release brings: camera files, projections other than perspective and
-/// orthographic. Can be asked before anything is generated; what an animation brings is met at its frame.
+/// Throws InputError for what a later release brings: camera files. Can be asked before anything is
+/// generated.
 void check_supported(const CameraParams& params);
 
 /// Resolves the parameters for a frame of width x height px. `scene_box` (may be empty) is what a camera
 /// without position frames: its place, target and (orthographic) height then come from frame_box; a rotation
 /// is kept. Where the view is parallel to up, -z is up, else +x. Throws InputError for values out of range,
-/// projections and camera files that a later release brings, and a zero view direction.
+/// camera files, and a zero view direction.
 Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box);
 
 /// The camera as the projections of shaders/shared take it (camera/projection.h).
 Lens make_lens(const Camera& camera);
 ExactLens make_exact_lens(const Camera& camera);
 
+/// Whether the camera shows anything at a point of the frame: outside a fisheye's circle it does not.
+bool shows(const Camera& camera, double x_px, double y_px);
 /// Unit direction in world space through a point of the frame (px, y down), for environments.
 glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px);
-/// Angle between the rays of neighbouring pixels, radians; 0 where rays are parallel.
+/// Angle between the rays of neighbouring pixels in the middle of the frame, radians; 0 where rays are
+/// parallel.
 double pixel_spread(const Camera& camera);
 
 /// Position and target that frame a box from 35 degrees above +z with the given vertical field of view: its

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "camera/lens.h"
+#include "core/real.h"
 #include "core/shared_maths.h"
 
 #pragma GCC diagnostic push
@@ -13,13 +14,16 @@
 namespace astrosplat::shared {
 using namespace astrosplat::shared_types;
 namespace {
+#include "angles.glsl"
+// before what needs it
 #include "camera/projections.inc"
 }  // namespace
 }  // namespace astrosplat::shared
 
 namespace astrosplat::exact {
 using exact_types::Lens, exact_types::Real;
-using exact_types::PROJECTION_ORTHOGRAPHIC;
+using exact_types::PROJECTION_CYLINDRICAL, exact_types::SPHERE_TURN;
+using exact_types::PROJECTION_ORTHOGRAPHIC, exact_types::PROJECTION_FISHEYE;
 using Float = double;
 using Bool = bool;
 using Vec3 = glm::dvec3;
@@ -29,6 +33,10 @@ double abs(double x) { return std::fabs(x); }
 double floor(double x) { return std::floor(x); }
 double min(double a, double b) { return b < a ? b : a; }
 double max(double a, double b) { return a < b ? b : a; }
+double mix(double a, double b, bool take_b) { return take_b ? b : a; }
+double angle_of(double y, double x) { return real::atan2(y, x); }
+double sine_of(double angle) { return real::sin(angle); }
+double cosine_of(double angle) { return real::cos(angle); }
 double dot(const glm::dvec3& a, const glm::dvec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 #include "camera/projections.inc"
 }  // namespace

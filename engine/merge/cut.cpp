@@ -53,9 +53,9 @@ class SeenLayer {
         if (at.depth + bound < l.lens.near) return false;
         if (l.lens.far > 0.0f && at.depth - bound > l.lens.far) return false;
         if (!(at.depth - bound > l.lens.near)) return true;
-        return shared::touches_rect(at.x_px, at.y_px, shared::reach_px(l.lens, p, bound, l.margin_px), 0.0f,
-                                    0.0f, static_cast<float>(settings_.width),
-                                    static_cast<float>(settings_.height));
+        return shared::appears_in_rect(
+            l.lens, at.x_px, at.y_px, shared::reach_px(l.lens, p, bound, l.margin_px), 0.0f, 0.0f,
+            static_cast<float>(settings_.width), static_cast<float>(settings_.height));
     }
 
     Across across(const NodeSums& s) const {

@@ -8,6 +8,7 @@
 
 #include "render/fold_batch.h"
 #include "render/shape.h"
+#include "render/sphere.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/fold.cpp"
@@ -19,6 +20,7 @@
 #include "core/append-inl.h"
 #include "render/fold_blend-inl.h"
 #include "render/fold_prepare-inl.h"
+#include "render/fold_sphere-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {
@@ -28,9 +30,11 @@ struct Cell {
     std::size_t first_pixel;  // in the planes
     float x0_px, y0_px;       // of the whole frame
     std::uint64_t open;       // blocks that take more light
+    const Cap* caps;          // of its blocks; onto the sphere only
 };
 
-BlockPart block_part(const Cell& cell, int block, int first) {
+template <Outline kOutline>
+BlockPart block_part(const TilePlanes& planes, const Cell& cell, int block, int first) {
     alignas(64) static constexpr float column[16] = {0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f,
                                                      0.5f, 1.5f, 2.5f, 3.5f, 0.5f, 1.5f, 2.5f, 3.5f};
     alignas(64) static constexpr float row[16] = {0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f, 1.5f, 1.5f,
@@ -49,6 +53,10 @@ BlockPart block_part(const Cell& cell, int block, int first) {
         part.y_px[p] = hn::Add(load(row + first + p * lanes), all(y_px));
     }
     part.at = cell.first_pixel + static_cast<std::size_t>(block * TilePlanes::block_pixels + first);
+    if constexpr (kOutline == Outline::sphere)
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t p = 0; p < parts; ++p)
+                part.toward[k][p] = load(&planes.toward[k][part.at + p * lanes]);
     return part;
 }
 
@@ -143,7 +151,7 @@ HWY_INLINE bool fold_block(const SplatBatch& batch, SplatBits bits, const Cell& 
     const V stop = all(stop_at);
     bool open = false;
     for (int first = 0; first < TilePlanes::block_pixels; first += lanes * parts) {
-        const BlockPart part = block_part(cell, block, first);
+        const BlockPart part = block_part<kOutline>(planes, cell, block, first);
         bool is_done = false;
         if constexpr (kOutline == Outline::soft && !Pixels::aovs)  // AOVs write the layers' light at once
             is_done = batch.is_faint && fold_open<Pixels>(batch, bits, part, stop, planes);
@@ -163,7 +171,10 @@ template <class Pixels, Outline kOutline>
 void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch, Cell& cell,
                 TilePlanes& planes) {
     for (int i = 0; i < batch.count; ++i) prefetch(*job.splats[batch.index[i]]);
-    find_touched_blocks(batch, cell.x0_px, cell.y0_px);
+    if constexpr (kOutline == Outline::sphere)
+        find_touched_caps(batch, cell.caps);
+    else
+        find_touched_blocks(batch, cell.x0_px, cell.y0_px);
     SplatBits touching;
     for (std::uint64_t rest = cell.open; rest != 0; rest &= rest - 1)
         touching |= batch.touches[std::countr_zero(rest)];
@@ -254,7 +265,8 @@ FoldCommon common_of(const FoldJob& job) {
     const bool screen = all_like([](const FoldLayer& layer) {
         return layer.blend == Blend::screen && !layer.holdout && !layer.absorbs;
     });
-    return {one_table && job.shapes.empty() ? layers[0].footprints : nullptr, screen};
+    const bool plain = job.shapes.empty() && !shared::is_onto_sphere(job.settings.lens);
+    return {one_table && plain ? layers[0].footprints : nullptr, screen};
 }
 
 /// Folds the splats found, as far as they make whole batches; the others move to the front. `last`:
@@ -271,6 +283,11 @@ void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSpl
         batch.y_px = &found.discs.y_px[begin];
         batch.reach_px = &found.discs.reach_px[begin];
         batch.index = &found.index[begin];
+        if constexpr (kOutline == Outline::sphere) {
+            batch.toward[0] = &found.toward.x[begin];
+            batch.toward[1] = &found.toward.y[begin];
+            batch.toward[2] = &found.toward.z[begin];
+        }
         for (std::size_t i = begin + batch.count; i % lanes != 0; ++i) found.discs.set_nowhere(i);
         fold_batch<Pixels, kOutline>(job, common, batch, cell, planes);
         if (cell.open == 0) return;
@@ -290,16 +307,36 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
     find_discs(job, scratch->discs);
     CellSplats& found = scratch->found;
     found.resize(step + SplatBatch::size + lanes);
+    constexpr bool sphere = kOutline == Outline::sphere;
+    if constexpr (sphere) {
+        find_directions(job.settings.lens, scratch->discs, job.splats.size(), scratch->toward);
+        found.toward.resize(step + SplatBatch::size + lanes);
+    } else {
+        found.toward = {};
+    }
+    Cap caps[SplatBatch::blocks];
     for (int n = 0; n < planes.cell_columns * planes.cell_rows; ++n) {
         const int column = n % planes.cell_columns, row = n / planes.cell_columns;
         Cell cell{static_cast<std::size_t>(n * TilePlanes::cell_pixels),
                   static_cast<float>(planes.x0 + column * TilePlanes::cell_px),
-                  static_cast<float>(planes.y0 + row * TilePlanes::cell_px),
-                  used_blocks(planes, column, row)};
+                  static_cast<float>(planes.y0 + row * TilePlanes::cell_px), used_blocks(planes, column, row),
+                  caps};
         found.count = 0;
+        Cap whole;
+        if constexpr (sphere) {
+            whole = cap_of(planes, cell.first_pixel, TilePlanes::cell_pixels);
+            for (std::size_t b = 0; b < SplatBatch::blocks; ++b)
+                caps[b] =
+                    cap_of(planes, cell.first_pixel + b * TilePlanes::block_pixels, TilePlanes::block_pixels);
+        }
         for (std::size_t i = 0; i < job.splats.size() && cell.open != 0; i += step) {
             const std::size_t end = std::min(i + step, job.splats.size());
-            find_in_cell(scratch->discs, i, end, cell, found);
+            if constexpr (sphere)
+                find_on_sphere(*scratch, i, end, whole,
+                               cell.x0_px + 0.5f * static_cast<float>(TilePlanes::cell_px),
+                               shared::period_px(job.settings.lens), found);
+            else
+                find_in_cell(scratch->discs, i, end, cell, found);
             fold_found<Pixels, kOutline>(job, common, end == job.splats.size(), found, scratch->batch, cell,
                                          planes);
         }
@@ -326,19 +363,27 @@ void fold_kind(const FoldJob& job, TilePlanes& planes) {
         fold_pixels<GeneralPixels<kAovs, false>>(job, planes);
 }
 
-/// With splats that are not round: the general folds alone, which give the bits of the others.
-template <bool kAovs>
-void fold_shaped(const FoldJob& job, TilePlanes& planes) {
+/// With splats that are not round, or not on the frame: the general folds alone, which give the bits of the
+/// others.
+template <Outline kOutline, bool kAovs>
+void fold_general(const FoldJob& job, TilePlanes& planes) {
     if (job.settings.kind == FoldKind::lighten)
-        fold_cells<LightenPixels<kAovs>, Outline::shaped>(job, planes);
+        fold_cells<LightenPixels<kAovs>, kOutline>(job, planes);
     else
-        fold_cells<GeneralPixels<kAovs, true>, Outline::shaped>(job, planes);
+        fold_cells<GeneralPixels<kAovs, true>, kOutline>(job, planes);
+}
+template <Outline kOutline>
+void fold_general(const FoldJob& job, TilePlanes& planes) {
+    job.settings.aovs ? fold_general<kOutline, true>(job, planes)
+                      : fold_general<kOutline, false>(job, planes);
 }
 
 void fold_here(const FoldJob& job, TilePlanes& planes) {
     const bool aovs = job.settings.aovs;
-    if (!job.shapes.empty())
-        aovs ? fold_shaped<true>(job, planes) : fold_shaped<false>(job, planes);
+    if (shared::is_onto_sphere(job.settings.lens))
+        fold_general<Outline::sphere>(job, planes);
+    else if (!job.shapes.empty())
+        fold_general<Outline::shaped>(job, planes);
     else if (job.settings.kind == FoldKind::over)
         fold_pixels<OverPixels>(job, planes);
     else if (job.settings.kind == FoldKind::add)
@@ -355,7 +400,10 @@ namespace astrosplat {
 
 HWY_EXPORT(fold_here);
 
-void fold(const FoldJob& job, TilePlanes& planes) { HWY_DYNAMIC_DISPATCH(fold_here)(job, planes); }
+void fold(const FoldJob& job, TilePlanes& planes) {
+    if (shared::is_onto_sphere(job.settings.lens)) set_directions(job.settings.lens, planes);
+    HWY_DYNAMIC_DISPATCH(fold_here)(job, planes);
+}
 
 void TilePlanes::reset(const Region& tile, const FoldSettings& settings, std::size_t layer_count) {
     x0 = tile.x;

@@ -42,7 +42,7 @@ struct FoldSettings {
     FoldKind kind = FoldKind::general;
     float stop = 0.0f;  // a pixel takes nothing more once all its transmittances are below
     bool aovs = false;  // also depth, coverage, count and each layer's light; kinds general and lighten only
-    Lens lens;          // depth of a splat from its distance
+    Lens lens{};
 };
 
 /// One blend group's result over one tile, plane by plane; a plane holds cell after cell, block after block,
@@ -62,6 +62,7 @@ struct TilePlanes {
     Buffer<float> uncovered;         // product of 1 - weight
     Buffer<float> count;
     std::vector<Buffer<float>> layer_light;  // 4 planes a layer: r, g, b, alpha
+    Buffer<float> toward[3];                 // onto the sphere: what set_directions sets
 
     /// Clears to "nothing yet" for a tile; `layer_count` layers' light is kept when settings.aovs.
     void reset(const Region& tile, const FoldSettings& settings, std::size_t layer_count);

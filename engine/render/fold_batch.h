@@ -53,6 +53,7 @@ struct SplatBatch {
     const float* y_px = nullptr;
     const float* reach_px = nullptr;
     const std::uint32_t* index = nullptr;   // in the job's splats
+    const float* toward[3] = {};            // Outline::sphere: directions, of length focal_px
     alignas(64) SplatBits touches[blocks];  // splats that may have weight in the block
     std::uint16_t layer[places];
     std::uint8_t linear_in_distance[places];  // as in FootprintTable
@@ -86,6 +87,7 @@ enum class Outline {
     soft,    // round
     flat,    // round, some flat inside
     shaped,  // some not round
+    sphere,  // round on the sphere, not on the frame
 };
 
 /// What all layers have in common, if anything.
@@ -94,9 +96,20 @@ struct FoldCommon {
     bool screen = false;                         // all are screens
 };
 
+/// Directions, or points of the sphere, value by value.
+struct Directions {
+    Buffer<float> x, y, z;
+    void resize(std::size_t size) {
+        x.resize(size);
+        y.resize(size);
+        z.resize(size);
+    }
+};
+
 /// Those of a tile's splats that may touch a cell.
 struct CellSplats {
     Discs discs;
+    Directions toward;            // onto the sphere only
     Buffer<std::uint32_t> index;  // in the job's splats
     std::size_t count = 0;
     void resize(std::size_t size) {
@@ -111,6 +124,7 @@ struct CellSplats {
         keep(discs.x_px);
         keep(discs.y_px);
         keep(discs.reach_px);
+        if (!toward.x.empty()) keep(toward.x), keep(toward.y), keep(toward.z);
         keep(index);
         count -= begin;
     }
@@ -119,6 +133,7 @@ struct CellSplats {
 /// Memory of one thread that folds.
 struct FoldScratch {
     Discs discs;  // of the tile, in order
+    Directions toward;
     CellSplats found;
     SplatBatch batch{};
 };

@@ -75,6 +75,7 @@ constexpr std::size_t part_of(int side) { return parts == 1 ? 0 : static_cast<st
 /// Some of a block's pixels: those of one vector or two.
 struct BlockPart {
     V x_px[parts], y_px[parts];  // of the whole frame
+    V toward[3][parts];          // Outline::sphere: the pixels' directions, of length focal_px
     std::size_t at;              // in the planes
 };
 
@@ -99,6 +100,16 @@ HWY_INLINE V squared_length(const SplatBatch& batch, int i, V dx, V dy) {
     return hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
 }
 
+/// Squared chord to splat i.
+HWY_INLINE V squared_chord(const SplatBatch& batch, int i, const BlockPart& part, std::size_t p) {
+    V sum = hn::Zero(D());
+    for (int k = 0; k < 3; ++k) {
+        const V d = hn::Sub(part.toward[k][p], all(batch.toward[k][i]));
+        sum = hn::Add(sum, hn::Mul(d, d));
+    }
+    return sum;
+}
+
 /// Takes the next splats out of `bits` (with none left, SplatBatch::none).
 template <Outline kOutline>
 HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits, const BlockPart& part) {
@@ -107,9 +118,13 @@ HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits,
     for (int n = 0; n < sides; ++n) to.i[n] = n == 0 || parts == 1 ? bits.take_first() : to.i[0];
     for (int n = 0; n < sides; ++n) {
         const int i = to.i[n];
-        const V dx = hn::Sub(part.x_px[part_of(n)], all(batch.x_px[i])),
-                dy = hn::Sub(part.y_px[part_of(n)], all(batch.y_px[i]));
-        u[n] = squared_length<kOutline>(batch, i, dx, dy);
+        if constexpr (kOutline == Outline::sphere) {
+            u[n] = squared_chord(batch, i, part, part_of(n));
+        } else {
+            const V dx = hn::Sub(part.x_px[part_of(n)], all(batch.x_px[i])),
+                    dy = hn::Sub(part.y_px[part_of(n)], all(batch.y_px[i]));
+            u[n] = squared_length<kOutline>(batch, i, dx, dy);
+        }
         if (batch.linear_in_distance[i]) u[n] = hn::Sqrt(u[n]);
         if (kOutline != Outline::soft) u[n] = hn::Sub(u[n], all(batch.lo[i]));
         u[n] = hn::Mul(u[n], all(batch.scale[i]));

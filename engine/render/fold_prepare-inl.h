@@ -15,6 +15,7 @@
 #include "render/lanes-inl.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
+#include "render/sphere.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {
@@ -158,7 +159,9 @@ HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& ba
 HWY_INLINE void prepare_weight(const FoldJob& job, const ScreenSplat& splat, SplatBatch& batch, int i) {
     const FootprintTable& table = *job.layers[splat.layer].footprints;
     ShapedFootprint shaped;
-    if (job.shapes.empty() || is_round(splat))
+    if (shared::is_onto_sphere(job.settings.lens))
+        shaped.round = sphere_footprint_at(table, job.settings.lens, splat.radius_px, splat.x_px, splat.y_px);
+    else if (job.shapes.empty() || is_round(splat))
         footprint_at(table, splat.radius_px, splat.x_px, splat.y_px, shaped.round);
     else
         shaped = shaped_footprint_at(table, job.shapes[shape_number(splat)], splat.x_px, splat.y_px);

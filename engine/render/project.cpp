@@ -45,7 +45,8 @@ bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const s
     if (!shared::is_in_range(layer.lens, at.depth) || !(splat.alpha > 0.0f)) return false;
     out.x_px = shared::snap_px(at.x_px);
     out.y_px = shared::snap_px(at.y_px);
-    if (!shared::touches_rect(out.x_px, out.y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1))
+    if (!shared::appears_in_rect(layer.lens, out.x_px, out.y_px, support_px, rect.x0, rect.y0, rect.x1,
+                                 rect.y1))
         return false;
     out.opacity = splat.alpha * layer.opacity * shared::near_fade(layer.lens, at.depth, splat.radius);
     set_color(out, splat.color);
@@ -56,12 +57,16 @@ bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const s
     return out.opacity > 0.0f;
 }
 
-/// Projects one ball; false when it does not show.
-bool project_one(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
-                 const ScreenRect& rect, ScreenSplat& out) {
+/// Projects one ball.
+void project_one(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
+                 const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     const shared::Instance at = shared::instance_of(layer.lens, splat.position);
-    out.radius_px = splat.radius * at.px_per_unit;
-    return place_splat(layer, splat, at, index, out.radius_px * layer.reach + layer.margin_px, rect, out);
+    ScreenSplat screen;
+    screen.radius_px = splat.radius * at.px_per_unit;
+    const float support = shared::frame_reach_px(layer.lens, at.x_px, at.y_px,
+                                                 screen.radius_px * layer.reach + layer.margin_px);
+    if (place_splat(layer, splat, at, index, support, rect, screen))
+        push_places(screen, shared::period_px(layer.lens), support, rect, out);
 }
 
 /// Projects one ellipsoid, which fades at the near plane as the ball around its outline.
@@ -77,7 +82,7 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
     const float support = shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance});
     if (!place_splat(layer, splat, at, index, support, rect, screen)) return;
     set_shape_number(screen, static_cast<std::uint32_t>(shapes.size()));
-    out.push_back(screen);
+    push_places(screen, shared::period_px(layer.lens), support, rect, out);
     shapes.push_back(shape);
 }
 
@@ -141,10 +146,8 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
             p += radius * layer.lod->child_offset(level, k, layer.seed, splats.id[index]);
             child.position = to_camera(layer, p);
         }
-        ScreenSplat screen;
-        if (!project_one(layer, child, index, rect, screen)) continue;
-        if (noise.count > 0) set_color(screen, shade.color * child_light(noise, p));
-        out.push_back(screen);
+        if (noise.count > 0) child.color = shade.color * child_light(noise, p);
+        project_one(layer, child, index, rect, out);
     }
 }
 
@@ -163,7 +166,8 @@ bool project_as_children(const LayerProjection& layer, const CameraSplat& splat,
     if (at.depth + reach < near) return true;
     if (at.depth - reach > near) {
         const float support_px = shared::reach_px(layer.lens, p, reach, layer.margin_px);
-        if (!shared::touches_rect(at.x_px, at.y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1))
+        if (!shared::appears_in_rect(layer.lens, at.x_px, at.y_px, support_px, rect.x0, rect.y0, rect.x1,
+                                     rect.y1))
             return true;
     }
     if (layer.render.falloff.shape == Falloff::Shape::constant && splat.alpha > 0.5f) return false;
@@ -199,7 +203,9 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
 }
 
 float support_px(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes) {
-    if (shapes.empty() || is_round(splat)) return splat.radius_px * layer.reach + layer.margin_px;
+    if (shapes.empty() || is_round(splat))
+        return shared::frame_reach_px(layer.lens, splat.x_px, splat.y_px,
+                                      splat.radius_px * layer.reach + layer.margin_px);
     return shape_support_px(shapes[shape_number(splat)], {layer.reach, layer.margin_px, layer.variance});
 }
 
@@ -216,8 +222,7 @@ void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
             continue;
         }
         if (layer.lod && project_as_children(layer, splat, i, rect, out)) continue;
-        ScreenSplat screen;
-        if (project_one(layer, splat, i, rect, screen)) out.push_back(screen);
+        project_one(layer, splat, i, rect, out);
     }
 }
 

@@ -38,11 +38,12 @@ struct LayerProjection {
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,
                                 const RenderSettings& settings);
 
-/// Distance from a splat's centre beyond which all its weights are 0.
+/// Half the width of the square around a splat's place on the frame outside of which all its weights are 0.
 float support_px(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes);
 
 /// Appends the screen splats of shaded splats [begin, end) whose support touches `rect`, and the shapes of
-/// those that are not round.
+/// those that are not round. A frame that goes all the way round shows splats at up to three places, a period
+/// apart; of these the fold takes the one that is nearest to its cell.
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
              Buffer<ScreenSplat>& out, Buffer<Shape>& shapes);
 

@@ -27,6 +27,8 @@ using Vec3 = LaneVectors<D>;
 namespace {
 using namespace astrosplat::glsl;
 using namespace astrosplat::shared_types;
+#include "angles.glsl"
+// before what needs it
 #include "camera/projections.inc"
 }  // namespace
 #pragma GCC diagnostic pop
@@ -36,6 +38,7 @@ struct Projected {
     alignas(64) float x[lanes], y[lanes], z[lanes];  // camera space
     alignas(64) float disc[lanes][4];                // x_px, y_px, radius_px, opacity
     alignas(64) float sort_depth[lanes];
+    alignas(64) float support_px[lanes];  // on the frame
 };
 
 /// Row `k` of camera_from_layer times the place, plus the origin; rounded to float last.
@@ -65,15 +68,18 @@ HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_
     const Instance at = instance_of(layer.lens, p);
     const Float radius_px = radius * at.px_per_unit;
     const Float x_px = snap_px(at.x_px), y_px = snap_px(at.y_px);
-    const Float support_px = radius_px * layer.reach + layer.margin_px;
+    const Float support_px =
+        frame_reach_px(layer.lens, x_px, y_px, radius_px * layer.reach + layer.margin_px);
     const Float opacity = alpha * layer.opacity * near_fade(layer.lens, at.depth, radius);
-    const Bool shows = is_in_range(layer.lens, at.depth) && alpha > 0.0f && opacity > 0.0f &&
-                       touches_rect(x_px, y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1);
+    const Bool shows =
+        is_in_range(layer.lens, at.depth) && alpha > 0.0f && opacity > 0.0f &&
+        appears_in_rect(layer.lens, x_px, y_px, support_px, rect.x0, rect.y0, rect.x1, rect.y1);
     hn::Store(p.x.v, D(), c.x);
     hn::Store(p.y.v, D(), c.y);
     hn::Store(p.z.v, D(), c.z);
     hn::StoreInterleaved4(x_px.v, y_px.v, radius_px.v, opacity.v, D(), c.disc[0]);
     hn::Store(sort_depth(layer.lens, p).v, D(), c.sort_depth);
+    hn::Store(support_px.v, D(), c.support_px);
     std::uint8_t bits[8] = {};
     hn::StoreMaskBits(D(), shows.m, bits);
     return bits[0];
@@ -82,8 +88,9 @@ HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_
 void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
                     const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     const bool hybrid = layer.render.blend == Blend::hybrid;
+    const float period = period_px(layer.lens);
     const std::size_t before = out.size();
-    out.resize(before + static_cast<std::size_t>(end - begin));
+    if (period == 0.0f) out.resize(before + static_cast<std::size_t>(end - begin));
     ScreenSplat* to = out.data() + before;
     Projected c;
     for (; begin < end; begin += lanes) {
@@ -91,18 +98,22 @@ void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64
             const int i = std::countr_zero(bits);
             const std::int64_t index = begin + i;
             const glm::vec3& color = layer.splats->color[index];
-            *to++ = {c.disc[i][0],
-                     c.disc[i][1],
-                     c.disc[i][2],
-                     c.disc[i][3],
-                     {color.x, color.y, color.z},
-                     std::bit_cast<std::uint32_t>(c.sort_depth[i]),
-                     static_cast<std::uint32_t>(index),
-                     layer.layer,
-                     hybrid ? hybrid_of(layer, {c.x[i], c.y[i], c.z[i]}) : std::uint16_t{0}};
+            const ScreenSplat splat{c.disc[i][0],
+                                    c.disc[i][1],
+                                    c.disc[i][2],
+                                    c.disc[i][3],
+                                    {color.x, color.y, color.z},
+                                    std::bit_cast<std::uint32_t>(c.sort_depth[i]),
+                                    static_cast<std::uint32_t>(index),
+                                    layer.layer,
+                                    hybrid ? hybrid_of(layer, {c.x[i], c.y[i], c.z[i]}) : std::uint16_t{0}};
+            if (period == 0.0f)
+                *to++ = splat;
+            else
+                push_places(splat, period, c.support_px[i], rect, out);
         }
     }
-    out.resize(to - out.data());
+    if (period == 0.0f) out.resize(to - out.data());
 }
 
 int block_size() { return lanes; }

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "camera/projection.h"
 #include "core/clock.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -20,6 +21,7 @@
 #include "render/project.h"
 #include "render/resolve.h"
 #include "render/scatter.h"
+#include "render/spectrum.h"
 #include "render/splat_sorter.h"
 
 namespace astrosplat {
@@ -249,9 +251,12 @@ std::vector<std::int64_t> tile_order(const Job& job, const TileGrid& grid) {
 /// Makes the footprints that the splats of a band ask for.
 void make_footprints(const Job& job, const TileBins::Sums& sums, RenderCache::State& cache) {
     if (sums.least_px > sums.largest_px) return;
+    const float largest_px = shared::is_onto_sphere(job.fold.lens)
+                                 ? std::max(sums.largest_px, sphere_spectrum_px * 1.05f)
+                                 : sums.largest_px;
     for (const RenderLayer& layer : job.layers)
         make_footprint_nodes(cache.footprint(layer.render.falloff, job.settings.pixel_filter), sums.least_px,
-                             sums.largest_px, job.progress);
+                             largest_px, job.progress);
 }
 
 /// One band, which will take about so many `records`; `before` of the frame's share is done already.

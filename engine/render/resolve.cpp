@@ -86,8 +86,13 @@ void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Env
     for (int y = 0; y < tile.height; ++y) {
         for (int x = 0; x < tile.width; ++x) {
             PixelState& pixel = pixels_[y * tile.width + x];
-            const glm::dvec3 ray = ray_direction(camera, static_cast<double>(tile.x0 + x) + 0.5,
-                                                 static_cast<double>(tile.y0 + y) + 0.5);
+            const double x_px = static_cast<double>(tile.x0 + x) + 0.5,
+                         y_px = static_cast<double>(tile.y0 + y) + 0.5;
+            if (!shows(camera, x_px, y_px)) {
+                pixel.held = 1.0f;
+                continue;
+            }
+            const glm::dvec3 ray = ray_direction(camera, x_px, y_px);
             const glm::vec3 color = sample_environment(*environment, ray, spread);
             for (int k = 0; k < 3; ++k) pixel.color[k] = color[k];
             pixel.alpha = 1.0f;

@@ -30,7 +30,7 @@ std::vector<BlendGroup> make_groups(std::span<const RenderLayer> layers, bool ao
 struct PixelState {
     float color[3] = {0.0f, 0.0f, 0.0f};
     float alpha = 0.0f;
-    float held = 0.0f;  // alpha taken away by holdouts
+    float held = 0.0f;  // alpha taken away by holdouts, and where the camera shows nothing
     float depth_sum = 0.0f, depth_weight = 0.0f;
     float uncovered = 1.0f, count = 0.0f;
 };

@@ -6,12 +6,10 @@
 
 #include "core/real.h"
 #include "render/shared_render.h"
+#include "render/spectrum.h"
 
 namespace astrosplat {
 namespace {
-
-/// Beyond this radius a table has no spectrum: footprint.cpp's ripple_limit_px and a node more.
-constexpr double spectrum_end_px = 33.0;
 
 /// An ellipse by its radii, px, and the direction of the larger one.
 struct Ellipse {
@@ -38,47 +36,12 @@ double stretch_of(const Ellipse& e, double variance, double filter_px) {
                      (tabulated * tabulated * variance + filter_px * filter_px));
 }
 
-/// Spectra of the stretched profile and of its P (1 - P), relative to their masses. A table's spectrum of a
-/// radius at one cycle per px is the falloff's at that many cycles per radius times the filter's at 1: so it
-/// serves all frequencies.
-class Spectrum {
-  public:
-    Spectrum(const FootprintTable& table, const Ellipse& e, double stretch)
-        : table_(table),
-          radius_(std::max(e.smaller, double(shared::SMALLEST_RADIUS_PX))),
-          gain_(stretch * stretch - 1.0),
-          x_(e.x),
-          y_(e.y),
-          filter_(2.0 * real::pi * real::pi * double(table.pixel_filter_px) * table.pixel_filter_px) {}
-
-    /// Relative excess over all pixels; the centre's phases are those of pixel_cosine.
-    double ripple(bool of_edge, float x_px, float y_px) const {
-        const double cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
-        const double sx = pixel_cosine(x_px - 0.25f), sy = pixel_cosine(y_px - 0.25f);
-        const auto at = [&](double kx, double ky) { return value(of_edge, kx, ky); };
-        return 2.0 * (at(1, 0) * cx + at(0, 1) * cy + at(1, 1) * (cx * cy - sx * sy) +
-                      at(1, -1) * (cx * cy + sx * sy) + at(2, 0) * (2.0 * cx * cx - 1.0) +
-                      at(0, 2) * (2.0 * cy * cy - 1.0));
-    }
-
-  private:
-    /// At (kx, ky) cycles per px. That of the edge is not the same shape at all radii: only the filter's
-    /// part is.
-    double value(bool of_edge, double kx, double ky) const {
-        const double along = kx * x_ + ky * y_, squared = kx * kx + ky * ky + gain_ * along * along;
-        const double radius = of_edge ? radius_ : radius_ * std::sqrt(squared);
-        if (radius > spectrum_end_px) return 0.0;
-        const FootprintNodes nodes = footprint_nodes(table_, static_cast<float>(radius));
-        const auto spectrum = [&](const FootprintNode* node) {
-            return double(of_edge ? node->moments.edge_ripple[0] : node->moments.ripple[0]);
-        };
-        const double a = spectrum(nodes.a), b = spectrum(nodes.b);
-        return (a + (b - a) * double(nodes.t)) * real::exp(filter_ * (1.0 - squared));
-    }
-
-    const FootprintTable& table_;
-    double radius_, gain_, x_, y_, filter_;
-};
+/// A profile of the smaller radius stretched along the larger one.
+Spectrum spectrum_of(const FootprintTable& table, const Ellipse& e, double stretch) {
+    const double gain = stretch * stretch - 1.0;
+    return {table, std::max(e.smaller, double(shared::SMALLEST_RADIUS_PX)),
+            PixelStretch{1.0 + gain * e.x * e.x, gain * e.x * e.y, 1.0 + gain * e.y * e.y}};
+}
 
 }  // namespace
 
@@ -125,7 +88,7 @@ ShapedFootprint shaped_footprint_at(const FootprintTable& table, const Shape& sh
     f.yy = static_cast<float>(1.0 + shrink * e.y * e.y);
     if (!shared::is_tabulated(shared::node_of_radius(radius_px))) return f;
     const FootprintMass mass = footprint_mass(table, radius_px);
-    const Spectrum spectrum(table, e, stretch);
+    const Spectrum spectrum = spectrum_of(table, e, stretch);
     const double wanted = double(table.integral) * e.larger * e.smaller;
     const double found = mass.profile * stretch * (1.0 + spectrum.ripple(false, x_px, y_px));
     f.round.amplitude = 1.0f;

@@ -24,7 +24,6 @@ using Int = int;
 namespace {
 int min(int a, int b) { return b < a ? b : a; }
 int max(int a, int b) { return a < b ? b : a; }
-double mix(double a, double b, bool take_b) { return take_b ? b : a; }
 int floatBitsToInt(double x) { return glsl::floatBitsToInt(static_cast<float>(x)); }
 #include "footprint.glsl"
 }  // namespace

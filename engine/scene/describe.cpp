@@ -87,8 +87,19 @@ void describe_camera(const Describer& d, CameraParams& c) {
     lens(c.film_width, "film_width", "Film width", "mm", "Width of the film behind focal_length.",
          within(0.001, 1e6), slider(8, 70), only_with("projection", {"perspective"}),
          never_with("focal_length", {0.0}));
-    lens(c.fisheye_fov, "fisheye_fov", "Fisheye angle", "degrees", "The full cone of a fisheye.",
-         within(0.001, 360), slider(90, 360), only_with("projection", {"fisheye"}));
+    lens(c.shift, "shift", "Shift", "frames",
+         "Widths and heights of the frame by which it shows what is farther to the right and up, without "
+         "turning.",
+         range(-10, 10), slider(-0.5, 0.5), only_with("projection", {"perspective"}));
+    lens(c.fisheye_fov, "fisheye_fov", "Fisheye angle", "degrees",
+         "The full cone of a fisheye, as wide as the frame's shorter side.", within(0.001, 360),
+         slider(90, 360), only_with("projection", {"fisheye"}));
+    lens(c.fisheye_tilt, "fisheye_tilt", "Fisheye tilt", "degrees",
+         "How far a fisheye's axis points above the target; 90: the target is on a level dome's lower rim.",
+         range(-180, 180), slider(0, 90), only_with("projection", {"fisheye"}));
+    lens(c.panorama_fov, "panorama_fov", "Panorama width", "degrees",
+         "From the left to the right of an equirectangular or cylindrical picture.", within(0.001, 360),
+         slider(60, 360), only_with("projection", {"equirectangular", "cylindrical"}));
     lens(c.height, "height", "Height", "scene units", "Scene units from bottom to top, orthographic.",
          at_least(1e-6), slider(0.1, 1000), logarithmic(), only_with("projection", {"orthographic"}));
     lens(c.near, "near", "Near", "scene units", "Nothing nearer is drawn.", at_least(1e-9), slider(0.001, 10),

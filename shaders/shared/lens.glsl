@@ -7,13 +7,19 @@
 
 const int PROJECTION_PERSPECTIVE = 0;
 const int PROJECTION_ORTHOGRAPHIC = 1;
+const int PROJECTION_FISHEYE = 2;  // from here on: onto the sphere
+const int PROJECTION_EQUIRECTANGULAR = 3;
+const int PROJECTION_CYLINDRICAL = 4;
+
+const Real SPHERE_TURN = Real(6.283185307179586);  // radians all the way round
 
 struct Lens {
     int projection;    // one of the above
-    Real focal_px;     // px per unit of x / z; with parallel rays px per scene unit
+    Real focal_px;     // px per unit of x / z; with parallel rays px per scene unit; onto the sphere px per radian
     Real center_x_px;  // where the optical axis meets the frame, y down
     Real center_y_px;
     Real near;         // scene units, of what the projection calls depth
     Real far;          // 0: none
     Real near_fade;    // scene units; 0: one radius of the splat
+    Real edge;         // radians from the middle to where the picture ends: a fisheye's cone, a panorama's width; else 0
 };

@@ -1,38 +1,73 @@
 // Projection: camera space (x right, y up, in front is -z) to the frame. To the renderer and the preview all
 // projections are alike. Each is a file of functions with its name in front, a constant in lens.glsl, lines in the table
 // below, a place in the lists of camera/projections.inc and app/gl/program.cpp, and what make_camera makes of its
-// parameters. One under which a ball is no circle draws all splats as ellipsoids: render/shape.h.
-// Needs lens.glsl, instance.glsl and the files of the projections.
+// parameters.
+//
+// Projections onto the sphere draw a splat as a disc there, round in the chord between directions: a pixel's distance is
+// focal_px * |direction of the pixel - direction of the splat|, whatever the frame makes of the sphere, so there are no
+// seams and no poles. Chords make the light right at every size, for a cap with the chord c has the solid angle pi c^2.
+// Needs lens.glsl, instance.glsl, angles.glsl and the files of the projections.
 
 // Rays do not come from the eye but are parallel to the view axis.
 bool has_parallel_rays(Lens lens) { return lens.projection == PROJECTION_ORTHOGRAPHIC; }
+
+// The frame shows directions, all of one length, not points of a plane.
+bool is_onto_sphere(Lens lens) { return lens.projection >= PROJECTION_FISHEYE; }
 
 // The table: what is different from projection to projection.
 
 // Where a splat at p appears.
 Instance instance_of(Lens lens, Vec3 p) {
     if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_instance(lens, p);
+    if (lens.projection == PROJECTION_FISHEYE) return fisheye_instance(lens, p);
+    if (is_onto_sphere(lens)) return panorama_instance(lens, p);
     return perspective_instance(lens, p);
 }
 
 // Direction through a point of the frame, of any length.
 Vec3 ray_through(Lens lens, Float x_px, Float y_px) {
     if (has_parallel_rays(lens)) return Vec3(0.0f, 0.0f, -1.0f);
+    if (lens.projection == PROJECTION_FISHEYE) return fisheye_ray(lens, x_px, y_px);
+    if (is_onto_sphere(lens)) return panorama_ray(lens, x_px, y_px);
     return perspective_ray(lens, x_px, y_px);
+}
+
+// Whether anything can be seen there.
+Bool shows(Lens lens, Float x_px, Float y_px) {
+    if (lens.projection == PROJECTION_FISHEYE) return fisheye_shows(lens, x_px, y_px);
+    if (is_onto_sphere(lens)) return panorama_shows(lens, x_px, y_px);
+    return x_px < 3e38f;
+}
+
+// Half the width of a square around a place on the frame that holds all within reach_px of it, those px measured in the
+// middle of the frame.
+Float frame_reach_px(Lens lens, Float x_px, Float y_px, Float reach_px) {
+    if (!is_onto_sphere(lens)) return reach_px;
+    Float half_chord = min(0.5f * reach_px / lens.focal_px, 1.0f);
+    Float angle = 2.0f * angle_of(half_chord, sqrt(max(1.0f - half_chord * half_chord, 0.0f)));
+    // A px more, for places are rounded.
+    if (lens.projection == PROJECTION_FISHEYE) return fisheye_reach_px(lens, x_px, y_px, angle) + 1.0f;
+    return panorama_reach_px(lens, y_px, angle) + 1.0f;
 }
 
 // The point that appears there at a depth.
 Vec3 point_at_depth(Lens lens, Float x_px, Float y_px, Float depth) {
     if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_point(lens, x_px, y_px, depth);
+    if (is_onto_sphere(lens)) {
+        Vec3 ray = ray_through(lens, x_px, y_px);
+        Float scale = depth / sqrt(dot(ray, ray));
+        return Vec3(ray.x * scale, ray.y * scale, ray.z * scale);
+    }
     return perspective_point(lens, x_px, y_px, depth);
 }
 
 // Angle between the rays of neighbouring pixels, radians.
 Real pixel_spread(Lens lens) { return has_parallel_rays(lens) ? 0.0f : perspective_spread(lens); }
 
-// Depth of a splat along the view axis from its place in the frame and its sort depth.
+// Depth of a splat along the view axis (onto the sphere: from the eye) from its place in the frame and its sort depth.
 Float axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
     if (has_parallel_rays(lens)) return depth;
+    if (is_onto_sphere(lens)) return sqrt(depth);
     return perspective_axis_depth(lens, x_px, y_px, depth);
 }
 
@@ -40,6 +75,7 @@ Float axis_depth(Lens lens, Float x_px, Float y_px, Float depth) {
 // frame_px: no less than the frame's diagonal with the footprint's margin.
 Real small_from(Lens lens, Real radius, Real radius_px, Real frame_px) {
     if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_small_from(lens, radius, radius_px);
+    if (is_onto_sphere(lens)) return radius * lens.focal_px / radius_px;
     return perspective_small_from(lens, radius, radius_px, frame_px);
 }
 
@@ -61,6 +97,12 @@ Float axis_cosine(Lens lens, Vec3 axis, Vec3 p) {
 // To the raster that footprints are normalised for.
 Float snap_px(Float px) { return floor(px * 256.0f + 0.5f) * (1.0f / 256.0f); }
 
+// Px after which the frame shows the same again, to the right, on that raster; 0: never.
+Real period_px(Lens lens) {
+    Real turn_px = SPHERE_TURN * lens.focal_px;
+    return lens.projection > PROJECTION_FISHEYE ? floor(turn_px * 256.0f + 0.5f) * (1.0f / 256.0f) : 0.0f;
+}
+
 Bool is_in_range(Lens lens, Float depth) {
     Real far = lens.far > 0.0f ? lens.far : 3.4e38f;
     return depth > lens.near && depth <= far;
@@ -73,11 +115,23 @@ Float near_fade(Lens lens, Float depth, Float radius) {
 }
 
 // p, or where it would be were it no nearer than near.
-Vec3 beyond_near(Lens lens, Vec3 p) { return Vec3(p.x, p.y, min(p.z, -lens.near)); }
+Vec3 beyond_near(Lens lens, Vec3 p) {
+    if (is_onto_sphere(lens)) {
+        Float scale = max(lens.near / max(sqrt(dot(p, p)), 1e-18f), 1.0f);
+        return Vec3(p.x * scale, p.y * scale, p.z * scale);
+    }
+    return Vec3(p.x, p.y, min(p.z, -lens.near));
+}
 
 // How far from where p appears anything within `reach` scene units of it can, with a margin; all of it lies beyond near.
 Float reach_px(Lens lens, Vec3 p, Float reach, Float margin_px) {
     Instance at = instance_of(lens, p);
+    if (is_onto_sphere(lens)) {
+        // The chord of the angle whose sine is reach / distance.
+        Float sine = min(reach * at.px_per_unit / lens.focal_px, 1.0f);
+        Float chord = sqrt(max(2.0f - 2.0f * sqrt(max(1.0f - sine * sine, 0.0f)), 0.0f));
+        return frame_reach_px(lens, at.x_px, at.y_px, chord * lens.focal_px + margin_px);
+    }
     Instance nearest = instance_of(lens, Vec3(p.x, p.y, p.z + reach));
     Float moved_px = abs(nearest.x_px - at.x_px) + abs(nearest.y_px - at.y_px);
     return reach * nearest.px_per_unit + margin_px + moved_px;
@@ -86,4 +140,13 @@ Float reach_px(Lens lens, Vec3 p, Float reach, Float margin_px) {
 // Whether a square around a splat touches a rectangle from (x0, y0) to (x1, y1).
 Bool touches_rect(Float x_px, Float y_px, Float reach_px, float x0, float y0, float x1, float y1) {
     return x_px + reach_px > x0 && x_px - reach_px < x1 && y_px + reach_px > y0 && y_px - reach_px < y1;
+}
+
+// The same for all places at which the frame shows it.
+Bool appears_in_rect(Lens lens, Float x_px, Float y_px, Float reach_px, float x0, float y0, float x1, float y1) {
+    Bool touches = touches_rect(x_px, y_px, reach_px, x0, y0, x1, y1);
+    Real period = period_px(lens);
+    if (period == 0.0f) return touches;
+    return touches || touches_rect(x_px - period, y_px, reach_px, x0, y0, x1, y1) ||
+           touches_rect(x_px + period, y_px, reach_px, x0, y0, x1, y1);
 }

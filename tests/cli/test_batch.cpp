@@ -281,10 +281,10 @@ TEST_F(Batch, WhatCannotBeRenderedIsSaidWithItsLine) {
         text.replace(text.find(from), from.size(), to);
         write_text(folder / "scene.toml", text);
     };
-    with("[camera]\n", "[camera]\nprojection = \"fisheye\"\n");
-    expect_refused("scene.toml:7: camera.projection: ", "found fisheye");
-    with("[camera]\n", "[camera]\nprojection = \"equirectangular\"\n");
-    expect_refused("scene.toml:7: camera.projection: ", "found equirectangular");
+    with("[camera]\n", "[camera]\nprojection = \"fisheye\"\nfisheye_fov = 361\n");
+    expect_refused("scene.toml:8: camera.fisheye_fov: ", "found 361");
+    with("[camera]\n", "[camera]\nprojection = \"pinhole\"\n");
+    expect_refused("scene.toml:7: camera.projection: ", "found 'pinhole'");
     with("[camera]\n", "[camera]\nfile = \"path.txt\"\n");
     expect_refused("scene.toml:7: camera.file: ", "path.txt");
     with("file = \"stars.pda\"", "file = \"stars.bgeo\"");

@@ -248,14 +248,16 @@ TEST(CameraErrors, EachSaysKeyExpectationAndFinding) {
         change(params);
         return error_of(params);
     };
-    EXPECT_EQ(with([](CameraParams& p) { p.projection = Projection::fisheye; }),
-              "camera.projection: expected perspective or orthographic (other projections come with a later "
-              "release), "
-              "found fisheye");
-    EXPECT_EQ(with([](CameraParams& p) { p.projection = Projection::equirectangular; }),
-              "camera.projection: expected perspective or orthographic (other projections come with a later "
-              "release), "
-              "found equirectangular");
+    EXPECT_EQ(with([](CameraParams& p) {
+                  p.projection = Projection::fisheye;
+                  p.fisheye_fov = 361.0;
+              }),
+              "camera.fisheye_fov: expected degrees above 0, at most 360, found 361");
+    EXPECT_EQ(with([](CameraParams& p) {
+                  p.projection = Projection::equirectangular;
+                  p.panorama_fov = 0.0;
+              }),
+              "camera.panorama_fov: expected degrees above 0, at most 360, found 0");
     EXPECT_EQ(with([](CameraParams& p) { p.file = "move.chan"; }),
               "camera.file: expected no file (camera paths can be imported from a later release on), found "
               "'move.chan'");

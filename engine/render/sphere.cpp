@@ -1,0 +1,193 @@
+#include "render/sphere.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "camera/projection.h"
+#include "core/real.h"
+#include "render/spectrum.h"
+
+namespace astrosplat {
+namespace {
+
+ExactLens exact_lens(const Lens& lens) {
+    return {lens.projection, lens.focal_px, lens.center_x_px, lens.center_y_px,
+            lens.near,       lens.far,      lens.near_fade,   lens.edge};
+}
+
+/// What a place's pixels are wide on the sphere goes into the square of: the frame's px per px of the sphere
+/// there, as a matrix times its transpose.
+PixelStretch stretch_at(const Lens& lens, double x_px, double y_px) {
+    const double x = (x_px - double(lens.center_x_px)) / double(lens.focal_px);
+    const double y = (y_px - double(lens.center_y_px)) / double(lens.focal_px);
+    if (lens.projection == shared::PROJECTION_FISHEYE) {
+        const double angle = std::sqrt(x * x + y * y), sine = real::sin(angle);
+        if (!(angle > 1e-6)) return {};
+        const double across = angle / std::fmax(std::fabs(sine), 1e-3);
+        const double gain = (across * across - 1.0) / (angle * angle);
+        return {1.0 + gain * y * y, -gain * x * y, 1.0 + gain * x * x};
+    }
+    if (lens.projection == shared::PROJECTION_CYLINDRICAL) {
+        const double squared = 1.0 + y * y;
+        return {squared, 0.0, squared * squared};
+    }
+    const double cosine = std::fmax(std::fabs(real::cos(y)), 1e-3);
+    return {1.0 / (cosine * cosine), 0.0, 1.0};
+}
+
+/// The profile's sum over the rows around a pole of an equirectangular frame, each weighted by its pixels'
+/// solid angle: there rows are few and unlike each other, and no spectrum tells their sum.
+class PoleSum {
+  public:
+    PoleSum(const Lens& lens, double y_px) : focal_(lens.focal_px) {
+        const double quarter = 0.5 * real::pi * focal_;
+        const double top = double(lens.center_y_px) - quarter, bottom = double(lens.center_y_px) + quarter;
+        north_ = y_px - top < bottom - y_px;
+        pole_ = north_ ? top : bottom;
+        colatitude_px_ = std::fabs(y_px - pole_);
+    }
+
+    /// How far a place is from the pole, px.
+    double colatitude_px() const { return colatitude_px_; }
+
+    /// Sum over all pixels of weight(squared distance, px) and their solid angles, px of the sphere.
+    template <class Weight>
+    double operator()(double support_px, const Weight& weight) const {
+        // Rows are those of the frame, whose pixels' middles are at halves.
+        const double first =
+            north_ ? std::ceil(pole_ - 0.5) + 0.5 - pole_ : pole_ - (std::floor(pole_ - 0.5) + 0.5);
+        double sum = 0.0;
+        for (double row = first; row < colatitude_px_ + support_px + 1.0; row += 1.0) {
+            if (row < colatitude_px_ - support_px - 1.0) continue;
+            const double area =
+                2.0 * real::pi * focal_ * focal_ *
+                (real::cos(std::fmax(0.0, row - 0.5) / focal_) - real::cos((row + 0.5) / focal_));
+            sum += area * mean_weight(row / focal_, weight);
+        }
+        return sum;
+    }
+
+  private:
+    /// Over all longitudes.
+    template <class Weight>
+    double mean_weight(double colatitude, const Weight& weight) const {
+        constexpr int longitudes = 64;
+        const double own = colatitude_px_ / focal_;
+        const double along = real::cos(own) * real::cos(colatitude),
+                     across = real::sin(own) * real::sin(colatitude);
+        double sum = 0.0;
+        for (int i = 0; i < longitudes; ++i) {
+            const double cosine = along + across * real::cos(2.0 * real::pi * (i + 0.5) / longitudes);
+            sum += weight(2.0 * focal_ * focal_ * std::fmax(0.0, 1.0 - cosine));
+        }
+        return sum / longitudes;
+    }
+
+    double focal_, pole_, colatitude_px_;
+    bool north_;
+};
+
+/// From the view axis, px.
+double focal_angle(const Lens& lens, const glm::dvec3& toward) {
+    return double(lens.focal_px) * real::acos(-toward.z);
+}
+
+/// The same sum for the rim of a fisheye that sees all round, where one direction is the whole circle.
+template <class Weight>
+double rim_sum(const Lens& lens, const glm::dvec3& toward, double support_px, const Weight& weight) {
+    const ExactLens exact_one = exact_lens(lens);
+    const double focal = lens.focal_px, rim = real::pi * focal;
+    const double inner = std::fmax(0.0, focal_angle(lens, toward) - support_px - 1.0);
+    const auto middles_from = [](double px) { return std::ceil(px - 0.5) + 0.5; };
+    double sum = 0.0;
+    const auto add = [&](double from_px, double to_px, double y_px) {
+        for (double x_px = middles_from(from_px); x_px <= to_px; x_px += 1.0) {
+            if (!exact::shows(exact_one, x_px, y_px)) continue;
+            const glm::dvec3 ray = exact::ray_through(exact_one, x_px, y_px), away = focal * (ray - toward);
+            const double x = x_px - double(lens.center_x_px), y = y_px - double(lens.center_y_px);
+            const double angle = std::sqrt(x * x + y * y) / focal;
+            sum += weight(glm::dot(away, away)) * real::sin(angle) / angle;
+        }
+    };
+    for (double y_px = middles_from(double(lens.center_y_px) - rim); y_px <= double(lens.center_y_px) + rim;
+         y_px += 1.0) {
+        const double y = y_px - double(lens.center_y_px);
+        const double outside = std::sqrt(std::fmax(0.0, rim * rim - y * y)),
+                     inside = std::sqrt(std::fmax(0.0, inner * inner - y * y));
+        add(double(lens.center_x_px) - outside, double(lens.center_x_px) - inside, y_px);
+        add(double(lens.center_x_px) + std::fmax(inside, 1e-9), double(lens.center_x_px) + outside, y_px);
+    }
+    return sum;
+}
+
+void normalise(const FootprintTable& table, float radius_px, double found, double edge_found, Footprint& f) {
+    const double wanted = double(table.integral) * radius_px * radius_px;
+    f.amplitude = 1.0f;
+    f.edge_gain = 0.0f;
+    if (radius_px < shared::SMALLEST_RADIUS_PX || !table.flat_core)
+        f.amplitude = static_cast<float>(wanted / found);
+    else
+        f.edge_gain = static_cast<float>((wanted - found) / edge_found);
+}
+
+}  // namespace
+
+void set_directions(const Lens& lens, TilePlanes& planes) {
+    const ExactLens exact_one = exact_lens(lens);
+    constexpr float nowhere = 1e9f;
+    for (Buffer<float>& plane : planes.toward) plane.assign(planes.alpha.size(), nowhere);
+    for (int y = 0; y < planes.height; ++y)
+        for (int x = 0; x < planes.width; ++x) {
+            const double x_px = double(planes.x0 + x) + 0.5, y_px = double(planes.y0 + y) + 0.5;
+            if (!exact::shows(exact_one, x_px, y_px)) continue;
+            const glm::dvec3 ray =
+                exact_one.focal_px * glm::normalize(exact::ray_through(exact_one, x_px, y_px));
+            for (int k = 0; k < 3; ++k) planes.toward[k][planes.at(x, y)] = static_cast<float>(ray[k]);
+        }
+}
+
+Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, float radius_px, float x_px,
+                              float y_px) {
+    Footprint f;
+    footprint_at(table, radius_px, x_px, y_px, f);
+    const float drawn_px = std::max(radius_px, shared::SMALLEST_RADIUS_PX);
+    if (drawn_px > sphere_spectrum_px) return f;
+    Footprint plain = f;
+    plain.amplitude = 1.0f;
+    plain.edge_gain = 0.0f;
+    const auto profile = [&](double squared) {
+        return double(footprint_weight(table, plain, static_cast<float>(std::sqrt(squared))));
+    };
+    const auto edge_of = [&](double squared) {
+        const double p = profile(squared);
+        return p * (1.0 - p);
+    };
+    constexpr double near_pole_px = 12.0, near_rim_px = 4.0;  // so near pixels are counted one by one
+    if (lens.projection == shared::PROJECTION_FISHEYE && double(lens.edge) > 3.14159) {
+        const ExactLens exact_one = exact_lens(lens);
+        const glm::dvec3 toward = glm::normalize(exact::ray_through(exact_one, double(x_px), double(y_px)));
+        if (focal_angle(lens, toward) >
+            real::pi * double(lens.focal_px) - double(f.support_px) - near_rim_px) {
+            normalise(table, radius_px, rim_sum(lens, toward, f.support_px, profile),
+                      table.flat_core ? rim_sum(lens, toward, f.support_px, edge_of) : 1.0, f);
+            return f;
+        }
+    }
+    if (lens.projection == shared::PROJECTION_EQUIRECTANGULAR) {
+        const PoleSum pole(lens, y_px);
+        if (pole.colatitude_px() < double(f.support_px) + near_pole_px) {
+            const double found = pole(f.support_px, profile);
+            const double edge = table.flat_core ? pole(f.support_px, edge_of) : 1.0;
+            normalise(table, radius_px, found, edge, f);
+            return f;
+        }
+    }
+    const FootprintMass mass = footprint_mass(table, drawn_px);
+    const Spectrum spectrum(table, drawn_px, stretch_at(lens, x_px, y_px));
+    normalise(table, radius_px, double(mass.profile) * (1.0 + spectrum.ripple(false, x_px, y_px)),
+              double(mass.edge) * (1.0 + spectrum.ripple(true, x_px, y_px)), f);
+    return f;
+}
+
+}  // namespace astrosplat

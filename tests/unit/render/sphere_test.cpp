@@ -1,0 +1,313 @@
+// Projections onto the sphere through the whole renderer: light at every place and size, pixels against the
+// falloff over angles by brute force, no seams and no poles, the same bits for every tile size, number of
+// threads, region and instruction set.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <ostream>
+
+#include "core/parallel.h"
+#include "core/real.h"
+#include "core/rotation.h"
+#include "core/shared_maths.h"
+#include "core/vector_target.h"
+#include "support/printing.h"
+#include "unit/render/scenes.h"
+
+namespace astrosplat {
+namespace {
+
+using namespace astrosplat::test;
+
+constexpr int wide_px = 512, high_px = 256;
+
+CameraParams params_of(Projection projection) {
+    CameraParams params;
+    params.projection = projection;
+    params.position = glm::dvec3(0.0);
+    params.target = {0.0, 0.0, -1.0};
+    params.fisheye_fov = projection == Projection::fisheye ? 360.0 : 180.0;
+    params.near = 1e-4;
+    return params;
+}
+
+Camera camera_of(Projection projection) { return make_camera(params_of(projection), wide_px, high_px, {}); }
+
+/// From longitude, to the right of -z, and latitude.
+glm::dvec3 direction(double longitude_deg, double latitude_deg) {
+    const double l = real::radians(longitude_deg), b = real::radians(latitude_deg);
+    return {real::cos(b) * real::sin(l), real::sin(b), -real::cos(b) * real::cos(l)};
+}
+
+/// Solid angle of a pixel in px of the middle of the frame; 0 where nothing is shown.
+double solid_angle(const Camera& camera, std::int64_t x, std::int64_t y) {
+    const double x_px = double(x) + 0.5, y_px = double(y) + 0.5;
+    if (!shows(camera, x_px, y_px)) return 0.0;
+    const double u = (x_px - camera.center_x_px) / camera.focal_px,
+                 v = (y_px - camera.center_y_px) / camera.focal_px;
+    if (camera.projection == Projection::fisheye) {
+        const double angle = std::sqrt(u * u + v * v);
+        return angle > 0.0 ? real::sin(angle) / angle : 1.0;
+    }
+    if (camera.projection == Projection::cylindrical) return 1.0 / ((1.0 + v * v) * std::sqrt(1.0 + v * v));
+    const double half = 0.5 / camera.focal_px;
+    return camera.focal_px * (real::sin(v + half) - real::sin(v - half));
+}
+
+double light_on_sphere(const Image& picture, const Camera& camera, int channel) {
+    double sum = 0.0;
+    for (std::int64_t y = 0; y < picture.height; ++y)
+        for (std::int64_t x = 0; x < picture.width; ++x)
+            sum += double(picture.at(x, y)[channel]) * solid_angle(camera, x, y);
+    return sum;
+}
+
+/// A splat of alpha 1/2 in a direction, so wide that its radius is radius_px in the middle of the frame.
+Image one_splat(const Camera& camera, const glm::dvec3& toward, double radius_px, const Falloff& falloff) {
+    constexpr double distance = 7.0;
+    const ShadedSplats splats = make_splats(
+        {{glm::vec3(distance * toward), static_cast<float>(radius_px / camera.focal_px * distance), 0.5f}});
+    RenderLayer layer = layer_of("splat", splats);
+    layer.render.falloff = falloff;
+    return render({&layer, 1}, camera, nullptr, settings_of(wide_px, high_px)).beauty;
+}
+
+struct SphereCase {
+    Projection projection;
+    Falloff::Shape shape;
+};
+void PrintTo(const SphereCase& c, std::ostream* out) {
+    *out << name_of(c.projection) << ", " << name_of(c.shape);
+}
+
+class SphereLight : public ::testing::TestWithParam<SphereCase> {};
+
+TEST_P(SphereLight, IsConservedAtEveryPlaceAndSize) {
+    const Camera camera = camera_of(GetParam().projection);
+    const Falloff falloff{GetParam().shape, 0.5f, 4.5f};
+    const bool cylinder = GetParam().projection == Projection::cylindrical;
+    double worst = 0.0;
+    for (const double radius_px : {0.02, 0.4, 1.3, 3.7, 11.0, 40.0})
+        for (const double latitude : {0.0, -33.3, 61.7, 87.1, -89.3, 89.74, 90.0})
+            for (const double longitude : {0.1, -120.9, 180.0}) {
+                if (radius_px > 0.99 * camera.focal_px) continue;  // the eye would be inside, and it fade
+                const double angle = 2.0 * real::degrees(radius_px / camera.focal_px);
+                if (cylinder && std::fabs(latitude) + angle > 38.0) continue;  // leaves the frame
+                const glm::dvec3 toward = direction(longitude, latitude);
+                const double wanted = 0.5 * falloff_integral(falloff) * radius_px * radius_px;
+                const double error =
+                    light_on_sphere(one_splat(camera, toward, radius_px, falloff), camera, 3) / wanted - 1.0;
+                worst = std::max(worst, std::fabs(error));
+                EXPECT_NEAR(error, 0.0, 0.005) << "radius " << radius_px << " px at longitude " << longitude
+                                               << ", latitude " << latitude;
+            }
+    RecordProperty("worst", std::to_string(worst));
+}
+
+std::vector<SphereCase> sphere_cases() {
+    std::vector<SphereCase> cases;
+    for (const Projection p : {Projection::fisheye, Projection::equirectangular, Projection::cylindrical})
+        for (const Falloff::Shape s : all_shapes) cases.push_back({p, s});
+    return cases;
+}
+INSTANTIATE_TEST_SUITE_P(All, SphereLight, ::testing::ValuesIn(sphere_cases()));
+
+// So wide that the pixel filter does not matter: each pixel is the falloff of the chord to the splat, also
+// round the seam, over the poles and behind a fisheye.
+TEST(Sphere, PixelsAreTheFalloffOfTheChord) {
+    const Falloff falloff{Falloff::Shape::gaussian, 0.5f, 4.5f};
+    for (const Projection projection :
+         {Projection::fisheye, Projection::equirectangular, Projection::cylindrical}) {
+        const Camera camera = camera_of(projection);
+        const double radius_px = 0.6 * camera.focal_px;
+        for (const glm::dvec3& toward :
+             {direction(0.0, 0.0), direction(175.0, 12.0), direction(-60.0, 80.0), direction(100.0, -90.0)}) {
+            const Image picture = one_splat(camera, toward, radius_px, falloff);
+            double worst = 0.0;
+            for (std::int64_t y = 0; y < high_px; ++y)
+                for (std::int64_t x = 0; x < wide_px; ++x) {
+                    const double x_px = double(x) + 0.5, y_px = double(y) + 0.5;
+                    const double chord =
+                        glm::length(ray_direction(camera, x_px, y_px) - toward) * camera.focal_px;
+                    const double wanted =
+                        shows(camera, x_px, y_px) ? 0.5 * falloff_value(falloff, chord / radius_px) : 0.0;
+                    worst = std::max(worst, std::fabs(double(picture.at(x, y)[3]) - wanted));
+                }
+            EXPECT_LT(worst, 0.005) << name_of(projection) << ", " << toward.x << " " << toward.y << " "
+                                    << toward.z;
+        }
+    }
+}
+
+float random_share(std::uint32_t n, std::uint32_t purpose) {
+    return shared::as_uniform(shared::as_hash(11u, n, 0u, purpose));
+}
+
+/// A cloud all around the eye: many sizes, some splats across every seam and pole.
+ShadedSplats cloud_around(std::uint32_t count) {
+    std::vector<OneSplat> splats;
+    for (std::uint32_t n = 0; n < count; ++n) {
+        const double height = 2.0 * random_share(n, 1) - 1.0, turn = 360.0 * random_share(n, 2);
+        const float size = random_share(n, 3);
+        OneSplat s;
+        s.position = glm::vec3(direction(turn, real::degrees(real::asin(height)))) *
+                     (2.0f + std::floor(random_share(n, 4) * 8.0f));
+        s.radius = 0.01f + 1.5f * size * size * size * size * size;
+        s.alpha = random_share(n, 5);
+        s.color = {random_share(n, 6) * 1.5f, random_share(n, 7), random_share(n, 8)};
+        splats.push_back(s);
+    }
+    return make_splats(splats);
+}
+
+class SphereCloud : public ::testing::TestWithParam<Projection> {
+  protected:
+    SphereCloud() {
+        for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::absorb, Blend::lighten}) {
+            RenderLayer layer = layer_of("layer", splats, blend, all_shapes[layers.size()]);
+            layer.render.opacity = 0.3f;
+            if (blend == Blend::add) layer.render.lod = {30.0f, 64, 0.0f};
+            layers.push_back(layer);
+        }
+    }
+    Image picture(const RenderSettings& settings = settings_of(wide_px, high_px)) const {
+        return render(layers, camera, nullptr, settings).beauty;
+    }
+
+    ShadedSplats splats = cloud_around(3000);
+    std::vector<RenderLayer> layers;
+    Camera camera = [] {
+        CameraParams params = params_of(GetParam());
+        params.fisheye_fov = 240.0;
+        return make_camera(params, wide_px, high_px, {});
+    }();
+};
+
+TEST_P(SphereCloud, HasTheSameBitsForThreadsTilesAndInstructionSets) {
+    const Image expected = picture();
+    const int threads = thread_count();
+    for (const int n : {1, 3}) {
+        set_thread_count(n);
+        EXPECT_EQ(expected.pixels, picture().pixels) << n << " threads";
+    }
+    set_thread_count(threads);
+    RenderSettings settings = settings_of(wide_px, high_px);
+    for (const int tile : {16, 48, 128}) {
+        settings.tile_px = tile;
+        EXPECT_EQ(expected.pixels, picture(settings).pixels) << tile << " px";
+    }
+    for (const std::string& target : vector_targets()) {
+        set_vector_target(target);
+        EXPECT_EQ(expected.pixels, picture().pixels) << target;
+    }
+    set_vector_target("best");
+}
+
+TEST_P(SphereCloud, HasTheSameBitsInBandsAndRegions) {
+    const Image expected = picture();
+    RenderSettings settings = settings_of(wide_px, high_px);
+    settings.memory_limit_bytes = 200000;
+    EXPECT_EQ(expected.pixels, picture(settings).pixels);
+    for (const Region& region : {Region{0, 31, 77, 60}, Region{401, 0, 111, 256}}) {
+        settings = settings_of(wide_px, high_px);
+        settings.region = region;
+        const Image part = picture(settings);
+        for (std::int64_t y = 0; y < region.height; ++y)
+            for (std::int64_t x = 0; x < 4 * region.width; ++x)
+                ASSERT_EQ(part.at(0, y)[x], expected.at(region.x, region.y + y)[x]) << x / 4 << ", " << y;
+    }
+}
+
+// The seam of one is in the middle of the other.
+TEST(Sphere, HasNoSeam) {
+    const ShadedSplats splats = cloud_around(3000);
+    RenderLayer layer = layer_of("cloud", splats, Blend::over, Falloff::Shape::gaussian);
+    for (const Projection projection : {Projection::equirectangular, Projection::cylindrical}) {
+        CameraParams params = params_of(projection);
+        const auto picture = [&] {
+            return render({&layer, 1}, make_camera(params, wide_px, high_px, {}), nullptr,
+                          settings_of(wide_px, high_px))
+                .beauty;
+        };
+        const Image ahead = picture();
+        params.target = {0.0, 0.0, 1.0};
+        const Image behind = picture();
+        double worst = 0.0, brightest = 0.0;
+        for (std::int64_t y = 0; y < high_px; ++y)
+            for (std::int64_t x = 0; x < wide_px; ++x)
+                for (int k = 0; k < 4; ++k) {
+                    const double a = ahead.at(x, y)[k], b = behind.at((x + wide_px / 2) % wide_px, y)[k];
+                    worst = std::max(worst, std::fabs(a - b));
+                    brightest = std::max(brightest, a);
+                }
+        EXPECT_GT(brightest, 0.5);
+        EXPECT_LT(worst, 0.01) << name_of(projection);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SphereCloud,
+                         ::testing::Values(Projection::fisheye, Projection::equirectangular,
+                                           Projection::cylindrical));
+
+// Through a narrow one the sphere is as good as flat.
+TEST(Sphere, ANarrowFisheyeIsPerspective) {
+    CameraParams params = params_of(Projection::fisheye);
+    params.fisheye_fov = 1.0;
+    const ShadedSplats splats =
+        make_splats({{{0.03f, -0.02f, -10.0f}, 0.02f, 0.7f}, {{-0.05f, 0.01f, -9.0f}, 0.004f}});
+    RenderLayer layer = layer_of("two", splats, Blend::over, Falloff::Shape::gaussian);
+    const auto picture = [&](const Camera& camera) {
+        return render({&layer, 1}, camera, nullptr, settings_of(high_px, high_px)).beauty;
+    };
+    const Image fisheye = picture(make_camera(params, high_px, high_px, {}));
+    params.projection = Projection::perspective;
+    params.fov = 1.0;
+    const Image flat = picture(make_camera(params, high_px, high_px, {}));
+    EXPECT_GT(*std::ranges::max_element(flat.pixels), 0.5f);
+    for (std::size_t i = 0; i < flat.pixels.size(); ++i)
+        ASSERT_NEAR(fisheye.pixels[i], flat.pixels[i], 0.003);
+}
+
+// What is behind the rim of a fisheye is not shown, nor is the environment; alpha says so.
+TEST(Sphere, AFisheyeIsRound) {
+    CameraParams params = params_of(Projection::fisheye);
+    params.fisheye_fov = 180.0;
+    const Camera camera = make_camera(params, high_px, high_px, {});
+    const ShadedSplats splats = make_splats({{{1.0f, 1.0f, 0.2f}, 0.5f}});
+    RenderLayer layer = layer_of("splat", splats);
+    EnvironmentFaces faces(1, {make_image(4, 3, 3)});
+    std::ranges::fill(faces[0][0].pixels, 0.25f);
+    Environment environment;
+    environment.faces = std::make_shared<const EnvironmentFaces>(std::move(faces));
+    const Image picture = render({&layer, 1}, camera, &environment, settings_of(high_px, high_px)).beauty;
+    for (std::int64_t y = 0; y < high_px; ++y)
+        for (std::int64_t x = 0; x < high_px; ++x) {
+            const double r = std::hypot(double(x) + 0.5 - 128.0, double(y) + 0.5 - 128.0);
+            EXPECT_EQ(picture.at(x, y)[3], r <= 128.0 ? 1.0f : 0.0f) << x << ", " << y;
+            if (r > 128.0) {
+                EXPECT_EQ(picture.at(x, y)[0], 0.0f) << x << ", " << y;
+            } else if (x < 64 && y > 128) {
+                EXPECT_NEAR(picture.at(x, y)[0], 0.25f, 1e-6);
+            }
+        }
+}
+
+// On a level dome the target lies on the lower rim, what is above the eye in the middle.
+TEST(Sphere, TiltedFisheyesAreDomes) {
+    CameraParams params = params_of(Projection::fisheye);
+    params.fisheye_fov = 180.0;
+    params.fisheye_tilt = 90.0;
+    const Camera camera = make_camera(params, high_px, high_px, {});
+    const auto expect_at = [&](const glm::dvec3& toward, double x_px, double y_px) {
+        const glm::dvec3 ray = ray_direction(camera, x_px, y_px);
+        EXPECT_LT(glm::length(ray - toward), 1e-6) << x_px << ", " << y_px;
+    };
+    expect_at({0.0, 0.0, -1.0}, 128.0, 256.0);
+    expect_at({0.0, 1.0, 0.0}, 128.0, 128.0);
+    expect_at({1.0, 0.0, 0.0}, 256.0, 128.0);
+}
+
+}  // namespace
+}  // namespace astrosplat
