@@ -44,10 +44,21 @@ bool has_stars(const Scene& now, const std::string& layer_name) {
     });
 }
 
+// Keys of lenses that the camera does not have; the shift came later than frames in perspective.
+bool is_of_another_lens(const std::string& key, const CameraParams& camera) {
+    const bool fisheye = camera.projection == Projection::fisheye;
+    if (key == "camera.shift")
+        return camera.projection != Projection::perspective || camera.shift == glm::dvec2(0.0);
+    if (key == "camera.fisheye_tilt") return !fisheye;
+    if (key == "camera.panorama_fov") return fisheye || !is_onto_sphere(camera.projection);
+    return false;
+}
+
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
     // Frames from before there was a choice keep their hash.
     if (spec.generic_key.text() == "output.primaries")
         return now.output.primaries == OutputParams::Primaries::rec709;
+    if (is_of_another_lens(spec.generic_key.text(), now.camera)) return true;
     if (shapes_stars(spec) && !has_stars(now, spec.key.layer())) return true;
     if (spec.generic_key.is_below("environment")) return !shows(now.environment);
     return std::ranges::any_of(now.layers, [&](const LayerParams& layer) {

@@ -132,6 +132,7 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
         if (key == "output.fps" || parameter.spec.key == "layer.dust.visible" || key == "camera.position")
             continue;
         if (parameter.spec.section == "Star image") continue;  // of layers that are stars
+        if (key == "camera.fisheye_tilt" || key == "camera.panorama_fov") continue;  // of other lenses
         const Value value = parameter.get();
         if (parameter.spec.type != ParameterType::number && parameter.spec.type != ParameterType::boolean)
             continue;
@@ -150,6 +151,20 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
 TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
     EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("primaries"), std::string::npos);
     EXPECT_NE(changed([](Scene& s) { s.output.primaries = OutputParams::Primaries::acescg; }), hash(scene()));
+    for (const char* key : {"camera.shift", "camera.fisheye_tilt", "camera.panorama_fov"})
+        EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find(key), std::string::npos) << key;
+    EXPECT_NE(changed([](Scene& s) { s.camera.shift.x = 0.1; }), hash(scene()));
+    const auto of_lens = [&](Projection projection, auto change) {
+        return changed([&](Scene& s) {
+            s.camera.projection = projection;
+            change(s.camera);
+        });
+    };
+    const auto nothing = [](CameraParams&) {};
+    EXPECT_NE(of_lens(Projection::fisheye, [](CameraParams& c) { c.fisheye_tilt = 20.0; }),
+              of_lens(Projection::fisheye, nothing));
+    EXPECT_NE(of_lens(Projection::cylindrical, [](CameraParams& c) { c.panorama_fov = 200.0; }),
+              of_lens(Projection::cylindrical, nothing));
 }
 
 TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
