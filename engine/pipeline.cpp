@@ -8,6 +8,7 @@
 #include "core/clock.h"
 #include "core/text.h"
 #include "look/apply.h"
+#include "mean_frame.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "source/texture.h"
@@ -84,6 +85,9 @@ struct Pipeline::State {
     void shade(std::size_t index, const LayerParams& params, const Progress& progress);
     std::vector<RenderLayer> visible_layers(const Scene& now) const;
     Camera camera(const Scene& now, const RenderSettings& settings) const;
+    /// One rendering of the scene as it stands, through a place of the lens.
+    RenderedFrame rendering(const Scene& now, const glm::dvec2& lens, const RenderSettings& settings,
+                            const Progress& progress, const TileDone& tile_done);
     const Environment* environment_at(const Scene& now);
 };
 
@@ -228,15 +232,38 @@ void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const S
 RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, const Progress& progress,
                               const TileDone& tile_done) {
     const Scene now = scene_at(state_->scene, frame);
+    if (!is_blurred(now.camera)) return state_->rendering(now, {}, settings, progress, tile_done);
+    const auto samples = static_cast<int>(now.output.samples);
+    RenderedFrame sum;
+    for (int i = 0; i < samples; ++i) {
+        Progress part = progress;
+        if (progress.report)
+            part.report = [&](double fraction) { progress.report((i + fraction) / samples); };
+        const CameraSample sample = camera_sample(now.camera, i, samples);
+        const Scene then = sample.frames == 0.0 ? now : scene_at(state_->scene, frame + sample.frames);
+        add_rendering(sum, state_->rendering(then, sample.lens, settings, part, {}));
+    }
+    divide_sum(sum, samples);
+    const Region& region = settings.region;
+    const Region whole{0, 0, settings.width, settings.height};
+    if (tile_done) tile_done(region.width > 0 ? region : whole, sum);
+    return sum;
+}
+
+RenderedFrame Pipeline::State::rendering(const Scene& now, const glm::dvec2& lens,
+                                         const RenderSettings& settings, const Progress& progress,
+                                         const TileDone& tile_done) {
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         progress.check();
-        if (!state_->drawn(now, i)) continue;
+        if (!drawn(now, i)) continue;
         const LayerParams& layer = now.layers[i];
-        check_extent(world_bounds(state_->layers[i].box, render_layer(layer)), layer.name, farthest_in_world);
-        state_->shade(i, layer, progress);
+        check_extent(world_bounds(layers[i].box, render_layer(layer)), layer.name, farthest_in_world);
+        shade(i, layer, progress);
     }
-    return render(state_->visible_layers(now), state_->camera(now, settings), state_->environment_at(now),
-                  settings, progress, &state_->render_cache, tile_done);
+    const Camera seen =
+        through_lens(camera(now, settings), now.camera, lens, static_cast<double>(settings.width));
+    return render(visible_layers(now), seen, environment_at(now), settings, progress, &render_cache,
+                  tile_done);
 }
 
 RenderSettings Pipeline::settings(double frame) const {

@@ -18,13 +18,18 @@
 namespace astrosplat {
 namespace {
 
+/// Whether the frame sees what is animated move: through the scene's camera, with an open shutter. Layers
+/// shown alone would come and go with their tracks.
+bool sees_motion(const Scene& scene, const ViewState& view) {
+    return scene.camera.shutter > 0.0 && view.solo.empty() && view.view == ViewKind::camera;
+}
+
 /// What a frame does not depend on, at its default, so that editing it does not make the frame again.
 void forget_what_is_not_seen(Scene& scene) {
     const OutputParams standard;
     scene.file.clear();
     scene.provenance = {};
     scene.references.clear();
-    scene.animation.clear();
     for (LayerParams& layer : scene.layers) layer.source.texture = {};  // the sets have what it says
     OutputParams& output = scene.output;
     output.frames = standard.frames;
@@ -83,6 +88,10 @@ ViewRequest make_request(const Session& session, Scene now) {
     made.width = size.x;
     made.height = size.y;
     const double aspect = static_cast<double>(made.width) / static_cast<double>(made.height);
+    if (sees_motion(now, session.view))
+        made.frame = session.view.frame;
+    else
+        now.animation.clear();
     now.camera = view_camera(now, session.view, made.box, aspect);
     forget_what_is_not_seen(now);
     now.output.width = made.width;

@@ -29,7 +29,7 @@ Region whole(const ViewRequest& request) {
 }  // namespace
 
 bool ViewRequest::operator==(const ViewRequest& other) const {
-    return width == other.width && height == other.height && files == other.files &&
+    return width == other.width && height == other.height && files == other.files && frame == other.frame &&
            region.x == other.region.x && region.y == other.region.y && region.width == other.region.width &&
            region.height == other.region.height &&
            std::equal(layers.begin(), layers.end(), other.layers.begin(), other.layers.end(), same_set) &&
@@ -189,6 +189,7 @@ void ViewFrame::begin_final() {
     }
     wanted.environment = environment_;
     wanted.files = request_->files;
+    wanted.frame = request_->frame;
     wanted.width = request_->width;
     wanted.height = request_->height;
     wanted.region = request_->region;

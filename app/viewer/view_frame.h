@@ -32,7 +32,8 @@ struct ViewRequest {
     Bounds box;                                              // of the visible layers, world space
     int width = 0, height = 0;                               // px of the whole frame
     std::uint64_t files = 0;                                 // another number: pictures were changed on disk
-    Region region;                                           // the part to be seen; empty: all
+    double frame = 1.0;  // at which the scene's animation, if it has kept any, is evaluated
+    Region region;       // the part to be seen; empty: all
     bool operator==(const ViewRequest& other) const;
 };
 

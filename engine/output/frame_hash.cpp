@@ -44,12 +44,16 @@ bool has_stars(const Scene& now, const std::string& layer_name) {
     });
 }
 
-// Keys of lenses that the camera does not have; the shift came later than frames in perspective.
+// Keys of lenses that the camera does not have, and of blurs that are off.
 bool is_of_another_lens(const std::string& key, const CameraParams& camera) {
     const bool fisheye = camera.projection == Projection::fisheye;
     if (key == "camera.shift")
         return camera.projection != Projection::perspective || camera.shift == glm::dvec2(0.0);
     if (key == "camera.fisheye_tilt") return !fisheye;
+    if (key == "camera.shutter") return camera.shutter == 0.0;
+    if (key == "camera.f_number" || key == "camera.focus_distance" || key == "camera.unit_mm")
+        return camera.f_number == 0.0;
+    if (key == "output.samples") return !is_blurred(camera);
     if (key == "camera.panorama_fov") return fisheye || !is_onto_sphere(camera.projection);
     return false;
 }
@@ -106,6 +110,23 @@ void check_unchanged(const HashedFiles& files, const Progress& progress) {
     }
 }
 
+// What is animated, at the times that an open shutter sees.
+std::string FrameHasher::moving_text(double frame, const Scene& now) const {
+    std::string text;
+    const auto samples = static_cast<int>(now.output.samples);
+    for (int i = 0; i < samples; ++i) {
+        Scene then = scene_at(scene_, frame + camera_sample(now.camera, i, samples).frames);
+        for (const Parameter& parameter : describe(then).parameters) {
+            const bool moves = std::ranges::any_of(scene_.animation, [&](const Track& track) {
+                return track.key.text() == parameter.spec.key.text();
+            });
+            if (moves)
+                text += fmt::format("{} {} = {}\n", i, parameter.spec.key.text(), to_toml(parameter.get()));
+        }
+    }
+    return text;
+}
+
 std::string FrameHasher::canonical_text(std::int64_t frame) {
     Scene now = scene_at(scene_, static_cast<double>(frame));
     std::string text = fmt::format("pixels = {}\n", pixel_version);
@@ -125,6 +146,7 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
             for (const Value& each : *names) text += " " + file_text(each.text() ? *each.text() : "");
         text += "\n";
     }
+    if (now.camera.shutter > 0.0) text += moving_text(static_cast<double>(frame), now);
     for (const LayerParams& layer : now.layers) {
         if (!layer.visible) continue;
         text += own_pictures(layer);

@@ -49,6 +49,7 @@ class FrameHasher {
   private:
     std::string file_text(const std::filesystem::path& file);
     std::string own_pictures(const LayerParams& layer);
+    std::string moving_text(double frame, const Scene& now) const;
 
     Scene scene_;
     Region region_;

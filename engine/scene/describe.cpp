@@ -64,6 +64,9 @@ void describe_output(const Describer& d, OutputParams& o) {
                        slider(-8, 8));
     picture(o.pixel_filter, "pixel_filter", "Pixel filter", "px", "Standard deviation of the pixel filter.",
             range(0.3, 2));
+    picture(o.samples, "samples", "Samples", "",
+            "Renderings whose mean a frame with motion blur or depth of field is.", range(1, 4096),
+            slider(1, 256));
 }
 
 void describe_camera(const Describer& d, CameraParams& c) {
@@ -102,6 +105,20 @@ void describe_camera(const Describer& d, CameraParams& c) {
          slider(60, 360), only_with("projection", {"equirectangular", "cylindrical"}));
     lens(c.height, "height", "Height", "scene units", "Scene units from bottom to top, orthographic.",
          at_least(1e-6), slider(0.1, 1000), logarithmic(), only_with("projection", {"orthographic"}));
+    lens(c.shutter, "shutter", "Shutter", "degrees",
+         "Motion blur: how long of a frame's 360 the shutter is open, half before it, half after.",
+         within(0, 720), slider(0, 360), zero_is("Off"));
+    lens(c.f_number, "f_number", "F-number", "",
+         "Depth of field: the focal length over the aperture's width.", within(0, 1e6), slider(0, 22),
+         only_with("projection", {"perspective"}), zero_is("Off"));
+    lens(c.focus_distance, "focus_distance", "Focus distance", "scene units",
+         "Where it is sharp, along the line of sight; 0: at the target's distance.", at_least(0),
+         slider(0, 100), only_with("projection", {"perspective"}), never_with("f_number", {0.0}),
+         zero_is("Target"));
+    lens(c.unit_mm, "unit_mm", "Unit", "mm",
+         "Of a scene unit, for depth of field: as if the scene was a model of that size.", within(1e-6, 1e12),
+         slider(1, 100000), logarithmic(), only_with("projection", {"perspective"}),
+         never_with("f_number", {0.0}));
     lens(c.near, "near", "Near", "scene units", "Nothing nearer is drawn.", at_least(1e-9), slider(0.001, 10),
          logarithmic());
     lens(c.far, "far", "Far", "scene units", "Nothing farther is drawn; 0: no limit.", at_least(0),

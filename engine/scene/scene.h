@@ -52,6 +52,7 @@ struct OutputParams {
     View view = View::automatic;
     double exposure = 0.0;      // stops
     double pixel_filter = 0.5;  // px
+    std::int64_t samples = 32;  // renderings of a frame with motion blur or depth of field
     bool holds(std::string_view aov) const { return std::ranges::find(aovs, aov) != aovs.end(); }
     bool operator==(const OutputParams&) const = default;
 };

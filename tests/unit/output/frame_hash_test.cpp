@@ -132,7 +132,9 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
         if (key == "output.fps" || parameter.spec.key == "layer.dust.visible" || key == "camera.position")
             continue;
         if (parameter.spec.section == "Star image") continue;  // of layers that are stars
-        if (key == "camera.fisheye_tilt" || key == "camera.panorama_fov") continue;  // of other lenses
+        if (key == "camera.fisheye_tilt" || key == "camera.panorama_fov" || key == "camera.focus_distance" ||
+            key == "camera.unit_mm" || key == "output.samples")
+            continue;  // of other lenses and no blur
         const Value value = parameter.get();
         if (parameter.spec.type != ParameterType::number && parameter.spec.type != ParameterType::boolean)
             continue;
@@ -148,12 +150,34 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
     EXPECT_GT(tried, 60);
 }
 
+// The shutter sees frames on either side, so what moves there counts, and only there.
+TEST_F(FrameHashTest, AnOpenShutterSeesWhatMovesAroundTheFrame) {
+    const auto with_end = [&](double shutter, double last_key, double value) {
+        return changed(
+            [&](Scene& s) {
+                s.camera.shutter = shutter;
+                Track track{ParameterKey("camera.roll"), {}};
+                track.interpolation = Interpolation::linear;
+                track.keyframes.emplace_back(1.0, std::vector<double>{0.0}, Interpolation::linear);
+                track.keyframes.emplace_back(5.0, std::vector<double>{10.0}, Interpolation::linear);
+                track.keyframes.emplace_back(last_key, std::vector<double>{value}, Interpolation::linear);
+                s.animation = {track};
+            },
+            5);
+    };
+    EXPECT_EQ(with_end(0.0, 6.0, 20.0), with_end(0.0, 6.0, 40.0));
+    EXPECT_NE(with_end(180.0, 6.0, 20.0), with_end(180.0, 6.0, 40.0));
+}
+
 TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
     EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("primaries"), std::string::npos);
     EXPECT_NE(changed([](Scene& s) { s.output.primaries = OutputParams::Primaries::acescg; }), hash(scene()));
-    for (const char* key : {"camera.shift", "camera.fisheye_tilt", "camera.panorama_fov"})
+    for (const char* key : {"camera.shift", "camera.fisheye_tilt", "camera.panorama_fov", "camera.shutter",
+                            "camera.f_number", "camera.focus_distance", "camera.unit_mm", "output.samples"})
         EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find(key), std::string::npos) << key;
     EXPECT_NE(changed([](Scene& s) { s.camera.shift.x = 0.1; }), hash(scene()));
+    EXPECT_NE(changed([](Scene& s) { s.camera.shutter = 90.0; }), hash(scene()));
+    EXPECT_NE(changed([](Scene& s) { s.camera.f_number = 2.0; }), hash(scene()));
     const auto of_lens = [&](Projection projection, auto change) {
         return changed([&](Scene& s) {
             s.camera.projection = projection;

@@ -17,6 +17,7 @@ aovs = []
 view = "auto"
 exposure = 0.0
 pixel_filter = 0.5
+samples = 32
 
 [camera]
 projection = "perspective"
@@ -32,6 +33,10 @@ shift = [0.0, 0.0]
 fisheye_fov = 180.0
 fisheye_tilt = 0.0
 panorama_fov = 360.0
+shutter = 0.0
+f_number = 0.0
+focus_distance = 0.0
+unit_mm = 1000.0
 height = 10.0
 near = 0.01
 far = 0.0
