@@ -6,6 +6,7 @@
 
 #include "camera/projection.h"
 #include "render/child_noise.h"
+#include "render/project_stars.h"
 #include "render/project_vector.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
@@ -211,6 +212,7 @@ float support_px(const LayerProjection& layer, const ScreenSplat& splat, const B
 
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
              Buffer<ScreenSplat>& out, Buffer<Shape>& shapes) {
+    if (!layer.star_dots.empty()) return project_stars(layer, begin, end, rect, out, shapes);
     const ShadedSplats& splats = *layer.splats;
     const bool balls = splats.stretch.empty();
     if (!layer.lod && balls) begin = project_whole_blocks(layer, begin, end, rect, out);

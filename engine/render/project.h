@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "camera/camera.h"
 #include "core/buffer.h"
@@ -15,6 +16,15 @@ namespace astrosplat {
 /// Where on the frame splats are wanted, px of the whole frame.
 struct ScreenRect {
     float x0, y0, x1, y1;
+};
+
+/// One of the gaussians that the image of a star is made of (project_stars.h).
+struct StarDot {
+    float share = 1.0f;      // of the star's light
+    float per_light = 1.0f;  // colour that gives a light of 1 over all pixels
+    float radius_px = 1.0f;  // of the falloff
+    bool is_round = true;
+    Shape shape{};  // else
 };
 
 /// One layer's constants for one frame.
@@ -32,7 +42,8 @@ struct LayerProjection {
     LayerRender render;
     std::uint32_t seed = 1;
     std::uint16_t layer = 0;
-    const LodTable* lod = nullptr;  // set when lod_limit_px > 0
+    const LodTable* lod = nullptr;   // set when lod_limit_px > 0
+    std::vector<StarDot> star_dots;  // of a layer of stars; else empty
 };
 
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,

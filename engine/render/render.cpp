@@ -19,6 +19,7 @@
 #include "render/fold.h"
 #include "render/lod.h"
 #include "render/project.h"
+#include "render/project_stars.h"
 #include "render/resolve.h"
 #include "render/scatter.h"
 #include "render/spectrum.h"
@@ -47,6 +48,7 @@ float largest_light(std::span<const RenderLayer> layers, const Progress& progres
     constexpr std::int64_t chunk = 1 << 18;
     float largest = 0.0f;
     for (const RenderLayer& layer : layers) {
+        if (layer.stars) continue;  // largest_star_light
         const ShadedSplats& splats = *layer.splats;
         std::vector<float> partial(static_cast<std::size_t>((splats.size() + chunk - 1) / chunk), 0.0f);
         parallel_chunks(splats.size(), chunk, [&](std::int64_t begin, std::int64_t end, int) {
@@ -174,11 +176,14 @@ void prepare(Job& job, RenderCache::State& cache) {
         projection.variance = footprints.variance;
         if (projection.lod_limit_px > 0.0f)
             projection.lod = &cache.lod(render.falloff, finest_level(render.lod.max_children), job.progress);
+        if (layers[l].stars) projection.star_dots = star_dots(*layers[l].stars, footprints);
         job.projections.push_back(projection);
         job.fold_layers.push_back(
             {&footprints, render.blend, render.holdout, render.absorb, layers[l].absorbs});
     }
     float largest = largest_light(layers, job.progress);
+    for (const LayerProjection& projection : job.projections)
+        if (!projection.star_dots.empty()) largest = std::max(largest, largest_star_light(projection));
     if (job.environment) largest = std::max(largest, job.environment->largest);
     job.fold.stop = stop_threshold(largest, settings.exposure);
     job.fold.lens = make_lens(camera);
@@ -332,6 +337,19 @@ std::vector<TileGrid> make_bands(const Job& job, const TileGrid& grid, std::int6
     return bands;
 }
 
+/// Stars as they are drawn: gaussians that add light.
+std::vector<RenderLayer> as_drawn(std::span<const RenderLayer> layers) {
+    std::vector<RenderLayer> drawn(layers.begin(), layers.end());
+    for (RenderLayer& layer : drawn) {
+        if (!layer.stars) continue;
+        layer.render.falloff = {Falloff::Shape::gaussian, 0.5f, 4.5f};
+        layer.render.blend = Blend::add;
+        layer.render.lod = {};
+        layer.absorbs = false;
+    }
+    return drawn;
+}
+
 }  // namespace
 
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
@@ -347,7 +365,8 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                              " splats in one layer, at most 4294967295 can be drawn");
     std::unique_ptr<RenderCache> own = cache ? nullptr : std::make_unique<RenderCache>();
     RenderCache::State& state = cache ? *cache->state : *own->state;
-    Job job{layers, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
+    const std::vector<RenderLayer> drawn = as_drawn(layers);
+    Job job{drawn, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
     prepare(job, state);
     const auto [grid, records] = choose_tiles(job);
     const std::int64_t band_rows = rows_per_band(records, settings.memory_limit_bytes, grid.rows());

@@ -1,0 +1,168 @@
+#include "render/project_stars.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "camera/projection.h"
+#include "core/real.h"
+#include "render/project_vector.h"
+#include "render/shape.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float faintest_peak = 1.0f / 16384.0f;  // of a wing's or a spike's dot, scene light
+constexpr float infinity_from = 1e15f;            // scene units
+
+/// A gaussian of these deviations, px, the pixel filter included, along (x, y) and across.
+StarDot make_dot(double share, double along_px, double across_px, double x, double y,
+                 const FootprintTable& footprint) {
+    // No narrower than a pixel's filter and a little: light is right at every radius, peaks stay in range.
+    const double filter = double(footprint.pixel_filter_px), least = 0.25;
+    const auto radius = [&](double deviation) {
+        const double own = std::sqrt(std::fmax(0.0, deviation * deviation - filter * filter));
+        return std::fmax(own / std::sqrt(double(footprint.variance)), least);
+    };
+    const double a = radius(along_px), b = radius(across_px);
+    StarDot dot;
+    dot.share = static_cast<float>(share);
+    dot.per_light = static_cast<float>(1.0 / (double(footprint.integral) * a * b));
+    dot.radius_px = static_cast<float>(a);
+    dot.is_round = a == b;
+    dot.shape = {static_cast<float>(x * a), static_cast<float>(-y * b), static_cast<float>(y * a),
+                 static_cast<float>(x * b)};
+    return dot;
+}
+
+/// The light of one star at the camera.
+struct StarLight {
+    glm::vec3 light;  // over all pixels
+    float distance;   // scene units
+    bool infinite;
+};
+StarLight star_light(const LayerProjection& layer, const glm::vec3& p, std::int64_t index) {
+    const glm::vec3& place = layer.splats->position[index];
+    StarLight star{layer.splats->color[index], std::sqrt(glm::dot(p, p)), false};
+    star.infinite = !(star.distance < infinity_from);
+    if (star.infinite) return star;
+    const float own = std::sqrt(glm::dot(place, place)) * layer.radius_scale;
+    const float ratio = own / std::max({star.distance, layer.lens.near_fade, layer.lens.near});
+    star.light *= ratio * ratio;
+    return star;
+}
+
+glm::vec3 in_camera(const LayerProjection& layer, std::int64_t index) {
+    return glm::vec3(layer.camera_from_layer * glm::dvec3(layer.splats->position[index]) +
+                     layer.origin_in_camera);
+}
+
+float brightest(const glm::vec3& light) { return std::max({light.x, light.y, light.z}); }
+
+/// Which share of a dot of a wing or a spike is drawn.
+float shown_share(const StarDot& dot, float light) {
+    const float t = std::clamp((light * dot.share * dot.per_light / faintest_peak - 1.0f) / 3.0f, 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+}  // namespace
+
+std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footprint) {
+    const double core_px = psf.core_px;
+    const double wings = psf.wing_share, spikes = std::min(double(psf.spike_share), 1.0 - wings);
+    std::vector<StarDot> dots{make_dot(1.0 - wings - spikes, core_px, core_px, 1.0, 0.0, footprint)};
+    const auto mixture = [](int from, int to, const auto& density) {
+        std::vector<std::pair<double, double>> parts;  // value, share
+        double sum = 0.0;
+        for (int k = from; k <= to; ++k) {
+            const double value = std::ldexp(1.0, k);
+            parts.emplace_back(value, density(value));
+            sum += parts.back().second;
+        }
+        for (auto& part : parts) part.second /= sum;
+        return parts;
+    };
+    // What is no wider than the core goes to it: dots of one star that are alike would have no order.
+    const auto add = [&](double share, double along_px, double across_px, double turn) {
+        if (along_px <= core_px)
+            dots[0].share += static_cast<float>(share);
+        else
+            dots.push_back(
+                make_dot(share, along_px, across_px, real::cos(turn), -real::sin(turn), footprint));
+    };
+    if (wings > 0.0)
+        for (const auto& [t, share] :
+             mixture(-6, 3, [&](double t) { return real::pow(t, psf.wing_power - 1.0) * real::exp(-t); })) {
+            const double deviation = double(psf.wing_px) / std::sqrt(2.0 * t);
+            add(wings * share, deviation, deviation, 0.0);
+        }
+    if (!(spikes > 0.0) || psf.vanes < 1) {
+        dots[0].share += static_cast<float>(spikes);
+        return dots;
+    }
+    const int lines = psf.vanes % 2 == 0 ? psf.vanes / 2 : psf.vanes;
+    for (int line = 0; line < lines; ++line) {
+        const double turn = real::radians(double(psf.vane_deg)) + real::pi * line / lines;
+        for (const auto& [v, share] : mixture(-4, 2, [](double v) { return v * real::exp(-v); }))
+            add(spikes * share / lines, double(psf.spike_px) * std::sqrt(2.0 * v), core_px, turn);
+    }
+    return dots;
+}
+
+void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
+                   Buffer<ScreenSplat>& out, Buffer<Shape>& shapes) {
+    const Lens& lens = layer.lens;
+    const bool sphere = shared::is_onto_sphere(lens);
+    const float period = shared::period_px(lens);
+    for (std::int64_t i = begin; i < end; ++i) {
+        const glm::vec3 p = in_camera(layer, i);
+        const StarLight star = star_light(layer, p, i);
+        const shared::Instance at = shared::instance_of(lens, p);
+        if (!(at.depth > lens.near) || !(star.infinite || shared::is_in_range(lens, at.depth))) continue;
+        ScreenSplat splat;
+        splat.x_px = shared::snap_px(at.x_px);
+        splat.y_px = shared::snap_px(at.y_px);
+        splat.opacity = layer.opacity * shared::near_fade(lens, at.depth, 0.0f);
+        splat.depth = std::bit_cast<std::uint32_t>(shared::sort_depth(lens, p));
+        splat.index = static_cast<std::uint32_t>(i);
+        splat.layer = layer.layer;
+        splat.hybrid = 0;
+        const float light = brightest(star.light);
+        if (!(light > 0.0f) || !(splat.opacity > 0.0f)) continue;
+        const auto draw = [&](const StarDot& dot, float share) {
+            const float support =
+                dot.is_round || sphere
+                    ? shared::frame_reach_px(lens, splat.x_px, splat.y_px,
+                                             dot.radius_px * layer.reach + layer.margin_px)
+                    : shape_support_px(dot.shape, {layer.reach, layer.margin_px, layer.variance});
+            if (!shared::appears_in_rect(lens, splat.x_px, splat.y_px, support, rect.x0, rect.y0, rect.x1,
+                                         rect.y1))
+                return;
+            for (int k = 0; k < 3; ++k) splat.color[k] = star.light[k] * share * dot.per_light;
+            splat.radius_px = dot.radius_px;
+            if (!dot.is_round) {
+                set_shape_number(splat, static_cast<std::uint32_t>(shapes.size()));
+                shapes.push_back(dot.shape);
+            }
+            push_places(splat, period, support, rect, out);
+        };
+        float core_share = layer.star_dots[0].share;
+        for (std::size_t d = 1; d < layer.star_dots.size(); ++d) {
+            const StarDot& dot = layer.star_dots[d];
+            const float shown = sphere && !dot.is_round ? 0.0f : shown_share(dot, light);
+            core_share += dot.share * (1.0f - shown);
+            if (shown > 0.0f) draw(dot, dot.share * shown);
+        }
+        draw(layer.star_dots[0], core_share);
+    }
+}
+
+float largest_star_light(const LayerProjection& layer) {
+    float largest = 0.0f;
+    for (std::int64_t i = 0; i < layer.splats->size(); ++i)
+        largest = std::max(largest, brightest(star_light(layer, in_camera(layer, i), i).light));
+    return largest * layer.star_dots[0].per_light * layer.opacity;
+}
+
+}  // namespace astrosplat
