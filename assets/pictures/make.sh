@@ -19,3 +19,8 @@ END
     oiiotool --nosoftwareattrib "$work/$name.0001.png" "$work/$name.0100.png" "$work/$name.0$close.png" \
         "$work/$name.0240.png" --mosaic 2x2 --eraseattrib ".*" --quality 90 -o "$here/$name.jpg"
 done
+
+# Three frames for a dome.
+"$program" --batch "$here/../scenes/dome.toml" --frames 1,120,240 --resolution 500x500 --no-cache --output "$work/dome.####.png"
+oiiotool --nosoftwareattrib "$work/dome.0001.png" "$work/dome.0120.png" "$work/dome.0240.png" --mosaic 3x1 \
+    --eraseattrib ".*" --quality 90 -o "$here/dome.jpg"

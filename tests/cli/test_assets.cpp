@@ -13,6 +13,7 @@ TEST_F(Assets, DemoScenesListTheirFrames) {
     for (const auto& [name, last] : {std::pair{"whirlpool", "0240"},
                                      {"spiral", "0240"},
                                      {"nebula", "0240"},
+                                     {"dome", "0240"},
                                      {"layers", "0120"},
                                      {"m51", "0096"},
                                      {"s106", "0096"}}) {
