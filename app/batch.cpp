@@ -118,9 +118,10 @@ FrameMetadata BatchRun::metadata(const FramePlan& frame, const Scene& now,
     if (metadata.provenance.credit.empty()) metadata.provenance.credit = pipeline_->input_credit();
     if (!now.layers.empty())
         metadata.seed = resolved_seed(now.layers.front().source.seed, now.layers.front().name);
-    metadata.matrices =
-        exr_matrices(pipeline_->camera(static_cast<double>(frame.frame), settings),
-                     static_cast<double>(settings.width), static_cast<double>(settings.height));
+    const Camera camera = pipeline_->camera(static_cast<double>(frame.frame), settings);
+    if (!is_onto_sphere(camera.projection))  // which no matrix can say
+        metadata.matrices =
+            exr_matrices(camera, static_cast<double>(settings.width), static_cast<double>(settings.height));
     return metadata;
 }
 
