@@ -112,6 +112,7 @@ FrameMetadata BatchRun::metadata(const FramePlan& frame, const Scene& now,
                                  const RenderSettings& settings) const {
     FrameMetadata metadata;
     metadata.frame = frame.frame;
+    metadata.eye = frame.eye;
     metadata.fps = now.output.fps;
     metadata.frame_hash = frame.hash;
     metadata.provenance = now.provenance;
@@ -128,6 +129,7 @@ FrameMetadata BatchRun::metadata(const FramePlan& frame, const Scene& now,
 FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& progress) {
     const Clock::time_point start = Clock::now();
     const auto time = static_cast<double>(frame.frame);
+    pipeline_->show_eye(frame.eye);
     const Scene now = scene_at(plan_.scene, time);
     const RenderSettings settings = this->settings(frame);
     if (frame.existing == Existing::keep) refuse_existing(frame.file);
@@ -190,11 +192,11 @@ void BatchRun::render_frames() {
 
 /// Frames that were written or found, and removed before the run's end.
 void BatchRun::find_lost_frames() {
-    std::set<std::int64_t> failed;
-    for (const FailedFrame& frame : figures_.failed) failed.insert(frame.frame);
+    std::set<std::filesystem::path> failed;
+    for (const FailedFrame& frame : figures_.failed) failed.insert(frame.file);
     for (const FramePlan& frame : plan_.frames) {
         std::error_code ignored;
-        if (!failed.count(frame.frame) && !std::filesystem::exists(frame.file, ignored))
+        if (!failed.count(frame.file) && !std::filesystem::exists(frame.file, ignored))
             fail(frame, frame.file.string() + ": removed during the run");
     }
 }

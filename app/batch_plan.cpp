@@ -143,6 +143,17 @@ std::vector<std::int64_t> frame_numbers(const Scene& scene, bool from_command_li
     return frames;
 }
 
+/// Those that every frame is rendered for.
+std::vector<Eye> eyes(const Scene& scene) {
+    if (!has_eye_token(scene.output.path)) return {scene.camera.eye};
+    if (!has_two_eyes(scene.camera.projection))
+        bad_input(scene.output.path, "",
+                  "no %V, for only perspective, equirectangular and cylindrical cameras have a left and a "
+                  "right eye",
+                  std::string(name_of(scene.camera.projection)));
+    return {Eye::left, Eye::right};
+}
+
 enum class Found { nothing, same, damaged, other };
 
 Found found_at(const FramePlan& plan) {
@@ -194,9 +205,12 @@ BatchPlan plan_batch(const BatchOptions& options) {
         for (LayerParams& layer : plan.scene.layers)
             if (ever_visible(plan.scene, layer)) limit_bodies(layer, plan.memory_limit_bytes, plan.cache);
     FrameHasher hasher(plan.scene, plan.region);
-    for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value())) {
-        plan.frames.push_back({frame, frame_file(plan.scene.output.path, frame), hasher.frame_hash(frame)});
-    }
+    for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value()))
+        for (const Eye eye : eyes(plan.scene)) {
+            hasher.show_eye(eye);
+            plan.frames.push_back(
+                {frame, eye, frame_file(plan.scene.output.path, frame, eye), hasher.frame_hash(frame)});
+        }
     plan.inputs = hasher.files();
     decide(plan.frames, options);
     return plan;

@@ -17,6 +17,7 @@ namespace astrosplat {
 
 struct FramePlan {
     std::int64_t frame = 0;
+    Eye eye = Eye::centre;
     std::filesystem::path file;
     std::string hash;                       // frame hash, hex
     bool render = true;                     // false: a whole frame of this hash is there already

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "camera/aperture.h"
 #include "core/clock.h"
 #include "core/text.h"
 #include "look/apply.h"
@@ -228,6 +229,8 @@ void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const S
     state.layers = std::move(layers);
     state.statistics = std::move(statistics);
 }
+
+void Pipeline::show_eye(Eye eye) { state_->scene.camera.eye = eye; }
 
 RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, const Progress& progress,
                               const TileDone& tile_done) {

@@ -43,6 +43,9 @@ class Pipeline {
     void set_scene(const Scene& scene, std::vector<std::shared_ptr<const SplatSet>> sets,
                    const Environment* loaded = nullptr, const Progress& progress = {});
 
+    /// The eye that frames are seen with from now on, whatever the scene says.
+    void show_eye(Eye eye);
+
     /// Renders one frame of the scene. `tile_done` as in render().
     RenderedFrame frame(double frame, const RenderSettings& settings, const Progress& progress = {},
                         const TileDone& tile_done = {});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
@@ -17,13 +18,14 @@ struct LayerBlock {
 };
 struct Block {
     Lens lens;
+    float to_sixteens[3];
     glm::vec4 target;
     std::int32_t layers_used[4];
     std::int32_t first_splat[DrawPass::most_layers];
     LayerBlock layers[DrawPass::most_layers];
 };
-static_assert(sizeof(LayerBlock) == 8 * 16 && sizeof(Lens) == 32 &&
-              sizeof(Block) == 4 * 16 + 64 * 4 + 64 * 8 * 16);
+static_assert(sizeof(LayerBlock) == 8 * 16 && sizeof(Lens) == 36 && offsetof(Block, target) == 3 * 16 &&
+              sizeof(Block) == 5 * 16 + 64 * 4 + 64 * 8 * 16);
 
 constexpr int profiles_unit = 0, nodes_unit = 1, places_unit = 2;  // and 3: colours
 constexpr float widest_useful_px = 512.0f;

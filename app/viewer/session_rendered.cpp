@@ -19,7 +19,8 @@ fs::path file_of_frame(const Session& session, double frame) {
     const Scene& scene = session.document.scene();
     try {
         if (!has_frame_token(scene.output.path)) return {};
-        return scene.file.parent_path() / frame_file(scene.output.path, std::llround(frame));
+        return scene.file.parent_path() /
+               frame_file(scene.output.path, std::llround(frame), scene.camera.eye);
     } catch (const InputError&) {
         return {};
     }

@@ -10,6 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "camera/projection.h"
+#include "camera/stereo.h"
 #include "core/error.h"
 #include "core/real.h"
 
@@ -43,6 +44,9 @@ void check(const CameraParams& params) {
     expect(params.shutter >= 0.0 && params.shutter <= 720.0, "camera.shutter", "degrees from 0 to 720",
            params.shutter);
     expect(params.f_number >= 0.0, "camera.f_number", "0 or more", params.f_number);
+    expect(params.eye_separation >= 0.0, "camera.eye_separation", "0 or more scene units",
+           params.eye_separation);
+    expect(params.convergence >= 0.0, "camera.convergence", "0 or more scene units", params.convergence);
     expect(params.unit_mm > 0.0, "camera.unit_mm", "more than 0 mm", params.unit_mm);
     expect(params.far == 0.0 || params.far > params.near, "camera.far", "0, or more than camera.near",
            params.far);
@@ -167,6 +171,7 @@ Camera make_camera(const CameraParams& params, double width_px, double height_px
     camera.near = params.near;
     camera.far = params.far;
     camera.near_fade = params.near_fade;
+    move_to_eye(camera, params, target);
     return camera;
 }
 
@@ -183,50 +188,14 @@ AnyLens lens_of(const Camera& camera) {
     return {static_cast<int>(camera.projection),     static_cast<Number>(camera.focal_px),
             static_cast<Number>(camera.center_x_px), static_cast<Number>(camera.center_y_px),
             static_cast<Number>(camera.near),        static_cast<Number>(camera.far),
-            static_cast<Number>(camera.near_fade),   static_cast<Number>(camera.edge)};
+            static_cast<Number>(camera.near_fade),   static_cast<Number>(camera.edge),
+            static_cast<Number>(camera.parallax)};
 }
 
 }  // namespace
 
 Lens make_lens(const Camera& camera) { return lens_of<Lens>(camera); }
 ExactLens make_exact_lens(const Camera& camera) { return lens_of<ExactLens>(camera); }
-
-namespace {
-
-/// i's digits to the base 2 behind the point, the last one first.
-double radical_inverse(std::uint32_t i) {
-    double inverse = 0.0;
-    for (double digit = 0.5; i != 0; i >>= 1, digit *= 0.5)
-        if (i & 1) inverse += digit;
-    return inverse;
-}
-
-}  // namespace
-
-CameraSample camera_sample(const CameraParams& params, int i, int n) {
-    // The places go outwards; times are in the radical inverse's order, which does not.
-    int earlier = 0;
-    for (int k = 0; k < n; ++k)
-        earlier += radical_inverse(std::uint32_t(k)) < radical_inverse(std::uint32_t(i)) ? 1 : 0;
-    constexpr double golden_angle = 2.39996322972865332;
-    const double r = std::sqrt((i + 0.5) / n), turn = golden_angle * i;
-    return {params.shutter / 360.0 * ((earlier + 0.5) / n - 0.5), {r * real::cos(turn), r * real::sin(turn)}};
-}
-
-Camera through_lens(const Camera& camera, const CameraParams& params, const glm::dvec2& lens,
-                    double width_px) {
-    if (!(params.f_number > 0.0) || camera.projection != Projection::perspective) return camera;
-    const double focal_mm = camera.focal_px / width_px * params.film_width;
-    const double radius = 0.5 * focal_mm / params.f_number / params.unit_mm;
-    const double to_target = -glm::dot(camera.world_from_camera[2], params.target - camera.eye);
-    const double wanted = params.focus_distance > 0.0 ? params.focus_distance : to_target;
-    const double focus = std::fmax(wanted, camera.near);
-    Camera seen = camera;
-    seen.eye += radius * (lens.x * camera.world_from_camera[0] + lens.y * camera.world_from_camera[1]);
-    seen.center_x_px += camera.focal_px * radius * lens.x / focus;
-    seen.center_y_px -= camera.focal_px * radius * lens.y / focus;
-    return seen;
-}
 
 bool shows(const Camera& camera, double x_px, double y_px) {
     return exact::shows(make_exact_lens(camera), x_px, y_px);

@@ -24,6 +24,16 @@ constexpr auto names_of(Projection) {
 /// The frame shows directions, not points of a plane.
 constexpr bool is_onto_sphere(Projection projection) { return projection >= Projection::fisheye; }
 
+/// Whether a projection has a left and a right eye.
+constexpr bool has_two_eyes(Projection projection) {
+    return projection == Projection::perspective || projection == Projection::equirectangular ||
+           projection == Projection::cylindrical;
+}
+
+/// The eye of a stereo pair that a frame is seen with.
+enum class Eye { centre, left, right };
+constexpr auto names_of(Eye) { return names_up_to<Eye::right>("centre", "left", "right"); }
+
 struct CameraParams {
     Projection projection = Projection::perspective;
     std::optional<glm::dvec3> position;  // empty: frame all visible layers from 35 degrees above +z
@@ -44,11 +54,14 @@ struct CameraParams {
     double height = 10.0;         // scene units, orthographic
     double shutter = 0.0;   // degrees of a frame's 360, half before and half after it; 0: no motion blur
     double f_number = 0.0;  // > 0: depth of field; perspective
-    double focus_distance = 0.0;  // scene units along the view axis; 0: to the target
-    double unit_mm = 1000.0;      // mm of a scene unit, for depth of field
-    double near = 0.01;           // scene units
-    double far = 0.0;             // scene units; 0: none
-    double near_fade = 0.0;       // scene units; 0: one radius of the splat
+    double focus_distance = 0.0;    // scene units along the view axis; 0: to the target
+    double unit_mm = 1000.0;        // mm of a scene unit, for depth of field
+    Eye eye = Eye::centre;          // perspective and panoramas have two
+    double eye_separation = 0.065;  // scene units
+    double convergence = 0.0;       // scene units along the view axis; 0: to the target
+    double near = 0.01;             // scene units
+    double far = 0.0;               // scene units; 0: none
+    double near_fade = 0.0;         // scene units; 0: one radius of the splat
     std::filesystem::path file;
     bool operator==(const CameraParams&) const = default;
 };
@@ -61,8 +74,9 @@ struct Camera {
     double focal_px = 1.0;
     double center_x_px = 0.0, center_y_px = 0.0;  // where the optical axis meets the frame (y down)
     double near = 0.01, far = 0.0, near_fade = 0.0;
-    double edge = 0.0;    // as in Lens
-    double aspect = 1.0;  // width / height
+    double edge = 0.0;      // as in Lens
+    double parallax = 0.0;  // as in Lens
+    double aspect = 1.0;    // width / height
 };
 
 /// Throws InputError for what a later release brings: camera files. Can be asked before anything is
@@ -81,23 +95,6 @@ ExactLens make_exact_lens(const Camera& camera);
 
 /// Whether the camera shows anything at a point of the frame: outside a fisheye's circle it does not.
 bool shows(const Camera& camera, double x_px, double y_px);
-/// Whether a frame is more than one rendering: motion blur or depth of field.
-inline bool is_blurred(const CameraParams& params) {
-    return params.shutter > 0.0 || (params.f_number > 0.0 && params.projection == Projection::perspective);
-}
-/// One of the renderings that a blurred frame is the mean of.
-struct CameraSample {
-    double frames = 0.0;   // after the frame's own time
-    glm::dvec2 lens{0.0};  // place on the aperture, in the unit disc
-};
-/// Number i of n: times evenly spread over the shutter's, places along a sunflower's spiral, in an order that
-/// tells the one nothing of the other.
-CameraSample camera_sample(const CameraParams& params, int i, int n);
-/// The camera as seen through a place of the aperture (in its radii): what lies in the plane of focus, across
-/// the view axis, stays where it is on the frame. `params`, which make_camera made it of, say the aperture.
-Camera through_lens(const Camera& camera, const CameraParams& params, const glm::dvec2& lens,
-                    double width_px);
-
 /// Unit direction in world space through a point of the frame (px, y down), for environments.
 glm::dvec3 ray_direction(const Camera& camera, double x_px, double y_px);
 /// Angle between the rays of neighbouring pixels in the middle of the frame, radians; 0 where rays are

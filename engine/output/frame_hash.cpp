@@ -7,6 +7,7 @@
 #include <array>
 #include <string_view>
 
+#include "camera/aperture.h"
 #include "core/error.h"
 #include "core/sha256.h"
 #include "scene/animate.h"
@@ -50,6 +51,8 @@ bool is_of_another_lens(const std::string& key, const CameraParams& camera) {
     if (key == "camera.shift")
         return camera.projection != Projection::perspective || camera.shift == glm::dvec2(0.0);
     if (key == "camera.fisheye_tilt") return !fisheye;
+    if (key == "camera.eye" || key == "camera.eye_separation" || key == "camera.convergence")
+        return camera.eye == Eye::centre || !has_two_eyes(camera.projection);
     if (key == "camera.shutter") return camera.shutter == 0.0;
     if (key == "camera.f_number" || key == "camera.focus_distance" || key == "camera.unit_mm")
         return camera.f_number == 0.0;

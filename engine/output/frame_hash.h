@@ -34,6 +34,9 @@ class FrameHasher {
     /// `region` as in RenderSettings: the part of the frame that is rendered; empty: all.
     explicit FrameHasher(const Scene& scene, const Region& region = {}) : scene_(scene), region_(region) {}
 
+    /// The eye of the frames hashed from now on, whatever the scene says.
+    void show_eye(Eye eye) { scene_.camera.eye = eye; }
+
     /// 64 hex digits. Throws InputError when an input file exists but cannot be read.
     std::string frame_hash(std::int64_t frame);
 

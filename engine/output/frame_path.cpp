@@ -1,4 +1,6 @@
-// Frame numbers in file names: "####", "%04d" and "{frame:04}" are replaced by the frame, padded with zeros.
+// Frame numbers in file names: "####", "%04d" and "{frame:04}" are replaced by the frame, padded with zeros,
+// and
+// "%V" by the eye.
 #include "output/frame_path.h"
 
 #include <fmt/format.h>
@@ -57,11 +59,22 @@ std::optional<Token> find_token(const std::string& text, std::size_t from) {
     return std::nullopt;
 }
 
+std::string with_eye(std::string pattern, Eye eye) {
+    const std::string name(name_of(eye));
+    for (std::size_t at = 0; at + 1 < pattern.size(); ++at)
+        if (pattern[at] == '%' && (pattern[at + 1] == 'V' || pattern[at + 1] == 'v'))
+            pattern.replace(at, 2, pattern[at + 1] == 'V' ? name : name.substr(0, 1));
+    return pattern;
+}
+
 }  // namespace
 
 bool has_frame_token(const std::string& pattern) { return find_token(pattern, 0).has_value(); }
 
-std::string frame_file(const std::string& pattern, std::int64_t frame) {
+bool has_eye_token(const std::string& pattern) { return with_eye(pattern, Eye::left) != pattern; }
+
+std::string frame_file(const std::string& eyes_pattern, std::int64_t frame, Eye eye) {
+    const std::string pattern = with_eye(eyes_pattern, eye);
     std::optional<Token> token = find_token(pattern, 0);
     if (!token) return pattern;
     std::size_t rest = token->begin + token->size;

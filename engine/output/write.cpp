@@ -98,6 +98,7 @@ void set_exr_attributes(OIIO::ImageSpec& spec, const FrameMetadata& metadata) {
     Rational fps = rational_fps(metadata.fps);
     const int rational[2] = {fps.numerator, fps.denominator};
     spec.attribute("framesPerSecond", OIIO::TypeRational, rational);
+    if (metadata.eye != Eye::centre) spec.attribute("view", std::string(name_of(metadata.eye)));
     if (!metadata.matrices) return;
     spec.attribute("worldToCamera", OIIO::TypeMatrix44, metadata.matrices->world_to_camera);
     spec.attribute("worldToNDC", OIIO::TypeMatrix44, metadata.matrices->world_to_ndc);

@@ -20,6 +20,7 @@ namespace astrosplat {
 /// What goes into a frame's header.
 struct FrameMetadata {
     std::int64_t frame = 1;
+    Eye eye = Eye::centre;
     double fps = 24.0;
     std::string frame_hash;  // hex
     std::string pixel_hash;  // hex

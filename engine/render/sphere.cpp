@@ -12,8 +12,8 @@ namespace astrosplat {
 namespace {
 
 ExactLens exact_lens(const Lens& lens) {
-    return {lens.projection, lens.focal_px, lens.center_x_px, lens.center_y_px,
-            lens.near,       lens.far,      lens.near_fade,   lens.edge};
+    return {lens.projection, lens.focal_px,  lens.center_x_px, lens.center_y_px, lens.near,
+            lens.far,        lens.near_fade, lens.edge,        lens.parallax};
 }
 
 /// What a place's pixels are wide on the sphere goes into the square of: the frame's px per px of the sphere

@@ -119,6 +119,17 @@ void describe_camera(const Describer& d, CameraParams& c) {
          "Of a scene unit, for depth of field: as if the scene was a model of that size.", within(1e-6, 1e12),
          slider(1, 100000), logarithmic(), only_with("projection", {"perspective"}),
          never_with("f_number", {0.0}));
+    const Describer stereo = d.shown_in("Camera", "Stereo")
+                                 .only_with("projection", {"perspective", "equirectangular", "cylindrical"});
+    stereo.still()(c.eye, "eye", "Eye", "",
+                   "The eye of a stereo pair that is shown; where %V is in output.path, it stands for left "
+                   "and right and "
+                   "--batch writes both.");
+    stereo(c.eye_separation, "eye_separation", "Eye separation", "scene units", "From eye to eye.",
+           at_least(0), slider(0, 1));
+    stereo(c.convergence, "convergence", "Convergence", "scene units",
+           "Where both eyes see the same: nearer is before the screen; 0: at the target's distance.",
+           at_least(0), slider(0, 100), zero_is("Target"));
     lens(c.near, "near", "Near", "scene units", "Nothing nearer is drawn.", at_least(1e-9), slider(0.001, 10),
          logarithmic());
     lens(c.far, "far", "Far", "scene units", "Nothing farther is drawn; 0: no limit.", at_least(0),

@@ -107,6 +107,13 @@ class Describer {
         return moving;
     }
 
+    /// The same place, where no parameter is.
+    Describer still() const {
+        Describer fixed = *this;
+        fixed.animated_ = false;
+        return fixed;
+    }
+
     /// Describes one field, by its words and traits as in spec(). Its type follows from the field, unless a
     /// trait says more (color, position, ...).
     template <class T, class... Words>

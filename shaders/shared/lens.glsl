@@ -22,4 +22,5 @@ struct Lens {
     Real far;          // 0: none
     Real near_fade;    // scene units; 0: one radius of the splat
     Real edge;         // radians from the middle to where the picture ends: a fisheye's cone, a panorama's width; else 0
+    Real parallax;     // scene units to the left of the middle between two eyes, of a panorama's; else 0
 };

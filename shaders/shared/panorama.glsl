@@ -4,11 +4,18 @@
 // Of a direction of any length: what lies across the pole's axis.
 Float from_pole(Vec3 p) { return max(sqrt(p.x * p.x + p.z * p.z), 1e-18f); }
 
+// By how much farther to the right an eye of a stereo pair sees what is this far away, radians (camera.cpp, move_to_eye).
+Float panorama_parallax(Lens lens, Float distance) {
+    Float sine = max(min(lens.parallax / distance, 1.0f), -1.0f);
+    return angle_of(sine, sqrt(max(1.0f - sine * sine, 0.0f)));
+}
+
 Instance panorama_instance(Lens lens, Vec3 p) {
     Float longitude = angle_of(p.x, -p.z);
     Float height = angle_of(p.y, from_pole(p));
     if (lens.projection == PROJECTION_CYLINDRICAL) height = p.y / from_pole(p);
     Float distance = sqrt(dot(p, p));
+    if (lens.parallax != 0.0f) longitude = longitude + panorama_parallax(lens, distance);
     return Instance(lens.center_x_px + lens.focal_px * longitude, lens.center_y_px - lens.focal_px * height,
                     lens.focal_px / distance, distance);
 }

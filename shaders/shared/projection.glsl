@@ -54,6 +54,7 @@ Float frame_reach_px(Lens lens, Float x_px, Float y_px, Float reach_px) {
 Vec3 point_at_depth(Lens lens, Float x_px, Float y_px, Float depth) {
     if (lens.projection == PROJECTION_ORTHOGRAPHIC) return orthographic_point(lens, x_px, y_px, depth);
     if (is_onto_sphere(lens)) {
+        if (lens.parallax != 0.0f) x_px = x_px - panorama_parallax(lens, depth) * lens.focal_px;
         Vec3 ray = ray_through(lens, x_px, y_px);
         Float scale = depth / sqrt(dot(ray, ray));
         return Vec3(ray.x * scale, ray.y * scale, ray.z * scale);
@@ -130,6 +131,8 @@ Float reach_px(Lens lens, Vec3 p, Float reach, Float margin_px) {
         // The chord of the angle whose sine is reach / distance.
         Float sine = min(reach * at.px_per_unit / lens.focal_px, 1.0f);
         Float chord = sqrt(max(2.0f - 2.0f * sqrt(max(1.0f - sine * sine, 0.0f)), 0.0f));
+        if (lens.parallax != 0.0f)
+            chord = chord + abs(panorama_parallax(lens, max(sqrt(dot(p, p)) - reach, Float(lens.near))));
         return frame_reach_px(lens, at.x_px, at.y_px, chord * lens.focal_px + margin_px);
     }
     Instance nearest = instance_of(lens, Vec3(p.x, p.y, p.z + reach));

@@ -62,6 +62,35 @@ TEST_F(Batch, RendersEveryFrameAndSaysSo) {
         << result.err;
 }
 
+TEST_F(Batch, PairsAreWrittenWhereTheNameHasAPlaceForTheEye) {
+    const std::vector<std::string> one = {"-q", "--frames", "1", "--set", "camera.eye_separation=0.5"};
+    const auto run = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), one.begin(), one.end());
+        const RunResult result = batch(more);
+        EXPECT_EQ(result.code, 0) << result.err;
+    };
+    run({"-o", "frames/%V.###.exr"});
+    EXPECT_EQ(names_in("frames"), (std::set<std::string>{"left.001.exr", "right.001.exr"}));
+    run({"-o", "frames/middle.exr"});
+    const auto bytes = [&](const std::string& name) { return text_of(folder / "frames" / name); };
+    EXPECT_TRUE(bytes("left.001.exr") != bytes("right.001.exr"));
+    EXPECT_TRUE(bytes("left.001.exr") != bytes("middle.exr"));
+    for (const char* eye : {"left", "right"}) {
+        run({"-o", "frames/one.exr", "--overwrite", "--set", fmt::format("camera.eye={}", eye)});
+        EXPECT_TRUE(bytes("one.exr") == bytes(fmt::format("{}.001.exr", eye))) << eye;
+    }
+    // One of them is missing; the other one is kept.
+    std::filesystem::remove(folder / "frames/right.001.exr");
+    EXPECT_EQ(count_of(batch({"--frames", "1", "--set", "camera.eye_separation=0.5", "-o",
+                              "frames/%V.###.exr", "--resume"})
+                           .err,
+                       "saved "),
+              1);
+    const RunResult round = batch({"-o", "%V.exr", "--frames", "1", "--set", "camera.projection=fisheye"});
+    EXPECT_EQ(round.code, 2);
+    EXPECT_NE(round.err.find("found fisheye"), std::string::npos) << round.err;
+}
+
 TEST_F(Batch, QuietSaysNothing) {
     EXPECT_EQ(batch({"-q"}).err, "");
     const RunResult plain = batch({"-q", "--progress", "plain", "--overwrite"});

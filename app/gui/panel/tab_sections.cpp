@@ -218,6 +218,8 @@ void reference_buttons(Context& context) {
         });
 }
 
+std::string stereo_state(const Context& context) { return std::string(name_of(context.scene().camera.eye)); }
+
 std::string resolution_state(const Context& context) {
     const OutputParams& output = context.scene().output;
     return fmt::format("{} x {}", output.width, output.height);
@@ -274,6 +276,7 @@ const TabSection sections[] = {
     {"Render", "Level of detail", nullptr, detail_state},
     {"Camera", "Place", unfolded, place_state, {"camera.position", "camera.rotation"}},
     {"Camera", "Lens", unfolded, lens_state},
+    {"Camera", "Stereo", nullptr, stereo_state},
     {"Camera", "Environment", nullptr, environment_state, {"environment.visible"}},
     {"Camera", "Reference", nullptr, reference_state, {}, reference_buttons},
     {"Output", "Frame", unfolded, resolution_state},

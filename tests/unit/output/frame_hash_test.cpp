@@ -133,7 +133,8 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
             continue;
         if (parameter.spec.section == "Star image") continue;  // of layers that are stars
         if (key == "camera.fisheye_tilt" || key == "camera.panorama_fov" || key == "camera.focus_distance" ||
-            key == "camera.unit_mm" || key == "output.samples")
+            key == "camera.eye_separation" || key == "camera.convergence" || key == "camera.unit_mm" ||
+            key == "output.samples")
             continue;  // of other lenses and no blur
         const Value value = parameter.get();
         if (parameter.spec.type != ParameterType::number && parameter.spec.type != ParameterType::boolean)
@@ -169,11 +170,29 @@ TEST_F(FrameHashTest, AnOpenShutterSeesWhatMovesAroundTheFrame) {
     EXPECT_NE(with_end(180.0, 6.0, 20.0), with_end(180.0, 6.0, 40.0));
 }
 
+TEST_F(FrameHashTest, EyesCountWhereThereAreTwo) {
+    const auto of_eye = [&](Eye eye, double separation, Projection projection = Projection::perspective) {
+        return changed([&](Scene& s) {
+            s.camera.eye = eye;
+            s.camera.eye_separation = separation;
+            s.camera.projection = projection;
+        });
+    };
+    EXPECT_EQ(of_eye(Eye::centre, 1.0), of_eye(Eye::centre, 2.0));
+    EXPECT_NE(of_eye(Eye::left, 1.0), of_eye(Eye::left, 2.0));
+    EXPECT_NE(of_eye(Eye::left, 1.0), of_eye(Eye::right, 1.0));
+    EXPECT_EQ(of_eye(Eye::left, 1.0, Projection::fisheye), of_eye(Eye::right, 1.0, Projection::fisheye));
+    FrameHasher hasher(scene());
+    hasher.show_eye(Eye::right);
+    EXPECT_EQ(hasher.frame_hash(1), changed([](Scene& s) { s.camera.eye = Eye::right; }));
+}
+
 TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
     EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("primaries"), std::string::npos);
     EXPECT_NE(changed([](Scene& s) { s.output.primaries = OutputParams::Primaries::acescg; }), hash(scene()));
-    for (const char* key : {"camera.shift", "camera.fisheye_tilt", "camera.panorama_fov", "camera.shutter",
-                            "camera.f_number", "camera.focus_distance", "camera.unit_mm", "output.samples"})
+    for (const char* key :
+         {"camera.eye", "camera.convergence", "camera.shift", "camera.fisheye_tilt", "camera.panorama_fov",
+          "camera.shutter", "camera.f_number", "camera.focus_distance", "camera.unit_mm", "output.samples"})
         EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find(key), std::string::npos) << key;
     EXPECT_NE(changed([](Scene& s) { s.camera.shift.x = 0.1; }), hash(scene()));
     EXPECT_NE(changed([](Scene& s) { s.camera.shutter = 90.0; }), hash(scene()));

@@ -19,6 +19,14 @@ TEST(FrameFile, EveryPatternPadsWithZeros) {
     EXPECT_EQ(frame_file("####.png", 123456), "123456.png");
 }
 
+TEST(FrameFile, PairsHaveTheirEyeInTheName) {
+    EXPECT_EQ(frame_file("%V/shot.%v.####.exr", 12, Eye::left), "left/shot.l.0012.exr");
+    EXPECT_EQ(frame_file("shot.%04d.%V.exr", 12, Eye::right), "shot.0012.right.exr");
+    EXPECT_EQ(frame_file("shot.%V.png", 12), "shot.centre.png");
+    EXPECT_TRUE(has_eye_token("%V.####.exr") && has_eye_token("%v.exr"));
+    EXPECT_FALSE(has_eye_token("V.%04d.exr") || has_eye_token("100%"));
+}
+
 TEST(FrameFile, NegativeFramesKeepTheirDigits) {
     EXPECT_EQ(frame_file("a.####.exr", -5), "a.-0005.exr");
     EXPECT_EQ(frame_file("a.%03d.exr", -5), "a.-005.exr");

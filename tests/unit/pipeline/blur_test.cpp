@@ -8,6 +8,7 @@
 #include <glm/matrix.hpp>
 #include <set>
 
+#include "camera/aperture.h"
 #include "camera/projection.h"
 #include "pipeline.h"
 #include "support/small_scene.h"
