@@ -147,8 +147,12 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
             p += radius * layer.lod->child_offset(level, k, layer.seed, splats.id[index]);
             child.position = to_camera(layer, p);
         }
-        if (noise.count > 0) child.color = shade.color * child_light(noise, p);
+        const std::size_t first = out.size();
         project_one(layer, child, index, rect, out);
+        if (noise.count == 0 || out.size() == first) continue;
+        // Only for those that show: noise costs more than all the rest.
+        const glm::vec3 lit = shade.color * child_light(noise, p);
+        for (std::size_t i = first; i < out.size(); ++i) set_color(out[i], lit);
     }
 }
 
