@@ -55,6 +55,7 @@ Expected expected_of(const SetCache& cache, const LayerParams& layer) {
         return {ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat};
     }
     if (source.kind == SourceKind::stars) {
+        if (!source.stars.along.empty()) return {source.count};
         std::error_code ignored;
         const auto size = std::filesystem::file_size(source.stars.catalogue, ignored);
         return {ignored ? 0 : static_cast<std::int64_t>(size) / catalogue_bytes_per_star};

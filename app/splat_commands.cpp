@@ -13,6 +13,7 @@
 #include "interrupt.h"
 #include "places.h"
 #include "progress_report.h"
+#include "scene/layer_source.h"
 #include "scene/load.h"
 #include "scene/suggest.h"
 #include "splat_files/splat_file.h"
@@ -57,9 +58,9 @@ int run_generate(const GenerateOptions& options) {
     check_splat_output(options.output, options.overwrite);
     ProgressReport report(options.progress);
     if (most_bytes > 0) limit_bodies(layer, most_bytes, options.cache);
-    const SplatSet set =
-        load_source(options.cache, layer.source, layer.name, report.begin_step("generating " + layer.name))
-            .set;
+    const SplatSet set = load_source(options.cache, source_of(scene, layer), layer.name,
+                                     report.begin_step("generating " + layer.name))
+                             .set;
     write_and_report({options.output, existing_of(options.overwrite)}, set, report);
     return exit_done;
 }

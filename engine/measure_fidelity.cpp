@@ -14,6 +14,7 @@
 #include "pipeline.h"
 #include "scene/front_picture.h"
 #include "scene/layer_setup.h"
+#include "scene/layer_source.h"
 #include "sets/prepared_cache.h"
 #include "source/texture.h"
 
@@ -54,8 +55,8 @@ LayerSets load_sets(const Scene& now, const SetCache& cache, const Progress& pro
     for (const LayerParams& layer : now.layers) {
         sets.push_back(nullptr);
         if (!layer.visible) continue;
-        LoadedSet loaded =
-            load_source(cache, layer.source, layer.name, progress, nullptr, columns_read(layer.look));
+        LoadedSet loaded = load_source(cache, source_of(now, layer), layer.name, progress, nullptr,
+                                       columns_read(layer.look));
         sets.back() = std::make_shared<const SplatSet>(std::move(loaded.set));
     }
     return sets;

@@ -12,6 +12,7 @@
 #include "mean_frame.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
+#include "scene/layer_source.h"
 #include "source/texture.h"
 
 namespace astrosplat {
@@ -99,8 +100,8 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     counts.name = params.name;
     if (!ever_visible(scene, params)) return;
     const auto start = Clock::now();
-    LoadedSet loaded =
-        load_source(cache, params.source, params.name, progress, nullptr, columns_read(look_of(params)));
+    LoadedSet loaded = load_source(cache, source_of(scene, params), params.name, progress, nullptr,
+                                   columns_read(look_of(params)));
     const auto set = std::make_shared<SplatSet>(std::move(loaded.set));
     layer.set = set;
     if (shaded_alike(scene, params.name)) layer.to_use_up = set;

@@ -8,6 +8,7 @@
 #include "generate/lattice.h"
 #include "pipeline.h"
 #include "scene/animate.h"
+#include "scene/layer_source.h"
 
 namespace astrosplat {
 namespace {
@@ -21,7 +22,8 @@ constexpr float everywhere = 0.5f;
 /// All that a set depends on: the source with its seed resolved where one is used.
 SourceParams identity_of(const SourceParams& source, const std::string& name) {
     SourceParams identity = source;
-    identity.seed = source.kind == SourceKind::mesh ? resolved_seed(source.seed, name) : 0;
+    const bool random = source.kind == SourceKind::mesh || follows_camera(source);
+    identity.seed = random ? resolved_seed(source.seed, name) : 0;
     const StarsParams unused;
     identity.stars.psf = unused.psf;  // how stars look is the renderer's
     identity.stars.wings = unused.wings;
@@ -57,10 +59,11 @@ void SetList::stop(const std::string& name) {
 }
 
 /// Whether the layer's set is to be loaded again.
-bool SetList::want_layer(const LayerParams& layer) {
-    const SourceParams identity = identity_of(layer.source, layer.name);
+bool SetList::want_layer(const Scene& scene, const LayerParams& layer) {
+    SourceParams source = source_of(scene, layer);
+    const SourceParams identity = identity_of(source, layer.name);
     Entry& entry = entries_[layer.name];
-    entry.source = layer.source;
+    entry.source = std::move(source);
     if (entry.identity == identity) return false;
     stop(layer.name);
     entry.identity = identity;
@@ -93,7 +96,7 @@ void SetList::forget_layers_not_in(const Scene& scene) {
 void SetList::want(const Scene& scene) {
     std::list<std::string> changed;
     for (const LayerParams& layer : scene.layers)
-        if (ever_visible(scene, layer) && want_layer(layer)) changed.push_back(layer.name);
+        if (ever_visible(scene, layer) && want_layer(scene, layer)) changed.push_back(layer.name);
     forget_layers_not_in(scene);  // after that, for a layer may have been renamed
     std::list<std::string>& queue = queues_[SetTask::load];
     queue.splice(queue.begin(), changed);
@@ -225,10 +228,12 @@ SetList::Layer SetList::shown(const std::string& name) const {
 
 LayerStatus SetList::status(const LayerParams& layer) const {
     LayerStatus status;
-    const SourceParams identity = identity_of(layer.source, layer.name);
     const auto found = entries_.find(layer.name);
     if (found == entries_.end()) return status;
     const Entry& entry = found->second;
+    SourceParams source = layer.source;
+    source.stars.path = entry.source.stars.path;  // which only the whole scene knows
+    const SourceParams identity = identity_of(source, layer.name);
     const bool current = entry.identity == identity;
     status.loading = current && (entry.stage == Stage::waiting || entry.stage == Stage::loading);
     if (current) status.error = entry.error;

@@ -97,7 +97,7 @@ class SetList {
     Layer find_loaded(const SourceParams& identity) const;
     void stop_growing(Entry& entry);
     void stop(const std::string& name);
-    bool want_layer(const LayerParams& layer);
+    bool want_layer(const Scene& scene, const LayerParams& layer);
     void forget_layers_not_in(const Scene& scene);
     bool is_wanted(const SetJob& finished) const;
     void queue_rest(const std::string& name, const LoadedLayer& loaded);

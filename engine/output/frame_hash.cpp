@@ -13,6 +13,7 @@
 #include "scene/animate.h"
 #include "scene/describe.h"
 #include "scene/input_files.h"
+#include "scene/layer_source.h"
 #include "source/mesh.h"
 #include "source/obj.h"
 
@@ -153,6 +154,8 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
     for (const LayerParams& layer : now.layers) {
         if (!layer.visible) continue;
         text += own_pictures(layer);
+        for (const glm::dvec3& p : source_of(scene_, layer).stars.path)
+            text += fmt::format("layer.{}.path = {} {} {}\n", layer.name, p.x, p.y, p.z);
         if (const std::int64_t texels = layer.source.structure.most_texels; texels > 0)
             text += fmt::format("layer.{}.most texels = {}\n", layer.name, texels);
     }

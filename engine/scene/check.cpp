@@ -8,6 +8,7 @@
 #include "core/file_format.h"
 #include "scene/animate.h"
 #include "scene/frames.h"
+#include "scene/layer_source.h"
 #include "source/mesh.h"
 
 namespace astrosplat {
@@ -98,8 +99,8 @@ void check_prepare(const PrepareParams& prepare, const ParameterKey& at, const C
 }
 
 void check_stars(const StarsParams& stars, const ParameterKey& at, const Checker& check) {
-    check.require(!stars.catalogue.empty(), {at / "catalogue", at / "kind"},
-                  "expected a star catalogue for kind \"stars\", found none");
+    check.require(!stars.catalogue.empty() || !stars.along.empty(), {at / "catalogue", at / "kind"},
+                  "expected a star catalogue, or along = \"camera\", for kind \"stars\", found none");
     check.require(stars.wings.share + stars.spikes.share <= 1.0, {at / "wings.share", at / "spikes.share"},
                   fmt::format("expected shares of wings and spikes of at most 1 together, found {} and {}",
                               short_number(stars.wings.share), short_number(stars.spikes.share)));
@@ -179,8 +180,8 @@ void check_renderable(const Scene& scene, const Places& places) {
         if (!ever_visible(scene, layer)) continue;
         const ParameterKey at = layer_key(layer.name) / "source";
         const SourceParams& source = layer.source;
-        check.require(source.kind != SourceKind::stars || source.stars.along.empty(), {at / "along"},
-                      "expected a catalogue alone (random stars come with a later release), found camera");
+        check.require(!follows_camera(source) || has_camera_places(scene), {at / "along"},
+                      "expected camera.position, or keyframes of it, for stars along the camera, found none");
         check.require(
             source.kind != SourceKind::splats || kind_of(format_of_file(source.file)) == FileKind::splats,
             {at / "file"},

@@ -131,10 +131,13 @@ void describe_stars(const Describer& d, StarsParams& stars) {
     d(stars.zero_point, "zero_point", "Zero point", "magnitude",
       "Magnitude of a star whose light, summed over all pixels, is that of one white pixel.",
       within(-100, 100), slider(-2, 20));
-    d(stars.along, "along", "Along", "", "Random stars along this instead of a catalogue: camera.",
+    d(stars.along, "along", "Along", "",
+      "camera: count random stars around the camera's path, with the catalogue's magnitudes and colours, or "
+      "without one those of the main sequence.",
       one_of({"", "camera"}));
-    d(stars.spread, "spread", "Spread", "scene units", "How far random stars lie from the path.",
-      at_least(1e-9), slider(0.1, 1000), logarithmic());
+    d(stars.spread, "spread", "Spread", "scene units",
+      "Random stars lie within this distance of the path, evenly.", within(1e-9, 1e9), slider(0.1, 1000),
+      logarithmic(), only_with("along", {"camera"}));
 }
 
 /// How stars look, which changes no set.
@@ -226,9 +229,11 @@ void describe_source(const Describer& d, SourceParams& s) {
     lattice(s.voxel_size, "voxel_size", "Voxel size", "scene units",
             "Edge of a voxel instead of voxels; 0: not used.", at_least(0), slider(0, 1),
             only_with("voxels", {"auto"}), zero_is("Off"));
-    splats(s.count, "count", "Count", "", "About how many positions voxels = \"auto\" keeps.", range(1, 1e15),
-           slider(1e4, 1e9), logarithmic(), never_with("kind", {"splats"}), only_with("voxels", {"auto"}),
-           only_with("voxel_size", {0.0}), only_with("splats", {std::int64_t(0)}));
+    splats(s.count, "count", "Count", "",
+           "About how many positions voxels = \"auto\" keeps; or how many random stars there are.",
+           range(1, 1e15), slider(1e4, 1e9), logarithmic(), never_with("kind", {"splats"}),
+           only_with("voxels", {"auto"}), only_with("voxel_size", {0.0}),
+           only_with("splats", {std::int64_t(0)}));
     lattice(s.splats, "splats", "Splats", "",
             "In place of count: positions left after the picture's alpha and masks; 0: count. Pictures are "
             "reduced until their bodies are no more.",

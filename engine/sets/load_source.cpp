@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "generate/generate.h"
 #include "splat_files/splat_file.h"
+#include "stars/random_stars.h"
 #include "stars/star_set.h"
 
 namespace astrosplat {
@@ -91,13 +92,40 @@ std::string star_summary(const StarCounts& counts, const StarsParams& stars) {
     return text;
 }
 
-SplatSet read_stars(const StarsParams& stars, const std::string& layer_name, const Progress& progress) {
-    const StarCatalogue catalogue = read_catalogue(stars.catalogue, progress);
+StarCatalogue read_catalogue_of(const StarsParams& stars, const std::string& layer_name,
+                                const Progress& progress) {
+    StarCatalogue catalogue = read_catalogue(stars.catalogue, progress);
     if (catalogue.bad.count > 0)
         log_warning(fmt::format("layer '{}': {}: {}", layer_name, stars.catalogue.string(),
                                 catalogue.bad.text(catalogue.rows)));
+    return catalogue;
+}
+
+StarScale scale_of(const StarsParams& stars) { return {stars.unit, stars.limit, stars.zero_point}; }
+
+SplatSet scatter_stars(const SourceParams& source, const std::string& layer_name, const Progress& progress) {
+    const StarsParams& stars = source.stars;
+    if (stars.path.empty()) throw InputError("expected a camera with a position for its stars, found none");
+    const bool from_catalogue = !stars.catalogue.empty();
+    const std::vector<StarKind> kinds =
+        from_catalogue ? kinds_of(read_catalogue_of(stars, layer_name, progress), stars.limit)
+                       : main_sequence();
+    if (kinds.empty())
+        bad_input(stars.catalogue.string(), "",
+                  fmt::format("stars of magnitude {} or brighter with a distance", stars.limit), "none");
+    log_info(fmt::format(
+        "layer '{}': {} within {:.4g} of the camera's path, of {}", layer_name,
+        human_count(source.count, "random star"), stars.spread,
+        from_catalogue ? human_count(static_cast<std::int64_t>(kinds.size()), "star") + " of the catalogue"
+                       : "the main sequence"));
+    return random_stars({stars.path, stars.spread}, kinds, source.count,
+                        resolved_seed(source.seed, layer_name), scale_of(stars), progress);
+}
+
+SplatSet read_stars(const StarsParams& stars, const std::string& layer_name, const Progress& progress) {
+    const StarCatalogue catalogue = read_catalogue_of(stars, layer_name, progress);
     StarCounts counts;
-    SplatSet set = star_set(catalogue, {stars.unit, stars.limit, stars.zero_point}, &counts);
+    SplatSet set = star_set(catalogue, scale_of(stars), &counts);
     log_info(fmt::format("layer '{}': {}", layer_name, star_summary(counts, stars)));
     return set;
 }
@@ -165,7 +193,8 @@ SplatSet load_source(const SourceParams& source, const std::string& layer_name, 
     try {
         if (source.kind == SourceKind::mesh) return generate_bodies(source, layer_name, progress, prepared);
         if (source.kind == SourceKind::splats) return read_source(source, progress);
-        return read_stars(source.stars, layer_name, progress);
+        return source.stars.along.empty() ? read_stars(source.stars, layer_name, progress)
+                                          : scatter_stars(source, layer_name, progress);
     } catch (const InputError& error) {
         fail(layer_name, error);
     }

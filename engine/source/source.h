@@ -166,13 +166,14 @@ struct StarSpikes {
 struct StarsParams {
     std::filesystem::path catalogue;
     double unit = 1.0;        // scene units per parsec
-    double limit = 12.0;      // faintest magnitude
+    double limit = 12.0;      // faintest magnitude of the catalogue
     double zero_point = 4.0;  // magnitude of flux 1
     std::string along;        // "camera": random stars around the camera's path; empty: the catalogue
     double spread = 10.0;     // scene units around the path
     double psf = 1.0;         // px, standard deviation
     StarWings wings;
     StarSpikes spikes;
+    std::vector<glm::dvec3> path;  // for `along`, scene units. Not a key: the camera's
     bool operator==(const StarsParams&) const = default;
 };
 

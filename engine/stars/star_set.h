@@ -34,6 +34,12 @@ glm::dvec3 star_direction(double ra_deg, double dec_deg);
 /// 10^(-0.4 (magnitude - zero_point)).
 double star_flux(double magnitude, double zero_point);
 
+/// The light of a star of that colour, which has luminance 1; finite whatever the magnitude.
+glm::vec3 star_light(const glm::dvec3& color, double magnitude, double zero_point);
+
+/// So many stars of alpha 1, distance and radius 0, whose places, colours and ids are still to be filled in.
+SplatSet empty_star_set(std::int64_t count);
+
 /// Alpha is 1, distance and radius 0, id the row. The luminance of a colour is the star's flux.
 SplatSet star_set(const StarCatalogue& catalogue, const StarScale& scale, StarCounts* counts = nullptr);
 

@@ -84,3 +84,5 @@ const uint PURPOSE_NAME = 16u;  // seeds from names
 const uint PURPOSE_NOISE = 17u;
 const uint PURPOSE_DEPTH = 18u;  // of a dot of a picture
 const uint PURPOSE_KNOT = 19u;
+const uint PURPOSE_STAR_PLACE = 20u;
+const uint PURPOSE_STAR_KIND = 21u;

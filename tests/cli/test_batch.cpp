@@ -318,9 +318,6 @@ TEST_F(Batch, WhatCannotBeRenderedIsSaidWithItsLine) {
     expect_refused("scene.toml:7: camera.file: ", "path.txt");
     with("file = \"stars.pda\"", "file = \"stars.bgeo\"");
     expect_refused("scene.toml:12: layer.stars.source.file: ", "stars.bgeo");
-    with("kind = \"splats\"\nfile = \"stars.pda\"",
-         "kind = \"stars\"\ncatalogue = \"stars.pda\"\nalong = \"camera\"");
-    expect_refused("scene.toml:13: layer.stars.source.along: ", "camera");
     EXPECT_EQ(batch({"-f", "1", "--layers", "dust"}).code, 0) << "a layer that is not asked for does no harm";
 }
 

@@ -220,6 +220,19 @@ TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
     EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.spikes.vanes = 3; }));
 }
 
+TEST_F(FrameHashTest, TheWholePathCountsForStarsAlongIt) {
+    const auto stars = [](Scene& s) {
+        s.layers[0].source.kind = SourceKind::stars;
+        s.layers[0].source.stars.along = "camera";
+    };
+    const auto moved = [&](Scene& s) {
+        stars(s);
+        for (Track& track : s.animation)
+            if (track.key == "camera.position") track.keyframes[2].value = {9, 9, 9};
+    };
+    EXPECT_NE(changed(stars, 1), changed(moved, 1));
+}
+
 TEST_F(FrameHashTest, OnlyTheFramesAKeyframeReachesChange) {
     const auto move_last_keyframe = [](Scene& s) {
         for (Track& track : s.animation)

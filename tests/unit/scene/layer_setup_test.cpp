@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "scene/animate.h"
+#include "scene/check.h"
+#include "scene/layer_source.h"
 #include "scene/load.h"
+#include "support/errors.h"
 
 namespace astrosplat {
 namespace {
@@ -36,6 +40,33 @@ TEST(LayerSetup, TheImageOfStarsMayMove) {
     EXPECT_EQ(psf->core_px, 1.75f);
     EXPECT_EQ(psf->wing_share, 0.75f);
     EXPECT_EQ(psf->spike_share, 0.25f);  // no more light than there is
+}
+
+TEST(LayerSource, StarsAlongTheCameraHaveItsPath) {
+    const Scene still = star_scene("along = \"camera\"", "[camera]\nposition = [1, 2, 3]\n");
+    EXPECT_EQ(source_of(still, still.layers[0]).stars.path, (std::vector{glm::dvec3(1, 2, 3)}));
+    const Scene moving =
+        star_scene("along = \"camera\"",
+                   "[animation]\n\"camera.position\" = { keys = [[1, [0, 0, 0]], [9, [90, 0, 0]], "
+                   "[20, [90, 40, 0]]] }\n");
+    EXPECT_EQ(source_of(moving, moving.layers[0]).stars.path,
+              (std::vector{glm::dvec3(0, 0, 0), glm::dvec3(90, 0, 0), glm::dvec3(90, 40, 0)}));
+    const Scene catalogue = star_scene("", "[camera]\nposition = [1, 2, 3]\n");
+    EXPECT_TRUE(source_of(catalogue, catalogue.layers[0]).stars.path.empty());
+}
+
+TEST(LayerSource, StarsAlongACameraWithoutAPlaceCannotBeRendered) {
+    const Scene lost = star_scene("along = \"camera\"");
+    EXPECT_EQ(
+        message_of<InputError>([&] {
+            check_renderable(lost, {{"layer.sky.source.along", "a.toml:7"}});
+        }),
+        "a.toml:7: layer.sky.source.along: expected camera.position, or keyframes of it, for stars along the "
+        "camera, found none");
+    EXPECT_EQ(message_of<InputError>([&] {
+                  check_renderable(star_scene("along = \"camera\"", "[camera]\nposition = [1, 2, 3]\n"), {});
+              }),
+              "no error");
 }
 
 TEST(LayerSetup, OfALookStarsTakeTheGradeAlone) {

@@ -213,7 +213,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"source.kind = \"splats\"\n",
              "5: layer.stars.source.kind: expected a splat file for kind \"splats\", found none"},
         Case{"source.kind = \"stars\"\n",
-             "5: layer.stars.source.kind: expected a star catalogue for kind \"stars\", found none"},
+             "5: layer.stars.source.kind: expected a star catalogue, or along = \"camera\", for kind "
+             "\"stars\", found none"},
+        Case{"source.along = \"orbit\"\n", "5: layer.source.along: expected  or camera, found 'orbit'"},
+        Case{"source.spread = 0\n",
+             "5: layer.source.spread: expected a number from 1e-09 to 1000000000, found 0"},
         Case{"source.kind = \"stars\"\nsource.catalogue = \"a.csv\"\nsource.wings = { share = 0.5 }\n"
              "source.spikes = { share = 0.75 }\n",
              "8: layer.stars.source.spikes.share: expected shares of wings and spikes of at most 1 together, "

@@ -75,6 +75,35 @@ TEST_F(LoadSourceTest, StarsComeFromACatalogue) {
         << lines_;
 }
 
+TEST_F(LoadSourceTest, StarsAreScatteredAlongTheCamera) {
+    SourceParams source;
+    source.kind = SourceKind::stars;
+    source.stars.along = "camera";
+    source.stars.path = {{0, 0, 0}, {50, 0, 0}};
+    source.stars.spread = 5.0;
+    source.count = 3000;
+    const SplatSet set = load_source(source, "sky");
+    ASSERT_EQ(set.size(), 3000);
+    EXPECT_TRUE(set.stars);
+    EXPECT_NEAR(bounds(set).hi.x, 54.0, 1.0);
+    EXPECT_NE(load_source(source, "other").position[0], set.position[0]);
+    source.seed = 5;
+    EXPECT_EQ(load_source(source, "other").position[0], load_source(source, "sky").position[0]);
+    source.stars.catalogue = write("red.csv", "ra,dec,dist,mag,bv\n0,0,10,1,1.9\n0,0,,1,0\n0,0,10,13,0\n");
+    for (const glm::vec3& color : load_source(source, "sky").color) EXPECT_GT(color.x, color.z);
+    EXPECT_NE(
+        lines_.find(
+            "layer 'sky': 3 k random stars within 5 of the camera's path, of 1 star of the catalogue\n"),
+        std::string::npos)
+        << lines_;
+    source.stars.catalogue = write("far.csv", "ra,dec,dist,mag\n0,0,,1\n");
+    EXPECT_NE(error_of(source).find("expected stars of magnitude 12 or brighter with a distance, found none"),
+              std::string::npos)
+        << error_of(source);
+    source.stars.path.clear();
+    EXPECT_NE(error_of(source).find("camera"), std::string::npos);
+}
+
 TEST_F(LoadSourceTest, ACatalogueThatIsNoneIsRefused) {
     SourceParams source;
     source.kind = SourceKind::stars;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <glm/vec3.hpp>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ struct HipparcosRow {
     std::string magnitude = "6.53", ra = "000.05331696", dec = "+38.30408636", parallax = "4.12",
                 color_index = "0.955", hms = "00 00 12.80", dms = "+38 18 14.7";
 };
+
+/// The luminance of a colour, in double.
+inline double flux_of(const glm::vec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 /// A line of 78 fields, most of them empty, as wide as the catalogue's.
 inline std::string hipparcos_line(const HipparcosRow& row) {

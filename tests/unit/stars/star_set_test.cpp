@@ -24,8 +24,6 @@ SplatSet set_of(std::vector<CatalogueStar> stars, const StarScale& scale = {}, S
     return star_set(catalogue, scale, counts);
 }
 
-double flux_of(const glm::vec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
-
 void expect_near(const glm::dvec3& found, const glm::dvec3& expected, double tolerance) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], tolerance) << "axis " << i;
 }
@@ -59,10 +57,10 @@ TEST(StarSet, UnitScalesDistances) {
 
 TEST(StarSet, FiveMagnitudesAreAFactorOfHundred) {
     const SplatSet set = set_of({star_at(0, 0, 10, 4), star_at(0, 0, 10, 9), star_at(0, 0, 99, -1)});
-    EXPECT_NEAR(flux_of(set.color[0]), 1.0, 1e-6);
-    EXPECT_NEAR(flux_of(set.color[1]), 0.01, 1e-8);
-    EXPECT_NEAR(flux_of(set.color[2]), 100.0, 1e-4);  // as seen from the origin, however far
-    EXPECT_NEAR(flux_of(set_of({star_at(0, 0, 10, 4)}, {1.0, 12.0, 6.5}).color[0]), 10.0, 1e-5);
+    EXPECT_NEAR(test::flux_of(set.color[0]), 1.0, 1e-6);
+    EXPECT_NEAR(test::flux_of(set.color[1]), 0.01, 1e-8);
+    EXPECT_NEAR(test::flux_of(set.color[2]), 100.0, 1e-4);  // as seen from the origin, however far
+    EXPECT_NEAR(test::flux_of(set_of({star_at(0, 0, 10, 4)}, {1.0, 12.0, 6.5}).color[0]), 10.0, 1e-5);
 }
 
 TEST(StarSet, ColorFollowsBMinusV) {
@@ -106,7 +104,7 @@ TEST(StarSet, TheOtherColumnsAreConstant) {
 
 TEST(StarSet, AbsurdMagnitudesStayFinite) {
     const SplatSet set = set_of({star_at(0, 0, 1, -60)}, {1.0, 12.0, 100.0});
-    EXPECT_NEAR(flux_of(set.color[0]), 1e18, 1e12);
+    EXPECT_NEAR(test::flux_of(set.color[0]), 1e18, 1e12);
 }
 
 TEST(StarSet, TheFirstRowOfHipparcosStandsWhereItShould) {

@@ -75,6 +75,24 @@ TEST_F(SetListTest, HowStarsLookMakesNoOtherSet) {
     EXPECT_EQ(begun(), "load sky");
 }
 
+TEST_F(SetListTest, StarsAlongTheCameraFollowItsPath) {
+    add_layer("sky");
+    scene.camera.position = glm::dvec3(1.0, 2.0, 3.0);
+    scene.layers[0].source.kind = SourceKind::stars;
+    scene.layers[0].source.stars.along = "camera";
+    list.want(scene);
+    EXPECT_EQ(begun(), "load sky");
+    EXPECT_EQ(job->source.stars.path, (std::vector{glm::dvec3(1.0, 2.0, 3.0)}));
+    keep(true);
+    EXPECT_FALSE(list.status(scene.layers[0]).stale);
+    scene.camera.fov = 20.0;
+    list.want(scene);
+    EXPECT_EQ(begun(), "");
+    scene.camera.position = glm::dvec3(4.0, 2.0, 3.0);
+    list.want(scene);
+    EXPECT_EQ(begun(), "load sky");
+}
+
 TEST_F(SetListTest, WhatComesLaterWaitsForAllSetsAndWhileItIsHeld) {
     add_layer("gas");
     add_layer("dust");
