@@ -183,8 +183,6 @@ Pipeline::Pipeline() : state_(std::make_unique<State>()) {}
 
 Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache& cache)
     : state_(std::make_unique<State>()) {
-    // What can be refused at once comes before the long work.
-    check_supported(scene.camera);
     const Progress cancel_only{{}, progress.cancelled};  // pictures are no share of the work reported
     if (has_environment(scene.environment))
         state_->environment = load_environment(scene.environment, cancel_only);
@@ -209,7 +207,6 @@ void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const S
                          const Environment* loaded, const Progress& progress) {
     assert(sets.size() == scene.layers.size());
     State& state = *state_;
-    check_supported(scene.camera);
     if (!same_pictures(scene.environment, state.scene.environment)) {
         std::optional<Environment> environment;
         if (has_environment(scene.environment))

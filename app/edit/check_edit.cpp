@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "scene/camera_file.h"
 #include "scene/check.h"
 #include "scene/describe.h"
 
@@ -83,6 +84,7 @@ void check_edited_scene(Scene& scene, const std::string& name) {
     }
     for (const Track& track : scene.animation) check_track(track, *find_parameter(description, track.key));
     check_scene(scene, name, {});
+    refresh_camera_file(scene, name);
 }
 
 }  // namespace astrosplat

@@ -15,6 +15,7 @@
 #include "edit/disk_file.h"
 #include "edit/keyframes.h"
 #include "edit/layers.h"
+#include "scene/camera_file.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
 #include "scene/path_text.h"
@@ -123,7 +124,13 @@ struct Document::State {
 
     /// `content` is what lies in the document's file. Throws InputError, and nothing has changed.
     void know_disk(const std::string& content) {
-        saved = std::make_shared<const Scene>(parse_unchecked(content, file));
+        Scene read = parse_unchecked(content, file);
+        try {
+            attach_camera_file(read, file.string());
+        } catch (const InputError&) {
+            // What lies there cannot be rendered; it can be saved over.
+        }
+        saved = std::make_shared<const Scene>(std::move(read));
         text = content;
         text_place = file;
         disk = DiskFile(file, content);

@@ -19,6 +19,7 @@ Scene camera_part(const Scene& scene) {
     part.output.width = scene.output.width;
     part.output.height = scene.output.height;
     part.output.frames = scene.output.frames;
+    part.imported = scene.imported;
     for (const Track& track : scene.animation)
         if (track.key.is_below("camera")) part.animation.push_back(track);
     return part;

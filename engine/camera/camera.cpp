@@ -27,7 +27,6 @@ void expect(bool good, const char* key, const char* expected, double found) {
 
 // The negated comparisons of `expect` refuse NaN as well.
 void check(const CameraParams& params) {
-    check_supported(params);
     if (params.projection == Projection::orthographic) {
         expect(params.height > 0.0, "camera.height", "more than 0 scene units", params.height);
     } else {
@@ -120,14 +119,6 @@ glm::dmat3 orientation(const CameraParams& params, const glm::dvec3& position, c
 }
 
 }  // namespace
-
-void check_supported(const CameraParams& params) {
-    if (!params.file.empty())
-        throw InputError(fmt::format(
-            "camera.file: expected no file (camera paths can be imported from a later release on), "
-            "found '{}'",
-            params.file.string()));
-}
 
 Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box) {
     check(params);

@@ -34,6 +34,10 @@ constexpr bool has_two_eyes(Projection projection) {
 enum class Eye { centre, left, right };
 constexpr auto names_of(Eye) { return names_up_to<Eye::right>("centre", "left", "right"); }
 
+/// Which axis of a camera file is up; auto: the file's own word, or its format's habit.
+enum class CameraFileUp { automatic, y, z };
+constexpr auto names_of(CameraFileUp) { return names_up_to<CameraFileUp::z>("auto", "y", "z"); }
+
 struct CameraParams {
     Projection projection = Projection::perspective;
     std::optional<glm::dvec3> position;  // empty: frame all visible layers from 35 degrees above +z
@@ -62,7 +66,11 @@ struct CameraParams {
     double near = 0.01;             // scene units
     double far = 0.0;               // scene units; 0: none
     double near_fade = 0.0;         // scene units; 0: one radius of the splat
-    std::filesystem::path file;
+    std::filesystem::path file;     // another program's camera (scene/camera_file.h); "": none
+    double file_scale = 1.0;        // scene units per unit of the file
+    CameraFileUp file_up = CameraFileUp::automatic;
+    double file_offset = 0.0;  // frames added to those of the file
+    double file_fps = 0.0;     // 1/s; 0: as the file says
     bool operator==(const CameraParams&) const = default;
 };
 
@@ -79,14 +87,10 @@ struct Camera {
     double aspect = 1.0;    // width / height
 };
 
-/// Throws InputError for what a later release brings: camera files. Can be asked before anything is
-/// generated.
-void check_supported(const CameraParams& params);
-
 /// Resolves the parameters for a frame of width x height px. `scene_box` (may be empty) is what a camera
 /// without position frames: its place, target and (orthographic) height then come from frame_box; a rotation
 /// is kept. Where the view is parallel to up, -z is up, else +x. Throws InputError for values out of range,
-/// camera files, and a zero view direction.
+/// and a zero view direction.
 Camera make_camera(const CameraParams& params, double width_px, double height_px, const Bounds& scene_box);
 
 /// The camera as the projections of shaders/shared take it (camera/projection.h).

@@ -27,7 +27,8 @@ bool is_elsewhere(const ParameterSpec& spec) {
     constexpr std::array<std::string_view, 5> keys = {"output.path", "output.frames", "output.fps",
                                                       "output.compression", "layer.preset"};
     return std::ranges::find(keys, spec.generic_key.text()) != keys.end() ||
-           spec.generic_key.is_below("provenance") || spec.generic_key.is_below("reference");
+           spec.generic_key.text().starts_with("camera.file_") || spec.generic_key.is_below("provenance") ||
+           spec.generic_key.is_below("reference");
 }
 
 bool shows(const EnvironmentParams& environment) {
@@ -121,10 +122,12 @@ std::string FrameHasher::moving_text(double frame, const Scene& now) const {
     for (int i = 0; i < samples; ++i) {
         Scene then = scene_at(scene_, frame + camera_sample(now.camera, i, samples).frames);
         for (const Parameter& parameter : describe(then).parameters) {
-            const bool moves = std::ranges::any_of(scene_.animation, [&](const Track& track) {
+            const auto is_of = [&](const Track& track) {
                 return track.key.text() == parameter.spec.key.text();
-            });
-            if (moves)
+            };
+            const bool imported =
+                scene_.imported.camera && std::ranges::any_of(scene_.imported.camera->tracks, is_of);
+            if (imported || std::ranges::any_of(scene_.animation, is_of))
                 text += fmt::format("{} {} = {}\n", i, parameter.spec.key.text(), to_toml(parameter.get()));
         }
     }
@@ -144,6 +147,8 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
         text += spec.key.text() + " =";
         if (!files)
             text += " " + to_toml(value);
+        else if (spec.generic_key.text() == "camera.file")
+            text += " \"\"";  // what it says at this frame stands in the keys it replaces
         else if (const std::string* name = value.text())
             text += " " + file_text(*name);
         else if (const Value::List* names = value.list())

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "camera/handles.h"
 #include "scene/describe.h"
@@ -51,6 +52,17 @@ std::vector<double> evaluate_rotation_track(const Track& track, double frame) {
     return {q.x, q.y, q.z, q.w};
 }
 
+/// The part of a linear track that decides at `frame`: at most two of its keyframes.
+Track around(const Track& track, double frame) {
+    const auto& keyframes = track.keyframes;
+    const auto after = std::ranges::upper_bound(keyframes, frame, {}, [](const auto& k) { return k.frame; });
+    Track part;
+    part.key = track.key;
+    if (after != keyframes.begin()) part.keyframes.push_back(*(after - 1));
+    if (after != keyframes.end()) part.keyframes.push_back(*after);
+    return part;
+}
+
 }  // namespace
 
 std::vector<Keyframe<glm::dvec3>> position_keyframes(const Track& track) {
@@ -96,26 +108,33 @@ std::vector<double> track_at(const Track& track, const ParameterSpec& spec, doub
 
 Scene scene_at(const Scene& scene, double frame) {
     Scene still = scene;
+    const std::span<const Track> imported =
+        scene.imported.camera ? std::span(scene.imported.camera->tracks) : std::span<const Track>();
     const Description description = describe(still, [&](const ParameterKey& group) {
-        return std::ranges::any_of(scene.animation,
-                                   [&](const Track& track) { return track.key.is_below(group); });
+        const auto moves = [&](const Track& track) { return track.key.is_below(group); };
+        return std::ranges::any_of(scene.animation, moves) || std::ranges::any_of(imported, moves);
     });
-    for (const Track& track : scene.animation) {
+    const auto set = [&](const Track& track) {
         const Parameter* parameter = find_parameter(description, track.key);
-        if (!parameter || track.keyframes.empty()) continue;  // of a layer that was taken out
+        if (!parameter || track.keyframes.empty()) return;  // of a layer that was taken out
         parameter->set(from_numbers(parameter->spec, track_at(track, parameter->spec, frame)));
-    }
+    };
+    for (const Track& track : scene.animation) set(track);
+    for (const Track& track : imported) set(around(track, frame));
     return still;
 }
 
 bool ever_visible(const Scene& scene, const LayerParams& layer) {
     const ParameterKey key = layer_key(layer.name) / "visible";
-    for (const Track& track : scene.animation) {
-        if (track.key != key) continue;
-        return std::ranges::any_of(track.keyframes,
-                                   [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
-    }
-    return layer.visible;
+    const auto track_in = [&](std::span<const Track> tracks) {
+        const auto found = std::ranges::find(tracks, key, &Track::key);
+        return found == tracks.end() ? nullptr : &*found;
+    };
+    const Track* track = scene.imported.camera ? track_in(scene.imported.camera->tracks) : nullptr;
+    if (!track) track = track_in(scene.animation);
+    if (!track) return layer.visible;
+    return std::ranges::any_of(track->keyframes,
+                               [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
 }
 
 }  // namespace astrosplat

@@ -9,7 +9,8 @@
 
 namespace astrosplat {
 
-/// A copy of the scene with every track evaluated at `frame` (real-valued) and written into its parameter.
+/// A copy of the scene with every track evaluated at `frame` (real-valued) and written into its parameter;
+/// those of camera.file win over those of [animation].
 Scene scene_at(const Scene& scene, double frame);
 
 /// The numbers of one track at `frame`, before they are fitted to the parameter's type and range. The track

@@ -170,12 +170,6 @@ void check_renderable(const Scene& scene, const Places& places) {
     const Checker check{scene.file.string(), places};
     if (scene.layers.empty())
         throw InputError(fmt::format("{}: expected at least one [[layer]], found none", check.file));
-    try {
-        check_supported(scene.camera);
-    } catch (const InputError& error) {  // which names the key, but does not know the line
-        const char* key = scene.camera.file.empty() ? "camera.projection" : "camera.file";
-        throw InputError(fmt::format("{}: {}", check.nearest_place(key), error.what()));
-    }
     for (const LayerParams& layer : scene.layers) {
         if (!ever_visible(scene, layer)) continue;
         const ParameterKey at = layer_key(layer.name) / "source";

@@ -13,8 +13,8 @@ namespace astrosplat {
 void check_scene(const Scene& scene, const std::string& file, const Places& places);
 
 /// Throws InputError, with the place of the key, for what this release reads and keeps but cannot render:
-/// stars along a camera without a place, other projections, camera files, splat files of other kinds. Layers
-/// that are never visible are left out.
+/// stars along a camera without a place, splat files of other kinds. Layers that are never visible are left
+/// out.
 void check_renderable(const Scene& scene, const Places& places);
 
 /// A key of a group whose value cannot stand, and "expected ..., found ...".

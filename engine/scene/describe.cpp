@@ -137,7 +137,22 @@ void describe_camera(const Describer& d, CameraParams& c) {
     lens(c.near_fade, "near_fade", "Near fade", "scene units",
          "Splats fade in over this beyond near; 0: one radius of the splat.", at_least(0), slider(0, 10),
          zero_is("Auto"));
-    place(c.file, "file", "Camera file", "", "Camera path to import instead of these keys.");
+}
+
+// Read once for all frames: none of these can be animated.
+void describe_camera_file(const Describer& d, CameraParams& c) {
+    d(c.file, "file", "Camera file", "",
+      "Another program's camera; its path, turns and lens replace these keys, a .csv any keys it names.");
+    const Describer read = d.never_with("file", {""});
+    read(c.file_scale, "file_scale", "Unit of the file", "scene units",
+         "Scene units per unit of the camera file.", within(1e-30, 1e30), slider(0.001, 1000), logarithmic());
+    read(c.file_up, "file_up", "Up in the file", "",
+         "Its axis that is up; auto: as the file says, or is usual.");
+    read(c.file_offset, "file_offset", "Frames added", "frames", "Added to the frames of the camera file.",
+         within(-1e9, 1e9), slider(-1000, 1000));
+    read(c.file_fps, "file_fps", "Frame rate of the file", "1/s",
+         "Frames per second of the camera file; 0: as it says, else output.fps.", within(0, 1e6),
+         slider(0, 120), zero_is("As it says"));
 }
 
 void describe_environment(const Describer& d, EnvironmentParams& e) {
@@ -182,7 +197,10 @@ Description describe(Scene& scene, const std::function<bool(const ParameterKey& 
     Description description;
     const Describer d(description, {}, false);
     if (wanted("output")) describe_output(d.in("output", false), scene.output);
-    if (wanted("camera")) describe_camera(d.in("camera", true), scene.camera);
+    if (wanted("camera")) {
+        describe_camera(d.in("camera", true), scene.camera);
+        describe_camera_file(d.in("camera", false).shown_in("Camera", "Place"), scene.camera);
+    }
     if (wanted("environment"))
         describe_environment(d.in("environment", true).shown_in("Camera", "Environment"), scene.environment);
     if (wanted("provenance"))

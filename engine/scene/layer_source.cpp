@@ -13,9 +13,13 @@ constexpr int places_on_path = 1024;  // about
 constexpr double tolerance = 0.01;    // of the distance that stars lie from the path
 
 const Track* position_track(const Scene& scene) {
-    const auto found = std::ranges::find_if(
-        scene.animation, [](const Track& track) { return track.key == "camera.position"; });
-    return found == scene.animation.end() ? nullptr : &*found;
+    const auto find_in = [](const std::vector<Track>& tracks) {
+        const auto found =
+            std::ranges::find_if(tracks, [](const Track& track) { return track.key == "camera.position"; });
+        return found == tracks.end() ? nullptr : &*found;
+    };
+    const Track* const imported = scene.imported.camera ? find_in(scene.imported.camera->tracks) : nullptr;
+    return imported ? imported : find_in(scene.animation);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
+#include "scene/camera_file.h"
 #include "scene/check.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
@@ -244,11 +245,17 @@ Assignment parse_assignment(const std::string& text) {
     return {key, std::string(trim(std::string_view(text).substr(equals + 1)))};
 }
 
+static std::string place_near(const Places& places, const ParameterKey& key, const fs::path& file) {
+    const auto found = places.find(key);
+    return found == places.end() ? file.string() : found->second;
+}
+
 static PlacedScene parse(const std::string& toml, const fs::path& file,
                          std::span<const Assignment> assignments, bool checked) {
     const toml::table root = parse_toml(toml, file.string());
     PlacedScene placed = Loader(file.string(), file.parent_path()).load(root, assignments, checked);
     placed.scene.file = file;
+    if (checked) attach_camera_file(placed.scene, place_near(placed.places, "camera.file", file));
     return placed;
 }
 

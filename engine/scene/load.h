@@ -25,7 +25,8 @@ Assignment parse_assignment(const std::string& text);
 Value typed_value(const std::string& text);
 
 /// Loads a scene and applies the assignments. Paths inside the file are resolved against its folder, those of
-/// assignments against the working directory; ${NAME} is an environment variable. Throws InputError.
+/// assignments against the working directory; ${NAME} is an environment variable. The camera file is read
+/// (camera_file.h). Throws InputError.
 Scene load_scene(const std::filesystem::path& file, std::span<const Assignment> assignments = {});
 
 /// A scene and where its keys were last set, for messages about what is found out later.
@@ -39,7 +40,8 @@ PlacedScene load_placed(const std::filesystem::path& file, std::span<const Assig
 Scene parse_scene(const std::string& toml, const std::filesystem::path& file,
                   std::span<const Assignment> assignments = {});
 
-/// parse_scene without the rules between parameters (check.h), for texts on their way to becoming a scene.
+/// parse_scene without the rules between parameters (check.h) and without its camera file, for texts on their
+/// way to becoming a scene.
 Scene parse_unchecked(const std::string& toml, const std::filesystem::path& file);
 
 }  // namespace astrosplat

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -109,6 +110,29 @@ struct Track {
     bool operator==(const Track&) const = default;
 };
 
+/// What camera.file says, as tracks that win over those of [animation], and what it was read for.
+struct ImportedCamera {
+    struct Source {
+        std::filesystem::path file;
+        double scale = 1.0, offset = 0.0, file_fps = 0.0;
+        CameraFileUp up = CameraFileUp::automatic;
+        double output_fps = 24.0;
+        Projection projection = Projection::perspective;
+        bool operator==(const Source&) const = default;
+    };
+    Source source;
+    std::vector<Track> tracks;  // linear; of parameters that the scene had when it was read
+    bool operator==(const ImportedCamera&) const = default;
+};
+
+/// Shared by the copies of a scene: some thousand frames.
+struct SharedCamera {
+    std::shared_ptr<const ImportedCamera> camera;  // null: no file
+    bool operator==(const SharedCamera& other) const {
+        return camera == other.camera || (camera && other.camera && *camera == *other.camera);
+    }
+};
+
 struct Scene {
     std::filesystem::path
         file;  // where it was loaded from; paths in it are already resolved against its folder
@@ -119,6 +143,7 @@ struct Scene {
     std::vector<ReferenceParams> references;
     std::vector<LayerParams> layers;
     std::vector<Track> animation;
+    SharedCamera imported;  // of camera.file; in no text
     bool operator==(const Scene&) const = default;
 };
 

@@ -315,7 +315,9 @@ TEST_F(Batch, WhatCannotBeRenderedIsSaidWithItsLine) {
     with("[camera]\n", "[camera]\nprojection = \"pinhole\"\n");
     expect_refused("scene.toml:7: camera.projection: ", "found 'pinhole'");
     with("[camera]\n", "[camera]\nfile = \"path.txt\"\n");
-    expect_refused("scene.toml:7: camera.file: ", "path.txt");
+    expect_refused("scene.toml:7: camera.file: expected a name ending in .chan", "path.txt'");
+    with("[camera]\n", "[camera]\nfile = \"path.chan\"\n");
+    expect_refused("scene.toml:7: camera.file: ", "path.chan: cannot be read: No such file or directory");
     with("file = \"stars.pda\"", "file = \"stars.bgeo\"");
     expect_refused("scene.toml:12: layer.stars.source.file: ", "stars.bgeo");
     EXPECT_EQ(batch({"-f", "1", "--layers", "dust"}).code, 0) << "a layer that is not asked for does no harm";

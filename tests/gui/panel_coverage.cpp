@@ -5,6 +5,7 @@
 
 #include "gui/panel_driver.h"
 #include "scene/describe.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -75,6 +76,11 @@ std::vector<std::string> telling_scenes() {
 TEST(PanelCoverage, EveryParameterIsInSomeTab) {
     std::set<std::string> drawn;
     for (const std::string& scene : telling_scenes()) drawn.merge(keys_drawn(scene, all_tabs));
+    const TempFolder folder;
+    const std::string camera = folder.file("a.chan", "1 0 0 9 0 0 0\n").string();
+    drawn.merge(keys_drawn(
+        layer("kind = \"splats\"\nfile = \"a.ply\"", "", "", "[camera]\nfile = \"" + camera + "\"\n"),
+        all_tabs));
     for (const ParameterRow& row : parameter_rows())
         EXPECT_TRUE(drawn.count(row.spec.generic_key)) << row.spec.generic_key << " is in no tab";
 }

@@ -258,9 +258,6 @@ TEST(CameraErrors, EachSaysKeyExpectationAndFinding) {
                   p.panorama_fov = 0.0;
               }),
               "camera.panorama_fov: expected degrees above 0, at most 360, found 0");
-    EXPECT_EQ(with([](CameraParams& p) { p.file = "move.chan"; }),
-              "camera.file: expected no file (camera paths can be imported from a later release on), found "
-              "'move.chan'");
     EXPECT_EQ(with([](CameraParams& p) { p.target = *p.position; }),
               "camera.target: expected a point other than camera.position, found [0, 0, 10]");
     EXPECT_EQ(with([](CameraParams& p) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 
+#include "scene/camera_file.h"
 #include "scene/describe.h"
 #include "scene/load.h"
 #include "support/errors.h"
@@ -131,6 +132,7 @@ TEST_F(FrameHashTest, EveryOtherParameterCounts) {
         const std::string& key = parameter.spec.generic_key;
         if (key == "output.fps" || parameter.spec.key == "layer.dust.visible" || key == "camera.position")
             continue;
+        if (key.starts_with("camera.file_")) continue;         // of no camera file
         if (parameter.spec.section == "Star image") continue;  // of layers that are stars
         if (key == "camera.fisheye_tilt" || key == "camera.panorama_fov" || key == "camera.focus_distance" ||
             key == "camera.eye_separation" || key == "camera.convergence" || key == "camera.unit_mm" ||
@@ -243,6 +245,28 @@ TEST_F(FrameHashTest, OnlyTheFramesAKeyframeReachesChange) {
     EXPECT_NE(changed(move_last_keyframe, 11), hash(scene(), 11));
     EXPECT_NE(hash(scene(), 1), hash(scene(), 2));
     EXPECT_EQ(hash(scene(), 16), hash(scene(), 19));  // nothing moves there: the same picture
+}
+
+TEST_F(FrameHashTest, ACameraFileCountsByWhatItSaysAtTheFrame) {
+    const auto with = [&](const std::string& text, std::int64_t frame) {
+        put("cam.chan", text);
+        Scene s = scene();
+        s.camera.file = folder_ / "cam.chan";
+        attach_camera_file(s, "");
+        return hash(s, frame);
+    };
+    const std::string before = "1 0 0 5 0 0 0\n2 0 0 6 0 0 0\n3 0 0 7 0 0 0\n";
+    const std::string after = "1 0 0 5 0 0 0\n2 0 0 6 0 0 0\n3 0 0 7 0 1 0\n";
+    EXPECT_EQ(with(after, 2), with(before, 2));
+    EXPECT_NE(with(after, 3), with(before, 3));
+    EXPECT_NE(with(before, 1), hash(scene(), 1));
+    Scene keys = scene();  // the same place and turn, written as keys
+    keys.camera.rotation = glm::dvec4(0, 0, 0, 1);
+    for (Track& track : keys.animation)
+        if (track.key == "camera.position") track.keyframes = {{1.0, {0, 0, 5}, Interpolation::linear}};
+    EXPECT_EQ(with(before, 1), hash(keys, 1));
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("file_"), std::string::npos)
+        << "frames keep their hash";
 }
 
 TEST_F(FrameHashTest, HiddenLayersAndSkiesDoNotCount) {

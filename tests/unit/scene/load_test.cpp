@@ -166,12 +166,12 @@ TEST(Load, PathsAreRelativeToTheFileAndKnowTheEnvironment) {
     const Scene scene = parse(small_scene() +
                                   "[environment]\nimage = \"${ASTROSPLAT_TEST_FOLDER}/sky.exr\"\n"
                                   "[output]\npath = \"${ASTROSPLAT_TEST_FOLDER}/f.####.png\"\n",
-                              {"camera.file=cam.txt"}, "scenes/a.toml");
+                              {"layer.stars.source.file=cam.pda"}, "scenes/a.toml");
     EXPECT_EQ(scene.environment.image, "/data/n\xC3\xA4he/sky.exr");
     EXPECT_EQ(scene.output.path, "/data/n\xC3\xA4he/f.####.png");
     EXPECT_EQ(scene.layers[0].source.meshes[0].texture[0], "scenes/a.png");
     EXPECT_EQ(scene.layers[0].source.meshes[0].mesh, "plane") << "built-in names are no paths";
-    EXPECT_EQ(scene.camera.file, "cam.txt") << "--set is relative to the working directory";
+    EXPECT_EQ(scene.layers[0].source.file, "cam.pda") << "--set is relative to the working directory";
     EXPECT_EQ(parse(small_scene(), {"output.path=x/f.####.exr"}).output.path,
               (fs::current_path() / "x/f.####.exr").string());
 }

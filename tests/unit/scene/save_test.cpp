@@ -263,13 +263,14 @@ bool is_valid(const Scene& scene) {
     return true;
 }
 
-/// The scene with one parameter changed; presets must exist and names are keys, so these stay.
+/// The scene with one parameter changed; presets and camera files must exist and names are keys, so these
+/// stay.
 Scene changed(const Scene& scene, std::size_t index, std::uint32_t seed) {
     Scene edited = scene;
     const Description description = describe(edited);
     const Parameter& parameter = description.parameters[index];
     const std::string key = parameter.spec.generic_key;
-    if (key == "layer.name" || key == "layer.preset") return scene;
+    if (key == "layer.name" || key == "layer.preset" || key == "camera.file") return scene;
     parameter.set(key == "output.frames" ? Value("1-9") : some_value(parameter.spec, seed));
     return is_valid(edited) ? edited : scene;
 }

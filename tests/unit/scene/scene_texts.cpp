@@ -45,6 +45,10 @@ near = 0.01
 far = 0.0
 near_fade = 0.0
 file = ""
+file_scale = 1.0
+file_up = "auto"
+file_offset = 0.0
+file_fps = 0.0
 
 [environment]
 image = ""

@@ -1,0 +1,53 @@
+#include "camera_files/camera_track.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace astrosplat {
+namespace {
+
+bool normalise(glm::dvec3& v) {
+    const double largest = std::fmax(std::fabs(v.x), std::fmax(std::fabs(v.y), std::fabs(v.z)));
+    if (!(largest > 0.0) || !std::isfinite(largest)) return false;
+    v /= largest;  // squares of 1e200 overflow
+    v /= glm::length(v);
+    return true;
+}
+
+// The largest of the four numbers first, so that nothing is divided by a small one.
+glm::dvec4 quaternion_of(const glm::dmat3& m) {
+    const double trace = m[0][0] + m[1][1] + m[2][2];
+    glm::dvec4 q;
+    if (trace > 0.0) {
+        const double s = 2.0 * std::sqrt(trace + 1.0);
+        q = {(m[1][2] - m[2][1]) / s, (m[2][0] - m[0][2]) / s, (m[0][1] - m[1][0]) / s, 0.25 * s};
+    } else {
+        const int i = m[0][0] >= m[1][1] && m[0][0] >= m[2][2] ? 0 : m[1][1] >= m[2][2] ? 1 : 2;
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double s = 2.0 * std::sqrt(std::fmax(0.0, 1.0 + m[i][i] - m[j][j] - m[k][k]));
+        q[i] = 0.25 * s;
+        q[j] = (m[i][j] + m[j][i]) / s;
+        q[k] = (m[i][k] + m[k][i]) / s;
+        q.w = (m[j][k] - m[k][j]) / s;
+    }
+    return q / glm::length(q);
+}
+
+}  // namespace
+
+bool quaternion_from_axes(const glm::dmat3& world_from_camera, glm::dvec4& quaternion) {
+    glm::dvec3 x = world_from_camera[0], z = world_from_camera[2];
+    if (!normalise(z) || !normalise(x)) return false;
+    x -= z * glm::dot(x, z);
+    if (!(glm::length(x) > 1e-9) || !normalise(x)) return false;
+    quaternion = quaternion_of(glm::dmat3(x, glm::cross(z, x), z));
+    return true;
+}
+
+bool quaternion_from_view(const glm::dvec3& direction, const glm::dvec3& up, glm::dvec4& quaternion) {
+    glm::dvec3 back = -direction, above = up;
+    if (!normalise(back) || !normalise(above)) return false;
+    return quaternion_from_axes(glm::dmat3(glm::cross(above, back), above, back), quaternion);
+}
+
+}  // namespace astrosplat

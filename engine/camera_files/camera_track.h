@@ -1,0 +1,51 @@
+// A camera's way through another program's scene, as plain samples: what every reader of camera files gives
+// and every writer takes. In: frames of the output, places in the file's units and axes. The readers turn
+// their angles into quaternions and their lenses into vertical fields of view; nothing else is converted.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <string>
+#include <vector>
+
+namespace astrosplat {
+
+struct TrackSample {
+    double frame = 0.0;                       // ascending through a track
+    glm::dvec3 eye{0.0};                      // units of the file
+    glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};  // quaternion x y z w, world from camera, length 1
+    double fov_deg = 0.0;                     // vertical; meaningless where the track has none
+    double height = 0.0;                      // units of the file from bottom to top, orthographic tracks
+};
+
+enum class FileUp { y, z };
+
+struct CameraTrack {
+    std::vector<TrackSample> samples;   // at least one; between them cameras move in straight lines
+    bool has_fov = false;               // every sample has fov_deg
+    bool orthographic = false;          // every sample has height instead
+    FileUp up = FileUp::y;              // the file's own word, or its format's habit
+    double fps = 0.0;                   // as the file says; 0: it does not
+    std::vector<std::string> warnings;  // odd but usable: one line each, with the file's name
+};
+
+/// How frames of a file become frames of the output.
+struct FrameRate {
+    double output_fps = 24.0;  // 1/s
+    double file_fps = 0.0;     // of a file that counts frames; 0: as the file says, else the output's
+};
+
+/// The longest track that is read: a day at 60 frames a second, and then some.
+inline constexpr std::int64_t most_camera_samples = 6'000'000;
+
+/// Nearest quaternion of axes that are orthogonal but for rounding and scale: the viewing axis (column 2) is
+/// kept, then x. Returns false where they span no space.
+bool quaternion_from_axes(const glm::dmat3& world_from_camera, glm::dvec4& quaternion);
+
+/// Looking along `direction` with `up` up. Returns false where the two are parallel or zero.
+bool quaternion_from_view(const glm::dvec3& direction, const glm::dvec3& up, glm::dvec4& quaternion);
+
+}  // namespace astrosplat

@@ -1,0 +1,184 @@
+// camera.file: what it replaces at which frame, in which units and axes, from samples and from tables.
+#include "scene/camera_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "camera/camera.h"
+#include "core/text.h"
+#include "scene/animate.h"
+#include "scene/csv_tracks.h"
+#include "scene/load.h"
+#include "scene/save.h"
+#include "scene_texts.h"
+#include "support/camera_tracks.h"
+
+namespace astrosplat {
+namespace {
+
+class CameraFile : public test::CameraFileTest {
+  protected:
+    Scene scene(const std::string& camera, const std::string& rest = "") {
+        return parse_scene(test::small_scene() + "[camera]\n" + camera + rest, folder / "scene.toml");
+    }
+    std::string refused(const std::string& camera) {
+        std::string text = message_of<InputError>([&] { scene(camera); });
+        const std::string inside = folder.path().string() + "/";
+        for (std::size_t at; (at = text.find(inside)) != text.npos;) text.erase(at, inside.size());
+        return text;
+    }
+};
+
+glm::dvec3 place(const Scene& scene, double frame) { return *scene_at(scene, frame).camera.position; }
+glm::dvec3 view(const Scene& scene, double frame) {
+    return -make_camera(scene_at(scene, frame).camera, 100, 100, {}).world_from_camera[2];
+}
+void expect_at(const glm::dvec3& a, const glm::dvec3& b) { EXPECT_LT(glm::distance(a, b), 1e-9); }
+
+const char* const two_frames = "10 1 2 3 0 0 0 30\n20 3 2 3 0 90 0 40\n";
+
+TEST_F(CameraFile, ReplacesPlaceTurnAndLensAtEveryFrame) {
+    put("cam.chan", two_frames);
+    const Scene s = scene("file = \"cam.chan\"\nposition = [9, 9, 9]\nfocal_length = 50.0\n",
+                          "[animation]\n\"camera.fov\" = { keys = [[1, 70.0]] }\n");
+    expect_at(place(s, 10), {1, 2, 3});
+    expect_at(place(s, 15), {2, 2, 3});
+    expect_at(view(s, 15), {-std::sqrt(0.5), 0, -std::sqrt(0.5)});
+    const CameraParams now = scene_at(s, 12.5).camera;
+    EXPECT_EQ(now.fov, 32.5) << "the file's, not the animation's";
+    EXPECT_EQ(now.focal_length, 0.0) << "it would replace the file's fov";
+}
+
+TEST_F(CameraFile, HoldsBeforeTheFirstAndAfterTheLastFrame) {
+    put("cam.chan", two_frames);
+    const Scene s = scene("file = \"cam.chan\"\n");
+    expect_at(place(s, -100), {1, 2, 3});
+    expect_at(place(s, 1e6), {3, 2, 3});
+    EXPECT_EQ(scene_at(s, 1e6).camera.fov, 40.0);
+}
+
+TEST_F(CameraFile, WithoutAFieldOfViewTheSceneKeepsItsOwn) {
+    put("cam.chan", "1 0 0 5 0 0 0\n");
+    const Scene s = scene("file = \"cam.chan\"\nfocal_length = 50.0\n");
+    EXPECT_EQ(scene_at(s, 3).camera.focal_length, 50.0);
+}
+
+TEST_F(CameraFile, UnitAxisOffsetAndRateOfTheFile) {
+    put("cam.chan", two_frames);
+    const Scene s =
+        scene("file = \"cam.chan\"\nfile_scale = 0.5\nfile_up = \"z\"\nfile_offset = 5.0\nfile_fps = 48.0\n");
+    expect_at(place(s, 10), {0.5, 1.5, -1.0});  // frame 10 of 48 a second is our 5th, plus 5
+    expect_at(place(s, 15), {1.5, 1.5, -1.0});
+    expect_at(view(s, 10), {0, -1, 0});  // along -z, which is down there
+}
+
+TEST_F(CameraFile, TheSceneSavesTheKeyAndNotTheFrames) {
+    put("cam.chan", two_frames);
+    const Scene s = scene("file = \"cam.chan\"\n");
+    const std::string text = save_text(s, "", folder / "scene.toml");
+    EXPECT_NE(text.find("file = \"cam.chan\""), text.npos) << text;
+    EXPECT_EQ(text.find("[animation]"), text.npos) << text;
+    EXPECT_EQ(parse_scene(text, folder / "scene.toml"), s);
+}
+
+TEST_F(CameraFile, IsReadAgainWhereItsKeysAskForOtherTracks) {
+    put("cam.chan", two_frames);
+    Scene s = scene("file = \"cam.chan\"\n");
+    const auto before = s.imported.camera;
+    refresh_camera_file(s, "");
+    EXPECT_EQ(s.imported.camera, before) << "the very same";
+    s.camera.file_scale = 10.0;
+    refresh_camera_file(s, "");
+    expect_at(place(s, 10), {10, 20, 30});
+    s.camera.file.clear();
+    refresh_camera_file(s, "");
+    EXPECT_EQ(s.imported.camera, nullptr);
+}
+
+TEST_F(CameraFile, TablesSetAnyKeyThatCanBeAnimated) {
+    put("move.csv",
+        "frame,camera.position.x,camera.position.y,camera.position.z,layer.stars.look.density,"
+        "layer.stars.visible,layer.stars.look.grade.tint.r,layer.stars.look.grade.tint.g,"
+        "layer.stars.look.grade.tint.b,layer.stars.look.noise.cull,layer.stars.render.blend\n"
+        "1,0,0,10,1,true,1,1,1,0,over\n"
+        "11,0,5,20,0.5,false,1,0.5,0,0.5,add\n");
+    const Scene s = scene("file = \"move.csv\"\n");
+    expect_at(place(s, 6), {0, 2.5, 15});
+    const LayerParams layer = scene_at(s, 6).layers[0];
+    EXPECT_EQ(layer.look.density, 0.75f);
+    EXPECT_TRUE(layer.visible) << "steps";
+    EXPECT_EQ(layer.look.grade.tint.z, 0.5f);
+    EXPECT_EQ(layer.look.noise.at(0).cull, 0.25f);
+    EXPECT_FALSE(scene_at(s, 11).layers[0].visible);
+    EXPECT_EQ(scene_at(s, 11).layers[0].render.blend, Blend::add);
+    EXPECT_TRUE(ever_visible(s, s.layers[0]));
+}
+
+TEST_F(CameraFile, TablesTakeOtherSeparatorsQuotesAndMarks) {
+    put("a.csv", "\xef\xbb\xbf\"frame\";\"camera.fov\"\r\n1;\"30\"\r\n\r\n2;40\r\n");
+    EXPECT_EQ(scene_at(scene("file = \"a.csv\"\n"), 2).camera.fov, 40.0);
+    put("b.csv", "camera.fov\tframe\n30\t1\n40\t3\n");
+    EXPECT_EQ(scene_at(scene("file = \"b.csv\"\n"), 2).camera.fov, 35.0);
+}
+
+TEST_F(CameraFile, EachMessageNamesPlaceExpectationAndFinding) {
+    const std::vector<std::string> all = all_camera_endings();
+    EXPECT_EQ(refused("file = \"cam.mov\"\n"), "scene.toml:8: camera.file: expected a name ending in " +
+                                                   alternatives(all) + ", found 'cam.mov'");
+    EXPECT_EQ(refused("file = \"none.chan\"\n"),
+              "scene.toml:8: camera.file: none.chan: cannot be read: No such file or directory");
+    const auto table = [&](const std::string& text) {
+        put("t.csv", text);
+        return refused("file = \"t.csv\"\n");
+    };
+    EXPECT_EQ(table(""), "t.csv:0: expected a header such as frame,camera.position.x, found an empty file");
+    EXPECT_EQ(table("1,2,3\n"), "t.csv:1: expected a header with a column 'frame', found '1'");
+    EXPECT_EQ(table("frame\n1\n"), "t.csv:1: expected at least one key beside 'frame', found none");
+    EXPECT_EQ(table("frame,camera.fov\n"), "t.csv:1: expected rows of numbers below the header, found none");
+    EXPECT_EQ(table("frame,camera.fuv\n1,2\n"),
+              "t.csv:1: unknown key 'camera.fuv'; did you mean 'camera.fov'?");
+    EXPECT_EQ(table("frame,layer.dust.visible\n1,2\n"), "t.csv:1: layer.dust.visible: unknown layer 'dust'");
+    EXPECT_EQ(table("frame,output.fps\n1,2\n"),
+              "t.csv:1: expected keys that can be animated, found 'output.fps'");
+    EXPECT_EQ(table("frame,camera.position\n1,2\n"),
+              "t.csv:1: expected columns camera.position.x, camera.position.y, ..., found 'camera.position'");
+    EXPECT_EQ(table("frame,camera.position.x,camera.position.z\n1,2,3\n"),
+              "t.csv:1: expected 3 columns for camera.position, found none for its number 2");
+    EXPECT_EQ(table("frame,camera.position.w\n1,2\n"),
+              "t.csv:1: expected 3 numbers for camera.position, found 'camera.position.w'");
+    EXPECT_EQ(table("frame,camera.fov,camera.fov\n1,2,3\n"),
+              "t.csv:1: expected each column once, found 'camera.fov' twice");
+    EXPECT_EQ(table("frame,camera.fov\n1,2,3\n"), "t.csv:2: expected 2 columns as in the header, found 3");
+    EXPECT_EQ(table("frame,camera.fov\n1,200\n"),
+              "t.csv:2: camera.fov: expected a number of at least 0.001 and below 180, found 200");
+    EXPECT_EQ(table("frame,camera.fov\n1,\n"), "t.csv:2: expected a number for camera.fov, found nothing");
+    EXPECT_EQ(table("frame,layer.stars.render.blend\n1,over\n2,ovr\n"),
+              "t.csv:3: layer.stars.render.blend: expected over, add, screen, lighten, hybrid or absorb, "
+              "found 'ovr'; did "
+              "you mean 'over'?");
+    EXPECT_EQ(table("frame,camera.fov\n1,3\n1,4\n"),
+              "t.csv:3: expected ascending frames, each once, found 1 after 1");
+    EXPECT_EQ(
+        table("frame,camera.rotation.x,camera.rotation.y,camera.rotation.z,camera.rotation.w\n1,0,0,0,0\n"),
+        "t.csv:2: camera.rotation: expected a quaternion that is not zero, found 0, 0, 0, 0");
+    put("far.chan", "1 1e13 0 0 0 0 0\n");
+    EXPECT_EQ(
+        refused("file = \"far.chan\"\n"),
+        "far.chan:frame 1: expected camera.position within 1e+12, found 1e+13 (camera.file_scale makes it "
+        "smaller)");
+}
+
+TEST_F(CameraFile, ATableThereAndBackIsTheSame) {
+    put("move.csv",
+        "frame,camera.position.x,camera.position.y,camera.position.z,camera.fov\n"
+        "1,0.1,0.2,0.3,40\n2.5,1e-9,-3,12345678.9,41.123456789012345\n");
+    Scene s = scene("");
+    const std::vector<Track> tracks = read_csv_tracks(folder / "move.csv", {}, s);
+    put("again.csv", csv_text(tracks));
+    EXPECT_EQ(read_csv_tracks(folder / "again.csv", {}, s), tracks);
+}
+
+}  // namespace
+}  // namespace astrosplat
