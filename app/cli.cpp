@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "batch.h"
+#include "camera_command.h"
 #include "compare.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -49,6 +50,7 @@ struct Invocation {
     PrepareOptions prepare;
     GenerateOptions generate;
     ConvertOptions convert;
+    CameraOptions camera;
     InfoOptions info;
     CompareOptions compare;
     FidelityOptions fidelity;
@@ -210,6 +212,17 @@ void add_convert(CLI::App& app, Invocation& call) {
     add_progress(command, call.convert.progress);
 }
 
+void add_camera(CLI::App& app, Invocation& call) {
+    CLI::App& command = add_command(app, call, "camera", "Writes the scene's camera for other programs",
+                                    [&call] { return run_camera(call.camera); });
+    add_value(command, "SCENE", call.camera.scene, "SCENE", "The scene")->required();
+    add_value(command, "-o,--output", call.camera.output, "FILE.(chan|csv|usda)", "The camera file to write")
+        ->required();
+    add_value(command, "-f,--frames", call.camera.frames, "1-100,120,200-300x2", "Instead of output.frames");
+    add_assignments(command, call.camera.assignments);
+    command.add_flag("--overwrite", call.camera.overwrite, "Replaces the file");
+}
+
 void add_reports(CLI::App& app, Invocation& call) {
     CLI::App& info = add_command(app, call, "info", "Describes any file the program reads",
                                  [&call] { return run_info(call.info); });
@@ -331,6 +344,7 @@ int run_command_line(int argc, char** argv) {
     add_prepare(app, call);
     add_generate(app, call);
     add_convert(app, call);
+    add_camera(app, call);
     add_reports(app, call);
     add_fidelity(app, call);
     try {

@@ -37,7 +37,7 @@ std::string sky_text(const SkySurface& sky) {
 }
 
 // Names of the files that these options ask for.
-std::vector<fs::path> files_of(const PrepareOptions& options, const PrepareParams& params) {
+std::vector<fs::path> pictures_of(const PrepareOptions& options, const PrepareParams& params) {
     std::vector<fs::path> files{options.folder / "picture.exr"};
     if (params.stars == PrepareParams::Stars::remove) files.push_back(options.folder / "stars.csv");
     if (params.background != PrepareParams::Background::keep)
@@ -86,7 +86,8 @@ std::string star_summary(const PrepareParams& params, const std::vector<PictureS
 void print_summary(const PrepareOptions& options, const PrepareParams& params, const PreparedPicture& result,
                    const Image& picture) {
     std::string names;
-    for (const fs::path& file : files_of(options, params)) names += " " + printable(file.filename().string());
+    for (const fs::path& file : pictures_of(options, params))
+        names += " " + printable(file.filename().string());
     fmt::print("picture     {}x{} px, linear light, {}\n", picture.width, picture.height,
                picture.channels == 4 ? "alpha" : "no alpha");
     fmt::print("stars       {}\n", star_summary(params, result.stars));
@@ -111,7 +112,7 @@ int run_prepare(const PrepareOptions& options) {
     const TextureSettings settings = prepare_settings(options);
     const PrepareParams& params = settings.prepare;
     require_inputs(options, params);
-    for (const fs::path& file : files_of(options, params)) refuse_to_overwrite(file, options.overwrite);
+    for (const fs::path& file : pictures_of(options, params)) refuse_to_overwrite(file, options.overwrite);
     prove_writable(options.folder);
     ProgressReport report(options.progress);
     Progress progress = report.begin_step("preparing");

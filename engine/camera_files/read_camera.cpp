@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "camera_files/chan.h"
+#include "camera_files/recordings.h"
 #include "core/error.h"
 #include "core/text.h"
 
@@ -15,7 +16,8 @@ struct Format {
 };
 
 const std::vector<Format>& formats() {
-    static const std::vector<Format> all{{".chan", read_chan}};
+    static const std::vector<Format> all{
+        {".chan", read_chan}, {".gsc", read_gaia_sky}, {".osrectxt", read_openspace}};
     return all;
 }
 

@@ -68,6 +68,20 @@ TEST_F(CameraFileBatch, ResumeRendersOnlyWhatTheFileMoved) {
     EXPECT_NE(again.err.find("shot.0003.exr"), std::string::npos) << again.err;
 }
 
+TEST_F(CameraFileBatch, TheSceneGivesItsCameraAway) {
+    const RunResult written = run({"camera", "scene.toml", "-o", "out ö.csv", "-f", "1-5"});
+    EXPECT_EQ(written.code, 0) << written.err;
+    EXPECT_EQ(written.out, "out ö.csv: 5 frames\n");
+    EXPECT_EQ(line_count(text_of(folder / "out ö.csv")), 6);
+    expect_one_line(run({"camera", "scene.toml", "-o", "out ö.csv"}), 2, "exists already");
+    expect_one_line(run({"camera", "scene.toml", "-o", "out.abc"}), 2, ".chan, .csv or .usda");
+    RunOptions german;
+    german.environment = {"LC_ALL=de_DE.UTF-8"};
+    const std::string before = text_of(folder / "out ö.csv");
+    EXPECT_EQ(run({"camera", "scene.toml", "-o", "out ö.csv", "-f", "1-5", "--overwrite"}, german).code, 0);
+    EXPECT_EQ(text_of(folder / "out ö.csv"), before);
+}
+
 TEST_F(CameraFileBatch, OddFilesEndInOneLine) {
     write_still("file = \"cam.chan\"\n");
     expect_one_line(batch(), 2,

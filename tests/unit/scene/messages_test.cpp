@@ -5,6 +5,7 @@
 #include "scene/check.h"
 #include "scene/save.h"
 #include "scene_texts.h"
+#include "support/errors.h"
 
 namespace astrosplat::test {
 namespace fs = std::filesystem;
