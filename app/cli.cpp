@@ -216,7 +216,8 @@ void add_camera(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "camera", "Writes the scene's camera for other programs",
                                     [&call] { return run_camera(call.camera); });
     add_value(command, "SCENE", call.camera.scene, "SCENE", "The scene")->required();
-    add_value(command, "-o,--output", call.camera.output, "FILE.(chan|csv|usda)", "The camera file to write")
+    add_value(command, "-o,--output", call.camera.output, "FILE.(chan|csv|gltf|usda)",
+              "The camera file to write")
         ->required();
     add_value(command, "-f,--frames", call.camera.frames, "1-100,120,200-300x2", "Instead of output.frames");
     add_assignments(command, call.camera.assignments);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/base64.h"
 #include "fidelity/signed_difference.h"
 #include "fidelity_table.h"
 #include "output/encode.h"
@@ -16,21 +17,6 @@ namespace astrosplat {
 namespace {
 
 constexpr double full_colour = 0.1;  // share of light that is shown in full colour
-
-std::string base64(const std::string& bytes) {  // RFC 4648
-    constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t bits = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        for (int shift = 18; shift >= 0; shift -= 6) text += letters[bits >> shift & 63u];
-    }
-    for (std::size_t missing = (3 - bytes.size() % 3) % 3; missing > 0; --missing)
-        text[text.size() - missing] = '=';
-    return text;
-}
 
 std::string png_url(const Image& size, std::span<const unsigned char> rgb) {
     return "data:image/png;base64," + base64(png_bytes(size.width, size.height, rgb));

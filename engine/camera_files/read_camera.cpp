@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "camera_files/chan.h"
+#include "camera_files/gltf.h"
 #include "camera_files/recordings.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -16,8 +17,11 @@ struct Format {
 };
 
 const std::vector<Format>& formats() {
-    static const std::vector<Format> all{
-        {".chan", read_chan}, {".gsc", read_gaia_sky}, {".osrectxt", read_openspace}};
+    static const std::vector<Format> all{{".chan", read_chan},
+                                         {".gsc", read_gaia_sky},
+                                         {".osrectxt", read_openspace},
+                                         {".gltf", read_gltf},
+                                         {".glb", read_gltf}};
     return all;
 }
 

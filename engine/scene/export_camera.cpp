@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "camera/camera.h"
 #include "camera_files/chan.h"
+#include "camera_files/gltf.h"
 #include "camera_files/usda.h"
 #include "core/error.h"
+#include "core/log.h"
 #include "core/real.h"
 #include "core/text.h"
 #include "scene/animate.h"
@@ -84,15 +87,22 @@ CameraTrack camera_track(const Scene& scene, std::span<const std::int64_t> frame
     return track;
 }
 
-std::vector<std::string> written_camera_endings() { return {".chan", ".csv", ".usda"}; }
+std::vector<std::string> written_camera_endings() { return {".chan", ".csv", ".gltf", ".usda"}; }
 
 std::string camera_text(const CameraTrack& track, const Scene& scene, const std::filesystem::path& file) {
     const std::string ending = lower_case(file.extension().string());
     if (ending == ".csv") return table_of(track);
-    if (ending == ".usda")
-        return usda_text(track,
-                         {static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height),
-                          scene.camera.near, scene.camera.far});
+    const double aspect = static_cast<double>(scene.output.width) / static_cast<double>(scene.output.height);
+    if (ending == ".usda") return usda_text(track, {aspect, scene.camera.near, scene.camera.far});
+    if (ending == ".gltf") {
+        const auto other_lens = [&](const TrackSample& sample) {
+            return sample.fov_deg != track.samples[0].fov_deg || sample.height != track.samples[0].height;
+        };
+        if (std::ranges::any_of(track.samples, other_lens))
+            log_warning(fmt::format("{}: the lens changes, which glTF cannot say: it is that of frame {}",
+                                    printable(file.string()), shortest(track.samples[0].frame)));
+        return gltf_text(track, aspect, scene.camera.near, scene.camera.far);
+    }
     if (ending == ".chan" && track.orthographic)
         throw InputError(
             fmt::format("{}: expected a perspective camera, for .chan has no other, found orthographic",

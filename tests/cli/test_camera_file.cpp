@@ -74,7 +74,7 @@ TEST_F(CameraFileBatch, TheSceneGivesItsCameraAway) {
     EXPECT_EQ(written.out, "out ö.csv: 5 frames\n");
     EXPECT_EQ(line_count(text_of(folder / "out ö.csv")), 6);
     expect_one_line(run({"camera", "scene.toml", "-o", "out ö.csv"}), 2, "exists already");
-    expect_one_line(run({"camera", "scene.toml", "-o", "out.abc"}), 2, ".chan, .csv or .usda");
+    expect_one_line(run({"camera", "scene.toml", "-o", "out.abc"}), 2, ".chan, .csv, .gltf or .usda");
     RunOptions german;
     german.environment = {"LC_ALL=de_DE.UTF-8"};
     const std::string before = text_of(folder / "out ö.csv");

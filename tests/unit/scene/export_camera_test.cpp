@@ -88,7 +88,9 @@ TEST_F(ExportCamera, RefusesWhatItCannotSay) {
     const CameraTrack track = camera_track(flat, frames);
     EXPECT_NE(message_of<InputError>([&] { camera_text(track, flat, "a.chan"); }).find("found orthographic"),
               std::string::npos);
-    EXPECT_NE(message_of<InputError>([&] { camera_text(track, flat, "a.abc"); }).find(".chan, .csv or .usda"),
+    EXPECT_NE(message_of<InputError>([&] {
+                  camera_text(track, flat, "a.abc");
+              }).find(".chan, .csv, .gltf or .usda"),
               std::string::npos);
 }
 
