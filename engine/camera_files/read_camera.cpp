@@ -5,6 +5,7 @@
 #include "camera_files/chan.h"
 #include "camera_files/gltf.h"
 #include "camera_files/recordings.h"
+#include "camera_files/transforms_json.h"
 #include "core/error.h"
 #include "core/text.h"
 
@@ -17,11 +18,9 @@ struct Format {
 };
 
 const std::vector<Format>& formats() {
-    static const std::vector<Format> all{{".chan", read_chan},
-                                         {".gsc", read_gaia_sky},
-                                         {".osrectxt", read_openspace},
-                                         {".gltf", read_gltf},
-                                         {".glb", read_gltf}};
+    static const std::vector<Format> all{{".chan", read_chan},          {".gsc", read_gaia_sky},
+                                         {".osrectxt", read_openspace}, {".gltf", read_gltf},
+                                         {".glb", read_gltf},           {".json", read_transforms_json}};
     return all;
 }
 
