@@ -48,7 +48,8 @@ Scene scene_to_measure(const FidelityOptions& options) {
     const std::int64_t first =
         parse_frames(scene.output.frames, scene.file.string() + ": output.frames").front();
     Scene now = scene_at(judged, static_cast<double>(first));
-    now.animation.clear();
+    now.camera = {};
+    stop_animation(now);
     return now;
 }
 

@@ -12,6 +12,7 @@
 #include "image/resample.h"
 #include "look/apply.h"
 #include "pipeline.h"
+#include "scene/animate.h"
 #include "scene/front_picture.h"
 #include "scene/layer_setup.h"
 #include "scene/layer_source.h"
@@ -66,7 +67,7 @@ LayerSets load_sets(const Scene& now, const SetCache& cache, const Progress& pro
 class FidelityViews {
   public:
     FidelityViews(const Scene& now, LayerSets sets) : scene_(now), sets_(std::move(sets)) {
-        scene_.animation.clear();
+        stop_animation(scene_);
         scene_.environment = {};
     }
 

@@ -55,9 +55,7 @@ bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
 /// Whether the layer's splats are shaded alike in all frames, as far as the tracks tell.
 bool shaded_alike(const Scene& scene, const std::string& name) {
     const ParameterKey harmless = layer_key(name) / "visible";
-    return std::ranges::none_of(scene.animation, [&](const Track& track) {
-        return track.key.layer() == name && track.key != harmless;
-    });
+    return !moves(scene, [&](const ParameterKey& key) { return key.layer() == name && key != harmless; });
 }
 
 /// Keeps the map that the layer has where it is this one.

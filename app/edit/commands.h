@@ -26,6 +26,8 @@ struct Command {
         choose_picture,   // path: of a layer's first mesh, index: layer
         set_reference,    // path
         align_reference,  // to what the view shows
+        import_camera,    // path: another program's camera in place of the scene's
+        export_camera,    // path: the scene's camera, at the frames of [output]
         save_look,        // path: of the selected layer
         apply_look,       // path: to the selected layer
         regenerate,       // index: layer whose set is stale

@@ -118,6 +118,8 @@ const Action table[] = {
     {"File", "Save as...", ctrl_shift('S'), ask<Kind::save_as>},
     {"File", "Reload", {}, ask<Kind::reload>, has_file},
     below_line({"File", "Import as a layer...", {}, ask<Kind::import_file>}),
+    {"File", "Import camera...", {}, ask<Kind::import_camera>},
+    {"File", "Export camera...", {}, ask<Kind::export_camera>},
     {"File", "Export look...", {}, ask<Kind::save_look>, has_layer},
     {"File", "Apply look...", {}, ask<Kind::apply_look>, has_layer},
     below_line({"File", "Save the frame as seen...", {}, ask<Kind::save_view>}),

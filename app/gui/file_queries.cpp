@@ -2,6 +2,8 @@
 #include "gui/file_queries.h"
 
 #include "core/file_format.h"
+#include "scene/camera_file.h"
+#include "scene/export_camera.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
@@ -45,6 +47,11 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
             return reading("Picture on the mesh", "pictures", pictures, document);
         case Kind::set_reference:
             return reading("Picture to compare with", "pictures", pictures, document);
+        case Kind::import_camera:
+            return reading("Import the camera of another program", "cameras", all_camera_endings(), document);
+        case Kind::export_camera:
+            return writing("Write the camera for other programs", "cameras", written_camera_endings(),
+                           document, stem(document) + ".usda");
         case Kind::apply_look:
             return reading("Apply a look to the selected layer", "looks", scenes, document);
         case Kind::save_as:

@@ -218,10 +218,13 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (tracks.empty()) {
         ImGui::SetCursorScreenPos({origin.x + px(12), origin.y + px(4)});
-        row_text(
-            "Nothing moves yet. The diamond beside a value sets a keyframe at this frame; K sets the "
-            "camera's.",
-            px(row_height), color::dim);
+        const std::string file = frame.document.scene().camera.file.filename().string();
+        const std::string moves =
+            file.empty() ? "Nothing moves yet. " : "The camera moves as " + file + " says. ";
+        row_text(moves +
+                     "The diamond beside a value sets a keyframe at this frame; K sets the "
+                     "camera's.",
+                 px(row_height), color::dim);
     } else if (frame.view.graph_open) {
         draw_graph(t, frame, {origin.x + names, area.y, area.width - names, area.height});
     } else {

@@ -5,6 +5,7 @@
 
 #include "fidelity/signed_difference.h"
 #include "measure_fidelity.h"
+#include "scene/animate.h"
 
 namespace astrosplat {
 namespace {
@@ -29,7 +30,7 @@ FrontRequest front_request(Scene now, std::vector<std::shared_ptr<const SplatSet
     now.output = output;
     now.camera = {};
     now.environment = {};
-    now.animation.clear();
+    stop_animation(now);
     return {std::move(now), std::move(sets), files};
 }
 

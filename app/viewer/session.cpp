@@ -5,6 +5,7 @@
 #include <new>
 #include <utility>
 
+#include "camera_files/read_camera.h"
 #include "core/assets.h"
 #include "core/error.h"
 #include "core/file.h"
@@ -205,13 +206,15 @@ void carry_out(Session& session, Commands& commands) {
     commands.clear();
 }
 
-/// A scene is opened; a look is given to the chosen layer; a mesh and a picture together make one layer; on
-/// the untouched demo anything else makes a scene of its own, elsewhere a layer.
+/// A scene is opened; a look is given to the chosen layer; a camera drives the scene's; a mesh and a picture
+/// together make one layer; on the untouched demo anything else makes a scene of its own, elsewhere a layer.
 void drop(Session& session, const std::vector<fs::path>& files) {
     Commands commands;
     for (const fs::path& file : files) {
         const bool fresh = session.fresh_demo && !session.document.edited() && commands.empty();
-        commands.push_back({command_for(kind_of_file(file), fresh), file, {}, 0});
+        const Command::Kind kind =
+            is_camera_file(file) ? Command::Kind::import_camera : command_for(kind_of_file(file), fresh);
+        commands.push_back({kind, file, {}, 0});
     }
     session.dropped.insert(session.dropped.end(), commands.begin(), commands.end());
 }

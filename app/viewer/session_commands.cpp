@@ -7,11 +7,14 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "edit/batch_command.h"
 #include "edit/camera_moves.h"
 #include "edit/layers.h"
 #include "edit/new_from_file.h"
 #include "scene/animate.h"
+#include "scene/export_camera.h"
+#include "scene/frames.h"
 #include "scene/layer_setup.h"
 #include "scene/reference_place.h"
 #include "scene/save.h"
@@ -111,6 +114,27 @@ void set_reference(State& s, const Command& c) {
 }
 
 void align_reference(State& s, const Command&) { begin_alignment(s); }
+
+/// "frame 5", "frames 5 to 9".
+std::string frames_in_words(const Track& track) {
+    const double first = track.keyframes.front().frame, last = track.keyframes.back().frame;
+    return first == last ? "frame " + shortest(first) : "frames " + shortest(first) + " to " + shortest(last);
+}
+
+void import_camera(State& s, const Command& c) {
+    s.document.edit("Import camera " + c.path.filename().string(),
+                    [&](Scene& scene) { scene.camera.file = std::filesystem::absolute(c.path); });
+    const std::vector<Track>& tracks = s.document.scene().imported.camera->tracks;
+    if (!tracks.empty())
+        say(s.status, "Camera of " + c.path.filename().string() + ": " + frames_in_words(tracks.front()));
+}
+
+void export_camera(State& s, const Command& c) {
+    const Scene& scene = s.document.scene();
+    const std::vector<std::int64_t> frames = parse_frames(scene.output.frames, "output.frames");
+    write_file_atomically(c.path, camera_text(camera_track(scene, frames), scene, c.path));
+    say(s.status, "Saved the camera at " + counted(std::ssize(frames), "frame") + " in " + c.path.string());
+}
 
 void save_look(State& s, const Command& c) {
     const LayerParams* layer = layer_at(s, s.view.layer);
@@ -276,6 +300,8 @@ constexpr Entry entries[] = {{Kind::new_from_file, open_path},
                              {Kind::choose_picture, choose_picture},
                              {Kind::set_reference, set_reference},
                              {Kind::align_reference, align_reference},
+                             {Kind::import_camera, import_camera},
+                             {Kind::export_camera, export_camera},
                              {Kind::save_look, save_look},
                              {Kind::apply_look, apply_look_file},
                              {Kind::regenerate, regenerate},

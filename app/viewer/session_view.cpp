@@ -91,7 +91,7 @@ ViewRequest make_request(const Session& session, Scene now) {
     if (sees_motion(now, session.view))
         made.frame = session.view.frame;
     else
-        now.animation.clear();
+        stop_animation(now);
     now.camera = view_camera(now, session.view, made.box, aspect);
     forget_what_is_not_seen(now);
     now.output.width = made.width;

@@ -122,12 +122,7 @@ std::string FrameHasher::moving_text(double frame, const Scene& now) const {
     for (int i = 0; i < samples; ++i) {
         Scene then = scene_at(scene_, frame + camera_sample(now.camera, i, samples).frames);
         for (const Parameter& parameter : describe(then).parameters) {
-            const auto is_of = [&](const Track& track) {
-                return track.key.text() == parameter.spec.key.text();
-            };
-            const bool imported =
-                scene_.imported.camera && std::ranges::any_of(scene_.imported.camera->tracks, is_of);
-            if (imported || std::ranges::any_of(scene_.animation, is_of))
+            if (moves(scene_, [&](const ParameterKey& key) { return key == parameter.spec.key; }))
                 text += fmt::format("{} {} = {}\n", i, parameter.spec.key.text(), to_toml(parameter.get()));
         }
     }

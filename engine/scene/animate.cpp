@@ -111,8 +111,7 @@ Scene scene_at(const Scene& scene, double frame) {
     const std::span<const Track> imported =
         scene.imported.camera ? std::span(scene.imported.camera->tracks) : std::span<const Track>();
     const Description description = describe(still, [&](const ParameterKey& group) {
-        const auto moves = [&](const Track& track) { return track.key.is_below(group); };
-        return std::ranges::any_of(scene.animation, moves) || std::ranges::any_of(imported, moves);
+        return moves(scene, [&](const ParameterKey& key) { return key.is_below(group); });
     });
     const auto set = [&](const Track& track) {
         const Parameter* parameter = find_parameter(description, track.key);
@@ -122,6 +121,17 @@ Scene scene_at(const Scene& scene, double frame) {
     for (const Track& track : scene.animation) set(track);
     for (const Track& track : imported) set(around(track, frame));
     return still;
+}
+
+void stop_animation(Scene& scene) {
+    scene.animation.clear();
+    scene.imported = {};
+}
+
+bool moves(const Scene& scene, const std::function<bool(const ParameterKey&)>& wanted) {
+    const auto is_wanted = [&](const Track& track) { return wanted(track.key); };
+    return std::ranges::any_of(scene.animation, is_wanted) ||
+           (scene.imported.camera && std::ranges::any_of(scene.imported.camera->tracks, is_wanted));
 }
 
 bool ever_visible(const Scene& scene, const LayerParams& layer) {

@@ -1,6 +1,7 @@
 // Animation: the scene as it stands at one frame.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -12,6 +13,12 @@ namespace astrosplat {
 /// A copy of the scene with every track evaluated at `frame` (real-valued) and written into its parameter;
 /// those of camera.file win over those of [animation].
 Scene scene_at(const Scene& scene, double frame);
+
+/// Takes away all that moves, [animation] and camera.file; parameters keep the values they have.
+void stop_animation(Scene& scene);
+
+/// Whether [animation] or camera.file moves a parameter that is `wanted`.
+bool moves(const Scene& scene, const std::function<bool(const ParameterKey&)>& wanted);
 
 /// The numbers of one track at `frame`, before they are fitted to the parameter's type and range. The track
 /// has at least one keyframe and belongs to a parameter of this kind.

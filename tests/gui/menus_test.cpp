@@ -52,8 +52,9 @@ TEST(Menus, ItemsBecomeCommands) {
 TEST(Menus, ItemsWithoutAFileAskForIt) {
     for (const std::string path :
          {"File/New from picture...", "File/Open...", "File/Save", "File/Save as...",
-          "File/Import as a layer...", "File/Export look...", "File/Apply look...",
-          "File/Screenshot of the window...", "File/Save the frame as seen...", "View/Load reference..."}) {
+          "File/Import as a layer...", "File/Import camera...", "File/Export camera...",
+          "File/Export look...", "File/Apply look...", "File/Screenshot of the window...",
+          "File/Save the frame as seen...", "View/Load reference..."}) {
         TestWindow window(example_document());
         window.choose(path);
         window.frame(2);

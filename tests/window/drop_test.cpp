@@ -30,6 +30,19 @@ TEST_F(WindowDrop, APictureBecomesALayerAndASceneIsOpened) {
     expect_title("other.toml");
 }
 
+TEST_F(WindowDrop, ACameraDrivesTheScenes) {
+    start();
+    const Pixels before = settled_frame();
+    write_text(folder / "weg ü.chan", "1 0 3 9 -15 10 0 30\n");
+    ASSERT_TRUE(screen->drop({folder / "weg ü.chan"}, middle()));
+    expect_title("scene.toml - edited");
+    settled_frame(before);
+    person->press("ctrl+s");
+    expect_title("scene.toml");
+    EXPECT_EQ(saved().camera.file, folder / "weg ü.chan");
+    EXPECT_EQ(saved().layers.size(), 1u);
+}
+
 TEST_F(WindowDrop, ALookIsGivenToTheLayer) {
     start();
     const Pixels before = settled_frame();

@@ -47,28 +47,38 @@ opacity = 0.5
         EXPECT_EQ(result.code, 0) << result.err;
         return file;
     }
+    void expect_batch() const {
+        const RunResult result = run({"--batch", scene_file.string(), "-f", "1,13", "--resolution", "200x120",
+                                      "-o", "batch##.exr", "--stats", "stats.json", "--no-cache"});
+        ASSERT_EQ(result.code, 0) << result.err;
+        const nlohmann::json stats = nlohmann::json::parse(text_of(folder / "stats.json"));
+        const std::vector<std::string> frames = {"1", "13"};
+        std::vector<std::string> hashes;
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            const Image settled = load_linear_image(folder / shot(frames[i]));
+            const Image batch = load_linear_image(folder / (i == 0 ? "batch01.exr" : "batch13.exr"));
+            ASSERT_EQ(settled.width, 200);
+            ASSERT_EQ(settled.height, 120);
+            ASSERT_EQ(settled.pixels.size(), batch.pixels.size());
+            EXPECT_EQ(std::memcmp(settled.pixels.data(), batch.pixels.data(),
+                                  settled.pixels.size() * sizeof(float)),
+                      0)
+                << "frame " << frames[i];
+            hashes.push_back(pixel_hash(settled));
+            EXPECT_EQ(hashes.back(), stats.at("frames").at(i).at("sha256").get<std::string>());
+        }
+        EXPECT_NE(hashes[0], hashes[1]) << "the frames must differ for this test to say anything";
+    }
 };
 
-TEST_F(Settled, EqualsBatchBitForBit) {
-    const RunResult result = run({"--batch", scene_file.string(), "-f", "1,13", "--resolution", "200x120",
-                                  "-o", "batch##.exr", "--stats", "stats.json", "--no-cache"});
-    ASSERT_EQ(result.code, 0) << result.err;
-    const nlohmann::json stats = nlohmann::json::parse(text_of(folder / "stats.json"));
-    const std::vector<std::string> frames = {"1", "13"};
-    std::vector<std::string> hashes;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        const Image settled = load_linear_image(folder / shot(frames[i]));
-        const Image batch = load_linear_image(folder / (i == 0 ? "batch01.exr" : "batch13.exr"));
-        ASSERT_EQ(settled.width, 200);
-        ASSERT_EQ(settled.height, 120);
-        ASSERT_EQ(settled.pixels.size(), batch.pixels.size());
-        EXPECT_EQ(
-            std::memcmp(settled.pixels.data(), batch.pixels.data(), settled.pixels.size() * sizeof(float)), 0)
-            << "frame " << frames[i];
-        hashes.push_back(pixel_hash(settled));
-        EXPECT_EQ(hashes.back(), stats.at("frames").at(i).at("sha256").get<std::string>());
-    }
-    EXPECT_NE(hashes[0], hashes[1]) << "the frames must differ for this test to say anything";
+TEST_F(Settled, EqualsBatchBitForBit) { expect_batch(); }
+
+TEST_F(Settled, EqualsBatchWithTheCameraOfAFile) {
+    write_text(folder / "cam.chan", "1 0 6 8 -30 0 0 40\n24 4 5 7 -30 20 0 60\n");
+    std::string text = text_of(scene_file);
+    text.insert(text.find("target"), "file = \"cam.chan\"\n");
+    write_text(scene_file, text);
+    expect_batch();
 }
 
 TEST_F(Settled, TheWidgetsAreInAScreenshotThatAsksForThem) {

@@ -51,6 +51,20 @@ TEST_F(CameraFile, ReplacesPlaceTurnAndLensAtEveryFrame) {
     EXPECT_EQ(now.focal_length, 0.0) << "it would replace the file's fov";
 }
 
+TEST_F(CameraFile, WhatIsStoppedStaysWhereItIs) {
+    put("cam.chan", two_frames);
+    const Scene s =
+        scene("file = \"cam.chan\"\n", "[animation]\n\"camera.near\" = { keys = [[1, 1], [20, 2]] }\n");
+    Scene now = scene_at(s, 15);
+    EXPECT_TRUE(moves(now, [](const ParameterKey& key) { return key == "camera.position"; }));
+    EXPECT_TRUE(moves(now, [](const ParameterKey& key) { return key == "camera.near"; }));
+    EXPECT_FALSE(moves(now, [](const ParameterKey& key) { return key == "camera.far"; }));
+    stop_animation(now);
+    EXPECT_EQ(scene_at(now, 20), now);
+    expect_at(place(now, 20), {2, 2, 3});
+    EXPECT_FALSE(moves(now, [](const ParameterKey&) { return true; }));
+}
+
 TEST_F(CameraFile, HoldsBeforeTheFirstAndAfterTheLastFrame) {
     put("cam.chan", two_frames);
     const Scene s = scene("file = \"cam.chan\"\n");
