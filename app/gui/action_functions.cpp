@@ -1,6 +1,8 @@
 // Actions that edit the scene or the view, and the questions whether they can be done now.
 #include "gui/action_functions.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -148,6 +150,14 @@ bool layer_stale(const GuiFrame& f) {
 }
 
 bool in_free_view(const GuiFrame& f) { return f.view.view == ViewKind::free; }
+void make_dome_master(GuiFrame& f, std::int64_t side_px) {
+    edit(f, fmt::format("Dome master of {} px", side_px), [&](Scene& scene) {
+        scene.output.width = scene.output.height = side_px;
+        scene.camera.projection = Projection::fisheye;
+        scene.camera.fisheye_fov = 180.0;
+    });
+}
+
 void set_camera_keyframe_here(GuiFrame& f) {
     edit(f, "Set camera keyframe",
          [&](Scene& scene) { set_keyframe_of_seen_camera(scene, f.view, f.status); });

@@ -53,6 +53,8 @@ bool can_move_down(const GuiFrame& f);
 bool layer_stale(const GuiFrame& f);
 
 bool in_free_view(const GuiFrame& f);
+/// A square fisheye of half the sphere, so many px wide: what planetariums project.
+void make_dome_master(GuiFrame& f, std::int64_t side_px);
 void set_camera_keyframe_here(GuiFrame& f);  // what is seen, as the panel's button does
 void camera_from_view(GuiFrame& f);
 

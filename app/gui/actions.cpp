@@ -82,6 +82,11 @@ Action shape(const char* menu) {
             }};
 }
 
+template <std::int64_t side_px>
+Action dome_master(const char* label) {
+    return {"Camera/Dome master", label, {}, [](F f) { make_dome_master(f, side_px); }};
+}
+
 template <HandleTool tool>
 Action handles(const char* label, int code) {
     return {.menu = "Layer",
@@ -188,6 +193,10 @@ const Action table[] = {
     add_move<CameraMove::orbit>(),
     add_move<CameraMove::fly_in>(),
     add_move<CameraMove::face_on_to_edge_on>(),
+    dome_master<1024>("1024 px"),
+    dome_master<2048>("2048 px"),
+    dome_master<4096>("4096 px"),
+    dome_master<8192>("8192 px"),
     below_line(flip<&ViewState::lock_to_camera>("Camera", "Lock to camera")),
 
     {"Render", "Frame...", ctrl('R'), render<RenderKind::frame>},

@@ -12,6 +12,7 @@
 #include "edit/view_camera.h"
 #include "gui/icons.h"
 #include "gui/theme.h"
+#include "scene/animate.h"
 
 namespace astrosplat {
 namespace {
@@ -89,11 +90,22 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
         dim_outside(list, area, gate);
         list->AddRect(lo(gate), hi(gate), grey);
     }
+    const CameraParams camera = scene_at(frame.document.scene(), view.frame).camera;
+    const bool dome = camera.projection == Projection::fisheye;
+    const float radius = 0.5f * std::min(gate.width, gate.height);
+    const auto circle = [&](float share, ImU32 ink) {
+        list->AddCircle({gate.x + 0.5f * gate.width, gate.y + 0.5f * gate.height}, share * radius, ink, 256);
+    };
+    if (view.gate && dome) circle(1.0f, grey);
     if (!view.safe_areas) return;
     // SMPTE ST 2046-1: 93 % for action, 90 % for titles.
     for (const float share : {0.93f, 0.9f}) {
+        const ImU32 ink = color::with_opacity(color::dim, 0.45f);
         const Rect safe = shrunk(gate, share);
-        list->AddRect(lo(safe), hi(safe), color::with_opacity(color::dim, 0.45f));
+        if (dome)
+            circle(share, ink);
+        else
+            list->AddRect(lo(safe), hi(safe), ink);
     }
 }
 

@@ -139,6 +139,21 @@ void choose_move(TestWindow& window, const std::string& name) {
     window.frame(3);
 }
 
+TEST(Menus, ADomeMasterIsASquareFisheye) {
+    TestWindow window(example_document());
+    window.click("Camera");
+    window.move(window.at("Camera/Dome master"));
+    window.frame(30);
+    window.click("Camera/Dome master/4096 px");
+    window.frame(3);
+    const Scene& scene = window.document.scene();
+    EXPECT_EQ(scene.output.width, 4096);
+    EXPECT_EQ(scene.output.height, 4096);
+    EXPECT_EQ(scene.camera.projection, Projection::fisheye);
+    EXPECT_EQ(scene.camera.fisheye_fov, 180.0);
+    EXPECT_EQ(window.document.undo_name(), "Dome master of 4096 px");
+}
+
 TEST(Menus, CameraMoves) {
     TestWindow window(example_document());
     window.view.frame = 240;  // no keyframe of the camera comes later

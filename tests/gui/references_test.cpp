@@ -127,6 +127,17 @@ TEST_F(References, WithoutPanels) {
     window.status.view_frame.seconds = 1.8;
     expect_reference("no_panels");
 }
+TEST_F(References, DomesHaveRoundGatesAndSafeAreas) {
+    window.tap(key_code::f11);
+    window.document.edit("Dome", [](Scene& scene) {
+        scene.output.width = scene.output.height = 1024;
+        scene.camera.projection = Projection::fisheye;
+    });
+    window.view.safe_areas = true;
+    window.status.view_frame.width = window.status.view_frame.height = 1024;
+    window.status.view_frame.state = ViewFrameState::final;
+    expect_reference("dome");
+}
 
 TEST(PanelReferences, EveryTabWithAllSectionsOpen) {
     const char* const names[] = {"source", "look", "render", "camera", "output"};
