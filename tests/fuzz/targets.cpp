@@ -13,6 +13,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "fuzz/cameras.h"
 #include "fuzz/catalogues.h"
 #include "scene/load.h"
 #include "source/mesh.h"
@@ -234,6 +235,7 @@ const std::vector<Target>& targets() {
         {"toml", {toml}, read_toml_bytes},
         {"fits", fits_seeds(), read_fits_bytes},
         {"stars", catalogue_seeds(), read_catalogue_bytes},
+        {"cameras", camera_seeds(), read_camera_bytes},
     };
     return all;
 }
