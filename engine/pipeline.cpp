@@ -83,6 +83,7 @@ struct Pipeline::State {
     void load_layer(std::size_t index, const SetCache& cache, const Progress& progress);
     LayerState take_layer(const std::string& name, const std::shared_ptr<const SplatSet>& set);
     void shade(std::size_t index, const LayerParams& params, const Progress& progress);
+    void shade_visible(const Scene& now, const Progress& progress);
     std::vector<RenderLayer> visible_layers(const Scene& now) const;
     Camera camera(const Scene& now, const RenderSettings& settings) const;
     /// One rendering of the scene as it stands, through a place of the lens.
@@ -249,9 +250,7 @@ RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, cons
     return sum;
 }
 
-RenderedFrame Pipeline::State::rendering(const Scene& now, const glm::dvec2& lens,
-                                         const RenderSettings& settings, const Progress& progress,
-                                         const TileDone& tile_done) {
+void Pipeline::State::shade_visible(const Scene& now, const Progress& progress) {
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         progress.check();
         if (!drawn(now, i)) continue;
@@ -259,6 +258,18 @@ RenderedFrame Pipeline::State::rendering(const Scene& now, const glm::dvec2& len
         check_extent(world_bounds(layers[i].box, render_layer(layer)), layer.name, farthest_in_world);
         shade(i, layer, progress);
     }
+}
+
+std::vector<RenderLayer> Pipeline::shaded_layers(double frame, const Progress& progress) {
+    const Scene now = scene_at(state_->scene, frame);
+    state_->shade_visible(now, progress);
+    return state_->visible_layers(now);
+}
+
+RenderedFrame Pipeline::State::rendering(const Scene& now, const glm::dvec2& lens,
+                                         const RenderSettings& settings, const Progress& progress,
+                                         const TileDone& tile_done) {
+    shade_visible(now, progress);
     const Camera seen =
         through_lens(camera(now, settings), now.camera, lens, static_cast<double>(settings.width));
     return render(visible_layers(now), seen, environment_at(now), settings, progress, &render_cache,

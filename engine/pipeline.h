@@ -50,6 +50,10 @@ class Pipeline {
     RenderedFrame frame(double frame, const RenderSettings& settings, const Progress& progress = {},
                         const TileDone& tile_done = {});
 
+    /// The layers of a frame after their looks, as the renderer gets them, in file order; their splats stay
+    /// until the next call of any method that is not const.
+    std::vector<RenderLayer> shaded_layers(double frame, const Progress& progress = {});
+
     /// Render settings as the scene's [output] has them.
     RenderSettings settings(double frame) const;
     Camera camera(double frame, const RenderSettings& settings) const;
