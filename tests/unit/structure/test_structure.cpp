@@ -85,6 +85,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
         {"camera_files", {"core", "camera", "camera_files"}},
         {"render", {"core", "source", "splats", "camera", "render"}},
         {"merge", {"core", "splats", "camera", "render", "merge"}},
+        {"gaussians", {"core", "splats", "splat_files", "camera", "render", "merge", "gaussians"}},
         {"bodies", {"core", "image", "source", "splats", "camera", "render", "bodies"}},
         {"sets", {"core", "source", "splats", "splat_files", "generate", "bodies", "stars", "sets"}},
         {"scene",

@@ -1,0 +1,140 @@
+// One row of floats a Gaussian in both formats; glTF calls that interleaved.
+#include "gaussians/gaussian_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "core/color.h"
+#include "core/error.h"
+#include "core/real.h"
+#include "splat_files/ordered_writer.h"
+
+namespace astrosplat {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr std::int64_t gaussians_written_at_once = 1 << 14;
+constexpr float sh_degree_0 = 0.28209479177387814f;  // 1 / sqrt(4 pi)
+constexpr int ply_floats = 17, glb_floats = 18;
+
+/// The coefficient of degree 0 that readers turn into this colour.
+glm::vec3 coefficient(const glm::vec3& color) { return (color - 0.5f) / sh_degree_0; }
+
+char* put(char* out, std::initializer_list<float> values) {
+    std::memcpy(out, values.begin(), values.size() * sizeof(float));
+    return out + values.size() * sizeof(float);
+}
+
+char* put_ply_row(char* out, const Gaussians& g, std::size_t i) {
+    constexpr double most = 1.0 - 1e-6;  // whose logit is 13.8: 1 has none
+    const double alpha = std::clamp(double(g.alpha[i]), 1e-9, most);
+    const auto logit = static_cast<float>(real::log(alpha / (1.0 - alpha)));
+    const auto scale = static_cast<float>(real::log(double(g.sigma[i])));
+    const glm::vec3 p = g.position[i], sh = coefficient(g.color[i]);
+    return put(out, {p.x, p.y, p.z, 0.0f, 0.0f, 0.0f, sh.x, sh.y, sh.z, logit, scale, scale, scale, 1.0f,
+                     0.0f, 0.0f, 0.0f});
+}
+
+char* put_glb_row(char* out, const Gaussians& g, bool encoded, std::size_t i) {
+    const glm::vec3 p = g.position[i], sh = coefficient(g.color[i]);
+    glm::vec3 c = g.color[i];
+    if (encoded)
+        for (int k = 0; k < 3; ++k) c[k] = static_cast<float>(real::srgb_to_linear(c[k]));
+    const float s = g.sigma[i], a = g.alpha[i];
+    return put(out, {p.x, p.y, p.z, 0.0f, 0.0f, 0.0f, 1.0f, s, s, s, a, sh.x, sh.y, sh.z, c.x, c.y, c.z, a});
+}
+
+template <class PutRow>
+void write_rows(const WriteTarget& target, const std::string& header, const Gaussians& g, int floats,
+                const Progress& progress, const PutRow& put_row) {
+    write_ordered(target, header, g.size(), gaussians_written_at_once,
+                  static_cast<std::size_t>(floats) * sizeof(float), progress,
+                  [&](std::int64_t begin, std::int64_t end, char* out) {
+                      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+                          out = put_row(out, i);
+                      return out;
+                  });
+}
+
+std::string number_bytes(std::uint32_t value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+/// POSITION must say its bounds.
+std::string bounds_text(const Gaussians& g) {
+    glm::vec3 lo(std::numeric_limits<float>::max()), hi(-lo);
+    for (const glm::vec3& p : g.position) lo = glm::min(lo, p), hi = glm::max(hi, p);
+    return fmt::format(R"("min":[{},{},{}],"max":[{},{},{}])", lo.x, lo.y, lo.z, hi.x, hi.y, hi.z);
+}
+
+struct GlbAttribute {
+    const char* name;
+    int floats;
+};
+constexpr GlbAttribute glb_attributes[] = {{"POSITION", 3},
+                                           {"KHR_gaussian_splatting:ROTATION", 4},
+                                           {"KHR_gaussian_splatting:SCALE", 3},
+                                           {"KHR_gaussian_splatting:OPACITY", 1},
+                                           {"KHR_gaussian_splatting:SH_DEGREE_0_COEF_0", 3},
+                                           {"COLOR_0", 4}};
+
+std::string glb_json(const Gaussians& g, bool encoded, std::int64_t bytes) {
+    std::string names, accessors;
+    int number = 0, offset = 0;
+    for (const GlbAttribute& attribute : glb_attributes) {
+        const std::string comma = number ? "," : "";
+        const std::string type = attribute.floats == 1 ? "SCALAR" : fmt::format("VEC{}", attribute.floats);
+        names += fmt::format(R"({}"{}":{})", comma, attribute.name, number);
+        accessors += fmt::format(
+            R"({}{{"bufferView":0,"byteOffset":{},"componentType":5126,"count":{},"type":"{}"{}}})", comma,
+            offset, g.size(), type, number ? "" : "," + bounds_text(g));
+        offset += attribute.floats * 4;
+        ++number;
+    }
+    std::string json = fmt::format(
+        R"({{"asset":{{"version":"2.0","generator":"astrosplat"}},"extensionsUsed":["KHR_gaussian_splatting"],)"
+        R"("scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"mode":0,)"
+        R"("attributes":{{{}}},"extensions":{{"KHR_gaussian_splatting":{{"kernel":"ellipse",)"
+        R"("colorSpace":"{}","projection":"perspective","sortingMethod":"cameraDistance"}}}}}}]}}],)"
+        R"("accessors":[{}],"bufferViews":[{{"buffer":0,"byteLength":{},"byteStride":{},"target":34962}}],)"
+        R"("buffers":[{{"byteLength":{}}}]}})",
+        names, encoded ? "srgb_rec709_display" : "lin_rec709_display", accessors, bytes, glb_floats * 4,
+        bytes);
+    json.append((4 - json.size() % 4) % 4, ' ');
+    return json;
+}
+
+}  // namespace
+
+void write_gaussian_ply(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress) {
+    std::string header = "ply\nformat binary_little_endian 1.0\n";
+    header += fmt::format("element vertex {}\n", gaussians.size());
+    for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
+                             "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
+        header += fmt::format("property float {}\n", name);
+    write_rows(target, header + "end_header\n", gaussians, ply_floats, progress,
+               [&](char* out, std::size_t i) { return put_ply_row(out, gaussians, i); });
+}
+
+void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, bool encoded,
+                        const Progress& progress) {
+    const std::int64_t bytes = gaussians.size() * glb_floats * 4;
+    const std::string json = glb_json(gaussians, encoded, bytes);
+    const std::int64_t all = 28 + static_cast<std::int64_t>(json.size()) + bytes;
+    if (all > std::numeric_limits<std::uint32_t>::max())
+        bad_input(target.file.string(), "", "at most 4 GiB, some 59 million splats (see --count)",
+                  fmt::format("{} splats", gaussians.size()));
+    const std::string header = "glTF" + number_bytes(2) + number_bytes(static_cast<std::uint32_t>(all)) +
+                               number_bytes(static_cast<std::uint32_t>(json.size())) + "JSON" + json +
+                               number_bytes(static_cast<std::uint32_t>(bytes)) + std::string("BIN\0", 4);
+    write_rows(target, header, gaussians, glb_floats, progress,
+               [&](char* out, std::size_t i) { return put_glb_row(out, gaussians, encoded, i); });
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,22 @@
+// Gaussians into files that other programs read: the PLY of 3D Gaussian Splatting, and binary glTF with
+// KHR_gaussian_splatting. Atomic, and the same bytes for any thread count.
+#pragma once
+
+#include "core/progress.h"
+#include "gaussians/gaussians.h"
+#include "splat_files/write_target.h"
+
+namespace astrosplat {
+
+/// Binary little endian: x y z, normals of 0, f_dc_0..2 = (colour - 1/2) sqrt(4 pi), logit of alpha, natural
+/// logarithms of sigma, and no rotation, as w x y z. Its readers blend the colours as they are, so these are
+/// encoded for a display. Throws OutputError, Cancelled.
+void write_gaussian_ply(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress = {});
+
+/// `encoded`: colours were encoded for a display (srgb_rec709_display); else they are linear light
+/// (lin_rec709_display). COLOR_0, for programs that draw points, is linear either way. Throws InputError for
+/// more Gaussians than 4 GiB hold, the most of this format, OutputError, Cancelled.
+void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, bool encoded,
+                        const Progress& progress = {});
+
+}  // namespace astrosplat

@@ -1,0 +1,172 @@
+#include "gaussians/gaussians.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/color.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/quadrature.h"
+#include "core/real.h"
+#include "render/falloff.h"
+#include "render/shared_render.h"
+
+namespace astrosplat {
+namespace {
+
+/// Integral of w(t) e^(-k t^2) over the unit disc. Panels shrink towards the centre; the core's end is a
+/// kink.
+double integral_with_gaussian(const Falloff& falloff, double k) {
+    constexpr std::array<double, 9> ends = {0.0, 0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 0.7, 1.0};
+    const double kink = falloff.shape == Falloff::Shape::trapezoid ? double(falloff.core) : 0.0;
+    const auto ring = [&](double t) { return falloff_value(falloff, t) * real::exp(-k * t * t) * t; };
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        const double split = kink > ends[i] && kink < ends[i + 1] ? kink : ends[i];
+        sum += integrate_panel(ends[i], split, ring) + integrate_panel(split, ends[i + 1], ring);
+    }
+    return 2.0 * real::pi * sum;
+}
+
+/// The place of the least value of f in [low, high], by golden sections.
+template <class F>
+double least_place(double low, double high, F&& f) {
+    constexpr double share = 0.6180339887498949;
+    double a = high - share * (high - low), b = low + share * (high - low), fa = f(a), fb = f(b);
+    for (int i = 0; i < 80; ++i) {
+        if (fa < fb) {
+            high = b, b = a, fb = fa, a = high - share * (high - low), fa = f(a);
+        } else {
+            low = a, a = b, fa = fb, b = low + share * (high - low), fb = f(b);
+        }
+    }
+    return 0.5 * (low + high);
+}
+
+float largest(const glm::vec3& c) { return std::max({c.x, c.y, c.z}); }
+float luminance_of(const glm::vec3& c) { return luminance(c.x, c.y, c.z); }
+
+/// What a splat hides, and its light, both at its centre for a dot of alpha 1 and peak 1.
+struct Appearance {
+    float hides = 1.0f;
+    glm::vec3 light{0.0f};
+};
+
+/// One layer on its way into Gaussians.
+class Baker {
+  public:
+    Baker(const RenderLayer& layer, const Camera& camera, double gain)
+        : layer_(layer),
+          camera_(camera),
+          gain_(static_cast<float>(gain)),
+          profile_(nearest_gaussian(layer.render.falloff)),
+          axis_(glm::normalize(layer.world_from_layer * layer.axis)) {}
+
+    void add(std::size_t i, Gaussians& out, BakeCounts& counts) const {
+        const ShadedSplats& splats = *layer_.splats;
+        const glm::dvec3 place =
+            layer_.world_from_layer * (layer_.scale * glm::dvec3(splats.position[i])) + layer_.translate;
+        const float s = std::min(1.0f, splats.alpha[i] * layer_.render.opacity);
+        const Appearance seen = appearance(splats.color[i], s, place, counts);
+        double square = profile_.sigma * splats.radius[i] * layer_.scale;
+        square *= square;
+        double hides = profile_.peak * seen.hides;
+        glm::dvec3 light = profile_.peak * glm::dvec3(seen.light);
+        if (hides > 1.0) {
+            square *= hides;
+            light /= hides;
+            hides = 1.0;
+        }
+        const double alpha = std::min(1.0, std::max(hides, double(largest(glm::vec3(light)))));
+        if (!(alpha > 0.0 && square > 0.0)) {
+            ++counts.unseen;
+            return;
+        }
+        const glm::dvec3 kept = glm::min(light, glm::dvec3(alpha));
+        count(light, kept, alpha, 2.0 * real::pi * square, counts);
+        out.position.push_back(glm::vec3(place));
+        out.color.push_back(glm::clamp(glm::vec3(kept / alpha), 0.0f, 1.0f));
+        out.alpha.push_back(static_cast<float>(alpha));
+        out.sigma.push_back(static_cast<float>(std::sqrt(square)));
+    }
+
+  private:
+    Appearance appearance(const glm::vec3& color, float s, const glm::dvec3& place,
+                          BakeCounts& counts) const {
+        const LayerRender& r = layer_.render;
+        const int blend = static_cast<int>(r.blend);
+        if (r.holdout) return {s, glm::vec3(0.0f)};
+        if (shared::blend_absorbs(blend, color.x)) {
+            ++counts.dust;
+            double let_through = 0.0;
+            for (int k = 0; k < 3; ++k)
+                let_through += real::pow(1.0 - s, shared::blend_exponent(blend, color[k], r.absorb[k])) / 3.0;
+            return {static_cast<float>(1.0 - let_through), glm::vec3(0.0f)};
+        }
+        const glm::vec3 light = s * gain_ * color;
+        const float bright = std::min(1.0f, largest(color) * gain_);
+        return {s * shared::blend_occlusion(blend, bright, hybrid(place)), light};
+    }
+
+    float hybrid(const glm::dvec3& place) const {
+        if (layer_.render.blend != Blend::hybrid) return 0.0f;
+        const glm::dvec3 ray = place - camera_.eye;
+        const double length = glm::length(ray);
+        const bool parallel = camera_.projection == Projection::orthographic || !(length > 0.0);
+        const glm::dvec3 along = parallel ? camera_.world_from_camera[2] : ray / length;
+        return shared::hybrid_amount(static_cast<float>(std::abs(glm::dot(axis_, along))),
+                                     layer_.render.hybrid_from_deg, layer_.render.hybrid_to_deg);
+    }
+
+    static void count(const glm::dvec3& light, const glm::dvec3& kept, double alpha, double area,
+                      BakeCounts& counts) {
+        counts.flux += area * luminance_of(glm::vec3(light));
+        const double lost = luminance_of(glm::vec3(light - kept));
+        counts.lost += area * lost;
+        if (lost > 0.0) ++counts.bright;
+        if (alpha < 1.0 / 255.0) ++counts.faint;
+    }
+
+    const RenderLayer& layer_;
+    const Camera& camera_;
+    float gain_;
+    GaussianProfile profile_;
+    glm::dvec3 axis_;
+};
+
+}  // namespace
+
+GaussianProfile nearest_gaussian(const Falloff& falloff) {
+    const double integral = falloff_integral(falloff);
+    const double log_k = least_place(real::log(0.1), real::log(1e5), [&](double at) {
+        const double k = real::exp(at);
+        return k * (0.5 * integral - 2.0 * integral_with_gaussian(falloff, k));
+    });
+    const double k = real::exp(log_k);
+    return {integral * k / real::pi, std::sqrt(0.5 / k)};
+}
+
+void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gaussians& out,
+                BakeCounts& counts) {
+    assert(layer.splats && !layer.stars);
+    const std::int64_t all = out.size() + layer.splats->size();
+    constexpr std::int64_t bytes = 2 * sizeof(glm::vec3) + 2 * sizeof(float);
+    claim_memory(all * bytes, "Gaussians");
+    out.position.reserve(all);
+    out.color.reserve(all);
+    out.alpha.reserve(all);
+    out.sigma.reserve(all);
+    const Baker baker(layer, camera, gain);
+    for (std::size_t i = 0; i < layer.splats->position.size(); ++i) baker.add(i, out, counts);
+}
+
+void encode_for_display(Gaussians& gaussians) {
+    parallel_each(gaussians.color.size(), 1 << 14, [&](std::size_t i) {
+        for (int k = 0; k < 3; ++k) gaussians.color[i][k] = display_srgb(gaussians.color[i][k]);
+    });
+}
+
+}  // namespace astrosplat
