@@ -17,6 +17,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "core/vector_target.h"
+#include "export_command.h"
 #include "fidelity.h"
 #include "info.h"
 #include "interrupt.h"
@@ -50,6 +51,7 @@ struct Invocation {
     PrepareOptions prepare;
     GenerateOptions generate;
     ConvertOptions convert;
+    ExportOptions export_options;
     CameraOptions camera;
     InfoOptions info;
     CompareOptions compare;
@@ -224,6 +226,22 @@ void add_camera(CLI::App& app, Invocation& call) {
     command.add_flag("--overwrite", call.camera.overwrite, "Replaces the file");
 }
 
+void add_export(CLI::App& app, Invocation& call) {
+    ExportOptions& options = call.export_options;
+    CLI::App& command =
+        add_command(app, call, "export", export_help, [&call] { return run_export(call.export_options); });
+    add_value(command, "SCENE", options.scene, "SCENE", "The scene")->required();
+    add_value(command, "-o,--output", options.output, "FILE.(ply|glb)", "The file to write")->required();
+    add_value(command, "--frame", options.frame, "N", "The frame (default: the scene's first)");
+    add_value(command, "--layer", options.layer, "NAME", "Only this layer (default: all that are visible)");
+    add_value(command, "--count", options.count, "N", "Merges splats until so many are left");
+    add_value(command, "--space", options.space, "display|linear",
+              "Of colours (default: display in .ply, linear in .glb)");
+    add_assignments(command, options.assignments);
+    command.add_flag("--overwrite", options.overwrite, "Replaces the file");
+    add_progress(command, options.progress);
+}
+
 void add_reports(CLI::App& app, Invocation& call) {
     CLI::App& info = add_command(app, call, "info", "Describes any file the program reads",
                                  [&call] { return run_info(call.info); });
@@ -276,8 +294,9 @@ SetCache cache_of(const CommonOptions& common) {
 
 /// Of every command, unless a mode was asked for.
 void silence_progress(Invocation& call) {
-    for (ProgressMode* mode : {&call.batch_options.progress, &call.generate.progress, &call.convert.progress,
-                               &call.fidelity.progress, &call.prepare.progress})
+    for (ProgressMode* mode :
+         {&call.batch_options.progress, &call.generate.progress, &call.convert.progress,
+          &call.export_options.progress, &call.fidelity.progress, &call.prepare.progress})
         if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
 }
 
@@ -310,7 +329,8 @@ int run_window(Invocation& call) {
 int run(Invocation& call) {
     apply_common(call.common);
     log_detail(fmt::format("threads {}, vector target {}", thread_count(), vector_target()));
-    call.batch_options.cache = call.generate.cache = call.fidelity.cache = cache_of(call.common);
+    call.batch_options.cache = call.generate.cache = call.export_options.cache = call.fidelity.cache =
+        cache_of(call.common);
     if (call.common.quiet) silence_progress(call);
     if (call.action) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
@@ -345,6 +365,7 @@ int run_command_line(int argc, char** argv) {
     add_prepare(app, call);
     add_generate(app, call);
     add_convert(app, call);
+    add_export(app, call);
     add_camera(app, call);
     add_reports(app, call);
     add_fidelity(app, call);

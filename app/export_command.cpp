@@ -1,0 +1,179 @@
+#include "export_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "core/memory.h"
+#include "core/text.h"
+#include "gaussians/fit.h"
+#include "gaussians/gaussian_file.h"
+#include "gaussians/reduce.h"
+#include "interrupt.h"
+#include "pipeline.h"
+#include "places.h"
+#include "scene/animate.h"
+#include "scene/frames.h"
+#include "scene/load.h"
+#include "scene/suggest.h"
+
+namespace astrosplat {
+
+const char* const export_help =
+    "Writes the scene's splats as Gaussians for other programs (3D Gaussian Splatting), with the look and "
+    "the "
+    "exposure of one frame. Approximated: other falloffs by the nearest Gaussian of the same integral; add, "
+    "screen and hybrid by over (what they hide, hybrid as seen from that frame's camera); light above 1 by "
+    "more opacity; dust by grey. Isolated layers lie among the others. Left out: stars, environment, "
+    "children "
+    "of level of detail, near fade, the view transform. Axes and units are the scene's, y up; of display "
+    "colours the light is fitted to that frame";
+
+namespace {
+
+constexpr std::int64_t fitted_height_px = 540;
+
+enum class Kind { ply, glb };
+
+Kind kind_of_output(const std::filesystem::path& file) {
+    std::string ending = file.extension().string();
+    std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+    if (ending == ".ply") return Kind::ply;
+    if (ending == ".glb") return Kind::glb;
+    bad_input(file.string(), "", "a name ending in .ply or .glb", "'" + file.extension().string() + "'");
+}
+
+/// Whether colours are encoded for a display.
+bool is_encoded(const ExportOptions& options, Kind kind) {
+    const std::string space = options.space.value_or(kind == Kind::ply ? "display" : "linear");
+    if (space != "display" && space != "linear")
+        bad_input("--space", "", "display or linear", "'" + space + "'");
+    if (space == "linear" && kind == Kind::ply)
+        bad_input("--space", "", "display for .ply, whose readers know no other", "'linear'");
+    return space == "display";
+}
+
+double frame_of(const ExportOptions& options, const Scene& scene) {
+    if (!options.frame)
+        return static_cast<double>(parse_frames(scene.output.frames, "output.frames").front());
+    const auto frame = parse_double(*options.frame);
+    if (!frame || !std::isfinite(*frame)) bad_input("--frame", "", "a number", "'" + *options.frame + "'");
+    return *frame;
+}
+
+std::int64_t count_of(const ExportOptions& options) {
+    if (!options.count) return 0;
+    const auto count = parse_int64(*options.count);
+    if (!count || *count < 1)
+        bad_input("--count", "", "a number of splats, 1 or more", "'" + *options.count + "'");
+    return *count;
+}
+
+/// Hides all other layers, and what no Gaussian can be.
+void keep_exported(Scene& scene, const std::optional<std::string>& wanted) {
+    std::vector<std::string> names;
+    for (const LayerParams& layer : scene.layers) names.push_back(layer.name);
+    if (wanted && std::ranges::find(names, *wanted) == names.end())
+        bad_input(scene.file.string(), "",
+                  fmt::format("--layer to name one of its layers ({})", fmt::join(names, ", ")),
+                  "'" + *wanted + "'" + did_you_mean(*wanted, names));
+    std::erase_if(scene.layers, [&](const LayerParams& layer) {
+        if (wanted && layer.name != *wanted) return true;
+        if (layer.source.kind != SourceKind::stars) return false;
+        log_warning(fmt::format("layer '{}' is left out: stars have their size in pixels, not in the scene",
+                                layer.name));
+        return true;
+    });
+    const auto is_gone = [&](const Track& track) {
+        return !track.key.layer().empty() &&
+               std::ranges::none_of(
+                   scene.layers, [&](const LayerParams& layer) { return layer.name == track.key.layer(); });
+    };
+    std::erase_if(scene.animation, is_gone);
+    scene.environment.visible = false;
+    scene.camera.shutter = scene.camera.f_number = 0.0;
+}
+
+/// The frame that display colours are fitted to: the scene's, smaller.
+RenderSettings fitted_settings(const Pipeline& pipeline, double frame) {
+    RenderSettings settings = pipeline.settings(frame);
+    settings.aov_depth = settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
+    const double scale = std::min(1.0, double(fitted_height_px) / double(settings.height));
+    settings.width = std::max<std::int64_t>(1, std::llround(scale * double(settings.width)));
+    settings.height = std::max<std::int64_t>(1, std::llround(scale * double(settings.height)));
+    return settings;
+}
+
+struct Baked {
+    Gaussians gaussians;
+    BakeCounts counts;
+};
+
+Baked bake(std::vector<RenderLayer> layers, const Camera& camera, double gain, std::int64_t count,
+           const Progress& progress) {
+    std::vector<ShadedSplats> reduced;
+    if (count > 0) {
+        reduced = reduce_splats(layers, camera.world_from_camera, count, progress);
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            layers[i].splats = &reduced[i];
+            layers[i].render.opacity = 1.0f;
+        }
+    }
+    Baked baked;
+    for (const RenderLayer& layer : layers) bake_layer(layer, camera, gain, baked.gaussians, baked.counts);
+    return baked;
+}
+
+void report(const ExportOptions& options, const Baked& baked) {
+    const BakeCounts& n = baked.counts;
+    std::string line =
+        fmt::format("{}: {}; {:.2f} % of the light lost, {} above 1", printable(options.output.string()),
+                    counted(baked.gaussians.size(), "splat"), 100.0 * n.share_lost(), n.bright);
+    if (n.faint > 0) line += fmt::format("; {} fainter than 1/255, which some programs do not draw", n.faint);
+    if (n.dust > 0) line += fmt::format("; {} of dust are grey", n.dust);
+    fmt::print("{}\n", line);
+}
+
+}  // namespace
+
+int run_export(const ExportOptions& options) {
+    std::vector<Assignment> assignments;
+    for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
+    const Kind kind = kind_of_output(options.output);
+    const bool encoded = is_encoded(options, kind);
+    const std::int64_t count = count_of(options);
+    Scene scene = load_scene(options.scene, assignments);
+    const double frame = frame_of(options, scene);
+    keep_exported(scene, options.layer);
+    refuse_to_overwrite(options.output, options.overwrite);
+    defer_interrupts();
+    prove_writable(folder_of(options.output));
+    ProgressReport progress(options.progress);
+    Pipeline pipeline(scene, progress.begin_step("loading"), options.cache);
+    const RenderSettings settings = fitted_settings(pipeline, frame);
+    const Camera camera = pipeline.camera(frame, settings);
+    const double gain = std::exp2(double(settings.exposure));
+    Image wanted;
+    if (encoded) wanted = pipeline.frame(frame, settings, progress.begin_step("rendering")).beauty;
+    for (float& value : wanted.pixels) value *= static_cast<float>(gain);
+    Baked baked = bake(pipeline.shaded_layers(frame), camera, gain, count, progress.begin_step("baking"));
+    if (baked.gaussians.size() == 0)
+        bad_input(scene.file.string(), "", "splats that are visible at this frame", "none");
+    if (encoded) {
+        encode_for_display(baked.gaussians);
+        fit_to_view(baked.gaussians, wanted, camera, settings);
+    }
+    const WriteTarget target{options.output, existing_of(options.overwrite)};
+    const Progress writing = progress.begin_step("writing");
+    if (kind == Kind::ply)
+        write_gaussian_ply(target, baked.gaussians, writing);
+    else
+        write_gaussian_glb(target, baked.gaussians, encoded, writing);
+    report(options, baked);
+    return exit_done;
+}
+
+}  // namespace astrosplat
