@@ -80,7 +80,7 @@ class Baker {
             light /= hides;
             hides = 1.0;
         }
-        const double alpha = std::min(1.0, std::max(hides, double(largest(glm::vec3(light)))));
+        const double alpha = std::min(1.0, std::max({hides, light.x, light.y, light.z}));
         if (!(alpha > 0.0 && square > 0.0)) {
             ++counts.unseen;
             return;
