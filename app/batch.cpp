@@ -171,7 +171,7 @@ void BatchRun::try_frame(const FramePlan& frame, std::int64_t index, std::int64_
         if (index == 1) throw;
         fail(frame, error.what());
     } catch (const AlreadyExists& error) {
-        if (!plan_.resume || !is_there(frame)) return fail(frame, error.what());
+        if (!plan_.resume || found_at(frame) != Found::same) return fail(frame, error.what());
         log_info(fmt::format("frame {}: another program has written it meanwhile", frame.frame));
     } catch (const OutputError& error) {
         fail(frame, error.what());

@@ -154,15 +154,6 @@ std::vector<Eye> eyes(const Scene& scene) {
     return {Eye::left, Eye::right};
 }
 
-enum class Found { nothing, same, damaged, other };
-
-Found found_at(const FramePlan& plan) {
-    std::error_code ignored;
-    if (!fs::exists(fs::symlink_status(plan.file, ignored))) return Found::nothing;
-    if (!frame_is_whole(plan.file)) return Found::damaged;
-    return read_frame_hashes(plan.file).first == plan.hash ? Found::same : Found::other;
-}
-
 /// Decides what becomes of files that lie where frames go (DESIGN 8).
 void decide(std::vector<FramePlan>& frames, const BatchOptions& options) {
     for (const FramePlan& frame : frames) refuse_other_than_file(frame.file);
@@ -191,9 +182,15 @@ void decide(std::vector<FramePlan>& frames, const BatchOptions& options) {
 
 }  // namespace
 
-bool is_there(const FramePlan& frame) { return found_at(frame) == Found::same; }
+Found found_at(const FramePlan& plan) {
+    std::error_code ignored;
+    if (!fs::exists(fs::symlink_status(plan.file, ignored))) return Found::nothing;
+    if (fs::exists(plan.file, ignored) && !fs::is_regular_file(plan.file, ignored)) return Found::other;
+    if (!frame_is_whole(plan.file)) return Found::damaged;
+    return read_frame_hashes(plan.file).first == plan.hash ? Found::same : Found::other;
+}
 
-BatchPlan plan_batch(const BatchOptions& options) {
+BatchPlan plan_frames(const BatchOptions& options) {
     BatchPlan plan;
     plan.scene = batch_scene(options);
     if (options.region) plan.region = parse_region(*options.region, plan.scene.output);
@@ -212,6 +209,11 @@ BatchPlan plan_batch(const BatchOptions& options) {
                 {frame, eye, frame_file(plan.scene.output.path, frame, eye), hasher.frame_hash(frame)});
         }
     plan.inputs = hasher.files();
+    return plan;
+}
+
+BatchPlan plan_batch(const BatchOptions& options) {
+    BatchPlan plan = plan_frames(options);
     decide(plan.frames, options);
     return plan;
 }

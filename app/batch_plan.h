@@ -34,11 +34,17 @@ struct BatchPlan {
     bool resume = false;            // frames of the right hash are as good as rendered ones
 };
 
-/// A whole frame of the planned hash lies at its place.
-bool is_there(const FramePlan& frame);
+/// What lies at a frame's place: a whole frame of the planned hash, a picture that cannot be read to its end,
+/// or anything else.
+enum class Found { nothing, same, damaged, other };
+Found found_at(const FramePlan& frame);
 
-/// Throws InputError for bad input, and where files are in the way that neither --resume nor --overwrite
-/// covers; OutputError where something else than a file lies at a frame's place.
+/// The frames, all of them to be rendered, without a look at what lies at their places. Throws InputError.
+BatchPlan plan_frames(const BatchOptions& options);
+
+/// plan_frames, and then what becomes of frames that have files already. Throws InputError for bad input, and
+/// where files are in the way that neither --resume nor --overwrite covers; OutputError where something else
+/// than a file lies at a frame's place.
 BatchPlan plan_batch(const BatchOptions& options);
 
 }  // namespace astrosplat

@@ -27,6 +27,7 @@
 #include "prepare.h"
 #include "prepare_settings.h"
 #include "splat_commands.h"
+#include "status_command.h"
 #include "viewer/run_viewer.h"
 #include "viewer/screenshot.h"
 
@@ -46,6 +47,7 @@ struct Invocation {
     bool batch = false;
     std::string input;  // what the viewer opens
     BatchOptions batch_options;
+    StatusOptions status;
     ScreenshotOptions screenshot;  // when its output is given
     NewOptions create;
     PrepareOptions prepare;
@@ -105,20 +107,25 @@ void add_common(CLI::App& app, CommonOptions& common) {
     app.add_flag("-q,--quiet", common.quiet, "Says only warnings and errors");
 }
 
-void add_batch(CLI::App& app, Invocation& call) {
-    BatchOptions& batch = call.batch_options;
-    app.add_flag("--batch", call.batch, "Renders the scene's frames without a window");
-    app.add_option("SCENE", call.input, "A scene; without --batch also a picture, mesh or splat file");
-    add_value(app, "-f,--frames", batch.frames, "1-100,120,200-300x2", "Frames to render");
+/// What decides which frames there are, and what they hold.
+void add_frame_choice(CLI::App& app, BatchOptions& batch) {
+    add_value(app, "-f,--frames", batch.frames, "1-100,120,200-300x2", "Frames instead of output.frames");
     add_value(app, "-o,--output", batch.output, "PATTERN", "Frame files, such as frames/shot.####.exr");
     add_value(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the frame");
     add_assignments(app, batch.assignments);
-    add_value(app, "--layers", batch.layers, "A,B", "Renders only these layers");
+    add_value(app, "--layers", batch.layers, "A,B", "Only these layers");
     add_value(
         app, "--memory", batch.memory_gib, "GiB",
         "Limit of the renderer's working memory, and of what bodies are made in: pictures that would take "
         "more are reduced");
     add_value(app, "--region", batch.region, "X,Y,W,H", "Part of the frame, from the top left, in pixels");
+}
+
+void add_batch(CLI::App& app, Invocation& call) {
+    BatchOptions& batch = call.batch_options;
+    app.add_flag("--batch", call.batch, "Renders the scene's frames without a window");
+    app.add_option("SCENE", call.input, "A scene; without --batch also a picture, mesh or splat file");
+    add_frame_choice(app, batch);
     app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
     app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
     app.add_flag("--dry-run", batch.dry_run, "Says what would be done, and does nothing");
@@ -226,6 +233,15 @@ void add_camera(CLI::App& app, Invocation& call) {
     command.add_flag("--overwrite", call.camera.overwrite, "Replaces the file");
 }
 
+void add_status(CLI::App& app, Invocation& call) {
+    CLI::App& command =
+        add_command(app, call, "status", "Lists which frames are done, missing, damaged or of other settings",
+                    [&call] { return run_status(call.status); });
+    add_value(command, "SCENE", call.status.batch.scene, "SCENE", "The scene")->required();
+    add_frame_choice(command, call.status.batch);
+    command.add_flag("--json", call.status.json, "Prints JSON");
+}
+
 void add_export(CLI::App& app, Invocation& call) {
     ExportOptions& options = call.export_options;
     CLI::App& command =
@@ -329,8 +345,8 @@ int run_window(Invocation& call) {
 int run(Invocation& call) {
     apply_common(call.common);
     log_detail(fmt::format("threads {}, vector target {}", thread_count(), vector_target()));
-    call.batch_options.cache = call.generate.cache = call.export_options.cache = call.fidelity.cache =
-        cache_of(call.common);
+    call.batch_options.cache = call.status.batch.cache = call.generate.cache = call.export_options.cache =
+        call.fidelity.cache = cache_of(call.common);
     if (call.common.quiet) silence_progress(call);
     if (call.action) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
@@ -367,6 +383,7 @@ int run_command_line(int argc, char** argv) {
     add_convert(app, call);
     add_export(app, call);
     add_camera(app, call);
+    add_status(app, call);
     add_reports(app, call);
     add_fidelity(app, call);
     try {

@@ -72,4 +72,20 @@ std::vector<std::int64_t> parse_frames(const std::string& text, const std::strin
     return frames;
 }
 
+std::string frames_text(const std::vector<std::int64_t>& frames) {
+    std::string text;
+    for (std::size_t begin = 0; begin < frames.size();) {
+        std::size_t last = begin;
+        const std::int64_t step = begin + 1 < frames.size() ? frames[begin + 1] - frames[begin] : 1;
+        while (last + 1 < frames.size() && frames[last + 1] - frames[last] == step) ++last;
+        if (step > 1 && last < begin + 2) last = begin;  // "1,3" is shorter than "1-3x2"
+        if (!text.empty()) text += ',';
+        text += fmt::format("{}", frames[begin]);
+        if (last > begin) text += fmt::format("-{}", frames[last]);
+        if (last > begin && step > 1) text += fmt::format("x{}", step);
+        begin = last + 1;
+    }
+    return text;
+}
+
 }  // namespace astrosplat

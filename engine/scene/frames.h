@@ -11,4 +11,7 @@ namespace astrosplat {
 /// Throws InputError naming `place`.
 std::vector<std::int64_t> parse_frames(const std::string& text, const std::string& place);
 
+/// The other way round, short: "1-100,120,200-300x2" of ascending frames, each once; empty of none.
+std::string frames_text(const std::vector<std::int64_t>& frames);
+
 }  // namespace astrosplat

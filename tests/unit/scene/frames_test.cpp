@@ -27,6 +27,24 @@ TEST(Frames, ListsRangesAndSteps) {
     EXPECT_EQ(parse_frames("1-240", "").size(), 240u);
 }
 
+TEST(Frames, AreWrittenShortAndReadBack) {
+    const std::pair<Frames, std::string> cases[] = {
+        {{}, ""},
+        {{7}, "7"},
+        {{1, 2}, "1-2"},
+        {{1, 3}, "1,3"},
+        {{-3, -2, -1, 4}, "-3--1,4"},
+        {{1, 3, 4, 5}, "1,3-5"},
+        {{0, 5, 10, 11}, "0-10x5,11"},
+        {{1, 2, 3, 7, 10, 12, 14, 16, 40}, "1-3,7,10-16x2,40"},
+    };
+    for (const auto& [frames, text] : cases) {
+        EXPECT_EQ(frames_text(frames), text);
+        if (frames.empty()) continue;
+        EXPECT_EQ(parse_frames(text, ""), frames);
+    }
+}
+
 TEST(Frames, Messages) {
     const std::string such = "--frames: expected frames such as 1-100,120,200-300x2, found ";
     EXPECT_EQ(refusal(""), such + "''");
