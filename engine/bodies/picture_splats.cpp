@@ -21,7 +21,7 @@ constexpr float least_brightness = 0.002f;  // below which opacity falls to 0: e
 constexpr float greatest_opacity = 0.985f;
 constexpr float star_opacity = 0.25f;      // of a star's own
 constexpr float glowing_thickness = 0.7f;  // of H, from which the light of a disk is that of its bulge
-constexpr float clearest_bulge = 4.0f;     // times; clearer still, it would burn out where it is seen aslant
+constexpr float clearest_bulge = 8.0f;     // times; clearer still, it would burn out where it is seen aslant
 constexpr float glow_hiding = 0.5f;        // share of its optical depth that the glow between two walls keeps
 
 // What a dot is before it has a depth.

@@ -65,11 +65,12 @@ lod     = {{ max_px = {split}, noise = 0.75 }}  # dots that look larger, close b
 struct CameraKeyframe {
     int frame;
     glm::dvec3 position, target, up;
+    double exposure = 0.0;  // stops
 };
 
 // From where the picture is seen as it is, the camera tilts by 45 degrees and comes a little nearer. Eight
 // frames are between two keyframes.
-void tilt(double distance, std::vector<CameraKeyframe>& keyframes) {
+void tilt(double distance, double exposure, std::vector<CameraKeyframe>& keyframes) {
     constexpr int first = 36, last = 100, step = 8;
     for (int frame = first; frame <= last; frame += step) {
         const double t = static_cast<double>(frame - first) / (last - first), eased = t * t * (3.0 - 2.0 * t);
@@ -78,33 +79,40 @@ void tilt(double distance, std::vector<CameraKeyframe>& keyframes) {
             {frame,
              (1.0 - 0.12 * eased) * distance * glm::dvec3(0.06 * eased, real::cos(angle), real::sin(angle)),
              glm::dvec3(0.0),
-             {0.0, eased, -1.0 + 0.5 * eased}});
+             {0.0, eased, -1.0 + 0.5 * eased},
+             eased * exposure});
     }
 }
 
 // Ten seconds at 24 frames/s: the front, a slow tilt, a close pass, and on: to the edge of a disk, else up
-// and away.
+// and away. The more aslant a disk is seen the more of it shines in each pixel: the exposure goes down with
+// the camera, or its middle would burn out.
 std::vector<CameraKeyframe> flight(double distance, StructureKind kind) {
     const bool disk = kind == StructureKind::disk;
     const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
     std::vector<CameraKeyframe> keyframes;
-    tilt(distance, keyframes);
+    tilt(distance, disk ? -0.4 : 0.0, keyframes);
     keyframes.insert(keyframes.begin(), keyframes.front());
     keyframes.front().frame = 1;
-    keyframes.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above});
-    keyframes.push_back({205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above});
-    keyframes.push_back({240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above});
+    keyframes.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above, disk ? -1.1 : 0.0});
+    keyframes.push_back(
+        {205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above, disk ? -0.9 : 0.0});
+    keyframes.push_back(
+        {240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above, disk ? -0.5 : 0.0});
     return keyframes;
 }
+
+std::string text_of(double value) { return fmt::format("{:.3g}", value); }
 
 std::string text_of(const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
 
 // Leaves out keyframes that are like both of their neighbours.
+template <class Value>
 std::string track_text(const char* key, const std::vector<CameraKeyframe>& keyframes,
-                       glm::dvec3 CameraKeyframe::*value) {
+                       Value CameraKeyframe::*value) {
     std::string text;
     for (std::size_t i = 0; i < keyframes.size(); ++i) {
-        const glm::dvec3& here = keyframes[i].*value;
+        const Value& here = keyframes[i].*value;
         const bool inside = i > 0 && i + 1 < keyframes.size();
         if (inside && here == keyframes[i - 1].*value && here == keyframes[i + 1].*value) continue;
         text += fmt::format("{}    [{}, {}]", text.empty() ? "" : ",\n", keyframes[i].frame, text_of(here));
@@ -113,10 +121,13 @@ std::string track_text(const char* key, const std::vector<CameraKeyframe>& keyfr
 }
 
 std::string animation_text(const std::vector<CameraKeyframe>& keyframes) {
+    const bool exposed =
+        std::any_of(keyframes.begin(), keyframes.end(), [](const auto& k) { return k.exposure != 0.0; });
     return "\n[animation]                       # [frame, value]\n" +
            track_text("camera.position", keyframes, &CameraKeyframe::position) +
            track_text("camera.target", keyframes, &CameraKeyframe::target) +
-           track_text("camera.up", keyframes, &CameraKeyframe::up);
+           track_text("camera.up", keyframes, &CameraKeyframe::up) +
+           (exposed ? track_text("output.exposure", keyframes, &CameraKeyframe::exposure) : "");
 }
 
 // Even, as films want it.
@@ -138,7 +149,7 @@ double split_above_px(StructureKind structure, double longest_over_height, doubl
 // edge, and the middle does not burn out from aslant. Walls are all edge.
 std::string_view opacity_of(StructureKind structure) {
     if (structure == StructureKind::walls) return "opacity = 0.3";
-    return structure == StructureKind::disk ? "opacity = 0.42, density = 0.95" : "opacity = 0.55";
+    return structure == StructureKind::disk ? "opacity = 0.42, density = 0.8" : "opacity = 0.55";
 }
 
 // How far bodies reach along the line of sight.

@@ -59,6 +59,7 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
             EXPECT_NEAR(now.camera.position->y, still.camera.position->y, 1e-3) << frame;
             EXPECT_NEAR(now.camera.position->x, 0.0, 1e-6) << frame;
             EXPECT_EQ(now.camera.up, still.camera.up) << frame;
+            EXPECT_EQ(now.output.exposure, 0.0) << "as the telescope saw it";
         }
         // The tilt keeps its distance, up to 12 %.
         for (double frame = 1.0; frame <= 100.0; ++frame) {
@@ -68,6 +69,8 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
         }
         const auto height_over_plane = [&](double frame) { return scene_at(film, frame).camera.position->y; };
         EXPECT_LT(height_over_plane(160.0), 2.0) << "a close pass";
+        const double close_by = scene_at(film, 160.0).output.exposure;
+        EXPECT_TRUE(kind == StructureKind::disk ? close_by < -0.8 : close_by == 0.0) << close_by;
         if (kind == StructureKind::disk) {
             EXPECT_LT(height_over_plane(240.0), 0.5) << "ends at the edge";
         } else {
