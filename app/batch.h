@@ -25,6 +25,7 @@ struct BatchOptions {
     std::optional<std::filesystem::path> stats;
     SetCache cache;
     bool resume = false, overwrite = false, dry_run = false;
+    bool sets_only = false;  // generates and keeps the sets, and renders nothing
     ProgressMode progress = ProgressMode::automatic;
 };
 int run_batch(const BatchOptions& options);

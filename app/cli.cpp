@@ -26,8 +26,10 @@
 #include "places.h"
 #include "prepare.h"
 #include "prepare_settings.h"
+#include "sets_only.h"
 #include "splat_commands.h"
 #include "status_command.h"
+#include "submit/submit.h"
 #include "viewer/run_viewer.h"
 #include "viewer/screenshot.h"
 
@@ -47,6 +49,7 @@ struct Invocation {
     bool batch = false;
     std::string input;  // what the viewer opens
     BatchOptions batch_options;
+    SubmitOptions submit;  // when its system is given; beside batch_options
     StatusOptions status;
     ScreenshotOptions screenshot;  // when its output is given
     NewOptions create;
@@ -129,8 +132,16 @@ void add_batch(CLI::App& app, Invocation& call) {
     app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
     app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
     app.add_flag("--dry-run", batch.dry_run, "Says what would be done, and does nothing");
+    app.add_flag("--sets-only", batch.sets_only, "Generates the sets into the cache, renders nothing");
     add_value(app, "--stats", batch.stats, "FILE.json", "Writes figures as JSON");
     add_progress(app, batch.progress);
+}
+
+void add_submit(CLI::App& app, SubmitOptions& submit) {
+    add_value(app, "--submit", submit.system, "slurm",
+              "Renders what is missing of the scene's frames on a farm, by --batch with --resume");
+    add_value(app, "--chunk", submit.chunk, "N", "With --submit: frames of a task (default: 10)");
+    add_value(app, "--partition", submit.partition, "NAME", "With --submit: where the tasks run");
 }
 
 void add_screenshot(CLI::App& app, Invocation& call) {
@@ -352,11 +363,16 @@ int run(Invocation& call) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
         return call.action();
     }
-    if (!call.batch) return run_window(call);
-    if (!call.screenshot.output.empty()) bad_input("--batch", "", "no --screenshot beside it", "both");
-    if (call.input.empty()) bad_input("--batch", "", "a scene file", "none (see --help)");
+    const bool submits = !call.submit.system.empty();
+    if (!submits && (call.submit.chunk || call.submit.partition))
+        bad_input(call.submit.chunk ? "--chunk" : "--partition", "", "--submit slurm beside it", "none");
+    if (!call.batch && !submits) return run_window(call);
+    const char* mode = submits ? "--submit" : "--batch";
+    if (!call.screenshot.output.empty()) bad_input(mode, "", "no --screenshot beside it", "both");
+    if (call.input.empty()) bad_input(mode, "", "a scene file", "none (see --help)");
     call.batch_options.scene = call.input;
-    return run_batch(call.batch_options);
+    if (submits) return run_submit(call.submit, call.batch_options);
+    return call.batch_options.sets_only ? run_sets_only(call.batch_options) : run_batch(call.batch_options);
 }
 
 /// CLI11's message as one line.
@@ -376,6 +392,7 @@ int run_command_line(int argc, char** argv) {
     app.require_subcommand(0, 1);
     add_common(app, call.common);
     add_batch(app, call);
+    add_submit(app, call.submit);
     add_screenshot(app, call);
     add_new(app, call);
     add_prepare(app, call);

@@ -1,4 +1,5 @@
-// status: every frame that --batch would render, looked at where it belongs, and counted by what was found.
+// status: every frame that --batch would render, looked at where it belongs, and counted by what was found;
+// then the tasks that a farm has of them.
 #include "status_command.h"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "core/text.h"
 #include "report.h"
 #include "scene/frames.h"
+#include "submit/submission.h"
 
 namespace astrosplat {
 namespace {
@@ -51,6 +53,53 @@ bool is_complete(Sequence& sequence) {
         sequence, [](auto& eye) { return std::ssize(eye.second.of(Found::same)) == eye.second.count; });
 }
 
+/// Submissions to Slurm that have tasks in the queue, and the last one.
+struct Farm {
+    std::vector<Submission> submissions;
+    std::vector<SubmissionState> states;
+    std::string problem;
+};
+
+Farm ask_farm(const BatchPlan& plan) {
+    const std::vector<Submission> all = submissions_of(plan.scene.output.path);
+    const QueueState queue = ask_queue(all);
+    Farm farm;
+    farm.problem = queue.problem;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!queue.submissions[i].is_active() && i + 1 < all.size()) continue;
+        farm.submissions.push_back(all[i]);
+        farm.states.push_back(queue.submissions[i]);
+    }
+    return farm;
+}
+
+void print_farm(const Farm& farm) {
+    if (!farm.problem.empty()) fmt::print("queue unknown: {}\n", printable(farm.problem));
+    for (std::size_t i = 0; i < farm.submissions.size() && farm.problem.empty(); ++i) {
+        const Submission& one = farm.submissions[i];
+        const SubmissionState& state = farm.states[i];
+        if (!state.sets.empty() && state.sets != "COMPLETED")
+            fmt::print("queue job {}, the sets: {}\n", one.sets_job, state.sets);
+        std::vector<std::string> counts;
+        for (const auto& [name, count] : state.counts()) counts.push_back(fmt::format("{} {}", count, name));
+        fmt::print("queue job {}, {}: {}\n", one.frames_job, counted(std::ssize(one.chunks), "task"),
+                   counts.empty() ? "over" : fmt::format("{}", fmt::join(counts, ", ")));
+    }
+}
+
+Report to_report(const Farm& farm) {
+    Report queue = Report::array();
+    for (std::size_t i = 0; i < farm.submissions.size(); ++i) {
+        const Submission& one = farm.submissions[i];
+        queue.push_back({{"folder", one.folder.string()},
+                         {"sets_job", one.sets_job},
+                         {"sets", farm.states[i].sets},
+                         {"frames_job", one.frames_job},
+                         {"tasks", farm.states[i].counts()}});
+    }
+    return queue;
+}
+
 void print_for_people(const BatchPlan& plan, Sequence& sequence) {
     fmt::print("scene {}\n", printable(plan.scene.file.string()));
     fmt::print("frames {}\n", printable(plan.scene.output.path));
@@ -77,10 +126,13 @@ void print_as_json(const BatchPlan& plan, Sequence& sequence) {
         }
         eyes.push_back(one);
     }
+    const Farm farm = ask_farm(plan);
     print_report({{"scene", plan.scene.file.string()},
                   {"output", plan.scene.output.path},
                   {"complete", is_complete(sequence)},
-                  {"eyes", eyes}},
+                  {"eyes", eyes},
+                  {"queue", to_report(farm)},
+                  {"queue_problem", farm.problem}},
                  true);
 }
 
@@ -89,10 +141,12 @@ void print_as_json(const BatchPlan& plan, Sequence& sequence) {
 int run_status(const StatusOptions& options) {
     const BatchPlan plan = plan_frames(options.batch);
     Sequence sequence = look_at_frames(plan);
-    if (options.json)
+    if (options.json) {
         print_as_json(plan, sequence);
-    else
+    } else {
         print_for_people(plan, sequence);
+        print_farm(ask_farm(plan));
+    }
     return is_complete(sequence) ? exit_done : exit_some_failed;
 }
 
