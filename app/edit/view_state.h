@@ -32,7 +32,9 @@ enum class CompareMode {
     front  // where the view from the front differs from the layer's own picture
 };
 enum class CompareWith { b, reference };
-enum class PanelTab { source, look, render, camera, output };
+enum class PanelTab { source, look, mixing, camera, environment, output };
+/// Of the selected layer; the others are the scene's.
+inline bool is_of_layer(PanelTab tab) { return tab <= PanelTab::mixing; }
 enum class PlayMode { loop, ping_pong, once };
 enum class PreviewEngine { automatic, opengl, processor };
 

@@ -202,7 +202,8 @@ Description describe(Scene& scene, const std::function<bool(const ParameterKey& 
         describe_camera_file(d.in("camera", false).shown_in("Camera", "Place"), scene.camera);
     }
     if (wanted("environment"))
-        describe_environment(d.in("environment", true).shown_in("Camera", "Environment"), scene.environment);
+        describe_environment(d.in("environment", true).shown_in("Environment", "Environment"),
+                             scene.environment);
     if (wanted("provenance"))
         describe_provenance(d.in("provenance", false).shown_in("Output", "Provenance"), scene.provenance);
     if (wanted("reference"))

@@ -133,8 +133,8 @@ void describe_look(const Describer& d, Look& look) {
 }
 
 void describe_render(const Describer& d, LayerRender& r) {
-    const Describer dot = d.shown_in("Render", "Dot profile"), mixing = d.shown_in("Render", "Mixing"),
-                    detail = d.shown_in("Render", "Level of detail");
+    const Describer dot = d.shown_in("Mixing", "Dot profile"), mixing = d.shown_in("Mixing", "Blend"),
+                    detail = d.shown_in("Mixing", "Level of detail");
     dot(r.falloff.shape, "falloff", "Dot profile", "", "How a dot fades from its centre to its rim.",
         shown_as("Shape"));
     dot(r.falloff.core, "core", "Core", "of the radius", "Trapezoid: the flat part.", range(0, 1),
@@ -142,7 +142,7 @@ void describe_render(const Describer& d, LayerRender& r) {
     dot(r.falloff.sharpness, "sharpness", "Sharpness", "",
         "Gaussian and exponential: how fast the dot fades.", within(1e-6, 1e6), slider(0.5, 20),
         only_with("falloff", {"gaussian", "exponential"}));
-    mixing(r.blend, "blend", "Mixing", "", "How dots mix with what lies behind.");
+    mixing(r.blend, "blend", "Blend", "", "How dots mix with what lies behind.");
     mixing(r.opacity, "opacity", "Opacity", "", "Of the whole layer.", range(0, 1));
     mixing(r.hybrid_from_deg, "hybrid.from_deg", "Over up to", "degrees",
            "Hybrid: over up to this angle from the axis.", range(0, 90), only_with("blend", {"hybrid"}));

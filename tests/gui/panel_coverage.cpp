@@ -26,8 +26,8 @@ std::set<std::string> keys_drawn(const std::string& toml, const std::set<PanelTa
     return keys;
 }
 
-const std::set<PanelTab> all_tabs{PanelTab::source, PanelTab::look, PanelTab::render, PanelTab::camera,
-                                  PanelTab::output};
+const std::set<PanelTab> all_tabs{PanelTab::source, PanelTab::look,        PanelTab::mixing,
+                                  PanelTab::camera, PanelTab::environment, PanelTab::output};
 
 std::string layer(const std::string& source, const std::string& look, const std::string& render,
                   const std::string& top = "") {

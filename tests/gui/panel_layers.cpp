@@ -192,5 +192,24 @@ TEST(PanelLayers, LoadingCanBeCancelledAndStaleSetsMadeAnew) {
     EXPECT_EQ(d.commands[1].index, 1u);
 }
 
+// What belongs to a layer and what belongs to the scene are two panels, each with the tab it had last.
+TEST(PanelLayers, TheSceneHasAPanelOfItsOwn) {
+    PanelDriver d(layers_scene);
+    const glm::vec2 layers{45.0f, 16.0f}, scene{100.0f, 16.0f};
+    d.show(PanelTab::mixing);
+    d.click(scene);
+    EXPECT_EQ(d.view.tab, PanelTab::camera);
+    d.frames(2);
+    EXPECT_TRUE(d.has_row("camera.fov"));
+    EXPECT_FALSE(d.has_row("layer.disk.render.blend"));
+    d.show(PanelTab::output);
+    d.click(layers);
+    EXPECT_EQ(d.view.tab, PanelTab::mixing);
+    d.frames(2);
+    EXPECT_TRUE(d.has_row("layer.disk.render.blend"));
+    d.click(scene);
+    EXPECT_EQ(d.view.tab, PanelTab::output);
+}
+
 }  // namespace
 }  // namespace astrosplat

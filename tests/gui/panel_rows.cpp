@@ -22,7 +22,7 @@ const std::string power = "layer.dust.look.alpha.power", opacity = "layer.dust.r
 
 TEST(PanelRows, DraggingAValueIsOneUndoStep) {
     PanelDriver d(rows_scene);
-    d.show(PanelTab::render);
+    d.show(PanelTab::mixing);
     const double before = d.value(opacity).number();
     d.drag(d.row(opacity).value, {-50.0f, 0.0f});
     EXPECT_DOUBLE_EQ(before, 1.0);
@@ -103,7 +103,7 @@ TEST(PanelRows, AMeshIsAShapeOrAFile) {
 
 TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
     PanelDriver d(rows_scene);
-    d.show(PanelTab::render);
+    d.show(PanelTab::mixing);
     d.drag(d.row(opacity).value, {-25.0f, 0.0f});
     d.drag(d.row(opacity).value, {-25.0f, 0.0f});
     EXPECT_DOUBLE_EQ(d.value(opacity).number(), 0.8);
@@ -114,7 +114,7 @@ TEST(PanelRows, TwoDragsAreTwoUndoSteps) {
 
 TEST(PanelRows, DraggingStopsAtTheRange) {
     PanelDriver d(rows_scene);
-    d.show(PanelTab::render);
+    d.show(PanelTab::mixing);
     d.drag(d.row(opacity).value, {340.0f, 0.0f});
     EXPECT_DOUBLE_EQ(d.value(opacity).number(), 1.0);
     d.drag(d.row(opacity).value, {-200.0f, 0.0f});
@@ -124,7 +124,7 @@ TEST(PanelRows, DraggingStopsAtTheRange) {
 
 TEST(PanelRows, AltDragsFinerAndShiftCoarser) {
     PanelDriver d(rows_scene);
-    d.show(PanelTab::render);
+    d.show(PanelTab::mixing);
     ImGui::GetIO().KeyAlt = true;
     d.drag(d.row(opacity).value, {-50.0f, 0.0f});
     ImGui::GetIO().KeyAlt = false;
@@ -173,7 +173,7 @@ TEST(PanelRows, TabTypesTheNextValue) {
 
 TEST(PanelRows, ARefusedValueIsSaidAndChangesNothing) {
     PanelDriver d(rows_scene);
-    d.show(PanelTab::render);
+    d.show(PanelTab::mixing);
     d.double_click(d.row(opacity).value);
     d.type("2");
     d.tap(ImGuiKey_Enter);
@@ -186,7 +186,7 @@ TEST(PanelRows, ARefusedValueIsSaidAndChangesNothing) {
 
 TEST(PanelRows, TheDiamondSetsAndRemovesAKeyframe) {
     PanelDriver d(rows_scene);
-    d.show(PanelTab::render);
+    d.show(PanelTab::mixing);
     d.view.frame = 12.0;
     d.frames();
     d.click(d.row(opacity).diamond);
@@ -203,7 +203,7 @@ TEST(PanelRows, TheDiamondSetsAndRemovesAKeyframe) {
 TEST(PanelRows, AKeyedValueIsShownAsItIsAtTheFrame) {
     PanelDriver d(std::string(rows_scene) +
                   "[animation]\n\"layer.dust.render.opacity\" = { keys = [[1, 0.0], [101, 1.0]] }\n");
-    d.show(PanelTab::render);
+    d.show(PanelTab::mixing);
     d.view.frame = 51.0;
     d.frames();
     d.drag(d.row(opacity).value, {25.0f, 0.0f});
@@ -250,7 +250,7 @@ TEST(PanelRows, TheMenuPastesASetOption) {
 
 TEST(PanelRows, ACheckBoxAndAVectorsComponent) {
     PanelDriver d(rows_scene);
-    d.show(PanelTab::render);
+    d.show(PanelTab::mixing);
     const std::string holdout = "layer.dust.render.holdout";
     d.click(d.row(holdout).value);
     EXPECT_EQ(d.value(holdout), Value(true));

@@ -140,7 +140,7 @@ TEST_F(References, DomesHaveRoundGatesAndSafeAreas) {
 }
 
 TEST(PanelReferences, EveryTabWithAllSectionsOpen) {
-    const char* const names[] = {"source", "look", "render", "camera", "output"};
+    const char* const names[] = {"source", "look", "mixing", "camera", "environment", "output"};
     for (std::size_t tab = 0; tab < std::size(names); ++tab) {
         PanelDriver driver(R"(astrosplat = 1
 [output]
@@ -183,7 +183,7 @@ hybrid = { from_deg = 20.0, to_deg = 65.0 }
 )",
                        360.0f, 900.0f);
     driver.status = example_status();
-    driver.show(PanelTab::render);
+    driver.show(PanelTab::mixing);
     driver.frames(3);
     Picture8 picture(360, 900);
     software_draw(*ImGui::GetDrawData(), picture, Style::schematic);

@@ -65,7 +65,8 @@ struct Memory {
     std::map<ParameterKey, glm::vec4> plots;                // by the key they edit: x, y, width, height
     ParameterKey selected_curve;                            // the one whose point is selected
     int selected_point = -1;
-    std::string renaming;  // layer whose name is typed
+    PanelTab layer_tab = PanelTab::look, scene_tab = PanelTab::camera;  // seen last
+    std::string renaming;                                               // layer whose name is typed
     int dragged_layer = -1;
     std::size_t layer_in_sight = 0;      // selected in the last frame
     std::set<std::string> second_lines;  // layers whose row has one

@@ -305,25 +305,18 @@ void add_menu(Context& context) {
     end_popup();
 }
 
-void list_head(Context& context, float width) {
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImGui::PushFont(medium_font());
-    const Area head{{corner.x + px(margin), corner.y}, {width, px(32)}};
-    clipped_text(ImGui::GetWindowDrawList(), head, 0.0f, color::text, "Layers");
-    ImGui::PopFont();
-    ImGui::SetCursorScreenPos({corner.x + width - px(margin) - px(20), corner.y + px(4)});
+}  // namespace
+
+void add_layer_button(Context& context) {
     if (icon_button("add", Icon::plus, {px(26), px(24)}, px(11), color::text,
                     "Add a picture, mesh or splat file, or a shape"))
         ImGui::OpenPopup("add layer");
     add_menu(context);
-    ImGui::SetCursorScreenPos({corner.x, corner.y + px(32)});
 }
-
-}  // namespace
 
 float layer_list_height(const Context& context) {
     choose_second_lines(context);
-    float height = px(32);
+    float height = 0.0f;
     for (std::size_t i = 0; i < context.scene().layers.size(); ++i)
         height += px(has_second_line(context, i) ? line_height + row_height + 4.0f : line_height);
     return height + px(context.scene().layers.empty() ? 28.0f : 6.0f);
@@ -331,8 +324,7 @@ float layer_list_height(const Context& context) {
 
 void layer_list(Context& context, float height) {
     const float width = ImGui::GetContentRegionAvail().x;
-    list_head(context, width);
-    ImGui::BeginChild("layers", {width, height - px(32)}, false, ImGuiWindowFlags_NoBackground);
+    ImGui::BeginChild("layers", {width, height}, false, ImGuiWindowFlags_NoBackground);
     ImVec2 at = ImGui::GetCursorScreenPos();
     std::vector<Area> rows;
     if (context.scene().layers.empty()) {

@@ -1,4 +1,4 @@
-// The panel as a whole: layers list above, tabs below.
+// The panel as a whole: the layers with the tabs of the selected one, or the tabs of the scene.
 #include "gui/panel/panel.h"
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "gui/panel/tab.h"
 #include "gui/panel/tab_sections.h"
 #include "gui/theme.h"
+#include "gui/widgets.h"
 
 namespace astrosplat {
 
@@ -24,51 +25,71 @@ using namespace panel;
 struct Tab {
     const char* label;  // as ParameterSpec::tab
     PanelTab tab;
-    bool of_layer;
     void (*top)(Context&);  // drawn above the sections; nullptr: nothing
 };
-constexpr Tab tabs[] = {{"Source", PanelTab::source, true, source_state},
-                        {"Look", PanelTab::look, true, nullptr},
-                        {"Render", PanelTab::render, true, nullptr},
-                        {"Camera", PanelTab::camera, false, camera_buttons},
-                        {"Output", PanelTab::output, false, output_buttons}};
+constexpr Tab tabs[] = {
+    {"Source", PanelTab::source, source_state},      {"Look", PanelTab::look, nullptr},
+    {"Mixing", PanelTab::mixing, nullptr},           {"Camera", PanelTab::camera, camera_buttons},
+    {"Environment", PanelTab::environment, nullptr}, {"Output", PanelTab::output, output_buttons}};
+
+// One of two panels is seen, that of the layers or that of the scene, each with the tab it had last.
+void head(Context& context) {
+    PanelTab& tab = context.view.tab;
+    Memory& memory = context.memory;
+    (is_of_layer(tab) ? memory.layer_tab : memory.scene_tab) = tab;
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos({corner.x + px(12), corner.y + px(4)});
+    const int clicked = segmented("panels",
+                                  {{"Layers", "What is seen: the layers, their looks, how they mix"},
+                                   {"Scene", "From where and how: camera, environment, frames and files"}},
+                                  is_of_layer(tab) ? 0 : 1, px(24), nullptr);
+    if (clicked >= 0) tab = clicked == 0 ? memory.layer_tab : memory.scene_tab;
+    if (is_of_layer(tab)) {
+        const float right = corner.x + ImGui::GetWindowContentRegionMax().x;
+        ImGui::SetCursorScreenPos({right - px(12) - px(20), corner.y + px(4)});
+        add_layer_button(context);
+    }
+    ImGui::SetCursorScreenPos({corner.x, corner.y + px(32)});
+}
 
 void tab_row(ViewState& view) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = px(32);
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddLine(corner, {corner.x + width, corner.y}, color::line);
-    float spare = width - px(12);
-    for (const Tab& tab : tabs) spare -= ImGui::CalcTextSize(tab.label).x;
-    const float padding = std::clamp(spare / 10.0f, px(3), px(12));
-    float x = corner.x + std::max(px(12) - padding, 0.0f);
+    const float padding = px(12);
+    float x = corner.x;
+    PanelTab chosen = view.tab;
     for (const Tab& tab : tabs) {
+        if (is_of_layer(tab.tab) != is_of_layer(view.tab)) continue;
         const ImVec2 text = ImGui::CalcTextSize(tab.label);
         const float tab_width = text.x + padding * 2.0f;
         ImGui::SetCursorScreenPos({x, corner.y});
-        if (ImGui::InvisibleButton(tab.label, {tab_width, height})) view.tab = tab.tab;
-        const bool chosen = view.tab == tab.tab;
-        const ImU32 ink = chosen || ImGui::IsItemHovered() ? color::text : color::dim;
+        if (ImGui::InvisibleButton(tab.label, {tab_width, height})) chosen = tab.tab;
+        const bool seen = view.tab == tab.tab;
+        const ImU32 ink = seen || ImGui::IsItemHovered() ? color::text : color::dim;
         list->AddText({x + padding, corner.y + (height - text.y) * 0.5f}, ink, tab.label);
-        if (chosen)
+        if (seen)
             list->AddRectFilled({x + padding, corner.y + height - px(2)},
                                 {x + padding + text.x, corner.y + height}, color::accent);
         x += tab_width;
     }
+    view.tab = chosen;
     ImGui::SetCursorScreenPos({corner.x, corner.y + height});
 }
 
 void tab_content(Context& context) {
     const auto tab = std::find_if(std::begin(tabs), std::end(tabs),
                                   [&](const Tab& t) { return t.tab == context.view.tab; });
-    if (tab->of_layer && context.scene().layers.empty()) {
+    const bool of_layer = is_of_layer(tab->tab);
+    if (of_layer && context.scene().layers.empty()) {
         note("No layer yet.");
         return;
     }
     Memory& memory = context.memory;
     memory.after_open = false;
     // Sections of layers share their ids, so that a drag does not survive a change of layer.
-    ImGui::PushID(tab->of_layer ? context.layer_key().text().c_str() : tab->label);
+    ImGui::PushID(of_layer ? context.layer_key().text().c_str() : tab->label);
     if (!memory.error.empty() && !memory.error_shown) note(memory.error, color::error);
     memory.error_shown = false;
     if (tab->top) tab->top(context);
@@ -119,7 +140,8 @@ void Panel::draw(Document& document, ViewState& view, const Status& status, Comm
     Context context{document, view, status, commands, memory, state_->rows};
     const ImVec2 room = ImGui::GetContentRegionAvail();
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0.0f, 0.0f));
-    layer_list(context, std::min(layer_list_height(context), room.y * 0.4f));
+    head(context);
+    if (is_of_layer(view.tab)) layer_list(context, std::min(layer_list_height(context), room.y * 0.4f));
     tab_row(view);
     ImGui::PopStyleVar();
     view.layer = layers > 0 ? std::min(view.layer, layers - 1) : 0;  // a layer was added or taken away

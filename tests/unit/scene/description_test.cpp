@@ -17,7 +17,7 @@ const ParameterSpec& spec_of(const ParameterKey& key) {
 }
 
 TEST(DescriptionTest, EveryParameterHasAPlaceInTheWindow) {
-    const std::vector<std::string_view> tabs{"Source", "Look", "Render", "Camera", "Output"};
+    const std::vector<std::string_view> tabs{"Source", "Look", "Mixing", "Camera", "Environment", "Output"};
     for (const ParameterRow& row : parameter_rows()) {
         EXPECT_NE(std::find(tabs.begin(), tabs.end(), row.spec.tab), tabs.end()) << row.spec.key;
         EXPECT_FALSE(row.spec.section.empty()) << row.spec.key;
