@@ -79,6 +79,7 @@ void add_assignments(CLI::App& app, std::vector<std::string>& values) {
            "Sets a key of the scene; may be repeated")
         ->option_text("KEY=VALUE")
         ->expected(1)
+        ->allow_extra_args(false)  // what follows is the scene
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 

@@ -100,6 +100,10 @@ TEST_F(Batch, QuietSaysNothing) {
 TEST_F(Batch, OptionsComeInAnyOrder) {
     EXPECT_EQ(run({"-f", "2", "scene.toml", "-t", "1", "--batch", "-q"}).code, 0);
     EXPECT_EQ(names_in("frames"), std::set<std::string>{"shot.0002.exr"});
+    const RunResult result =
+        run({"--batch", "--set", "output.fps=30", "--set", "output.frames=3", "scene.toml"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(names_in("frames"), (std::set<std::string>{"shot.0002.exr", "shot.0003.exr"}));
 }
 
 TEST_F(Batch, FramesAreThoseAskedFor) {
