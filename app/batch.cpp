@@ -69,7 +69,8 @@ void check_writable(const BatchPlan& plan, const BatchOptions& options) {
 /// One run over the frames of a plan.
 class BatchRun {
   public:
-    BatchRun(const BatchPlan& plan, ProgressMode progress) : plan_(plan), report_(progress) {}
+    BatchRun(const BatchPlan& plan, ProgressMode progress)
+        : plan_(plan), hasher_(plan.hasher), report_(progress) {}
 
     void prepare();
     void render_frames();
@@ -81,10 +82,11 @@ class BatchRun {
     FrameFigures render_frame(const FramePlan& frame, const Progress& progress);
     void fail(const FramePlan& frame, const std::string& error);
     void find_lost_frames();
-    FrameMetadata metadata(const FramePlan& frame, const Scene& now, const RenderSettings& settings) const;
+    FrameMetadata metadata(const FramePlan& frame, const Scene& now, const RenderSettings& settings);
     RenderSettings settings(const FramePlan& frame) const;
 
     const BatchPlan& plan_;
+    FrameHasher hasher_;
     ProgressReport report_;
     std::unique_ptr<Pipeline> pipeline_;
     RunFigures figures_;
@@ -98,7 +100,7 @@ void BatchRun::prepare() {
                          plan_.scene.output.width, plan_.scene.output.height,
                          human_count(job.splats, "splat"), human_bytes(static_cast<double>(job.bytes))));
     pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache);
-    check_unchanged(plan_.inputs, Progress{{}, &interrupted()});
+    check_unchanged(plan_.hasher.files(), Progress{{}, &interrupted()});
 }
 
 RenderSettings BatchRun::settings(const FramePlan& frame) const {
@@ -108,13 +110,14 @@ RenderSettings BatchRun::settings(const FramePlan& frame) const {
     return settings;
 }
 
-FrameMetadata BatchRun::metadata(const FramePlan& frame, const Scene& now,
-                                 const RenderSettings& settings) const {
+FrameMetadata BatchRun::metadata(const FramePlan& frame, const Scene& now, const RenderSettings& settings) {
     FrameMetadata metadata;
     metadata.frame = frame.frame;
     metadata.eye = frame.eye;
     metadata.fps = now.output.fps;
     metadata.frame_hash = frame.hash;
+    hasher_.show_eye(frame.eye);
+    metadata.hashed_text = hasher_.canonical_text(frame.frame);
     metadata.provenance = now.provenance;
     if (metadata.provenance.credit.empty()) metadata.provenance.credit = pipeline_->input_credit();
     if (!now.layers.empty())

@@ -190,7 +190,7 @@ Found found_at(const FramePlan& plan) {
     return read_frame_hashes(plan.file).first == plan.hash ? Found::same : Found::other;
 }
 
-BatchPlan plan_frames(const BatchOptions& options) {
+BatchPlan plan_scene(const BatchOptions& options) {
     BatchPlan plan;
     plan.scene = batch_scene(options);
     if (options.region) plan.region = parse_region(*options.region, plan.scene.output);
@@ -201,14 +201,18 @@ BatchPlan plan_frames(const BatchOptions& options) {
     if (plan.memory_limit_bytes > 0)
         for (LayerParams& layer : plan.scene.layers)
             if (ever_visible(plan.scene, layer)) limit_bodies(layer, plan.memory_limit_bytes, plan.cache);
-    FrameHasher hasher(plan.scene, plan.region);
+    plan.hasher = FrameHasher(plan.scene, plan.region);
+    return plan;
+}
+
+BatchPlan plan_frames(const BatchOptions& options) {
+    BatchPlan plan = plan_scene(options);
     for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value()))
         for (const Eye eye : eyes(plan.scene)) {
-            hasher.show_eye(eye);
+            plan.hasher.show_eye(eye);
             plan.frames.push_back(
-                {frame, eye, frame_file(plan.scene.output.path, frame, eye), hasher.frame_hash(frame)});
+                {frame, eye, frame_file(plan.scene.output.path, frame, eye), plan.hasher.frame_hash(frame)});
         }
-    plan.inputs = hasher.files();
     return plan;
 }
 

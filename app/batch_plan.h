@@ -30,7 +30,7 @@ struct BatchPlan {
     std::int64_t memory_limit_bytes = 0;  // 0: none
     SetCache cache;
     std::vector<FramePlan> frames;  // ascending
-    HashedFiles inputs;             // what the frames' hashes were made of
+    FrameHasher hasher;             // which knows the files that the frames' hashes were made of
     bool resume = false;            // frames of the right hash are as good as rendered ones
 };
 
@@ -38,6 +38,9 @@ struct BatchPlan {
 /// or anything else.
 enum class Found { nothing, same, damaged, other };
 Found found_at(const FramePlan& frame);
+
+/// All of a plan but its frames. Throws InputError.
+BatchPlan plan_scene(const BatchOptions& options);
 
 /// The frames, all of them to be rendered, without a look at what lies at their places. Throws InputError.
 BatchPlan plan_frames(const BatchOptions& options);

@@ -31,7 +31,7 @@ int run_sets_only(const BatchOptions& options) {
         log_info(fmt::format("layer {}: {}{}", layer.name, human_count(loaded.set.size(), "splat"),
                              loaded.cached ? ", kept already" : ""));
     }
-    check_unchanged(plan.inputs, Progress{{}, &interrupted()});
+    check_unchanged(plan.hasher.files(), Progress{{}, &interrupted()});
     return exit_done;
 }
 

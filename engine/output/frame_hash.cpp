@@ -80,14 +80,11 @@ bool is_hidden(const ParameterSpec& spec, const Scene& now) {
 // The text itself where nothing lies under that name: "plane", "", or a file whose absence the
 // loader will report.
 std::string FrameHasher::file_text(const fs::path& file) {
+    if (const auto known = files_.find(file); known != files_.end()) return known->second.hash;
     std::error_code ignored;
     if (!fs::is_regular_file(file, ignored)) return to_toml(file.string());
-    auto [known, added] = files_.try_emplace(file);
-    if (added) {
-        const FileStamp stamp = stamp_of(file);  // before it is read: a change from now on is seen
-        known->second = {sha256_of_file(file), stamp};
-    }
-    return known->second.hash;
+    const FileStamp stamp = stamp_of(file);  // before it is read: a change from now on is seen
+    return files_.emplace(file, HashedFile{sha256_of_file(file), stamp}).first->second.hash;
 }
 
 // Pictures that no key names.
@@ -96,7 +93,8 @@ std::string FrameHasher::own_pictures(const LayerParams& layer) {
     std::error_code ignored;
     if (layer.source.kind != SourceKind::mesh) return text;
     for (const MeshInput& input : layer.source.meshes) {
-        if (!has_own_pictures(input) || !fs::is_regular_file(input.mesh, ignored)) continue;
+        if (!has_own_pictures(input)) continue;
+        if (!material_lists_.count(input.mesh) && !fs::is_regular_file(input.mesh, ignored)) continue;
         auto [known, added] = material_lists_.try_emplace(input.mesh);
         if (added)
             for (const fs::path& file : obj_materials(input.mesh)) known->second += " " + file_text(file);

@@ -33,6 +33,7 @@ class FrameHasher {
   public:
     /// `region` as in RenderSettings: the part of the frame that is rendered; empty: all.
     explicit FrameHasher(const Scene& scene, const Region& region = {}) : scene_(scene), region_(region) {}
+    FrameHasher() = default;
 
     /// The eye of the frames hashed from now on, whatever the scene says.
     void show_eye(Eye eye) { scene_.camera.eye = eye; }

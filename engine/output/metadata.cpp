@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/text.h"
+#include "output/hashed_text.h"
 
 namespace astrosplat {
 namespace {
@@ -32,6 +33,8 @@ MetadataEntries metadata_entries(const FrameMetadata& metadata) {
     auto add = [&](const char* name, const std::string& value) {
         if (!value.empty()) entries.emplace_back(name, one_line(value));
     };
+    if (!metadata.hashed_text.empty())
+        entries.emplace_back("astrosplat/hashed", pack_hashed_text(metadata.hashed_text));
     add("astrosplat/title", metadata.provenance.title);
     add("astrosplat/credit", metadata.provenance.credit);
     add("astrosplat/type", metadata.provenance.type);

@@ -12,7 +12,7 @@ namespace astrosplat {
 using MetadataEntries = std::vector<std::pair<std::string, std::string>>;
 
 /// "astrosplat/version", "/frameHash", "/pixelHash", "/seed", "/frame", "/fps" and, where not empty,
-/// "/title", "/credit", "/type".
+/// "/hashed" (hashed_text.h), "/title", "/credit", "/type".
 MetadataEntries metadata_entries(const FrameMetadata& metadata);
 
 /// The entries as lines "name=value" (line breaks in values become spaces): TIFF's ImageDescription.

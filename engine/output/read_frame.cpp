@@ -10,6 +10,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/sha256.h"
+#include "core/text.h"
+#include "output/hashed_text.h"
 #include "output/metadata.h"
 
 namespace astrosplat {
@@ -29,6 +32,45 @@ std::unique_ptr<OIIO::ImageInput> open_if_picture(const std::filesystem::path& f
     }
 }
 
+Eye eye_of(std::string_view name) {
+    for (const Eye eye : {Eye::left, Eye::right})
+        if (name == name_of(eye)) return eye;
+    return Eye::centre;
+}
+
+void take_windows(FrameHeader& header, const OIIO::ImageSpec& spec) {
+    header.whole_width = spec.full_width;
+    header.whole_height = spec.full_height;
+    if (spec.width != spec.full_width || spec.height != spec.full_height)
+        header.region = {spec.x, spec.y, spec.width, spec.height};
+}
+
+/// Whole numbers between anything else.
+std::vector<std::int64_t> numbers_in(const std::string& text) {
+    std::vector<std::int64_t> numbers;
+    for (std::size_t begin = 0; (begin = text.find_first_of("0123456789", begin)) != std::string::npos;) {
+        const std::size_t end = std::min(text.find_first_not_of("0123456789", begin), text.size());
+        numbers.push_back(parse_int64(text.substr(begin, end - begin)).value_or(0));
+        begin = end;
+    }
+    return numbers;
+}
+
+/// The text knows the region of files that have no windows, and the eye of those that have no views.
+void take_hashed_text(FrameHeader& header, const std::string& text) {
+    header.hashed_text = text;
+    const auto size = numbers_in(hashed_value(text, "output.resolution").value_or(""));
+    if (size.size() == 2) {
+        header.whole_width = size[0];
+        header.whole_height = size[1];
+    }
+    const auto region = numbers_in(hashed_value(text, "region").value_or(""));
+    header.region = region.size() == 4 ? Region{region[0], region[1], region[2], region[3]} : Region{};
+    std::string eye = hashed_value(text, "camera.eye").value_or("");
+    std::erase(eye, '"');
+    header.eye = eye_of(eye);
+}
+
 }  // namespace
 
 ImageInfo read_image_info(const std::filesystem::path& file) {
@@ -43,6 +85,22 @@ ImageInfo read_image_info(const std::filesystem::path& file) {
         info.metadata.emplace_back(value.name().string(), value.get_string());
     }
     return info;
+}
+
+FrameHeader read_frame_header(const std::filesystem::path& file) {
+    const auto in = open_if_picture(file);
+    if (!in) return {};
+    const OIIO::ImageSpec& spec = in->spec();
+    FrameHeader header;
+    header.frame = parse_int64(entry(spec, "astrosplat/frame"));
+    header.frame_hash = entry(spec, "astrosplat/frameHash");
+    header.pixel_hash = entry(spec, "astrosplat/pixelHash");
+    header.compression = spec.get_string_attribute("compression");
+    take_windows(header, spec);
+    header.eye = eye_of(spec.get_string_attribute("view"));
+    std::optional<std::string> text = unpack_hashed_text(entry(spec, "astrosplat/hashed"));
+    if (text && Sha256().add(*text).hex() == header.frame_hash) take_hashed_text(header, *text);
+    return header;
 }
 
 std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::path& file) {

@@ -22,8 +22,9 @@ struct FrameMetadata {
     std::int64_t frame = 1;
     Eye eye = Eye::centre;
     double fps = 24.0;
-    std::string frame_hash;  // hex
-    std::string pixel_hash;  // hex
+    std::string frame_hash;   // hex
+    std::string pixel_hash;   // hex
+    std::string hashed_text;  // what frame_hash was made of (frame_hash.h)
     std::uint32_t seed = 0;
     ProvenanceParams provenance;
     std::optional<ExrMatrices> matrices;
