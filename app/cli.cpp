@@ -30,6 +30,7 @@
 #include "splat_commands.h"
 #include "status_command.h"
 #include "submit/submit.h"
+#include "verify.h"
 #include "viewer/run_viewer.h"
 #include "viewer/screenshot.h"
 
@@ -61,6 +62,7 @@ struct Invocation {
     InfoOptions info;
     CompareOptions compare;
     FidelityOptions fidelity;
+    VerifyOptions verify;
     ParametersOptions parameters;
     std::function<int()> action;  // of the subcommand, when there is one
 };
@@ -303,6 +305,28 @@ void add_fidelity(CLI::App& app, Invocation& call) {
     add_progress(command, fidelity.progress);
 }
 
+void add_verify(CLI::App& app, Invocation& call) {
+    VerifyOptions& verify = call.verify;
+    CLI::App& command =
+        add_command(app, call, "verify", "Renders frames again and says whether files hold them",
+                    [&call] { return run_verify(call.verify); });
+    add_value(command, "SCENE", verify.batch.scene, "SCENE", "The scene")->required();
+    command
+        .add_option_function<std::vector<std::string>>(
+            "FRAME",
+            [&verify](const std::vector<std::string>& files) {
+                verify.files.assign(files.begin(), files.end());
+            },
+            "Frame files; each says itself which frame, size, region and eye it holds")
+        ->option_text("FRAME...")
+        ->required();
+    add_assignments(command, verify.batch.assignments);
+    add_value(command, "--layers", verify.batch.layers, "A,B", "Where --batch had it too");
+    add_value(command, "--memory", verify.batch.memory_gib, "GiB", "Where --batch had it too");
+    command.add_flag("--json", verify.json, "Prints JSON");
+    add_progress(command, verify.batch.progress);
+}
+
 void apply_common(const CommonOptions& common) {
     if (common.quiet) set_log_level(LogLevel::warning);
     if (common.verbose) set_log_level(LogLevel::detail);
@@ -322,9 +346,9 @@ SetCache cache_of(const CommonOptions& common) {
 
 /// Of every command, unless a mode was asked for.
 void silence_progress(Invocation& call) {
-    for (ProgressMode* mode :
-         {&call.batch_options.progress, &call.generate.progress, &call.convert.progress,
-          &call.export_options.progress, &call.fidelity.progress, &call.prepare.progress})
+    for (ProgressMode* mode : {&call.batch_options.progress, &call.generate.progress, &call.convert.progress,
+                               &call.export_options.progress, &call.fidelity.progress, &call.prepare.progress,
+                               &call.verify.batch.progress})
         if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
 }
 
@@ -357,8 +381,9 @@ int run_window(Invocation& call) {
 int run(Invocation& call) {
     apply_common(call.common);
     log_detail(fmt::format("threads {}, vector target {}", thread_count(), vector_target()));
-    call.batch_options.cache = call.status.batch.cache = call.generate.cache = call.export_options.cache =
-        call.fidelity.cache = cache_of(call.common);
+    for (SetCache* cache : {&call.batch_options.cache, &call.status.batch.cache, &call.verify.batch.cache,
+                            &call.generate.cache, &call.export_options.cache, &call.fidelity.cache})
+        *cache = cache_of(call.common);
     if (call.common.quiet) silence_progress(call);
     if (call.action) {
         if (call.batch) bad_input("--batch", "", "a scene", "a command as well");
@@ -404,6 +429,7 @@ int run_command_line(int argc, char** argv) {
     add_status(app, call);
     add_reports(app, call);
     add_fidelity(app, call);
+    add_verify(app, call);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {

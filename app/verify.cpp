@@ -1,0 +1,247 @@
+// verify: a frame's header says which frame, size, region and eye it is of. Where the scene gives the same
+// frame hash, the frame is rendered and written beside it, and the two files are compared; so what rounding,
+// views and compression do to both is the same.
+#include "verify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "batch_plan.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/temporary_folder.h"
+#include "core/text.h"
+#include "interrupt.h"
+#include "output/compare_stored.h"
+#include "output/hashed_text.h"
+#include "output/read_frame.h"
+#include "output/write.h"
+#include "pipeline.h"
+#include "report.h"
+#include "scene/animate.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+using Compression = OutputParams::Compression;
+
+struct Verdict {
+    enum class Kind { equal, different, other_scene, damaged } kind = Kind::equal;
+    std::string why;                  // of damage, and of differences that are not of pixels
+    std::vector<KeyDifference> keys;  // first: the frame's, second: the scene's
+    StoredComparison pixels;          // where they could be compared
+};
+
+Verdict damaged(const std::string& why) { return {Verdict::Kind::damaged, why, {}, {}}; }
+
+/// What frames of one size and region share.
+struct VerifyJob {
+    std::string resolution, region;
+    BatchPlan plan;
+    std::unique_ptr<Pipeline> pipeline;  // made for the first frame that is rendered
+};
+
+std::string region_text(const Region& r) {
+    return r.width > 0 ? fmt::format("{},{},{},{}", r.x, r.y, r.width, r.height) : "";
+}
+
+bool fits(const Region& r, std::int64_t width, std::int64_t height) {
+    return r.x >= 0 && r.y >= 0 && r.x <= width - r.width && r.y <= height - r.height;
+}
+
+/// What was lost in the file is to be lost in its copy too.
+void take_compression(OutputParams& output, const std::string& name) {
+    if (name == "dwaa")
+        output.compression = Compression::dwaa;
+    else if (output.compression == Compression::dwaa)
+        output.compression = Compression::automatic;
+}
+
+class Verification {
+  public:
+    explicit Verification(const VerifyOptions& options)
+        : options_(options), report_(options.batch.progress) {}
+
+    Verdict verdict(const fs::path& file, std::int64_t index) {
+        const FrameHeader header = read_frame_header(file);
+        if (!frame_is_whole(file)) return damaged("it cannot be read to its last pixel");
+        if (!header.frame || header.frame_hash.empty() || header.pixel_hash.empty())
+            return damaged("it does not say which frame of which scene it holds");
+        if (!fits(header.region, header.whole_width, header.whole_height))
+            return damaged("its region lies outside its frame");
+        VerifyJob& job = job_for(header, file);
+        job.plan.hasher.show_eye(header.eye);
+        const std::string text = job.plan.hasher.canonical_text(*header.frame);
+        if (job.plan.hasher.frame_hash(*header.frame) != header.frame_hash)
+            return {Verdict::Kind::other_scene, "", keys(header, text), {}};
+        return compare(file, header, index);
+    }
+
+  private:
+    static std::vector<KeyDifference> keys(const FrameHeader& header, const std::string& text) {
+        if (header.hashed_text.empty()) return {};
+        return differing_keys(header.hashed_text, text);
+    }
+
+    VerifyJob& job_for(const FrameHeader& header, const fs::path& file) {
+        const std::string resolution = fmt::format("{}x{}", header.whole_width, header.whole_height);
+        const std::string region = region_text(header.region);
+        if (job_ && job_->resolution == resolution && job_->region == region) return *job_;
+        job_.reset();  // before the next one takes memory
+        BatchOptions batch = options_.batch;
+        batch.resolution = resolution;
+        if (!region.empty()) batch.region = region;
+        batch.output = file.string();
+        job_ = std::make_unique<VerifyJob>(VerifyJob{resolution, region, plan_scene(batch), {}});
+        return *job_;
+    }
+
+    Verdict compare(const fs::path& file, const FrameHeader& header, std::int64_t index) {
+        const fs::path copy = folder_.path() / ("frame" + file.extension().string());
+        const std::string pixels = render(copy, header, index);
+        Verdict verdict;
+        verdict.pixels = compare_stored(file, copy);
+        const bool same_hash = pixels == header.pixel_hash;
+        using Result = StoredComparison::Result;
+        if (verdict.pixels.result == Result::first_damaged) return damaged("it was changed meanwhile");
+        if (!verdict.pixels.identical() || !same_hash) verdict.kind = Verdict::Kind::different;
+        if (verdict.pixels.result == Result::other_form)
+            verdict.why = verdict.pixels.other_form;
+        else if (!same_hash)
+            verdict.why = fmt::format("pixel hash {:.8} against {:.8}", header.pixel_hash, pixels);
+        return verdict;
+    }
+
+    /// Into `copy`; returns the pixel hash.
+    std::string render(const fs::path& copy, const FrameHeader& header, std::int64_t index) {
+        const auto time = static_cast<double>(*header.frame);
+        BatchPlan& plan = job_->plan;
+        if (!job_->pipeline) {
+            job_->pipeline =
+                std::make_unique<Pipeline>(plan.scene, report_.begin_step("preparing"), plan.cache);
+            check_unchanged(plan.hasher.files(), Progress{{}, &interrupted()});
+        }
+        Pipeline& pipeline = *job_->pipeline;
+        const Progress progress = report_.begin_frame(*header.frame, index, std::ssize(options_.files));
+        pipeline.show_eye(header.eye);
+        Scene now = scene_at(plan.scene, time);
+        take_compression(now.output, header.compression);
+        RenderSettings settings = pipeline.settings(time);
+        settings.region = plan.region;
+        settings.memory_limit_bytes = plan.memory_limit_bytes;
+        const RenderedFrame rendered = pipeline.frame(time, settings, progress);
+        progress.check();
+        write_frame(
+            {copy, now.output, settings.width, settings.height, settings.region, pipeline.layer_names(time)},
+            rendered, {});
+        return pixel_hash(rendered.beauty);
+    }
+
+    const VerifyOptions& options_;
+    ProgressReport report_;
+    TemporaryFolder folder_;
+    std::unique_ptr<VerifyJob> job_;
+};
+
+const char* word_of(Verdict::Kind kind) {
+    constexpr std::array words = {"equal", "different", "made from another scene", "damaged"};
+    return words[static_cast<std::size_t>(kind)];
+}
+
+bool has_pixels(const Verdict& verdict) {
+    return verdict.kind == Verdict::Kind::different &&
+           verdict.pixels.result == StoredComparison::Result::compared;
+}
+
+Report json_of(const fs::path& file, const Verdict& verdict) {
+    Report report = {{"file", file.string()}, {"verdict", word_of(verdict.kind)}};
+    if (!verdict.why.empty()) report["why"] = verdict.why;
+    if (verdict.kind == Verdict::Kind::other_scene) {
+        report["keys"] = Report::array();
+        for (const KeyDifference& d : verdict.keys)
+            report["keys"].push_back({{"key", d.key}, {"frame", d.first}, {"scene", d.second}});
+    }
+    if (has_pixels(verdict)) {
+        const StoredComparison& c = verdict.pixels;
+        report["differing_pixels"] = c.differing_pixels;
+        report["pixels"] = c.pixels;
+        report["max_difference"] = number(c.max_difference);
+        report["max_at"] = {c.max_x, c.max_y};
+        report["max_channel"] = c.max_channel;
+        report["psnr_db"] = number(c.psnr_db);
+    }
+    return report;
+}
+
+/// A value in a line for people: files are hashes of their bytes.
+std::string short_value(const std::string& value) {
+    if (value.empty()) return "nothing";
+    const bool is_hash = value.size() == 64 && value.find_first_not_of("0123456789abcdef") == value.npos;
+    if (is_hash) return "a file " + value.substr(0, 8) + "...";
+    return value.size() > 60 ? value.substr(0, 57) + "..." : value;
+}
+
+std::string told_keys(const std::vector<KeyDifference>& keys) {
+    constexpr std::size_t most = 8;
+    if (keys.empty()) return "the frame does not tell its keys";
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, keys.size()); ++i)
+        text += fmt::format("{}{} is {} in the frame, {} in the scene", i ? "; " : "", keys[i].key,
+                            short_value(keys[i].first), short_value(keys[i].second));
+    if (keys.size() > most) text += fmt::format("; and {} more keys", keys.size() - most);
+    return text;
+}
+
+std::string told_pixels(const StoredComparison& c) {
+    if (c.differing_pixels == 0) return "what the file stores is the same";
+    return fmt::format("{} of {} pixels, by at most {:.6g} in {} at {},{}, PSNR {:.1f} dB",
+                       c.differing_pixels, c.pixels, c.max_difference, c.max_channel, c.max_x, c.max_y,
+                       c.psnr_db);
+}
+
+std::string line_of(const Verdict& verdict) {
+    std::string line = word_of(verdict.kind);
+    if (verdict.kind == Verdict::Kind::other_scene) line += ": " + told_keys(verdict.keys);
+    if (has_pixels(verdict)) line += ": " + told_pixels(verdict.pixels);
+    if (!verdict.why.empty()) line += (has_pixels(verdict) ? ", " : ": ") + verdict.why;
+    return line;
+}
+
+void print_verdicts(const VerifyOptions& options, const std::vector<Verdict>& verdicts) {
+    Report list = Report::array();
+    for (std::size_t i = 0; i < verdicts.size(); ++i) {
+        const fs::path& file = options.files[i];
+        if (options.json)
+            list.push_back(json_of(file, verdicts[i]));
+        else
+            fmt::print("{}: {}\n", printable(file.string()), printable(line_of(verdicts[i])));
+    }
+    if (options.json) print_report(list, true);
+}
+
+}  // namespace
+
+int run_verify(const VerifyOptions& options) {
+    for (const fs::path& file : options.files) require_readable(file);
+    defer_interrupts();
+    std::vector<Verdict> verdicts;
+    try {
+        Verification verification(options);
+        for (const fs::path& file : options.files)
+            verdicts.push_back(verification.verdict(file, std::ssize(verdicts) + 1));
+    } catch (const Cancelled&) {
+        print_verdicts(options, verdicts);  // each is true by itself
+        throw;
+    }
+    print_verdicts(options, verdicts);
+    const auto equal = [](const Verdict& verdict) { return verdict.kind == Verdict::Kind::equal; };
+    return std::ranges::all_of(verdicts, equal) ? exit_done : exit_some_failed;
+}
+
+}  // namespace astrosplat
