@@ -185,6 +185,7 @@ void advance(Session& session, double now) {
     attempt(session.status, [&] { take_alignment(session); });
     session.autosave.update(session.document);
     fill_status(session);
+    forget_old_message(session.status, session.message_age, now);
 }
 
 void navigate(Session& session, const ViewportInput& input, double now) {

@@ -48,6 +48,12 @@ struct CommandSource {
     bool operator==(const CommandSource&) const = default;
 };
 
+/// The message that is seen, and since when.
+struct MessageAge {
+    std::uint64_t number = 0;
+    double since = 0.0;  // s
+};
+
 /// Document, view and status, and the parts that each keep a state of their own.
 struct Session {
     /// Opens options.input, or the demo. Throws InputError.
@@ -94,7 +100,8 @@ struct Session {
     std::int64_t fixed_splats = 0;                    // of the preview; 0: by the frame rate
     std::optional<std::filesystem::path> screenshot;  // asked for: the caller reads the window and saves it
     std::optional<std::string> clipboard;             // text for it
-    std::set<std::string> said_errors;                // of the frame and the layers, that still hold
+    MessageAge message_age;
+    std::set<std::string> said_errors;  // of the frame and the layers, that still hold
     Commands dropped;  // from files, to be shown to the widgets, which ask about unsaved changes
 
     // Of the last draw_viewport():

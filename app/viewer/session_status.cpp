@@ -58,6 +58,15 @@ void say_new_errors(Status& status, std::set<std::string>& said) {
     said = std::move(errors);
 }
 
+void forget_old_message(Status& status, MessageAge& age, double now) {
+    constexpr double seen_s = 12.0;
+    Message& message = status.message;
+    if (message.number != age.number)
+        age = {message.number, now};
+    else if (!message.error && now - age.since >= seen_s)
+        message.text.clear();
+}
+
 FramePixel frame_pixel(const Session& session, glm::dvec2 mouse_px) {
     const ViewRequest& request = session.request;
     const glm::vec2 port(session.viewport_px);

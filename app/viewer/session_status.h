@@ -17,6 +17,9 @@ void fill_status(Session& session);
 /// do.
 void say_new_errors(Status& status, std::set<std::string>& said);
 
+/// What is no error leaves the message line after a while; it stays in the log. `now` in seconds.
+void forget_old_message(Status& status, MessageAge& age, double now);
+
 /// The pixel of the whole frame at a place of the viewport, px; outside of the frame where that is.
 struct FramePixel {
     std::int64_t x = 0, y = 0;

@@ -39,6 +39,27 @@ TEST(Refusals, AFailedPictureAndLayerAreSaidOnce) {
     EXPECT_EQ(status.log.size(), 3u) << "it has failed again";
 }
 
+TEST(Refusals, MessagesGoAndErrorsStay) {
+    Status status;
+    MessageAge age;
+    const auto seen_at = [&](double now) {
+        forget_old_message(status, age, now);
+        return status.message.text;
+    };
+    EXPECT_EQ(seen_at(0.0), "");
+    say(status, "Saved a.toml");
+    EXPECT_EQ(seen_at(100.0), "Saved a.toml");
+    EXPECT_EQ(seen_at(111.0), "Saved a.toml");
+    say(status, "Saved a.toml");
+    EXPECT_EQ(seen_at(113.0), "Saved a.toml") << "it was said again";
+    EXPECT_EQ(seen_at(124.0), "Saved a.toml");
+    EXPECT_EQ(seen_at(126.0), "");
+    EXPECT_EQ(status.log.size(), 2u) << "the log keeps them";
+    say(status, "a.toml: expected a number, found none", true);
+    seen_at(130.0);
+    EXPECT_EQ(seen_at(1e6), "a.toml: expected a number, found none");
+}
+
 TEST(Refusals, AJobThatIsRefusedLeavesNoFolder) {
     const TempFolder folder;
     const fs::path temporary = folder / "temporary";
