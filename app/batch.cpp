@@ -140,6 +140,7 @@ FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& prog
     FrameMetadata metadata = this->metadata(frame, now, settings);
     metadata.pixel_hash = pixel_hash(rendered.beauty);
     progress.check();
+    const Clock::time_point writing = Clock::now();
     write_frame({frame.file, now.output, settings.width, settings.height, settings.region,
                  pipeline_->layer_names(time), frame.existing},
                 rendered, metadata);
@@ -147,6 +148,7 @@ FrameFigures BatchRun::render_frame(const FramePlan& frame, const Progress& prog
     figures.frame = frame.frame;
     figures.file = frame.file;
     figures.seconds = seconds_since(start);
+    figures.write_seconds = seconds_since(writing);
     figures.render_seconds = rendered.statistics.seconds;
     figures.splats_in = rendered.statistics.splats_in;
     figures.splats_drawn = rendered.statistics.splats_drawn;

@@ -21,6 +21,7 @@
 #include "fidelity.h"
 #include "info.h"
 #include "interrupt.h"
+#include "json_log.h"
 #include "new.h"
 #include "parameters.h"
 #include "places.h"
@@ -43,6 +44,7 @@ constexpr const char* version_line = "astrosplat " ASTROSPLAT_VERSION;
 struct CommonOptions {
     std::string threads, cache;
     bool no_cache = false, verbose = false, quiet = false;
+    bool log_json = false;  // was seen to before all else
 };
 
 struct Invocation {
@@ -111,6 +113,7 @@ void add_common(CLI::App& app, CommonOptions& common) {
     app.add_flag("--no-cache", common.no_cache, "Neither reads nor writes generated sets");
     app.add_flag("-v,--verbose", common.verbose, "Says more");
     app.add_flag("-q,--quiet", common.quiet, "Says only warnings and errors");
+    app.add_flag("--log-json", common.log_json, "Messages and progress on stderr as JSON, one object a line");
 }
 
 /// What decides which frames there are, and what they hold.
@@ -412,6 +415,9 @@ int report_usage_error(const CLI::ParseError& error) {
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
+    // A mistake in the command line is to be JSON, too.
+    if (std::any_of(argv, argv + argc, [](const std::string& text) { return text == "--log-json"; }))
+        log_as_json();
     Invocation call;
     CLI::App app("Turns a mesh and a telescope picture into a volume of soft splats and renders film frames.",
                  "astrosplat");

@@ -1,12 +1,13 @@
-// Progress on stderr: a bar with the time left on a terminal, plain lines elsewhere. Work reports fractions
-// through Progress values from any thread; one thread of its own prints, so that a slow frame still gives a
-// line in time.
+// Progress on stderr: a bar with the time left on a terminal, plain lines elsewhere, JSON with --log-json.
+// Work reports fractions through Progress values from any thread; one thread of its own prints, so that a
+// slow frame still gives a line in time.
 #pragma once
 
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/progress.h"
@@ -35,20 +36,24 @@ class ProgressReport {
     void saved(const std::filesystem::path& file, double seconds);
 
   private:
-    enum class Style { bar, plain, none };
+    enum class Style { bar, plain, json, none };
     static Style style_for(ProgressMode mode);
-    Progress begin(const std::string& label, std::int64_t index, std::int64_t count);
+    Progress begin(const std::string& label, std::optional<std::int64_t> frame, std::int64_t index,
+                   std::int64_t count);
+    void print_json(double fraction);
     Worker::Task print_when_due();
     void print_status();  // these three with the printer's lock
     void clear_bar();
-    double seconds_left(double fraction) const;
+    double fraction_of_all(double fraction) const;
 
     Style style_;
     std::atomic<double> fraction_{0.0};  // of the step or frame at hand
     bool bar_shown_ = false;
-    std::string label_;  // empty: nothing at hand
+    std::string label_;                  // empty: nothing at hand
+    std::optional<std::int64_t> frame_;  // none: a step
     std::int64_t index_ = 1, count_ = 1;
-    std::chrono::steady_clock::time_point start_;  // of the first frame, or of the step
+    std::chrono::steady_clock::time_point start_,
+        frame_start_;  // of the first frame or the step; of this one
     std::chrono::steady_clock::time_point last_print_;
     Worker printer_;
 };

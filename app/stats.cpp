@@ -13,9 +13,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const FrameFigures& frame) {
-    return {{"frame", frame.frame},         {"file", frame.file.string()},
-            {"seconds", frame.seconds},     {"render_seconds", frame.render_seconds},
-            {"splats_in", frame.splats_in}, {"splats_drawn", frame.splats_drawn},
+    return {{"frame", frame.frame},
+            {"file", frame.file.string()},
+            {"seconds", frame.seconds},
+            {"render_seconds", frame.render_seconds},
+            {"write_seconds", frame.write_seconds},
+            {"splats_in", frame.splats_in},
+            {"splats_drawn", frame.splats_drawn},
             {"sha256", frame.sha256}};
 }
 

@@ -14,6 +14,7 @@ struct FrameFigures {
     std::int64_t frame = 0;
     std::filesystem::path file;
     double seconds = 0.0;         // look, render and write
+    double write_seconds = 0.0;   // encoding, compressing, until it is on the disk
     double render_seconds = 0.0;  // from shaded splats to the finished float image in memory
     std::int64_t splats_in = 0, splats_drawn = 0;
     std::string sha256;  // of the float pixels' bytes

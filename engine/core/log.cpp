@@ -18,6 +18,7 @@ struct Log {
     std::mutex mutex;
     LogLevel level = LogLevel::info;
     std::function<void(LogLevel, const std::string&)> sink;
+    std::string (*format)(LogLevel, const std::string&) = nullptr;
     std::map<std::string, std::int64_t> warnings;  // line -> how often it came
 };
 
@@ -38,9 +39,12 @@ void emit(Log& log, LogLevel level, const std::string& line) {
 }  // namespace
 
 std::string terminal_line(LogLevel level, const std::string& line) {
+    if (const auto format = the_log().format) return format(level, line);
     const char* kind = level == LogLevel::warning ? "warning: " : level == LogLevel::error ? "error: " : "";
     return fmt::format("astrosplat: {}{}", kind, line);
 }
+
+void set_log_format(std::string (*format)(LogLevel, const std::string&)) { the_log().format = format; }
 
 void set_log_level(LogLevel level) {
     Log& log = the_log();

@@ -16,7 +16,11 @@ void set_log_level(LogLevel level);
 /// The sink is called by one thread at a time and must not log itself.
 void set_log_sink(std::function<void(LogLevel, const std::string&)> sink);
 
-/// "astrosplat: warning: LINE": what a terminal shows of a message.
+/// What becomes of a message on stderr in place of "astrosplat: warning: LINE"; nullptr: that. Set before
+/// other threads run.
+void set_log_format(std::string (*format)(LogLevel, const std::string&));
+
+/// "astrosplat: warning: LINE", or as set_log_format() says: what a terminal shows of a message.
 std::string terminal_line(LogLevel level, const std::string& line);
 
 /// One line, without a newline; what is not printable (of a file's name) is escaped. Thread-safe.

@@ -56,7 +56,9 @@ TEST_F(Batch, RendersEveryFrameAndSaysSo) {
     EXPECT_EQ(names_in("frames"), three_frames);
     EXPECT_TRUE(std::regex_search(
         result.err,
-        std::regex("astrosplat: frame 2 \\(2/3\\) [0-9]+% eta ([0-9]{2}|--):([0-9]{2}|--):([0-9]{2}|--)\n")))
+        std::regex(
+            "astrosplat: frame 2 \\(2/3\\) [0-9]+% eta (([0-9]{2}|--):?){3}, all (3[3-9]|[456][0-9])% eta "
+            "(([0-9]{2}|--):?){3}\n")))
         << result.err;
     EXPECT_TRUE(std::regex_search(result.err, std::regex("saved .*shot\\.0003\\.exr [0-9]+\\.[0-9]{2}s\n")))
         << result.err;
