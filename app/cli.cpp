@@ -367,7 +367,7 @@ void refuse_without_screenshot(const ScreenshotOptions& shot) {
 
 /// The window, or a screenshot of it.
 int run_window(Invocation& call) {
-    ViewerOptions viewer{call.input, {}, call.batch_options.cache};
+    ViewerOptions viewer{call.input, {}, call.batch_options.cache, !call.common.threads.empty()};
     for (const std::string& text : call.batch_options.assignments)
         viewer.assignments.push_back(parse_assignment(text));
     ScreenshotOptions& shot = call.screenshot;

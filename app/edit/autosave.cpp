@@ -101,10 +101,11 @@ fs::path autosave_folder() {
     return state.empty() ? fs::path() : state / "autosave";
 }
 
-std::chrono::seconds autosave_interval() {
+std::chrono::seconds autosave_interval(const Settings& settings) {
     const char* variable = std::getenv("ASTROSPLAT_AUTOSAVE_SECONDS");
     const std::optional<std::int64_t> seconds = variable ? parse_int64(variable) : std::nullopt;
-    return seconds && *seconds >= 1 && *seconds <= 3600 ? std::chrono::seconds(*seconds) : Autosave::interval;
+    return seconds && *seconds >= 1 && *seconds <= 3600 ? std::chrono::seconds(*seconds)
+                                                        : std::chrono::seconds(settings.autosave_s);
 }
 
 Autosave::Autosave(fs::path folder, Clock::duration every) : folder_(std::move(folder)), every_(every) {}

@@ -11,19 +11,22 @@
 
 #include "core/file_lock.h"
 #include "edit/document.h"
+#include "edit/settings.h"
 
 namespace astrosplat {
 
 /// state_folder()/autosave; empty without a home.
 std::filesystem::path autosave_folder();
 
+/// As the settings say; $ASTROSPLAT_AUTOSAVE_SECONDS, 1 to 3600, where it says otherwise (for tests).
+std::chrono::seconds autosave_interval(const Settings& settings = {});
+
 /// Owns the autosave of one window. A folder that cannot be written costs one warning, nothing else.
 class Autosave {
   public:
     using Clock = std::chrono::steady_clock;
-    static constexpr std::chrono::seconds interval{60};
-
-    explicit Autosave(std::filesystem::path folder = autosave_folder(), Clock::duration every = interval);
+    explicit Autosave(std::filesystem::path folder = autosave_folder(),
+                      Clock::duration every = autosave_interval());
     /// Removes the file: the window was closed in peace. While an exception ends the program it stays.
     ~Autosave();
     Autosave(const Autosave&) = delete;
@@ -46,9 +49,6 @@ class Autosave {
     Clock::time_point changed_{};     // first update() that saw a newer one
     bool waiting_ = false;
 };
-
-/// Autosave::interval; $ASTROSPLAT_AUTOSAVE_SECONDS, 1 to 3600, where it says otherwise (for tests).
-std::chrono::seconds autosave_interval();
 
 /// An autosave whose process is gone.
 struct Recovery {

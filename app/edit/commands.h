@@ -53,7 +53,8 @@ struct Command {
         say,          // text: for the message line
         frame_layer,  // camera on the selected layer
         frame_all,
-        add_move  // index: CameraMove
+        add_move,  // index: CameraMove
+        keep_settings
     };
     Kind kind;
     std::filesystem::path path;

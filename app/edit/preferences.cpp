@@ -62,19 +62,28 @@ Preferences from_json(const Json& json) {
     read(json, "panel_width", p.panel_width, 300, 520);
     read(json, "timeline_height", p.timeline_height, 36, 2000);
     read(json, "timeline_open", p.timeline_open);
+    for (const SettingRow& row : setting_rows()) {
+        int value = 0;
+        read(json, row.name, value, -1e9, 1e9);
+        const auto is_it = [&](const SettingChoice& choice) { return choice.value == value; };
+        if (json.contains(row.name) && std::any_of(row.choices.begin(), row.choices.end(), is_it))
+            p.settings.*row.value = value;
+    }
     p.recent = paths_of(json, "recent", Preferences::most_recent_files, fs::is_regular_file);
     p.recent_folders = paths_of(json, "recent_folders", Preferences::most_recent_folders, fs::is_directory);
     return p;
 }
 
 Json to_json(const Preferences& p) {
-    return {{"window_width", p.window_width},
-            {"window_height", p.window_height},
-            {"panel_width", p.panel_width},
-            {"timeline_height", p.timeline_height},
-            {"timeline_open", p.timeline_open},
-            {"recent", json_of(p.recent)},
-            {"recent_folders", json_of(p.recent_folders)}};
+    Json json{{"window_width", p.window_width},
+              {"window_height", p.window_height},
+              {"panel_width", p.panel_width},
+              {"timeline_height", p.timeline_height},
+              {"timeline_open", p.timeline_open}};
+    for (const SettingRow& row : setting_rows()) json[row.name] = p.settings.*row.value;
+    json["recent"] = json_of(p.recent);
+    json["recent_folders"] = json_of(p.recent_folders);
+    return json;
 }
 
 }  // namespace

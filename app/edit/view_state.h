@@ -12,6 +12,7 @@
 
 #include "camera/camera.h"
 #include "edit/render_task.h"
+#include "edit/settings.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -55,6 +56,7 @@ struct FreeCamera {
 struct PanelSizes {
     float panel_width = 360.0f, timeline_height = 148.0f;  // px at scale 1
     bool timeline_open = true;
+    Settings settings;
     std::vector<std::filesystem::path> recent_folders;  // that files were chosen in, newest first
     bool operator==(const PanelSizes&) const = default;
 };
@@ -108,7 +110,7 @@ struct ViewState : PanelSizes {
     std::string typed_name;                  // so far
     std::optional<CameraMove> asked_move;    // the dialog of adding it is open
     LaterKeys later_keys = LaterKeys::keep;  // what that says
-    bool help_open = false, log_open = false;
+    bool help_open = false, log_open = false, settings_open = false;
     bool render_open = false;  // the dialog of:
     RenderTask render;
     bool queue_open = false;

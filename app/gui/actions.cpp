@@ -135,6 +135,7 @@ const Action table[] = {
     {"Edit", "Redo", ctrl_shift('Z'), redo, can_redo, nullptr, redo_label, false, true, ctrl('Y')},
     below_line({"Edit", "Store as B", plain('B'), ask<Kind::store_b>}),
     {"Edit", "Take snapshot", {}, take_snapshot},
+    below_line(flip<&ViewState::settings_open>("Edit", "Settings...")),
 
     view_from<ViewKind::camera>("Camera", plain(key_code::n0)),
     view_from<ViewKind::free>("Free"),

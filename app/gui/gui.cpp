@@ -13,6 +13,7 @@
 #include "gui/panel/panel.h"
 #include "gui/queue_dialog.h"
 #include "gui/render_dialog.h"
+#include "gui/settings_dialog.h"
 #include "gui/sheets.h"
 #include "gui/snapshots.h"
 #include "gui/splitters.h"
@@ -98,6 +99,7 @@ void Gui::State::draw_parts(GuiFrame& frame, const Layout& layout, Commands& com
     draw_render_dialog(frame);
     draw_queue(frame);
     draw_move_dialog(frame);
+    draw_settings_dialog(frame);
     flow.run(frame, panel, commands);
 }
 

@@ -2,6 +2,8 @@
 // View menu asks for.
 #pragma once
 
+#include <imgui.h>
+
 #include "gui/gui_frame.h"
 
 namespace astrosplat {

@@ -14,8 +14,10 @@
 #include "core/clock.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/parallel.h"
 #include "edit/preferences.h"
 #include "exit_code.h"
+#include "gui/theme.h"
 #include "viewer/session.h"
 #include "viewer/session_view.h"
 #include "viewer/window.h"
@@ -57,7 +59,7 @@ class Loop {
         : interrupted_(interrupted),
           window_(preferences.window_width, preferences.window_height, "astrosplat"),
           session_(options, window_.gl()) {
-        apply_theme(window_.content_scale());
+        apply_theme(wanted_scale());
         set_log_sink([this](LogLevel level, const std::string& line) { log_.push(level, line); });
     }
 
@@ -101,6 +103,10 @@ class Loop {
         for (const Message& message : log_.take()) say(session_.status, message.text, message.error);
         if (title(session_) != title_) window_.set_title(title_ = title(session_));
         if (window_.has_input()) frames_left_ = frames_after_event;
+        if (const float scale = wanted_scale(); scale != px(1.0f)) {
+            apply_theme(scale);
+            window_.reload_fonts();
+        }
         if (!window_.begin_frame(gui_.opening())) return;
         const bool was_settled = settled(session_);
         Commands commands = std::exchange(session_.dropped, {});
@@ -108,8 +114,7 @@ class Loop {
         navigate(session_, gui_.viewport_input(), now);
         carry_out(session_, commands);
         const ImGuiIO& io = ImGui::GetIO();
-        const Layout layout =
-            make_layout(session_.view, io.DisplaySize.x, io.DisplaySize.y, window_.content_scale());
+        const Layout layout = make_layout(session_.view, io.DisplaySize.x, io.DisplaySize.y, px(1.0f));
         draw_viewport(session_,
                       {static_cast<int>(layout.viewport.width * io.DisplayFramebufferScale.x),
                        static_cast<int>(layout.viewport.height * io.DisplayFramebufferScale.y)},
@@ -128,6 +133,11 @@ class Loop {
         }
     }
 
+    float wanted_scale() const {
+        const int percent = session_.view.settings.interface_percent;
+        return percent > 0 ? 0.01f * static_cast<float>(percent) : window_.content_scale();
+    }
+
     const std::atomic<bool>& interrupted_;
     LogLines log_;  // before the session, whose threads write into it
     Window window_;
@@ -141,9 +151,14 @@ class Loop {
 }  // namespace
 
 int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupted) {
+    const Preferences preferences = load_preferences();
+    const Settings& settings = preferences.settings;
+    if (settings.threads > 0 && !options.threads_given) set_thread_count(settings.threads);
+    ViewerOptions with_settings = options;
+    with_settings.cache.limit_bytes = std::int64_t{settings.cache_gib} << 30;
     std::unique_ptr<Loop> loop;
     try {
-        loop = std::make_unique<Loop>(options, load_preferences(), interrupted);
+        loop = std::make_unique<Loop>(with_settings, preferences, interrupted);
     } catch (const NoContext& error) {
         log_error(
             std::string("no window: ") + error.what() +

@@ -111,6 +111,8 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       fresh_demo(options.input.empty()) {
     view.hint_open = fresh_demo;
     static_cast<PanelSizes&>(view) = preferences;
+    view.settle = view.settings.settles != 0;
+    view.engine = static_cast<PreviewEngine>(view.settings.engine);
     view.frame = first_frame(document.scene());
     if (!options.input.empty()) choose_first_view(view, options.input);
     if (!options.input.empty() && kind_of_file(options.input) == FileKind::mesh) offer_picture(*this, 0);

@@ -93,7 +93,7 @@ struct Session {
     ImageTexture rendered_texture;
     std::uint64_t rendered_uploads = 0;
     std::optional<ChildProcess> file_manager;  // that a folder was opened with
-    Autosave autosave{autosave_folder(), autosave_interval()};
+    Autosave autosave{autosave_folder(), autosave_interval(preferences.settings)};
 
     bool quitting = false, fresh_demo = false;
     bool viewport_is_frame = false;                   // for a screenshot without panels

@@ -279,6 +279,11 @@ void add_move(State& s, const Command& c) {
     });
 }
 
+void keep_settings(State& s, const Command&) {
+    s.preferences.settings = s.view.settings;
+    save_preferences(s.preferences);
+}
+
 struct Entry {
     Kind kind;
     void (*function)(State&, const Command&);
@@ -327,9 +332,10 @@ constexpr Entry entries[] = {{Kind::new_from_file, open_path},
                              {Kind::say, say_text},
                              {Kind::frame_layer, frame_layer},
                              {Kind::frame_all, frame_all},
-                             {Kind::add_move, add_move}};
+                             {Kind::add_move, add_move},
+                             {Kind::keep_settings, keep_settings}};
 
-static_assert(std::size(entries) == static_cast<std::size_t>(Kind::add_move) + 1);
+static_assert(std::size(entries) == static_cast<std::size_t>(Kind::keep_settings) + 1);
 
 }  // namespace
 

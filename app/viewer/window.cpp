@@ -268,6 +268,11 @@ float Window::content_scale() const {
     return std::max(1.0f, x);
 }
 
+void Window::reload_fonts() {
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 std::vector<unsigned char> Window::read(int& width, int& height) const {
     glfwGetFramebufferSize(window_, &width, &height);
     draw_widgets(width, height);  // again: not every driver lets what is shown be read

@@ -46,6 +46,8 @@ class Window {
     /// Px at scale 1, for the preferences.
     void size(int& width, int& height) const;
     float content_scale() const;
+    /// After apply_theme() was called again.
+    void reload_fonts();
     const GlInfo& gl() const { return gl_; }
     /// The frame last drawn, RGBA, top row first.
     std::vector<unsigned char> read(int& width, int& height) const;

@@ -51,6 +51,9 @@ TEST_F(WindowSnapshots, SurviveACrashAndAreComparedAfterIt) {
         return screen->pixels({static_cast<int>(viewport.x), static_cast<int>(viewport.y),
                                static_cast<int>(viewport.width), static_cast<int>(viewport.height / 2)});
     };
+    ViewState with_strip;
+    with_strip.snapshots_open = true;
+    EXPECT_TRUE(comes_true([&] { return settled(with_strip); })) << "the strip made the view smaller";
     const Pixels saved_look = upper_half();
     person->press("Tab");
     EXPECT_TRUE(comes_true([&] { return upper_half() != saved_look; })) << "B is the changed look";

@@ -139,8 +139,8 @@ Pixels WindowTest::frame_pixels() const {
     return screen->pixels(area);
 }
 
-bool WindowTest::settled() const {
-    Area area = area_of(make_layout(ViewState(), width, height, 1.0f).viewport);
+bool WindowTest::settled(const ViewState& parts) const {
+    Area area = area_of(make_layout(parts, width, height, 1.0f).viewport);
     area.y += area.height - badge_height;
     area.height = badge_height;
     return count_of(screen->pixels(area), color::good) > 10;  // the dot

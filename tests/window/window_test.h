@@ -64,7 +64,7 @@ class WindowTest : public ViewerTest {
     /// The viewport without its badge.
     Pixels frame_pixels() const;
     /// The badge says that the picture is final.
-    bool settled() const;
+    bool settled(const ViewState& parts = {}) const;
     /// The next final frame other than `before`; fails the test where none comes.
     Pixels settled_frame(const Pixels& before = {});
     /// Waits for this very picture to be final.

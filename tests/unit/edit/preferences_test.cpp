@@ -36,6 +36,7 @@ TEST(Preferences, RoundTrip) {
     p.panel_width = 401.5f;
     p.timeline_height = 200.25f;
     p.timeline_open = false;
+    for (const SettingRow& row : setting_rows()) p.settings.*row.value = row.choices.back().value;
     add_recent(p, folder.file("a \"b\" ä.toml", "x"));
     add_recent_folder(p, folder.path());
     const fs::path file = folder / "neu/tiefer/viewer.json";
@@ -67,8 +68,17 @@ TEST(Preferences, SingleValuesThatAreWrongHaveTheirDefault) {
     const fs::path file =
         folder.file("viewer.json",
                     "{\"window_width\": \"wide\", \"window_height\": -5, \"panel_width\": 1e9,"
-                    " \"timeline_open\": 3, \"recent\": [1, \"/gone\"], \"recent_folders\": [\"/gone\"]}");
+                    " \"timeline_open\": 3, \"recent\": [1, \"/gone\"], \"recent_folders\": [\"/gone\"],"
+                    " \"interface_percent\": 7, \"threads\": \"all\", \"engine\": 9, \"autosave_s\": -1}");
     EXPECT_EQ(load_preferences(file), Preferences{});
+}
+
+TEST(Preferences, EverySettingHasItsDefaultAmongItsChoices) {
+    for (const SettingRow& row : setting_rows())
+        EXPECT_EQ(std::ranges::count(row.choices, Settings().*row.value, &SettingChoice::value), 1)
+            << row.name;
+    EXPECT_EQ(setting_rows().size(), sizeof(Settings) / sizeof(int)) << "one row each";
+    EXPECT_EQ(autosave_interval({.autosave_s = 15}), std::chrono::seconds(15));
 }
 
 TEST(Preferences, AFolderThatCannotBeWrittenCostsOneWarning) {
