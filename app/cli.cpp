@@ -11,7 +11,9 @@
 
 #include "batch.h"
 #include "camera_command.h"
+#include "command_words.h"
 #include "compare.h"
+#include "completion.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -22,11 +24,13 @@
 #include "info.h"
 #include "interrupt.h"
 #include "json_log.h"
+#include "manual.h"
 #include "new.h"
 #include "parameters.h"
 #include "places.h"
 #include "prepare.h"
 #include "prepare_settings.h"
+#include "scene/describe.h"
 #include "sets_only.h"
 #include "splat_commands.h"
 #include "status_command.h"
@@ -66,6 +70,7 @@ struct Invocation {
     FidelityOptions fidelity;
     VerifyOptions verify;
     ParametersOptions parameters;
+    std::string manual, shell;    // which page, whose completion
     std::function<int()> action;  // of the subcommand, when there is one
 };
 
@@ -330,6 +335,32 @@ void add_verify(CLI::App& app, Invocation& call) {
     add_progress(command, verify.batch.progress);
 }
 
+/// Keys that --set takes as they stand: those of layers need a layer's name.
+std::vector<std::string> keys_to_set() {
+    std::vector<std::string> keys;
+    for (const ParameterRow& row : parameter_rows())
+        if (!row.spec.key.is_below("layer")) keys.push_back(row.spec.key.text());
+    return keys;
+}
+
+/// What the words of the whole command line are written into.
+void add_words(CLI::App& app, Invocation& call) {
+    CLI::App& manual = add_command(
+        app, call, "manual", "Prints a manual page: 1 of the program, 5 of scene files", [&app, &call] {
+            if (call.manual != "1" && call.manual != "5")
+                bad_input("manual", "", "1 or 5", "'" + call.manual + "'");
+            fmt::print("{}", call.manual == "1" ? command_manual(command_words(app)) : scene_manual());
+            return exit_done;
+        });
+    add_value(manual, "SECTION", call.manual, "SECTION", "1: the program, 5: scene files")->required();
+    CLI::App& completion = add_command(
+        app, call, "completion", "Prints a script with which a shell completes commands", [&app, &call] {
+            fmt::print("{}", completion_script(call.shell, command_words(app), keys_to_set()));
+            return exit_done;
+        });
+    add_value(completion, "SHELL", call.shell, "bash|zsh|fish", "The shell")->required();
+}
+
 void apply_common(const CommonOptions& common) {
     if (common.quiet) set_log_level(LogLevel::warning);
     if (common.verbose) set_log_level(LogLevel::detail);
@@ -436,6 +467,7 @@ int run_command_line(int argc, char** argv) {
     add_reports(app, call);
     add_fidelity(app, call);
     add_verify(app, call);
+    add_words(app, call);
     try {
         app.parse(argc, argv);
     } catch (const CLI::CallForHelp&) {

@@ -1,0 +1,35 @@
+// The command line as words: what the manual page and the shells' completion are written from. In: the one
+// description that also parses (cli.cpp). Out: plain names and texts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace astrosplat {
+
+struct OptionWords {
+    std::vector<std::string> names;  // "-o", "--output"; empty: a positional
+    std::string placeholder;         // "auto|plain|none", "SCENE"; empty: a flag
+    std::string help;
+    bool repeats = false;  // a positional that takes several
+
+    bool is_file() const;                      // its value is a file or a folder
+    bool is_assignment() const;                // KEY=VALUE
+    std::vector<std::string> choices() const;  // of a placeholder such as "auto|plain|none"; else empty
+};
+
+struct CommandWords {
+    std::string name;  // empty: the program's own options
+    std::string help;
+    std::vector<OptionWords> options;      // those with names
+    std::vector<OptionWords> positionals;  // in their order
+};
+
+/// The program's own words first, then those of its commands, as they stand in the help.
+std::vector<CommandWords> command_words(const CLI::App& app);
+
+}  // namespace astrosplat

@@ -1,0 +1,203 @@
+#include "completion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace astrosplat {
+namespace {
+
+using Words = std::vector<std::string>;
+
+// In single quotes, for bash and zsh.
+std::string quoted(const std::string& text) {
+    std::string safe = "'";
+    for (const char c : text) safe += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return safe + "'";
+}
+
+std::string quoted_for_fish(const std::string& text) {
+    std::string safe = "'";
+    for (const char c : text) safe += c == '\'' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    return safe + "'";
+}
+
+// In descriptions of zsh's _arguments brackets and colons have a meaning.
+std::string described_for_zsh(const std::string& text) {
+    std::string safe;
+    for (const char c : text)
+        safe += c == '[' || c == ']' || c == ':' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    return safe;
+}
+
+Words names_of(const CommandWords& command) {
+    Words names;
+    for (const OptionWords& option : command.options)
+        names.insert(names.end(), option.names.begin(), option.names.end());
+    return names;
+}
+
+Words command_names(const std::vector<CommandWords>& commands) {
+    Words names;
+    for (const CommandWords& command : commands)
+        if (!command.name.empty()) names.push_back(command.name);
+    return names;
+}
+
+// What may follow each option that takes a value: one line of a case over "COMMAND OPTION".
+std::string bash_values(const CommandWords& command) {
+    std::string text;
+    for (const OptionWords& option : command.options) {
+        if (option.placeholder.empty()) continue;
+        Words patterns;
+        for (const std::string& name : option.names) patterns.push_back(quoted(command.name + " " + name));
+        const std::string reply =
+            option.is_assignment()      ? "words \"${keys[@]}\"; compopt -o nospace 2>/dev/null"
+            : option.is_file()          ? "files"
+            : !option.choices().empty() ? fmt::format("words {}", fmt::join(option.choices(), " "))
+                                        : ":";
+        text += fmt::format("        {}) {} ;;\n", fmt::join(patterns, "|"), reply);
+    }
+    return text;
+}
+
+std::string bash_script(const std::vector<CommandWords>& commands, const Words& keys) {
+    std::string values, options;
+    std::string places;  // of positionals
+    for (const CommandWords& command : commands) {
+        values += bash_values(command);
+        for (const OptionWords& positional : command.positionals)
+            if (!positional.choices().empty())
+                places += fmt::format("            {}) words {} ;;\n", command.name,
+                                      fmt::join(positional.choices(), " "));
+        options +=
+            fmt::format("        {}) words {} ;;\n", quoted(command.name), fmt::join(names_of(command), " "));
+    }
+    Words assigned;
+    for (const std::string& key : keys) assigned.push_back(quoted(key + "="));
+    return fmt::format(R"(# bash completion of astrosplat
+_astrosplat() {{
+    local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command= word
+    local keys=({keys})
+    words() {{ mapfile -t -O "${{#COMPREPLY[@]}}" COMPREPLY < <(compgen -W "$*" -- "$cur"); }}
+    files() {{
+        compopt -o filenames 2>/dev/null
+        mapfile -t -O "${{#COMPREPLY[@]}}" COMPREPLY < <(compgen -f -- "$cur")
+    }}
+    COMPREPLY=()
+    for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
+        case $word in {commands}) command=$word; break ;; esac
+    done
+    case "$command $prev" in
+{values}        *) case $cur in
+        -*) case $command in
+{options}        esac ;;
+        *)  [ -n "$command" ] || [ "$COMP_CWORD" != 1 ] || words {spaced}
+            case $command in
+{places}            *) files ;;
+            esac ;;
+        esac ;;
+    esac
+    unset -f words files
+}}
+complete -F _astrosplat astrosplat
+)",
+                       fmt::arg("keys", fmt::format("{}", fmt::join(assigned, " "))),
+                       fmt::arg("commands", fmt::format("{}", fmt::join(command_names(commands), "|"))),
+                       fmt::arg("spaced", fmt::format("{}", fmt::join(command_names(commands), " "))),
+                       fmt::arg("values", values), fmt::arg("places", places), fmt::arg("options", options));
+}
+
+std::string zsh_arguments(const CommandWords& command, const Words& keys) {
+    std::string text;
+    for (const OptionWords& option : command.options) {
+        std::string value;
+        if (option.is_assignment())
+            value = fmt::format(":key:({}=)", fmt::join(keys, "= "));
+        else if (!option.choices().empty())
+            value = fmt::format(":value:({})", fmt::join(option.choices(), " "));
+        else if (!option.placeholder.empty())
+            value = ":" + described_for_zsh(option.placeholder) + ":" + (option.is_file() ? "_files" : "");
+        for (const std::string& name : option.names)
+            text += " \\\n            " + quoted((option.is_assignment() ? "*" : "") + name + "[" +
+                                                 described_for_zsh(option.help) + "]" + value);
+    }
+    std::string place = "_files";
+    for (const OptionWords& positional : command.positionals)
+        if (!positional.choices().empty()) place = fmt::format("({})", fmt::join(positional.choices(), " "));
+    return text + " \\\n            " + quoted("*:file:" + place);
+}
+
+std::string zsh_script(const std::vector<CommandWords>& commands, const Words& keys) {
+    std::string list, cases;
+    for (const CommandWords& command : commands) {
+        if (command.name.empty()) continue;
+        list += "\n        " + quoted(command.name + ":" + command.help);
+        cases +=
+            fmt::format("        {})\n        _arguments{} ;;\n", command.name, zsh_arguments(command, keys));
+    }
+    return fmt::format(R"(#compdef astrosplat
+_astrosplat() {{
+    local -a commands
+    commands=({list}
+    )
+    if (( CURRENT == 2 )) && [[ $words[2] != -* ]]; then
+        _describe -t commands command commands
+        _files
+        return
+    fi
+    case $words[2] in
+{cases}        *)
+        _arguments{own} ;;
+    esac
+}}
+_astrosplat "$@"
+)",
+                       fmt::arg("list", list), fmt::arg("cases", cases),
+                       fmt::arg("own", zsh_arguments(commands.front(), keys)));
+}
+
+std::string fish_line(const CommandWords& command, const OptionWords& option, const Words& keys) {
+    std::string line =
+        "complete -c astrosplat -n " + (command.name.empty()
+                                            ? std::string("__fish_use_subcommand")
+                                            : quoted_for_fish("__fish_seen_subcommand_from " + command.name));
+    for (const std::string& name : option.names)
+        line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+    if (option.is_assignment())
+        line += fmt::format(" -x -a {}", quoted_for_fish(fmt::format("{}=", fmt::join(keys, "= "))));
+    else if (!option.choices().empty())
+        line +=
+            fmt::format(" -x -a {}", quoted_for_fish(fmt::format("{}", fmt::join(option.choices(), " "))));
+    else if (!option.placeholder.empty())
+        line += option.is_file() ? " -r -F" : " -x";
+    return line + " -d " + quoted_for_fish(option.help) + "\n";
+}
+
+std::string fish_script(const std::vector<CommandWords>& commands, const Words& keys) {
+    std::string text = "# fish completion of astrosplat\n";
+    for (const CommandWords& command : commands) {
+        if (!command.name.empty())
+            text += fmt::format("complete -c astrosplat -n __fish_use_subcommand -a {} -d {}\n", command.name,
+                                quoted_for_fish(command.help));
+        for (const OptionWords& option : command.options) text += fish_line(command, option, keys);
+        for (const OptionWords& positional : command.positionals)
+            if (!positional.choices().empty()) text += fish_line(command, positional, keys);
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string completion_script(const std::string& shell, const std::vector<CommandWords>& commands,
+                              const std::vector<std::string>& keys) {
+    if (shell == "bash") return bash_script(commands, keys);
+    if (shell == "zsh") return zsh_script(commands, keys);
+    if (shell == "fish") return fish_script(commands, keys);
+    bad_input("completion", "", "bash, zsh or fish", "'" + shell + "'");
+}
+
+}  // namespace astrosplat
