@@ -2,6 +2,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include "cli.h"
 #include "core/error.h"
@@ -31,6 +32,11 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         log_error("not enough memory");
         return exit_not_started;
+    } catch (const std::system_error& error) {
+        const bool busy = error.code() == std::errc::resource_unavailable_try_again;  // no thread to be had
+        log_error((busy ? "the system gives no more threads: " : "internal error: ") +
+                  std::string(error.what()));
+        return busy ? exit_not_started : exit_own_fault;
     } catch (const std::exception& error) {
         log_error(std::string("internal error: ") + error.what());
         return exit_own_fault;

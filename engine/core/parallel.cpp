@@ -11,6 +11,7 @@
 #include <exception>
 #include <mutex>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -69,9 +70,12 @@ class Pool {
   private:
     void start() {
         const std::lock_guard lock(mutex_);
-        while (static_cast<int>(threads_.size()) + 1 < size_) {
-            const int worker = static_cast<int>(threads_.size()) + 1;
-            threads_.emplace_back([this, worker] { serve(worker); });
+        try {
+            while (static_cast<int>(threads_.size()) + 1 < size_) {
+                const int worker = static_cast<int>(threads_.size()) + 1;
+                threads_.emplace_back([this, worker] { serve(worker); });
+            }
+        } catch (const std::system_error&) {  // the system has no more: those that are there do the work
         }
     }
 
