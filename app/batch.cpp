@@ -219,6 +219,18 @@ void report_failures(const std::vector<FailedFrame>& failed) {
     log_error(fmt::format("{} failed: {}", counted(std::ssize(numbers), "frame"), fmt::join(numbers, ",")));
 }
 
+/// The figures, where they are asked for. Without them frames that failed are still to be named: false.
+bool keep_stats(const BatchOptions& options, const BatchRun& run) try {
+    if (options.stats) write_stats(*options.stats, run.figures());
+    return true;
+} catch (const OutputError& error) {
+    log_error(error.what());
+    return false;
+} catch (const std::bad_alloc&) {
+    log_error(options.stats->string() + ": cannot be written: not enough memory");
+    return false;
+}
+
 }  // namespace
 
 int run_batch(const BatchOptions& options) {
@@ -230,11 +242,10 @@ int run_batch(const BatchOptions& options) {
     defer_interrupts();
     check_writable(plan, options);
     std::vector<FailedFrame> failed;
+    bool kept = true;
     {
         BatchRun run(plan, options.progress);
-        const auto keep_figures = [&] {
-            if (options.stats) write_stats(*options.stats, run.figures());
-        };
+        const auto keep_figures = [&] { kept = keep_stats(options, run); };
         try {
             if (frames_to_render(plan) > 0) {
                 run.prepare();
@@ -248,7 +259,7 @@ int run_batch(const BatchOptions& options) {
         failed = run.failed();
     }
     flush_warning_counts();
-    if (failed.empty()) return exit_done;
+    if (failed.empty()) return kept ? exit_done : exit_not_writable;
     report_failures(failed);
     return exit_some_failed;
 }
