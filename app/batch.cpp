@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 #include <set>
 
@@ -216,6 +217,7 @@ RunFigures BatchRun::figures() const {
 void report_failures(const std::vector<FailedFrame>& failed) {
     std::vector<std::int64_t> numbers;
     for (const FailedFrame& frame : failed) numbers.push_back(frame.frame);
+    std::ranges::sort(numbers);  // those that were removed later come last
     log_error(fmt::format("{} failed: {}", counted(std::ssize(numbers), "frame"), fmt::join(numbers, ",")));
 }
 
