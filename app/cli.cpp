@@ -14,6 +14,7 @@
 #include "command_words.h"
 #include "compare.h"
 #include "completion.h"
+#include "core/assets.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -398,6 +399,7 @@ void refuse_without_screenshot(const ScreenshotOptions& shot) {
 
 /// The window, or a screenshot of it.
 int run_window(Invocation& call) {
+    if (!call.input.empty()) call.input = find_by_name("scenes", call.input).string();
     ViewerOptions viewer{call.input, {}, call.batch_options.cache, !call.common.threads.empty()};
     for (const std::string& text : call.batch_options.assignments)
         viewer.assignments.push_back(parse_assignment(text));

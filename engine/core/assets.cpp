@@ -1,5 +1,7 @@
 #include "core/assets.h"
 
+#include <cstdlib>
+#include <set>
 #include <system_error>
 
 namespace astrosplat {
@@ -12,6 +14,36 @@ fs::path assets_folder(const std::string& name) {
          {program.parent_path().parent_path() / "share/astrosplat/assets", fs::path(ASTROSPLAT_ASSETS)})
         if (fs::is_directory(assets / name, ignored)) return assets / name;
     return {};
+}
+
+fs::path own_assets_folder(const std::string& name) {
+    const auto variable = [](const char* key) {
+        const char* const value = std::getenv(key);
+        return fs::path(value ? value : "");
+    };
+    if (const fs::path data = variable("XDG_DATA_HOME"); data.is_absolute())
+        return data / "astrosplat" / name;
+    const fs::path home = variable("HOME");
+    return home.empty() ? fs::path() : home / ".local/share/astrosplat" / name;
+}
+
+fs::path find_by_name(const std::string& folder, const fs::path& wanted) {
+    std::error_code ignored;
+    if (wanted.filename().empty() || wanted.has_extension() || fs::exists(wanted, ignored)) return wanted;
+    const fs::path file = wanted.filename().string() + ".toml";
+    for (const fs::path& place : {wanted.parent_path(), own_assets_folder(folder), assets_folder(folder)})
+        if (fs::is_regular_file(place / file, ignored)) return place / file;
+    return wanted;
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+    std::set<std::string> names;
+    for (const fs::path& place : {own_assets_folder(folder), assets_folder(folder)}) {
+        std::error_code ignored;
+        for (const auto& entry : fs::directory_iterator(place, ignored))
+            if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+    }
+    return {names.begin(), names.end()};
 }
 
 }  // namespace astrosplat

@@ -3,6 +3,7 @@
 #include "scene/load.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -86,9 +87,10 @@ std::string read_preset_file(const fs::path& file) {
     std::error_code ignored;
     const fs::path looks = assets_folder("looks");
     if (fs::exists(file, ignored) || looks.empty()) return read_file(file);
-    throw InputError(fmt::format(
-        "{}: cannot be read: No such file or directory; the looks that come with astrosplat are in {}",
-        file.string(), looks.string()));
+    throw InputError(
+        fmt::format("{}: cannot be read: No such file or directory; the looks that come with astrosplat are "
+                    "in {}, by name: {}",
+                    file.string(), looks.string(), fmt::join(names_in("looks"), ", ")));
 }
 
 class Loader {
@@ -134,9 +136,10 @@ class Loader {
     }
 
     void read_preset(LayerParams& layer) {
-        const toml::table root = parse_toml(read_preset_file(layer.preset), layer.preset.string());
-        check_version(root, layer.preset.string(), false);
-        const EntryOrigin origin{layer.preset.string(), layer.preset.parent_path(), false, {}};
+        const fs::path file = find_by_name("looks", layer.preset);
+        const toml::table root = parse_toml(read_preset_file(file), file.string());
+        check_version(root, file.string(), false);
+        const EntryOrigin origin{file.string(), file.parent_path(), false, {}};
         std::vector<Entry> entries;
         for (const auto& [key, node] : root)
             if (key.str() != "astrosplat")
@@ -277,7 +280,8 @@ Value typed_value(const std::string& text) {
 }
 
 PlacedScene load_placed(const fs::path& file, std::span<const Assignment> assignments) {
-    return parse(read_file(file), file, assignments, true);
+    const fs::path found = find_by_name("scenes", file);
+    return parse(read_file(found), found, assignments, true);
 }
 
 Scene load_scene(const fs::path& file, std::span<const Assignment> assignments) {

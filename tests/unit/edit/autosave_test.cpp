@@ -241,7 +241,7 @@ TEST_F(AutosaveTest, APresetThatIsGoneLosesNothing) {
     EXPECT_EQ(message_of<InputError>([&] { document.save(); }),
               preset.string() +
                   ": cannot be read: No such file or directory; the looks that come with astrosplat are "
-                  "in " ASTROSPLAT_SOURCE_DIR "/assets/looks");
+                  "in " ASTROSPLAT_SOURCE_DIR "/assets/looks, by name: m51, s106");
     Autosave autosave(folder);
     ASSERT_TRUE(autosave.write(document));
     Scene loaded = load_scene(autosave.file());

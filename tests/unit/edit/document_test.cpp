@@ -121,7 +121,7 @@ TEST(Document, RefusedEditsChangeNothing) {
     EXPECT_EQ(message([&] { document.set("layer.dust.preset", "fehlt.toml", 1.0); }),
               (f.folder / "fehlt.toml").string() +
                   ": cannot be read: No such file or directory; the looks that come with astrosplat are "
-                  "in " ASTROSPLAT_SOURCE_DIR "/assets/looks");
+                  "in " ASTROSPLAT_SOURCE_DIR "/assets/looks, by name: m51, s106");
     EXPECT_EQ(message([&] { document.set("layer.dust.look.thickness.map", "latin-1 \xe4.png", 1.0); }),
               "layer.dust.look.thickness.map: expected text in UTF-8, found another encoding");
     EXPECT_EQ(message([&] { document.set("layer.dust.look.noise.3.cull", 0.5, 1.0); }),

@@ -438,7 +438,8 @@ TEST(Messages, PresetsNameTheirOwnFileAndLine) {
     fs::remove(preset);
     EXPECT_EQ(message(text), preset.string() +
                                  ": cannot be read: No such file or directory; the looks that come with "
-                                 "astrosplat are in " ASTROSPLAT_SOURCE_DIR "/assets/looks");
+                                 "astrosplat are in " ASTROSPLAT_SOURCE_DIR
+                                 "/assets/looks, by name: m51, s106");
 }
 
 TEST(Messages, Assignments) {
