@@ -11,6 +11,7 @@
 
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/text.h"
 #include "output/hashed_text.h"
 #include "output/read_frame.h"
 #include "report.h"

@@ -1,0 +1,67 @@
+#include "cli_parts.h"
+
+#include "core/error.h"
+
+namespace astrosplat {
+
+void add_assignments(CLI::App& app, std::vector<std::string>& values) {
+    app.add_option_function<std::vector<std::string>>(
+           "--set", [&values](const std::vector<std::string>& texts) { values = texts; },
+           "Sets a key of the scene; may be repeated")
+        ->option_text("KEY=VALUE")
+        ->expected(1)
+        ->allow_extra_args(false)  // what follows is the scene
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_progress(CLI::App& app, ProgressMode& mode) {
+    app.add_option_function<std::string>(
+           "--progress",
+           [&mode](const std::string& text) {
+               if (text != "auto" && text != "plain" && text != "none") {
+                   bad_input("--progress", "", "auto, plain or none", "'" + text + "'");
+               }
+               mode = text == "auto"    ? ProgressMode::automatic
+                      : text == "plain" ? ProgressMode::plain
+                                        : ProgressMode::none;
+           },
+           "How to report progress on stderr")
+        ->option_text("auto|plain|none");
+}
+
+void add_common(CLI::App& app, CommonOptions& common) {
+    app.set_help_flag("-h,--help", "Prints this help");
+    app.set_version_flag("--version", "astrosplat " ASTROSPLAT_VERSION, "Prints the version");
+    add_value(app, "-t,--threads", common.threads, "N", "Threads (default: the cores this process may use)");
+    add_value(app, "--cache", common.cache, "DIR",
+              "Folder that keeps generated sets and prepared pictures (default: $ASTROSPLAT_CACHE, "
+              "$XDG_CACHE_HOME/astrosplat or "
+              "~/.cache/astrosplat); at most 20 GiB or a tenth of the disk, the least recently used go");
+    app.add_flag("--no-cache", common.no_cache, "Neither reads nor writes generated sets");
+    app.add_flag("-v,--verbose", common.verbose, "Says more");
+    app.add_flag("-q,--quiet", common.quiet, "Says only warnings and errors");
+    app.add_flag("--log-json", common.log_json, "Messages and progress on stderr as JSON, one object a line");
+}
+
+void add_frame_choice(CLI::App& app, BatchOptions& batch) {
+    add_value(app, "-f,--frames", batch.frames, "1-100,120,200-300x2", "Frames instead of output.frames");
+    add_value(app, "-o,--output", batch.output, "PATTERN", "Frame files, such as frames/shot.####.exr");
+    add_value(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the frame");
+    add_assignments(app, batch.assignments);
+    add_value(app, "--layers", batch.layers, "A,B", "Only these layers");
+    add_value(
+        app, "--memory", batch.memory_gib, "GiB",
+        "Limit of the renderer's working memory, and of what bodies are made in: pictures that would take "
+        "more are reduced");
+    add_value(app, "--region", batch.region, "X,Y,W,H", "Part of the frame, from the top left, in pixels");
+}
+
+CLI::App& add_command(CLI::App& app, Invocation& call, const char* name, const char* help,
+                      std::function<int()> action) {
+    CLI::App& command = *app.add_subcommand(name, help);
+    add_common(command, call.common);
+    command.callback([&call, action = std::move(action)] { call.action = action; });
+    return command;
+}
+
+}  // namespace astrosplat
