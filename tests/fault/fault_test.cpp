@@ -131,6 +131,17 @@ TEST_F(FaultTest, AnyCallMayFailNightly) {
     expect_no_complaints(all);
 }
 
+// A flush that fails may have lost the file, though it looks right now. Folders and the cache may fail.
+TEST_F(FaultTest, FramesAndFiguresThatCannotBeFlushedAreFailures) {
+    std::map<int, int> codes;
+    const std::int64_t calls = counts_[exr.output]["sync"];
+    for (std::int64_t at = 1; at <= calls; ++at)
+        ++codes[FaultRun(folder / "run", exr).batch({}, Fault{"sync", at, EIO, false}).code];
+    EXPECT_EQ(codes[3], 2) << "each of two frames";
+    EXPECT_EQ(codes[4], 1) << "the figures";
+    EXPECT_EQ(codes[0], calls - 3);
+}
+
 TEST_F(FaultTest, KilledWithinAWrite) { expect_no_complaints(kills(20)); }
 TEST_F(FaultTest, KilledWithinAWriteNightly) { expect_no_complaints(kills(50)); }
 
