@@ -18,6 +18,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace astrosplat {
 namespace {
@@ -132,7 +133,7 @@ AtomicFile::AtomicFile(const fs::path& target, Existing existing)
 
 // False with errno when there is none; EEXIST means another try.
 bool AtomicFile::create_temporary() {
-    const fs::path name = temporary_name(resolved_);
+    fs::path name = temporary_name(resolved_);
     const int descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0) return false;
     // Where the file system knows no locks nobody gets one, and nobody removes the file.
@@ -140,7 +141,7 @@ bool AtomicFile::create_temporary() {
     struct stat status {};
     if (fstat(descriptor, &status) == 0 && status.st_nlink > 0) {
         descriptor_ = descriptor;
-        temporary_ = name;
+        temporary_ = std::move(name);  // which takes no memory: the file is ours whatever comes
         return true;
     }
     close(descriptor);  // another process took it for a leftover before it was locked
