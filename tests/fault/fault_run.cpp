@@ -97,8 +97,10 @@ RunOptions FaultRun::options(const std::optional<Fault>& fault) const {
     options.environment = {"HOME=" + home, "TMPDIR=" + home, "XDG_CACHE_HOME=" + home,
                            "ASTROSPLAT_CACHE=sets"};
     if (!fault) return options;
+    // From the working folder: the loader takes a blank in a path for the end of it.
+    const std::string shim = fs::relative(ASTROSPLAT_FAULT_SHIM, options.folder).string();
     options.environment.insert(options.environment.end(),
-                               {"LD_PRELOAD=" ASTROSPLAT_FAULT_SHIM, "ASTROSPLAT_FAULT_KIND=" + fault->kind,
+                               {"LD_PRELOAD=" + shim, "ASTROSPLAT_FAULT_KIND=" + fault->kind,
                                 fmt::format("ASTROSPLAT_FAULT_AT={}", fault->at),
                                 fmt::format("ASTROSPLAT_FAULT_ERROR={}", fault->error),
                                 fmt::format("ASTROSPLAT_FAULT_ONWARD={}", fault->onward ? 1 : 0),
