@@ -40,7 +40,8 @@ void add_common(CLI::App& app, CommonOptions& common) {
     app.add_flag("--no-cache", common.no_cache, "Neither reads nor writes generated sets");
     app.add_flag("-v,--verbose", common.verbose, "Says more");
     app.add_flag("-q,--quiet", common.quiet, "Says only warnings and errors");
-    app.add_flag("--log-json", common.log_json, "Messages and progress on stderr as JSON, one object a line");
+    const std::string log_json = "Messages and progress on stderr as JSON, one object a line";
+    app.add_flag("--log-json", log_json);  // was seen to before all else
 }
 
 void add_frame_choice(CLI::App& app, BatchOptions& batch) {

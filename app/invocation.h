@@ -25,7 +25,6 @@ namespace astrosplat {
 struct CommonOptions {
     std::string threads, cache;
     bool no_cache = false, verbose = false, quiet = false;
-    bool log_json = false;  // was seen to before all else
 };
 
 struct Invocation {

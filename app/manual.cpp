@@ -78,12 +78,8 @@ std::string options_text(const CommandWords& command) {
 
 std::string key_entry(const ParameterRow& row) {
     const ParameterSpec& spec = row.spec;
-    const char* animated = spec.animation == Animation::no      ? ""
-                           : spec.animation == Animation::steps ? "; animated in steps"
-                                                                : "; animated";
-    const std::string unit = spec.unit.empty() ? "" : ", " + spec.unit;
     return entry(bold(spec.key.text()) + plain(" = " + to_toml(row.standard)),
-                 plain(spec.help) + "\n" + plain(fmt::format("({}{}{})", expectation(spec), unit, animated)));
+                 plain(spec.help) + "\n" + plain(value_words(spec)));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@
 #include "core/log.h"
 #include "core/sha256.h"
 #include "core/text.h"
-#include "edit/user_folders.h"
+#include "core/user_folders.h"
 #include "scene/save.h"
 
 namespace astrosplat {

@@ -9,7 +9,7 @@
 #include "core/atomic_file.h"
 #include "core/file.h"
 #include "core/log.h"
-#include "edit/user_folders.h"
+#include "core/user_folders.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/text.h"
-#include "edit/user_folders.h"
+#include "core/user_folders.h"
 #include "scene/load.h"
 #include "scene/save.h"
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <system_error>
 #include <utility>
 
 #include "core/error.h"
+#include "core/temporary_folder.h"
 #include "edit/prepare_command.h"
 #include "scene/frames.h"
 
@@ -16,12 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using JobState = QueuedJob::State;
-
-fs::path make_job_folder() {
-    std::string pattern = (fs::temp_directory_path() / "astrosplat-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw OutputError(pattern + ": cannot be made");
-    return pattern;
-}
 
 void remove_folder(const fs::path& folder) {
     std::error_code ignored;
@@ -56,7 +50,7 @@ void RenderQueue::add(const RenderTask& task, const Document& document) {
         work.arguments.insert(work.arguments.end(), {"--cache", cache_.folder.string()});
     if (task.kind == RenderKind::movie)
         work.movie = {"Writing the movie", movie_command(job.target, document.scene().output.fps)};
-    work.folder = make_job_folder();
+    work.folder = make_temporary_folder();
     try {
         work.scene_text = document.text_for(work.folder / "scene.toml");
     } catch (...) {

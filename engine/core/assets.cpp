@@ -1,8 +1,9 @@
 #include "core/assets.h"
 
-#include <cstdlib>
 #include <set>
 #include <system_error>
+
+#include "core/user_folders.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
@@ -17,14 +18,8 @@ fs::path assets_folder(const std::string& name) {
 }
 
 fs::path own_assets_folder(const std::string& name) {
-    const auto variable = [](const char* key) {
-        const char* const value = std::getenv(key);
-        return fs::path(value ? value : "");
-    };
-    if (const fs::path data = variable("XDG_DATA_HOME"); data.is_absolute())
-        return data / "astrosplat" / name;
-    const fs::path home = variable("HOME");
-    return home.empty() ? fs::path() : home / ".local/share/astrosplat" / name;
+    const fs::path folder = data_folder();
+    return folder.empty() ? folder : folder / name;
 }
 
 fs::path find_by_name(const std::string& folder, const fs::path& wanted) {

@@ -12,7 +12,7 @@
 
 namespace astrosplat {
 
-TemporaryFolder::TemporaryFolder() {
+std::filesystem::path make_temporary_folder() {
     std::error_code error;
     const std::filesystem::path place = std::filesystem::temp_directory_path(error);
     if (error) throw OutputError(fmt::format("no folder for temporary files: {}", error.message()));
@@ -20,8 +20,10 @@ TemporaryFolder::TemporaryFolder() {
     if (!mkdtemp(pattern.data()))
         throw OutputError(
             fmt::format("{}: no folder can be made there: {}", place.string(), std::strerror(errno)));
-    path_ = pattern;
+    return pattern;
 }
+
+TemporaryFolder::TemporaryFolder() : path_(make_temporary_folder()) {}
 
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;

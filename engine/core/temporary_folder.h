@@ -5,6 +5,9 @@
 
 namespace astrosplat {
 
+/// Makes one that stays. Throws OutputError when there can be none.
+std::filesystem::path make_temporary_folder();
+
 class TemporaryFolder {
   public:
     /// Throws OutputError when there can be none.

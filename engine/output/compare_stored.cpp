@@ -34,14 +34,10 @@ class FrameFileRows {
     const OIIO::ImageSpec& spec() const { return in_->spec(); }
     /// False: damaged. Rows begin .. end from the top of what is stored.
     bool read(int begin, int end, std::vector<float>& values) {
-        const QuietStderr quiet;
         const OIIO::ImageSpec& s = spec();
         values.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(s.width) *
                       static_cast<std::size_t>(s.nchannels));
-        const bool done = in_->read_scanlines(0, 0, s.y + begin, s.y + end, 0, 0, s.nchannels,
-                                              OIIO::TypeDesc::FLOAT, values.data());
-        // The reader of TIFF says that it has read strips that are cut short, but has a message about them.
-        return in_->geterror().empty() && done;
+        return read_rows(*in_, begin, end, OIIO::TypeDesc::FLOAT, values.data());
     }
 
   private:

@@ -274,6 +274,14 @@ const std::vector<ParameterRow>& parameter_rows() {
     return rows;
 }
 
+std::string value_words(const ParameterSpec& spec) {
+    const char* animated = spec.animation == Animation::no      ? ""
+                           : spec.animation == Animation::steps ? "; animated in steps"
+                                                                : "; animated";
+    const std::string unit = spec.unit.empty() ? "" : ", " + spec.unit;
+    return fmt::format("({}{}{})", expectation(spec), unit, animated);
+}
+
 std::string parameter_table() {
     std::string table;
     ParameterKey section;
@@ -283,12 +291,8 @@ std::string parameter_table() {
             table += fmt::format("{}[{}]\n", table.empty() ? "" : "\n", own);
             section = own;
         }
-        const char* animated = s.animation == Animation::no      ? ""
-                               : s.animation == Animation::steps ? "; animated in steps"
-                                                                 : "; animated";
-        const std::string unit = s.unit.empty() ? "" : ", " + s.unit;
-        table += fmt::format("{:<34} = {:<20} # {} ({}{}{})\n", s.key, to_toml(row.standard), s.help,
-                             expectation(s), unit, animated);
+        table +=
+            fmt::format("{:<34} = {:<20} # {} {}\n", s.key, to_toml(row.standard), s.help, value_words(s));
     }
     return table;
 }

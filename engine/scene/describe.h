@@ -45,4 +45,7 @@ const std::vector<ParameterRow>& parameter_rows();
 /// parameter_rows() as a table for a terminal: key, default, unit, range, animation and help.
 std::string parameter_table();
 
+/// "(a number from 0 to 1, px; animated)": what a value may be.
+std::string value_words(const ParameterSpec& spec);
+
 }  // namespace astrosplat

@@ -89,16 +89,17 @@ void tilt(double distance, double exposure, std::vector<CameraKeyframe>& keyfram
 // the camera, or its middle would burn out.
 std::vector<CameraKeyframe> flight(double distance, StructureKind kind) {
     const bool disk = kind == StructureKind::disk;
+    const double darker = disk ? -1.0 : 0.0;
     const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
     std::vector<CameraKeyframe> keyframes;
-    tilt(distance, disk ? -0.4 : 0.0, keyframes);
+    tilt(distance, 0.4 * darker, keyframes);
     keyframes.insert(keyframes.begin(), keyframes.front());
     keyframes.front().frame = 1;
-    keyframes.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above, disk ? -1.1 : 0.0});
+    keyframes.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above, 1.1 * darker});
     keyframes.push_back(
-        {205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above, disk ? -0.9 : 0.0});
+        {205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above, 0.9 * darker});
     keyframes.push_back(
-        {240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above, disk ? -0.5 : 0.0});
+        {240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above, 0.5 * darker});
     return keyframes;
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/log.h"
+#include "core/user_folders.h"
 
 namespace astrosplat {
 namespace {
@@ -16,19 +17,11 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t largest_limit = std::int64_t{20} << 30;  // bytes
 
-std::string environment(const char* name) {
-    const char* value = std::getenv(name);
-    return value ? value : "";
-}
-
 }  // namespace
 
 fs::path default_cache_folder() {
-    if (const std::string folder = environment("ASTROSPLAT_CACHE"); !folder.empty()) return folder;
-    const fs::path caches = environment("XDG_CACHE_HOME");
-    if (caches.is_absolute()) return caches / "astrosplat";  // its specification: relative ones are ignored
-    const fs::path home = environment("HOME");
-    return home.is_absolute() ? home / ".cache" / "astrosplat" : fs::path();
+    const char* folder = std::getenv("ASTROSPLAT_CACHE");
+    return folder && *folder ? fs::path(folder) : cache_folder();
 }
 
 std::vector<fs::path> files_in(const fs::path& folder) {

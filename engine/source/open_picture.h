@@ -24,6 +24,9 @@ class QuietStderr {
 /// Throws InputError: not a readable regular file, another kind of file, a damaged header.
 std::unique_ptr<OIIO::ImageInput> open_picture(const std::filesystem::path& file);
 
+/// All channels of rows begin .. end from the top of what is stored, as `format`. False: damaged.
+bool read_rows(OIIO::ImageInput& picture, int begin, int end, OIIO::TypeDesc format, void* values);
+
 /// Throws InputError "FILE: cannot be read as a picture: REASON", the first line of it.
 [[noreturn]] void fail_picture(const std::filesystem::path& file, const std::string& reason);
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "core/log.h"
+#include "core/user_folders.h"
 #include "edit/autosave.h"
-#include "edit/user_folders.h"
 #include "scenes.h"
 #include "support/variable.h"
 
