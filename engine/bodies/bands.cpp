@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "image/blur.h"
 #include "image/channels.h"
+#include "image/opening.h"
 
 namespace astrosplat {
 namespace {
@@ -15,7 +16,9 @@ constexpr double finest_blur_px = 1.2;
 constexpr double coarsest_blur_share = 80.0 / 1920.0;  // of the width
 constexpr float contrast_share = 0.5f;                 // of the deviation that stays out of the coarser band
 constexpr double finest_hole_px = 2.0;
-constexpr float least_share = 0.25f;  // of the mean that the coarser band gets
+constexpr float highest_peak = 2.0f;     // times what is around it, that counts for its surroundings
+constexpr double widest_peak_px = 12.0;  // blur up to which peaks are small; beyond are bulges
+constexpr float least_share = 0.25f;     // of the mean that the coarser band gets
 
 // The share of the mean that the coarser bands get.
 Image common_share(const Image& light, double blur) {
@@ -33,13 +36,31 @@ Image common_share(const Image& light, double blur) {
     return share;
 }
 
+// Cuts off peaks that are small beside the blur: what is between stars is not dark because they are bright.
+Image without_peaks(const Image& light, double blur) {
+    Image calm = brightest_channel(light);
+    const Image surroundings = opened(calm, std::llround(2.0 * blur));
+    parallel_each(calm.pixels.size(), 65536, [&](std::size_t i) {
+        calm.pixels[i] =
+            std::min(1.0f, highest_peak * surroundings.pixels[i] / std::max(1e-6f, calm.pixels[i]));
+    });
+    Image all = light;
+    parallel_each(calm.pixels.size(), 65536, [&](std::size_t i) {
+        for (std::size_t c = 0; c < 3; ++c) all.pixels[3 * i + c] *= calm.pixels[i];
+    });
+    return all;
+}
+
 // Leaves in `light` what the coarser bands share and returns the rest. A channel at a time: pictures are
 // large.
 Image take_band(Image& light, double blur, bool fill_holes) {
-    const Image share = common_share(light, blur);
+    const bool peaked = fill_holes && blur < widest_peak_px;
+    const Image calm = peaked ? without_peaks(light, blur) : Image();
+    const Image& meant = peaked ? calm : light;
+    const Image share = common_share(meant, blur);
     Image band = unfilled_image(light.width, light.height, 3);
     for (std::size_t c = 0; c < 3; ++c) {
-        const Image mean = gaussian_blur(channel_of(light, static_cast<int>(c)), blur);
+        const Image mean = gaussian_blur(channel_of(meant, static_cast<int>(c)), blur);
         parallel_each(mean.pixels.size(), 65536, [&](std::size_t i) {
             float& here = light.pixels[3 * i + c];
             const float common = std::max(0.0f, mean.pixels[i] * share.pixels[i]);

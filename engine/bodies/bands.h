@@ -25,7 +25,7 @@ std::vector<Band> make_bands(std::int64_t width_px);
 /// P_k-1 under the band's blur, the band is P_k-1 - P_k and the last one what remains: all are >= 0 and sum
 /// to `light`, up to the rounding of the sum. The same bits with any number of threads.
 /// `fill_holes`: dark details of 2 px and more are no darkness of the coarser bands, whose sum is then more
-/// than `light` where something hides it.
+/// than `light` where something hides it. Peaks smaller than the blur do not make their surroundings dark.
 void split_bands(Image light, const std::vector<Band>& bands, bool fill_holes,
                  const std::function<void(const Band&, const Image&)>& visit);
 

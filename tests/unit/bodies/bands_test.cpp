@@ -72,6 +72,22 @@ TEST(Bands, HoldWhatIsOfTheirSize) {
     }
 }
 
+// Where the sum of filled bands is more than the picture, there is dust.
+TEST(Bands, AStarMakesNoDustAroundItButALaneIsDust) {
+    Image light = make_image(320, 200, 3, 0.1f);
+    painted::add_point(light, 100.0, 100.0, 2.4, 5.0, 5.0, 5.0);
+    for (std::int64_t y = 0; y < 200; ++y)
+        for (std::int64_t x = 220; x < 226; ++x)
+            for (int c = 0; c < 3; ++c) light.at(x, y)[c] = 0.02f;
+    Image sum = make_image(320, 200, 3);
+    split_bands(light, make_bands(320), true, [&](const Band&, const Image& band) {
+        for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += band.pixels[i];
+    });
+    const auto filled = [&](std::int64_t x, std::int64_t y) { return sum.at(x, y)[1] / light.at(x, y)[1]; };
+    for (std::int64_t x = 60; x < 140; ++x) EXPECT_LT(filled(x, 100), 1.3f) << x;
+    EXPECT_GT(filled(223, 60), 2.0f);
+}
+
 TEST(Bands, AreTheSameOnOneThread) {
     const Image light = painted::nebula(200, 130);
     const std::vector<Image> several = all_bands(light);
