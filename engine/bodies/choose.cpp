@@ -27,7 +27,7 @@ constexpr double dark_edge = 0.3;    // of the mean light
 constexpr double alone_edge = 0.45;  // of the same, for what has a glow around it
 
 constexpr double rim_share = 0.02;  // of the width
-constexpr double dark_rim = 0.004;  // displayed as a twentieth of white
+constexpr float dark_rim = 0.004f;  // displayed as a twentieth of white
 
 struct Pixel {
     double radius, light, red, blue;
@@ -159,17 +159,19 @@ StructureChoice choose_structure(const Image& light) {
                                        : "its light goes on to the picture's edges"};
 }
 
-bool goes_on_beyond_edges(const Image& light) {
+double lit_share_of_rim(const Image& light) {
     const Image brightest = brightest_channel(light);
     const auto rim = static_cast<std::int64_t>(rim_share * static_cast<double>(light.width));
-    std::vector<double> values;
+    std::int64_t lit = 0, all = 0;
     for (std::int64_t y = 0; y < light.height; ++y) {
         const bool whole_row = y <= rim || y >= light.height - 1 - rim;
-        for (std::int64_t x = 0; x < light.width; ++x)
-            if (whole_row || x <= rim || x >= light.width - 1 - rim)
-                values.push_back(double{*brightest.at(x, y)});
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            if (!whole_row && x > rim && x < light.width - 1 - rim) continue;
+            lit += *brightest.at(x, y) > dark_rim ? 1 : 0;
+            ++all;
+        }
     }
-    return percentile(std::move(values), 0.5) > dark_rim;
+    return static_cast<double>(lit) / static_cast<double>(std::max<std::int64_t>(1, all));
 }
 
 }  // namespace astrosplat

@@ -18,7 +18,7 @@ struct StructureChoice {
 /// sheet for everything else. `light`: RGB, linear, >= 0.
 StructureChoice choose_structure(const Image& light);
 
-/// Whether what a picture shows goes on beyond its edges: half of its rim shows more than a dark sky.
-bool goes_on_beyond_edges(const Image& light);
+/// Share of a picture's rim, 0 to 1, that shows more than a dark sky: there what it shows goes on beyond.
+double lit_share_of_rim(const Image& light);
 
 }  // namespace astrosplat

@@ -103,7 +103,7 @@ std::vector<CameraKeyframe> flight(double distance, StructureKind kind) {
     return keyframes;
 }
 
-std::string text_of(double value) { return fmt::format("{:.3g}", value); }
+std::string text_of(double value) { return fmt::format("{:.3g}", value + 0.0); }  // 0, not -0
 
 std::string text_of(const glm::dvec3& v) { return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z); }
 
@@ -159,12 +159,15 @@ std::string_view extent_of(StructureKind structure) {
     return structure == StructureKind::walls ? "depth = 0.18" : "depth = 0.15";
 }
 
-// Of the picture's width: room for a galaxy to end round, and for a cloud to fray. One of many pixels fades
-// within its own edges: a margin would need too much memory.
+// Of the picture's width: room for a galaxy to end round, and for a cloud to fray. A galaxy alone on a dark
+// sky needs it where but an arm leaves the picture, or that would be cut off straight. One of many pixels
+// fades within its own edges: a margin would need too much memory.
 double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
-    if (!scene.goes_on || scene.width_px * scene.height_px > most_px) return 0.0;
-    return scene.structure == StructureKind::disk ? 0.08 : 0.05;
+    const bool disk = scene.structure == StructureKind::disk;
+    const bool goes_on = scene.lit_rim > (disk ? 0.1 : 0.5);
+    if (!goes_on || scene.width_px * scene.height_px > most_px) return 0.0;
+    return disk ? 0.08 : 0.05;
 }
 
 }  // namespace
@@ -178,7 +181,7 @@ PictureScene picture_scene(const std::filesystem::path& image, std::optional<Str
     PictureScene scene{image, reduced ? texture.file_width : texture.image.width,
                        reduced ? texture.file_height : texture.image.height};
     const Image light = picture_light(texture, 0.0).light;
-    scene.goes_on = goes_on_beyond_edges(light);
+    scene.lit_rim = lit_share_of_rim(light);
     why.clear();
     if (structure) {
         scene.structure = *structure;

@@ -16,7 +16,7 @@ struct PictureScene {
     std::filesystem::path image;
     std::int64_t width_px = 0, height_px = 0;  // the picture's
     StructureKind structure = StructureKind::disk;
-    bool goes_on = false;  // beyond its edges, as far as one can see
+    double lit_rim = 0.0;  // share of its rim beyond which what it shows goes on, as far as one can see
     bool film = false;     // with a camera move of ten seconds
 };
 

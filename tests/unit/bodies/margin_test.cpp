@@ -165,13 +165,15 @@ TEST(Margin, TheSameBitsWithAnyNumberOfThreads) {
     EXPECT_EQ(alone, all);
 }
 
-TEST(Margin, IsChosenForPicturesLitUpToTheirEdges) {
-    EXPECT_TRUE(goes_on_beyond_edges(even_light()));
-    EXPECT_FALSE(goes_on_beyond_edges(painted::remnant(picture_width, picture_height)));
+TEST(Margin, IsChosenByTheShareOfTheRimThatIsLit) {
+    EXPECT_EQ(lit_share_of_rim(even_light()), 1.0);
+    EXPECT_LT(lit_share_of_rim(painted::remnant(picture_width, picture_height)), 0.02);
     Image corner = make_image(picture_width, picture_height, 3, 0.001f);
     for (std::int64_t y = 0; y < picture_height / 2; ++y)
         for (std::int64_t x = 0; x < picture_width / 3; ++x) corner.at(x, y)[0] = 1.0f;
-    EXPECT_FALSE(goes_on_beyond_edges(corner)) << "less than half of its rim is lit";
+    const double lit = 0.5 * picture_height + picture_width / 3.0,
+                 all = 2.0 * (picture_width + picture_height);
+    EXPECT_NEAR(lit_share_of_rim(corner), lit / all, 0.02);
 }
 
 }  // namespace

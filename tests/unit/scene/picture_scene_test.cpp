@@ -69,6 +69,7 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
         }
         const auto height_over_plane = [&](double frame) { return scene_at(film, frame).camera.position->y; };
         EXPECT_LT(height_over_plane(160.0), 2.0) << "a close pass";
+        EXPECT_EQ(picture_scene_text(picture, "film.toml").find(" -0]"), std::string::npos);
         const double close_by = scene_at(film, 160.0).output.exposure;
         EXPECT_TRUE(kind == StructureKind::disk ? close_by < -0.8 : close_by == 0.0) << close_by;
         if (kind == StructureKind::disk) {
@@ -84,7 +85,12 @@ TEST(PictureScene, PicturesThatGoOnAreContinued) {
     const auto structure = [&] { return parsed(picture).layers.at(0).source.structure; };
     EXPECT_EQ(structure().margin, 0.0);
     EXPECT_GT(structure().border, 0.0);
-    picture.goes_on = true;
+    picture.lit_rim = 0.2;
+    EXPECT_EQ(structure().margin, 0.0) << "a cloud that but touches the rim";
+    picture.structure = StructureKind::disk;
+    EXPECT_GT(structure().margin, 0.0) << "an arm of a galaxy would be cut off";
+    picture.structure = StructureKind::sheet;
+    picture.lit_rim = 0.6;
     EXPECT_GT(structure().margin, 0.0);
     EXPECT_EQ(structure().border, 0.0) << "all of the picture is seen";
     picture.width_px = picture.height_px = 8192;
