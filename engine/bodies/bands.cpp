@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 #include "image/blur.h"
@@ -20,9 +21,12 @@ constexpr float highest_peak = 2.0f;     // times what is around it, that counts
 constexpr double widest_peak_px = 12.0;  // blur up to which peaks are small; beyond are bulges
 constexpr float least_share = 0.25f;     // of the mean that the coarser band gets
 
+void multiply(Image& values, const Image& factor) {
+    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) { values.pixels[i] *= factor.pixels[i]; });
+}
+
 // The share of the mean that the coarser bands get.
-Image common_share(const Image& light, double blur) {
-    Image brightest = brightest_channel(light);
+Image common_share(Image brightest, double blur) {
     const Image means = gaussian_blur(brightest, blur);
     parallel_each(brightest.pixels.size(), 65536,
                   [&](std::size_t i) { brightest.pixels[i] *= brightest.pixels[i]; });
@@ -37,30 +41,28 @@ Image common_share(const Image& light, double blur) {
 }
 
 // Cuts off peaks that are small beside the blur: what is between stars is not dark because they are bright.
-Image without_peaks(const Image& light, double blur) {
-    Image calm = brightest_channel(light);
-    const Image surroundings = opened(calm, std::llround(2.0 * blur));
-    parallel_each(calm.pixels.size(), 65536, [&](std::size_t i) {
-        calm.pixels[i] =
-            std::min(1.0f, highest_peak * surroundings.pixels[i] / std::max(1e-6f, calm.pixels[i]));
+Image peak_factor(const Image& brightest, double blur) {
+    Image factor = opened(brightest, std::llround(2.0 * blur));
+    parallel_each(factor.pixels.size(), 65536, [&](std::size_t i) {
+        factor.pixels[i] =
+            std::min(1.0f, highest_peak * factor.pixels[i] / std::max(1e-6f, brightest.pixels[i]));
     });
-    Image all = light;
-    parallel_each(calm.pixels.size(), 65536, [&](std::size_t i) {
-        for (std::size_t c = 0; c < 3; ++c) all.pixels[3 * i + c] *= calm.pixels[i];
-    });
-    return all;
+    return factor;
 }
 
 // Leaves in `light` what the coarser bands share and returns the rest. A channel at a time: pictures are
 // large.
 Image take_band(Image& light, double blur, bool fill_holes) {
+    Image brightest = brightest_channel(light);
     const bool peaked = fill_holes && blur < widest_peak_px;
-    const Image calm = peaked ? without_peaks(light, blur) : Image();
-    const Image& meant = peaked ? calm : light;
-    const Image share = common_share(meant, blur);
+    const Image factor = peaked ? peak_factor(brightest, blur) : Image();  // without pixels: of 1
+    multiply(brightest, factor);
+    const Image share = common_share(std::move(brightest), blur);
     Image band = unfilled_image(light.width, light.height, 3);
     for (std::size_t c = 0; c < 3; ++c) {
-        const Image mean = gaussian_blur(channel_of(meant, static_cast<int>(c)), blur);
+        Image channel = channel_of(light, static_cast<int>(c));
+        multiply(channel, factor);
+        const Image mean = gaussian_blur(channel, blur);
         parallel_each(mean.pixels.size(), 65536, [&](std::size_t i) {
             float& here = light.pixels[3 * i + c];
             const float common = std::max(0.0f, mean.pixels[i] * share.pixels[i]);
