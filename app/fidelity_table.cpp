@@ -91,6 +91,9 @@ std::vector<FidelityRow> fidelity_rows(const FidelityReport& report) {
     rows.push_back({"from 60 degrees", "needles",
                     fmt::format("{:.3f} of {} points", needles, report.needles.points), "at most 0.05",
                     verdict(needles <= most_needles)});
+    rows.push_back({"from 60 degrees", "needles, the picture flat",
+                    fmt::format("{:.3f} of {} points", report.flat_needles.share, report.flat_needles.points),
+                    "", Verdict::none});
     const EdgeOnProfile& edge = report.edge;
     rows.push_back({"edge-on, disks", "thickness over length", fmt::format("{:.3f}", edge.fwhm_over_length),
                     "0.06 to 0.10", verdict(within(edge.fwhm_over_length, 0.06, 0.10))});
@@ -111,7 +114,9 @@ Report fidelity_json(const FidelityReport& report, const std::string& scene) {
         report.reference.empty() ? "the layer's picture" : report.reference.filename().string();
     json["front"] = front_json(report.front);
     json["full_size"] = front_json(report.full);
-    json["side"] = {{"needles_share", number(report.needles.share)}, {"points", report.needles.points}};
+    json["side"] = {{"needles_share", number(report.needles.share)},
+                    {"points", report.needles.points},
+                    {"flat_picture_needles_share", number(report.flat_needles.share)}};
     json["edge"] = {{"fwhm_over_length", number(report.edge.fwhm_over_length)},
                     {"dust_dip", number(report.edge.dust_dip)},
                     {"center_over_half_radius", number(report.edge.center_over_half)},

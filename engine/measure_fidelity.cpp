@@ -174,6 +174,7 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
     };
     report.side_view = render(JudgingView::side, side_aspect, "from 60 degrees");
     report.needles = needles(report.side_view);
+    report.flat_needles = flat_needles(report.front_reference);
     report.edge_view = render(JudgingView::edge, edge_aspect, "edge-on");
     report.edge = edge_on_profile(report.edge_view);
     report.full =

@@ -48,6 +48,7 @@ struct FidelityReport {
     std::filesystem::path reference;
     FrontFidelity front, full;  // at FidelitySettings::width_px and at the picture's own width
     Needles needles;            // from 60 degrees
+    Needles flat_needles;       // of the picture, without any depth
     EdgeOnProfile edge;
     Image front_view, front_reference;  // of `front`: linear light on black
     Image side_view, edge_view;

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "fidelity/display.h"
 #include "image/blur.h"
+#include "image/resample.h"
 
 namespace astrosplat {
 namespace {
@@ -131,6 +132,11 @@ Needles needles(const Image& side_view) {
     }
     if (result.points > 0) result.share = static_cast<double>(long_ones) / result.points;
     return result;
+}
+
+Needles flat_needles(const Image& picture) {
+    const PixelMap half_as_high{{}, {1.0, 0.0, 0.0, 2.0}};
+    return needles(resampled(picture, half_as_high, picture.width, picture.height / 2, 0.5));
 }
 
 }  // namespace astrosplat

@@ -49,6 +49,7 @@ TEST_F(FidelityCommand, WritesNumbersThatReadBack) {
     EXPECT_EQ(report.at("front").at("flux_ratio").at("cells").size(), 32u * 32u);
     EXPECT_GT(report.at("front").at("power_ratio").size(), 5u);
     EXPECT_TRUE(report.at("side").contains("needles_share"));
+    EXPECT_TRUE(report.at("side").contains("flat_picture_needles_share"));
     EXPECT_TRUE(report.at("edge").contains("fwhm_over_length"));
     // The terminal shows the same numbers, a line each.
     EXPECT_NE(result.out.find(fmt::format("{:.4f}", report.at("front").at("ssim").get<double>())),

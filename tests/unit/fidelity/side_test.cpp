@@ -32,6 +32,17 @@ TEST(Needles, RoundPointsAreNone) {
     EXPECT_EQ(found.share, 0.0);
 }
 
+TEST(Needles, OfAFlatPictureAreThoseTwiceAsLongInIt) {
+    EXPECT_EQ(flat_needles(points([](int) {
+                  return std::pair{1.2, 2.4};
+              })).share,
+              0.0)
+        << "round from 60 degrees";
+    const Needles rims = flat_needles(points([](int) { return std::pair{1.2, 6.0}; }));
+    EXPECT_EQ(rims.share, 1.0);
+    EXPECT_EQ(rims.points, 60);
+}
+
 TEST(Needles, AreLongFromTopToBottomAndNotAcross) {
     EXPECT_EQ(needles(points([](int) { return std::pair{1.2, 3.0}; })).share, 1.0);
     EXPECT_EQ(needles(points([](int) { return std::pair{3.0, 1.2}; })).share, 0.0);
