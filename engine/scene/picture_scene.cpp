@@ -155,7 +155,7 @@ std::string_view opacity_of(StructureKind structure) {
 
 // How far bodies reach along the line of sight.
 std::string_view extent_of(StructureKind structure) {
-    if (structure == StructureKind::disk) return "flare = 0.2, warp = 0.01";
+    if (structure == StructureKind::disk) return "flare = 0.35, warp = 0.01";
     return structure == StructureKind::walls ? "depth = 0.18" : "depth = 0.15";
 }
 
