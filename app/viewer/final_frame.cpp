@@ -149,7 +149,13 @@ float FinalFrame::progress() const {
 }
 
 std::vector<Region> FinalFrame::take_tiles(Image& image) {
+    Outcome unasked;
+    return take_tiles(image, unasked);
+}
+
+std::vector<Region> FinalFrame::take_tiles(Image& image, Outcome& outcome) {
     const std::shared_ptr<Run> run = impl_->latest();
+    outcome = {};
     if (!run) return {};
     const Region region = whole_region(run->request);
     if (image.width != region.width || image.height != region.height || image.channels != 4)
@@ -158,6 +164,7 @@ std::vector<Region> FinalFrame::take_tiles(Image& image) {
     {
         const std::lock_guard lock(run->mutex);
         tiles.swap(run->fresh);
+        outcome = run->outcome;
     }
     for (const Region& tile : tiles) copy_tile(run->canvas, tile, image);
     return tiles;

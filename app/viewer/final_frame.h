@@ -47,9 +47,12 @@ class FinalFrame {
     Outcome outcome() const;
     float progress() const;
 
-    /// Tiles finished since the last call, copied into `frame` (resized to the request's). Returns their
-    /// regions, px of `frame`. Never blocks on the renderer.
+    /// Tiles finished since the last call, copied into `image` (resized to the request's). Returns their
+    /// regions, px of `image`. Never blocks on the renderer.
     std::vector<Region> take_tiles(Image& image);
+    /// The same; `outcome` says how far the frame was when they were taken: once it is done, the image is
+    /// whole. Asked for afterwards, it could know of tiles that were not taken.
+    std::vector<Region> take_tiles(Image& image, Outcome& outcome);
 
   private:
     struct Impl;

@@ -204,13 +204,13 @@ void ViewFrame::begin_final() {
 }
 
 void ViewFrame::take_final() {
-    for (const Region& tile : final_.take_tiles(canvas_)) {
+    FinalFrame::Outcome outcome;
+    for (const Region& tile : final_.take_tiles(canvas_, outcome)) {
         canvas_texture_.upload(canvas_, tile);
         ++version_;
     }
     texture_ = canvas_texture_.handle();
     status_.progress = final_.progress();
-    const FinalFrame::Outcome outcome = final_.outcome();
     status_.seconds = outcome.seconds;
     status_.error = outcome.error;
     if (outcome.state == FinalFrame::State::done) {

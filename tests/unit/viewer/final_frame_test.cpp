@@ -123,6 +123,20 @@ TEST_F(FinalFrameTest, CancelsAndRestartsInAnyOrderLeaveNoTrace) {
     }
 }
 
+TEST_F(FinalFrameTest, IsWholeWhenItIsDone) {
+    FinalRequest wanted = request(0);
+    wanted.region = {70, 40, 24, 16};
+    const std::string hash = hash_of(wanted);
+    FinalFrame picture;
+    for (int round = 0; round < 200; ++round) {
+        Image tiles;
+        FinalFrame::Outcome outcome;
+        for (picture.start(wanted); outcome.state != State::done; std::this_thread::yield())
+            picture.take_tiles(tiles, outcome);
+        ASSERT_EQ(pixel_hash(tiles), hash) << "round " << round;
+    }
+}
+
 TEST_F(FinalFrameTest, ACancelledPictureStaysUnfinished) {
     FinalRequest large = request(0);
     large.width = large.height = 4000;
