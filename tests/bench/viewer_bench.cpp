@@ -19,10 +19,13 @@
 #include <vector>
 
 #include "core/clock.h"
+#include "core/color.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
 #include "gl/preview.h"
 #include "scene/scene.h"
+#include "source/write_image.h"
+#include "support/preview_views.h"
 #include "support/temp_folder.h"
 #include "viewer/session.h"
 #include "viewer/session_view.h"
@@ -355,6 +358,52 @@ void measure_session(const ViewerOptions& options, const GlInfo& gl, const Parts
     }
 }
 
+/// As many dots as hold 24 frames a second while the scene is orbited.
+std::int64_t fluid_dots(const ViewerOptions& options, const GlInfo& gl) {
+    Viewer viewer(options, gl, 960, 540, false);
+    viewer.session().view.settle = false;
+    viewer.run_until([&] {
+        return viewer.session().sets.loaded(viewer.session().document) && preview_exact(viewer.session());
+    });
+    viewer.orbit(2 * orbit_frames);
+    return viewer.session().status.view_frame.shown;
+}
+
+/// As sRGB, to be looked at.
+void save_picture(const Image& image, const std::filesystem::path& file) {
+    std::vector<unsigned char> rgba;
+    for (std::int64_t y = 0; y < image.height; ++y)
+        for (std::int64_t x = 0; x < image.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                const double light = std::clamp(double(image.at(x, y)[c]), 0.0, 1.0);
+                rgba.push_back(static_cast<unsigned char>(std::lround(255.0 * real::linear_to_srgb(light))));
+            }
+            rgba.push_back(255);
+        }
+    write_image(file, image.width, image.height, rgba);
+}
+
+/// What moves beside the final frame (issue 18, 1), with `dots`, or where that is 0 with those of 24 frames a
+/// second.
+void measure_truths(const ViewerOptions& options, const GlInfo& gl, std::int64_t dots,
+                    const std::filesystem::path& pictures) {
+    if (dots == 0) dots = fluid_dots(options, gl);
+    for (const test::NamedView& view : test::preview_views()) {
+        const test::ViewTruth truth = test::measure_truth(view, dots, options.cache);
+        if (!pictures.empty()) {
+            save_picture(truth.preview, pictures / (std::string(view.name) + ", preview.png"));
+            save_picture(truth.final, pictures / (std::string(view.name) + ", final.png"));
+        }
+        print_row(
+            std::string("preview of a ") + view.name,
+            view.is_edge ? "light 3 %, blocks 90 %, thickness 15 %" : "light 3 %, blocks 90 %",
+            fmt::format("{:+.1f} %, {} of {} blocks{}", 100.0 * (truth.light - 1.0), truth.near,
+                        truth.bright_blocks,
+                        view.is_edge ? fmt::format(", {:+.0f} %", 100.0 * (truth.thickness - 1.0)) : ""),
+            fmt::format("{} of {} thousand splats", truth.dots / 1000, truth.splats / 1000));
+    }
+}
+
 float random(std::uint32_t n, std::uint32_t purpose) {
     return shared::as_uniform(shared::as_hash(1u, n, 0u, purpose));
 }
@@ -425,12 +474,14 @@ int run(int argc, char** argv) {
     ViewerOptions options;
     Parts wanted;
     bool opengl = false;
-    std::int64_t splats = 44'000'000;
-    std::string size = "3840x2160", cache = default_cache_folder().string();
+    std::int64_t splats = 44'000'000, dots = 0;
+    std::string pictures, size = "3840x2160", cache = default_cache_folder().string();
     CLI::App app("Measures the viewer: the table of issue 4.");
     app.add_option("scene", options.input, "default: the demo");
     app.add_option("--cache", cache, "folder of generated sets");
-    app.add_option("--only", wanted.names, "some of: start orbit slider scrub settle window idle");
+    app.add_option("--only", wanted.names, "some of: start orbit slider scrub settle window idle truth");
+    app.add_option("--pictures", pictures, "folder for the frames of truth");
+    app.add_option("--dots", dots, "of the previews of truth; default: those that hold 24 frames a second");
     app.add_flag("--opengl", opengl, "only OpenGL's preview, of synthetic splats");
     app.add_option("--splats", splats, "with --opengl");
     app.add_option("--size", size, "with --opengl: px");
@@ -452,6 +503,7 @@ int run(int argc, char** argv) {
         return 0;
     }
     measure_session(options, context.info(), wanted, started, processor_started);
+    if (wanted("truth")) measure_truths(options, context.info(), dots, pictures);
     return 0;
 }
 

@@ -1,0 +1,43 @@
+// How true a moving picture is to the final one, on six views of the shipped scenes. In: the viewer's own
+// session, driven without a window; needs a current OpenGL context and the assets. Out: light, blocks of
+// 64 x 64 px and the thickness of a disk seen from its edge.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/image.h"
+#include "edit/view_state.h"
+#include "sets/cache_folder.h"
+
+namespace astrosplat::test {
+
+struct NamedView {
+    const char* name;
+    const char* scene;     // of assets/scenes; null: a picture on a plane
+    FreeCamera camera;     // 960 x 540 px
+    bool is_edge = false;  // of a disk, which has a thickness then
+};
+
+/// Galaxy from the front, aslant and from its edge; a picture on a plane from a slant; nebula from the side
+/// and inside.
+std::span<const NamedView> preview_views();
+
+/// A preview beside the final frame of the same view, both linear and without a sky.
+struct ViewTruth {
+    std::int64_t dots = 0, splats = 0;
+    double light = 0.0;               // of the preview, over that of the final frame
+    int bright_blocks = 0, near = 0;  // brighter than a tenth of the brightest; within 20 % of these
+    double thickness = 1.0;           // at half brightness, over that of the final frame
+    Image preview, final;             // RGBA
+};
+
+/// The preview has so many dots; sets come from the cache. `clouds`: dots close by become clouds, as the
+/// scene says (lod.noise), of which previews know nothing.
+ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache& cache, bool clouds = true);
+
+/// Compares two frames of the same size. `is_edge`: also how thick they are.
+ViewTruth compare_frames(const Image& preview, const Image& final, bool is_edge);
+
+}  // namespace astrosplat::test
