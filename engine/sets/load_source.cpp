@@ -14,6 +14,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "generate/generate.h"
+#include "sets/flat_start.h"
 #include "splat_files/splat_file.h"
 #include "stars/random_stars.h"
 #include "stars/star_set.h"
@@ -63,8 +64,10 @@ void uv_of_pictures(std::span<const glm::dvec2> times, SplatSet& set) {
 }
 
 SplatSet generate_bodies(const SourceParams& source, const std::string& layer_name, const Progress& progress,
-                         const PictureMaker& prepared) {
-    BodiesPlan plan = plan_bodies(source, load_meshes(source, layer_name, progress, prepared), layer_name);
+                         KeptWatcher* watcher, const PictureMaker& prepared) {
+    std::vector<TexturedMesh> meshes = load_meshes(source, layer_name, progress, prepared);
+    if (watcher) show_flat(meshes, *watcher);
+    BodiesPlan plan = plan_bodies(source, std::move(meshes), layer_name);
     SplatSet set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                                layer_name, progress, source.splats);
     uv_of_pictures(plan.times, set);
@@ -191,7 +194,8 @@ SplatSet load_source(const SourceParams& source, const std::string& layer_name, 
         return lit_splats(make_columns(plan_columns(source, layer_name, progress, prepared), layer_name,
                                        progress, watcher));
     try {
-        if (source.kind == SourceKind::mesh) return generate_bodies(source, layer_name, progress, prepared);
+        if (source.kind == SourceKind::mesh)
+            return generate_bodies(source, layer_name, progress, watcher, prepared);
         if (source.kind == SourceKind::splats) return read_source(source, progress);
         return source.stars.along.empty() ? read_stars(source.stars, layer_name, progress)
                                           : scatter_stars(source, layer_name, progress);
