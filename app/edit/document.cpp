@@ -33,6 +33,9 @@ struct Step {
     std::shared_ptr<const Scene> scene;
     std::string name;
     Gesture gesture = 0;
+    /// The file's content as it was read or written with this very scene; null: it never was. Saving again
+    /// what was undone to leaves no trace of what lay there meanwhile.
+    std::shared_ptr<const std::string> text = nullptr;
 };
 
 /// Grows through all documents, so that a revision never means two scenes.
@@ -148,6 +151,10 @@ struct Document::State {
         }
     }
 
+    void know_text(const std::string& content) {
+        history[now].text = std::make_shared<const std::string>(content);
+    }
+
     void forget_assignments() {
         assignments.clear();
         assigned_keys.clear();
@@ -157,10 +164,12 @@ struct Document::State {
     void record(Step step) {
         history.erase(history.begin() + static_cast<std::ptrdiff_t>(now) + 1, history.end());
         const bool merges = step.gesture != 0 && now > 0 && history[now].gesture == step.gesture;
-        if (merges)
+        if (merges) {
             history[now].scene = step.scene;
-        else
+            history[now].text.reset();
+        } else {
             history.push_back(std::move(step));
+        }
         if (merges && *history[now].scene == *history[now - 1].scene) history.pop_back();  // dragged back
         if (history.size() > most_undo_steps + 1) history.pop_front();
         now = history.size() - 1;
@@ -175,6 +184,7 @@ struct Document::State {
             Scene moved = *step.scene;
             moved.file = new_file;
             step.scene = std::make_shared<const Scene>(std::move(moved));
+            step.text.reset();  // paths in it were relative to another folder
         }
         revision = next_revision();
     }
@@ -192,6 +202,7 @@ Document Document::open(const fs::path& file, std::span<const Assignment> assign
     state->begin(parse_scene(text, state->file, assignments));
     state->remember_assignments(assignments);
     state->know_disk(text);
+    if (assignments.empty()) state->know_text(text);
     return Document(std::move(state));
 }
 
@@ -337,6 +348,8 @@ std::string pattern_from(const std::string& pattern, const fs::path& file, const
 }  // namespace
 
 std::string Document::text_for(const fs::path& file) const {
+    const Step& step = state_->history[state_->now];
+    if (step.text && fs::absolute(file) == state_->file) return *step.text;
     Scene placed = scene();
     placed.file = state_->text_place;
     return save_text(placed, state_->text, fs::absolute(file));
@@ -357,6 +370,7 @@ void Document::save_as(const fs::path& file) {
     state_->text = text;
     state_->text_place = target;
     state_->move_to(target);
+    state_->know_text(text);
     state_->saved = state_->history[state_->now].scene;
     state_->disk = DiskFile(target, text);
     state_->forget_assignments();
@@ -370,6 +384,8 @@ void Document::reload() {
     const Scene scene = parse_scene(text, state_->file, state_->assignments);
     state_->know_disk(text);
     edit("Reload", [&](Scene& edited) { edited = scene; });
+    for (Step& step : state_->history) step.text.reset();  // what other hands wrote since is kept
+    if (state_->assignments.empty()) state_->know_text(text);
 }
 
 void Document::ignore_change_on_disk() { state_->disk.accept(); }

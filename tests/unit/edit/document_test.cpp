@@ -232,6 +232,27 @@ TEST(Document, SavingTouchesOnlyWhatChanged) {
     EXPECT_EQ(f.text(), edit_scene);
 }
 
+TEST(Document, WhatWasSavedIsSavedAgainByteForByte) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    document.set("layer.dust.look.radius.vertical_scale", Value(0.5), 1.0);  // a line that was not there
+    document.save();
+    const std::string edited = f.text();
+    EXPECT_NE(edited, edit_scene);
+    document.undo();
+    document.save();
+    EXPECT_EQ(f.text(), edit_scene);
+    document.redo();
+    document.save();
+    EXPECT_EQ(f.text(), edited);
+
+    f.folder.file("szene ä.toml", edited + "# from other hands\n");
+    document.reload();
+    document.undo();
+    document.save();
+    EXPECT_NE(f.text().find("# from other hands"), std::string::npos);
+}
+
 TEST(Document, SavingElsewhereMovesTheDocument) {
     const SceneFolder f;
     Document document = Document::open(f.file);
