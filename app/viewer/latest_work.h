@@ -45,6 +45,23 @@ class LatestWork {
         asked_ = pending_ = false;
     }
 
+    /// The same, and lets go of the last request and what was found for it, which may hold whole sets.
+    void forget() {
+        cancel();
+        Request request;
+        std::shared_ptr<const Found> found;  // let go after the lock
+        const auto held = worker_.lock();
+        asked_ = pending_ = false;
+        std::swap(request, request_);
+        found.swap(found_);
+    }
+    /// The last request satisfies this; false where there is none.
+    template <class Condition>
+    bool asked(const Condition& condition) const {
+        const auto held = worker_.lock();
+        return asked_ && condition(request_);
+    }
+
     bool working() const {
         const auto held = worker_.lock();
         return asked_ && !found_;

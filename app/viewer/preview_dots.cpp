@@ -95,6 +95,7 @@ bool PreviewDots::refine() {
     if (!found) return false;
     for (Layer& layer : layers_)
         if (layer.whole == wanted->source && layer.shading == wanted->shading) layer.of_whole = found;
+    work_.forget();  // or sums under a look would outlive it
     return found->error.empty();
 }
 

@@ -134,6 +134,16 @@ DisplaySettings display_settings(const Session& session, const OutputParams& out
     return shown;
 }
 
+/// Of each layer what the final frame is made of; null: it is not seen.
+std::vector<std::shared_ptr<const SplatSet>> sets_of(const Session& session, const Scene& now) {
+    std::vector<std::shared_ptr<const SplatSet>> sets;
+    for (const LayerParams& layer : now.layers) {
+        const auto loaded = session.sets.loader().layer(layer.name);
+        sets.push_back(loaded && layer.visible ? loaded->set : nullptr);
+    }
+    return sets;
+}
+
 /// Compares the front with its picture while A is at rest; null: nothing is found yet.
 std::shared_ptr<const FrontFound> check_front(Session& session, const Scene& now) {
     std::optional<FrontStatus>& status = session.status.front;
@@ -141,16 +151,13 @@ std::shared_ptr<const FrontFound> check_front(Session& session, const Scene& now
     const bool shown = session.view.compare == CompareMode::front;
     status.reset();
     if (!at_rest) session.front.cancel();
+    if (session.front.asked([&](const FrontRequest& asked) { return asked.sets != sets_of(session, now); }))
+        session.front.forget();  // it would keep the sets of scenes that are closed
     if (session.viewport_is_frame || !has_front_picture(now) || !(at_rest || shown)) return {};
     status.emplace();
     status->changed_by_look = front_changed_by_look(now);
     if (status->changed_by_look && !shown) return {};
-    std::vector<std::shared_ptr<const SplatSet>> sets;
-    for (const LayerParams& layer : now.layers) {
-        const auto loaded = session.sets.loader().layer(layer.name);
-        sets.push_back(loaded && layer.visible ? loaded->set : nullptr);
-    }
-    const FrontRequest request = front_request(now, std::move(sets), session.disk.changes());
+    const FrontRequest request = front_request(now, sets_of(session, now), session.disk.changes());
     if (at_rest) session.front.want(request);
     const std::shared_ptr<const FrontFound> found = session.front.found(request);
     status->working = session.front.working();
