@@ -66,6 +66,10 @@ void Person::press(const std::string& key) const {
     act({"keydown", key, "sleep", "0.2", "keyup", key, "sleep", "0.15"});
 }
 
+void Person::press_often(const std::string& key, int times) const {
+    act({"key", "--delay", "30", "--repeat", std::to_string(times), "--repeat-delay", "30", key});
+}
+
 void Person::type(const std::string& text) const { act({"type", "--delay", "60", text}); }
 
 }  // namespace astrosplat::test

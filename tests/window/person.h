@@ -19,6 +19,8 @@ class Person {
     void drag(glm::vec2 from, glm::vec2 by) const;
     /// "ctrl+s", "0", "Return", as xdotool names them.
     void press(const std::string& key) const;
+    /// So many times, one after the other.
+    void press_often(const std::string& key, int times) const;
     void type(const std::string& text) const;
 
   private:

@@ -1,0 +1,97 @@
+// A long time at the window, by hands that do not know what they do: mouse and keys at random, always the
+// same. Nothing ends it, nothing grows for ever, and undo to the start brings the file back byte for byte.
+#include "core/shared_maths.h"
+#include "window/window_test.h"
+
+namespace astrosplat::test {
+namespace {
+
+/// Bytes of a process that are not only lent to it (core/buffer.h).
+std::int64_t memory_of(pid_t process) {
+    std::ifstream rollup("/proc/" + std::to_string(process) + "/smaps_rollup");
+    std::int64_t kib = 0;
+    for (std::string word; rollup >> word;) {
+        std::int64_t value = 0;
+        if (word == "Rss:" && rollup >> value) kib += value;
+        if (word == "LazyFree:" && rollup >> value) kib -= value;
+    }
+    return 1024 * kib;
+}
+
+class WindowWalk : public WindowTest {
+  protected:
+    void walk(int rounds, int gestures) {
+        const std::string begun = text_of(scene_file);
+        start();
+        settled_frame();
+        std::int64_t first = 0, last = 0;
+        for (int round = 0; round < rounds && running(); ++round) {
+            for (int i = 0; i < gestures && running(); ++i) gesture();
+            ASSERT_TRUE(running()) << program->err_so_far();
+            come_to_rest();
+            person->press("ctrl+s");
+            undo_all();
+            person->press("ctrl+s");
+            EXPECT_TRUE(comes_true([&] { return text_of(scene_file) == begun; })) << text_of(scene_file);
+            expect_title("scene.toml");
+            last = memory_of(program->id());
+            if (round == 0) first = last;
+        }
+        EXPECT_GT(first, 0);
+        EXPECT_LT(last - first, 100'000'000);
+        std::printf("memory after the first round %.0f MB, after the last %.0f MB\n", 1e-6 * double(first),
+                    1e-6 * double(last));
+        person->press("ctrl+q");
+        EXPECT_EQ(end().code, 0);
+    }
+
+  private:
+    std::uint32_t chance(std::uint32_t below) { return shared::as_hash(18u, step_++, 0u, 7u) % below; }
+    float within(float low, float size) { return low + size * 0.001f * static_cast<float>(chance(1000)); }
+
+    /// Somewhere below the menus, which lead out of the scene.
+    glm::vec2 anywhere() { return {within(10.0f, width - 20.0f), within(70.0f, height - 110.0f)}; }
+    glm::vec2 on(Rect Layout::*part) {
+        const Rect area = make_layout(ViewState(), width, height, 1.0f).*part;
+        return {within(area.x + 8.0f, area.width - 16.0f), within(area.y + 8.0f, area.height - 16.0f)};
+    }
+
+    void gesture() {
+        constexpr const char* keys[] = {"0", "1",  "3",    "7",     "9",      "f",     "g",      "z",
+                                        "h", "s",  "b",    "x",     "k",      "Left",  "Right",  "Up",
+                                        "w", "e",  "Down", "space", "Escape", "space", "ctrl+z", "ctrl+y",
+                                        "r", "F1", "Home", "i",     "o",      "Tab"};
+        switch (chance(8)) {
+            case 0:
+            case 1:
+                return person->drag(on(&Layout::viewport), {within(-90.0f, 180.0f), within(-60.0f, 120.0f)});
+            case 2:
+            case 3:
+                return person->drag(on(&Layout::panel), {within(-60.0f, 120.0f), 0.0f});
+            case 4:
+                return person->click(on(&Layout::panel));
+            case 5:
+                person->click(anywhere(), chance(4) == 0 ? 3 : 1);
+                return person->press("Escape");
+            default:
+                return person->press(keys[chance(std::size(keys))]);
+        }
+    }
+    /// Closes what is open, with the mouse where it does nothing.
+    void come_to_rest() {
+        for (int i = 0; i < 4; ++i) person->press("Escape");
+        person->move({width - 2.0f, height - 2.0f});
+    }
+    void undo_all() {
+        person->press_often("ctrl+z", 150);
+        come_to_rest();
+    }
+
+    std::uint32_t step_ = 0;
+};
+
+TEST_F(WindowWalk, AHalfMinute) { walk(2, 14); }
+TEST_F(WindowWalk, TenMinutesNightly) { walk(20, 30); }
+
+}  // namespace
+}  // namespace astrosplat::test
