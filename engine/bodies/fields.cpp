@@ -29,8 +29,18 @@ void change_each(Image& image, Change change) {
     });
 }
 
-// Lowers what rises above a neighbour by more than `steepest` a px: two sweeps of a chamfer distance
-// transform, one from the top left and one from the bottom right.
+double field_percentile(const Image& field, double share) {
+    return percentile({field.pixels.begin(), field.pixels.end()}, share);
+}
+
+Image halved_often(Image image, int times) {
+    for (int i = 0; i < times; ++i) image = halved(image);
+    return image;
+}
+
+}  // namespace
+
+// Two sweeps of a chamfer distance transform, one from the top left and one from the bottom right.
 void limit_slope(Image& image, double steepest) {
     const auto step = static_cast<float>(steepest);
     const float diagonal = step * 1.41421356f;
@@ -57,17 +67,6 @@ void limit_slope(Image& image, double steepest) {
         }
     }
 }
-
-double field_percentile(const Image& field, double share) {
-    return percentile({field.pixels.begin(), field.pixels.end()}, share);
-}
-
-Image halved_often(Image image, int times) {
-    for (int i = 0; i < times; ++i) image = halved(image);
-    return image;
-}
-
-}  // namespace
 
 int field_halvings(const Image& brightest) {
     int halvings = 0;

@@ -20,4 +20,7 @@ Image thickness_field(const Image& brightest, double height);
 /// sky. Nowhere steeper than `steepest`; what is steeper looks like drapery.
 Image relief_field(const Image& brightest, double depth, double steepest);
 
+/// Lowers what rises above a neighbour by more than `steepest` a px.
+void limit_slope(Image& image, double steepest);
+
 }  // namespace astrosplat

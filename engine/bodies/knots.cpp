@@ -45,15 +45,13 @@ bool is_peak(const Image& contrast, std::int64_t x, std::int64_t y, std::int64_t
     return true;
 }
 
-// By the curvatures of the contrast along and across: 0 where one is a tenth of the other, 1 from three
-// tenths on.
-float roundness_at(const Image& contrast, std::int64_t x, std::int64_t y, std::int64_t step) {
+// The curvature of the contrast along what is seen there over that across.
+float curvature_ratio(const Image& contrast, std::int64_t x, std::int64_t y, std::int64_t step) {
     const auto at = [&](std::int64_t i, std::int64_t j) { return *contrast.at(x + i * step, y + j * step); };
     const float xx = at(1, 0) + at(-1, 0) - 2.0f * at(0, 0), yy = at(0, 1) + at(0, -1) - 2.0f * at(0, 0);
     const float xy = 0.25f * (at(1, 1) + at(-1, -1) - at(1, -1) - at(-1, 1));
     const float mean = 0.5f * (xx + yy), apart = std::sqrt(0.25f * (xx - yy) * (xx - yy) + xy * xy);
-    const float ratio = (mean + apart) / std::min(-1e-12f, mean - apart);
-    return std::clamp((ratio - 0.1f) / 0.2f, 0.0f, 1.0f);
+    return (mean + apart) / std::min(-1e-12f, mean - apart);
 }
 
 // Peaks of one scale, in order of rows.
@@ -67,9 +65,10 @@ std::vector<Peak> peaks(const Image& contrast, double sigma) {
                 const float here = *contrast.at(x, y);
                 if (here < least_contrast || here < prominence * *common.at(x, y)) continue;
                 if (!is_peak(contrast, x, y, reach)) continue;
+                const float ratio = curvature_ratio(contrast, x, y, std::max<std::int64_t>(1, reach / 2));
                 const Knot knot{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
-                                static_cast<float>(sigma),
-                                roundness_at(contrast, x, y, std::max<std::int64_t>(1, reach / 2))};
+                                static_cast<float>(sigma), std::clamp((ratio - 0.1f) / 0.2f, 0.0f, 1.0f),
+                                std::clamp((ratio - 0.5f) / 0.25f, 0.0f, 1.0f)};
                 rows[static_cast<std::size_t>(y)].push_back({knot, here});
             }
         }

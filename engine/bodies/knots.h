@@ -13,6 +13,7 @@ struct Knot {
     float x = 0.0f, y = 0.0f;  // px from the top left corner
     float sigma = 0.0f;        // px
     float roundness = 1.0f;    // 0 for a piece of a filament, 1 for what is round
+    float ballness = 1.0f;     // 1 only for what is nearly as wide as long
 };
 
 struct Knots {

@@ -6,7 +6,10 @@
 
 #include "bodies/fields.h"
 #include "bodies/margin.h"
+#include "bodies/octaves.h"
 #include "bodies/picture_light.h"
+#include "bodies/shell.h"
+#include "bodies/surfaces.h"
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
@@ -18,48 +21,12 @@ namespace {
 using shared::as_hash, shared::as_log, shared::as_mix, shared::as_uniform;
 
 constexpr float least_sigma = 0.45f;      // texels; .62 as published ends 2 dB below
-constexpr double shortest_wave = 5.0;     // texels at a width of 1920
 constexpr float knot_depth = 0.6f;        // scale height of a knot, of its sigma
 constexpr float widest_in_knots = 5.0f;   // texels, sigma of the largest dots that follow their knot
-constexpr double widest_filament = 30.0;  // texels at a width of 1920; what is wider is glow
+constexpr double widest_filament = 45.0;  // texels at a width of 1920; what is wider is glow
 
-// Values for features of 2, 4, 8 ... texels at a width of 1920; between them linear in the logarithm.
-double by_feature(const double (&values)[8], double feature) {
-    const double k = std::clamp(real::log(feature / 2.0) / real::log(2.0), 0.0, 6.0 + 0.644);
-    const int i = std::min(6, static_cast<int>(k));
-    const double t = i == 6 ? (k - 6.0) / 0.644 : k - i;  // the last is at 200, not at 256
-    return values[i] * (1.0 - t) + values[i + 1] * t;
-}
 constexpr double dots_each[8] = {2.4, 4, 9, 16, 24, 24, 24, 24};  // within 2 pi sigma^2
 constexpr double crowd_in_bulges = 32.0;  // times as many wide dots there, or its outline would be ragged
-constexpr double clumpiness[8] = {3, 3, 2.6, 2.2, 1.7, 0.8, 0.3, 0.05};
-
-// Octaves from `longest` on by halves, as far down as a feature allows: small things float where their cloud
-// floats.
-NoiseStack stack(const Placement& placement, double longest, double feature, double first_gain,
-                 double ratio) {
-    NoiseStack noise;
-    noise.seed = placement.seed;
-    const double shortest = std::max(2.2 * feature, shortest_wave * placement.scale);
-    double gain = first_gain;
-    for (double wave = longest; noise.count < NoiseStack::most; wave /= 2.0, gain *= ratio) {
-        if (noise.count > 0 && wave < shortest) break;
-        noise.frequency[noise.count] = static_cast<float>(1.0 / wave);
-        noise.gain[noise.count++] = static_cast<float>(gain);
-    }
-    return noise;
-}
-
-NoiseStack waves(const Placement& placement, std::uint32_t field,
-                 std::initializer_list<std::pair<double, double>> wave_and_gain) {
-    NoiseStack noise;
-    noise.seed = as_mix(placement.seed + field);
-    for (const auto& [wave, gain] : wave_and_gain) {
-        noise.frequency[noise.count] = static_cast<float>(1.0 / (wave * placement.scale));
-        noise.gain[noise.count++] = static_cast<float>(gain);
-    }
-    return noise;
-}
 
 // Of a place, from the middle of the picture, in halves of its longest side.
 glm::vec2 from_middle(const Placement& placement, float x, float y) {
@@ -101,54 +68,20 @@ float logistic(float u, float height) {
     return 0.5f * height * as_log(inside / (1.0f - inside));
 }
 
-// Which of the two walls each dot is drawn to, and how these are bent. Filaments stay together on one wall;
-// wide glow fills what is between them, or one would look through the holes of one into a hollow.
-void add_walls(const Placement& placement, bool glow, PlacedBlock& block) {
-    DepthBlock side = block, bend = block;
-    const double unit = 0.26 * placement.depth;
-    noise_sum(waves(placement, 1, {{330.0, 1.0}, {120.0, 0.6}}), side);
-    noise_sum(waves(placement, 2, {{520.0, 0.22 * unit}, {210.0, 0.07 * unit}}), bend);
-    for (int i = 0; i < block.count; ++i) {
-        const float front = 1.0f / (1.0f + shared::as_exp(-8.0f * side.z[i]));
-        const std::uint32_t random = as_mix(block.random[i] ^ 0x5bd1e995u);
-        const float share = glow ? std::sqrt(as_uniform(as_mix(random))) : 1.0f;
-        const float out = share * placement.relief_at(block.x[i], block.y[i]);
-        const bool in_front = as_uniform(random) < (glow ? 0.5f : front);
-        block.z[i] += (in_front ? out : -out) + bend.z[i];
-    }
-}
-
-float sheet_at(const Placement& placement, float x, float y) {
-    return 2.0f * placement.relief_at(x, y) - static_cast<float>(placement.depth);
-}
-
-// Under a round knot it is level, but not under a piece of a filament, which would become a flight of steps.
-void add_relief(const Placement& placement, PlacedBlock& block) {
-    if (placement.relief.pixels.empty()) return;
-    for (int i = 0; i < block.count; ++i) {
-        const float own = sheet_at(placement, block.x[i], block.y[i]);
-        if (block.knot[i] < 0) {
-            block.z[i] += own;
-        } else {
-            const Knot& knot = placement.knots.knots[static_cast<std::size_t>(block.knot[i])];
-            block.z[i] += own + knot.roundness * (sheet_at(placement, knot.x, knot.y) - own);
-        }
-    }
-}
-
 void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock& block) {
     set_heights(placement, dots, block);
     const double feature = dots.feature, h = placement.height;
     if (placement.kind == StructureKind::disk) {
-        const double gain = 1.6 * by_feature(clumpiness, feature / placement.scale) * placement.clumps;
+        const double gain = clump_gain(placement, feature);
         disk_depths(stack(placement, 4.0 * h, feature, gain, 0.75), block);
+    } else if (dots.glow) {
+        fill_between_walls(placement, feature, block);
     } else {
         const double gain = 0.22 * 0.26 * 7.0 * h * placement.clumps;
         sheet_depths(stack(placement, 7.0 * h, feature, gain, 0.5), dots.spread, block);
     }
     for (int i = 0; i < block.count; ++i) block.distance[i] = std::fabs(block.z[i]);
     for (int i = 0; i < block.count; ++i) block.z[i] += middle_plane(placement, block.x[i], block.y[i]);
-    if (placement.kind == StructureKind::walls) add_walls(placement, dots.glow, block);
 }
 
 void set_knot_depths(Placement& placement) {
@@ -173,15 +106,20 @@ void set_knot_depths(Placement& placement) {
     });
 }
 
+// On walls pieces of filaments are no knots, or these would be strings of beads.
 void follow_knots(const Placement& placement, PlacedBlock& block) {
+    const bool walls = placement.kind == StructureKind::walls;
     for (int i = 0; i < block.count; ++i) {
         const auto x = std::min(static_cast<std::int64_t>(block.x[i]), placement.picture_width - 1);
         const auto y = std::min(static_cast<std::int64_t>(block.y[i]), placement.picture_height - 1);
         const auto at = static_cast<std::size_t>(y * placement.picture_width + x);
         const std::int32_t owner = placement.knots.owner[at];
         const std::uint32_t random = as_mix(block.random[i] ^ 0x2c1b3c6du);
-        if (owner < 0 || as_uniform(random) >= placement.knots.weight[at]) continue;
+        if (owner < 0) continue;
         const auto knot = static_cast<std::size_t>(owner);
+        const float weight =
+            placement.knots.weight[at] * (walls ? placement.knots.knots[knot].ballness : 1.0f);
+        if (as_uniform(random) >= weight) continue;
         block.knot[i] = owner;
         block.z[i] = placement.knot_z[knot] +
                      logistic(as_uniform(as_mix(random)), knot_depth * placement.knots.knots[knot].sigma);
@@ -232,7 +170,7 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
                 *field.at(x, y) *= flare_at(placement, middle(x), middle(y));
         });
     }
-    if (params.kind == StructureKind::walls) placement.relief = relief_field(shown, placement.depth, 0.7);
+    if (params.kind == StructureKind::walls) placement.relief = shell_field(shown, placement.depth, 0.8);
     if (params.kind == StructureKind::sheet && flat)
         placement.relief = relief_field(shown, placement.depth, 0.6);  // counts twice
     placement.knots = find_knots(brightest);
@@ -266,7 +204,10 @@ float middle_plane(const Placement& placement, float x, float y) {
 }
 
 std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement) {
-    const double widest = widest_sigma_share * placement.height;
+    const bool glow =
+        placement.kind == StructureKind::walls && band.feature > widest_filament * placement.scale;
+    const double widest =
+        std::max(widest_sigma_share * placement.height, glow ? widest_glow_share * placement.depth : 0.0);
     const double natural = coarsest ? 4.0 * widest : band.feature / 4.0;
     const double usual =
         by_feature(dots_each, band.index == 0 ? 2.0 : std::max(4.0, band.feature / placement.scale));
@@ -275,8 +216,7 @@ std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement
         dots.index = band.index;
         dots.feature = static_cast<float>(band.feature);
         dots.spread = 0.5f * dots.feature;
-        dots.glow =
-            placement.kind == StructureKind::walls && band.feature > widest_filament * placement.scale;
+        dots.glow = glow;
         dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, static_cast<float>(sigma));
         const double s = static_cast<double>(dots.sigma), area = 2.0 * real::pi * s * s;
         dots.spacing = static_cast<float>(std::sqrt(std::max(1.0, area / each)));
@@ -301,6 +241,7 @@ void place(const Placement& placement, const BandDots& dots, PlacedBlock& block)
     std::fill_n(block.knot, block.count, -1);
     if (dots.sigma <= widest_in_knots && !placement.knots.knots.empty()) follow_knots(placement, block);
     if (placement.kind == StructureKind::sheet) add_relief(placement, block);
+    if (placement.kind == StructureKind::walls && !dots.glow) add_walls(placement, block);
 }
 
 }  // namespace astrosplat

@@ -18,6 +18,8 @@ namespace astrosplat {
 inline constexpr double disk_thickness = 0.018, sheet_thickness = 0.011;
 /// Sigma of the widest dots, of the scale height; larger ones would be a fog of their own.
 inline constexpr double widest_sigma_share = 0.45;
+/// The same of the glow between two walls, of how far each of them stands out.
+inline constexpr double widest_glow_share = 0.06;
 /// Where a disk is so many times as thick, those are as much wider.
 inline constexpr float wider_in_bulges[] = {1.3f, 1.7f};
 

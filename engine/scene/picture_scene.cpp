@@ -23,6 +23,7 @@ namespace {
 constexpr double longest_side = 10.0;  // scene units, of the built-in plane
 constexpr std::int64_t longest_px = 1920;
 constexpr double field_of_view = 40.0;  // degrees
+constexpr double wall_depth = 0.26;     // whole depth of a shell, of the picture's width
 
 constexpr const char* text_format =
     R"(# {title}: a picture as bodies in depth. 'astrosplat parameters' lists every key.
@@ -84,22 +85,35 @@ void tilt(double distance, double exposure, std::vector<CameraKeyframe>& keyfram
     }
 }
 
+// The close pass of a flight and what comes after it.
+struct CloseViews {
+    glm::dvec3 close, leaving;
+    double away_height;  // scene units
+    double darker;       // stops, at the most
+};
+
+// Over a disk low along its plane, over a cloud higher, and around a shell, which is thick. The more aslant a
+// disk or a shell is seen the more of it shines in each pixel: the exposure goes down with the camera, or it
+// would burn out.
+CloseViews close_views(double distance, StructureKind kind) {
+    if (kind == StructureKind::disk) return {{1.5, 1.0, 2.9}, {-1.2, 0.5, 0.55 * distance}, 0.35, -1.0};
+    if (kind == StructureKind::walls)
+        return {{1.9, 2.3, 3.3}, {-1.2, 2.2, 0.6 * distance}, 0.3 * distance, -0.6};
+    return {{1.5, 1.6, 2.9}, {-1.2, 2.2, 0.55 * distance}, 0.42 * distance, 0.0};
+}
+
 // Ten seconds at 24 frames/s: the front, a slow tilt, a close pass, and on: to the edge of a disk, else up
-// and away. The more aslant a disk is seen the more of it shines in each pixel: the exposure goes down with
-// the camera, or its middle would burn out.
+// and away.
 std::vector<CameraKeyframe> flight(double distance, StructureKind kind) {
-    const bool disk = kind == StructureKind::disk;
-    const double darker = disk ? -1.0 : 0.0;
+    const CloseViews views = close_views(distance, kind);
     const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
     std::vector<CameraKeyframe> keyframes;
-    tilt(distance, 0.4 * darker, keyframes);
+    tilt(distance, 0.4 * views.darker, keyframes);
     keyframes.insert(keyframes.begin(), keyframes.front());
     keyframes.front().frame = 1;
-    keyframes.push_back({160, {1.5, disk ? 1.0 : 1.6, 2.9}, {0.5, 0.0, 0.2}, above, 1.1 * darker});
-    keyframes.push_back(
-        {205, {-1.2, disk ? 0.5 : 2.2, 0.55 * distance}, {0.1, 0.0, 0.0}, above, 0.9 * darker});
-    keyframes.push_back(
-        {240, {-2.4, disk ? 0.35 : 0.42 * distance, 0.9 * distance}, middle, above, 0.5 * darker});
+    keyframes.push_back({160, views.close, {0.5, 0.0, 0.2}, above, 1.1 * views.darker});
+    keyframes.push_back({205, views.leaving, {0.1, 0.0, 0.0}, above, 0.9 * views.darker});
+    keyframes.push_back({240, {-2.4, views.away_height, 0.9 * distance}, middle, above, 0.5 * views.darker});
     return keyframes;
 }
 
@@ -137,35 +151,42 @@ std::int64_t side_px(std::int64_t side, std::int64_t longest) {
         2, 2 * std::llround(static_cast<double>(longest_px * side) / (2.0 * static_cast<double>(longest))));
 }
 
+// Sigma of the widest dots, of the picture's longest side.
+double widest_sigma(StructureKind structure, double margin) {
+    if (structure == StructureKind::disk)  // is thicker with its margin
+        return (1.0 + margin) * widest_sigma_share * disk_thickness * static_cast<double>(wider_in_bulges[1]);
+    const double in_sheet = widest_sigma_share * sheet_thickness;
+    return structure == StructureKind::walls ? std::max(in_sheet, widest_glow_share * 0.5 * wall_depth)
+                                             : in_sheet;
+}
+
 // Pixels at 1080 lines that the widest dots have from the front, and a little more: there they stay whole.
 double split_above_px(StructureKind structure, double longest_over_height, double margin) {
-    const bool disk = structure == StructureKind::disk;  // is thicker with its margin
-    const double thickness =
-        disk ? disk_thickness * static_cast<double>(wider_in_bulges[1]) : sheet_thickness;
-    return 1.1 * (disk ? 1.0 + margin : 1.0) * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma_share *
-           thickness * longest_over_height * 1080.0;
+    return 1.1 * 2.0 * static_cast<double>(radius_sigmas) * widest_sigma(structure, margin) *
+           longest_over_height * 1080.0;
 }
 
 // Low powers of brightness and a dense disk: its dim parts are then not as bright as its middle from the
-// edge, and the middle does not burn out from aslant. Walls are all edge.
+// edge, and the middle does not burn out from aslant. A shell is thin: one looks through its front wall at
+// the back one.
 std::string_view opacity_of(StructureKind structure) {
-    if (structure == StructureKind::walls) return "opacity = 0.3";
+    if (structure == StructureKind::walls) return "opacity = 0.4, density = 0.4";
     return structure == StructureKind::disk ? "opacity = 0.42, density = 0.8" : "opacity = 0.55";
 }
 
 // How far bodies reach along the line of sight.
-std::string_view extent_of(StructureKind structure) {
+std::string extent_of(StructureKind structure) {
     if (structure == StructureKind::disk) return "flare = 0.35, warp = 0.01";
-    return structure == StructureKind::walls ? "depth = 0.18" : "depth = 0.15";
+    return structure == StructureKind::walls ? fmt::format("depth = {}", wall_depth) : "depth = 0.15";
 }
 
-// Of the picture's width: room for a galaxy to end round, and for a cloud to fray. A galaxy alone on a dark
-// sky needs it where but an arm leaves the picture, or that would be cut off straight. One of many pixels
-// fades within its own edges: a margin would need too much memory.
+// Of the picture's width: room for a galaxy to end round, and for a cloud to fray. What stands alone on a
+// dark sky needs it where but an arm leaves the picture, or that would be cut off straight. One of many
+// pixels fades within its own edges: a margin would need too much memory.
 double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
-    const bool disk = scene.structure == StructureKind::disk;
-    const bool goes_on = scene.lit_rim > (disk ? 0.1 : 0.5);
+    const bool disk = scene.structure == StructureKind::disk, sheet = scene.structure == StructureKind::sheet;
+    const bool goes_on = scene.lit_rim > (sheet ? 0.5 : 0.1);
     if (!goes_on || scene.width_px * scene.height_px > most_px) return 0.0;
     return disk ? 0.08 : 0.05;
 }

@@ -46,7 +46,7 @@ TEST(PictureScene, BeginsWithThePictureAsItIs) {
 }
 
 TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
-    for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet}) {
+    for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet, StructureKind::walls}) {
         PictureScene picture{"a.png", 1600, 1000, kind};
         const Scene still = parsed(picture);
         EXPECT_EQ(still.layers.at(0).source.structure.warp > 0.0, kind == StructureKind::disk);
@@ -68,10 +68,13 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
             EXPECT_LT(distance, 1.02 * still.camera.position->y) << frame;
         }
         const auto height_over_plane = [&](double frame) { return scene_at(film, frame).camera.position->y; };
-        EXPECT_LT(height_over_plane(160.0), 2.0) << "a close pass";
+        const double outermost = kind == StructureKind::walls ? 1.3 : 0.0;  // of a shell, over the plane
+        EXPECT_LT(height_over_plane(160.0), outermost + 2.0) << "a close pass";
+        EXPECT_GT(height_over_plane(160.0), outermost) << "not through it";
         EXPECT_EQ(picture_scene_text(picture, "film.toml").find(" -0]"), std::string::npos);
         const double close_by = scene_at(film, 160.0).output.exposure;
-        EXPECT_TRUE(kind == StructureKind::disk ? close_by < -0.8 : close_by == 0.0) << close_by;
+        EXPECT_EQ(close_by < -0.5, kind != StructureKind::sheet) << close_by;
+        EXPECT_EQ(close_by == 0.0, kind == StructureKind::sheet) << close_by;
         if (kind == StructureKind::disk) {
             EXPECT_LT(height_over_plane(240.0), 0.5) << "ends at the edge";
         } else {

@@ -1,0 +1,151 @@
+// Shells: how far their walls stand apart, what lies on them and what fills them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bodies/placement.h"
+#include "bodies/shell.h"
+#include "core/shared_maths.h"
+#include "image/channels.h"
+#include "support/painted_picture.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double middle_x = 320.0, middle_y = 200.0;
+
+// Evenly bright inside of an ellipse in the middle, dark outside.
+Image ellipse(double half_width, double half_height) {
+    Image image = make_image(640, 400, 1);
+    for (std::int64_t y = 0; y < image.height; ++y)
+        for (std::int64_t x = 0; x < image.width; ++x)
+            *image.at(x, y) = std::hypot((static_cast<double>(x) + 0.5 - middle_x) / half_width,
+                                         (static_cast<double>(y) + 0.5 - middle_y) / half_height) < 1.0
+                                  ? 0.5f
+                                  : 0.0f;
+    return image;
+}
+
+TEST(Shell, OverAnEllipseIsAnEllipsoid) {
+    for (const auto& [width, height] : {std::array{160.0, 160.0}, {240.0, 120.0}}) {
+        const Image field = shell_field(ellipse(width, height), 60.0, 10.0);
+        const double outline =
+            width + 9.0;  // an eleventh of the light is left there after the blur of 6.7 px
+        const auto at = [&](double share) {
+            return static_cast<double>(bilinear(field, 0, static_cast<float>(middle_x + share * width),
+                                                static_cast<float>(middle_y)));
+        };
+        for (const double share : {0.0, 0.3, 0.6, 0.8})
+            EXPECT_NEAR(at(share),
+                        60.0 * std::sqrt(1.0 - share * share * width * width / (outline * outline)), 3.0)
+                << width << ' ' << share;
+        EXPECT_LT(at(1.3), 6.0);
+    }
+}
+
+TEST(Shell, IsNowhereTooSteepAndNothingOverNothing) {
+    for (const double steepest : {0.8, 0.2}) {
+        const Image field = shell_field(ellipse(100.0, 100.0), 90.0, steepest);
+        float slope = 0.0f;
+        for (std::int64_t y = 0; y < field.height; ++y)
+            for (std::int64_t x = 0; x + 1 < field.width; ++x)
+                slope = std::max(slope, std::fabs(*field.at(x + 1, y) - *field.at(x, y)));
+        EXPECT_LE(slope, 1.03 * steepest);
+        EXPECT_GT(slope, 0.5 * steepest);
+    }
+    const Image nothing = shell_field(make_image(320, 200, 1), 60.0, 0.8);
+    EXPECT_EQ(*std::max_element(nothing.pixels.begin(), nothing.pixels.end()), 0.0f);
+}
+
+struct RemnantPlacement {
+    Image brightest = brightest_channel(painted::remnant(640, 400));
+    Placement placement;
+    explicit RemnantPlacement(double clumps = 1.0) {
+        StructureParams params;
+        params.kind = StructureKind::walls;
+        params.depth = 0.26;
+        params.clumps = clumps;
+        placement = make_placement(brightest, params, 64.0, true, 9u);
+        placement.knots = {};
+    }
+};
+
+PlacedBlock dots_about(float x, float y, float reach, std::uint32_t number) {
+    PlacedBlock block;
+    block.count = DepthBlock::size;
+    for (int i = 0; i < block.count; ++i) {
+        const auto id = number * DepthBlock::size + static_cast<std::uint32_t>(i);
+        const auto random = [&](std::uint32_t purpose) {
+            return shared::as_uniform(shared::as_hash(8u, id, 0u, purpose)) - 0.5f;
+        };
+        block.x[i] = x + reach * random(1u);
+        block.y[i] = y + reach * random(2u);
+        block.random[i] = shared::as_hash(8u, id, 0u, 3u);
+    }
+    return block;
+}
+
+// One would look through it into a hollow.
+TEST(Shell, NoPartOfAWallIsBare) {
+    const RemnantPlacement remnant;
+    const BandDots dots = band_dots(make_bands(640)[1], false, remnant.placement)[0];
+    ASSERT_FALSE(dots.glow);
+    for (std::uint32_t i = 0; i < 25; ++i) {
+        PlacedBlock block = dots_about(220.0f + 50.0f * static_cast<float>(i % 5),
+                                       120.0f + 40.0f * static_cast<float>(i / 5), 8.0f, i);
+        place(remnant.placement, dots, block);
+        int in_front = 0;
+        for (int k = 0; k < block.count; ++k) in_front += block.z[k] > 0.0f;
+        EXPECT_GT(in_front, block.count / 12) << i;
+        EXPECT_LT(in_front, block.count * 11 / 12) << i;
+    }
+}
+
+TEST(Shell, GlowFillsItEvenly) {
+    const RemnantPlacement remnant(0.0);  // without clouds
+    const std::vector<Band> bands = make_bands(640);
+    const BandDots dots = band_dots(bands.back(), true, remnant.placement)[0];
+    ASSERT_TRUE(dots.glow);
+    std::array<int, 8> eighths{};
+    for (std::uint32_t i = 0; i < 16; ++i) {
+        PlacedBlock block = dots_about(320.0f, 200.0f, 4.0f, i);
+        place(remnant.placement, dots, block);
+        for (int k = 0; k < block.count; ++k) {
+            const float out = block.z[k] / remnant.placement.relief_at(block.x[k], block.y[k]);
+            ASSERT_LT(std::fabs(out), 1.0f);
+            ++eighths[static_cast<std::size_t>(4.0f * (out + 1.0f))];
+        }
+    }
+    for (const int dots_in : eighths) EXPECT_NEAR(dots_in, 512, 80);
+}
+
+// What is nearly as wide as long is a ball at one place of one wall; a piece of a filament lies along the
+// wall, or filaments would be strings of beads.
+TEST(Shell, OnlyBallsAreKnots) {
+    RemnantPlacement remnant;
+    Placement& placement = remnant.placement;
+    placement.knots.knots = {{320.0f, 200.0f, 2.0f, 1.0f, 1.0f}};
+    placement.knots.owner.resize(640 * 400, 0);
+    placement.knots.weight.resize(640 * 400, 1.0f);
+    placement.knot_z = {0.0f};
+    for (std::int64_t y = 0; y < placement.relief.height; ++y)
+        for (std::int64_t x = 0; x < placement.relief.width; ++x)
+            *placement.relief.at(x, y) = 40.0f + 0.5f * static_cast<float>(x - placement.relief.width / 2);
+    const BandDots dots = band_dots(make_bands(640)[0], false, placement)[0];
+    for (const float ballness : {0.0f, 1.0f}) {
+        placement.knots.knots[0].ballness = ballness;
+        PlacedBlock block = dots_about(320.0f, 200.0f, 12.0f, 1u);
+        place(placement, dots, block);
+        const auto [low, high] = std::minmax_element(block.z, block.z + block.count);
+        if (ballness > 0.5f) {
+            EXPECT_LT(*high - *low, 12.0f);
+        } else {
+            EXPECT_GT(*high - *low, 50.0f);  // on both walls
+        }
+    }
+}
+
+}  // namespace
+}  // namespace astrosplat
