@@ -25,7 +25,7 @@ struct ShadingInputs {
     Look look;
     glm::vec3 axis{0.0f};
     std::uint32_t seed = 0;
-    double falloff_integral = 0.0;
+    double falloff_integral = 0.0, falloff_variance = 0.0;
     ColumnLaw column = ColumnLaw::transmittance;
     bool operator==(const ShadingInputs&) const = default;
 };
@@ -133,8 +133,8 @@ LayerState Pipeline::State::take_layer(const std::string& name, const std::share
 void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Progress& progress) {
     LayerState& layer = layers[index];
     LookInputs inputs = look_inputs(params);
-    const ShadingInputs shading{look_of(params), inputs.axis, inputs.seed, inputs.falloff_integral,
-                                inputs.column};
+    const ShadingInputs shading{look_of(params),         inputs.axis,  inputs.seed, inputs.falloff_integral,
+                                inputs.falloff_variance, inputs.column};
     if (layer.shaded_with == shading) return;
     load_thickness_map(layer, shading.look.thickness);
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;

@@ -80,16 +80,13 @@ void shade_all(const LookRun& run, std::int64_t count, const Progress& progress)
     close_gaps(run.out, kept);
 }
 
-// What match = "picture" multiplies alphas by; empty for others. Before the set's arrays are written over.
-std::vector<float> factors_of(const LookRun& run, const SplatSet& set, const Look& look) {
+// What match = "picture" multiplies by; nothing for others. Before the set's arrays are written over.
+PictureFactors factors_of(const LookRun& run, const SplatSet& set, const Look& look,
+                          const LookInputs& inputs) {
     const bool wanted = look.vertical.match == VerticalAlpha::Match::picture;
-    return wanted && run.uniforms.match != shared_types::MATCH_NONE ? picture_factors(run, set)
-                                                                    : std::vector<float>();
-}
-
-void multiply_alpha(ShadedSplats& shaded, const std::vector<float>& factors) {
-    parallel_each(factors.size(), chunk_size,
-                  [&](std::size_t i) { shaded.alpha[i] = std::min(1.0f, shaded.alpha[i] * factors[i]); });
+    return wanted && run.uniforms.match != shared_types::MATCH_NONE
+               ? picture_factors(run, set, {inputs.falloff_integral, inputs.falloff_variance})
+               : PictureFactors();
 }
 
 // Fills the statistics, if any, of a look that began at `start`.
@@ -112,9 +109,9 @@ void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     make_room(shaded, set.size());
     const LookRun run{LookColumns(set), uniforms, inputs.thickness_map, shaded};
-    const std::vector<float> factors = factors_of(run, set, look);
+    const PictureFactors factors = factors_of(run, set, look, inputs);
     shade_all(run, set.size(), progress);
-    multiply_alpha(shaded, factors);
+    apply_factors(factors, shaded);
     finish(shaded, start, statistics);
 }
 
@@ -127,10 +124,10 @@ ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInpu
     const LookColumns columns(set);  // where the arrays are does not change when they are handed over
     ShadedSplats shaded;
     const LookRun run{columns, uniforms, inputs.thickness_map, shaded};
-    const std::vector<float> factors = factors_of(run, set, look);
+    const PictureFactors factors = factors_of(run, set, look, inputs);
     shaded = take_arrays(set);
     shade_all(run, count, Progress{progress.report, nullptr});
-    multiply_alpha(shaded, factors);
+    apply_factors(factors, shaded);
     drop_splats(set);
     trim(shaded);
     finish(shaded, start, statistics);

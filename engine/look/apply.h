@@ -22,6 +22,7 @@ struct LookInputs {
     glm::vec3 axis{0.0f, 1.0f, 0.0f};  // the layer's thin direction, layer space
     std::uint32_t seed = 1;            // of the layer, never 0 (see resolved_seed)
     double falloff_integral = 1.0;     // of the layer's falloff over the unit disc
+    double falloff_variance = 0.1;     // of it along an axis, square radii; match = "picture" reads it
     ColumnLaw column = ColumnLaw::transmittance;
     const Image* thickness_map = nullptr;  // raw values; must be there when look.thickness.map is set
     bool operator==(const LookInputs&) const = default;

@@ -73,8 +73,8 @@ struct HorizontalAlpha {
 /// sum: the alphas of a column, one splat a lattice plane, add up to alpha; planes lie one lattice step apart
 /// along the axis, and the sum is the mean over all places the surface may have between two of them, 2 reach
 /// / step * Integral p f. Both count only where there are splats: up to max_distance, should reach go beyond.
-/// picture: coverage, where screen shows the picture's light too, and where every small cell of the picture
-/// has its due light from the splats that it happens to have (normalise.h).
+/// picture: coverage, and every small part of a front view has the opacity and the light of the picture
+/// there, whatever the blend, the splats' width, and which of the positions became splats (normalise.h).
 struct VerticalAlpha {
     enum class Shape { none, constant, linear, exponential, s106, curve };
     friend constexpr auto names_of(Shape) {

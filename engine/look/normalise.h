@@ -1,17 +1,33 @@
-// match = "picture": every cell of the picture has the light that it is due, whichever of its positions
-// became splats. In: a set and its look. Out: a factor of alpha for each splat that is kept.
+// match = "picture": a front view shows the light of the picture, whichever of its positions became splats
+// and however wide they are. In: a set and its look. Out: factors of alpha and colour for each splat that is
+// kept.
 #pragma once
 
+#include <glm/vec4.hpp>
 #include <vector>
 
 #include "look/kernel.h"
+#include "look/picture_cells.h"
+#include "splats/shaded_splats.h"
 
 namespace astrosplat {
 
-/// Cells are squares of uv, apart for each mesh, of about 8 splats. The factor of a cell is what its
-/// positions would show on average, the sum of probability * alpha * radius^2, over what those that are kept
-/// show; from 1/4 to 4. One factor for each splat that shade_run keeps, in order of the set. Empty for a set
-/// without uv. Reads the set before its arrays are written over. The same bits with any number of threads.
-std::vector<float> picture_factors(const LookRun& run, const SplatSet& set);
+/// What the layer's falloff looks like from afar.
+struct FalloffMoments {
+    double integral = 1.0;  // over the unit disc
+    double variance = 0.1;  // along an axis, square radii
+};
+
+struct PictureFactors {
+    std::vector<std::uint32_t> cell_of;  // of each splat that shade_run keeps, in order of the set
+    ChannelValues of_cell;               // of alpha, and of alpha * color
+};
+
+/// picture_chart, picture_cells and picture_fit. Empty for a set without u and v. Reads the set before its
+/// arrays are written over. The same bits with any number of threads. Throws InputError for want of memory.
+PictureFactors picture_factors(const LookRun& run, const SplatSet& set, const FalloffMoments& falloff);
+
+/// Multiplies; alphas end at 1.
+void apply_factors(const PictureFactors& factors, ShadedSplats& shaded);
 
 }  // namespace astrosplat

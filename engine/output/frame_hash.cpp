@@ -87,6 +87,9 @@ std::string FrameHasher::file_text(const fs::path& file) {
     return files_.emplace(file, HashedFile{sha256_of_file(file), stamp}).first->second.hash;
 }
 
+// Of the pixels of layers with match = "picture" alone. 2: measured through the splats' footprints.
+constexpr int matched_light_version = 2;
+
 // Pictures that no key names.
 std::string FrameHasher::own_pictures(const LayerParams& layer) {
     std::string text;
@@ -154,6 +157,8 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
         text += own_pictures(layer);
         for (const glm::dvec3& p : source_of(scene_, layer).stars.path)
             text += fmt::format("layer.{}.path = {} {} {}\n", layer.name, p.x, p.y, p.z);
+        if (layer.look.vertical.match == VerticalAlpha::Match::picture)
+            text += fmt::format("layer.{}.matched light = {}\n", layer.name, matched_light_version);
         if (const std::int64_t texels = layer.source.structure.most_texels; texels > 0)
             text += fmt::format("layer.{}.most texels = {}\n", layer.name, texels);
     }

@@ -79,8 +79,8 @@ void describe_vertical(const Describer& d, VerticalAlpha& v) {
     d(v.reach, "reach", "Reach", "scene units", "Where x = 1 for this alone; 0: the layer's reach.",
       at_least(0), slider(0, 10), zero_is("Auto"));
     d(v.match, "match", "Match the picture", "",
-      "Makes the front view show the picture's opacity; picture: its light too, cell by cell; auto: coverage "
-      "for meshes, none for splat files.");
+      "Makes the front view show the picture's opacity; picture: its light too, measured part by part; "
+      "auto: coverage for meshes, none for splat files.");
 }
 
 void describe_radius(const Describer& d, Radius& r) {

@@ -69,6 +69,7 @@ LookInputs look_inputs(const LayerParams& params) {
     inputs.axis = glm::vec3(params.axis);
     inputs.seed = resolved_seed(params.source.seed, params.name);
     inputs.falloff_integral = falloff_integral(params.render.falloff);
+    inputs.falloff_variance = falloff_variance(params.render.falloff);
     inputs.column = column_law(params.render.blend);
     return inputs;
 }

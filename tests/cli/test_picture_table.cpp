@@ -1,5 +1,5 @@
 // What `new` makes of a picture, untouched, against the targets of fidelity: pictures painted by formula at
-// reduced size, and at night real ones where they are present.
+// reduced size, and at night real ones where they are present. Columns matched to their picture: its light.
 #include <cmath>
 
 #include "scene_fixture.h"
@@ -33,6 +33,12 @@ constexpr Target of_most{39.0, 0.98}, of_remnants{36.0, 0.97};
 
 class TableTest : public SceneTest {
   protected:
+    static void expect_flux(const nlohmann::json& flux) {
+        EXPECT_NEAR(flux.at("frame").get<double>(), 1.0, 0.005);
+        EXPECT_NEAR(flux.at("cells_percentile_5").get<double>(), 1.0, 0.02);
+        EXPECT_NEAR(flux.at("cells_percentile_95").get<double>(), 1.0, 0.02);
+    }
+
     void expect_targets(const std::string& picture, const Target& target) {
         const RunResult made = run({"new", picture, "-o", "picture.toml", "--overwrite"});
         ASSERT_EQ(made.code, 0) << made.err;
@@ -44,10 +50,7 @@ class TableTest : public SceneTest {
         EXPECT_GE(front.at("ssim").get<double>(), target.ssim);
         EXPECT_GE(full.at("psnr_db").get<double>(), 36.0);
         EXPECT_GE(full.at("ssim").get<double>(), 0.96);
-        const nlohmann::json& flux = front.at("flux_ratio");
-        EXPECT_NEAR(flux.at("frame").get<double>(), 1.0, 0.005);
-        EXPECT_NEAR(flux.at("cells_percentile_5").get<double>(), 1.0, 0.02);
-        EXPECT_NEAR(flux.at("cells_percentile_95").get<double>(), 1.0, 0.02);
+        expect_flux(front.at("flux_ratio"));
         EXPECT_LE(report.at("side").at("needles_share").get<double>(), 0.05);
     }
 };
@@ -72,6 +75,21 @@ TEST_F(TableTest, APaintedRemnantIsTwoWallsThatReachThem) {
     write_text(folder / "remnant.ppm", field_of(painted::remnant(960, 600)));
     expect_targets("remnant.ppm", of_remnants);
     EXPECT_NE(text_of(folder / "picture.toml").find("kind = \"walls\""), std::string::npos);
+}
+
+TEST_F(TableTest, AMatchedPlaneOfColumnsHasItsPicturesLightUnderEveryBlend) {
+    write_text(folder / "plane.ppm", as_pixmap(painted::nebula(640, 400)));
+    ASSERT_EQ(run({"new", "plane.ppm", "--as", "plane", "-o", "plane.toml"}).code, 0);
+    for (const std::string blend : {"over", "add", "screen"}) {
+        SCOPED_TRACE(blend);
+        const RunResult measured =
+            run({"fidelity", "plane.toml", "-o", "report.json", "--overwrite", "--set",
+                 "layer.plane.source.count=560000", "--set", "layer.plane.look.vertical.match=picture",
+                 "--set", "layer.plane.render.blend=" + blend});
+        ASSERT_EQ(measured.code, 0) << measured.err;
+        for (const char* size : {"front", "full_size"})
+            expect_flux(json("report.json").at(size).at("flux_ratio"));
+    }
 }
 
 // m42 and the grey FITS centre of the Milky Way are not here: .07 and .06 of their points are needles.

@@ -100,6 +100,13 @@ TEST_F(FrameHashTest, MaterialsAndTheirPicturesCount) {
     EXPECT_THROW(check_unchanged(hasher.files()), InputError);
 }
 
+TEST_F(FrameHashTest, OnlyLayersMatchedToTheirPictureSayHowTheyAre) {
+    Scene now = scene();
+    EXPECT_EQ(FrameHasher(now).canonical_text(1).find("matched"), std::string::npos);
+    now.layers[0].look.vertical.match = VerticalAlpha::Match::picture;
+    EXPECT_NE(FrameHasher(now).canonical_text(1).find("layer.stars.matched light = 2\n"), std::string::npos);
+}
+
 TEST_F(FrameHashTest, IsSixtyFourHexDigitsAndStable) {
     EXPECT_EQ(hash(scene()).size(), 64u);
     EXPECT_EQ(hash(scene()), hash(scene()));

@@ -80,7 +80,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
         {"splat_files", {"core", "splats", "splat_files"}},
         {"stars", {"core", "splats", "stars"}},
         {"generate", {"core", "source", "splats", "splat_files", "generate"}},
-        {"look", {"core", "source", "splats", "look"}},
+        {"look", {"core", "image", "source", "splats", "look"}},
         {"camera", {"core", "camera"}},
         {"camera_files", {"core", "camera", "camera_files"}},
         {"render", {"core", "source", "splats", "camera", "render"}},

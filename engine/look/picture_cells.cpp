@@ -1,0 +1,168 @@
+// Each row of blocks is summed by one thread, which takes the positions in the set's order. A set is in the
+// order of its lattice, so a chunk of it lies in few rows and the others pass it by.
+#include "look/picture_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "look/one_splat.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t cells_chunk = 1 << 12;  // positions
+
+// The look without what varies it from place to place.
+LookUniforms unvaried(const LookUniforms& uniforms) {
+    LookUniforms plain = uniforms;
+    plain.noise_count = plain.crop_count = 0;
+    return plain;
+}
+
+bool varies(const LookUniforms& u) {
+    const auto has_effect = [](const shared_types::LookNoise& n) {
+        return n.cull != 0.0f || n.silhouette != 0.0f || n.alpha != 0.0f;
+    };
+    return u.crop_count > 0 || std::any_of(u.noises, u.noises + u.noise_count, has_effect);
+}
+
+struct CellRange {
+    std::int64_t least = 0, most = -1;
+};
+
+class CellSums {
+  public:
+    CellSums(const LookRun& run, const SplatSet& set, const PictureChart& chart, double falloff_integral)
+        : run_(run),
+          set_(set),
+          chart_(chart),
+          plain_(unvaried(run.uniforms)),
+          varies_(varies(run.uniforms)),
+          falloff_integral_(falloff_integral) {}
+
+    PictureCells sums();
+
+  private:
+    void find_ranges();
+    void sum_rows(std::int64_t band);
+    void add(std::int64_t i, std::size_t cell, std::size_t block);
+    void add_wanted(std::size_t cell, double opacity, double matched_depth, const glm::vec3& color);
+
+    const LookRun& run_;
+    const SplatSet& set_;
+    const PictureChart& chart_;
+    const LookUniforms plain_;
+    const bool varies_;
+    const double falloff_integral_;
+    PictureCells cells_;
+    std::vector<CellRange> ranges_;  // of chunks
+};
+
+void CellSums::find_ranges() {
+    const std::int64_t count = set_.size();
+    ranges_.resize(static_cast<std::size_t>((count + cells_chunk - 1) / cells_chunk));
+    parallel_chunks(count, cells_chunk, [&](std::int64_t begin, std::int64_t end, int) {
+        CellRange range{chart_.cells(), -1};
+        for (std::int64_t i = begin; i < end; ++i) {
+            const std::int64_t cell = chart_.cell_of(set_, i);
+            range.least = std::min(range.least, cell), range.most = std::max(range.most, cell);
+        }
+        ranges_[static_cast<std::size_t>(begin / cells_chunk)] = range;
+    });
+}
+
+// Light of a column of splats of the position's own alpha and color, as the blend has it.
+void CellSums::add_wanted(std::size_t cell, double opacity, double matched_depth, const glm::vec3& color) {
+    cells_.wanted[0][cell] += static_cast<float>(opacity);
+    for (int c = 0; c < 3; ++c) {
+        const auto light = static_cast<double>(color[c]);
+        const bool screened = run_.uniforms.match == shared_types::MATCH_SCREEN;
+        const double shown =
+            screened ? 1.0 - static_cast<double>(shared::as_exp(-static_cast<float>(matched_depth * light)))
+                     : opacity * light;
+        cells_.wanted[static_cast<std::size_t>(c) + 1][cell] += static_cast<float>(shown);
+    }
+}
+
+void CellSums::add(std::int64_t i, std::size_t cell, std::size_t block) {
+    const LookUniforms& u = run_.uniforms;
+    const shared::LookOutput look = look_at(run_, u, i);
+    cells_.cell_of[static_cast<std::size_t>(i)] = look.keep ? static_cast<std::uint32_t>(cell) : no_cell;
+    const float alpha =
+        shared::look_horizontal(run_.in.alpha[i], u.alpha_threshold, u.alpha_power, u.alpha_gain);
+    const bool sums = u.match == shared_types::MATCH_LIGHT;
+    const double depth = static_cast<double>(sums ? alpha : shared::look_small_depth(alpha));
+    if (!(depth > 0.0) || PictureChart::on_edge(set_, i)) return;
+    const shared::LookOutput plain = varies_ ? look_at(run_, plain_, i) : look;
+    const auto squared = [](float x) { return static_cast<double>(x) * static_cast<double>(x); };
+    const double in_cells = falloff_integral_ / chart_.blocks[block].cell_area;
+    const double plain_due =
+        static_cast<double>(plain.probability) * static_cast<double>(plain.alpha) * squared(plain.radius);
+    const double opacity =
+        sums ? depth : 1.0 - static_cast<double>(shared::as_exp(-static_cast<float>(depth)));
+    cells_.positions[cell] += 1.0f;
+    add_wanted(cell, opacity, depth, look.color);
+    CoverSums& cover = cells_.cover[block];
+    if (plain.alpha < 1.0f) cover.due += plain_due * in_cells / depth, cover.unclamped += 1.0;
+    if (varies_) {
+        cells_.plain[cell] += static_cast<float>(plain_due);
+        cells_.varied[cell] += static_cast<float>(static_cast<double>(look.probability) *
+                                                  static_cast<double>(look.alpha) * squared(look.radius));
+    }
+    if (!look.keep) return;
+    const double shown = static_cast<double>(look.alpha) * squared(look.radius) * in_cells;
+    cells_.depth[0][cell] += static_cast<float>(shown);
+    for (int c = 0; c < 3; ++c)
+        cells_.depth[static_cast<std::size_t>(c) + 1][cell] +=
+            static_cast<float>(shown * static_cast<double>(look.color[c]));
+    cells_.squares[cell] += static_cast<float>(shown * shown);
+}
+
+// A band is a row of blocks of one mesh.
+void CellSums::sum_rows(std::int64_t band) {
+    const std::int64_t mesh = band / chart_side, block_row = band % chart_side, columns = chart_.columns;
+    const std::int64_t first =
+        (mesh * chart_.rows + PictureChart::block_begin(block_row, chart_.rows)) * columns;
+    const std::int64_t end =
+        (mesh * chart_.rows + PictureChart::block_begin(block_row + 1, chart_.rows)) * columns;
+    for (std::size_t chunk = 0; chunk < ranges_.size(); ++chunk) {
+        if (ranges_[chunk].most < first || ranges_[chunk].least >= end) continue;
+        const std::int64_t begin = static_cast<std::int64_t>(chunk) * cells_chunk;
+        for (std::int64_t i = begin; i < std::min(begin + cells_chunk, set_.size()); ++i) {
+            const std::int64_t cell = chart_.cell_of(set_, i);
+            if (cell < first || cell >= end) continue;
+            const std::int64_t block = band * chart_side + PictureChart::block_at(cell % columns, columns);
+            add(i, static_cast<std::size_t>(cell), static_cast<std::size_t>(block));
+        }
+    }
+}
+
+PictureCells CellSums::sums() {
+    const auto zero = [&](CellValues& values) {
+        values.assign(static_cast<std::size_t>(chart_.cells()), 0.0f);
+    };
+    for (std::size_t c = 0; c < picture_channels; ++c) zero(cells_.depth[c]), zero(cells_.wanted[c]);
+    zero(cells_.squares), zero(cells_.positions);
+    if (varies_) zero(cells_.varied), zero(cells_.plain);
+    cells_.cover.resize(chart_.blocks.size());
+    cells_.cell_of.resize(static_cast<std::size_t>(set_.size()));
+    find_ranges();
+    parallel_for(chart_.meshes * chart_side, [&](std::int64_t band, int) { sum_rows(band); });
+    return std::move(cells_);
+}
+
+}  // namespace
+
+std::int64_t picture_cells_bytes(const PictureChart& chart, std::int64_t positions) {
+    constexpr std::int64_t values = 2 * static_cast<std::int64_t>(picture_channels) + 4;
+    return chart.cells() * values * static_cast<std::int64_t>(sizeof(float)) +
+           positions * static_cast<std::int64_t>(sizeof(std::uint32_t));
+}
+
+PictureCells picture_cells(const LookRun& run, const SplatSet& set, const PictureChart& chart,
+                           double falloff_integral) {
+    return CellSums(run, set, chart, falloff_integral).sums();
+}
+
+}  // namespace astrosplat
