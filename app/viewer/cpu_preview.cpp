@@ -5,7 +5,8 @@
 namespace astrosplat {
 
 const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
-                              const Environment* environment, int width, int height, float pixel_filter) {
+                              const Environment* environment, int width, int height, float pixel_filter,
+                              const Progress& progress) {
     std::vector<RenderLayer> visible;
     for (const PreviewLayer& layer : layers) {
         visible.push_back(layer.layer);
@@ -19,7 +20,7 @@ const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Cam
         draw_backdrop(*environment, camera, width, height, backdrop_);
         settings.backdrop = &backdrop_;
     }
-    frame_ = render(visible, camera, nullptr, settings, {}, &cache_).beauty;
+    frame_ = render(visible, camera, nullptr, settings, progress, &cache_).beauty;
     return frame_;
 }
 

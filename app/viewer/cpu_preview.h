@@ -12,9 +12,10 @@ namespace astrosplat {
 class CpuPreview {
   public:
     /// Renders the layers' splats into an image that stays valid until the next call. Splats are not split up
-    /// by level of detail.
+    /// by level of detail. Throws Cancelled.
     const Image& draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
-                      const Environment* environment, int width, int height, float pixel_filter);
+                      const Environment* environment, int width, int height, float pixel_filter,
+                      const Progress& progress = {});
 
   private:
     RenderCache cache_;

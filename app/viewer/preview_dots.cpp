@@ -34,12 +34,14 @@ PreviewDots::Layer& PreviewDots::layer_at(std::size_t index, const LoadedLayer& 
 }
 
 void PreviewDots::merge(Layer& layer, const PreviewLayer& wanted) {
-    if (!layer.dots || !(layer.dots->render == wanted.layer.render)) layer.dots.emplace(wanted.layer.render);
+    if (!layer.dots || !(layer.dots->render == wanted.layer.render))
+        layer.dots = std::make_shared<const DotSettings>(wanted.layer.render);
     Shading shading = shading_of(wanted);
     if (layer.shading == shading) return;
     layer.shading.reset();  // an exception below must not leave old splats under a new look
     layer.of_whole.reset();
-    layer.of_sample = merge_splats(layer.sample, apply_look(*layer.sample.set, shading.look, shading.inputs));
+    layer.of_sample = std::make_shared<const MergedSplats>(
+        merge_splats(layer.sample, apply_look(*layer.sample.set, shading.look, shading.inputs)));
     layer.shading = std::move(shading);
 }
 
@@ -47,7 +49,8 @@ void PreviewDots::show_stars(Layer& layer, const PreviewLayer& wanted) {
     Shading shading = shading_of(wanted);
     if (layer.shading == shading) return;
     layer.shading.reset();
-    apply_look(*layer.sample.set, shading.look, shading.inputs, layer.splats);
+    layer.splats =
+        std::make_shared<const ShadedSplats>(apply_look(*layer.sample.set, shading.look, shading.inputs));
     layer.shading = std::move(shading);
 }
 
@@ -69,15 +72,15 @@ void PreviewDots::cut(std::vector<PreviewLayer>& layers,
         const Layer& layer = layers_[i];
         if (layers[i].layer.stars) continue;
         places.push_back(i);
-        seen.push_back({&layer.best(), &*layer.dots,
+        seen.push_back({layer.best().get(), layer.dots.get(),
                         make_projection(layers[i].layer, static_cast<std::uint16_t>(i), camera, frame)});
     }
     std::vector<ShadedSplats> splats = cut_splats(seen, settings);
     for (std::size_t n = 0; n < places.size(); ++n) {
-        layers_[places[n]].splats = std::move(splats[n]);
+        layers_[places[n]].splats = std::make_shared<const ShadedSplats>(std::move(splats[n]));
         layers[places[n]].layer.render.opacity = 1.0f;
     }
-    for (std::size_t i = 0; i < layers.size(); ++i) layers[i].layer.splats = &layers_[i].splats;
+    for (std::size_t i = 0; i < layers.size(); ++i) layers[i].layer.splats = layers_[i].splats.get();
 }
 
 std::optional<SumsRequest> PreviewDots::missing() const {
@@ -99,11 +102,22 @@ bool PreviewDots::refine() {
     return found->error.empty();
 }
 
+std::vector<CutSource> PreviewDots::sources() const {
+    std::vector<CutSource> sources;
+    for (const Layer& layer : layers_) {
+        if (layer.sample.tree)
+            sources.push_back({layer.best(), layer.dots, nullptr});
+        else
+            sources.push_back({nullptr, nullptr, layer.splats});
+    }
+    return sources;
+}
+
 std::vector<double> PreviewDots::kept() const {
     std::vector<double> shares;
     for (const Layer& layer : layers_) {
         const auto rows = static_cast<double>(std::max<std::int64_t>(1, layer.sample.set->size()));
-        const std::int64_t seen = layer.sample.tree ? layer.of_sample.splats.size() : layer.splats.size();
+        const std::int64_t seen = layer.sample.tree ? layer.of_sample->splats.size() : layer.splats->size();
         shares.push_back(static_cast<double>(seen) / rows);
     }
     return shares;

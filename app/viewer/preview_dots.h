@@ -28,6 +28,13 @@ struct FoundSums {
     std::string error;
 };
 
+/// What a layer is cut from, or, of stars, all of its splats. Stays as it is.
+struct CutSource {
+    std::shared_ptr<const MergedSplats> merged;  // null: stars
+    std::shared_ptr<const DotSettings> dots;
+    std::shared_ptr<const ShadedSplats> stars;
+};
+
 class PreviewDots {
   public:
     PreviewDots();
@@ -41,6 +48,8 @@ class PreviewDots {
     bool lacks_sums() const { return missing().has_value(); }
     /// Goes on making them in the background. True: there are more of them now.
     bool refine();
+    /// What the last cut was made of, for another one of more dots.
+    std::vector<CutSource> sources() const;
     /// Of each layer the share of its splats that the look keeps, 0..1.
     std::vector<double> kept() const;
 
@@ -48,13 +57,14 @@ class PreviewDots {
     struct Layer {
         MergeSource sample, whole;
         std::optional<Shading> shading;  // of the sums there are
-        MergedSplats of_sample;
+        std::shared_ptr<const MergedSplats> of_sample;
         std::shared_ptr<const FoundSums> of_whole;  // with an error: there will be none
-        std::optional<DotSettings> dots;
-        ShadedSplats splats;
+        std::shared_ptr<const DotSettings> dots;
+        std::shared_ptr<const ShadedSplats> splats;
 
-        const MergedSplats& best() const {
-            return of_whole && of_whole->error.empty() ? of_whole->merged : of_sample;
+        std::shared_ptr<const MergedSplats> best() const {
+            if (of_whole && of_whole->error.empty()) return {of_whole, &of_whole->merged};
+            return of_sample;
         }
     };
 

@@ -17,7 +17,10 @@ bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr
     return (a ? set_of(*a) : nullptr) == (b ? set_of(*b) : nullptr);
 }
 
-constexpr double rest_s = 0.3;  // without a change, before the final frame begins
+constexpr double rest_s = 0.3;       // without a change, before the final frame begins
+constexpr double step_rest_s = 0.1;  // and before the first finer preview does
+constexpr double step_s = 0.4;       // such a preview takes at most
+constexpr double quick_s = 0.3;      // final frames that take less come without
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
 
@@ -172,12 +175,73 @@ void ViewFrame::draw_preview(double now) {
         canvas_texture_.upload(*drawn_);
         texture_ = canvas_texture_.handle();
     }
+    draw_s_ = seconds_since(start);
     pace_.drew(milliseconds_since(start));
     note_time(milliseconds_since(start), target_ms, whole_sets);
     status_.state = ViewFrameState::preview;
     status_.width = request_->width;
     status_.height = request_->height;
     status_.error.clear();
+}
+
+/// Steps of finer previews come before the final frame, where that takes its time.
+bool ViewFrame::takes_steps(bool hurry) const {
+    const bool quick = final_s_ >= 0.0 && final_s_ < quick_s;
+    return !hurry && !quick && !draws_by_opengl() && choice_.share == 0.0f && share_of_step(step_ + 1) > 0.0;
+}
+
+/// Begins the next step, or passes it over where it would show little more. False: none is left.
+bool ViewFrame::step_is_due(double now) {
+    if (now - changed_at_ < step_rest_s) return true;
+    const double most_s = choice_.splats > 0 ? 0.0 : step_s;
+    for (++step_; share_of_step(step_) > 0.0; ++step_)
+        if (const std::int64_t dots = dots_of_step(step_, status_.total, status_.shown, draw_s_, most_s)) {
+            begin_step(dots);
+            return true;
+        }
+    return false;
+}
+
+void ViewFrame::begin_step(std::int64_t dots) {
+    const PreviewView view = preview_view();
+    FinerRequest wanted;
+    wanted.number = finer_request_.number + 1;
+    for (const PreviewLayer& layer : layers_) wanted.layers.push_back(layer.layer);
+    for (std::size_t n = 0; n < places_.size(); ++n)
+        wanted.layers[n].render = render_layer(request_->scene.layers[places_[n]]).render;
+    wanted.sources = dots_.sources();
+    wanted.camera = view.camera;
+    wanted.environment = environment_;
+    wanted.cut.budget = dots;
+    wanted.cut.width = view.width;
+    wanted.cut.height = view.height;
+    wanted.pixel_filter = view.pixel_filter;
+    finer_.want(wanted);
+    finer_request_.number = wanted.number;
+    stepping_ = true;
+}
+
+/// False: it is still on its way.
+bool ViewFrame::take_step() {
+    const std::shared_ptr<const FinerFound> found = finer_.found(finer_request_);
+    if (!found) return false;
+    stepping_ = false;
+    if (!found->error.empty()) return true;
+    finer_image_ = found->image;
+    finer_.forget();
+    drawn_ = &finer_image_;
+    canvas_texture_.upload(finer_image_);
+    texture_ = canvas_texture_.handle();
+    status_.shown = found->shown;
+    draw_s_ = found->seconds;
+    ++version_;
+    return true;
+}
+
+void ViewFrame::end_steps() {
+    if (stepping_) finer_.forget();
+    stepping_ = false;
+    step_ = 0;
 }
 
 void ViewFrame::begin_final() {
@@ -215,6 +279,7 @@ void ViewFrame::take_final() {
     status_.error = outcome.error;
     if (outcome.state == FinalFrame::State::done) {
         status_.state = ViewFrameState::final;
+        final_s_ = outcome.seconds;
         refine();  // for when the hand moves again
     }
     if (outcome.state == FinalFrame::State::failed) status_.state = ViewFrameState::failed;
@@ -229,6 +294,7 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
     if (changed || fuller || (gl_ && gl_->sorting())) {
         final_.cancel();
         final_started_ = false;
+        end_steps();
         if (changed) changed_at_ = now;
         request_ = request;
         choice_ = choice;
@@ -244,6 +310,8 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
     if (status_.state == ViewFrameState::failed) return;
     if (!final_started_) {
         if (files_->loading()) return;
+        if (stepping_ && !take_step()) return;
+        if (settle && !dots_.lacks_sums() && takes_steps(hurry) && step_is_due(now)) return;
         if (settle && (hurry || now - changed_at_ >= rest_s)) begin_final();
     } else if (status_.state == ViewFrameState::refining) {
         take_final();
@@ -260,7 +328,11 @@ Image ViewFrame::read() const {
     return image ? *image : gl_->read();
 }
 
-double ViewFrame::due(double now) const { return std::max(0.0, changed_at_ + rest_s - now); }
+double ViewFrame::due(double now) const {
+    constexpr double soon_s = 0.02;  // steps end by themselves
+    if (stepping_ || takes_steps(false)) return soon_s;
+    return std::max(0.0, changed_at_ + rest_s - now);
+}
 
 bool ViewFrame::exact() const {
     const bool lacks_sums = choice_.refined && !draws_whole_sets() && dots_.lacks_sums();

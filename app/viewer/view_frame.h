@@ -16,6 +16,7 @@
 #include "scene/scene.h"
 #include "viewer/cpu_preview.h"
 #include "viewer/final_frame.h"
+#include "viewer/finer_preview.h"
 #include "viewer/layers_at_pixel.h"
 #include "viewer/picture_files.h"
 #include "viewer/preview_budget.h"
@@ -96,6 +97,11 @@ class ViewFrame {
     bool environment_arrived();
     bool previews_arrived(const ViewRequest& now) const;
     void draw_preview(double now);
+    bool takes_steps(bool hurry) const;
+    bool step_is_due(double now);
+    void begin_step(std::int64_t dots);
+    bool take_step();
+    void end_steps();
     void take_final();
     void begin_final();
 
@@ -109,6 +115,13 @@ class ViewFrame {
     PreviewBudget budget_;
     FramePace pace_;
     FinalFrame final_;
+    FinerPreview finer_;
+    FinerRequest finer_request_;  // its number; the rest is with finer_
+    int step_ = 0;                // of finer previews, the last one begun
+    bool stepping_ = false;       // it is on its way
+    double draw_s_ = 0.0;         // the last preview or step took so long
+    double final_s_ = -1.0;       // the last final frame; below 0: there was none
+    Image finer_image_;
     bool final_started_ = false;
     double changed_at_ = 0.0;
     ImageTexture canvas_texture_;
