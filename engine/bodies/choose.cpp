@@ -159,6 +159,17 @@ StructureChoice choose_structure(const Image& light) {
                                        : "its light goes on to the picture's edges"};
 }
 
+glm::dvec2 subject_of(const Image& light) {
+    const glm::dvec2 middle(0.5);
+    if (light.width < 16 || light.height < 16) return middle;
+    const Image small = small_copy(light);
+    const Image brightest = brightest_channel(small);
+    if (!(*std::max_element(brightest.pixels.begin(), brightest.pixels.end()) > 0.0f)) return middle;
+    const Place place = brightest_place(small);
+    return {(static_cast<double>(place.x) + 0.5) / static_cast<double>(small.width),
+            (static_cast<double>(place.y) + 0.5) / static_cast<double>(small.height)};
+}
+
 double lit_share_of_rim(const Image& light) {
     const Image brightest = brightest_channel(light);
     const auto rim = static_cast<std::int64_t>(rim_share * static_cast<double>(light.width));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <string_view>
 #include <vector>
@@ -85,7 +86,7 @@ void tilt(double distance, double exposure, std::vector<CameraKeyframe>& keyfram
     }
 }
 
-// The close pass of a flight and what comes after it.
+// The close pass of a flight, seen from what it passes by, and what comes after it.
 struct CloseViews {
     glm::dvec3 close, leaving;
     double away_height;  // scene units
@@ -96,25 +97,32 @@ struct CloseViews {
 // disk or a shell is seen the more of it shines in each pixel: the exposure goes down with the camera, or it
 // would burn out.
 CloseViews close_views(double distance, StructureKind kind) {
-    if (kind == StructureKind::disk) return {{1.5, 1.0, 2.9}, {-1.2, 0.5, 0.55 * distance}, 0.35, -1.0};
+    if (kind == StructureKind::disk) return {{1.0, 1.0, 2.7}, {-1.2, 0.5, 0.55 * distance}, 0.35, -1.0};
     if (kind == StructureKind::walls)
-        return {{1.9, 2.3, 3.3}, {-1.2, 2.2, 0.6 * distance}, 0.3 * distance, -0.6};
-    return {{1.5, 1.6, 2.9}, {-1.2, 2.2, 0.55 * distance}, 0.42 * distance, 0.0};
+        return {{1.4, 2.3, 3.1}, {-1.2, 2.2, 0.6 * distance}, 0.3 * distance, -0.6};
+    return {{1.0, 1.6, 2.7}, {-1.2, 2.2, 0.55 * distance}, 0.42 * distance, 0.0};
 }
 
-// Ten seconds at 24 frames/s: the front, a slow tilt, a close pass, and on: to the edge of a disk, else up
-// and away.
-std::vector<CameraKeyframe> flight(double distance, StructureKind kind) {
+// Ten seconds at 24 frames/s: the front, a slow tilt, a pass close by the subject, and on: to the edge of a
+// disk, else up and away.
+std::vector<CameraKeyframe> flight(double distance, StructureKind kind, const glm::dvec3& subject) {
     const CloseViews views = close_views(distance, kind);
     const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
     std::vector<CameraKeyframe> keyframes;
     tilt(distance, 0.4 * views.darker, keyframes);
     keyframes.insert(keyframes.begin(), keyframes.front());
     keyframes.front().frame = 1;
-    keyframes.push_back({160, views.close, {0.5, 0.0, 0.2}, above, 1.1 * views.darker});
-    keyframes.push_back({205, views.leaving, {0.1, 0.0, 0.0}, above, 0.9 * views.darker});
+    keyframes.push_back({160, subject + views.close, subject, above, 1.1 * views.darker});
+    keyframes.push_back({205, 0.5 * subject + views.leaving, 0.5 * subject, above, 0.9 * views.darker});
     keyframes.push_back({240, {-2.4, views.away_height, 0.9 * distance}, middle, above, 0.5 * views.darker});
     return keyframes;
+}
+
+// In scene units on the plane, no nearer to the picture's edges than a fifth of its sides.
+glm::dvec3 subject_in_scene(const PictureScene& scene, double height) {
+    const double width = height * static_cast<double>(scene.width_px) / static_cast<double>(scene.height_px);
+    const glm::dvec2 from_middle = glm::clamp(scene.subject - 0.5, glm::dvec2(-0.3), glm::dvec2(0.3));
+    return {from_middle.x * width, 0.0, from_middle.y * height};
 }
 
 std::string text_of(double value) { return fmt::format("{:.3g}", value + 0.0); }  // 0, not -0
@@ -185,10 +193,9 @@ std::string extent_of(StructureKind structure) {
 // pixels fades within its own edges: a margin would need too much memory.
 double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
-    const bool disk = scene.structure == StructureKind::disk, sheet = scene.structure == StructureKind::sheet;
-    const bool goes_on = scene.lit_rim > (sheet ? 0.5 : 0.1);
-    if (!goes_on || scene.width_px * scene.height_px > most_px) return 0.0;
-    return disk ? 0.08 : 0.05;
+    constexpr double lit = 0.1;
+    if (scene.lit_rim <= lit || scene.width_px * scene.height_px > most_px) return 0.0;
+    return scene.structure == StructureKind::disk ? 0.08 : 0.05;
 }
 
 }  // namespace
@@ -203,6 +210,7 @@ PictureScene picture_scene(const std::filesystem::path& image, std::optional<Str
                        reduced ? texture.file_height : texture.image.height};
     const Image light = picture_light(texture, 0.0).light;
     scene.lit_rim = lit_share_of_rim(light);
+    scene.subject = subject_of(light);
     why.clear();
     if (structure) {
         scene.structure = *structure;
@@ -235,7 +243,9 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height, margin))),
         fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
         fmt::arg("extent", extent_of(scene.structure)), fmt::arg("opacity", opacity_of(scene.structure)));
-    return scene.film ? text + animation_text(flight(distance, scene.structure)) : text;
+    return scene.film
+               ? text + animation_text(flight(distance, scene.structure, subject_in_scene(scene, height)))
+               : text;
 }
 
 }  // namespace astrosplat

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/vec2.hpp>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,8 @@ struct PictureScene {
     StructureKind structure = StructureKind::disk;
     double lit_rim = 0.0;  // share of its rim beyond which what it shows goes on, as far as one can see
     bool film = false;     // with a camera move of ten seconds
+    glm::dvec2 subject{
+        0.5};  // that it passes close by, from the top left corner in shares of width and height
 };
 
 /// Reads the picture, for its size and, unless `structure` is given, to choose one; `why` then says why in
