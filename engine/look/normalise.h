@@ -19,8 +19,9 @@ struct FalloffMoments {
 };
 
 struct PictureFactors {
-    std::vector<std::uint32_t> cell_of;  // of each splat that shade_run keeps, in order of the set
-    ChannelValues of_cell;               // of alpha, and of alpha * color
+    std::vector<std::uint32_t>
+        cell_of;            // of each splat that shade_run keeps, in order of the set, or beyond_cells
+    ChannelValues of_cell;  // of alpha, and of alpha * color
 };
 
 /// picture_chart, picture_cells and picture_fit. Empty for a set without u and v. Reads the set before its

@@ -88,12 +88,14 @@ void CellSums::add_wanted(std::size_t cell, double opacity, double matched_depth
 void CellSums::add(std::int64_t i, std::size_t cell, std::size_t block) {
     const LookUniforms& u = run_.uniforms;
     const shared::LookOutput look = look_at(run_, u, i);
-    cells_.cell_of[static_cast<std::size_t>(i)] = look.keep ? static_cast<std::uint32_t>(cell) : no_cell;
+    const bool beyond = PictureChart::on_edge(set_, i);
+    const std::uint32_t kept_in = beyond ? beyond_cells : static_cast<std::uint32_t>(cell);
+    cells_.cell_of[static_cast<std::size_t>(i)] = look.keep ? kept_in : no_cell;
     const float alpha =
         shared::look_horizontal(run_.in.alpha[i], u.alpha_threshold, u.alpha_power, u.alpha_gain);
     const bool sums = u.match == shared_types::MATCH_LIGHT;
     const double depth = static_cast<double>(sums ? alpha : shared::look_small_depth(alpha));
-    if (!(depth > 0.0) || PictureChart::on_edge(set_, i)) return;
+    if (!(depth > 0.0) || beyond) return;
     const shared::LookOutput plain = varies_ ? look_at(run_, plain_, i) : look;
     const auto squared = [](float x) { return static_cast<double>(x) * static_cast<double>(x); };
     const double in_cells = falloff_integral_ / chart_.blocks[block].cell_area;

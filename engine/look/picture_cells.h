@@ -16,7 +16,8 @@ namespace astrosplat {
 inline constexpr std::size_t picture_channels = 4;
 using ChannelValues = std::array<CellValues, picture_channels>;
 
-inline constexpr std::uint32_t no_cell = 0xffffffffu;
+/// In place of a cell: not a splat; one beyond an edge of the picture, whose light is no cell's.
+inline constexpr std::uint32_t no_cell = 0xffffffffu, beyond_cells = 0xfffffffeu;
 
 /// Sums over the positions of a block.
 struct CoverSums {
@@ -33,7 +34,7 @@ struct PictureCells {
     /// Expected depth as the look's noise and crops leave it, and without them. Empty where it has none.
     CellValues varied, plain;
     std::vector<CoverSums> cover;        // of each block
-    std::vector<std::uint32_t> cell_of;  // of each position; no_cell: not a splat
+    std::vector<std::uint32_t> cell_of;  // of each position, or one of the two above
 };
 
 /// Memory that a chart's sums take, bytes.
