@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gui/panel/row_sketches.h"
 #include "gui/panel/tab_sections.h"
 
 namespace astrosplat::panel {
@@ -35,6 +36,42 @@ TEST(PanelStates, SayWhatALookDoes) {
     EXPECT_EQ(state_of("Colour", "[layer.look.grade]\ngain = 2.0\n"), "changed");
     EXPECT_EQ(state_of("Opacity at soft edges", ""), "off");
     EXPECT_EQ(state_of("Opacity at soft edges", "[layer.look.alpha]\npower = 2.0\n"), "power 2");
+}
+
+/// What stands in place of this key's 0 for a layer of which the window knows this.
+std::string zero_of(const std::string& key, const LayerStatus& layer) {
+    Document document = Document::untitled(R"(astrosplat = 1
+[[layer]]
+name = "dust"
+[layer.source]
+meshes = [ { mesh = "plane", texture = "dust.png" } ]
+)",
+                                           "/nowhere/scene.toml");
+    ViewState view;
+    Status status;
+    status.layers = {layer};
+    Commands commands;
+    Memory memory;
+    std::vector<DrawnRow> rows;
+    describe_current(memory, document, 1.0);
+    Context context{document, view, status, commands, memory, rows};
+    return zero_in_words(context, find(context, key)->spec);
+}
+
+TEST(PanelStates, ZerosThatAreNoAmountSayWhatIsUsed) {
+    LayerStatus layer;
+    EXPECT_EQ(zero_of("layer.dust.source.max_distance", layer), "Auto") << "as long as nobody knows";
+    layer.radius_min = 0.0165;
+    layer.histograms = [] {
+        auto histograms = std::make_shared<LayerHistograms>();
+        histograms->max_distance = 0.25;
+        return histograms;
+    }();
+    EXPECT_EQ(zero_of("layer.dust.source.max_distance", layer), "Auto (0.250)");
+    EXPECT_EQ(zero_of("layer.dust.look.radius.min", layer), "Auto (0.0165)");
+    EXPECT_EQ(zero_of("layer.dust.look.reach", layer), "Auto (0.250)");
+    layer.stale = true;  // the set is that of another distance
+    EXPECT_EQ(zero_of("layer.dust.source.max_distance", layer), "Auto");
 }
 
 }  // namespace

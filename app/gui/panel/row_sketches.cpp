@@ -141,6 +141,9 @@ std::string zero_in_words(const Context& context, const ParameterSpec& spec) {
         used = spec.generic_key == "layer.look.radius.min" ? status.radius_min : status.radius_max;
     } else if (spec.generic_key == "layer.look.reach" || spec.generic_key == "layer.look.vertical.reach") {
         used = reach_of(context);
+    } else if (spec.generic_key == "layer.source.max_distance") {
+        const LayerStatus& status = context.layer_status();
+        if (status.histograms && !status.stale) used = status.histograms->max_distance;
     } else if (spec.generic_key == "layer.source.seed") {
         const std::uint32_t seed = resolved_seed(0, context.layer().name);
         return fmt::format("{} ({})", spec.zero, seed);
