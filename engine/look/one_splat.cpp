@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "look/shared_look.h"
+
 namespace astrosplat {
 namespace {
 
@@ -23,7 +25,7 @@ glm::vec3 map_value(const Image& map, const glm::vec2& uv) {
 
 }  // namespace
 
-shared::LookOutput look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t i) {
+OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t i) {
     const LookColumns& in = run.in;
     shared::LookInput s{};
     s.position = in.position[i];
@@ -34,7 +36,8 @@ shared::LookOutput look_at(const LookRun& run, const LookUniforms& uniforms, std
     s.map_value = uniforms.stop_count > 1 ? map_value(*run.map, in.uv[i]) : glm::vec3(0.0f);
     s.id_low = static_cast<std::uint32_t>(in.id[i]);
     s.id_high = static_cast<std::uint32_t>(in.id[i] >> 32);
-    return shared::look_splat(uniforms, s);
+    const shared::LookOutput look = shared::look_splat(uniforms, s);
+    return {look.keep, look.probability, look.color, look.alpha, look.radius};
 }
 
 }  // namespace astrosplat

@@ -3,13 +3,20 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec3.hpp>
 
 #include "look/kernel.h"
-#include "look/shared_look.h"
 
 namespace astrosplat {
 
+struct OneSplat {
+    bool keep = false;
+    float probability = 0.0f;  // of being kept
+    glm::vec3 color{0.0f};
+    float alpha = 0.0f, radius = 0.0f;
+};
+
 /// Under `uniforms`, which need not be the run's own.
-shared::LookOutput look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t i);
+OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t i);
 
 }  // namespace astrosplat

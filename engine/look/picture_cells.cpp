@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "look/one_splat.h"
+#include "look/shared_look.h"
 
 namespace astrosplat {
 namespace {
@@ -87,7 +88,7 @@ void CellSums::add_wanted(std::size_t cell, double opacity, double matched_depth
 
 void CellSums::add(std::int64_t i, std::size_t cell, std::size_t block) {
     const LookUniforms& u = run_.uniforms;
-    const shared::LookOutput look = look_at(run_, u, i);
+    const OneSplat look = look_at(run_, u, i);
     const bool beyond = PictureChart::on_edge(set_, i);
     const std::uint32_t kept_in = beyond ? beyond_cells : static_cast<std::uint32_t>(cell);
     cells_.cell_of[static_cast<std::size_t>(i)] = look.keep ? kept_in : no_cell;
@@ -96,7 +97,7 @@ void CellSums::add(std::int64_t i, std::size_t cell, std::size_t block) {
     const bool sums = u.match == shared_types::MATCH_LIGHT;
     const double depth = static_cast<double>(sums ? alpha : shared::look_small_depth(alpha));
     if (!(depth > 0.0) || beyond) return;
-    const shared::LookOutput plain = varies_ ? look_at(run_, plain_, i) : look;
+    const OneSplat plain = varies_ ? look_at(run_, plain_, i) : look;
     const auto squared = [](float x) { return static_cast<double>(x) * static_cast<double>(x); };
     const double in_cells = falloff_integral_ / chart_.blocks[block].cell_area;
     const double plain_due =

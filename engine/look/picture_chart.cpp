@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "look/one_splat.h"
+#include "look/shared_look.h"
 #include "look/surface_metric.h"
 
 namespace astrosplat {
@@ -39,7 +40,7 @@ std::vector<SurfaceSamples> sampled(const LookRun& run, const SplatSet& set, std
         const auto low = static_cast<std::uint32_t>(from), high = static_cast<std::uint32_t>(from >> 32);
         const std::int64_t i = from + shared::as_hash(1u, low, high, purpose_sample) % step;
         if (PictureChart::on_edge(set, i)) continue;
-        const shared::LookOutput look = look_at(run, run.uniforms, i);
+        const OneSplat look = look_at(run, run.uniforms, i);
         const glm::vec2 uv = set.uv[i];
         const std::int64_t row = place_along(uv.y, chart_side), column = place_along(uv.x, chart_side);
         const double r2 = static_cast<double>(look.radius) * static_cast<double>(look.radius);
