@@ -10,7 +10,7 @@
 #include "core/clock.h"
 #include "core/text.h"
 #include "look/apply.h"
-#include "look/gaussians.h"
+#include "look/view_dependent.h"
 #include "mean_frame.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"

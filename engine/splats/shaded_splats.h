@@ -22,7 +22,7 @@ struct ShadedSplats {
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
 
-/// Calls visit(array) for all but stretch, which look/gaussians.h adds.
+/// Calls visit(array) for all but stretch, which look/view_dependent.h adds.
 template <class Visit>
 void for_each_array(ShadedSplats& splats, const Visit& visit) {
     visit(splats.position);

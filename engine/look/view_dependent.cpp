@@ -1,4 +1,4 @@
-#include "look/gaussians.h"
+#include "look/view_dependent.h"
 
 #include <cassert>
 #include <cmath>
