@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "gltf/gltf_file.h"
+#include "camera_files/gltf_buffers.h"
 
 namespace astrosplat {
 

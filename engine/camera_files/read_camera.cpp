@@ -6,6 +6,7 @@
 #include "camera_files/gltf.h"
 #include "camera_files/recordings.h"
 #include "camera_files/transforms_json.h"
+#include "camera_files/usda_read.h"
 #include "core/error.h"
 #include "core/text.h"
 
@@ -20,7 +21,8 @@ struct Format {
 const std::vector<Format>& formats() {
     static const std::vector<Format> all{{".chan", read_chan},          {".gsc", read_gaia_sky},
                                          {".osrectxt", read_openspace}, {".gltf", read_gltf},
-                                         {".glb", read_gltf},           {".json", read_transforms_json}};
+                                         {".glb", read_gltf},           {".json", read_transforms_json},
+                                         {".usda", read_usda},          {".usd", read_usda}};
     return all;
 }
 

@@ -9,6 +9,7 @@
 
 #include "camera_files/gltf.h"
 #include "camera_files/read_camera.h"
+#include "camera_files/usda.h"
 #include "fuzz/targets.h"
 #include "scene/csv_tracks.h"
 
@@ -30,6 +31,7 @@ std::string ending_of(std::string_view bytes) {
     const auto has = [&](std::string_view part) { return bytes.find(part) != std::string_view::npos; };
     if (bytes.starts_with("glTF")) return ".glb";
     if (bytes.starts_with("{")) return has("transform_matrix") ? ".json" : ".gltf";
+    if (bytes.starts_with("#usda")) return ".usda";
     if (bytes.starts_with("OpenSpace")) return ".osrectxt";
     if (bytes.starts_with("frame")) return ".csv";
     return has("1548767330626") ? ".gsc" : ".chan";
@@ -76,6 +78,13 @@ std::vector<std::string> camera_seeds() {
         "frame,camera.position.x,camera.position.y,camera.position.z,camera.fov\n1,0,0,9,40\n2,1,0,8,41\n",
         gltf,
         binary_gltf(gltf),
+        usda_text(track, {}),
+        "#usda 1.0\n(\n upAxis = \"Z\"\n metersPerUnit = 0.01\n)\ndef Xform \"a\" (\n kind = 'x'\n)\n{\n"
+        " float3 xformOp:rotateXYZ.timeSamples = { 0: (1, 2, 3), 4: (5, 6, 7) }\n"
+        " double3 xformOp:translate = (1, 2, 3)\n"
+        " uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:rotateXYZ\"]\n"
+        " def Camera \"c\"\n {\n float focalLength = 35\n rel r = </a>\n"
+        " quatf xformOp:orient = (1, 0, 0, 0)\n uniform token[] xformOpOrder = [\"xformOp:orient\"]\n }\n}\n",
         R"({"camera_angle_x":0.7,"w":8,"h":6,"frames":[{"transform_matrix":[[0,0,-1,1],[-1,0,0,2],[0,1,0,3]]},)"
         R"({"fl_y":5,"transform_matrix":[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]})"};
 }

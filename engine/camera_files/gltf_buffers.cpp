@@ -1,0 +1,150 @@
+#include "camera_files/gltf_buffers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <optional>
+
+#include "core/base64.h"
+#include "core/error.h"
+#include "core/file.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uint32_t glb_magic = 0x46546c67, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
+
+std::uint32_t word_at(std::string_view bytes, std::size_t at) {
+    std::uint32_t word = 0;
+    for (std::size_t i = 4; i-- > 0;) word = word << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return word;
+}
+
+template <class Integer>
+float number_at(const char* bytes, bool normalised) {
+    Integer value;
+    std::memcpy(&value, bytes, sizeof value);
+    if (!normalised) return static_cast<float>(value);
+    return std::max(static_cast<float>(value) / static_cast<float>(std::numeric_limits<Integer>::max()),
+                    -1.0f);
+}
+
+/// glTF's names of types: bytes a number takes, and how it is read.
+struct NumberType {
+    int code;
+    std::size_t size;
+    float (*read)(const char* bytes, bool normalised);
+};
+float float_at(const char* bytes, bool) {
+    float value;
+    std::memcpy(&value, bytes, sizeof value);
+    return value;
+}
+constexpr NumberType number_types[] = {{5120, 1, number_at<std::int8_t>},
+                                       {5121, 1, number_at<std::uint8_t>},
+                                       {5122, 2, number_at<std::int16_t>},
+                                       {5123, 2, number_at<std::uint16_t>},
+                                       {5126, 4, float_at}};
+
+std::int64_t count_in(const Json& object, const char* name, std::int64_t otherwise) {
+    return object.contains(name) ? object.at(name).get<std::int64_t>() : otherwise;
+}
+
+}  // namespace
+
+GltfFile::GltfFile(const std::filesystem::path& file) : file_(file) {
+    std::string text = read_file(file);
+    if (text.size() >= 12 && word_at(text, 0) == glb_magic) {
+        std::string json;
+        for (std::size_t at = 12; at + 8 <= text.size();) {
+            const std::size_t size = word_at(text, at);
+            const std::uint32_t type = word_at(text, at + 4);
+            if (size > text.size() - at - 8) fail("chunks within the file", "one that ends after it");
+            if (type == json_chunk && json.empty()) json = text.substr(at + 8, size);
+            if (type == binary_chunk && binary_.empty()) binary_ = text.substr(at + 8, size);
+            at += 8 + size;
+        }
+        text = std::move(json);
+    }
+    json_ = Json::parse(text, nullptr, false);
+    if (!json_.is_object()) fail("glTF 2.0, JSON or binary", "something else");
+    const Json version = json_.value("/asset/version"_json_pointer, Json());
+    if (!version.is_string() || !version.get<std::string>().starts_with("2."))
+        fail("version 2.0 of glTF", version.is_null() ? "none" : printable(version.dump()));
+}
+
+void GltfFile::fail(const std::string& expected, const std::string& found) const {
+    bad_input(file_.string(), "", expected, found);
+}
+
+const Json& GltfFile::element(const char* name, const Json& index) const {
+    const auto list = json_.find(name);
+    const std::int64_t i = index.is_number_integer() ? index.get<std::int64_t>() : -1;
+    if (list == json_.end() || !list->is_array() || i < 0 || i >= std::ssize(*list))
+        fail(fmt::format("a number of one of its {}", name), printable(index.dump()));
+    return (*list)[static_cast<std::size_t>(i)];
+}
+
+const std::string& GltfFile::buffer(const Json& index) {
+    const Json& described = element("buffers", index);
+    const auto i = index.get<std::int64_t>();
+    const auto known = buffers_.find(i);
+    if (known != buffers_.end()) return known->second;
+    std::string bytes;
+    if (!described.contains("uri")) {
+        bytes = binary_;
+    } else {
+        const auto uri = described.at("uri").get<std::string>();
+        if (uri.starts_with("data:")) {
+            const std::size_t comma = uri.find(";base64,");
+            const std::optional<std::string> read =
+                comma == std::string::npos ? std::nullopt
+                                           : bytes_of_base64(std::string_view(uri).substr(comma + 8));
+            if (!read) fail("base64 in a buffer's data:", "something else");
+            bytes = *read;
+        } else {
+            // What a stranger's file may name: a file in its own folder.
+            const std::filesystem::path name = std::filesystem::path(uri).lexically_normal();
+            if (uri.find(':') != std::string::npos || name.is_absolute() || name.string().starts_with(".."))
+                fail("buffers in or beside the file", "'" + printable(uri) + "'");
+            bytes = read_file(file_.parent_path() / name);
+        }
+    }
+    return buffers_.emplace(i, std::move(bytes)).first->second;
+}
+
+std::vector<float> GltfFile::numbers(const Json& accessor_index, int components) {
+    const Json& accessor = element("accessors", accessor_index);
+    if (accessor.contains("sparse")) fail("accessors that are not sparse", "a sparse one");
+    const Json& view = element("bufferViews", accessor.value("bufferView", Json()));
+    const std::string& bytes = buffer(view.value("buffer", Json()));
+    const int code = accessor.at("componentType").get<int>();
+    const auto type = std::ranges::find(number_types, code, &NumberType::code);
+    if (type == std::end(number_types))
+        fail("numbers of one of the types 5120 to 5123 or 5126", std::to_string(code));
+    const std::size_t own = type->size * static_cast<std::size_t>(components);
+    const std::int64_t count = count_in(accessor, "count", 0), view_size = count_in(view, "byteLength", 0),
+                       view_at = count_in(view, "byteOffset", 0), at = count_in(accessor, "byteOffset", 0),
+                       stride = count_in(view, "byteStride", static_cast<std::int64_t>(own));
+    const std::int64_t size = std::ssize(bytes);
+    const bool fits = count > 0 && view_at >= 0 && view_at <= size && view_size >= 0 &&
+                      view_size <= size - view_at && stride >= std::int64_t(own) && at >= 0 &&
+                      at <= view_size - std::int64_t(own) &&
+                      count - 1 <= (view_size - std::int64_t(own) - at) / stride;
+    if (!fits) fail("an accessor within its buffer", fmt::format("{} elements beyond it", count));
+    const bool normalised = accessor.value("normalized", false);
+    std::vector<float> numbers;
+    numbers.reserve(static_cast<std::size_t>(count) * static_cast<std::size_t>(components));
+    for (std::int64_t i = 0; i < count; ++i)
+        for (int c = 0; c < components; ++c)
+            numbers.push_back(type->read(
+                bytes.data() + view_at + at + i * stride + c * std::int64_t(type->size), normalised));
+    return numbers;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,219 @@
+// A recursive descent that needs no list of types: a statement begins with words, an = and a value may
+// follow.
+#include "camera_files/usda_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "camera_files/usda_scanner.h"
+#include "core/text.h"
+
+namespace astrosplat {
+namespace {
+
+bool is_kept(std::string_view name) {
+    constexpr std::array lens{"focalLength", "horizontalAperture", "verticalAperture", "projection"};
+    return name.starts_with("xformOp") || std::ranges::find(lens, name) != lens.end();
+}
+
+class Parser {
+  public:
+    Parser(std::string_view text, const std::string& file)
+        : scan_(text, file), is_usda_(text.starts_with("#usda")) {}
+
+    UsdStage stage() {
+        if (!is_usda_) scan_.fail("#usda and a version");
+        scan_.skip_line();
+        if (scan_.peek() == '(') metadata(stage_.metadata);
+        while (scan_.peek() != '\0') {
+            std::string word = scan_.next_word();
+            if (is_specifier(word))
+                stage_.prims.push_back(prim(word, 0));
+            else if (word.empty())
+                scan_.fail("def, over or class");
+            else
+                scan_.skip_statement();
+        }
+        return std::move(stage_);
+    }
+
+  private:
+    static bool is_specifier(std::string_view word) {
+        return word == "def" || word == "over" || word == "class";
+    }
+    // Adds to `value`, which may be null.
+    void read_value(UsdValue* value, int depth) {
+        if (depth > camera_files::deepest_usd)
+            scan_.fail(fmt::format("at most {} brackets within each other", camera_files::deepest_usd));
+        const char c = scan_.peek();
+        if (c == '(' || c == '[') {
+            scan_.take(c);
+            const char close = c == '(' ? ')' : ']';
+            while (!scan_.take(close)) {
+                read_value(value, depth + 1);
+                scan_.take(',');
+            }
+        } else if (c == '{') {
+            scan_.skip_brackets(depth);
+        } else if (c == '"' || c == '\'' || c == '@') {
+            std::string text = scan_.quoted(c);
+            if (value && c != '@') value->words.push_back(std::move(text));
+        } else if (c == '<') {
+            scan_.skip_path();
+        } else {
+            const std::size_t begin = scan_.place();
+            const std::string word = scan_.next_word();
+            if (word.empty()) scan_.fail("a value");
+            const std::optional<double> number = parse_double(word);
+            if (!value) return;
+            if (number)
+                value->numbers.push_back(*number);
+            else if (word != "None")
+                value->words.push_back(word);
+            if (value->numbers.size() > most_numbers) {
+                scan_.go_back(begin);
+                scan_.fail(fmt::format("at most {} numbers of a camera's attribute", most_numbers));
+            }
+        }
+    }
+
+    // { 1: value, 2: value, }; what is None is no sample.
+    void read_samples(UsdAttribute* attribute) {
+        scan_.require('{');
+        while (!scan_.take('}')) {
+            const std::size_t begin = scan_.place();
+            std::string word = scan_.next_word();
+            // "1:" and "1: 5" alike: a word may hold the colon.
+            const bool colon = !word.empty() && word.back() == ':';
+            if (colon) word.pop_back();
+            const std::optional<double> time = parse_double(word);
+            if (!time) {
+                scan_.go_back(begin);
+                scan_.fail("a time code");
+            }
+            if (!colon) scan_.require(':');
+            UsdValue value;
+            read_value(attribute ? &value : nullptr, 0);
+            scan_.take(',');
+            if (attribute && (!value.numbers.empty() || !value.words.empty()))
+                attribute->samples.emplace_back(*time, std::move(value));
+        }
+        if (!attribute) return;
+        auto& samples = attribute->samples;
+        std::ranges::stable_sort(samples, {}, &std::pair<double, UsdValue>::first);
+    }
+
+    // ( key = value ... ), of which the first word of a key that stands alone is its name.
+    void metadata(std::map<std::string, UsdValue>& kept) {
+        scan_.require('(');
+        while (!scan_.take(')')) {
+            const char c = scan_.peek();
+            if (c == '"' || c == '\'') {
+                scan_.quoted(c);
+                continue;
+            }
+            std::string name = scan_.next_word();
+            if (name.empty()) scan_.fail("a name");
+            while (!scan_.take('=')) {
+                if (scan_.peek() == ')') break;
+                std::string word = scan_.next_word();
+                if (word.empty()) scan_.fail("'='");
+                name = std::move(word);
+            }
+            if (scan_.peek() == ')') continue;
+            if (name == "references" || name == "payload" || name == "subLayers")
+                stage_.refers_elsewhere = true;
+            constexpr std::array wanted{"upAxis", "timeCodesPerSecond", "framesPerSecond", "active"};
+            const bool is_wanted = std::ranges::find(wanted, name) != wanted.end();
+            UsdValue value;
+            read_value(is_wanted ? &value : nullptr, 0);
+            if (scan_.peek() == '<') scan_.skip_path();         // within the file before it
+            while (scan_.peek() == '(') scan_.skip_brackets();  // a layer's offset
+            if (is_wanted) kept[name] = std::move(value);
+        }
+    }
+
+    UsdPrim prim(const std::string& specifier, int depth) {
+        if (depth > camera_files::deepest_usd)
+            scan_.fail(fmt::format("at most {} prims within each other", camera_files::deepest_usd));
+        UsdPrim prim;
+        prim.defined = specifier == "def";
+        if (scan_.peek() != '"' && scan_.peek() != '\'') prim.type = scan_.next_word();
+        if (scan_.peek() != '"' && scan_.peek() != '\'') scan_.fail("the name of a prim");
+        prim.name = scan_.quoted(scan_.peek());
+        if (scan_.peek() == '(') {
+            std::map<std::string, UsdValue> own;
+            metadata(own);
+            const auto active = own.find("active");
+            if (active != own.end() && active->second.words == std::vector<std::string>{"false"})
+                prim.defined = false;
+        }
+        scan_.require('{');
+        while (!scan_.take('}')) statement(prim, depth);
+        return prim;
+    }
+
+    void statement(UsdPrim& prim, int depth) {
+        const std::size_t begin = scan_.place();
+        std::string word = scan_.next_word();
+        if (word.empty()) {
+            scan_.go_back(begin);
+            if (scan_.peek() == '\0') scan_.fail("'}'");
+            scan_.fail("an attribute or a prim");
+        }
+        if (is_specifier(word)) {
+            prim.children.push_back(this->prim(word, depth + 1));
+            return;
+        }
+        if (word == "variantSet" || word == "reorder") return scan_.skip_statement();
+        std::string name;
+        while (true) {  // words up to the = or the line's end; the last is the name
+            const bool line_ended = scan_.skip_blanks();
+            const char c = scan_.here();
+            if (line_ended || c == '\0' || c == '}' || c == '(') break;
+            if (c == '=') return assign(prim, name);
+            if (c == '[' || c == ']') {
+                scan_.take(c);
+                continue;
+            }
+            name = scan_.next_word();
+            if (name.empty()) scan_.fail("the name of an attribute");
+        }
+        if (scan_.here() == '(') scan_.skip_brackets();
+    }
+
+    void assign(UsdPrim& prim, std::string name) {
+        scan_.require('=');
+        constexpr std::string_view sampled = ".timeSamples";
+        const bool samples = name.ends_with(sampled);
+        if (samples) name.resize(name.size() - sampled.size());
+        UsdAttribute* const attribute = is_kept(name) ? &prim.attributes[name] : nullptr;
+        if (samples) {
+            if (attribute) attribute->samples.clear();
+            read_samples(attribute);
+        } else {
+            UsdValue value;
+            read_value(attribute ? &value : nullptr, 0);
+            if (attribute && (!value.numbers.empty() || !value.words.empty())) {
+                attribute->value = std::move(value);
+                attribute->has_value = true;
+            }
+        }
+        if (scan_.peek() == '(') scan_.skip_brackets();
+    }
+
+    static constexpr std::size_t most_numbers = 1024;
+
+    camera_files::UsdScanner scan_;
+    bool is_usda_;
+    UsdStage stage_;
+};
+
+}  // namespace
+
+UsdStage parse_usda(std::string_view text, const std::string& file) { return Parser(text, file).stage(); }
+
+}  // namespace astrosplat
