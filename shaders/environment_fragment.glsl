@@ -5,7 +5,10 @@ uniform sampler2DArray fine_level;
 uniform sampler2DArray coarse_level;
 uniform float coarse_share;
 uniform float gain;
-uniform mat3 environment_from_camera;
+uniform mat3 environment_from_world;
+uniform mat3 world_from_camera;
+uniform bool is_near;  // on a sphere about the origin
+uniform vec3 eye;      // over its radius
 uniform Lens lens;
 
 layout(location = 0) out vec4 light;
@@ -43,9 +46,18 @@ vec3 read_level(sampler2DArray level, vec3 place) {
     return textureLod(level, vec3(at, place.z), 0.0).rgb;
 }
 
+// As seen_place in engine/render/environment.h.
+vec3 seen_place(vec3 ray) {
+    if (!is_near) return ray;
+    vec3 e = eye * min(1.0, 0.99 / max(length(eye), 1e-6));
+    float along = dot(e, ray);
+    float t = sqrt(max(0.0, along * along + 1.0 - dot(e, e))) - along;
+    return normalize(e + t * ray);
+}
+
 void main() {
     vec3 ray = normalize(ray_through(lens, gl_FragCoord.x, gl_FragCoord.y));
-    vec3 d = environment_from_camera * ray;
+    vec3 d = environment_from_world * seen_place(world_from_camera * ray);
     vec3 place = textureSize(fine_level, 0).z == 1 ? latlong_place(d) : cube_place(d);
     vec3 color = read_level(fine_level, place);
     if (coarse_share > 0.0) color = mix(color, read_level(coarse_level, place), coarse_share);

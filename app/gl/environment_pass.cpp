@@ -55,8 +55,13 @@ void EnvironmentPass::draw(const Environment& environment, const Camera& camera)
     bind_texture(fine_unit, GL_TEXTURE_2D_ARRAY, fine_.texture.name());
     bind_texture(coarse_unit, GL_TEXTURE_2D_ARRAY, coarse_.texture.name());
     program_.use();
-    const glm::mat3 rotation(environment.environment_from_world * camera.world_from_camera);
-    glUniformMatrix3fv(program_.uniform("environment_from_camera"), 1, GL_FALSE, glm::value_ptr(rotation));
+    const glm::mat3 rotation(environment.environment_from_world);
+    glUniformMatrix3fv(program_.uniform("environment_from_world"), 1, GL_FALSE, glm::value_ptr(rotation));
+    const glm::vec3 eye(environment.behind > 0.0 ? camera.eye / environment.behind : glm::dvec3(0.0));
+    glUniform1i(program_.uniform("is_near"), environment.behind > 0.0);
+    glUniform3fv(program_.uniform("eye"), 1, glm::value_ptr(eye));
+    const glm::mat3 from_camera(camera.world_from_camera);
+    glUniformMatrix3fv(program_.uniform("world_from_camera"), 1, GL_FALSE, glm::value_ptr(from_camera));
     const Lens lens = make_lens(camera);
     glUniform1i(program_.uniform("lens.projection"), lens.projection);
     glUniform1f(program_.uniform("lens.focal_px"), lens.focal_px);

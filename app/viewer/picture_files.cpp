@@ -1,6 +1,7 @@
 #include "viewer/picture_files.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "scene/layer_setup.h"
 #include "source/texture.h"
@@ -14,10 +15,17 @@ const Image& PictureFiles::map(const fs::path& file, Derived derive) {
     return *image;
 }
 
+bool PictureFiles::ByPictures::operator()(const EnvironmentParams& a, const EnvironmentParams& b) const {
+    const auto key = [](const EnvironmentParams& p) {
+        return std::tie(p.image, p.cube, p.tile, p.tiling.height_deg, p.tiling.seed, p.tiling.face_px);
+    };
+    return key(a) < key(b);
+}
+
 std::shared_ptr<const Environment> PictureFiles::environment(const EnvironmentParams& params) {
     constexpr std::size_t most_skies = 3;
     const bool seen = has_environment(params) && params.visible;
-    const Files files{params.image, params.cube};
+    const EnvironmentParams files = pictures_of(params);
     bool is_new = false;
     {
         const auto held = worker_.lock();
@@ -61,7 +69,8 @@ void PictureFiles::forget(const std::vector<fs::path>& files) {
     {
         const auto held = worker_.lock();
         for (auto& [of, sky] : skies_)
-            if (is_changed(of.first) || std::ranges::any_of(of.second, is_changed)) sky.due = true;
+            if (is_changed(of.image) || is_changed(of.tile) || std::ranges::any_of(of.cube, is_changed))
+                sky.due = true;
     }
     worker_.wake();
 }
@@ -77,10 +86,7 @@ Worker::Task PictureFiles::next_sky() {
     return [this, files = next->first] { load(files); };
 }
 
-void PictureFiles::load(const Files& files) {
-    EnvironmentParams params;
-    params.image = files.first;
-    params.cube = files.second;
+void PictureFiles::load(const EnvironmentParams& params) {
     std::optional<Environment> loaded;
     std::exception_ptr error;
     try {
@@ -89,7 +95,7 @@ void PictureFiles::load(const Files& files) {
         error = std::current_exception();
     }
     const auto held = worker_.lock();
-    Sky& sky = skies_[files];  // which stays while it is loading
+    Sky& sky = skies_[params];  // which stays while it is loading
     sky.loaded = std::move(loaded);
     sky.error = error;
     sky.loading = false;

@@ -30,7 +30,10 @@ class PictureFiles {
     void forget(const std::vector<std::filesystem::path>& files);
 
   private:
-    using Files = std::pair<std::filesystem::path, std::vector<std::filesystem::path>>;  // picture, or cube
+    /// Of what pictures_of() gives.
+    struct ByPictures {
+        bool operator()(const EnvironmentParams& a, const EnvironmentParams& b) const;
+    };
     struct Sky {
         std::optional<Environment> loaded;
         std::exception_ptr error;  // why it could not be
@@ -40,12 +43,13 @@ class PictureFiles {
     };
 
     Worker::Task next_sky();
-    void load(const Files& files);
+    void load(const EnvironmentParams& params);
 
     std::map<std::pair<std::filesystem::path, Derived>, std::unique_ptr<Image>> maps_;
     std::vector<std::unique_ptr<Image>> old_maps_;  // so that new ones do not get their addresses
-    std::map<Files, Sky> skies_;   // what is compared may have another one; with the worker's lock
-    std::optional<Files> wanted_;  // asked for last; with the lock
+    /// What is compared may have another one; with the worker's lock.
+    std::map<EnvironmentParams, Sky, ByPictures> skies_;
+    std::optional<EnvironmentParams> wanted_;  // asked for last; with the lock
     Worker worker_{[this] { return next_sky(); }};
 };
 

@@ -20,7 +20,7 @@ void draw_exactly(const Environment& environment, const Camera& camera, const Re
         for (std::int64_t x = part.x; x < part.x + part.width; ++x) {
             const glm::dvec3 ray =
                 ray_direction(camera, static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5);
-            const glm::vec3 color = sample_environment(environment, ray, pixel_spread(camera));
+            const glm::vec3 color = sample_environment(environment, camera.eye, ray, pixel_spread(camera));
             std::copy_n(&color[0], 3, image.at(x, y));
         }
     }
@@ -44,7 +44,8 @@ class Places {
         parallel_each(columns_ * rows, 8 * columns_, [&](std::int64_t i) {
             const glm::dvec3 ray = ray_direction(camera, static_cast<double>(i % columns_ * block_px) + 0.5,
                                                  static_cast<double>(i / columns_ * block_px) + 0.5);
-            const glm::dvec2 place = latlong_place(environment.environment_from_world * ray);
+            const glm::dvec2 place = latlong_place(environment.environment_from_world *
+                                                   seen_place(environment, camera.eye, ray).direction);
             places_[i] = glm::vec2(place * glm::dvec2(size_));
         });
     }

@@ -16,6 +16,7 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/rotation.h"
+#include "source/cube_faces.h"
 #include "source/texture.h"
 
 namespace astrosplat {
@@ -28,20 +29,6 @@ struct Place {
     std::size_t face;
     double x, y;
 };
-
-/// A cube face as seen from the origin: where it lies and what is to the right and up in its picture. +y and
-/// -y are seen tilting the head from -z.
-struct CubeAxes {
-    glm::dvec3 forward, right, up;
-};
-const std::array<CubeAxes, 6> cube_axes = {{
-    {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
-    {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
-    {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
-    {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
-    {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},
-    {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}},
-}};
 
 std::int64_t inner(std::int64_t stored) { return stored - 2 * border; }
 
@@ -222,10 +209,11 @@ double texels_per_spread(const Environment& environment, double spread) {
 Environment load_environment(const EnvironmentParams& params, const Progress& progress) {
     if (!params.cube.empty() && params.cube.size() != 6)
         throw InputError(
-            fmt::format("environment.cube: expected six pictures, in the order +x -x +y -y +z -z, found {}",
+            fmt::format("environment.cube: expected six pictures of the faces of a cube, in the order +x -x "
+                        "+y -y +z -z, found {}",
                         params.cube.size()));
-    if (!params.cube.empty() && !params.image.empty())
-        throw InputError("environment: expected image or cube, found both");
+    if (!params.cube.empty() + !params.image.empty() + !params.tile.empty() > 1)
+        throw InputError("environment: expected image, cube or tile, found several of them");
     std::vector<std::filesystem::path> files = params.cube;
     if (files.empty() && !params.image.empty()) files.push_back(params.image);
     Environment environment;
@@ -241,14 +229,30 @@ Environment load_environment(const EnvironmentParams& params, const Progress& pr
             environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
         }
     }
+    if (!params.tile.empty())
+        for (const Image& face :
+             tiled_sky(load_linear_image(params.tile, progress), params.tiling, progress)) {
+            faces.push_back({with_border(face)});
+            environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
+        }
     if (files.size() == 6) check_cube(files, faces);
-    if (!files.empty()) build_levels(faces, progress);
+    if (!faces.empty()) build_levels(faces, progress);
     environment.faces = std::make_shared<const EnvironmentFaces>(std::move(faces));
     set_environment_params(environment, params);
     return environment;
 }
 
+EnvironmentParams pictures_of(const EnvironmentParams& params) {
+    EnvironmentParams pictures;
+    pictures.image = params.image;
+    pictures.cube = params.cube;
+    pictures.tile = params.tile;
+    if (!params.tile.empty()) pictures.tiling = params.tiling;
+    return pictures;
+}
+
 void set_environment_params(Environment& environment, const EnvironmentParams& params) {
+    environment.behind = params.behind;
     environment.environment_from_world = glm::transpose(rotation_from_degrees(params.rotation));
     environment.gain = params.gain;
     environment.largest = environment.largest_texel * params.gain;
@@ -257,6 +261,24 @@ void set_environment_params(Environment& environment, const EnvironmentParams& p
 glm::dvec2 latlong_place(const glm::dvec3& direction) {
     double longitude = real::atan2(direction.x, direction.z), latitude = real::asin(direction.y);
     return {0.5 - longitude / (2.0 * real::pi), 0.5 - latitude / real::pi};
+}
+
+SeenPlace seen_place(const Environment& environment, const glm::dvec3& eye, const glm::dvec3& ray) {
+    if (!(environment.behind > 0.0)) return {ray};
+    constexpr double farthest = 0.99;
+    glm::dvec3 e = eye / environment.behind;
+    const double out = glm::length(e);
+    if (out > farthest) e *= farthest / out;
+    // |e + t ray| = 1
+    const double along = glm::dot(e, ray);
+    const double t = std::sqrt(std::fmax(0.0, along * along + 1.0 - glm::dot(e, e))) - along;
+    return {glm::normalize(e + t * ray), t};
+}
+
+glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& eye, const glm::dvec3& ray,
+                             double spread) {
+    const SeenPlace place = seen_place(environment, eye, ray);
+    return sample_environment(environment, place.direction, spread * place.distance);
 }
 
 glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& direction, double spread) {

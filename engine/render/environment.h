@@ -12,14 +12,18 @@
 
 #include "core/image.h"
 #include "core/progress.h"
+#include "source/tiled_sky.h"
 
 namespace astrosplat {
 
 struct EnvironmentParams {
     std::filesystem::path image;              // equirectangular; empty: none
     std::vector<std::filesystem::path> cube;  // or six: +x -x +y -y +z -z
+    std::filesystem::path tile;               // or a part of the sky, of which the whole is made
+    SkyTiling tiling;                         // how
     float gain = 1.0f;
     glm::dvec3 rotation{0.0};  // degrees about x, then y, then z
+    double behind = 0.0;       // scene units from the origin; 0: infinitely far
     bool visible = true;
     bool operator==(const EnvironmentParams&) const = default;
 };
@@ -31,10 +35,14 @@ using EnvironmentFaces = std::vector<std::vector<Image>>;
 struct Environment {
     std::shared_ptr<const EnvironmentFaces> faces;  // never null once loaded; empty: nothing to be seen
     glm::dmat3 environment_from_world{1.0};
+    double behind = 0.0;
     float gain = 1.0f;
     float largest_texel = 0.0f;  // largest channel value of the pictures
     float largest = 0.0f;        // the same times gain
 };
+
+/// What load_environment() reads, alone.
+EnvironmentParams pictures_of(const EnvironmentParams& params);
 
 /// Loads the pictures and builds their mip levels (box filter). Throws InputError, Cancelled. The picture
 /// part is independent of gain and rotation, which may be animated: see set_environment_params.
@@ -45,6 +53,19 @@ void set_environment_params(Environment& environment, const EnvironmentParams& p
 /// 0 to 1: OpenEXR's latlong, latitude +90 degrees on top, longitude +180 on the left, 0 towards +z, 90
 /// towards +x.
 glm::dvec2 latlong_place(const glm::dvec3& direction);
+
+/// The unit direction from the origin to what a ray from `eye` meets: the ray's own, or of an environment on
+/// a sphere about the origin where it leaves that. An eye beyond .99 of its radius is taken to be there.
+/// `distance`: of that place from the eye over the radius, 1 for one infinitely far away.
+struct SeenPlace {
+    glm::dvec3 direction;
+    double distance = 1.0;
+};
+SeenPlace seen_place(const Environment& environment, const glm::dvec3& eye, const glm::dvec3& ray);
+
+/// Colour that a ray from an eye meets; `spread` is the angle in radians between neighbouring pixels.
+glm::vec3 sample_environment(const Environment& environment, const glm::dvec3& eye, const glm::dvec3& ray,
+                             double spread);
 
 /// Colour seen along a unit direction in world space; `spread` is the angle in radians between neighbouring
 /// pixels, which picks the mip level (trilinear).

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/color.h"
-
 namespace astrosplat {
 namespace {
 
@@ -32,9 +30,6 @@ struct GroupPixel {
 GroupPixel group_pixel(const BlendGroup& group, const TilePlanes& planes, std::size_t i) {
     GroupPixel p;
     for (int k = 0; k < 3; ++k) p.color[k] = planes.color[k][i];
-    if (group.encoded)
-        for (float& color : p.color)
-            if (color != 0.0f) color = static_cast<float>(real::srgb_to_linear(color));
     p.alpha = planes.alpha[i];
     for (int k = 0; k < 4; ++k)
         p.through[k] = group.kind == FoldKind::over  ? planes.transmittance[0][i]
@@ -65,13 +60,7 @@ std::vector<BlendGroup> make_groups(std::span<const RenderLayer> layers, bool ao
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const LayerRender& render = layers[i].render;
         if (is_isolated(render)) {
-            groups.push_back({{i},
-                              FoldKind::general,
-                              true,
-                              render.blend,
-                              render.holdout,
-                              layers[i].absorbs,
-                              layers[i].splats->encoded});
+            groups.push_back({{i}, FoldKind::general, true, render.blend, render.holdout, layers[i].absorbs});
         } else {
             if (merged.layers.empty()) merged_place = groups.size();
             merged.layers.push_back(i);
@@ -104,7 +93,7 @@ void TileResolver::begin(const TilePlanes& tile, const Camera& camera, const Env
                 continue;
             }
             const glm::dvec3 ray = ray_direction(camera, x_px, y_px);
-            const glm::vec3 color = sample_environment(*environment, ray, spread);
+            const glm::vec3 color = sample_environment(*environment, camera.eye, ray, spread);
             for (int k = 0; k < 3; ++k) pixel.color[k] = color[k];
             pixel.alpha = 1.0f;
         }

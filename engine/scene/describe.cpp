@@ -157,10 +157,28 @@ void describe_camera_file(const Describer& d, CameraParams& c) {
 
 void describe_environment(const Describer& d, EnvironmentParams& e) {
     d(e.image, "image", "Picture", "", "Equirectangular picture behind everything.");
-    d(e.cube, "cube", "Cube pictures", "", "Or six pictures, in the order +x -x +y -y +z -z.");
+    d(e.cube, "cube", "Cube pictures", "",
+      "Or six pictures of the faces of a cube around the origin, in the order +x -x +y -y +z -z.");
     d(e.gain, "gain", "Gain", "", "Multiplies its light.", within(0, 1e6), slider(0.01, 100), logarithmic());
     d(e.rotation, "rotation", "Rotation", "degrees", "Turns it about x, then y, then z.", slider(-180, 180));
+    d(e.behind, "behind", "Distance", "scene units",
+      "How far from the origin it lies, so that near things move before it; 0: infinitely far.", at_least(0),
+      slider(0, 1000), zero_is("Infinite"));
     d(e.visible, "visible", "Visible", "", "Whether it is drawn.");
+}
+
+void describe_tiling(const Describer& d, EnvironmentParams& e) {
+    d(e.tile, "tile", "Tiled picture", "",
+      "Or one picture of a part of the sky, such as a deep field: cut-outs of it, turned at random, make up "
+      "the "
+      "whole.");
+    const Describer tiled = d.never_with("tile", {""});
+    tiled(e.tiling.height_deg, "tile_height", "Its size", "degrees",
+          "What the picture's shorter side covers on the sky.", range(2, 120), slider(5, 90));
+    tiled(e.tiling.seed, "tile_seed", "Its seed", "", "Which cut-outs lie where.", slider(0, 1000));
+    tiled(e.tiling.face_px, "tile_px", "Its detail", "px",
+          "Pixels along a quarter of the sky's circle; more are finer and take more memory.", range(64, 8192),
+          slider(512, 4096));
 }
 
 void describe_provenance(const Describer& d, ProvenanceParams& p) {
@@ -204,6 +222,8 @@ Description describe(Scene& scene, const std::function<bool(const ParameterKey& 
     if (wanted("environment"))
         describe_environment(d.in("environment", true).shown_in("Environment", "Environment"),
                              scene.environment);
+    if (wanted("environment"))
+        describe_tiling(d.in("environment", false).shown_in("Environment", "Environment"), scene.environment);
     if (wanted("provenance"))
         describe_provenance(d.in("provenance", false).shown_in("Output", "Provenance"), scene.provenance);
     if (wanted("reference"))

@@ -48,6 +48,7 @@ bool has_own_pictures(const MeshInput& input) {
 std::vector<fs::path> picture_files(const Scene& scene) {
     std::vector<fs::path> files = scene.environment.cube;
     files.push_back(scene.environment.image);
+    files.push_back(scene.environment.tile);
     for (const LayerParams& layer : scene.layers) files.push_back(layer.look.thickness.map);
     std::erase(files, fs::path());
     return files;

@@ -86,3 +86,4 @@ const uint PURPOSE_DEPTH = 18u;  // of a dot of a picture
 const uint PURPOSE_KNOT = 19u;
 const uint PURPOSE_STAR_PLACE = 20u;
 const uint PURPOSE_STAR_KIND = 21u;
+const uint PURPOSE_SKY_PATCH = 22u;  // of a tiled sky

@@ -215,8 +215,9 @@ Image reference_render(std::span<const RenderLayer> layers, const Camera& camera
             if (environment) {
                 const double spread =
                     camera.projection == Projection::orthographic ? 0.0 : 1.0 / camera.focal_px;
-                pixel = glm::dvec4(
-                    glm::dvec3(sample_environment(*environment, ray_direction(camera, x, y), spread)), 1.0);
+                pixel = glm::dvec4(glm::dvec3(sample_environment(*environment, camera.eye,
+                                                                 ray_direction(camera, x, y), spread)),
+                                   1.0);
             }
             for (const std::vector<Disc>& crowd : crowds) {
                 if (crowd.empty()) continue;

@@ -82,8 +82,16 @@ std::size_t place_in_list(const ParameterKey& key) { return std::stoul(key.paren
 
 std::vector<Companion> companions(const Scene& scene, const ParameterKey& key, const Value& value) {
     const EnvironmentParams& environment = scene.environment;
-    if (key == "environment.image" && !environment.cube.empty()) return {{"environment.cube", Value::List{}}};
-    if (key == "environment.cube" && !environment.image.empty()) return {{"environment.image", ""}};
+    std::vector<Companion> others;  // one picture at a time
+    const bool is_picture =
+        key == "environment.image" || key == "environment.cube" || key == "environment.tile";
+    if (is_picture && key != "environment.image" && !environment.image.empty())
+        others.push_back({"environment.image", ""});
+    if (is_picture && key != "environment.cube" && !environment.cube.empty())
+        others.push_back({"environment.cube", Value::List{}});
+    if (is_picture && key != "environment.tile" && !environment.tile.empty())
+        others.push_back({"environment.tile", ""});
+    if (is_picture) return others;
     for (const LayerParams& layer : scene.layers)
         if (const ParameterKey group = layer_key(layer.name); key.is_below(group))
             return of_layer(layer, group, key, value);

@@ -171,8 +171,9 @@ std::string lens_state(const Context& context) { return figures(context.scene().
 
 std::string environment_state(const Context& context) {
     const EnvironmentParams& environment = context.scene().environment;
-    if (environment.image.empty() && environment.cube.empty()) return "none";
-    return environment.visible ? environment.image.filename().string() : "hidden";
+    if (environment.image.empty() && environment.cube.empty() && environment.tile.empty()) return "none";
+    const std::filesystem::path& file = environment.tile.empty() ? environment.image : environment.tile;
+    return environment.visible ? file.filename().string() : "hidden";
 }
 
 std::string reference_state(const Context& context) {

@@ -297,8 +297,10 @@ std::string error_of(const EnvironmentParams& params) {
 TEST_F(EnvironmentTest, ErrorsNameWhatIsWrong) {
     EnvironmentParams params;
     params.cube = {"a.tif", "b.tif"};
-    EXPECT_EQ(error_of(params),
-              "environment.cube: expected six pictures, in the order +x -x +y -y +z -z, found 2");
+    EXPECT_EQ(
+        error_of(params),
+        "environment.cube: expected six pictures of the faces of a cube, in the order +x -x +y -y +z -z, "
+        "found 2");
     const fs::path small = write("small.tif", 4, 4, [](int, int) { return glm::vec3(0.0f); });
     const fs::path wide = write("wide.tif", 8, 4, [](int, int) { return glm::vec3(0.0f); });
     params.cube = {small, small, small, wide, small, small};
@@ -306,10 +308,44 @@ TEST_F(EnvironmentTest, ErrorsNameWhatIsWrong) {
               wide.string() +
                   ":environment.cube: expected 4 x 4 pixels, as the first picture's width, found 8 x 4");
     params.image = small;
-    EXPECT_EQ(error_of(params), "environment: expected image or cube, found both");
+    EXPECT_EQ(error_of(params), "environment: expected image, cube or tile, found several of them");
     EnvironmentParams missing;
     missing.image = folder_ / "missing.exr";
     EXPECT_NE(error_of(missing).find("missing.exr"), std::string::npos);
+}
+
+// On a sphere of radius 4 about the origin: what rays from its inside meet.
+TEST(EnvironmentBehind, IsSeenFromWhereTheEyeIs) {
+    Environment environment;
+    const glm::dvec3 ray = glm::normalize(glm::dvec3(1.0, 2.0, -2.0));
+    EXPECT_EQ(seen_place(environment, {3.0, 0.0, 0.0}, ray).direction, ray) << "infinitely far";
+    EXPECT_EQ(seen_place(environment, {3.0, 0.0, 0.0}, ray).distance, 1.0);
+    environment.behind = 4.0;
+    EXPECT_LT(glm::distance(seen_place(environment, {0.0, 0.0, 0.0}, ray).direction, ray), 1e-15);
+    const SeenPlace ahead = seen_place(environment, {2.0, 0.0, 0.0}, {1.0, 0.0, 0.0});
+    EXPECT_EQ(ahead.direction, glm::dvec3(1.0, 0.0, 0.0));
+    EXPECT_EQ(ahead.distance, 0.5);
+    EXPECT_EQ(seen_place(environment, {2.0, 0.0, 0.0}, {-1.0, 0.0, 0.0}).distance, 1.5);
+    const SeenPlace aside = seen_place(environment, {2.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+    EXPECT_LT(glm::distance(aside.direction, glm::dvec3(0.5, std::sqrt(0.75), 0.0)), 1e-15);
+    EXPECT_NEAR(aside.distance, std::sqrt(0.75), 1e-15);
+    const SeenPlace outside = seen_place(environment, {40.0, 0.0, 0.0}, {1.0, 0.0, 0.0});
+    EXPECT_NEAR(outside.distance, 0.01, 1e-12) << "taken to be just inside";
+}
+
+TEST_F(EnvironmentTest, OneTiledPictureFillsTheSky) {
+    EnvironmentParams params;
+    params.tile = write("tile.tif", 64, 48, [](int x, int y) {
+        return glm::vec3(0.1f + 0.01f * static_cast<float>((x * 7 + y * 3) % 11), 0.2f, 0.05f);
+    });
+    params.tiling.face_px = 64;
+    params.tiling.height_deg = 40.0;
+    const Environment environment = load_environment(params);
+    ASSERT_EQ(environment.faces->size(), 6u);
+    for (const glm::dvec3& d : {glm::dvec3(1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0.3, 0.4, -0.5)})
+        expect_color(sample_environment(environment, glm::normalize(d), 3.0), {0.15f, 0.2f, 0.05f}, 0.01f);
+    params.image = params.tile;
+    EXPECT_THROW(load_environment(params), InputError);
 }
 
 }  // namespace
