@@ -27,12 +27,18 @@ fs::path place_of(const Scene& scene) {
     return scene.file.empty() ? fs::absolute("untitled.toml") : scene.file;
 }
 
-/// Of a scene's text.
-std::size_t add_first_layer(Scene& scene, const std::string& text, const fs::path& place) {
-    LayerParams layer = parse_scene(text, place).layers.at(0);
-    layer.name = free_layer_name(scene, layer.name);
-    scene.layers.push_back(std::move(layer));
-    return scene.layers.size() - 1;
+/// Those of a scene's text, under names that are free; gives the place of the first.
+std::size_t add_layers(Scene& scene, const std::string& text, const fs::path& place) {
+    const std::size_t first = scene.layers.size();
+    std::vector<LayerParams> layers = parse_scene(text, place).layers;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const std::string name = free_layer_name(scene, layers[i].name);
+        for (std::size_t k = i + 1; k < layers.size(); ++k)
+            if (layers[k].source.stars.like == layers[i].name) layers[k].source.stars.like = name;
+        layers[i].name = name;
+        scene.layers.push_back(std::move(layers[i]));
+    }
+    return first;
 }
 
 void rekey(Track& track, const std::string& from, const std::string& to) {
@@ -52,11 +58,11 @@ std::string free_layer_name(const Scene& scene, const std::string& wanted) {
 
 std::size_t add_layer(Scene& scene, const fs::path& file) {
     const fs::path place = place_of(scene);
-    return add_first_layer(scene, scene_text_for(file, place), place);
+    return add_layers(scene, scene_text_for(file, place), place);
 }
 
 std::size_t add_shape(Scene& scene, const std::string& shape) {
-    return add_first_layer(scene, shape_scene_text(shape), place_of(scene));
+    return add_layers(scene, shape_scene_text(shape), place_of(scene));
 }
 
 std::size_t duplicate_layer(Scene& scene, std::size_t index) {
@@ -96,6 +102,8 @@ void rename_layer(Scene& scene, std::size_t index, const std::string& name) {
             fmt::format("{}: layer.name: expected each name once, found '{}' twice", layer.name, name));
     for (Track& track : scene.animation)
         if (belongs_to(track, layer.name)) rekey(track, layer.name, name);
+    for (LayerParams& other : scene.layers)
+        if (other.source.stars.like == layer.name) other.source.stars.like = name;
     layer.name = name;
 }
 

@@ -265,7 +265,7 @@ void frame_layer(State& s, const Command&) {
     if (s.view.layer < now.layers.size()) {
         const LayerParams& layer = now.layers[s.view.layer];
         if (const auto loaded = s.sets.loader().layer(layer.name))
-            box = world_bounds(loaded->box, render_layer(layer));
+            box = world_bounds(loaded->box, render_layer(now, layer));
     }
     frame_box_in_view(s, box);
 }

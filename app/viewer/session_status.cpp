@@ -26,7 +26,8 @@ void fill_layers(Session& session, const Scene& now) {
         const auto loaded = loader.layer(now.layers[i].name);
         if (!loaded) continue;
         status.layers[i].box = loaded->box;
-        if (now.layers[i].visible) status.box.add(world_bounds(loaded->box, render_layer(now.layers[i])));
+        if (now.layers[i].visible)
+            status.box.add(world_bounds(loaded->box, render_layer(now, now.layers[i])));
     }
 }
 

@@ -82,7 +82,7 @@ ViewRequest make_request(const Session& session, Scene now) {
     for (const LayerParams& layer : now.layers) {
         made.layers.push_back(session.sets.layer(layer));
         if (layer.visible && made.layers.back())
-            made.box.add(world_bounds(made.layers.back()->box, render_layer(layer)));
+            made.box.add(world_bounds(made.layers.back()->box, render_layer(now, layer)));
     }
     const glm::ivec2 size = frame_size(session, now.output);
     made.width = size.x;

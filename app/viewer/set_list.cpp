@@ -22,7 +22,8 @@ constexpr float everywhere = 0.5f;
 /// All that a set depends on: the source with its seed resolved where one is used.
 SourceParams identity_of(const SourceParams& source, const std::string& name) {
     SourceParams identity = source;
-    const bool random = source.kind == SourceKind::mesh || follows_camera(source);
+    const bool random =
+        source.kind == SourceKind::mesh || follows_camera(source) || !source.stars.like.empty();
     identity.seed = random ? resolved_seed(source.seed, name) : 0;
     const StarsParams unused;
     identity.stars.psf = unused.psf;  // how stars look is the renderer's

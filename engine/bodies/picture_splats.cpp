@@ -192,11 +192,7 @@ void add_stars(const std::vector<Star>& stars, const Placement& placement, const
         const auto low = static_cast<std::uint32_t>(i);
         const float u = as_uniform(
             as_hash(placement.seed, low, static_cast<std::uint32_t>(star_band), shared::PURPOSE_DEPTH));
-        const float inside = std::clamp(u, 1e-5f, 1.0f - 1e-5f);
-        const float spread =
-            placement.kind == StructureKind::disk
-                ? 0.5f * placement.scale_height(star.x, star.y) * as_log(inside / (1.0f - inside))
-                : (2.0f * u - 1.0f) * static_cast<float>(placement.depth);
+        const float spread = star_height(placement, star.x, star.y, u);
         const float peak = std::max({star.peak.x, star.peak.y, star.peak.z, 1e-6f});
         const float alpha =
             std::clamp(star_opacity * opacity.depth_of(peak, 1.0f) / footprint_share, 1e-3f, 1.0f);

@@ -203,6 +203,11 @@ float middle_plane(const Placement& placement, float x, float y) {
            std::max(r, 1e-6f);
 }
 
+float star_height(const Placement& placement, float x, float y, float u) {
+    if (placement.kind != StructureKind::disk) return (2.0f * u - 1.0f) * static_cast<float>(placement.depth);
+    return logistic(u, placement.scale_height(x, y));
+}
+
 std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement) {
     const bool glow =
         placement.kind == StructureKind::walls && band.feature > widest_filament * placement.scale;

@@ -60,6 +60,10 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
 /// which is half the longest side from the middle. 0 for other kinds.
 float middle_plane(const Placement& placement, float x, float y);
 
+/// Height over the middle plane below which the share `u` (0..1) of the layer's stars lies, texels: of a disk
+/// from sech^2(z / H), of others even over the whole depth.
+float star_height(const Placement& placement, float x, float y, float u);
+
 /// How the dots of one band are made (DEPTH 3), lengths in texels.
 struct BandDots {
     int index = 0, size = 0;  // of the band; of its sizes

@@ -32,13 +32,36 @@ bool is_elsewhere(const ParameterSpec& spec) {
 }
 
 bool shows(const EnvironmentParams& environment) {
-    return environment.visible && !(environment.image.empty() && environment.cube.empty());
+    return environment.visible &&
+           !(environment.image.empty() && environment.cube.empty() && environment.tile.empty());
+}
+
+// Keys that came later, where they do nothing.
+bool is_unused(const std::string& key, const EnvironmentParams& environment) {
+    if (key == "environment.behind") return environment.behind == 0.0;
+    return key.starts_with("environment.tile") && environment.tile.empty();
 }
 
 // Keys that came with the stars; frames without stars, from before, keep their hash.
 bool shapes_stars(const ParameterSpec& spec) {
     return spec.generic_key.is_below("layer.source.wings") ||
            spec.generic_key.is_below("layer.source.spikes");
+}
+
+// Keys that came with the stars of pictures, of a layer of others.
+bool places_stars_of_a_picture(const ParameterSpec& spec, const Scene& now) {
+    const std::string& key = spec.generic_key.text();
+    if (key != "layer.source.like" && key != "layer.source.depth" && key != "layer.source.slab") return false;
+    return std::ranges::none_of(now.layers, [&](const LayerParams& layer) {
+        return layer.name == spec.key.layer() && like_layer(now, layer);
+    });
+}
+
+// A layer that is not visible may place the stars of one that is.
+bool reaches(const Scene& now, const LayerParams& layer) {
+    return layer.visible || std::ranges::any_of(now.layers, [&](const LayerParams& other) {
+               return other.visible && like_layer(now, other) == &layer;
+           });
 }
 
 bool has_stars(const Scene& now, const std::string& layer_name) {
@@ -63,24 +86,17 @@ bool is_of_another_lens(const std::string& key, const CameraParams& camera) {
     return false;
 }
 
-// Layers that are not mixed in display values keep the hash they had before there was a choice.
-bool is_mixed_as_ever(const ParameterSpec& spec, const Scene& now) {
-    return spec.generic_key.text() == "layer.render.space" &&
-           std::ranges::none_of(now.layers, [&](const LayerParams& layer) {
-               return layer.name == spec.key.layer() && is_encoded(layer.render);
-           });
-}
-
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
     // Frames from before there was a choice keep their hash.
     if (spec.generic_key.text() == "output.primaries")
         return now.output.primaries == OutputParams::Primaries::rec709;
-    if (is_mixed_as_ever(spec, now)) return true;
     if (is_of_another_lens(spec.generic_key.text(), now.camera)) return true;
     if (shapes_stars(spec) && !has_stars(now, spec.key.layer())) return true;
-    if (spec.generic_key.is_below("environment")) return !shows(now.environment);
+    if (spec.generic_key.is_below("environment"))
+        return !shows(now.environment) || is_unused(spec.generic_key.text(), now.environment);
+    if (places_stars_of_a_picture(spec, now)) return true;
     return std::ranges::any_of(now.layers, [&](const LayerParams& layer) {
-        return !layer.visible && spec.key.layer() == layer.name;
+        return spec.key.layer() == layer.name && !reaches(now, layer);
     });
 }
 
@@ -162,7 +178,7 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
     }
     if (now.camera.shutter > 0.0) text += moving_text(static_cast<double>(frame), now);
     for (const LayerParams& layer : now.layers) {
-        if (!layer.visible) continue;
+        if (!reaches(now, layer)) continue;
         text += own_pictures(layer);
         for (const glm::dvec3& p : source_of(scene_, layer).stars.path)
             text += fmt::format("layer.{}.path = {} {} {}\n", layer.name, p.x, p.y, p.z);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec2.hpp>
 #include <vector>
 
 #include "camera/camera.h"
@@ -34,10 +33,7 @@ struct LayerProjection {
     glm::dmat3 camera_from_layer{1.0};  // rotation * scale
     glm::dvec3 origin_in_camera{0.0};   // of layer space
     glm::vec3 axis_in_camera{0.0f, 1.0f, 0.0f};
-    float layer_scale = 1.0f, radius_scale = 1.0f;      // of the layer, and with it of radii
-    bool gaussians = false;                             // as in RenderLayer
-    float deviation = 0.25f;                            // of Gaussians, drawn radii
-    glm::vec2 least_slope{-1.0f}, largest_slope{1.0f};  // x / z and y / z in footprints of Gaussians
+    float radius_scale = 1.0f;
     float opacity = 1.0f;
     Lens lens;
     float reach = 1.0f, margin_px = 2.0f;  // support = radius * reach + margin
@@ -48,6 +44,7 @@ struct LayerProjection {
     std::uint16_t layer = 0;
     const LodTable* lod = nullptr;   // set when lod_limit_px > 0
     std::vector<StarDot> star_dots;  // of a layer of stars; else empty
+    StarPixels star_pixels;          // theirs, as in RenderLayer
 };
 
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,

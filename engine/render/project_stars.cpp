@@ -36,6 +36,16 @@ StarDot make_dot(double share, double along_px, double across_px, double x, doub
     return dot;
 }
 
+float square(float x) { return x * x; }
+
+/// Of the pixel that a star's light was measured in, scene units.
+float measured_side(const LayerProjection& layer, const glm::vec3& place) {
+    const StarPixels& pixels = layer.star_pixels;
+    const double side =
+        pixels.side > 0.0 ? pixels.side : pixels.side_at_1 * glm::length(glm::dvec3(place) - pixels.from);
+    return static_cast<float>(side) * layer.radius_scale;
+}
+
 /// The light of one star at the camera.
 struct StarLight {
     glm::vec3 light;  // over all pixels
@@ -47,9 +57,13 @@ StarLight star_light(const LayerProjection& layer, const glm::vec3& p, std::int6
     StarLight star{layer.splats->color[index], std::sqrt(glm::dot(p, p)), false};
     star.infinite = !(star.distance < infinity_from);
     if (star.infinite) return star;
-    const float own = std::sqrt(glm::dot(place, place)) * layer.radius_scale;
-    const float ratio = own / std::max({star.distance, layer.lens.near_fade, layer.lens.near});
-    star.light *= ratio * ratio;
+    const float reach = std::max({star.distance, layer.lens.near_fade, layer.lens.near});
+    if (layer.star_pixels.are_known()) {
+        const bool parallel = shared::has_parallel_rays(layer.lens);
+        star.light *= square(measured_side(layer, place) * layer.lens.focal_px / (parallel ? 1.0f : reach));
+    } else {
+        star.light *= square(std::sqrt(glm::dot(place, place)) * layer.radius_scale / reach);
+    }
     return star;
 }
 

@@ -101,6 +101,10 @@ void check_prepare(const PrepareParams& prepare, const ParameterKey& at, const C
 void check_stars(const StarsParams& stars, const ParameterKey& at, const Checker& check) {
     check.require(!stars.catalogue.empty() || !stars.along.empty(), {at / "catalogue", at / "kind"},
                   "expected a star catalogue, or along = \"camera\", for kind \"stars\", found none");
+    check.require(stars.like.empty() || (stars.along.empty() && !stars.catalogue.empty()),
+                  {at / "like", at / "along"},
+                  stars.along.empty() ? "expected a catalogue, the stars.csv of the picture, found none"
+                                      : "expected like or along, found both");
     check.require(stars.wings.share + stars.spikes.share <= 1.0, {at / "wings.share", at / "spikes.share"},
                   fmt::format("expected shares of wings and spikes of at most 1 together, found {} and {}",
                               short_number(stars.wings.share), short_number(stars.spikes.share)));
@@ -143,6 +147,16 @@ void check_source(const SourceParams& source, const ParameterKey& at, const Chec
                       (t.black && t.white ? short_number(*t.black) + " and " + short_number(*t.white) : ""));
 }
 
+/// The layer that stars take their places from.
+void check_like(const Scene& scene, const LayerParams& layer, const Checker& check) {
+    const std::string& name = layer.source.stars.like;
+    if (layer.source.kind != SourceKind::stars || name.empty()) return;
+    const auto found = std::ranges::find(scene.layers, name, &LayerParams::name);
+    const bool has_picture = found != scene.layers.end() && found->source.kind == SourceKind::mesh;
+    check.require(has_picture, {layer_key(layer.name) / "source.like"},
+                  fmt::format("expected the name of a layer with a picture, found '{}'", name));
+}
+
 void check_layer(const LayerParams& layer, const Checker& check) {
     const ParameterKey at = layer_key(layer.name);
     check_source(layer.source, at / "source", check);
@@ -179,8 +193,7 @@ void check_renderable(const Scene& scene, const Places& places) {
         check.require(
             source.kind != SourceKind::splats || kind_of(format_of_file(source.file)) == FileKind::splats,
             {at / "file"},
-            "expected a file ending in .pda, .ply, .splats, .glb or .gltf, found '" + source.file.string() +
-                "'");
+            "expected a file ending in .pda, .ply or .splats, found '" + source.file.string() + "'");
     }
 }
 
@@ -208,9 +221,12 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
     const EnvironmentParams& e = scene.environment;
     check.require(
         e.cube.empty() || e.cube.size() == 6, {"environment.cube"},
-        fmt::format("expected six pictures, in the order +x -x +y -y +z -z, found {}", e.cube.size()));
-    check.require(e.image.empty() || e.cube.empty(), {"environment.image", "environment.cube"},
-                  "expected image or cube, found both");
+        fmt::format("expected six pictures of the faces of a cube, in the order +x -x +y -y +z -z, found {}",
+                    e.cube.size()));
+    check.require(!e.image.empty() + !e.cube.empty() + !e.tile.empty() <= 1,
+                  {"environment.image", "environment.cube", "environment.tile"},
+                  e.tile.empty() ? "expected image or cube, found both"
+                                 : "expected image, cube or tile, found several of them");
     for (std::size_t i = 0; i < scene.references.size(); ++i) {
         const ParameterKey key = ParameterKey("reference") / i / "frames";
         const auto place = places.find(key);
@@ -218,6 +234,7 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
             parse_frames(of, (place == places.end() ? file : place->second) + ": reference.frames");
     }
     for (const LayerParams& layer : scene.layers) check_layer(layer, check);
+    for (const LayerParams& layer : scene.layers) check_like(scene, layer, check);
 }
 
 }  // namespace astrosplat

@@ -123,7 +123,22 @@ void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
 
 void describe_stars(const Describer& d, StarsParams& stars) {
     d(stars.catalogue, "catalogue", "Catalogue", "",
-      "Stars: Hipparcos (hip_main.dat), HYG, or a table with ra, dec and mag; .gz too.");
+      "Stars: Hipparcos (hip_main.dat), HYG, or a table with ra, dec and mag; or with like the stars.csv of "
+      "a "
+      "prepared picture; .gz too.");
+    d(stars.like, "like", "Stars of", "",
+      "The layer whose picture the catalogue's stars were found in (prepare's stars.csv): its surface, "
+      "camera, "
+      "depths and transform are theirs, and from that camera they look as in the picture.");
+    const Describer of_picture = d.never_with("like", {""});
+    of_picture(
+        stars.depth, "depth", "Depth by", "",
+        "Where the stars of a picture lie in their layer's depth: layer spreads them as it spreads its "
+        "own, magnitude sorts them, the brightest nearest.");
+    of_picture(stars.slab, "slab", "Slab", "scene units",
+               "The stars of a picture lie within this depth around the surface, evenly; 0: as deep as their "
+               "layer's own.",
+               at_least(0), slider(0, 20), zero_is("Auto"));
     d(stars.unit, "unit", "Parsec", "scene units", "Scene units per parsec.", within(1e-9, 1e9),
       slider(0.001, 1000), logarithmic());
     d(stars.limit, "limit", "Faintest star", "magnitude",
@@ -261,8 +276,7 @@ void describe_source(const Describer& d, SourceParams& s) {
                        s.structure);
     splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",
            slider(0, 1000), zero_is("Auto"));
-    files(s.file, "file", "Splat file", "",
-          "For kind = \"splats\": .pda, .ply, .splats, or Gaussians in .glb or .gltf.",
+    files(s.file, "file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.",
           only_with("kind", {"splats"}));
     describe_stars(files.only_with("kind", {"stars"}), s.stars);
     describe_star_image(d.shown_in("Source", "Star image").only_with("kind", {"stars"}).animated(), s.stars);

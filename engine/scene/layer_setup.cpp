@@ -9,6 +9,7 @@
 #include "core/rotation.h"
 #include "generate/lattice.h"
 #include "render/falloff.h"
+#include "scene/layer_source.h"
 
 namespace astrosplat {
 namespace {
@@ -57,6 +58,17 @@ RenderLayer render_layer(const LayerParams& params) {
     return layer;
 }
 
+RenderLayer render_layer(const Scene& scene, const LayerParams& params) {
+    RenderLayer layer = render_layer(params);
+    const LayerParams* const like = like_layer(scene, params);
+    if (!like) return layer;
+    const RenderLayer under = render_layer(*like);
+    layer.translate = under.world_from_layer * (under.scale * layer.translate) + under.translate;
+    layer.world_from_layer = under.world_from_layer * layer.world_from_layer;
+    layer.scale *= under.scale;
+    return layer;
+}
+
 Look look_of(const LayerParams& params) {
     if (params.source.kind != SourceKind::stars) return params.look;
     Look look;
@@ -93,7 +105,7 @@ void check_extent(const Bounds& box, const std::string& layer, double farthest) 
 }
 
 bool has_environment(const EnvironmentParams& params) {
-    return !params.image.empty() || !params.cube.empty();
+    return !params.image.empty() || !params.cube.empty() || !params.tile.empty();
 }
 
 }  // namespace astrosplat

@@ -13,6 +13,9 @@ namespace astrosplat {
 /// The layer without its splats.
 RenderLayer render_layer(const LayerParams& params);
 
+/// The same in its scene: stars of another layer's picture go where that goes (source.like).
+RenderLayer render_layer(const Scene& scene, const LayerParams& params);
+
 /// The look that the layer's splats get: of stars, whose size and opacity are not theirs, only its grade.
 Look look_of(const LayerParams& params);
 

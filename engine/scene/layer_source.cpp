@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "camera/path.h"
+#include "generate/lattice.h"
 #include "scene/animate.h"
 #include "stars/random_stars.h"
 
@@ -48,8 +49,21 @@ bool follows_camera(const SourceParams& source) {
     return source.kind == SourceKind::stars && source.stars.along == "camera";
 }
 
+const LayerParams* like_layer(const Scene& scene, const LayerParams& layer) {
+    if (layer.source.kind != SourceKind::stars || layer.source.stars.like.empty()) return nullptr;
+    const auto found = std::ranges::find(scene.layers, layer.source.stars.like, &LayerParams::name);
+    return found == scene.layers.end() || found->source.kind != SourceKind::mesh ? nullptr : &*found;
+}
+
 SourceParams source_of(const Scene& scene, const LayerParams& layer) {
     SourceParams source = layer.source;
+    if (const LayerParams* const like = like_layer(scene, layer)) {
+        source = like->source;
+        source.kind = SourceKind::stars;
+        source.seed = layer.source.seed;
+        source.stars = layer.source.stars;
+        source.stars.like_seed = resolved_seed(like->source.seed, like->name);
+    }
     if (!follows_camera(source)) return source;
     const std::vector<glm::dvec3> places = camera_places(scene);
     if (!places.empty()) source.stars.path = simplified_path(places, tolerance * source.stars.spread);

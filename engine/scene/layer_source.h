@@ -19,7 +19,10 @@ bool has_camera_places(const Scene& scene);
 /// Whether a layer's stars lie along the camera's path.
 bool follows_camera(const SourceParams& source);
 
-/// layer.source, of stars along the camera with its path.
+/// The layer whose picture a layer's stars are of (source.like); null: none, or none with a picture.
+const LayerParams* like_layer(const Scene& scene, const LayerParams& layer);
+
+/// layer.source, of stars along the camera with its path, of those of a picture with the rest of its layer's.
 SourceParams source_of(const Scene& scene, const LayerParams& layer);
 
 }  // namespace astrosplat

@@ -210,6 +210,8 @@ class Loader {
                     fmt::format("--set: layer.name: expected each name once, found '{}' twice", to));
             if (layer.name == from) layer.name = to;
         }
+        for (LayerParams& layer : scene_.layers)
+            if (layer.source.stars.like == from) layer.source.stars.like = to;
         for (Track& track : scene_.animation)
             if (track.key.layer() == from) track.key = track.key.moved(layer_key(from), layer_key(to));
     }

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "bodies/choose.h"
@@ -17,6 +18,7 @@
 #include "scene/new_scene.h"
 #include "scene/value.h"
 #include "source/texture.h"
+#include "stars/picture_table.h"
 
 namespace astrosplat {
 namespace {
@@ -50,7 +52,7 @@ name = {name}
 meshes    = [ {{ mesh = "plane", texture = {picture} }} ]  # 10 units along its longer side
 uv        = "camera"              # depth goes along the rays to this camera, so that from there one sees the picture:
 uv_camera = {{ position = [0, {distance}, 0], up = [0, 0, -1], fov = {fov} }}
-structure = {{ kind = {kind}, clumps = 1.0, {extent}, {opacity}, {edges} }}  # disk, sheet, walls; columns extrudes it
+structure = {{ kind = {kind}, clumps = 1.0, {extent}, {opacity}, {edges}{stars} }}  # disk, sheet, walls; columns extrudes it
 stretch   = "auto"                # from data values to display values: asinh for FITS; or linear, asinh, log
 black     = "auto"                # data value shown as black
 white     = "auto"                # data value shown as white
@@ -62,6 +64,19 @@ grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 
 [layer.render]
 opacity = 1.0                     # of the whole layer
 lod     = {{ max_px = {split}, noise = 0.75 }}  # dots that look larger, close by, become clouds
+)";
+
+constexpr const char* stars_format = R"(
+[[layer]]                         # the stars that were taken out of the picture
+name = {name}
+
+[layer.source]
+kind      = "stars"
+catalogue = {table}
+like      = {picture}  # the layer whose picture they are of: they lie in its depth, and look from its camera as there
+depth     = "layer"               # as deep as that layer; "magnitude": the brighter the nearer
+slab      = 0.0                   # scene units within which they lie instead
+psf       = {psf}                  # px, standard deviation of their images
 )";
 
 struct CameraKeyframe {
@@ -188,6 +203,26 @@ std::string extent_of(StructureKind structure) {
     return structure == StructureKind::walls ? fmt::format("depth = {}", wall_depth) : "depth = 0.15";
 }
 
+// What `prepare` writes beside a picture that it took stars from.
+void find_stars(PictureScene& scene, const Progress& progress) {
+    const std::filesystem::path table = scene.image.parent_path() / "stars.csv";
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(table, ignored)) return;
+    const PictureTable stars = read_picture_table(table, progress);
+    if (stars.stars.empty()) return;
+    scene.stars = table;
+    scene.star_px = median_sigma_px(stars);
+}
+
+std::string stars_text(const PictureScene& scene, const std::string& picture, double frame_px_per_px,
+                       const std::filesystem::path& file) {
+    constexpr double least_px = 0.6;
+    return fmt::format(
+        stars_format, fmt::arg("name", picture == "stars" ? "\"more_stars\"" : "\"stars\""),
+        fmt::arg("table", to_toml(picture_path(scene.stars, file))), fmt::arg("picture", to_toml(picture)),
+        fmt::arg("psf", fmt::format("{:.2f}", std::max(least_px, scene.star_px * frame_px_per_px))));
+}
+
 // Of the picture's width: room for a galaxy to end round, and for a cloud to fray. What stands alone on a
 // dark sky needs it where but an arm leaves the picture, or that would be cut off straight. One of many
 // pixels fades within its own edges: a margin would need too much memory.
@@ -210,6 +245,7 @@ PictureScene picture_scene(const std::filesystem::path& image, std::optional<Str
                        reduced ? texture.file_height : texture.image.height};
     const Image light = picture_light(texture, 0.0).light;
     scene.lit_rim = lit_share_of_rim(light);
+    find_stars(scene, progress);
     scene.subject = subject_of(light);
     why.clear();
     if (structure) {
@@ -242,7 +278,12 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height, margin))),
         fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
+        fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"),
         fmt::arg("extent", extent_of(scene.structure)), fmt::arg("opacity", opacity_of(scene.structure)));
+    if (!scene.stars.empty()) {
+        const double frame_px = static_cast<double>(side_px(longest, longest));
+        text += stars_text(scene, name, frame_px / static_cast<double>(longest), file);
+    }
     return scene.film
                ? text + animation_text(flight(distance, scene.structure, subject_in_scene(scene, height)))
                : text;

@@ -21,10 +21,13 @@ struct PictureScene {
     bool film = false;     // with a camera move of ten seconds
     glm::dvec2 subject{
         0.5};  // that it passes close by, from the top left corner in shares of width and height
+    std::filesystem::path stars = {};  // the table of those that `prepare` took away; empty: there is none
+    double star_px = 1.0;              // standard deviation of their images, px of the picture
 };
 
 /// Reads the picture, for its size and, unless `structure` is given, to choose one; `why` then says why in
-/// words and is empty otherwise. Throws InputError, Cancelled.
+/// words and is empty otherwise. A stars.csv beside the picture is that of its stars, which are then a layer
+/// of their own. Throws InputError, Cancelled.
 PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
                            std::string& why, const Progress& progress = {});
 

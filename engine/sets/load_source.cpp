@@ -15,9 +15,8 @@
 #include "core/parallel.h"
 #include "generate/generate.h"
 #include "sets/flat_start.h"
+#include "sets/star_source.h"
 #include "splat_files/splat_file.h"
-#include "stars/random_stars.h"
-#include "stars/star_set.h"
 
 namespace astrosplat {
 namespace {
@@ -81,55 +80,6 @@ SplatSet read_source(const SourceParams& source, const Progress& progress) {
     if (set.max_distance <= 0.0 && !set.distance.empty()) {
         set.max_distance = *std::ranges::max_element(set.distance);
     }
-    return set;
-}
-
-std::string star_summary(const StarCounts& counts, const StarsParams& stars) {
-    std::string text = human_count(counts.kept, "star");
-    if (counts.too_faint > 0)
-        text += fmt::format(", {} fainter than magnitude {} left out",
-                            human_count(static_cast<double>(counts.too_faint)), stars.limit);
-    if (counts.infinite > 0)
-        text += fmt::format(", {} without a distance at infinity",
-                            human_count(static_cast<double>(counts.infinite)));
-    return text;
-}
-
-StarCatalogue read_catalogue_of(const StarsParams& stars, const std::string& layer_name,
-                                const Progress& progress) {
-    StarCatalogue catalogue = read_catalogue(stars.catalogue, progress);
-    if (catalogue.bad.count > 0)
-        log_warning(fmt::format("layer '{}': {}: {}", layer_name, stars.catalogue.string(),
-                                catalogue.bad.text(catalogue.rows)));
-    return catalogue;
-}
-
-StarScale scale_of(const StarsParams& stars) { return {stars.unit, stars.limit, stars.zero_point}; }
-
-SplatSet scatter_stars(const SourceParams& source, const std::string& layer_name, const Progress& progress) {
-    const StarsParams& stars = source.stars;
-    if (stars.path.empty()) throw InputError("expected a camera with a position for its stars, found none");
-    const bool from_catalogue = !stars.catalogue.empty();
-    const std::vector<StarKind> kinds =
-        from_catalogue ? kinds_of(read_catalogue_of(stars, layer_name, progress), stars.limit)
-                       : main_sequence();
-    if (kinds.empty())
-        bad_input(stars.catalogue.string(), "",
-                  fmt::format("stars of magnitude {} or brighter with a distance", stars.limit), "none");
-    log_info(fmt::format(
-        "layer '{}': {} within {:.4g} of the camera's path, of {}", layer_name,
-        human_count(source.count, "random star"), stars.spread,
-        from_catalogue ? human_count(static_cast<std::int64_t>(kinds.size()), "star") + " of the catalogue"
-                       : "the main sequence"));
-    return random_stars({stars.path, stars.spread}, kinds, source.count,
-                        resolved_seed(source.seed, layer_name), scale_of(stars), progress);
-}
-
-SplatSet read_stars(const StarsParams& stars, const std::string& layer_name, const Progress& progress) {
-    const StarCatalogue catalogue = read_catalogue_of(stars, layer_name, progress);
-    StarCounts counts;
-    SplatSet set = star_set(catalogue, scale_of(stars), &counts);
-    log_info(fmt::format("layer '{}': {}", layer_name, star_summary(counts, stars)));
     return set;
 }
 
@@ -197,8 +147,9 @@ SplatSet load_source(const SourceParams& source, const std::string& layer_name, 
         if (source.kind == SourceKind::mesh)
             return generate_bodies(source, layer_name, progress, watcher, prepared);
         if (source.kind == SourceKind::splats) return read_source(source, progress);
-        return source.stars.along.empty() ? read_stars(source.stars, layer_name, progress)
-                                          : scatter_stars(source, layer_name, progress);
+        return load_stars(source, layer_name, progress, prepared, [&] {
+            return load_source(picture_source(source), source.stars.like, progress, nullptr, prepared);
+        });
     } catch (const InputError& error) {
         fail(layer_name, error);
     }

@@ -21,6 +21,7 @@
 #include "sets/load_source.h"
 #include "sets/prepared_cache.h"
 #include "sets/recipe.h"
+#include "sets/star_source.h"
 
 namespace astrosplat {
 namespace {
@@ -93,6 +94,10 @@ class CachedLoad {
 
   private:
     SplatSet uncached() const {
+        if (source_.kind == SourceKind::stars)
+            return load_stars(source_, layer_name_, progress_, kept_pictures(cache_), [&] {
+                return load_source(cache_, picture_source(source_), source_.stars.like, progress_).set;
+            });
         return load_source(source_, layer_name_, progress_, watcher_, kept_pictures(cache_));
     }
 
@@ -167,6 +172,14 @@ LoadedSet load_source(const SetCache& cache, const SourceParams& source, const s
     LoadedSet loaded = CachedLoad(cache, source, layer_name, progress, watcher, wanted).load();
     drop_columns(loaded.set, wanted);
     return loaded;
+}
+
+SplatSet load_picture_stars(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                            const SplatSet& of_picture, const Progress& progress) try {
+    return load_picture_stars(source, layer_name, progress, kept_pictures(cache),
+                              [&]() -> const SplatSet& { return of_picture; });
+} catch (const InputError& error) {
+    throw InputError(fmt::format("layer '{}': {}", layer_name, error.what()));
 }
 
 std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,

@@ -30,11 +30,16 @@ struct LoadedSet {
 };
 
 /// load_source through a cache: reads a mesh source's set where it is kept, else generates and keeps it;
-/// other kinds pass by. Of several processes that need the same set one generates it and the others wait.
-/// Columns that are not wanted are empty. Throws as load_source does.
+/// other kinds pass by, but stars of a picture ask for their layer's set in this way. Of several processes
+/// that need the same set one generates it and the others wait. Columns that are not wanted are empty. Throws
+/// as load_source does.
 LoadedSet load_source(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                       const Progress& progress = {}, KeptWatcher* watcher = nullptr,
                       const OptionalColumns& wanted = {});
+
+/// load_source of stars of a picture (is_like_a_layer) whose layer's set is there already.
+SplatSet load_picture_stars(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                            const SplatSet& of_picture, const Progress& progress = {});
 
 /// Splats of a source's set, if it is kept: what an estimate asks before anything is loaded.
 std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,

@@ -162,18 +162,25 @@ struct StarSpikes {
     bool operator==(const StarSpikes&) const = default;
 };
 
-/// kind stars: a catalogue, or `SourceParams::count` random stars along something.
+/// kind stars: a catalogue, the stars of a picture, or `SourceParams::count` random stars along something.
 struct StarsParams {
+    enum class Depth { layer, magnitude };
+    friend constexpr auto names_of(Depth) { return names_up_to<Depth::magnitude>("layer", "magnitude"); }
     std::filesystem::path catalogue;
-    double unit = 1.0;        // scene units per parsec
-    double limit = 12.0;      // faintest magnitude of the catalogue
-    double zero_point = 4.0;  // magnitude of flux 1
-    std::string along;        // "camera": random stars around the camera's path; empty: the catalogue
-    double spread = 10.0;     // scene units around the path
-    double psf = 1.0;         // px, standard deviation
+    std::string like;            // name of the layer whose picture they are of; empty: of none
+    Depth depth = Depth::layer;  // like: at random, or the brighter the nearer
+    double slab = 0.0;           // like: scene units, nearest to farthest; 0: as the layer's own stars
+    double unit = 1.0;           // scene units per parsec
+    double limit = 12.0;         // faintest magnitude of the catalogue
+    double zero_point = 4.0;     // magnitude of flux 1
+    std::string along;           // "camera": random stars around the camera's path; empty: the catalogue
+    double spread = 10.0;        // scene units around the path
+    double psf = 1.0;            // px, standard deviation
     StarWings wings;
     StarSpikes spikes;
     std::vector<glm::dvec3> path;  // for `along`, scene units. Not a key: the camera's
+    /// For `like`: the seed of that layer, whose source is then the rest of SourceParams. Not a key.
+    std::uint32_t like_seed = 0;
     bool operator==(const StarsParams&) const = default;
 };
 

@@ -219,14 +219,6 @@ TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
               of_lens(Projection::cylindrical, nothing));
 }
 
-TEST_F(FrameHashTest, MixingInDisplayValuesCountsWhereItIsDone) {
-    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("render.space"), std::string::npos);
-    const auto display = [](Scene& s) { s.layers[0].render.space = BlendSpace::display; };
-    EXPECT_EQ(changed(display), hash(scene()));
-    const auto alone = [](Scene& s) { s.layers[0].render.isolate = true; };
-    EXPECT_NE(changed([&](Scene& s) { alone(s), display(s); }), changed(alone));
-}
-
 TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
     EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("wings"), std::string::npos);
     EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("spikes"), std::string::npos);
@@ -235,6 +227,30 @@ TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
     EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.psf = 2.0; }));
     EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.wings.share = 0.25; }));
     EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.stars.spikes.vanes = 3; }));
+}
+
+// Stars of a picture lie where that picture's layer has it, even one that is not seen; keys of others are not
+// told of.
+TEST_F(FrameHashTest, TheLayerOfAPictureCountsForItsStars) {
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("source.like"), std::string::npos);
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("source.slab"), std::string::npos);
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("environment.tile"), std::string::npos);
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("environment.behind"), std::string::npos);
+    const auto stars = [](Scene& s) {
+        s.layers[0].visible = false;
+        s.layers[1].visible = true;
+        std::erase_if(s.animation,
+                      [](const Track& t) { return t.key.text().find("visible") != std::string::npos; });
+        s.layers[1].source.kind = SourceKind::stars;
+        s.layers[1].source.stars.like = s.layers[0].name;
+    };
+    const std::string before = changed(stars);
+    EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].source.structure.depth = 0.5; }));
+    EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[0].transform.scale = 2.0; }));
+    EXPECT_NE(before, changed([&](Scene& s) { stars(s), s.layers[1].source.stars.slab = 2.0; }));
+    const auto of_none = [&](Scene& s) { stars(s), s.layers[1].source.stars.like.clear(); };
+    EXPECT_EQ(changed(of_none),
+              changed([&](Scene& s) { of_none(s), s.layers[0].source.structure.depth = 0.5; }));
 }
 
 TEST_F(FrameHashTest, TheWholePathCountsForStarsAlongIt) {

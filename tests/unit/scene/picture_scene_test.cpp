@@ -45,6 +45,22 @@ TEST(PictureScene, BeginsWithThePictureAsItIs) {
     }
 }
 
+TEST(PictureScene, StarsThatWereTakenOutAreALayerOfTheirOwn) {
+    PictureScene picture{"ready/picture.exr", 960, 600, StructureKind::sheet};
+    EXPECT_EQ(parsed(picture).layers.size(), 1u);
+    picture.stars = "ready/stars.csv";
+    picture.star_px = 1.25;
+    const Scene scene = parsed(picture);
+    ASSERT_EQ(scene.layers.size(), 2u);
+    EXPECT_EQ(scene.layers[0].source.structure.stars, StructureParams::Stars::no)
+        << "each star is in one place";
+    EXPECT_EQ(scene.layers[1].source.kind, SourceKind::stars);
+    EXPECT_EQ(scene.layers[1].source.stars.like, scene.layers[0].name);
+    EXPECT_EQ(scene.layers[1].source.stars.psf, 2.5) << "in a frame twice as wide";
+    picture.image = "stars.exr";
+    EXPECT_EQ(parsed(picture).layers[1].name, "more_stars");
+}
+
 TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
     for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet, StructureKind::walls}) {
         PictureScene picture{"a.png", 1600, 1000, kind};

@@ -1,0 +1,177 @@
+// The stars of a picture beside what the picture without them became: from its camera they have the table's
+// light and place, whatever lies before them; elsewhere they have depth.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "core/parallel.h"
+#include "pipeline.h"
+#include "scene/layer_setup.h"
+#include "scene/layer_source.h"
+#include "scene/load.h"
+#include "source/write_image.h"
+#include "support/painted_picture.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::int64_t width_px = 96, height_px = 72;
+constexpr int columns = 3, rows = 2, spacing_px = 28;
+
+struct Planted {
+    double x, y;  // px of the picture
+    glm::dvec3 light;
+};
+
+class PictureStars : public testing::Test {
+  protected:
+    PictureStars() {
+        Image picture = make_image(width_px, height_px, 3);
+        for (std::int64_t y = 0; y < height_px; ++y)
+            for (std::int64_t x = 0; x < width_px; ++x) {
+                const float light = 0.08f + 0.06f * painted::fbm(double(x), double(y), 0.05, 3u);
+                for (int c = 0; c < 3; ++c) picture.at(x, y)[c] = light * (1.0f - 0.2f * float(c));
+            }
+        write_linear_image(folder / "picture.exr", picture, "", Existing::replace);
+        std::string table = "x,y,u,v,flux_r,flux_g,flux_b,sigma_px,saturated\n";
+        for (int i = 0; i < columns * rows; ++i) {
+            const Planted star{22.0 + spacing_px * (i % columns) + 0.37 * (i % 3),
+                               20.0 + spacing_px * (i / columns) + 0.21 * (i % 4),
+                               (0.5 + 0.25 * i) * glm::dvec3(1.0, 0.8, 0.5)};
+            planted.push_back(star);
+            table += fmt::format("{},{},{},{},{},{},{},1.0,0\n", star.x, star.y, star.x / width_px,
+                                 1.0 - star.y / height_px, star.light.x, star.light.y, star.light.z);
+        }
+        folder.file("stars.csv", table);
+    }
+
+    Scene scene(const std::string& source, const std::string& camera, const std::string& stars = "",
+                const std::string& layer = "") const {
+        return parse_scene(
+            "astrosplat = 1\n[output]\nresolution = [96, 72]\n[camera]\n" + camera +
+                "\n[[layer]]\nname = \"gas\"\n" + layer +
+                "[layer.source]\nmeshes = [ { mesh = \"plane\", texture = \"picture.exr\" } ]\n" + source +
+                "\n[[layer]]\nname = \"stars\"\n[layer.source]\nkind = \"stars\"\n"
+                "catalogue = \"stars.csv\"\nlike = \"gas\"\n" +
+                stars,
+            folder / "scene.toml");
+    }
+    Scene in_front(const std::string& kind, const std::string& stars = "",
+                   const std::string& layer = "") const {
+        return scene(
+            "uv = \"camera\"\nuv_camera = { position = [0, 12, 0], up = [0, 0, -1], fov = 35 }\n"
+            "structure = { kind = \"" +
+                kind + "\", stars = false }",
+            "position = [0, 12, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\nfov = 35", stars, layer);
+    }
+
+    /// What arrives of the layer of stars.
+    static Image arrived(const Scene& scene, double times = 1.0) {
+        Pipeline pipeline(scene);
+        RenderSettings settings = pipeline.settings(1.0);
+        settings.width = std::llround(times * double(settings.width));
+        settings.height = std::llround(times * double(settings.height));
+        settings.aov_layers = true;
+        return pipeline.frame(1.0, settings).layers.at(1);
+    }
+
+    /// Every star within a window of its own: the same light and place as in the picture.
+    void expect_in_place(const Image& image, double times, double light_within) const {
+        for (const Planted& star : planted) {
+            const double x = star.x * times, y = star.y * times;
+            const auto reach = static_cast<std::int64_t>(12.0 * times);
+            glm::dvec3 sum(0.0);
+            glm::dvec2 middle(0.0);
+            for (auto j = static_cast<std::int64_t>(y) - reach; j <= static_cast<std::int64_t>(y) + reach;
+                 ++j)
+                for (auto i = static_cast<std::int64_t>(x) - reach; i <= static_cast<std::int64_t>(x) + reach;
+                     ++i) {
+                    const float* const p = image.at(i, j);
+                    sum += glm::dvec3(p[0], p[1], p[2]);
+                    middle += double(p[1]) * (glm::dvec2(i, j) + 0.5);
+                }
+            middle /= sum.y;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(sum[c] / (times * times * star.light[c]), 1.0, light_within)
+                    << "at " << star.x << ", " << star.y << ", channel " << c;
+            EXPECT_NEAR(middle.x / times, star.x, 0.05);
+            EXPECT_NEAR(middle.y / times, star.y, 0.05);
+        }
+    }
+
+    TempFolder folder;
+    std::vector<Planted> planted;
+};
+
+TEST_F(PictureStars, LookAsInThePictureWhateverLiesBeforeThem) {
+    for (const char* const kind : {"sheet", "disk"}) {
+        SCOPED_TRACE(kind);
+        expect_in_place(arrived(in_front(kind)), 1.0, 0.01);
+    }
+}
+
+// Splats cover as much more of a larger frame; so does the light of stars.
+TEST_F(PictureStars, AreAsBrightBesideTheirNebulaInFramesOfAnySize) {
+    expect_in_place(arrived(in_front("sheet", "psf = 2.0"), 2.0), 2.0, 0.01);
+}
+
+TEST_F(PictureStars, AreSeenInPlaceWithoutACameraOfThePicture) {
+    const std::string from_above =
+        "projection = \"orthographic\"\nposition = [0, 9, 0]\ntarget = [0, 0, 0]\n"
+        "up = [0, 0, -1]\nheight = 7.5";
+    expect_in_place(arrived(scene("structure = { kind = \"sheet\", stars = false }", from_above)), 1.0, 0.01);
+    // Columns are not looked through, and these let everything pass.
+    expect_in_place(arrived(scene("count = 2000", from_above, "", "[layer.look]\ndensity = 0.0\n")), 1.0,
+                    0.01);
+}
+
+SplatSet stars_of(const Scene& scene) {
+    return load_source(SetCache{}, source_of(scene, scene.layers[1]), "stars").set;
+}
+
+TEST_F(PictureStars, HaveTheDepthThatIsAskedFor) {
+    const SplatSet slab = stars_of(in_front("sheet", "slab = 4.0"));
+    ASSERT_EQ(slab.size(), columns * rows);
+    float lowest = 9.0f, highest = -9.0f;
+    for (const glm::vec3& p : slab.position) {
+        lowest = std::fmin(lowest, p.y);
+        highest = std::fmax(highest, p.y);
+    }
+    EXPECT_GT(highest - lowest, 2.0f);
+    EXPECT_GE(lowest, -2.0f);
+    EXPECT_LE(highest, 2.0f);
+    // Of columns, which hide none: in bodies those that are hidden come to the front.
+    const SplatSet sorted = stars_of(scene("count = 2000", "", "slab = 4.0\ndepth = \"magnitude\""));
+    for (std::int64_t i = 1; i < sorted.size(); ++i)  // rows grow brighter
+        EXPECT_GT(sorted.position[i].y, sorted.position[i - 1].y);
+    EXPECT_EQ(stars_of(in_front("sheet", "limit = 4.0")).size(), 3) << "those of a luminance of 1 and more";
+}
+
+TEST_F(PictureStars, AreTheSameForAnyThreadsAndSeed) {
+    const SplatSet once = stars_of(in_front("disk"));
+    set_thread_count(1);
+    const SplatSet again = stars_of(in_front("disk"));
+    set_thread_count(0);
+    EXPECT_EQ(std::vector<glm::vec3>(once.position.begin(), once.position.end()),
+              std::vector<glm::vec3>(again.position.begin(), again.position.end()));
+    EXPECT_EQ(std::vector<glm::vec3>(once.color.begin(), once.color.end()),
+              std::vector<glm::vec3>(again.color.begin(), again.color.end()));
+}
+
+TEST_F(PictureStars, GoWhereTheirPictureGoes) {
+    const Scene scene =
+        in_front("sheet", "[layer.transform]\nscale = 2.0\n",
+                 "[layer.transform]\ntranslate = [1, 2, 3]\nrotate = [0, 90, 0]\nscale = 0.5\n");
+    const RenderLayer layer = render_layer(scene, scene.layers[1]);
+    EXPECT_EQ(layer.scale, 1.0);
+    EXPECT_EQ(layer.translate, glm::dvec3(1, 2, 3));
+    const glm::dvec3 p = layer.world_from_layer * glm::dvec3(1, 0, 0);
+    EXPECT_NEAR(p.z, -1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace astrosplat
