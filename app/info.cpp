@@ -22,6 +22,9 @@
 #include "source/mesh.h"
 #include "source/obj.h"
 #include "splat_files/splat_file.h"
+#include "stars/catalogue.h"
+#include "stars/catalogue_kind.h"
+#include "stars/picture_table.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
@@ -128,6 +131,45 @@ Report describe_image(const fs::path& file) {
     return report;
 }
 
+// What is between two of them is told by neither.
+Report extremes(const std::vector<double>& values) {
+    const auto [least, most] = std::ranges::minmax(values);
+    return {number(least), number(most)};
+}
+
+Report describe_catalogue(const fs::path& file) {
+    const StarCatalogue catalogue = read_catalogue(file);
+    std::vector<double> magnitudes;
+    std::int64_t distances = 0, colors = 0;
+    for (const CatalogueStar& star : catalogue.stars) {
+        magnitudes.push_back(star.magnitude);
+        distances += star.distance_pc > 0.0 ? 1 : 0;
+        colors += star.color_index ? 1 : 0;
+    }
+    Report report = {{"kind", "stars"},
+                     {"of", "the sky"},
+                     {"stars", catalogue.stars.size()},
+                     {"with_distance", distances},
+                     {"with_color_index", colors},
+                     {"magnitudes", extremes(magnitudes)}};
+    if (catalogue.bad.count > 0) report["bad_rows"] = catalogue.bad.text(catalogue.rows);
+    return report;
+}
+
+Report describe_picture_table(const fs::path& file) {
+    const PictureTable table = read_picture_table(file);
+    std::vector<double> light{0.0};
+    if (!table.stars.empty()) light.clear();
+    for (const TableStar& star : table.stars) light.push_back(star.luminance());
+    Report report = {{"kind", "stars"},
+                     {"of", "a picture"},
+                     {"stars", table.stars.size()},
+                     {"luminances", extremes(light)},
+                     {"median_sigma_px", number(median_sigma_px(table))}};
+    if (table.bad.count > 0) report["bad_rows"] = table.bad.text(table.rows);
+    return report;
+}
+
 Report describe_layer(const LayerParams& layer) {
     constexpr std::array kinds = {"mesh", "splats", "stars"};
     Report report = {{"name", layer.name},
@@ -135,6 +177,7 @@ Report describe_layer(const LayerParams& layer) {
                      {"kind", kinds[static_cast<std::size_t>(layer.source.kind)]}};
     if (layer.source.kind == SourceKind::splats) report["file"] = layer.source.file.string();
     if (layer.source.kind == SourceKind::stars) report["catalogue"] = layer.source.stars.catalogue.string();
+    if (!layer.source.stars.like.empty()) report["like"] = layer.source.stars.like;
     Report meshes = Report::array();
     for (const MeshInput& input : layer.source.meshes) {
         Report textures = Report::array();
@@ -172,6 +215,8 @@ Report describe(const fs::path& file) {
         case FileKind::mesh:
             return describe_mesh(file);
         default:
+            if (const CatalogueKind kind = kind_of_catalogue(file); kind != CatalogueKind::none)
+                return kind == CatalogueKind::sky ? describe_catalogue(file) : describe_picture_table(file);
             return is_fits(file) ? describe_fits_file(file) : describe_image(file);
     }
 }

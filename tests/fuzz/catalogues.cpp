@@ -8,6 +8,8 @@
 #include <fstream>
 
 #include "fuzz/targets.h"
+#include "stars/catalogue_kind.h"
+#include "stars/picture_table.h"
 #include "stars/star_set.h"
 #include "unit/stars/catalogues.h"
 
@@ -41,6 +43,17 @@ struct CatalogueFile {
     ~CatalogueFile() { std::filesystem::remove(path); }
 };
 
+void read_picture_bytes(const std::filesystem::path& file) {
+    const PictureTable table = read_picture_table(file);
+    demand(table.rows == table.bad.count + static_cast<std::int64_t>(table.stars.size()),
+           "every row on one side");
+    for (const TableStar& star : table.stars) {
+        demand(std::isfinite(star.uv.x) && std::isfinite(star.uv.y) && std::isfinite(star.sigma_px),
+               "places");
+        demand(std::isfinite(star.luminance()) && star.luminance() > 0.0, "light");
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> catalogue_seeds() {
@@ -52,11 +65,14 @@ std::vector<std::string> catalogue_seeds() {
     const std::string hyg = std::string(test::hyg_header) +
                             "0,,,,,,Sol,0,0,0,0,0,0,-26.7,4.85,G2V,0.656,0,0,0\n"
                             "1,2,3,4,\"Gl, 5\",,,6.75,-16.7,100000,0,0,0,-1.44,1.4,A0,0.009,0,0,0\n";
-    return {hipparcos, table, hyg, gzipped(hipparcos + hipparcos)};
+    const std::string picture =
+        "x,y,u,v,flux_r,flux_g,flux_b,sigma_px\n1,2,0.1,0.9,1,2,3,1.5\n3,4,.5,.5,-1,0,1e3,2\n";
+    return {hipparcos, table, hyg, gzipped(hipparcos + hipparcos), picture};
 }
 
 void read_catalogue_bytes(std::string_view bytes) {
     const CatalogueFile file(bytes);
+    if (kind_of_catalogue(file.path) == CatalogueKind::picture) return read_picture_bytes(file.path);
     const StarCatalogue catalogue = read_catalogue(file.path);
     demand(catalogue.rows == catalogue.bad.count + static_cast<std::int64_t>(catalogue.stars.size()),
            "every row on one side");
