@@ -155,6 +155,72 @@ TEST(Stars, GrowBrighterAsOneFliesPastUnlessAtInfinity) {
     EXPECT_NEAR(total(picture_of({&layer, 1}, faded), 0), 1.0, 0.01) << "what is at infinity has no far side";
 }
 
+// What a slow pan makes visible: twinkling. 120 frames of .1 px over a field of stars, some of them faint, in
+// a frame wide enough that all stay inside.
+TEST(Stars, KeepTheirLightWhileTheCameraPans) {
+    constexpr int stars = 64, frames = 120;
+    for (const float core_px : {0.6f, 1.0f}) {
+        const Camera camera = star_camera();
+        std::vector<OneSplat> many;
+        double light = 0.0;
+        for (int n = 0; n < stars; ++n) {
+            const double x = -98.0 + 26.0 * (n % 8) + 0.37 * n, y = -98.0 + 26.0 * (n / 8) + 0.11 * n;
+            many.push_back(star_at(place_at(camera, x, y), 0.01f * std::exp(0.1f * float(n))));
+            light += double(many.back().color.x);
+        }
+        const ShadedSplats splats = make_splats(many);
+        const RenderLayer layer = star_layer(splats, {.core_px = core_px, .wing_share = 0.2f});
+        std::vector<double> first;
+        for (int frame = 0; frame < frames; ++frame) {
+            Camera panned = camera;
+            panned.center_x_px += 0.1 * frame - 6.0;
+            const Image picture = picture_of({&layer, 1}, panned);
+            ASSERT_NEAR(total(picture, 0) / light, 1.0, 0.002) << "frame " << frame;
+            for (int n = 0; n < stars; n += 9) {
+                const double x = panned.center_x_px - 98.0 + 26.0 * (n % 8) + 0.37 * n,
+                             y = panned.center_y_px - 98.0 + 26.0 * (n / 8) + 0.11 * n;
+                double sum = 0.0;
+                for (auto j = static_cast<std::int64_t>(y) - 11; j <= static_cast<std::int64_t>(y) + 11; ++j)
+                    for (auto i = static_cast<std::int64_t>(x) - 11; i <= static_cast<std::int64_t>(x) + 11;
+                         ++i)
+                        sum += double(picture.at(i, j)[0]);
+                if (frame == 0) first.push_back(sum);
+                ASSERT_NEAR(sum / first[static_cast<std::size_t>(n / 9)], 1.0, 0.02)
+                    << "star " << n << ", frame " << frame;
+            }
+        }
+    }
+}
+
+// Stars that were measured in a picture's pixels are as bright beside its splats in any frame and lens.
+TEST(Stars, OfAPictureCoverWhatTheirPixelsDid) {
+    const ShadedSplats splats = make_splats({star_at({0.0f, 3.0f, -40.0f})});
+    RenderLayer layer = star_layer(splats);
+    const Camera camera = star_camera();
+    layer.star_pixels.from = camera.eye;
+    layer.star_pixels.side_at_1 = 1.0 / camera.focal_px;
+    EXPECT_NEAR(total(picture_of({&layer, 1}, camera), 0), 1.0, 0.01);
+    Camera closer = camera;
+    closer.eye = {0.0, 3.0, -20.0};
+    const double way = std::hypot(3.0, 40.0) / 20.0;
+    EXPECT_NEAR(total(picture_of({&layer, 1}, closer), 0), way * way, 0.01 * way * way);
+    const Camera narrow = star_camera(20.0);
+    const double longer = narrow.focal_px / camera.focal_px;
+    EXPECT_NEAR(total(picture_of({&layer, 1}, narrow), 0), longer * longer, 0.01 * longer * longer);
+    CameraParams params;
+    params.projection = Projection::orthographic;
+    params.position = glm::dvec3(0.0);
+    params.target = {0.0, 0.0, -1.0};
+    params.height = 40.0;
+    const Camera parallel = make_camera(params, side_px, side_px, {});
+    const double side_px_there = std::hypot(3.0, 40.0) / camera.focal_px * parallel.focal_px;
+    EXPECT_NEAR(total(picture_of({&layer, 1}, parallel), 0), side_px_there * side_px_there, 0.01);
+    layer.star_pixels = {glm::dvec3(0.0), 0.0, 2.0 / parallel.focal_px};
+    EXPECT_NEAR(total(picture_of({&layer, 1}, parallel), 0), 4.0, 0.04);
+    layer.scale = 0.5;
+    EXPECT_NEAR(total(picture_of({&layer, 1}, parallel), 0), 1.0, 0.01) << "pixels shrink with the layer";
+}
+
 TEST(Stars, AreHiddenByWhatLiesBeforeThem) {
     const ShadedSplats stars = make_splats({star_at({0.0f, 0.0f, -40.0f})});
     for (const float z : {-20.0f, -60.0f}) {
