@@ -24,3 +24,9 @@ done
 "$program" --batch "$here/../scenes/dome.toml" --frames 1,120,240 --resolution 500x500 --no-cache --output "$work/dome.####.png"
 oiiotool --nosoftwareattrib "$work/dome.0001.png" "$work/dome.0120.png" "$work/dome.0240.png" --mosaic 3x1 \
     --eraseattrib ".*" --quality 90 -o "$here/dome.jpg"
+
+# Four frames of the way into the galaxy.
+"$program" --batch "$here/../scenes/powers-of-ten.toml" --frames 1,100,200,300 --resolution 640x360 --no-cache \
+    --output "$work/ten.####.png"
+oiiotool --nosoftwareattrib "$work/ten.0001.png" "$work/ten.0100.png" "$work/ten.0200.png" "$work/ten.0300.png" --mosaic 4x1 --resize 1920x270 \
+    --eraseattrib ".*" --quality 88 -o "$here/powers-of-ten.jpg"

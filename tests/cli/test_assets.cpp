@@ -14,6 +14,7 @@ TEST_F(Assets, DemoScenesListTheirFrames) {
                                      {"spiral", "0240"},
                                      {"nebula", "0240"},
                                      {"dome", "0240"},
+                                     {"powers-of-ten", "0300"},
                                      {"layers", "0120"},
                                      {"m51", "0096"},
                                      {"s106", "0096"}}) {
