@@ -1,5 +1,7 @@
 // A long time at the window, by hands that do not know what they do: mouse and keys at random, always the
 // same. Nothing ends it, nothing grows for ever, and undo to the start brings the file back byte for byte.
+#include <glm/common.hpp>
+
 #include "core/shared_maths.h"
 #include "window/window_test.h"
 
@@ -56,6 +58,12 @@ class WindowWalk : public WindowTest {
         return {within(area.x + 8.0f, area.width - 16.0f), within(area.y + 8.0f, area.height - 16.0f)};
     }
 
+    /// Not over the screen's edge.
+    void drag(glm::vec2 from, glm::vec2 by) {
+        const glm::vec2 to = glm::clamp(from + by, glm::vec2(2.0f), glm::vec2(width - 2.0f, height - 2.0f));
+        person->drag(from, to - from);
+    }
+
     void gesture() {
         constexpr const char* keys[] = {"0", "1",  "3",    "7",     "9",      "f",     "g",      "z",
                                         "h", "s",  "b",    "x",     "k",      "Left",  "Right",  "Up",
@@ -64,10 +72,10 @@ class WindowWalk : public WindowTest {
         switch (chance(8)) {
             case 0:
             case 1:
-                return person->drag(on(&Layout::viewport), {within(-90.0f, 180.0f), within(-60.0f, 120.0f)});
+                return drag(on(&Layout::viewport), {within(-90.0f, 180.0f), within(-60.0f, 120.0f)});
             case 2:
             case 3:
-                return person->drag(on(&Layout::panel), {within(-60.0f, 120.0f), 0.0f});
+                return drag(on(&Layout::panel), {within(-60.0f, 120.0f), 0.0f});
             case 4:
                 return person->click(on(&Layout::panel));
             case 5:
