@@ -70,7 +70,8 @@ std::vector<std::string> telling_scenes() {
               "pdf = { shape = \"curve\", points = [[0, 1], [1, 0]] }", "",
               "[camera]\nfocal_length = 50.0\nf_number = 2.0\n"),
         layer("kind = \"stars\"\nalong = \"camera\"", "", "", "[camera]\nposition = [0, 0, 9]\n"),
-        layer("kind = \"splats\"\nfile = \"a.ply\"", "", "", "[camera]\nprojection = \"cylindrical\"\n")};
+        layer("kind = \"splats\"\nfile = \"a.ply\"", "", "isolate = true",
+              "[camera]\nprojection = \"cylindrical\"\n")};
 }
 
 TEST(PanelCoverage, EveryParameterIsInSomeTab) {
