@@ -62,7 +62,6 @@ class Sky {
         : reach_px_(patch_share * static_cast<double>(std::min(picture.width, picture.height))),
           px_per_radian_(px_per_radian),
           objects_(find_objects(picture, object_share * reach_px_)),
-          mean_(glm::vec3(mean_of(objects_.sky))),
           patches_(glm::dvec2(picture.width, picture.height), reach_px_, object_share * reach_px_,
                    px_per_radian, seed) {
         choose_objects();
@@ -73,8 +72,8 @@ class Sky {
         double nearest = 4.0;
         for (const std::uint32_t i : near)
             nearest = std::fmin(nearest, glm::distance(patches_.all()[i].middle, direction));
-        glm::vec3 grain(0.0f), light(0.0f);
-        float squares = 0.0f;
+        glm::vec3 light(0.0f), between(0.0f);
+        float weights = 0.0f;
         for (const std::uint32_t i : near) {
             const SkyPatch& patch = patches_.all()[i];
             const double away = glm::distance(patch.middle, direction);
@@ -85,12 +84,11 @@ class Sky {
                 static_cast<float>(1.0 - (away - nearest) / (blend_share * patches_.spacing()));
             if (behind <= 0.0f || away >= patches_.reach()) continue;
             const float weight = behind * behind * (3.0f - 2.0f * behind);
-            squares += weight * weight;
+            weights += weight;
             for (int k = 0; k < 4; ++k)
-                grain += weight * around.weight[k] * (pixel_of(objects_.sky, around.pixel[k]) - mean_);
+                between += weight * around.weight[k] * pixel_of(objects_.sky, around.pixel[k]);
         }
-        // The root of the squares' sum: grain of independent parts stays as strong as it is.
-        return light + glm::max(mean_ + grain / std::sqrt(std::max(squares, 1e-6f)), glm::vec3(0.0f));
+        return light + between / std::max(weights, 1e-6f);
     }
 
   private:
@@ -120,7 +118,6 @@ class Sky {
 
     double reach_px_, px_per_radian_;
     PictureObjects objects_;
-    glm::vec3 mean_;  // of the sky between objects
     SkyPatches patches_;
     std::vector<std::vector<std::int32_t>> shown_;  // objects of each patch, ascending
 };

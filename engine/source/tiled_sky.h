@@ -19,7 +19,7 @@ struct SkyTiling {
 
 /// RGB, in the order of cube_faces.h. An object of the picture (picture_objects.h) is in a cut-out whole or
 /// not at all, so there are no cut ones and as many a square degree as in the picture; what is between them
-/// goes over from one cut-out into the next without losing its grain. Neighbours show different parts of the
+/// goes over softly from one cut-out into the next. Neighbours show different parts of the
 /// picture. The mean light of all directions is the picture's. The same bits with any number of threads.
 /// Throws InputError for a picture of less than 32 px a side; Cancelled.
 std::array<Image, 6> tiled_sky(const Image& picture, const SkyTiling& tiling, const Progress& progress = {});
