@@ -69,9 +69,11 @@ std::vector<std::string> telling_scenes() {
               "wings = { share = 0.1 }\nspikes = { share = 0.1 }",
               "pdf = { shape = \"curve\", points = [[0, 1], [1, 0]] }", "",
               "[camera]\nfocal_length = 50.0\nf_number = 2.0\n"),
+        layer("kind = \"stars\"\ncatalogue = \"stars.csv\"\nlike = \"b\"", "",
+              "[[layer]]\nname = \"b\"\n[layer.source]\n" + mesh),
         layer("kind = \"stars\"\nalong = \"camera\"", "", "", "[camera]\nposition = [0, 0, 9]\n"),
         layer("kind = \"splats\"\nfile = \"a.ply\"", "", "isolate = true",
-              "[camera]\nprojection = \"cylindrical\"\n")};
+              "[camera]\nprojection = \"cylindrical\"\n[environment]\ntile = \"t.png\"\n")};
 }
 
 TEST(PanelCoverage, EveryParameterIsInSomeTab) {
