@@ -74,7 +74,8 @@ void add_generate(CLI::App& app, Invocation& call) {
 void add_convert(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "convert", "Converts between splat files",
                                     [&call] { return run_convert(call.convert); });
-    add_value(command, "IN", call.convert.input, "IN", "A .pda, .ply or .splats file")->required();
+    add_value(command, "IN", call.convert.input, "IN", "A .pda, .ply, .splats, .glb or .gltf file")
+        ->required();
     add_value(command, "OUT", call.convert.output, "OUT", "A .pda, .ply or .splats file")->required();
     command.add_flag("--overwrite", call.convert.overwrite, "Replaces the file");
     add_progress(command, call.convert.progress);
@@ -106,7 +107,7 @@ void add_export(CLI::App& app, Invocation& call) {
     CLI::App& command =
         add_command(app, call, "export", export_help, [&call] { return run_export(call.export_options); });
     add_value(command, "SCENE", options.scene, "SCENE", "The scene")->required();
-    add_value(command, "-o,--output", options.output, "FILE.(ply|glb)", "The file to write")->required();
+    add_value(command, "-o,--output", options.output, "FILE.(ply|glb|usda)", "The file to write")->required();
     add_value(command, "--frame", options.frame, "N", "The frame (default: the scene's first)");
     add_value(command, "--layer", options.layer, "NAME", "Only this layer (default: all that are visible)");
     add_value(command, "--count", options.count, "N", "Merges splats until so many are left");

@@ -14,6 +14,7 @@
 #include "scene/animate.h"
 #include "sets/load_source.h"
 #include "sets/prepared_cache.h"
+#include "splat_files/splat_file.h"
 
 namespace astrosplat {
 namespace {
@@ -24,6 +25,10 @@ constexpr std::int64_t set_bytes = 64, shaded_bytes = 40, screen_bytes = 64;
 constexpr std::int64_t program_bytes = 140'000'000;  // with its libraries, before any scene
 constexpr std::int64_t file_bytes_per_splat =
     100;  // a row of a PDA with colour, opacity, distance and radius
+// Of captures: a row of a file with normals; and beside set_bytes and shaded_bytes shape and radius,
+// harmonics and colours by direction.
+constexpr std::int64_t capture_row_bytes = 68, harmonics_row_bytes = 180;
+constexpr std::int64_t shape_bytes = 68, harmonics_bytes = 204;
 constexpr std::int64_t catalogue_bytes_per_star = 100;  // HYG; Hipparcos, compressed
 
 // More than any machine holds, few enough that bytes of many layers still fit 63 bits.
@@ -32,7 +37,27 @@ constexpr std::int64_t most_splats = 1'000'000'000'000'000;
 struct Expected {
     std::int64_t splats = 0;
     std::int64_t making_bytes = 0;  // while the set is made
+    std::int64_t held_bytes = 0;    // by the set and by what is shaded, beyond what all have
 };
+
+Expected expected_of_file(const std::filesystem::path& file) {
+    std::error_code ignored;
+    const auto size = std::filesystem::file_size(file, ignored);
+    if (ignored) return {};
+    const auto bytes = static_cast<std::int64_t>(size);
+    std::vector<std::string> attributes;
+    try {
+        attributes = splat_attributes(file);
+    } catch (const InputError&) {  // whose reader will say so
+    }
+    const auto has = [&](const char* name) {
+        return std::ranges::find(attributes, name) != attributes.end();
+    };
+    if (!has("scale")) return {bytes / file_bytes_per_splat};
+    const bool harmonics = has("harmonics");
+    const std::int64_t splats = bytes / (capture_row_bytes + (harmonics ? harmonics_row_bytes : 0));
+    return {splats, 0, splats * (shape_bytes + (harmonics ? harmonics_bytes : 0))};
+}
 
 bool has_automatic_voxels(const SourceParams& source) { return !source.voxels && source.voxel_size <= 0.0; }
 
@@ -49,11 +74,7 @@ Expected expected_columns(const SourceParams& source, const std::vector<Textured
 
 Expected expected_of(const SetCache& cache, const LayerParams& layer) {
     const SourceParams& source = layer.source;
-    if (source.kind == SourceKind::splats) {
-        std::error_code ignored;
-        const auto size = std::filesystem::file_size(source.file, ignored);
-        return {ignored ? 0 : static_cast<std::int64_t>(size) / file_bytes_per_splat};
-    }
+    if (source.kind == SourceKind::splats) return expected_of_file(source.file);
     if (source.kind == SourceKind::stars) {
         if (!source.stars.along.empty()) return {source.count};
         std::error_code ignored;
@@ -102,7 +123,7 @@ void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache)
 
 JobEstimate estimate(const BatchPlan& plan) {
     JobEstimate job;
-    std::int64_t making = 0;  // bytes, at its peak
+    std::int64_t making = 0, held = 0;  // bytes, at its peak; beyond set_bytes
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
         const auto cached = cached_splats(plan.cache, layer.source, layer.name);
@@ -110,10 +131,12 @@ JobEstimate estimate(const BatchPlan& plan) {
         making = std::max(making, job.splats * set_bytes + expected.making_bytes);
         job.layers.push_back({layer.name, std::min(expected.splats, most_splats)});
         job.splats += job.layers.back().splats;
+        held += expected.held_bytes;
     }
     std::int64_t screen = job.splats * screen_bytes;
     if (plan.memory_limit_bytes > 0) screen = std::min(screen, plan.memory_limit_bytes);
-    const std::int64_t rendering = job.splats * (set_bytes + shaded_bytes) + screen + frame_bytes(plan);
+    const std::int64_t rendering =
+        job.splats * (set_bytes + shaded_bytes) + held + screen + frame_bytes(plan);
     job.bytes = program_bytes + std::max(making, rendering);
     return job;
 }

@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "gaussians/fit.h"
 #include "gaussians/gaussian_file.h"
+#include "gaussians/gaussian_usda.h"
 #include "gaussians/reduce.h"
 #include "interrupt.h"
 #include "pipeline.h"
@@ -30,29 +31,34 @@ const char* const export_help =
     "more opacity; dust by grey. Isolated layers lie among the others. Left out: stars, environment, "
     "children "
     "of level of detail, near fade, the view transform. Axes and units are the scene's, y up; of display "
-    "colours the light is fitted to that frame";
+    "colours the light is fitted to that frame, unless all layers are mixed in display values (space = "
+    "\"display\"). Gaussians that were read keep their shapes; colours by direction become those seen from "
+    "that "
+    "frame's camera";
 
 namespace {
 
 constexpr std::int64_t fitted_height_px = 540;
 
-enum class Kind { ply, glb };
+enum class Kind { ply, glb, usda };
 
 Kind kind_of_output(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
     std::ranges::transform(ending, ending.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
     if (ending == ".ply") return Kind::ply;
     if (ending == ".glb") return Kind::glb;
-    bad_input(file.string(), "", "a name ending in .ply or .glb", "'" + file.extension().string() + "'");
+    if (ending == ".usda") return Kind::usda;
+    bad_input(file.string(), "", "a name ending in .ply, .glb or .usda",
+              "'" + file.extension().string() + "'");
 }
 
 /// Whether colours are encoded for a display.
 bool is_encoded(const ExportOptions& options, Kind kind) {
-    const std::string space = options.space.value_or(kind == Kind::ply ? "display" : "linear");
+    const std::string space = options.space.value_or(kind == Kind::glb ? "linear" : "display");
     if (space != "display" && space != "linear")
         bad_input("--space", "", "display or linear", "'" + space + "'");
-    if (space == "linear" && kind == Kind::ply)
-        bad_input("--space", "", "display for .ply, whose readers know no other", "'linear'");
+    if (space == "linear" && kind != Kind::glb)
+        bad_input("--space", "", "display for .ply and .usda, whose readers know no other", "'linear'");
     return space == "display";
 }
 
@@ -157,19 +163,24 @@ int run_export(const ExportOptions& options) {
     const Camera camera = pipeline.camera(frame, settings);
     const double gain = std::exp2(double(settings.exposure));
     Image wanted;
-    if (encoded) wanted = pipeline.frame(frame, settings, progress.begin_step("rendering")).beauty;
+    std::vector<RenderLayer> layers = pipeline.shaded_layers(frame);
+    const bool fits = std::ranges::all_of(layers, [](const RenderLayer& l) { return l.splats->encoded; });
+    if (encoded && !fits) {
+        wanted = pipeline.frame(frame, settings, progress.begin_step("rendering")).beauty;
+        layers = pipeline.shaded_layers(frame);
+    }
     for (float& value : wanted.pixels) value *= static_cast<float>(gain);
-    Baked baked = bake(pipeline.shaded_layers(frame), camera, gain, count, progress.begin_step("baking"));
+    Baked baked = bake(std::move(layers), camera, gain, count, progress.begin_step("baking"));
     if (baked.gaussians.size() == 0)
         bad_input(scene.file.string(), "", "splats that are visible at this frame", "none");
-    if (encoded) {
-        encode_for_display(baked.gaussians);
-        fit_to_view(baked.gaussians, wanted, camera, settings);
-    }
+    if (encoded) encode_for_display(baked.gaussians);
+    if (encoded && !fits) fit_to_view(baked.gaussians, wanted, camera, settings);
     const WriteTarget target{options.output, existing_of(options.overwrite)};
     const Progress writing = progress.begin_step("writing");
     if (kind == Kind::ply)
         write_gaussian_ply(target, baked.gaussians, writing);
+    else if (kind == Kind::usda)
+        write_gaussian_usda(target, baked.gaussians, writing);
     else
         write_gaussian_glb(target, baked.gaussians, encoded, writing);
     report(options, baked);

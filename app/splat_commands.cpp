@@ -33,9 +33,11 @@ const LayerParams& layer_named(const Scene& scene, const std::string& name) {
 }
 
 void check_splat_output(const std::filesystem::path& file, bool overwrite) {
-    if (kind_of(format_by_name(file)) != FileKind::splats)
+    const FileFormat* format = format_by_name(file);
+    if (kind_of(format) != FileKind::splats || !format->written)
         bad_input(file.string(), "",
-                  fmt::format("a name ending in {}", fmt::join(endings_of({FileKind::splats}), " or ")),
+                  fmt::format("a name ending in {}",
+                              fmt::join(endings_of({FileKind::splats}, FileUse::written), " or ")),
                   "'" + file.extension().string() + "'");
     refuse_to_overwrite(file, overwrite);
     defer_interrupts();

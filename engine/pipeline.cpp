@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <glm/matrix.hpp>
 #include <optional>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "core/clock.h"
 #include "core/text.h"
 #include "look/apply.h"
+#include "look/view_dependent.h"
 #include "mean_frame.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
@@ -27,6 +29,8 @@ struct ShadingInputs {
     std::uint32_t seed = 0;
     double falloff_integral = 0.0, falloff_variance = 0.0;
     ColumnLaw column = ColumnLaw::transmittance;
+    std::optional<SeenFrom> seen_from;  // of colours that depend on it
+    bool encoded = false;
     bool operator==(const ShadingInputs&) const = default;
 };
 
@@ -58,6 +62,14 @@ bool shaded_alike(const Scene& scene, const std::string& name) {
     return !moves(scene, [&](const ParameterKey& key) { return key.layer() == name && key != harmless; });
 }
 
+/// Where the layer is seen from.
+SeenFrom seen_from(const Camera& camera, const RenderLayer& layer) {
+    const glm::dmat3 layer_from_world = glm::transpose(layer.world_from_layer);
+    if (camera.projection == Projection::orthographic)
+        return {{}, -(layer_from_world * camera.world_from_camera[2])};
+    return {layer_from_world * (camera.eye - layer.translate) / layer.scale, {}};
+}
+
 /// Keeps the map that the layer has where it is this one.
 void load_thickness_map(LayerState& layer, const Thickness& thickness) {
     const auto& [file, derived, stops] = thickness;
@@ -83,8 +95,8 @@ struct Pipeline::State {
     LoadedSet load_set(const LayerParams& params, const SetCache& cache, const Progress& progress) const;
     void load_layer(std::size_t index, const SetCache& cache, const Progress& progress);
     LayerState take_layer(const std::string& name, const std::shared_ptr<const SplatSet>& set);
-    void shade(std::size_t index, const LayerParams& params, const Progress& progress);
-    void shade_visible(const Scene& now, const Progress& progress);
+    void shade(std::size_t index, const LayerParams& params, const Camera& seen, const Progress& progress);
+    void shade_visible(const Scene& now, const Camera& seen, const Progress& progress);
     std::vector<RenderLayer> visible_layers(const Scene& now) const;
     Camera camera(const Scene& now, const RenderSettings& settings) const;
     /// One rendering of the scene as it stands, through a place of the lens.
@@ -114,7 +126,7 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     LoadedSet loaded = load_set(params, cache, progress);
     const auto set = std::make_shared<SplatSet>(std::move(loaded.set));
     layer.set = set;
-    if (shaded_alike(scene, params.name)) layer.to_use_up = set;
+    if (shaded_alike(scene, params.name) && !holds_gaussians(*set)) layer.to_use_up = set;
     layer.box = bounds(*layer.set);
     check_extent(layer.box, params.name);
     load_thickness_map(layer, look_of(params).thickness);
@@ -141,22 +153,33 @@ LayerState Pipeline::State::take_layer(const std::string& name, const std::share
 }
 
 /// Applies the look where anything that it depends on has changed since the last frame.
-void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Progress& progress) {
+void Pipeline::State::shade(std::size_t index, const LayerParams& params, const Camera& seen,
+                            const Progress& progress) {
     LayerState& layer = layers[index];
     LookInputs inputs = look_inputs(params);
-    const ShadingInputs shading{look_of(params),         inputs.axis,  inputs.seed, inputs.falloff_integral,
-                                inputs.falloff_variance, inputs.column};
+    ShadingInputs shading{
+        look_of(params),         inputs.axis,   inputs.seed, inputs.falloff_integral,
+        inputs.falloff_variance, inputs.column, {},          is_encoded(params.render) && !layer.set->stars};
+    if (!layer.set->harmonics.empty()) shading.seen_from = seen_from(seen, render_layer(params));
     if (layer.shaded_with == shading) return;
     load_thickness_map(layer, shading.look.thickness);
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
     layer.shaded_with.reset();  // should an exception below leave old splats
     LookStatistics counts;
+    Buffer<glm::vec3> colors;
+    if (shading.seen_from) {
+        colors = seen_colors(*layer.set, *shading.seen_from, progress);
+        inputs.seen_colors = &colors;
+    }
     if (layer.to_use_up) {
         layer.shaded = apply_look_in_place(*layer.to_use_up, shading.look, inputs, progress, &counts);
         layer.to_use_up.reset();
     } else {
         apply_look(*layer.set, shading.look, inputs, layer.shaded, progress, &counts);
     }
+    if (holds_gaussians(*layer.set)) add_shapes(*layer.set, layer.shaded);
+    layer.shaded.encoded = false;
+    if (shading.encoded) encode_colors(layer.shaded);
     layer.shaded_with = shading;
     statistics[index].drawn = layer.shaded.size();
     statistics[index].look_seconds += counts.seconds;
@@ -170,6 +193,7 @@ std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const
         visible.push_back(render_layer(now, now.layers[i]));
         visible.back().splats = &layers[i].shaded;
         visible.back().absorbs = layers[i].set->absorbs;
+        visible.back().gaussians = holds_gaussians(*layers[i].set);
         visible.back().star_pixels = layers[i].set->star_pixels;
     }
     return visible;
@@ -262,28 +286,28 @@ RenderedFrame Pipeline::frame(double frame, const RenderSettings& settings, cons
     return sum;
 }
 
-void Pipeline::State::shade_visible(const Scene& now, const Progress& progress) {
+void Pipeline::State::shade_visible(const Scene& now, const Camera& seen, const Progress& progress) {
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         progress.check();
         if (!drawn(now, i)) continue;
         const LayerParams& layer = now.layers[i];
         check_extent(world_bounds(layers[i].box, render_layer(now, layer)), layer.name, farthest_in_world);
-        shade(i, layer, progress);
+        shade(i, layer, seen, progress);
     }
 }
 
 std::vector<RenderLayer> Pipeline::shaded_layers(double frame, const Progress& progress) {
     const Scene now = scene_at(state_->scene, frame);
-    state_->shade_visible(now, progress);
+    state_->shade_visible(now, state_->camera(now, settings(frame)), progress);
     return state_->visible_layers(now);
 }
 
 RenderedFrame Pipeline::State::rendering(const Scene& now, const glm::dvec2& lens,
                                          const RenderSettings& settings, const Progress& progress,
                                          const TileDone& tile_done) {
-    shade_visible(now, progress);
-    const Camera seen =
-        through_lens(camera(now, settings), now.camera, lens, static_cast<double>(settings.width));
+    const Camera middle = camera(now, settings);
+    shade_visible(now, middle, progress);
+    const Camera seen = through_lens(middle, now.camera, lens, static_cast<double>(settings.width));
     return render(visible_layers(now), seen, environment_at(now), settings, progress, &render_cache,
                   tile_done);
 }

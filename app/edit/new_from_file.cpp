@@ -7,18 +7,22 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <sstream>
 
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/real.h"
 #include "scene/new_scene.h"
 #include "scene/picture_scene.h"
 #include "scene/value.h"
 #include "source/mesh.h"
 #include "source/obj.h"
 #include "source/picture.h"
+#include "splat_files/gltf_splats.h"
 #include "splat_files/splat_file.h"
+#include "splats/take_rows.h"
 #include "stars/catalogue_kind.h"
 
 namespace astrosplat {
@@ -122,16 +126,66 @@ double typical_radius(const SplatSet& set) {
     return spacing > 0.0 ? 0.5 * spacing : 1.0;
 }
 
-std::string splat_scene_text(const fs::path& file, const fs::path& place) {
-    std::string look;
-    const std::vector<std::string> attributes = splat_attributes(file);
-    if (std::find(attributes.begin(), attributes.end(), "radius") == attributes.end()) {
-        const std::string radius = fmt::format("{:.3g}", typical_radius(read_splats(file)));
-        look =
-            fmt::format("\n[layer.look]\nradius = {{ min = {0}, max = {0} }}  # the file has none\n", radius);
+/// Where the middle nine tenths of the splats lie, axis by axis: captures have some far outside.
+Bounds middle_box(const SplatSet& set) {
+    constexpr std::int64_t sampled = 100000;
+    const std::int64_t count = std::min(sampled, set.size());
+    Bounds box;
+    if (count == 0) return box;
+    glm::dvec3 lo, hi;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<float> values;
+        for (std::int64_t i = 0; i < count; ++i)
+            values.push_back(set.position[sampled_row(set.size(), count, i)][axis]);
+        std::sort(values.begin(), values.end());
+        const std::size_t outside = values.size() / 20;
+        lo[axis] = values[outside];
+        hi[axis] = values[values.size() - 1 - outside];
     }
-    return scene_text(file, fmt::format("\n[layer.source]\nkind = \"splats\"\nfile = {}\n{}",
-                                        path_from(file, place), look));
+    box.add(lo);
+    box.add(hi);
+    return box;
+}
+
+/// The camera that frames this box from 35 degrees above.
+std::string camera_lines(const Bounds& box) {
+    const glm::dvec3 middle = 0.5 * (box.lo + box.hi);
+    const double distance = std::max(1e-3, 0.5 * glm::length(box.extent()) / std::sin(real::radians(20.0)));
+    const double up = real::radians(35.0);
+    const glm::dvec3 eye = middle + distance * glm::dvec3(0.0, std::sin(up), std::cos(up));
+    return fmt::format("position = [{:.4g}, {:.4g}, {:.4g}]\ntarget = [{:.4g}, {:.4g}, {:.4g}]\n", eye.x,
+                       eye.y, eye.z, middle.x, middle.y, middle.z);
+}
+
+/// Captures are mixed as they were trained.
+std::string capture_scene_text(const fs::path& file, const std::string& source) {
+    const SplatSet set = read_splats(file);
+    std::string layer = source +
+                        "\n[layer.transform]\nrotate = [0.0, 0.0, 0.0]  # captures often have y down: "
+                        "[0.0, 0.0, 180.0] turns them\n\n[layer.render]\nisolate = true\n";
+    if (set.display_harmonics)
+        layer += "space = \"display\"  # mixed as a display shows it, as in training\n";
+    std::string text = scene_text(file, layer);
+    const Bounds box = middle_box(set);
+    const std::string fov = "fov = 40.0";
+    if (!box.empty()) text.insert(text.find(fov), camera_lines(box));
+    return text;
+}
+
+std::string splat_scene_text(const fs::path& file, const fs::path& place) {
+    const std::string source =
+        fmt::format("\n[layer.source]\nkind = \"splats\"\nfile = {}\n", path_from(file, place));
+    const std::vector<std::string> attributes = splat_attributes(file);
+    const auto has = [&](const char* name) {
+        return std::find(attributes.begin(), attributes.end(), name) != attributes.end();
+    };
+    if (has("scale")) return capture_scene_text(file, source);
+    if (has("radius")) return scene_text(file, source);
+    const std::string radius = fmt::format("{:.3g}", typical_radius(read_splats(file)));
+    return scene_text(
+        file,
+        source + fmt::format("\n[layer.look]\nradius = {{ min = {0}, max = {0} }}  # the file has none\n",
+                             radius));
 }
 
 constexpr const char* sky_format =
@@ -186,7 +240,9 @@ std::string catalogue_scene_text(const fs::path& file, CatalogueKind kind, const
 }  // namespace
 
 FileKind kind_of_file(const fs::path& file) {
-    const FileKind kind = kind_of(format_of_file(file));
+    const FileFormat* const format = format_of_file(file);
+    const FileKind kind = kind_of(format);
+    if (format && format->id == "gltf" && !may_hold_gltf_splats(file)) return FileKind::unknown;
     return kind == FileKind::scene && is_look(file) ? FileKind::look : kind;
 }
 

@@ -118,9 +118,11 @@ BadgeText badge_text(const Scene& scene, const Status& status) {
         case ViewFrameState::preview:
             break;
     }
-    if (shown.shown >= shown.total) return {"Preview", total, color::accent};
-    return {fmt::format("Preview, {} dots for {}", short_count(shown.shown), short_count(shown.total)), "",
-            color::accent};
+    const char* const dots = shown.round_dots ? "round dots" : "dots";
+    if (shown.shown >= shown.total)
+        return {shown.round_dots ? "Preview, round dots" : "Preview", total, color::accent};
+    return {fmt::format("Preview, {} {} for {}", short_count(shown.shown), dots, short_count(shown.total)),
+            "", color::accent};
 }
 
 float draw_badge(GuiFrame& frame, const Rect& area) {

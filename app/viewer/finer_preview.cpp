@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/clock.h"
+#include "look/view_dependent.h"
 
 namespace astrosplat {
 namespace {
@@ -22,13 +23,14 @@ FinerFound draw_finer(const FinerRequest& request, CpuPreview& preview, const Pr
                 {source.merged.get(), source.dots.get(),
                  make_projection(request.layers[i], static_cast<std::uint16_t>(i), request.camera, frame)});
     }
-    const std::vector<ShadedSplats> cut = cut_splats(seen, request.cut);
+    std::vector<ShadedSplats> cut = cut_splats(seen, request.cut);
     progress.check();
     FinerFound found;
     std::vector<PreviewLayer> layers(request.layers.size());
     for (std::size_t i = 0, next = 0; i < layers.size(); ++i) {
         const CutSource& source = request.sources[i];
         layers[i].layer = request.layers[i];
+        if (source.merged && is_encoded(layers[i].layer.render)) encode_colors(cut[next]);
         layers[i].layer.splats = source.merged ? &cut[next++] : source.stars.get();
         if (source.merged) layers[i].layer.render.opacity = 1.0f;
         found.shown += layers[i].layer.splats->size();

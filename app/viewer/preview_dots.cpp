@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "look/apply.h"
+#include "look/view_dependent.h"
 
 namespace astrosplat {
 namespace {
@@ -77,6 +78,7 @@ void PreviewDots::cut(std::vector<PreviewLayer>& layers,
     }
     std::vector<ShadedSplats> splats = cut_splats(seen, settings);
     for (std::size_t n = 0; n < places.size(); ++n) {
+        if (is_encoded(layers[places[n]].layer.render)) encode_colors(splats[n]);
         layers_[places[n]].splats = std::make_shared<const ShadedSplats>(std::move(splats[n]));
         layers[places[n]].layer.render.opacity = 1.0f;
     }

@@ -215,8 +215,9 @@ void drop(Session& session, const std::vector<fs::path>& files) {
     Commands commands;
     for (const fs::path& file : files) {
         const bool fresh = session.fresh_demo && !session.document.edited() && commands.empty();
-        const Command::Kind kind =
-            is_camera_file(file) ? Command::Kind::import_camera : command_for(kind_of_file(file), fresh);
+        const Command::Kind kind = is_camera_file(file) && kind_of_file(file) != FileKind::splats
+                                       ? Command::Kind::import_camera
+                                       : command_for(kind_of_file(file), fresh);
         commands.push_back({kind, file, {}, 0});
     }
     session.dropped.insert(session.dropped.end(), commands.begin(), commands.end());

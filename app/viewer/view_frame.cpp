@@ -49,6 +49,7 @@ std::vector<PreviewLayer> ViewFrame::preview_layers() {
     shown_.assign(request_->layers.size(), 0);
     kept_.assign(request_->layers.size(), -1);
     status_.total = 0;
+    status_.round_dots = false;
     for (std::size_t i = 0; i < request_->layers.size(); ++i) {
         const LayerParams& params = request_->scene.layers[i];
         const std::shared_ptr<const LoadedLayer>& loaded = request_->layers[i];
@@ -57,6 +58,7 @@ std::vector<PreviewLayer> ViewFrame::preview_layers() {
         layer.layer = render_layer(request_->scene, params);
         layer.set = loaded->set ? loaded->set : loaded->sample.set;
         layer.layer.absorbs = layer.set->absorbs;
+        status_.round_dots = status_.round_dots || holds_gaussians(*layer.set);
         layer.layer.star_pixels = layer.set->star_pixels;
         layer.look = look_of(params);
         layer.inputs = look_inputs(params);
@@ -75,12 +77,12 @@ std::int64_t ViewFrame::dots_wanted() const {
     return choice_.splats > 0 ? choice_.splats : budget_.splats;
 }
 
-/// Stars are drawn by the engine's own compositor alone.
+/// Stars, and what is mixed in display values, are drawn by the engine's own compositor alone.
 bool ViewFrame::draws_by_opengl() const {
-    const auto are_stars = [](const LayerParams& layer) {
-        return layer.visible && layer.source.kind == SourceKind::stars;
+    const auto engine_draws = [](const LayerParams& layer) {
+        return layer.visible && (layer.source.kind == SourceKind::stars || is_encoded(layer.render));
     };
-    return choice_.opengl && std::ranges::none_of(request_->scene.layers, are_stars);
+    return choice_.opengl && std::ranges::none_of(request_->scene.layers, engine_draws);
 }
 
 bool ViewFrame::draws_whole_sets() const {

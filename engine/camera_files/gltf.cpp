@@ -10,12 +10,12 @@
 #include <optional>
 
 #include "camera/camera.h"
-#include "camera_files/gltf_buffers.h"
 #include "camera_files/gltf_curve.h"
 #include "core/base64.h"
 #include "core/error.h"
 #include "core/real.h"
 #include "core/text.h"
+#include "gltf/gltf_file.h"
 
 namespace astrosplat {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "camera_files/gltf_buffers.h"
+#include "gltf/gltf_file.h"
 
 namespace astrosplat {
 

@@ -43,6 +43,7 @@ const std::vector<FileFormat>& formats() {
         {"obj", "OBJ", FileKind::mesh, {".obj"}, {}},
         {"pda", "PDA", FileKind::splats, {".pda"}, {"ATTRIBUTES"}, true},
         {"ply", "PLY", FileKind::splats, {".ply"}, {"ply\n", "ply\r"}, true},
+        {"gltf", "glTF", FileKind::splats, {".glb", ".gltf"}, {"glTF"}},
         {"splats", "SPLATS", FileKind::splats, {".splats"}, {"\x89SPLAT\r\n"}, true},
         {"toml", "TOML", FileKind::scene, {".toml"}, {}, true},
     };

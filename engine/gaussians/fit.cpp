@@ -8,6 +8,7 @@
 
 #include "core/color.h"
 #include "core/parallel.h"
+#include "core/quaternion.h"
 #include "render/project.h"
 #include "render/render.h"
 #include "render/shared_render.h"
@@ -20,16 +21,28 @@ constexpr float reach_sigmas = 4.0f;      // where a Gaussian of 0.03 % is cut o
 constexpr float least_encoded = 1.0e-3f;  // of a display's range: darker pixels say nothing
 constexpr float most_step = 2.0f;         // by which light grows or shrinks in a round
 
+bool is_round(const glm::vec3& scale) { return scale.x == scale.y && scale.y == scale.z; }
+
 /// The Gaussians as splats of one layer; their arrays are copies.
 ShadedSplats as_splats(const Gaussians& gaussians) {
     ShadedSplats splats;
     splats.position = gaussians.position;
     splats.color = gaussians.color;
     splats.alpha = gaussians.alpha;
-    splats.radius = gaussians.sigma;
-    for (float& radius : splats.radius) radius *= reach_sigmas;
+    splats.radius.resize(gaussians.position.size());
     splats.id.resize(gaussians.position.size());
-    for (std::size_t i = 0; i < splats.id.size(); ++i) splats.id[i] = i;
+    for (std::size_t i = 0; i < splats.id.size(); ++i) {
+        const glm::vec3& scale = gaussians.scale[i];
+        splats.radius[i] = reach_sigmas * std::max({scale.x, scale.y, scale.z});
+        splats.id[i] = i;
+    }
+    if (std::ranges::all_of(gaussians.scale, is_round)) return splats;
+    for (std::size_t i = 0; i < splats.id.size(); ++i) {
+        glm::dmat3 shape = matrix_of_quaternion(glm::dvec4(gaussians.rotation[i]));
+        for (int k = 0; k < 3; ++k)
+            shape[k] *= double(reach_sigmas) * double(gaussians.scale[i][k]) / double(splats.radius[i]);
+        splats.stretch.push_back(glm::mat3(shape));
+    }
     return splats;
 }
 

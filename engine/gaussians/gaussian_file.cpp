@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/real.h"
 #include "splat_files/ordered_writer.h"
+#include "splats/harmonics.h"
 
 namespace astrosplat {
 namespace {
@@ -20,11 +21,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::int64_t gaussians_written_at_once = 1 << 14;
-constexpr float sh_degree_0 = 0.28209479177387814f;  // 1 / sqrt(4 pi)
+constexpr double least_scale = 1e-30;  // scene units, of a Gaussian that is flat
 constexpr int ply_floats = 17, glb_floats = 18;
-
-/// The coefficient of degree 0 that readers turn into this colour.
-glm::vec3 coefficient(const glm::vec3& color) { return (color - 0.5f) / sh_degree_0; }
 
 char* put(char* out, std::initializer_list<float> values) {
     std::memcpy(out, values.begin(), values.size() * sizeof(float));
@@ -35,19 +33,24 @@ char* put_ply_row(char* out, const Gaussians& g, std::size_t i) {
     constexpr double most = 1.0 - 1e-6;  // whose logit is 13.8: 1 has none
     const double alpha = std::clamp(double(g.alpha[i]), 1e-9, most);
     const auto logit = static_cast<float>(real::log(alpha / (1.0 - alpha)));
-    const auto scale = static_cast<float>(real::log(double(g.sigma[i])));
-    const glm::vec3 p = g.position[i], sh = coefficient(g.color[i]);
-    return put(out, {p.x, p.y, p.z, 0.0f, 0.0f, 0.0f, sh.x, sh.y, sh.z, logit, scale, scale, scale, 1.0f,
-                     0.0f, 0.0f, 0.0f});
+    glm::vec3 scale;
+    for (int k = 0; k < 3; ++k)
+        scale[k] = static_cast<float>(real::log(std::max(double(g.scale[i][k]), least_scale)));
+    const glm::vec3 p = g.position[i], sh = mean_coefficient(g.color[i]);
+    const glm::vec4 q = g.rotation[i];
+    return put(out, {p.x, p.y, p.z, 0.0f, 0.0f, 0.0f, sh.x, sh.y, sh.z, logit, scale.x, scale.y, scale.z, q.w,
+                     q.x, q.y, q.z});
 }
 
 char* put_glb_row(char* out, const Gaussians& g, bool encoded, std::size_t i) {
-    const glm::vec3 p = g.position[i], sh = coefficient(g.color[i]);
-    glm::vec3 c = g.color[i];
+    const glm::vec3 p = g.position[i], sh = mean_coefficient(g.color[i]), s = g.scale[i];
+    const glm::vec4 q = g.rotation[i];
+    glm::vec3 c = glm::min(g.color[i], glm::vec3(1.0f));
     if (encoded)
         for (int k = 0; k < 3; ++k) c[k] = static_cast<float>(real::srgb_to_linear(c[k]));
-    const float s = g.sigma[i], a = g.alpha[i];
-    return put(out, {p.x, p.y, p.z, 0.0f, 0.0f, 0.0f, 1.0f, s, s, s, a, sh.x, sh.y, sh.z, c.x, c.y, c.z, a});
+    const float a = g.alpha[i];
+    return put(out,
+               {p.x, p.y, p.z, q.x, q.y, q.z, q.w, s.x, s.y, s.z, a, sh.x, sh.y, sh.z, c.x, c.y, c.z, a});
 }
 
 template <class PutRow>

@@ -9,7 +9,7 @@
 namespace astrosplat {
 
 /// Binary little endian: x y z, normals of 0, f_dc_0..2 = (colour - 1/2) sqrt(4 pi), logit of alpha, natural
-/// logarithms of sigma, and no rotation, as w x y z. Its readers blend the colours as they are, so these are
+/// logarithms of the scale, and rotation as w x y z. Its readers blend the colours as they are, so these are
 /// encoded for a display. Throws OutputError, Cancelled.
 void write_gaussian_ply(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress = {});
 

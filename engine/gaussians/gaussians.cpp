@@ -5,11 +5,13 @@
 #include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include "core/color.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/quadrature.h"
+#include "core/quaternion.h"
 #include "core/real.h"
 #include "render/falloff.h"
 #include "render/shared_render.h"
@@ -55,6 +57,23 @@ struct Appearance {
     glm::vec3 light{0.0f};
 };
 
+/// Gives axes that are 0 directions across the others.
+void complete(glm::dmat3& axes) {
+    for (int k = 0; k < 3; ++k) {
+        if (axes[k] != glm::dvec3(0.0)) continue;
+        glm::dvec3 &next = axes[(k + 1) % 3], &last = axes[(k + 2) % 3];
+        if (next == glm::dvec3(0.0) && last == glm::dvec3(0.0)) next = {1.0, 0.0, 0.0};
+        glm::dvec3& other = next == glm::dvec3(0.0) ? last : next;
+        glm::dvec3& missing = next == glm::dvec3(0.0) ? next : last;
+        if (missing == glm::dvec3(0.0)) {
+            const glm::dvec3 aside =
+                std::fabs(other.x) < 0.6 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
+            missing = glm::normalize(glm::cross(other, aside));
+        }
+        axes[k] = glm::cross(next, last);
+    }
+}
+
 /// One layer on its way into Gaussians.
 class Baker {
   public:
@@ -62,7 +81,8 @@ class Baker {
         : layer_(layer),
           camera_(camera),
           gain_(static_cast<float>(gain)),
-          profile_(nearest_gaussian(layer.render.falloff)),
+          profile_(profile_of(layer)),
+          turn_(quaternion_of_matrix(layer.world_from_layer)),
           axis_(glm::normalize(layer.world_from_layer * layer.axis)) {}
 
     void add(std::size_t i, Gaussians& out, BakeCounts& counts) const {
@@ -70,9 +90,12 @@ class Baker {
         const glm::dvec3 place =
             layer_.world_from_layer * (layer_.scale * glm::dvec3(splats.position[i])) + layer_.translate;
         const float s = std::min(1.0f, splats.alpha[i] * layer_.render.opacity);
-        const Appearance seen = appearance(splats.color[i], s, place, counts);
-        double square = profile_.sigma * splats.radius[i] * layer_.scale;
-        square *= square;
+        glm::vec3 color = splats.color[i];
+        if (splats.encoded)
+            for (int k = 0; k < 3; ++k) color[k] = static_cast<float>(real::srgb_to_linear(color[k]));
+        const Appearance seen = appearance(color, s, place, counts);
+        const double sigma = profile_.sigma * splats.radius[i] * layer_.scale;
+        double square = sigma * sigma;
         double hides = profile_.peak * seen.hides;
         glm::dvec3 light = profile_.peak * glm::dvec3(seen.light);
         if (hides > 1.0) {
@@ -80,20 +103,48 @@ class Baker {
             light /= hides;
             hides = 1.0;
         }
-        const double alpha = std::min(1.0, std::max({hides, light.x, light.y, light.z}));
+        const double needed = layer_.gaussians ? 0.0 : std::max({light.x, light.y, light.z});
+        const double alpha = std::min(1.0, std::max(hides, needed));
         if (!(alpha > 0.0 && square > 0.0)) {
             ++counts.unseen;
             return;
         }
-        const glm::dvec3 kept = glm::min(light, glm::dvec3(alpha));
+        const glm::dvec3 kept = layer_.gaussians ? light : glm::min(light, glm::dvec3(alpha));
         count(light, kept, alpha, 2.0 * real::pi * square, counts);
         out.position.push_back(glm::vec3(place));
-        out.color.push_back(glm::clamp(glm::vec3(kept / alpha), 0.0f, 1.0f));
+        const glm::vec3 straight(kept / alpha);
+        out.color.push_back(layer_.gaussians ? straight : glm::clamp(straight, 0.0f, 1.0f));
         out.alpha.push_back(static_cast<float>(alpha));
-        out.sigma.push_back(static_cast<float>(std::sqrt(square)));
+        if (splats.stretch.empty()) {
+            out.scale.push_back(glm::vec3(static_cast<float>(std::sqrt(square))));
+            out.rotation.push_back({0.0f, 0.0f, 0.0f, 1.0f});
+        } else {
+            add_shape(splats.stretch[i], std::sqrt(square), out);
+        }
     }
 
   private:
+    /// A Gaussian is its own nearest one.
+    static GaussianProfile profile_of(const RenderLayer& layer) {
+        const Falloff& falloff = layer.render.falloff;
+        if (layer.gaussians && falloff.shape == Falloff::Shape::gaussian)
+            return {1.0, std::sqrt(0.5 / double(falloff.sharpness))};
+        return nearest_gaussian(falloff);
+    }
+
+    /// What `stretch` makes of a ball, turned as the layer is.
+    void add_shape(const glm::mat3& stretch, double sigma, Gaussians& out) const {
+        glm::dmat3 axes(stretch);
+        glm::dvec3 length(0.0);
+        for (int k = 0; k < 3; ++k) {
+            length[k] = glm::length(axes[k]);
+            if (length[k] > 0.0) axes[k] /= length[k];
+        }
+        complete(axes);
+        out.scale.push_back(glm::vec3(sigma * length));
+        out.rotation.push_back(glm::vec4(quaternion_product(turn_, quaternion_of_matrix(axes))));
+    }
+
     Appearance appearance(const glm::vec3& color, float s, const glm::dvec3& place,
                           BakeCounts& counts) const {
         const LayerRender& r = layer_.render;
@@ -134,6 +185,7 @@ class Baker {
     const Camera& camera_;
     float gain_;
     GaussianProfile profile_;
+    glm::dvec4 turn_;
     glm::dvec3 axis_;
 };
 
@@ -153,19 +205,23 @@ void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gau
                 BakeCounts& counts) {
     assert(layer.splats && !layer.stars);
     const std::int64_t all = out.size() + layer.splats->size();
-    constexpr std::int64_t bytes = 2 * sizeof(glm::vec3) + 2 * sizeof(float);
+    constexpr std::int64_t bytes = 3 * sizeof(glm::vec3) + sizeof(glm::vec4) + sizeof(float);
     claim_memory(all * bytes, "Gaussians");
     out.position.reserve(all);
     out.color.reserve(all);
     out.alpha.reserve(all);
-    out.sigma.reserve(all);
+    out.scale.reserve(all);
+    out.rotation.reserve(all);
     const Baker baker(layer, camera, gain);
     for (std::size_t i = 0; i < layer.splats->position.size(); ++i) baker.add(i, out, counts);
 }
 
 void encode_for_display(Gaussians& gaussians) {
     parallel_each(gaussians.color.size(), 1 << 14, [&](std::size_t i) {
-        for (int k = 0; k < 3; ++k) gaussians.color[i][k] = display_srgb(gaussians.color[i][k]);
+        for (int k = 0; k < 3; ++k) {
+            float& c = gaussians.color[i][k];
+            c = c > 1.0f ? static_cast<float>(real::linear_to_srgb(c)) : display_srgb(c);
+        }
     });
 }
 

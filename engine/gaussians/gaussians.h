@@ -1,5 +1,5 @@
 // A scene's splats as the Gaussians that other programs draw (3D Gaussian Splatting). In: shaded layers, a
-// camera and an exposure. Out: round Gaussians in world space, which are laid over each other.
+// camera and an exposure. Out: Gaussians in world space, which are laid over each other.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,14 @@
 
 namespace astrosplat {
 
-/// A Gaussian's weight is alpha e^(-r^2 / (2 sigma^2)), r the distance from its centre on the frame.
+/// A Gaussian's weight is alpha e^(-d^2 / 2), d the distance from its centre on the frame in its own standard
+/// deviations there.
 struct Gaussians {
     Buffer<glm::vec3> position;  // scene units, world space
-    Buffer<glm::vec3> color;     // 0..1, straight; linear light until encode_for_display
+    Buffer<glm::vec3> color;     // straight; linear light until encode_for_display. 0..1 but of captures
     Buffer<float> alpha;         // 0..1, of the centre, > 0
-    Buffer<float> sigma;         // scene units
+    Buffer<glm::vec3> scale;     // standard deviations along its own axes, scene units
+    Buffer<glm::vec4> rotation;  // of these: unit quaternion x y z w
 
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
@@ -48,7 +50,8 @@ struct BakeCounts {
 /// the peak of what it hides would exceed 1, it is 1 and the Gaussian is wider. Readers know one blend, over:
 /// its alpha is what the splat hides under the layer's blend (add nothing, screen its colour, hybrid as seen
 /// from the camera), but never less than its light needs with colours of at most 1. Stars have no size in
-/// the scene: none may be given.
+/// the scene: none may be given. Gaussians keep their shape, and their colour also beyond 1; it is the one
+/// seen from the camera.
 void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gaussians& out,
                 BakeCounts& counts);
 

@@ -23,7 +23,9 @@ struct KeptSplat {
     std::uint32_t mesh, face;
 };
 /// The columns of a generated set: all but the files' own radius.
-constexpr bool is_generated(SplatColumn column) { return column != SplatColumn::radius; }
+constexpr bool is_generated(SplatColumn column) {
+    return column < SplatColumn::radius || column == SplatColumn::face;
+}
 
 /// The splats that one thread keeps, in blocks that stay where they are and serve again after clear(). A run
 /// has ascending ids, and no other run has ids in between.

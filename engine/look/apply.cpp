@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -108,7 +109,9 @@ void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
     const auto start = Clock::now();
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     make_room(shaded, set.size());
-    const LookRun run{LookColumns(set), uniforms, inputs.thickness_map, shaded};
+    LookColumns columns(set);
+    if (inputs.seen_colors) columns.color = inputs.seen_colors->data();
+    const LookRun run{columns, uniforms, inputs.thickness_map, shaded};
     const PictureFactors factors = factors_of(run, set, look, inputs);
     shade_all(run, set.size(), progress);
     apply_factors(factors, shaded);
@@ -117,6 +120,7 @@ void apply_look(const SplatSet& set, const Look& look, const LookInputs& inputs,
 
 ShadedSplats apply_look_in_place(SplatSet& set, const Look& look, const LookInputs& inputs,
                                  const Progress& progress, LookStatistics* statistics) {
+    assert(!inputs.seen_colors);
     const auto start = Clock::now();
     const LookUniforms uniforms = prepare_look(set, look, inputs);
     progress.check();

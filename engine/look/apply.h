@@ -24,6 +24,7 @@ struct LookInputs {
     double falloff_integral = 1.0;     // of the layer's falloff over the unit disc
     double falloff_variance = 0.1;     // of it along an axis, square radii; match = "picture" reads it
     ColumnLaw column = ColumnLaw::transmittance;
+    const Buffer<glm::vec3>* seen_colors = nullptr;  // in place of the set's; null: these
     const Image* thickness_map = nullptr;  // raw values; must be there when look.thickness.map is set
     bool operator==(const LookInputs&) const = default;
 };

@@ -8,9 +8,9 @@
 namespace astrosplat {
 namespace {
 
-constexpr double piled_up = 5.0;     // times what chance adds to the positions of a cell
-constexpr double never_piled = 2.0;  // positions
-constexpr double sampled = 0.5;      // covered less than this, the set is a sample
+constexpr double piled_up = 5.0;       // times what chance adds to the positions of a cell
+constexpr double never_piled = 2.0;    // positions
+constexpr double sampled_below = 0.5;  // covered less than this, the set is a sample
 
 struct BlockSums {
     double due = 0.0, unclamped = 0.0, positions = 0.0, cells = 0.0;
@@ -79,7 +79,8 @@ std::vector<BlockSums> sums_around(const PictureChart& chart, const PictureCells
 float covered(const BlockSums& s) {
     if (!(s.unclamped > 0.0) || !(s.cells > 0.0)) return 1.0f;
     const double estimate = s.due / s.unclamped * (s.positions / s.cells);
-    return static_cast<float>(estimate < sampled ? estimate : std::max(1.0, std::floor(estimate + 0.5)));
+    return static_cast<float>(estimate < sampled_below ? estimate
+                                                       : std::max(1.0, std::floor(estimate + 0.5)));
 }
 
 void empty_cell(PictureCells& cells, std::size_t i) {

@@ -86,10 +86,19 @@ bool is_of_another_lens(const std::string& key, const CameraParams& camera) {
     return false;
 }
 
+// Layers that are not mixed in display values keep the hash they had before there was a choice.
+bool is_mixed_as_ever(const ParameterSpec& spec, const Scene& now) {
+    return spec.generic_key.text() == "layer.render.space" &&
+           std::ranges::none_of(now.layers, [&](const LayerParams& layer) {
+               return layer.name == spec.key.layer() && is_encoded(layer.render);
+           });
+}
+
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
     // Frames from before there was a choice keep their hash.
     if (spec.generic_key.text() == "output.primaries")
         return now.output.primaries == OutputParams::Primaries::rec709;
+    if (is_mixed_as_ever(spec, now)) return true;
     if (is_of_another_lens(spec.generic_key.text(), now.camera)) return true;
     if (shapes_stars(spec) && !has_stars(now, spec.key.layer())) return true;
     if (spec.generic_key.is_below("environment"))

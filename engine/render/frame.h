@@ -30,6 +30,10 @@ struct RenderLayer {
     /// Some splats may have colours below 0: these add no light and let (1 - s)^-color through, whatever the
     /// layer's blend.
     bool absorbs = false;
+    /// Gaussians: the radius of each is three standard deviations. The gaussian falloff is drawn out to four,
+    /// and the footprint is that of the frame's affine approximation at the centre (EWA).
+    bool gaussians = false;
+    double radius_scale = 1.0;  // of radii alone
     /// Stars: the splats' colours are their light over all pixels as seen from the layer's origin, radii and
     /// alphas are not used. Stars at infinity lie 1e15 units or more away.
     std::optional<StarPsf> stars;

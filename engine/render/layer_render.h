@@ -31,6 +31,10 @@ struct LevelOfDetail {
     bool operator==(const LevelOfDetail&) const = default;
 };
 
+/// Display: an isolated layer's colours are mixed as a display shows them, and the mix is decoded.
+enum class BlendSpace { linear, display };
+constexpr auto names_of(BlendSpace) { return names_up_to<BlendSpace::display>("linear", "display"); }
+
 struct LayerRender {
     Falloff falloff;
     Blend blend = Blend::over;
@@ -41,7 +45,14 @@ struct LayerRender {
     LevelOfDetail lod;
     bool holdout = false;
     bool isolate = false;
+    BlendSpace space = BlendSpace::linear;
     bool operator==(const LayerRender&) const = default;
 };
+
+/// Whether the layer is composited in display values.
+inline bool is_encoded(const LayerRender& render) {
+    return render.space == BlendSpace::display && render.isolate && render.blend == Blend::over &&
+           !render.holdout;
+}
 
 }  // namespace astrosplat

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "camera/projection.h"
 #include "render/child_noise.h"
@@ -22,6 +23,8 @@ std::uint16_t hybrid_of(const LayerProjection& layer, const glm::vec3& p) {
 }
 
 namespace {
+
+constexpr double slope_margin = 0.15;  // of the frame: how far beside it footprints of Gaussians differ
 
 /// A splat relative to the camera, still in scene units.
 struct CameraSplat {
@@ -70,15 +73,32 @@ void project_one(const LayerProjection& layer, const CameraSplat& splat, std::in
         push_places(screen, shared::period_px(layer.lens), support, rect, out);
 }
 
-/// Projects one ellipsoid, which fades at the near plane as the ball around its outline.
+/// Where an ellipsoid's outline is on the frame.
+Shape outline_of(const LayerProjection& layer, const CameraSplat& splat, const shared::Instance& at,
+                 std::int64_t index) {
+    const glm::mat3 ellipsoid =
+        splat.radius / layer.layer_scale * glm::mat3(layer.camera_from_layer) * layer.splats->stretch[index];
+    if (!layer.gaussians || shared::has_parallel_rays(layer.lens) || shared::is_onto_sphere(layer.lens))
+        return project_ellipsoid(layer.lens, splat.position, ellipsoid, at.px_per_unit);
+    const glm::vec2 slope =
+        glm::clamp(glm::vec2(splat.position) / at.depth, layer.least_slope, layer.largest_slope);
+    return project_affine(slope, ellipsoid, at.px_per_unit);
+}
+
+/// Projects one ellipsoid, which fades at the near plane as the ball around its outline; a Gaussian over one
+/// standard deviation of it.
 void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int64_t index,
                        const ScreenRect& rect, Buffer<ScreenSplat>& out, Buffer<Shape>& shapes) {
     const shared::Instance at = shared::instance_of(layer.lens, splat.position);
     if (!shared::is_in_range(layer.lens, at.depth)) return;
-    const glm::mat3 ellipsoid =
-        splat.radius / layer.radius_scale * glm::mat3(layer.camera_from_layer) * layer.splats->stretch[index];
-    const Shape shape = project_ellipsoid(layer.lens, splat.position, ellipsoid, at.px_per_unit);
-    splat.radius = shape_radii(shape).larger / at.px_per_unit;
+    const Shape shape = outline_of(layer, splat, at, index);
+    const ShapeRadii radii = shape_radii(shape);
+    if (shared::is_onto_sphere(layer.lens)) {  // whose footprints are round: of the same area
+        splat.radius = std::sqrt(radii.larger * radii.smaller) / at.px_per_unit;
+        return project_one(layer, splat, index, rect, out);
+    }
+    splat.radius = radii.larger / at.px_per_unit;
+    if (layer.gaussians) splat.radius *= layer.deviation;
     ScreenSplat screen;
     const float support = shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance});
     if (!place_splat(layer, splat, at, index, support, rect, screen)) return;
@@ -193,9 +213,17 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
     p.origin_in_camera = camera_from_world * (layer.translate - camera.eye);
     const glm::dvec3 axis = camera_from_world * layer.world_from_layer * layer.axis;
     p.axis_in_camera = glm::vec3(axis / std::sqrt(glm::dot(axis, axis)));
-    p.radius_scale = static_cast<float>(layer.scale);
+    p.layer_scale = static_cast<float>(layer.scale);
+    p.radius_scale = static_cast<float>(layer.scale * layer.radius_scale);
+    p.gaussians = layer.gaussians;
+    p.deviation = static_cast<float>(1.0 / (3.0 * layer.radius_scale));
     p.opacity = layer.render.opacity;
     p.lens = make_lens(camera);
+    const glm::dvec2 size(settings.width, settings.height), center(camera.center_x_px, camera.center_y_px);
+    const glm::dvec2 least = (-slope_margin * size - center) / camera.focal_px,
+                     largest = ((1.0 + slope_margin) * size - center) / camera.focal_px;
+    p.least_slope = glm::vec2(least.x, -largest.y);
+    p.largest_slope = glm::vec2(largest.x, -least.y);
     p.margin_px = 4.0f * settings.pixel_filter;
     p.render = layer.render;
     // Lighten keeps the brightest splat of a pixel: no number of children has the parent's light, so it is

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <vector>
 
 #include "camera/camera.h"
@@ -33,7 +34,10 @@ struct LayerProjection {
     glm::dmat3 camera_from_layer{1.0};  // rotation * scale
     glm::dvec3 origin_in_camera{0.0};   // of layer space
     glm::vec3 axis_in_camera{0.0f, 1.0f, 0.0f};
-    float radius_scale = 1.0f;
+    float layer_scale = 1.0f, radius_scale = 1.0f;      // of the layer, and with it of radii
+    bool gaussians = false;                             // as in RenderLayer
+    float deviation = 0.25f;                            // of Gaussians, drawn radii
+    glm::vec2 least_slope{-1.0f}, largest_slope{1.0f};  // x / z and y / z in footprints of Gaussians
     float opacity = 1.0f;
     Lens lens;
     float reach = 1.0f, margin_px = 2.0f;  // support = radius * reach + margin

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/color.h"
+
 namespace astrosplat {
 namespace {
 
@@ -30,6 +32,9 @@ struct GroupPixel {
 GroupPixel group_pixel(const BlendGroup& group, const TilePlanes& planes, std::size_t i) {
     GroupPixel p;
     for (int k = 0; k < 3; ++k) p.color[k] = planes.color[k][i];
+    if (group.encoded)
+        for (float& color : p.color)
+            if (color != 0.0f) color = static_cast<float>(real::srgb_to_linear(color));
     p.alpha = planes.alpha[i];
     for (int k = 0; k < 4; ++k)
         p.through[k] = group.kind == FoldKind::over  ? planes.transmittance[0][i]
@@ -60,7 +65,13 @@ std::vector<BlendGroup> make_groups(std::span<const RenderLayer> layers, bool ao
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const LayerRender& render = layers[i].render;
         if (is_isolated(render)) {
-            groups.push_back({{i}, FoldKind::general, true, render.blend, render.holdout, layers[i].absorbs});
+            groups.push_back({{i},
+                              FoldKind::general,
+                              true,
+                              render.blend,
+                              render.holdout,
+                              layers[i].absorbs,
+                              layers[i].splats->encoded});
         } else {
             if (merged.layers.empty()) merged_place = groups.size();
             merged.layers.push_back(i);

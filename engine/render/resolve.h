@@ -20,6 +20,7 @@ struct BlendGroup {
     Blend blend = Blend::over;  // of an isolated layer: how it is composited
     bool holdout = false;       // of an isolated layer
     bool absorbs = false;       // some splats absorb, whatever the blend
+    bool encoded = false;       // of an isolated layer: its colours are display values
 };
 
 /// Groups from far to near: isolated layers before the first merged one, the merged ones, the isolated after

@@ -45,6 +45,25 @@ Spectrum spectrum_of(const FootprintTable& table, const Ellipse& e, double stret
 
 }  // namespace
 
+namespace {
+
+/// The outline that rows of the matrix give, which say how far the unit ball's axes reach across and down.
+Shape outline_of(const glm::dvec3& across, const glm::dvec3& down) {
+    // A lower triangular matrix of the same product with its transpose.
+    const double width = glm::length(across);
+    if (!(width > 0.0)) return {0.0f, 0.0f, 0.0f, static_cast<float>(glm::length(down))};
+    return {static_cast<float>(width), 0.0f, static_cast<float>(glm::dot(across, down) / width),
+            static_cast<float>(glm::length(glm::cross(across, down)) / width)};
+}
+
+}  // namespace
+
+Shape project_affine(const glm::vec2& slope, const glm::mat3& ellipsoid, float px_per_unit) {
+    const glm::dmat3 m(ellipsoid);
+    const glm::dvec3 x(1.0, 0.0, slope.x), y(0.0, 1.0, slope.y);  // z points to the eye
+    return outline_of(double(px_per_unit) * (x * m), -double(px_per_unit) * (y * m));
+}
+
 Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& ellipsoid, float px_per_unit) {
     // The frame's axes at p, across the ray there: the view's axes turned the shortest way.
     glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0);
@@ -55,12 +74,7 @@ Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& e
         y -= (axis + ray) * (ray.y * scale);
     }
     const glm::dmat3 m(ellipsoid);
-    const glm::dvec3 across = double(px_per_unit) * (x * m), down = -double(px_per_unit) * (y * m);
-    // The outline is what a lower triangular matrix of the same product with its transpose gives.
-    const double width = glm::length(across);
-    if (!(width > 0.0)) return {0.0f, 0.0f, 0.0f, static_cast<float>(glm::length(down))};
-    return {static_cast<float>(width), 0.0f, static_cast<float>(glm::dot(across, down) / width),
-            static_cast<float>(glm::length(glm::cross(across, down)) / width)};
+    return outline_of(double(px_per_unit) * (x * m), -double(px_per_unit) * (y * m));
 }
 
 ShapeRadii shape_radii(const Shape& shape) {

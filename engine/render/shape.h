@@ -9,6 +9,7 @@
 #pragma once
 
 #include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "camera/lens.h"
@@ -20,6 +21,11 @@ namespace astrosplat {
 /// The footprint of an ellipsoid: the unit ball under `ellipsoid` (columns in camera space, scene units) at
 /// p. What px_per_unit makes of a ball's radius it makes of the ellipsoid's outline as seen along the ray.
 Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& ellipsoid, float px_per_unit);
+
+/// The footprint of an ellipsoid under the affine approximation of the frame at p (EWA: Zwicker et al. 2001),
+/// in perspective; `slope` is where p / depth counts as being: beside the frame, what would come out is far
+/// too long.
+Shape project_affine(const glm::vec2& slope, const glm::mat3& ellipsoid, float px_per_unit);
 
 /// The two radii of a shape, px.
 struct ShapeRadii {

@@ -276,7 +276,8 @@ void describe_source(const Describer& d, SourceParams& s) {
                        s.structure);
     splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",
            slider(0, 1000), zero_is("Auto"));
-    files(s.file, "file", "Splat file", "", "For kind = \"splats\": .pda, .ply or .splats.",
+    files(s.file, "file", "Splat file", "",
+          "For kind = \"splats\": .pda, .ply, .splats, or Gaussians in .glb or .gltf.",
           only_with("kind", {"splats"}));
     describe_stars(files.only_with("kind", {"stars"}), s.stars);
     describe_star_image(d.shown_in("Source", "Star image").only_with("kind", {"stars"}).animated(), s.stars);

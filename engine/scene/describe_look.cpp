@@ -161,6 +161,11 @@ void describe_render(const Describer& d, LayerRender& r) {
            range(0, 2));
     mixing(r.holdout, "holdout", "Holdout", "", "Hides what lies behind and shows nothing itself.");
     mixing(r.isolate, "isolate", "Isolate", "", "Rendered alone, then composited as a whole.");
+    mixing(
+        r.space, "space", "Mixed in", "",
+        "display: dots are mixed as a display shows them (sRGB), as captures are trained, and the picture is "
+        "made linear again; of isolated layers that mix by over.",
+        only_with("isolate", {true}), only_with("blend", {"over"}));
 }
 
 }  // namespace astrosplat

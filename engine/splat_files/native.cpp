@@ -23,6 +23,7 @@ namespace {
 std::uint32_t flags_of(const SplatSet& set, RowOrder order, NativePart part) {
     std::uint32_t flags = (set.recipe.empty() ? 0u : has_recipe) | (set.generated ? generated : 0u) |
                           (set.divided ? divided : 0u) | (set.absorbs ? absorbs : 0u) |
+                          (set.display_harmonics ? display_harmonics : 0u) |
                           (order == RowOrder::id ? by_id : 0u) | flag_of(part);
     for_each_column([&](auto column, SplatColumn which) {
         if (has(flags | flag_of(which), which) && !(set.*column).empty()) flags |= flag_of(which);

@@ -7,7 +7,8 @@
 //           12  u32      flags: 1 generated, 2 divided, 4 uv, 8 normal, 16 mesh, 32 radius are present,
 //                    64 the rows are in ascending order of id,
 //                    128 a recipe is present, 256 splats of colours below 0 absorb, 512 faces are present,
-//                    1024 colour and alpha are not there, 2048 nothing but colour and alpha is there
+//                    1024 colour and alpha are not there, 2048 nothing but colour and alpha is there,
+//                    4096 scale, 8192 rotation, 16384 harmonics are present, 32768 these give display values
 //           16  u64      splats
 //           24  u32      splats in a block (the last block may hold fewer)
 //           28  u32      bytes of the credit, and of a zero and the recipe where that is present
@@ -17,7 +18,8 @@
 //           checksum of all before it
 //   blocks  one after the other, in each: position 3 f32, colour 3 f32, alpha f32, distance f32, id u64, and
 //   where
-//           present uv 2 f32, normal 3 f32, mesh u32, radius f32, face u32, every array whole before the next
+//           present uv 2 f32, normal 3 f32, mesh u32, radius f32, face u32, scale 3 f32, rotation 4 f32,
+//           harmonics 48 f32 (16 of red, green, blue), every array whole before the next
 //   table   for each block: lowest and highest x y z of its positions (6 f32; 0 without positions), u64
 //   checksum
 //           of its bytes

@@ -27,6 +27,12 @@ std::uint32_t flag_of(SplatColumn column) {
             return has_radius;
         case SplatColumn::face:
             return has_face;
+        case SplatColumn::scale:
+            return has_scale;
+        case SplatColumn::rotation:
+            return has_rotation;
+        case SplatColumn::harmonics:
+            return has_harmonics;
         default:
             return 0;
     }
@@ -94,8 +100,11 @@ Header read_header(const Checker& checker, std::string_view bytes) {
     std::memcpy(&header, bytes.data(), sizeof header);
     if (header.version != version)
         checker.fail("header", fmt::format("version {}", version), std::to_string(header.version));
-    if (header.flags >= only_colors * 2 || (header.flags & only_geometry && header.flags & only_colors))
+    if (header.flags >= display_harmonics * 2 || (header.flags & only_geometry && header.flags & only_colors))
         checker.fail("header", "known flags", fmt::format("{:#x}", header.flags));
+    const std::uint32_t gaussians = header.flags & (has_scale | has_rotation | has_radius);
+    if (gaussians & (has_scale | has_rotation) && gaussians != (has_scale | has_rotation | has_radius))
+        checker.fail("header", "scale, rotation and radius together", fmt::format("{:#x}", header.flags));
     if (header.block == 0) checker.fail("header", "blocks of at least one splat", "0");
     return header;
 }

@@ -28,7 +28,11 @@ enum Flag : std::uint32_t {
     absorbs = 256,
     has_face = 512,
     only_geometry = 1024,
-    only_colors = 2048
+    only_colors = 2048,
+    has_scale = 4096,
+    has_rotation = 8192,
+    has_harmonics = 16384,
+    display_harmonics = 32768
 };
 
 struct Header {

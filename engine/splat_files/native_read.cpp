@@ -48,6 +48,7 @@ SplatSet empty_set(const Layout& layout, std::size_t rows, const OptionalColumns
     set.generated = header.flags & generated;
     set.divided = header.flags & divided;
     set.absorbs = header.flags & absorbs;
+    set.display_harmonics = header.flags & display_harmonics;
     set.test_positions = header.test_positions;
     set.zero_alpha = header.zero_alpha;
     set.credit = layout.credit;
@@ -56,6 +57,13 @@ SplatSet empty_set(const Layout& layout, std::size_t rows, const OptionalColumns
 }
 
 bool is_finite(float v) { return std::fabs(v) <= FLT_MAX; }
+bool is_finite(const glm::vec4& v) {
+    return is_finite(v.x) && is_finite(v.y) && is_finite(v.z) && is_finite(v.w);
+}
+bool is_finite(const Harmonics& harmonics) {
+    return std::ranges::all_of(
+        harmonics.c, [](const glm::vec3& c) { return is_finite(c.x) && is_finite(c.y) && is_finite(c.z); });
+}
 bool is_finite(const glm::vec2& v) { return is_finite(v.x) && is_finite(v.y); }
 bool is_finite(const glm::vec3& v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 bool is_finite(std::uint32_t) { return true; }
@@ -213,6 +221,8 @@ std::vector<std::string> native_attributes(const std::filesystem::path& file) {
         if (flags & native::has_uv) names.emplace_back("uv");
         if (flags & native::has_normal) names.emplace_back("normal");
         if (flags & native::has_mesh) names.emplace_back("mesh");
+        if (flags & native::has_scale) names.insert(names.end(), {"scale", "rotation"});
+        if (flags & native::has_harmonics) names.emplace_back("harmonics");
         names.emplace_back("id");
         return names;
     });

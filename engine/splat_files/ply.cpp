@@ -14,9 +14,11 @@
 
 #include "core/color.h"
 #include "core/error.h"
+#include "splat_files/finish_gaussians.h"
 #include "splat_files/mapped_file.h"
 #include "splat_files/ordered_writer.h"
 #include "splat_files/ply_binary.h"
+#include "splat_files/ply_gaussians.h"
 #include "splat_files/ply_header.h"
 #include "splat_files/splat_table.h"
 #include "splat_files/text_rows.h"
@@ -121,12 +123,12 @@ void assign_field(Column& column, const PlyElement& vertex, const std::filesyste
 }
 
 std::vector<Column> columns_of(const PlyElement& vertex, const std::filesystem::path& file) {
+    if (holds_gaussians(vertex)) return gaussian_columns(vertex, file);
+    if (has_scalar(vertex, "packed_position"))
+        bad_input(file.string(), "", "Gaussians that are not compressed", "packed_position and others");
     for (const std::string_view name : {"x", "y", "z"})
         if (!has_scalar(vertex, name))
             bad_input(file.string(), "", "vertex properties x, y and z", "no " + std::string(name));
-    if (has_scalar(vertex, "f_dc_0") && has_scalar(vertex, "scale_0"))
-        bad_input(file.string(), "", "splats with red, green, blue and alpha",
-                  "3D Gaussians (f_dc_0, scale_0), which cannot be read yet");
     std::vector<Column> columns = vertex.properties;
     for (Column& column : columns) assign_field(column, vertex, file);
     return columns;
@@ -205,9 +207,11 @@ SplatSet read_ply_bytes(const std::filesystem::path& file, std::string_view byte
         read_ascii(header, vertex, table, file, progress);
     else
         read_binary_rows(header, vertex, table, file, progress);
+    const bool gaussians = table.has(Field::scale_x);
     SplatSet set = finish_table(table, file);
     set.credit = header.credit;
-    return set;
+    return gaussians ? finish_gaussians(std::move(set), {.trained = true, .display = true}, file)
+                     : std::move(set);
 }
 
 }  // namespace
@@ -215,7 +219,13 @@ SplatSet read_ply_bytes(const std::filesystem::path& file, std::string_view byte
 std::vector<std::string> ply_attributes(const std::filesystem::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         const PlyHeader header = read_ply_header(file, bytes);
-        return attribute_names(columns_of(header.elements[find_vertex(header, file)], file));
+        const PlyElement& vertex = header.elements[find_vertex(header, file)];
+        std::vector<std::string> names = attribute_names(columns_of(vertex, file));
+        if (holds_gaussians(vertex)) {
+            if (std::ranges::find(names, "color") == names.end()) names.emplace_back("color");
+            names.emplace_back("radius");
+        }
+        return names;
     });
 }
 

@@ -1,7 +1,7 @@
 // PLY point clouds (.ply): ASCII, binary little-endian and big-endian. In: element vertex with x y z and,
 // where present, red green blue alpha (float 0..1, linear; uchar and ushort: sRGB colour, linear alpha),
 // radius, distance, id (with id_high for its upper 32 bits, as PLY has no 64-bit numbers), mesh, s t. All
-// else is skipped.
+// else is skipped. Or Gaussians as 3D Gaussian Splatting stores them (ply_gaussians.h).
 #pragma once
 
 #include <filesystem>

@@ -13,6 +13,7 @@
 #include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
+#include "splat_files/gltf_splats.h"
 #include "splat_files/native.h"
 #include "splat_files/pda.h"
 #include "splat_files/ply.h"
@@ -26,23 +27,25 @@ struct Functions {
     SplatSet (*read)(const std::filesystem::path&, const Progress&);
     void (*write)(const WriteTarget&, const SplatSet&, const Progress&);
     std::vector<std::string> (*attributes)(const std::filesystem::path&);
-    bool keeps_dust;  // splats that absorb are told from those that shine
+    bool keeps_all;  // splats that absorb are told from those that shine; shapes of Gaussians
 };
 
-constexpr std::array<Functions, 3> functions = {{
+constexpr std::array<Functions, 4> functions = {{
     {"pda", read_pda, write_pda, pda_attributes, false},
     {"ply", read_ply, write_ply, ply_attributes, false},
+    {"gltf", read_gltf_splats, nullptr, gltf_splat_attributes, false},
     {"splats", [](const auto& file, const auto& progress) { return read_native(file, progress); },
      [](const auto& file, const auto& set, const auto& progress) { write_native(file, set, progress); },
      native_attributes, true},
 }};
 
-const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file) {
+const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file,
+                              FileUse use = FileUse::read) {
     for (const Functions& each : functions)
-        if (format && format->id == each.format) return each;
+        if (format && format->id == each.format && (use == FileUse::read || each.write)) return each;
     const std::string ending = file.extension().string();
     bad_input(file.string(), "",
-              fmt::format("one of the endings {}", fmt::join(endings_of({FileKind::splats}), " ")),
+              fmt::format("one of the endings {}", fmt::join(endings_of({FileKind::splats}, use), " ")),
               ending.empty() ? "none" : ending);
 }
 
@@ -59,9 +62,14 @@ std::vector<std::string> splat_attributes(const std::filesystem::path& file) {
 }
 
 void write_splats(const WriteTarget& target, const SplatSet& set, const Progress& progress) {
-    const Functions& functions = functions_of(format_by_name(target.file), target.file);
+    const Functions& functions = functions_of(format_by_name(target.file), target.file, FileUse::written);
     const auto dust = std::ranges::count_if(set.color, [](const glm::vec3& c) { return c.x < 0.0f; });
-    if (set.absorbs && dust > 0 && !functions.keeps_dust)
+    if (holds_gaussians(set) && !functions.keeps_all)
+        log_warning(fmt::format(
+            "{}: this format has no room for the shapes and the colours by direction of Gaussians: "
+            "they become round; .splats keeps them, and export writes them",
+            target.file.string()));
+    if (set.absorbs && dust > 0 && !functions.keeps_all)
         log_warning(
             fmt::format("{}: the dust, {}, absorbs light, which this format cannot say: it becomes grey; "
                         ".splats keeps it",

@@ -1,5 +1,5 @@
-// Splat files of any format: .pda (Maya ASCII particles), .ply, .splats (native). One reader/writer a file:
-// pda.*, ply.*, native.*; this is the front door.
+// Splat files of any format: .pda (Maya ASCII particles), .ply, .splats (native), glTF (read only). One
+// reader/writer a file: pda.*, ply.*, native.*, gltf_splats.*; this is the front door.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace astrosplat {
 SplatSet read_splats(const std::filesystem::path& file, const Progress& progress = {});
 
 /// What a file says of its splats, by its header alone: some of position, color, alpha, distance, radius, uv,
-/// normal, mesh, id. Throws InputError.
+/// normal, mesh, scale, rotation, harmonics, id. Throws InputError.
 std::vector<std::string> splat_attributes(const std::filesystem::path& file);
 
 /// In the format of the ending. Writes to a temporary name, then renames: the file appears whole or not at

@@ -31,7 +31,11 @@ std::int64_t bytes_per_row(const SplatTable& table) {
     std::size_t bytes = bytes_per_splat([&](SplatColumn column) {
         return !is_optional(column) || (column == SplatColumn::radius && table.has(Field::radius)) ||
                (column == SplatColumn::uv && table.has(Field::s)) ||
-               (column == SplatColumn::mesh && table.has(Field::mesh));
+               (column == SplatColumn::mesh && table.has(Field::mesh)) ||
+               (table.has(Field::scale_x) &&
+                (column == SplatColumn::scale || column == SplatColumn::rotation ||
+                 column == SplatColumn::radius)) ||
+               (column == SplatColumn::harmonics && table.has(Field::harmonic));
     });
     if (table.has(Field::id_high)) bytes += sizeof(std::uint32_t);
     return static_cast<std::int64_t>(bytes);
@@ -48,6 +52,9 @@ void allocate(SplatTable& table, std::size_t rows) {
     if (table.has(Field::s)) set.uv.resize(rows);
     if (table.has(Field::mesh)) set.mesh.resize(rows);
     if (table.has(Field::id_high)) table.id_high.resize(rows);
+    if (table.has(Field::scale_x)) set.scale.resize(rows);
+    if (table.has(Field::rotation_x)) set.rotation.resize(rows);
+    if (table.has(Field::harmonic)) fill(set.harmonics, rows, Harmonics{});
 }
 
 void bind(Column& column, SplatTable& table) {
@@ -75,6 +82,7 @@ void bind(Column& column, SplatTable& table) {
             break;
         case Field::alpha:
             point_at(set.alpha.data(), Field::alpha, 1);
+            if (column.any_number) break;
             column.lowest = 0.0f;
             column.highest = 1.0f;
             column.clamped = &table.clamped;
@@ -92,6 +100,21 @@ void bind(Column& column, SplatTable& table) {
             break;
         case Field::id_high:
             column.whole = table.id_high.data();
+            break;
+        case Field::scale_x:
+        case Field::scale_y:
+        case Field::scale_z:
+            point_at(&set.scale.data()->x, Field::scale_x, 3);
+            break;
+        case Field::rotation_x:
+        case Field::rotation_y:
+        case Field::rotation_z:
+        case Field::rotation_w:
+            point_at(&set.rotation.data()->x, Field::rotation_x, 4);
+            break;
+        case Field::harmonic:
+            column.out = &set.harmonics.data()->c[0].x + column.component;
+            column.stride = 3 * Harmonics::count;
             break;
     }
 }
@@ -122,14 +145,17 @@ bool SplatTable::has(Field field) const {
 }
 
 std::vector<std::string> attribute_names(const std::vector<Column>& columns) {
-    constexpr std::array<std::pair<Field, const char*>, 8> names = {{{Field::x, "position"},
-                                                                     {Field::red, "color"},
-                                                                     {Field::alpha, "alpha"},
-                                                                     {Field::distance, "distance"},
-                                                                     {Field::radius, "radius"},
-                                                                     {Field::s, "uv"},
-                                                                     {Field::mesh, "mesh"},
-                                                                     {Field::id, "id"}}};
+    constexpr std::array<std::pair<Field, const char*>, 11> names = {{{Field::x, "position"},
+                                                                      {Field::red, "color"},
+                                                                      {Field::alpha, "alpha"},
+                                                                      {Field::distance, "distance"},
+                                                                      {Field::radius, "radius"},
+                                                                      {Field::s, "uv"},
+                                                                      {Field::mesh, "mesh"},
+                                                                      {Field::scale_x, "scale"},
+                                                                      {Field::rotation_x, "rotation"},
+                                                                      {Field::harmonic, "harmonics"},
+                                                                      {Field::id, "id"}}};
     std::vector<std::string> present;
     for (const auto& [field, name] : names)
         if (std::ranges::any_of(columns, [f = field](const Column& c) { return c.field == f; }))
@@ -169,6 +195,10 @@ std::string expectation(const Column& column) {
 }
 
 bool store_outside(const Column& column, std::size_t row, float value) {
+    if (column.any_number) {
+        column.out[row * column.stride] = value;
+        return true;
+    }
     if (!column.clamped || !std::isfinite(value)) return false;
     column.out[row * column.stride] = std::clamp(value, column.lowest, column.highest);
     column.clamped->fetch_add(1, std::memory_order_relaxed);

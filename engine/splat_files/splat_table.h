@@ -30,7 +30,15 @@ enum class Field : std::uint8_t {
     t,
     mesh,
     id,
-    id_high
+    id_high,
+    scale_x,
+    scale_y,
+    scale_z,
+    rotation_x,
+    rotation_y,
+    rotation_z,
+    rotation_w,
+    harmonic  // number Column::component of the 48
 };
 
 /// How a file stores a number of a binary row (PLY); text files leave it alone.
@@ -40,6 +48,8 @@ enum class NumberType : std::uint8_t { i8, u8, i16, u16, i32, u32, i64, u64, f32
 struct Column {
     std::string name;  // as in the file, for messages
     Field field = Field::skip;
+    int component = 0;        // Field::harmonic: 3 times the coefficient, and the channel
+    bool any_number = false;  // also those that are not finite
     NumberType type = NumberType::f32;
     bool list = false;  // a count (of list_count type), then so many numbers: always skipped
     NumberType list_count = NumberType::u8;

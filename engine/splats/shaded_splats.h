@@ -17,11 +17,12 @@ struct ShadedSplats {
     Buffer<std::uint64_t> id;
     /// Empty: all are balls. Else of each splat: what the ball becomes, around its centre, layer space.
     Buffer<glm::mat3> stretch;
+    bool encoded = false;  // colours are display values (sRGB), composited as such: of isolated layers only
 
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
 
-/// Calls visit(array) for all but stretch, which no look makes.
+/// Calls visit(array) for all but stretch, which look/view_dependent.h adds.
 template <class Visit>
 void for_each_array(ShadedSplats& splats, const Visit& visit) {
     visit(splats.position);

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <string>
 
 #include "core/bounds.h"
 #include "core/buffer.h"
+#include "splats/harmonics.h"
 #include "splats/star_pixels.h"
 
 namespace astrosplat {
@@ -24,10 +26,11 @@ struct SplatSetFacts {
     bool absorbs = false;             // splats of colours below 0 absorb: see color
     bool stars =
         false;  // colours are light summed over all pixels, as seen from the origin; see is_direction
-    StarPixels star_pixels;        // of stars: over which pixels; else without a meaning
-    std::string credit;            // from the inputs' metadata
-    bool of_this_machine = false;  // pictures were reduced for want of free memory: not to be kept
-    std::string recipe;            // of an entry of the cache: what made it (sets/recipe.h)
+    bool display_harmonics = false;  // harmonics give display values (sRGB); else linear light
+    StarPixels star_pixels;          // of stars: over which pixels; else without a meaning
+    std::string credit;              // from the inputs' metadata
+    bool of_this_machine = false;    // pictures were reduced for want of free memory: not to be kept
+    std::string recipe;              // of an entry of the cache: what made it (sets/recipe.h)
 };
 
 /// Arrays either have size() entries or are empty ("not known"); position, color, alpha, distance and id are
@@ -43,7 +46,12 @@ struct SplatSet : SplatSetFacts {
     Buffer<glm::vec3> normal;    // unit normal of the closest face
     Buffer<std::uint32_t> mesh;  // index of the closest mesh
     Buffer<float> radius;        // scene units; only from files (radiusPP)
-    Buffer<std::uint32_t> face;  // number of the closest triangle, all meshes'; only while columns are made
+    // Of Gaussians, whose radius is three standard deviations of the ball with their shadow (mean square of
+    // those along their own axes). Scale, rotation and radius are there together.
+    Buffer<glm::vec3> scale;      // standard deviations along their own axes, scene units, >= 0
+    Buffer<glm::vec4> rotation;   // of these axes: unit quaternions x y z w
+    Buffer<Harmonics> harmonics;  // their colour by direction, of which `color` is the mean
+    Buffer<std::uint32_t> face;   // number of the closest triangle, all meshes'; only while columns are made
 
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
@@ -59,11 +67,15 @@ enum class SplatColumn : std::uint8_t {
     normal,
     mesh,
     radius,
-    face
+    face,
+    scale,
+    rotation,
+    harmonics
 };
 constexpr const char* name_of(SplatColumn column) {
-    constexpr const char* names[] = {"position", "color",  "alpha", "distance", "id",
-                                     "uv",       "normal", "mesh",  "radius",   "face"};
+    constexpr const char* names[] = {"position", "color",    "alpha",    "distance", "id",
+                                     "uv",       "normal",   "mesh",     "radius",   "face",
+                                     "scale",    "rotation", "harmonics"};
     return names[static_cast<std::size_t>(column)];
 }
 constexpr bool is_optional(SplatColumn column) { return column >= SplatColumn::uv; }
@@ -82,6 +94,9 @@ void for_each_column(Visit visit) {
     visit(&SplatSet::mesh, SplatColumn::mesh);
     visit(&SplatSet::radius, SplatColumn::radius);
     visit(&SplatSet::face, SplatColumn::face);
+    visit(&SplatSet::scale, SplatColumn::scale);
+    visit(&SplatSet::rotation, SplatColumn::rotation);
+    visit(&SplatSet::harmonics, SplatColumn::harmonics);
 }
 
 /// Bytes of one splat in the columns for which `wanted` says so.
@@ -111,6 +126,9 @@ inline bool is_direction(const glm::vec3& position) {
     const auto beyond = [](float x) { return x >= far || x <= -far; };
     return beyond(position.x) || beyond(position.y) || beyond(position.z);
 }
+
+/// Whether its splats are Gaussians of their own shapes.
+inline bool holds_gaussians(const SplatSet& set) { return !set.scale.empty(); }
 
 /// Bounds of all positions, without directions of stars.
 Bounds bounds(const SplatSet& set);

@@ -43,7 +43,8 @@ TEST_P(Replay, DamageIsAnsweredWithOneLine) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Readers, Replay,
-                         testing::Values("pda", "ply", "splats", "obj", "toml", "fits", "stars", "cameras"),
+                         testing::Values("pda", "ply", "splats", "obj", "toml", "fits", "stars", "cameras",
+                                         "gaussian_ply", "gltf"),
                          [](const auto& reader) { return reader.param; });
 
 }  // namespace

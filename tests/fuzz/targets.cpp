@@ -15,6 +15,7 @@
 
 #include "fuzz/cameras.h"
 #include "fuzz/catalogues.h"
+#include "fuzz/gaussians.h"
 #include "scene/load.h"
 #include "source/mesh.h"
 #include "source/obj.h"
@@ -236,6 +237,8 @@ const std::vector<Target>& targets() {
         {"fits", fits_seeds(), read_fits_bytes},
         {"stars", catalogue_seeds(), read_catalogue_bytes},
         {"cameras", camera_seeds(), read_camera_bytes},
+        {"gaussian_ply", gaussian_ply_seeds(), read_gaussian_ply_bytes},
+        {"gltf", gltf_seeds(), read_gltf_bytes},
     };
     return all;
 }

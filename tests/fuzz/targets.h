@@ -16,7 +16,7 @@ struct Target {
     void (*read)(std::string_view bytes);
 };
 
-/// pda, ply, splats, obj, toml, fits, stars, cameras.
+/// pda, ply, splats, obj, toml, fits, stars, cameras, gaussian_ply, gltf.
 const std::vector<Target>& targets();
 const Target& target(const std::string& name);
 

@@ -47,10 +47,13 @@ TEST(FileFormat, RowsDoNotContradictEachOther) {
 }
 
 TEST(FileFormat, ListsForDialogsAndMessages) {
-    EXPECT_EQ(endings_of({FileKind::splats}), (std::vector<std::string>{".pda", ".ply", ".splats"}));
+    EXPECT_EQ(endings_of({FileKind::splats}),
+              (std::vector<std::string>{".pda", ".ply", ".glb", ".gltf", ".splats"}));
+    EXPECT_EQ(endings_of({FileKind::splats}, FileUse::written),
+              (std::vector<std::string>{".pda", ".ply", ".splats"}));
     EXPECT_EQ(endings_of({FileKind::picture}, FileUse::written),
               (std::vector<std::string>{".exr", ".tif", ".tiff", ".png"}));
-    EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY or SPLATS");
+    EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY, glTF or SPLATS");
     EXPECT_EQ(names_of(FileKind::mesh), "OBJ");
 }
 

@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 #include "edit/layers.h"
 #include "scenes.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
+#include "support/capture.h"
 #include "support/test_data.h"
 
 namespace astrosplat {
@@ -140,6 +142,30 @@ TEST_F(NewFromFile, SplatsWithoutRadiiGetSome) {
     EXPECT_NO_THROW(check_consistent(read_splats(scene.layers[0].source.file)));
 }
 
+TEST_F(NewFromFile, CapturesAreMixedInDisplayValuesAndFramedWithoutStrays) {
+    std::vector<test::Trained> all = test::capture(400, 1);
+    for (std::size_t i = 0; i < 10; ++i) all[i].position *= 1000.0;
+    for (const std::string ending : {"ply", "glb"}) {
+        const fs::path file =
+            folder.file("capture." + ending, ending == "ply" ? test::ply_of(all, 1) : test::glb_of(all, 1));
+        EXPECT_EQ(kind_of_file(file), FileKind::splats);
+        const Scene scene = scene_for(file);
+        const LayerParams& layer = scene.layers[0];
+        EXPECT_EQ(layer.source.file, file);
+        EXPECT_TRUE(is_encoded(layer.render));
+        ASSERT_TRUE(scene.camera.position.has_value());
+        for (int k = 0; k < 3; ++k) EXPECT_LT(std::fabs(scene.camera.target[k]), 1.0);
+        EXPECT_NEAR(glm::distance(*scene.camera.position, scene.camera.target),
+                    0.5 * 5.4 * std::sqrt(3.0) / std::sin(0.349), 2.0);
+    }
+    const fs::path linear = folder.file("linear.glb", test::glb_of(all, 0, "", "lin_rec709_display"));
+    EXPECT_TRUE(scene_for(linear).layers[0].render.isolate);
+    EXPECT_EQ(scene_for(linear).layers[0].render.space, BlendSpace::linear);
+    EXPECT_EQ(kind_of_file(folder.file("camera.gltf", "{\"asset\":{\"version\":\"2.0\"}}")),
+              FileKind::unknown);
+    EXPECT_EQ(kind_of_file("missing.glb"), FileKind::splats);
+}
+
 TEST_F(NewFromFile, CataloguesOfTheSkyAreSeenFromTheOrigin) {
     const Scene scene = scene_for(folder.file("near stars.csv", "ra,dec,mag\n1,2,3\n"));
     ASSERT_EQ(scene.layers.size(), 1u);
@@ -160,7 +186,7 @@ TEST_F(NewFromFile, OtherFilesAreRefused) {
     EXPECT_EQ(message_of<InputError>([&] { scene_text_for(text, place); }),
               text.string() +
                   ": expected a picture (OpenEXR, TIFF, PNG, JPEG, FITS, Radiance HDR, DPX, WebP, JPEG 2000, "
-                  "Photoshop, BMP, GIF, TGA or PNM), a mesh (OBJ), splats (PDA, PLY or SPLATS) or a star "
+                  "Photoshop, BMP, GIF, TGA or PNM), a mesh (OBJ), splats (PDA, PLY, glTF or SPLATS) or a star "
                   "catalogue, found another kind of file");
     EXPECT_EQ(message_of<InputError>([&] { scene_text_for(folder / "gone.png", place); }),
               (folder / "gone.png").string() + ": cannot be read: No such file or directory");

@@ -96,7 +96,7 @@ TEST(Gaussians, StandWhereTheLayerPutsThem) {
     const One one = baked(one_splat({0.5f, 0.25f, 0.125f}, 0.5f, 0.5f), blend_of(Blend::over));
     ASSERT_EQ(one.gaussians.size(), 1);
     EXPECT_EQ(one.gaussians.position[0], glm::vec3(2.0f, 4.0f, 5.0f));
-    EXPECT_NEAR(one.gaussians.sigma[0], nearest_gaussian(Falloff{}).sigma, 1e-6);  // radius 0.5, scale 2
+    EXPECT_NEAR(one.gaussians.scale[0].x, nearest_gaussian(Falloff{}).sigma, 1e-6);  // radius 0.5, scale 2
     EXPECT_NEAR(one.gaussians.alpha[0], 0.5 * one.peak, 1e-6);
     EXPECT_NEAR(one.gaussians.color[0].y, 0.25f, 1e-6);
 }
@@ -106,7 +106,7 @@ TEST(Gaussians, OfOpaqueDiscsAreWiderInsteadOfMoreThanOpaque) {
     render.falloff = falloff_of(Falloff::Shape::constant);
     const One one = baked(one_splat(glm::vec3(0.5f), 1.0f, 0.5f), render);
     EXPECT_EQ(one.gaussians.alpha[0], 1.0f);
-    EXPECT_NEAR(2.0 * std::numbers::pi * std::pow(one.gaussians.sigma[0], 2.0), std::numbers::pi, 1e-4);
+    EXPECT_NEAR(2.0 * std::numbers::pi * std::pow(one.gaussians.scale[0].x, 2.0), std::numbers::pi, 1e-4);
     EXPECT_NEAR(one.gaussians.color[0].x, 0.5f, 1e-6);
     EXPECT_EQ(one.counts.lost, 0.0);
 }
@@ -196,7 +196,8 @@ TEST(Gaussians, EncodedAreFittedToTheFrame) {
         ShadedSplats drawn = splats;
         drawn.color = gaussians.color;
         drawn.alpha = gaussians.alpha;
-        drawn.radius = gaussians.sigma;
+        drawn.radius.clear();
+        for (const glm::vec3& scale : gaussians.scale) drawn.radius.push_back(scale.x);
         for (float& radius : drawn.radius) radius *= 4.0f;
         RenderLayer as_gaussians;
         as_gaussians.splats = &drawn;

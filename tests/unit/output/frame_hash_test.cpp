@@ -223,6 +223,14 @@ TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {
               of_lens(Projection::cylindrical, nothing));
 }
 
+TEST_F(FrameHashTest, MixingInDisplayValuesCountsWhereItIsDone) {
+    EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("render.space"), std::string::npos);
+    const auto display = [](Scene& s) { s.layers[0].render.space = BlendSpace::display; };
+    EXPECT_EQ(changed(display), hash(scene()));
+    const auto alone = [](Scene& s) { s.layers[0].render.isolate = true; };
+    EXPECT_NE(changed([&](Scene& s) { alone(s), display(s); }), changed(alone));
+}
+
 TEST_F(FrameHashTest, TheImageOfStarsCountsForStarsAndIsNotToldOfOthers) {
     EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("wings"), std::string::npos);
     EXPECT_EQ(FrameHasher(scene()).canonical_text(1).find("spikes"), std::string::npos);

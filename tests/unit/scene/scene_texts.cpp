@@ -150,6 +150,7 @@ absorb = [0.8, 1.0, 1.35]
 lod = { max_px = 0.0, max_children = 4096, noise = 0.0 }
 holdout = false
 isolate = false
+space = "linear"
 
 )toml";
 

@@ -275,7 +275,9 @@ TEST_F(Native, Messages) {
     EXPECT_EQ(error("ply" + whole.substr(3)),
               "a.splats: expected an astrosplat .splats file, found another format");
     EXPECT_EQ(error(forged(whole, 8, 2u)), "a.splats:header: expected version 1, found 2");
-    EXPECT_EQ(error(forged(whole, 12, 0x1000u)), "a.splats:header: expected known flags, found 0x1000");
+    EXPECT_EQ(error(forged(whole, 12, 0x10000u)), "a.splats:header: expected known flags, found 0x10000");
+    EXPECT_EQ(error(forged(whole, 12, 0x1000u)),
+              "a.splats:header: expected scale, rotation and radius together, found 0x1000");
     EXPECT_EQ(error(forged(whole, 12, 0xc00u)), "a.splats:header: expected known flags, found 0xc00");
     std::uint32_t flags;
     std::memcpy(&flags, &whole[12], sizeof flags);
@@ -319,11 +321,13 @@ TEST_F(Native, NumbersThatAreNotFiniteAreRefused) {
 using SplatFile = SplatFileTest;
 
 TEST_F(SplatFile, UnknownEndingsNameTheKnownOnes) {
-    const std::string expected = "a.xyz: expected one of the endings .pda .ply .splats, found .xyz";
+    const std::string expected =
+        "a.xyz: expected one of the endings .pda .ply .glb .gltf .splats, found .xyz";
     EXPECT_EQ(error_of(write("a.xyz", "x"), [](const auto& file) { read_splats(file); }), expected);
-    EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { write_splats(file, SplatSet{}); }), expected);
+    EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { write_splats(file, SplatSet{}); }),
+              "a.xyz: expected one of the endings .pda .ply .splats, found .xyz");
     EXPECT_EQ(error_of(write("a", "x"), [](const auto& file) { read_splats(file); }),
-              "a: expected one of the endings .pda .ply .splats, found none");
+              "a: expected one of the endings .pda .ply .glb .gltf .splats, found none");
     EXPECT_EQ(error_of(path("none.xyz"), [](const auto& file) { read_splats(file); }),
               "none.xyz: cannot be read: No such file or directory");
 }

@@ -175,13 +175,6 @@ TEST_F(Ply, OtherNamesOfColours) {
     EXPECT_EQ(read(one_vertex("r g", "0 0")).color[0], glm::vec3(1.0f));
 }
 
-TEST_F(Ply, GaussiansAreRefusedInWords) {
-    EXPECT_EQ(
-        error(one_vertex("f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2", "0 0 0 0 0 0 0")),
-        "a.ply: expected splats with red, green, blue and alpha, found 3D Gaussians (f_dc_0, scale_0), which "
-        "cannot be read yet");
-}
-
 TEST_F(Ply, WrongHeaders) {
     EXPECT_EQ(error(""), "a.ply:1: expected 'ply', found ''");
     EXPECT_EQ(error("plywood\n"), "a.ply:1: expected 'ply', found 'plywood'");

@@ -1,4 +1,4 @@
-#include "camera_files/gltf_buffers.h"
+#include "gltf/gltf_file.h"
 
 #include <fmt/format.h>
 

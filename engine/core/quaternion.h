@@ -1,0 +1,18 @@
+// Rotations as quaternions x y z w. In and out: quaternions, and matrices of orthonormal columns.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec4.hpp>
+
+namespace astrosplat {
+
+/// Of a quaternion of length 1.
+glm::dmat3 matrix_of_quaternion(const glm::dvec4& q);
+
+/// Of a matrix that turns and does not mirror; length 1, w >= 0.
+glm::dvec4 quaternion_of_matrix(const glm::dmat3& m);
+
+/// Turns by b, then by a.
+glm::dvec4 quaternion_product(const glm::dvec4& a, const glm::dvec4& b);
+
+}  // namespace astrosplat

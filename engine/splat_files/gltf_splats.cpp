@@ -1,0 +1,300 @@
+#include "splat_files/gltf_splats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/quaternion.h"
+#include "core/text.h"
+#include "gltf/gltf_file.h"
+#include "splat_files/finish_gaussians.h"
+#include "splats/harmonics.h"
+
+namespace astrosplat {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string extension = "KHR_gaussian_splatting";
+
+/// Some Gaussians and where their node puts them.
+struct Part {
+    Json attributes;
+    bool display = true;
+    int degree = 0;
+    std::int64_t count = 0;
+    glm::dmat4 world{1.0};
+};
+
+template <int kCount>
+std::array<double, kCount> numbers_of(const GltfFile& file, const Json& list) {
+    const auto numbers = list.get<std::vector<double>>();
+    if (numbers.size() != kCount)
+        file.fail(fmt::format("{} numbers that place a node", kCount), std::to_string(numbers.size()));
+    std::array<double, kCount> result;
+    std::ranges::copy(numbers, result.begin());
+    return result;
+}
+
+glm::dmat4 matrix_of(const GltfFile& file, const Json& node) {
+    glm::dmat4 matrix(1.0);
+    if (node.contains("matrix")) {
+        const auto m = numbers_of<16>(file, node.at("matrix"));
+        for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
+        return matrix;
+    }
+    if (node.contains("rotation")) {
+        const auto q = numbers_of<4>(file, node.at("rotation"));
+        matrix = glm::dmat4(matrix_of_quaternion({q[0], q[1], q[2], q[3]}));
+    }
+    if (node.contains("scale")) {
+        const auto s = numbers_of<3>(file, node.at("scale"));
+        for (int k = 0; k < 3; ++k) matrix[k] *= s[static_cast<std::size_t>(k)];
+    }
+    if (node.contains("translation")) {
+        const auto t = numbers_of<3>(file, node.at("translation"));
+        matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
+    }
+    return matrix;
+}
+
+std::string harmonic_name(int degree, int number) {
+    return fmt::format("{}:SH_DEGREE_{}_COEF_{}", extension, degree, number);
+}
+
+int degree_of(const GltfFile& file, const Json& attributes) {
+    int degree = 0;
+    for (int l = 1; l <= 3; ++l) {
+        int found = 0;
+        for (int n = 0; n < 2 * l + 1; ++n) found += attributes.contains(harmonic_name(l, n));
+        if (found == 0) continue;
+        if (found < 2 * l + 1 || degree < l - 1)
+            file.fail(fmt::format("all coefficients up to degree {}", l), "some of them");
+        degree = l;
+    }
+    return degree;
+}
+
+void add_parts_of_mesh(const GltfFile& file, const Json& mesh, const glm::dmat4& world,
+                       std::vector<Part>& parts) {
+    for (const Json& primitive : mesh.value("primitives", Json::array())) {
+        const Json extensions = primitive.value("extensions", Json::object());
+        if (!extensions.contains(extension)) continue;
+        const Json& own = extensions.at(extension);
+        if (own.contains("extensions") && !own.at("extensions").empty())
+            file.fail("Gaussians that are not compressed", printable(own.at("extensions").begin().key()));
+        const auto kernel = own.value("kernel", "ellipse"),
+                   space = own.value("colorSpace", "srgb_rec709_display");
+        if (kernel != "ellipse") file.fail("the kernel ellipse", "'" + printable(kernel) + "'");
+        if (space != "srgb_rec709_display" && space != "lin_rec709_display")
+            file.fail("the colorSpace srgb_rec709_display or lin_rec709_display",
+                      "'" + printable(space) + "'");
+        Part part;
+        part.attributes = primitive.value("attributes", Json::object());
+        part.display = space.starts_with("srgb");
+        part.degree = degree_of(file, part.attributes);
+        const Json& accessor = file.element("accessors", part.attributes.value("POSITION", Json()));
+        part.count = accessor.value("count", std::int64_t{0});
+        part.world = world;
+        parts.push_back(part);
+    }
+}
+
+/// Nodes are visited from the scene's roots down; each once, as glTF wants trees.
+void add_parts(const GltfFile& file, const Json& index, const glm::dmat4& parent, int depth,
+               std::vector<bool>& seen, std::vector<Part>& parts) {
+    constexpr int deepest = 256;
+    const Json& node = file.element("nodes", index);
+    const auto i = index.get<std::size_t>();
+    if (seen[i]) file.fail("nodes that are trees", fmt::format("node {} twice", i));
+    if (depth > deepest) file.fail(fmt::format("at most {} nodes one below the other", deepest), "more");
+    seen[i] = true;
+    const glm::dmat4 world = parent * matrix_of(file, node);
+    if (node.contains("mesh")) add_parts_of_mesh(file, file.element("meshes", node.at("mesh")), world, parts);
+    for (const Json& child : node.value("children", Json::array()))
+        add_parts(file, child, world, depth + 1, seen, parts);
+}
+
+std::vector<Json> roots_of(const GltfFile& file) {
+    const Json& json = file.json();
+    if (json.contains("scenes")) {
+        const Json& scene = file.element("scenes", json.value("scene", Json(0)));
+        return scene.value("nodes", Json::array()).get<std::vector<Json>>();
+    }
+    const std::size_t count = json.value("nodes", Json::array()).size();
+    std::vector<bool> is_child(count, false);
+    for (std::size_t i = 0; i < count; ++i)
+        for (const Json& child : json.at("nodes")[i].value("children", Json::array())) {
+            file.element("nodes", child);
+            is_child[child.get<std::size_t>()] = true;
+        }
+    std::vector<Json> roots;
+    for (std::size_t i = 0; i < count; ++i)
+        if (!is_child[i]) roots.emplace_back(i);
+    return roots;
+}
+
+std::vector<Part> parts_of(const GltfFile& file) {
+    for (const Json& name : file.json().value("extensionsRequired", Json::array()))
+        if (name != extension && name != "KHR_mesh_quantization")
+            file.fail("no required extensions but " + extension + " and KHR_mesh_quantization",
+                      printable(name.get<std::string>()));
+    std::vector<Part> parts;
+    std::vector<bool> seen(file.json().value("nodes", Json::array()).size(), false);
+    for (const Json& root : roots_of(file)) add_parts(file, root, glm::dmat4(1.0), 0, seen, parts);
+    if (parts.empty()) file.fail("Gaussians (" + extension + ") in a node of its scene", "none");
+    for (const Part& part : parts)
+        if (part.display != parts[0].display) file.fail("Gaussians of one colorSpace", "two");
+    return parts;
+}
+
+/// The numbers of an attribute, as many as the part has Gaussians.
+std::vector<float> column_of(GltfFile& file, const Part& part, const std::string& name, int components) {
+    if (!part.attributes.contains(name)) file.fail("an attribute " + name, "none");
+    const Json& index = part.attributes.at(name);
+    const Json& accessor = file.element("accessors", index);
+    const std::string type = components == 1 ? "SCALAR" : fmt::format("VEC{}", components);
+    if (accessor.value("type", "") != type)
+        file.fail(name + " as " + type, "'" + printable(accessor.value("type", "")) + "'");
+    if (accessor.value("count", std::int64_t{0}) != part.count)
+        file.fail(fmt::format("{} of {}", part.count, name),
+                  std::to_string(accessor.value("count", std::int64_t{0})));
+    return file.numbers(index, components);
+}
+
+/// How a node changes what it holds: sizes by one number, axes by a matrix of orthonormal columns.
+struct Placement {
+    double scale = 1.0;
+    glm::dmat3 turn{1.0};
+    glm::dvec3 place{0.0};
+    bool turns = false;
+};
+Placement placement_of(const GltfFile& file, const glm::dmat4& world) {
+    constexpr double tolerance = 1e-3;
+    const glm::dmat3 m(world);
+    Placement p;
+    p.place = glm::dvec3(world[3]);
+    p.scale = std::cbrt(std::fabs(glm::determinant(m)));
+    p.turn = m / p.scale;
+    const glm::dmat3 square = glm::transpose(p.turn) * p.turn;
+    bool alike = p.scale > 0.0 && std::isfinite(p.scale);
+    for (int i = 0; i < 9; ++i)
+        alike = alike && std::fabs(square[i / 3][i % 3] - (i % 4 == 0 ? 1.0 : 0.0)) < tolerance;
+    if (!alike) file.fail("nodes that scale Gaussians alike along all axes", "others");
+    for (int i = 0; i < 9; ++i)
+        p.turns = p.turns || std::fabs(p.turn[i / 3][i % 3] - (i % 4 == 0 ? 1.0 : 0.0)) > 1e-9;
+    return p;
+}
+
+void read_part(GltfFile& file, const Part& part, std::size_t first, SplatSet& set) {
+    const Placement placement = placement_of(file, part.world);
+    // A mirrored Gaussian is the one that the opposite matrix turns.
+    const glm::dmat3 proper = glm::determinant(placement.turn) < 0.0 ? -placement.turn : placement.turn;
+    const glm::dvec4 by = quaternion_of_matrix(proper);
+    const auto count = static_cast<std::size_t>(part.count);
+    {
+        const std::vector<float> position = column_of(file, part, "POSITION", 3),
+                                 scale = column_of(file, part, extension + ":SCALE", 3),
+                                 rotation = column_of(file, part, extension + ":ROTATION", 4),
+                                 opacity = column_of(file, part, extension + ":OPACITY", 1);
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::dvec3 p(position[3 * i], position[3 * i + 1], position[3 * i + 2]);
+            set.position[first + i] = glm::vec3(placement.scale * (placement.turn * p) + placement.place);
+            set.scale[first + i] =
+                glm::vec3(placement.scale * glm::dvec3(scale[3 * i], scale[3 * i + 1], scale[3 * i + 2]));
+            const glm::vec4 q(rotation[4 * i], rotation[4 * i + 1], rotation[4 * i + 2], rotation[4 * i + 3]);
+            set.rotation[first + i] = placement.turns ? glm::vec4(quaternion_product(by, q)) : q;
+            set.alpha[first + i] = opacity[i];
+            set.distance[first + i] = 0.0f;
+            set.id[first + i] = first + i;
+        }
+    }
+    for (int l = 0; l <= part.degree; ++l)
+        for (int n = 0; n < 2 * l + 1; ++n) {
+            const std::vector<float> values = column_of(file, part, harmonic_name(l, n), 3);
+            for (std::size_t i = 0; i < count; ++i) {
+                const glm::vec3 c(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+                (set.harmonics.empty() ? set.color[first + i]
+                                       : set.harmonics[first + i].c[static_cast<std::size_t>(l * l + n)]) = c;
+            }
+        }
+    if (!placement.turns || set.harmonics.empty()) return;
+    const HarmonicsTurn turn = harmonics_turn(placement.turn);
+    for (std::size_t i = first; i < first + count; ++i) set.harmonics[i] = turned(set.harmonics[i], turn);
+}
+
+SplatSet read_parts(GltfFile& file, const Progress& progress) {
+    const std::vector<Part> parts = parts_of(file);
+    std::int64_t count = 0;
+    bool directional = false;
+    for (const Part& part : parts) {
+        column_of(file, part, "POSITION", 3);  // its count is that of numbers which are there
+        count += part.count;
+        directional = directional || part.degree > 0;
+    }
+    SplatSet set;
+    claim_memory(count * static_cast<std::int64_t>(bytes_per_splat([&](SplatColumn column) {
+                     return !is_optional(column) || column == SplatColumn::radius ||
+                            column == SplatColumn::scale || column == SplatColumn::rotation ||
+                            (directional && column == SplatColumn::harmonics);
+                 })),
+                 "splats of " + file.path().string());
+    const auto size = static_cast<std::size_t>(count);
+    set.position.resize(size);
+    set.alpha.resize(size);
+    set.distance.resize(size);
+    set.id.resize(size);
+    set.color.resize(size);
+    set.scale.resize(size);
+    set.rotation.resize(size);
+    if (directional) set.harmonics.assign(size, Harmonics{});
+    std::size_t first = 0;
+    for (const Part& part : parts) {
+        progress.check();
+        read_part(file, part, first, set);
+        first += static_cast<std::size_t>(part.count);
+    }
+    return finish_gaussians(std::move(set), {.trained = false, .display = parts[0].display}, file.path());
+}
+
+/// What `read` makes of the file; its JSON's mistakes of type in our words.
+template <class Read>
+auto read_json(const std::filesystem::path& path, const Read& read) {
+    GltfFile file(path);
+    try {
+        return read(file);
+    } catch (const Json::exception& error) {
+        file.fail("glTF as its specification says", printable(error.what()));
+    }
+}
+
+}  // namespace
+
+SplatSet read_gltf_splats(const std::filesystem::path& file, const Progress& progress) {
+    return read_json(file, [&](GltfFile& gltf) { return read_parts(gltf, progress); });
+}
+
+std::vector<std::string> gltf_splat_attributes(const std::filesystem::path& file) {
+    return read_json(file, [](GltfFile& gltf) {
+        std::vector<std::string> names = {"position", "color", "alpha", "radius", "scale", "rotation"};
+        const std::vector<Part> parts = parts_of(gltf);
+        if (std::ranges::any_of(parts, [](const Part& part) { return part.degree > 0; }))
+            names.emplace_back("harmonics");
+        return names;
+    });
+}
+
+bool may_hold_gltf_splats(const std::filesystem::path& file) {
+    constexpr std::size_t beginning = std::size_t{1} << 20;
+    const std::string text = read_beginning(file, beginning);
+    return text.empty() || text.find(extension) != std::string::npos;
+}
+
+}  // namespace astrosplat
