@@ -99,12 +99,12 @@ void check_prepare(const PrepareParams& prepare, const ParameterKey& at, const C
 }
 
 void check_stars(const StarsParams& stars, const ParameterKey& at, const Checker& check) {
-    check.require(!stars.catalogue.empty() || !stars.along.empty(), {at / "catalogue", at / "kind"},
-                  "expected a star catalogue, or along = \"camera\", for kind \"stars\", found none");
     check.require(stars.like.empty() || (stars.along.empty() && !stars.catalogue.empty()),
                   {at / "like", at / "along"},
                   stars.along.empty() ? "expected a catalogue, the stars.csv of the picture, found none"
                                       : "expected like or along, found both");
+    check.require(!stars.catalogue.empty() || !stars.along.empty(), {at / "catalogue", at / "kind"},
+                  "expected a star catalogue, or along = \"camera\", for kind \"stars\", found none");
     check.require(stars.wings.share + stars.spikes.share <= 1.0, {at / "wings.share", at / "spikes.share"},
                   fmt::format("expected shares of wings and spikes of at most 1 together, found {} and {}",
                               short_number(stars.wings.share), short_number(stars.spikes.share)));

@@ -55,7 +55,12 @@ image = ""
 cube = []
 gain = 1.0
 rotation = [0.0, 0.0, 0.0]
+behind = 0.0
 visible = true
+tile = ""
+tile_height = 10.0
+tile_seed = 1
+tile_px = 2048
 
 [provenance]
 title = ""
@@ -119,6 +124,9 @@ plane = 0
 voxel_size = 0.0
 file = ""
 catalogue = ""
+like = ""
+depth = "layer"
+slab = 0.0
 unit = 1.0
 limit = 12.0
 zero_point = 4.0
