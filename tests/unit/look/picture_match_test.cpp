@@ -196,7 +196,9 @@ TEST(PictureMatch, PositionsBeyondAnEdgeDoNotDarkenIt) {
     EXPECT_NEAR(sum / 400.0, double(slab_alpha), 0.02);
     const ShadedSplats covered = opacity_of(set, picture_look(VerticalAlpha::Match::coverage));
     for (std::size_t i = 0; i < set.uv.size(); ++i)
-        if (set.uv[i].x == 1.0f) ASSERT_EQ(shaded.alpha[i], covered.alpha[i]) << "nothing is known of it";
+        if (set.uv[i].x == 1.0f) {
+            ASSERT_EQ(shaded.alpha[i], covered.alpha[i]) << "nothing is known of it";
+        }
 }
 
 TEST(PictureMatch, TheSameBitsOnAnyThreadsAndInPlace) {
