@@ -69,7 +69,9 @@ LookCase vertical_case(const char* name, VerticalAlpha::Shape shape) {
 }
 
 LookCase match_case(const char* name, VerticalAlpha::Match match, ColumnLaw law) {
-    return {name, [match, law](SplatSet&, Look& look, LookInputs& inputs) {
+    return {name, [match, law](SplatSet& set, Look& look, LookInputs& inputs) {
+                // What is solved for a picture's squares is for the final frame: there are none without u, v.
+                if (match == VerticalAlpha::Match::picture) set.uv.clear();
                 look.vertical.shape = VerticalAlpha::Shape::linear;
                 look.vertical.match = match;
                 inputs.column = law;
