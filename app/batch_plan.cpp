@@ -114,7 +114,7 @@ Scene batch_scene(const BatchOptions& options) {
     if (options.resolution) apply_resolution(scene.output, *options.resolution);
     if (options.layers) apply_layers(scene, *options.layers);
     check_renderable(scene, places);
-    check_output(scene.output);
+    check_output(scene.output, places);
     return std::move(scene);
 }
 

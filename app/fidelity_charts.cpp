@@ -66,7 +66,8 @@ std::string image_url(const Image& linear) {
                              OutputParams::Alpha::none,
                              OutputParams::View::srgb,
                              OutputParams::Primaries::rec709,
-                             0.0};
+                             0.0,
+                             {}};
     return png_url(linear, encode_8bit(format, opaque(linear), 0, 0));
 }
 

@@ -7,6 +7,7 @@ const int VIEW_LINEAR = 0;
 const int VIEW_SRGB = 1;
 const int VIEW_SOFT = 2;
 const int VIEW_NONE = 3;  // the image holds display values
+const int VIEW_OCIO = 4;  // with WITH_OCIO: vec4 ocio_display(vec4), which stands before this file
 const float NOT_COMPARED = 0.25;  // a grey darker than that of no difference
 
 uniform sampler2D image_a;  // linear light, premultiplied, top row first
@@ -43,6 +44,12 @@ vec3 srgb_curve(vec3 x) {
 // Negative values and NaN give 0.
 vec3 apply_view(int view, vec3 light) {
     if (view == VIEW_NONE) return clamp(light, 0.0, 1.0);
+#ifdef WITH_OCIO
+    if (view == VIEW_OCIO) {
+        vec3 shown = ocio_display(vec4(light * gain, 1.0)).rgb;
+        return mix(vec3(0.0), min(shown, 1.0), greaterThan(shown, vec3(0.0)));
+    }
+#endif
     vec3 x = mix(vec3(0.0), light * gain, greaterThan(light, vec3(0.0)));
     if (view == VIEW_SOFT) x = soft_curve(min(x, vec3(1.0e6)));
     x = clamp(x, 0.0, 1.0);

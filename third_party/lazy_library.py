@@ -26,7 +26,7 @@ static void load(void) {
     library = dlopen("@SONAME@", RTLD_LAZY | RTLD_LOCAL);
     if (!library) fail();
 }
-__attribute__((used, visibility("hidden"))) void astrosplat_bind(struct slot* slot) {
+__attribute__((used)) static void astrosplat_bind(struct slot* slot) {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     pthread_once(&once, load);
     void* function = dlsym(library, slot->name);

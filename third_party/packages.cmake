@@ -11,6 +11,7 @@ find_package(CLI11 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO>=2.4)
+pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
 pkg_check_modules(CFITSIO REQUIRED IMPORTED_TARGET cfitsio)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
@@ -18,27 +19,37 @@ find_package(glfw3 3.3 REQUIRED)
 find_package(OpenGL REQUIRED COMPONENTS EGL)
 pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
 
-# oiio: OpenImageIO as the engine links it. Loading it with the 250 libraries it needs takes a fifth of a second and 100
-# MB, so it waits for the first picture: functions of these classes are bound when one is called. Its small companion,
-# libOpenImageIO_Util, is linked as usual. Sanitizers look at the classes' type information, so there it is linked too.
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND CMAKE_SYSTEM_NAME STREQUAL "Linux" AND NOT ASTROSPLAT_SANITIZE)
+# lazy_library(NAME PREFIX LIBRARY PATTERN): the target NAME stands for a shared library that is loaded when the first of
+# its functions that match is called. Sanitizers look at the classes' type information, so there it is linked.
+function(lazy_library name prefix library pattern)
+  if(NOT (CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND CMAKE_SYSTEM_NAME STREQUAL "Linux") OR ASTROSPLAT_SANITIZE)
+    add_library(${name} ALIAS PkgConfig::${prefix})
+    return()
+  endif()
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
-  find_library(OIIO_LIBRARY OpenImageIO HINTS ${OIIO_LIBRARY_DIRS} REQUIRED)
+  find_library(${prefix}_LIBRARY ${library} HINTS ${${prefix}_LIBRARY_DIRS} REQUIRED)
+  set(loader ${PROJECT_BINARY_DIR}/lazy_${name}.c)
+  set(script ${PROJECT_SOURCE_DIR}/third_party/lazy_library.py)
+  add_custom_command(OUTPUT ${loader} COMMAND Python3::Interpreter ${script} ${${prefix}_LIBRARY} ${loader} ${pattern}
+    DEPENDS ${${prefix}_LIBRARY} ${script} COMMENT "Generating the loader of ${library}" VERBATIM)
+  add_library(${name} STATIC ${loader})
+  target_include_directories(${name} SYSTEM PUBLIC ${${prefix}_INCLUDE_DIRS})
+  target_compile_options(${name} PUBLIC ${${prefix}_CFLAGS_OTHER})
+  target_link_libraries(${name} PRIVATE Threads::Threads ${CMAKE_DL_LIBS})
+endfunction()
+
+# oiio: OpenImageIO as the engine links it. Loading it with the 250 libraries it needs takes a fifth of a second and 100
+# MB, so it waits for the first picture. Its small companion, libOpenImageIO_Util, is linked as usual.
+lazy_library(oiio OIIO OpenImageIO
+  "^_ZNK?[0-9]+OpenImageIO_v[0-9_]*(10ImageInput|11ImageOutput|9ImageSpec|8geterror|9attribute)")
+get_target_property(linked_oiio oiio ALIASED_TARGET)
+if(NOT linked_oiio)
   find_library(OIIO_UTIL_LIBRARY OpenImageIO_Util HINTS ${OIIO_LIBRARY_DIRS} REQUIRED)
-  set(lazy_oiio ${PROJECT_BINARY_DIR}/lazy_oiio.c)
-  set(lazy_script ${PROJECT_SOURCE_DIR}/third_party/lazy_library.py)
-  add_custom_command(
-    OUTPUT ${lazy_oiio}
-    COMMAND Python3::Interpreter ${lazy_script} ${OIIO_LIBRARY} ${lazy_oiio}
-      "^_ZNK?[0-9]+OpenImageIO_v[0-9_]*(10ImageInput|11ImageOutput|9ImageSpec|8geterror|9attribute)"
-    DEPENDS ${OIIO_LIBRARY} ${lazy_script} COMMENT "Generating the loader of OpenImageIO" VERBATIM)
-  add_library(oiio STATIC ${lazy_oiio})
-  target_include_directories(oiio SYSTEM PUBLIC ${OIIO_INCLUDE_DIRS})
-  target_compile_options(oiio PUBLIC ${OIIO_CFLAGS_OTHER})
-  target_link_libraries(oiio PUBLIC ${OIIO_UTIL_LIBRARY} PRIVATE Threads::Threads ${CMAKE_DL_LIBS})
-else()
-  add_library(oiio ALIAS PkgConfig::OIIO)
+  target_link_libraries(oiio PUBLIC ${OIIO_UTIL_LIBRARY})
 endif()
+# ocio: few scenes name a configuration.
+lazy_library(ocio OCIO OpenColorIO
+  "^_ZNK?[0-9]+OpenColorIO_v[0-9_]*(6Config|[0-9]+[A-Za-z]*Processor|13GpuShaderDesc|16GpuShaderCreator|15PackedImageDesc|[0-9]+[A-Za-z]*Transform[0-9DC]|10ColorSpace|10GetVersion|14ClearAllCaches|15SetLogging)")
 
 # OpenGL's function loader is generated in the build from the Khronos registry that Debian's glad brings; without
 # --reproducible it would ask the network for a newer one.

@@ -94,6 +94,13 @@ struct DifferenceStatus {
     double light = 1.0;    // linear light of the view over the other's
 };
 
+/// The configuration of OpenColorIO that the scene or the environment names.
+struct ColorStatus {
+    ColorConfig config;                // empty where it cannot be read
+    std::string display, view, space;  // in use; empty: the scene wants none
+    std::string error;                 // why not, one line; the program's own view is seen then
+};
+
 struct PixelProbe {
     int x = 0, y = 0;
     float rgba[4] = {0, 0, 0, 0};  // linear, premultiplied
@@ -153,6 +160,7 @@ struct Status {
     std::string b_name;
     std::optional<ReferenceStatus> reference;    // none: the scene has none for this view
     std::optional<DifferenceStatus> difference;  // none: not shown, or not measured yet
+    std::optional<ColorStatus> color;            // none: no configuration
     bool blink_shows_other = false;
     std::vector<QueuedJob> jobs;    // oldest first
     FinishedFrame finished;         // of the queue's dialog

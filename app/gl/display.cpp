@@ -14,15 +14,20 @@
 
 #include "core/real.h"
 #include "gl/objects.h"
+#include "gl/ocio_tables.h"
 #include "gl/program.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr int view_none = 3;  // VIEW_NONE of display_fragment.glsl
+constexpr int view_none = 3, view_ocio = 4;  // VIEW_NONE, VIEW_OCIO of display_fragment.glsl
 
 /// VIEW_LINEAR, VIEW_SRGB, VIEW_SOFT of display_fragment.glsl.
-int view_number(OutputParams::View view) { return static_cast<int>(view) - 1; }
+int view_number(const DisplaySettings& settings) {
+    return settings.ocio ? view_ocio : static_cast<int>(settings.view) - 1;
+}
+
+constexpr int ocio_unit = 2;  // its tables' first texture unit
 
 /// What one program of display_fragment.glsl is made for.
 struct Variant {
@@ -31,9 +36,10 @@ struct Variant {
     enum class Mix { alone, over, difference } mix = Mix::alone;
     bool masked = false, dither = false;
     auto operator<=>(const Variant&) const = default;
+    bool managed() const { return view_a == view_ocio || (mix != Mix::alone && view_b == view_ocio); }
 };
 
-ProgramSource source_of(const Variant& v) {
+ProgramSource source_of(const Variant& v, const OcioTables& ocio) {
     ProgramSource source{{fmt::format("VIEW {}", v.view_a), fmt::format("TAPS_A {}", v.taps_a)},
                          {"screen_vertex.glsl"},
                          {"display_fragment.glsl"},
@@ -45,6 +51,10 @@ ProgramSource source_of(const Variant& v) {
     }
     if (v.masked) source.defines.push_back("MASKED");
     if (v.dither) source.defines.push_back("DITHER");
+    if (v.managed()) {
+        source.defines.push_back("WITH_OCIO");
+        source.fragment_head = ocio.text();
+    }
     return source;
 }
 
@@ -111,6 +121,7 @@ constexpr float line_brightness = 0.85f;
 
 struct Display::State {
     std::map<Variant, std::unique_ptr<GlProgram>> programs;  // compiled when first needed
+    OcioTables ocio;
     GlVertexArray nothing;
     GlTarget target;
     GlTarget values;        // of what is compared, as floats
@@ -126,11 +137,20 @@ struct Display::State {
     const GlProgram& program(const Variant& variant) {
         std::unique_ptr<GlProgram>& entry = programs[variant];
         if (!entry) {
-            entry = std::make_unique<GlProgram>(source_of(variant));
+            entry = std::make_unique<GlProgram>(source_of(variant, ocio));
             entry->set_sampler("image_a", 0);
             entry->set_sampler("image_b", 1);
+            if (variant.managed()) ocio.name_samplers(*entry, ocio_unit);
         }
         return *entry;
+    }
+
+    /// Programs of another transform go.
+    void use_ocio(const std::shared_ptr<const DisplayTransform>& wanted) {
+        if (ocio.holds(wanted)) return ocio.bind(ocio_unit);
+        std::erase_if(programs, [](const auto& entry) { return entry.first.managed(); });
+        ocio.take(wanted, ocio_unit);
+        ocio.bind(ocio_unit);
     }
 
     void begin_drawing(GlTarget& into) {
@@ -167,6 +187,7 @@ struct Display::State {
 
     void draw(const PixelRect& r, const Variant& variant, const DisplaySettings& s) {
         if (!cut(r)) return;
+        if (variant.managed()) use_ocio(s.ocio);
         const GlProgram& p = program(variant);
         p.use();
         glUniform4f(p.uniform("place"), s.x, static_cast<float>(height) - s.y, 1.0f / s.width,
@@ -183,7 +204,7 @@ struct Display::State {
         const ShownImage image = b ? image_of(s.b, s.width) : image_a_of(s);
         bind(0, image);
         Variant variant;
-        variant.view_a = b && s.b_is_display ? view_none : view_number(s.view);
+        variant.view_a = b && s.b_is_display ? view_none : view_number(s);
         variant.taps_a = image.taps;
         variant.dither = s.dither;
         draw(r, variant, s);
@@ -193,7 +214,7 @@ struct Display::State {
         const ShownImage a = image_a_of(s), b = image_b_of(s);
         bind(0, a);
         bind(1, b);
-        const int view = view_number(s.view);
+        const int view = view_number(s);
         draw(r, {view, s.b_is_display ? view_none : view, a.taps, b.taps, mix, masked, false}, s);
     }
 

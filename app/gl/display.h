@@ -16,8 +16,9 @@ namespace astrosplat {
 /// How an image is shown. `view` is not automatic.
 struct DisplaySettings {
     OutputParams::View view = OutputParams::View::srgb;
-    float exposure = 0.0f;  // stops
-    unsigned a = 0, b = 0;  // textures; b 0: only a
+    std::shared_ptr<const DisplayTransform> ocio;  // in place of `view`; null: none
+    float exposure = 0.0f;                         // stops
+    unsigned a = 0, b = 0;                         // textures; b 0: only a
     /// Difference: a - b of display values times difference_gain, about middle grey; where b does not lie, a
     /// darker grey.
     enum class Mode { a, wipe, b, difference } mode = Mode::a;

@@ -26,9 +26,11 @@ void set_constant(std::string& text, const std::string& name, int value) {
     text.replace(at + head.size(), end - at - head.size(), std::to_string(value));
 }
 
-StageText stage_text(const ProgramSource& source, const std::vector<std::string>& files) {
+StageText stage_text(const ProgramSource& source, const std::vector<std::string>& files,
+                     const std::string& head) {
     StageText stage;
     for (const std::string& define : source.defines) stage.text += "#define " + define + "\n";
+    if (!head.empty()) stage.text += head + "\n";
     for (const std::string& file : files) {
         const auto lines = std::count(stage.text.begin(), stage.text.end(), '\n');
         stage.files.push_back({file, static_cast<int>(lines) + 1});
@@ -51,9 +53,10 @@ std::string log_of(GLuint object, GetSize get_size, GetLog get_log) {
 /// A shader that lives until it has been linked.
 struct Stage {
     GLuint shader;
-    Stage(GLenum kind, const ProgramSource& source, const std::vector<std::string>& files)
+    Stage(GLenum kind, const ProgramSource& source, const std::vector<std::string>& files,
+          const std::string& head = {})
         : shader(glCreateShader(kind)) {
-        const StageText stage = stage_text(source, files);
+        const StageText stage = stage_text(source, files, head);
         const char* pointer = stage.text.c_str();
         glShaderSource(shader, 1, &pointer, nullptr);
         glCompileShader(shader);
@@ -118,7 +121,7 @@ GlProgram::GlProgram(const ProgramSource& source) {
     program_ = glCreateProgram();
     glAttachShader(program_, vertex.shader);
     if (!source.fragment.empty()) {
-        const Stage fragment(GL_FRAGMENT_SHADER, source, source.fragment);
+        const Stage fragment(GL_FRAGMENT_SHADER, source, source.fragment, source.fragment_head);
         glAttachShader(program_, fragment.shader);  // stays until the program goes
     }
     std::vector<const char*> captured;

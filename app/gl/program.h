@@ -19,6 +19,7 @@ struct ProgramSource {
     std::vector<std::string> feedback;  // vertex outputs to capture, each into its own buffer
     /// Values instead of those in the texts, for lines "const int NAME = 8;".
     std::vector<std::pair<std::string, int>> constants = {};
+    std::string fragment_head = {};  // GLSL before the files of the fragment stage, from elsewhere
 };
 
 /// The files of projection.glsl and what it needs, followed by `more`.

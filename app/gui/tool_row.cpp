@@ -119,7 +119,7 @@ float width_of_compare_settings(const GuiFrame& frame) {
 void display_control(GuiFrame& frame) {
     combo("##display", frame.view.display, {"As output", "Linear", "sRGB", "Soft"}, px(84));
     note_item(frame, "display");
-    tooltip("How the frame's linear light is shown; rendered files follow [output] view");
+    tooltip("How the frame's linear light is shown; rendered files follow the panel Output");
 }
 
 void exposure_control(GuiFrame& frame) {

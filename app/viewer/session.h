@@ -23,6 +23,7 @@
 #include "gui/gui.h"
 #include "viewer/camera_overlay.h"
 #include "viewer/child_process.h"
+#include "viewer/color_management.h"
 #include "viewer/comparison.h"
 #include "viewer/difference_meter.h"
 #include "viewer/disk_watch.h"
@@ -79,6 +80,7 @@ struct Session {
     std::shared_ptr<const PreparedView> preparation_shown;  // in the two textures
     ImageTexture preparation_before, preparation_after;
     Display display;
+    ColorManagement color;
     CameraOverlay overlay;
     Navigator navigator;
     Playback playback;

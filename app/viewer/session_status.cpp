@@ -53,6 +53,7 @@ void say_new_errors(Status& status, std::set<std::string>& said) {
     if (status.view_frame.state == ViewFrameState::failed) errors.insert(status.view_frame.error);
     for (const LayerStatus& layer : status.layers) errors.insert(layer.error);
     if (status.reference) errors.insert(status.reference->error);
+    if (status.color) errors.insert(status.color->error);
     errors.erase("");
     for (const std::string& error : errors)
         if (!said.count(error)) say(status, error, true);

@@ -39,6 +39,7 @@ void forget_what_is_not_seen(Scene& scene) {
     output.compression = standard.compression;
     output.alpha = standard.alpha;
     output.view = standard.view;
+    output.ocio = standard.ocio;
     std::erase_if(output.aovs, [](const std::string& aov) { return aov != "depth"; });  // the probe shows it
 }
 
@@ -124,6 +125,7 @@ DisplaySettings display_settings(const Session& session, const OutputParams& out
                                  const Rect& whole) {
     DisplaySettings shown;
     shown.view = display_view(session.view.display, output.view);
+    if (session.view.display == OutputParams::View::automatic) shown.ocio = session.color.transform();
     shown.exposure = static_cast<float>(output.exposure) + session.view.inspect_exposure;
     shown.a = session.view_frame.texture();
     shown.x = place.x;
@@ -255,6 +257,8 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     const ViewFrameState reached = session.view_frame.status().state;
     session.sets.loader().hold(reached == ViewFrameState::refining);
 
+    session.color.update(scene.output.ocio, session.view.panels && session.view.tab == PanelTab::output);
+    session.status.color = session.color.status();
     DisplaySettings shown = display_settings(session, scene.output, place, whole);
     // A's final frame comes first; B's follows it.
     const bool a_is_done = reached == ViewFrameState::final || reached == ViewFrameState::failed;
@@ -273,6 +277,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     show_preparation(session);
     if (from_disk) {
         rendered.view = shown.view;
+        rendered.ocio = shown.ocio;
         rendered.a = shown.a;
         shown = rendered;
     }

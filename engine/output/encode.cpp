@@ -21,6 +21,33 @@ float soft_curve(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0
 
 float gain_of(const FrameFormat& format) { return static_cast<float>(real::pow(2.0, format.exposure)); }
 
+/// Colour over black, or divided by alpha where the format says so.
+void unpremultiply(const FrameFormat& format, const float* rgba, float* rgb) {
+    const bool divide =
+        format.alpha != Alpha::none && (format.holds_view() || format.alpha == Alpha::straight);
+    for (int c = 0; c < 3; ++c) {
+        rgb[c] = rgba[c];
+        if (divide) rgb[c] = rgba[3] > 0.0f ? rgb[c] / rgba[3] : 0.0f;
+    }
+}
+
+/// A format's view of `pixels` straight colours, in place.
+void to_view(const FrameFormat& format, float gain, float* rgb, std::int64_t pixels) {
+    if (!format.holds_view()) return;
+    for (float* value = rgb; value != rgb + 3 * pixels; ++value)
+        *value = format.ocio ? *value * gain : apply_view(format.view, *value * gain);
+    if (format.ocio) format.ocio->apply(rgb, pixels);
+}
+
+/// What is stored of a straight colour.
+void store(const FrameFormat& format, const float* rgb, float own_alpha, float* stored) {
+    const bool view = format.holds_view();
+    const float alpha = view ? clamp01(own_alpha) : own_alpha;
+    const bool multiply = view && format.alpha == Alpha::premultiplied;
+    for (int c = 0; c < 3; ++c) stored[c] = multiply ? rgb[c] * alpha : rgb[c];
+    if (format.alpha != Alpha::none) stored[3] = alpha;
+}
+
 // Rows of channels that put(x, y, encoded, out) makes of every pixel, on all threads.
 template <class T, class Put>
 std::vector<T> encode_rows(const FrameFormat& format, const Image& image, const Put& put) {
@@ -29,9 +56,13 @@ std::vector<T> encode_rows(const FrameFormat& format, const Image& image, const 
     std::vector<T> samples(static_cast<std::size_t>(image.width * image.height * channels));
     parallel_each(image.height, 16, [&](std::int64_t y) {
         T* out = samples.data() + y * image.width * channels;
+        std::vector<float> colors(static_cast<std::size_t>(3 * image.width));
+        for (std::int64_t x = 0; x < image.width; ++x)
+            unpremultiply(format, image.at(x, y), colors.data() + 3 * x);
+        to_view(format, gain, colors.data(), image.width);
         for (std::int64_t x = 0; x < image.width; ++x, out += channels) {
             float stored[4] = {0.0f, 0.0f, 0.0f, 1.0f};
-            encode_pixel(format, gain, image.at(x, y), stored);
+            store(format, colors.data() + 3 * x, image.at(x, y)[3], stored);
             put(x, y, stored, out);
         }
     });
@@ -62,17 +93,10 @@ float dither(std::int64_t x, std::int64_t y, int channel) {
 int stored_channels(const FrameFormat& format) { return format.alpha == Alpha::none ? 3 : 4; }
 
 void encode_pixel(const FrameFormat& format, float gain, const float* rgba, float* stored) {
-    bool view = format.holds_view(), none = format.alpha == Alpha::none;
-    float alpha = view ? clamp01(rgba[3]) : rgba[3];
-    bool divide = !none && (view || format.alpha == Alpha::straight);
-    for (int c = 0; c < 3; ++c) {
-        float light = rgba[c];
-        if (divide) light = rgba[3] > 0.0f ? light / rgba[3] : 0.0f;
-        if (view) light = apply_view(format.view, light * gain);
-        if (view && format.alpha == Alpha::premultiplied) light *= alpha;
-        stored[c] = light;
-    }
-    if (!none) stored[3] = alpha;
+    float rgb[3];
+    unpremultiply(format, rgba, rgb);
+    to_view(format, gain, rgb, 1);
+    store(format, rgb, rgba[3], stored);
 }
 
 std::vector<std::uint8_t> encode_8bit(const FrameFormat& format, const Image& image, std::int64_t x0,

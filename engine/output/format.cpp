@@ -108,6 +108,7 @@ FrameFormat resolve_format(const OutputParams& output, const std::filesystem::pa
     if (format.holds_view()) {
         format.view = output.view == View::automatic ? View::srgb : output.view;
         format.exposure = output.exposure;
+        if (output.ocio.wanted()) format.ocio = display_transform(output.ocio);
     } else if (format.kind == FrameKind::exr) {
         format.primaries = output.primaries;
     } else if (output.primaries != OutputParams::Primaries::rec709) {
@@ -118,11 +119,17 @@ FrameFormat resolve_format(const OutputParams& output, const std::filesystem::pa
     return format;
 }
 
-void check_output(const OutputParams& output) {
+void check_output(const OutputParams& output, const Places& places) {
     if (output.width < 1 || output.height < 1)
         throw InputError(fmt::format("output.resolution: expected at least 1 x 1 px, found {} x {}",
                                      output.width, output.height));
-    resolve_format(output, frame_file(output.path, 1));
+    try {
+        resolve_format(output, frame_file(output.path, 1));
+    } catch (const OcioError& error) {
+        const auto found = places.find(error.key);
+        if (found == places.end()) throw;
+        throw InputError(fmt::format("{}: {}", found->second, error.what()));
+    }
 }
 
 }  // namespace astrosplat

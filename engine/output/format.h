@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 
 #include "scene/scene.h"
 
@@ -16,7 +17,8 @@ struct FrameFormat {
     OutputParams::Alpha alpha = OutputParams::Alpha::premultiplied;          // never automatic
     OutputParams::View view = OutputParams::View::linear;                    // never automatic
     OutputParams::Primaries primaries = OutputParams::Primaries::rec709;     // rec709 in all but exr
-    double exposure = 0.0;  // stops; 0 in files that hold scene light
+    double exposure = 0.0;                         // stops; 0 in files that hold scene light
+    std::shared_ptr<const DisplayTransform> ocio;  // in place of `view`; null: none
 
     /// 8 and 16 bit files hold a view of the scene; exr and float tif hold the scene's own light.
     bool holds_view() const {
@@ -24,10 +26,12 @@ struct FrameFormat {
     }
 };
 
-/// Throws InputError, one line, when ending, depth, compression, primaries or aovs do not fit together.
+/// Throws InputError, one line, when ending, depth, compression, primaries or aovs do not fit together, or
+/// the view cannot be made (OcioError, where it is one of the names).
 FrameFormat resolve_format(const OutputParams& output, const std::filesystem::path& file);
 
-/// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits").
-void check_output(const OutputParams& output);
+/// Throws InputError when the settings do not fit the format ("aovs need exr", "png knows 8 and 16 bits"),
+/// with the place of the key where it is known.
+void check_output(const OutputParams& output, const Places& places = {});
 
 }  // namespace astrosplat

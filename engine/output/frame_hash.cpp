@@ -10,6 +10,8 @@
 #include "camera/aperture.h"
 #include "core/error.h"
 #include "core/sha256.h"
+#include "output/format.h"
+#include "output/frame_path.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
 #include "scene/input_files.h"
@@ -22,13 +24,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Reaches no pixel of any frame.
+// Reaches no pixel of any frame, or is told in other words.
 bool is_elsewhere(const ParameterSpec& spec) {
     constexpr std::array<std::string_view, 5> keys = {"output.path", "output.frames", "output.fps",
                                                       "output.compression", "layer.preset"};
     return std::ranges::find(keys, spec.generic_key.text()) != keys.end() ||
            spec.generic_key.text().starts_with("camera.file_") || spec.generic_key.is_below("provenance") ||
-           spec.generic_key.is_below("reference");
+           spec.generic_key.is_below("reference") || spec.generic_key.is_below("output.ocio");
 }
 
 bool shows(const EnvironmentParams& environment) {
@@ -94,6 +96,12 @@ bool is_mixed_as_ever(const ParameterSpec& spec, const Scene& now) {
            });
 }
 
+/// Whether its frames are written through OpenColorIO; then to whom.
+std::shared_ptr<const DisplayTransform> managed_view(const Scene& now, std::int64_t frame) {
+    if (!now.output.ocio.wanted()) return {};
+    return resolve_format(now.output, frame_file(now.output.path, frame)).ocio;
+}
+
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
     // Frames from before there was a choice keep their hash.
     if (spec.generic_key.text() == "output.primaries")
@@ -119,6 +127,14 @@ std::string FrameHasher::file_text(const fs::path& file) {
     if (!fs::is_regular_file(file, ignored)) return to_toml(file.string());
     const FileStamp stamp = stamp_of(file);  // before it is read: a change from now on is seen
     return files_.emplace(file, HashedFile{sha256_of_file(file), stamp}).first->second.hash;
+}
+
+// The names that are used, not those that are asked for: the first ones may be others in another environment.
+std::string FrameHasher::ocio_text(const DisplayTransform& ocio) {
+    std::string files;
+    for (const fs::path& file : ocio.files()) files += " " + file_text(file);
+    return fmt::format("output.ocio = {} {} {} OpenColorIO {}{}\n", to_toml(ocio.display()),
+                       to_toml(ocio.view()), to_toml(ocio.space()), ocio_version(), files);
 }
 
 // Of the pixels of layers with match = "picture" alone. 2: measured through the splats' footprints.
@@ -169,9 +185,11 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
     std::string text = fmt::format("pixels = {}\n", pixel_version);
     if (region_.width > 0 && region_.height > 0)
         text += fmt::format("region = {} {} {} {}\n", region_.x, region_.y, region_.width, region_.height);
+    const std::shared_ptr<const DisplayTransform> ocio = managed_view(now, frame);
     for (const Parameter& parameter : describe(now).parameters) {
         const ParameterSpec& spec = parameter.spec;
         if (is_elsewhere(spec) || is_hidden(spec, now)) continue;
+        if (ocio && spec.generic_key.text() == "output.view") continue;
         Value value = parameter.get();
         bool files = spec.type == ParameterType::file || spec.type == ParameterType::files;
         text += spec.key.text() + " =";
@@ -185,6 +203,7 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
             for (const Value& each : *names) text += " " + file_text(each.text() ? *each.text() : "");
         text += "\n";
     }
+    if (ocio) text += ocio_text(*ocio);
     if (now.camera.shutter > 0.0) text += moving_text(static_cast<double>(frame), now);
     for (const LayerParams& layer : now.layers) {
         if (!reaches(now, layer)) continue;

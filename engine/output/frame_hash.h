@@ -52,6 +52,7 @@ class FrameHasher {
 
   private:
     std::string file_text(const std::filesystem::path& file);
+    std::string ocio_text(const DisplayTransform& ocio);
     std::string own_pictures(const LayerParams& layer);
     std::string moving_text(double frame, const Scene& now) const;
 

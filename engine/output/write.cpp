@@ -118,7 +118,9 @@ OIIO::ImageSpec make_spec(const FrameFormat& format, const Image& beauty, const 
     // TIFF would hold it as EXIF, which OpenImageIO 2.4 writes wrongly unless it opens the file itself; 8 and
     // 16 bit TIFF is taken for sRGB anyway.
     const bool linear = format.view == OutputParams::View::linear;
-    if (format.kind != FrameKind::tif) spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
+    // What a display of a configuration is, nothing here knows.
+    if (format.kind != FrameKind::tif && !format.ocio)
+        spec.attribute("oiio:ColorSpace", linear ? "Linear" : "sRGB");
     set_text(spec, format, metadata);
     return spec;
 }

@@ -32,7 +32,7 @@ using Type = ParameterType;
 using namespace traits;
 
 void describe_output(const Describer& d, OutputParams& o) {
-    const Describer picture = d.shown_in("Output", "Picture"), frames = d.shown_in("Output", "Frames"),
+    const Describer picture = d.shown_in("Output", "Frame"), frames = d.shown_in("Output", "Frames"),
                     format = d.shown_in("Output", "File format");
     picture.custom(
         spec("resolution", "Resolution", "px", "Width and height of the frames.", as(Type::vector),
@@ -58,7 +58,9 @@ void describe_output(const Describer& d, OutputParams& o) {
            "Of scene light in exr, told in its header: rec709 (D65) or acescg (AP1). Views stay rec709.");
     format(o.aovs, "aovs", "Extra channels", "", "Of depth, coverage, count and layers; exr only.",
            one_of({OutputParams::known_aovs.begin(), OutputParams::known_aovs.end()}));
-    picture(o.view, "view", "View", "", "auto: linear in exr and float tif, srgb in 8 and 16 bit.");
+    const Describer built_in =
+        picture.only_with("ocio.config", {""}).only_with("ocio.display", {""}).only_with("ocio.view", {""});
+    built_in(o.view, "view", "View", "", "auto: linear in exr and float tif, srgb in 8 and 16 bit.");
     picture.animated()(o.exposure, "exposure", "Exposure", "stops",
                        "Acts where a view is written; exr and float tif hold scene light.", range(-100, 100),
                        slider(-8, 8));
@@ -67,6 +69,18 @@ void describe_output(const Describer& d, OutputParams& o) {
     picture(o.samples, "samples", "Samples", "",
             "Renderings whose mean a frame with motion blur or depth of field is.", range(1, 4096),
             slider(1, 256));
+}
+
+/// Colour management by OpenColorIO.
+void describe_ocio(const Describer& d, OcioParams& o) {
+    d(o.config, "config", "Colour config", "",
+      "A configuration of OpenColorIO, whose displays and views take the place of view; empty: that of the "
+      "environment's OCIO, where display or view is set.");
+    d(o.display, "display", "Display", "", "Of the configuration; empty: its first.");
+    d(o.view, "view", "Display view", "", "Of the display; empty: its first. Acts where a view is written.");
+    d(o.space, "space", "Light is", "",
+      "The configuration's name for linear light of Rec. 709; empty: looked for, else its role "
+      "scene_linear.");
 }
 
 void describe_camera(const Describer& d, CameraParams& c) {
@@ -215,6 +229,8 @@ Description describe(Scene& scene, const std::function<bool(const ParameterKey& 
     Description description;
     const Describer d(description, {}, false);
     if (wanted("output")) describe_output(d.in("output", false), scene.output);
+    if (wanted("output"))
+        describe_ocio(d.in("output.ocio", false).shown_in("Output", "Colour management"), scene.output.ocio);
     if (wanted("camera")) {
         describe_camera(d.in("camera", true), scene.camera);
         describe_camera_file(d.in("camera", false).shown_in("Camera", "Place"), scene.camera);

@@ -16,6 +16,7 @@
 #include "camera/path.h"
 #include "core/enum_names.h"
 #include "look/look.h"
+#include "ocio/display_transform.h"
 #include "render/environment.h"
 #include "render/layer_render.h"
 #include "scene/parameter_key.h"
@@ -51,6 +52,7 @@ struct OutputParams {
     static constexpr std::array<const char*, 4> known_aovs{"depth", "coverage", "count", "layers"};
     std::vector<std::string> aovs;  // of known_aovs
     View view = View::automatic;
+    OcioParams ocio;            // in place of `view` where it is wanted
     double exposure = 0.0;      // stops
     double pixel_filter = 0.5;  // px
     std::int64_t samples = 32;  // renderings of a frame with motion blur or depth of field

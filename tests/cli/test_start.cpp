@@ -27,11 +27,12 @@ TEST_F(Start, ThePictureLibraryWaitsForTheFirstPicture) {
     GTEST_SKIP() << "only x86-64 without sanitizers has the lazy loader";
 #endif
     write_text(folder / "picture.ppm", small_picture());
-    const std::string library = "libOpenImageIO.so";
+    const std::string library = "libOpenImageIO.so", colors = "libOpenColorIO.so";
     EXPECT_NE(libraries_of({"info", "picture.ppm"}).find(library), std::string::npos);
     const std::string without = libraries_of({"parameters"});
     EXPECT_NE(without.find("libc.so"), std::string::npos);
     EXPECT_EQ(without.find(library), std::string::npos);
+    EXPECT_EQ(without.find(colors), std::string::npos);
     EXPECT_EQ(libraries_of({"info", "stars.pda"}).find(library), std::string::npos);
 }
 

@@ -9,6 +9,8 @@
 #include "gl/gl_fixture.h"
 #include "gl/image_texture.h"
 #include "output/encode.h"
+#include "support/color_config.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -72,6 +74,56 @@ TEST_F(DisplayPicture, EveryViewAsTheWriter) {
                         ASSERT_NEAR(float(shown.at(x, y)[k]), expected, 0.51f) << x << " " << y << " " << k;
                     }
         }
+}
+
+// Matrix and root, a table, and the light itself: at most half a code of 8 bits and what OpenGL's roots lose.
+TEST_F(DisplayPicture, ViewsOfAConfigurationAsTheWriter) {
+    const TempFolder folder;
+    const std::filesystem::path config = test::write_color_config(folder.path());
+    Image image = ramp(width, height);
+    for (float& value : image.pixels)
+        if (std::isnan(value)) value = 0.0f;  // a matrix spreads it to all three
+    ImageTexture texture;
+    texture.upload(image);
+    Display display;
+    for (const char* view : {"Film", "Negative", "Plain"})
+        for (const float stops : {0.0f, 1.5f}) {
+            DisplaySettings settings = whole(texture);
+            settings.ocio = display_transform({config, "Screen", view, ""});
+            settings.exposure = stops;
+            display.draw(settings, width, height);
+            const std::vector<unsigned char> shown = display.read();
+            FrameFormat format;
+            format.depth = OutputParams::Depth::uint8;
+            format.alpha = OutputParams::Alpha::none;
+            format.ocio = settings.ocio;
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    float stored[4];
+                    encode_pixel(format, std::exp2(stops), image.at(x, y), stored);
+                    for (int k = 0; k < 3; ++k)
+                        ASSERT_NEAR(float(shown[std::size_t((y * width + x) * 4 + k)]), 255.0f * stored[k],
+                                    0.51f)
+                            << view << " " << x << " " << y << " " << k;
+                }
+        }
+}
+
+TEST_F(DisplayPicture, AConfigurationsViewIsNotThatOfAReference) {
+    const TempFolder folder;
+    const std::filesystem::path config = test::write_color_config(folder.path());
+    ImageTexture texture;
+    texture.upload(make_image(width, height, 4, 0.25f));
+    DisplaySettings settings = whole(texture);
+    settings.ocio = display_transform({config, "Screen", "Film", ""});
+    settings.b = texture.handle();
+    settings.b_is_display = true;
+    settings.mode = Mode::wipe;
+    const Shown shown = show(settings);
+    EXPECT_EQ(shown.at(10, 10)[0], 128);
+    EXPECT_EQ(shown.at(width - 10, 10)[0], 64);
+    settings.b_is_display = false;
+    EXPECT_EQ(show(settings).at(width - 10, 10)[0], 128);
 }
 
 TEST_F(DisplayPicture, DithersAsTheWriter) {

@@ -73,7 +73,8 @@ std::vector<std::string> telling_scenes() {
               "[[layer]]\nname = \"b\"\n[layer.source]\n" + mesh),
         layer("kind = \"stars\"\nalong = \"camera\"", "", "", "[camera]\nposition = [0, 0, 9]\n"),
         layer("kind = \"splats\"\nfile = \"a.ply\"", "", "isolate = true",
-              "[camera]\nprojection = \"cylindrical\"\n[environment]\ntile = \"t.png\"\n")};
+              "[output.ocio]\nconfig = \"c.ocio\"\n[camera]\nprojection = "
+              "\"cylindrical\"\n[environment]\ntile = \"t.png\"\n")};
 }
 
 TEST(PanelCoverage, EveryParameterIsInSomeTab) {

@@ -5,6 +5,7 @@
 
 #include "output/write.h"
 #include "source/texture.h"
+#include "support/color_config.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -72,6 +73,34 @@ opacity = 0.5
 };
 
 TEST_F(Settled, EqualsBatchBitForBit) { expect_batch(); }
+
+// The viewport's transform is OpenColorIO's for OpenGL, the file's that for processors.
+TEST_F(Settled, LooksAsTheFileThroughAConfiguration) {
+    write_color_config(folder);
+    std::string text = text_of(scene_file);
+    const std::string depth = "depth = \"float\"";
+    text.replace(text.find(depth), depth.size(), "ocio = { config = \"colors.ocio\" }\nexposure = 1");
+    write_text(scene_file, text);
+    ASSERT_EQ(
+        run({"--screenshot", "shot.png", "--settled", "--size", "200x120", scene_file.string(), "--no-cache"})
+            .code,
+        0);
+    ASSERT_EQ(run({"--batch", scene_file.string(), "-f", "1", "--resolution", "200x120", "-o", "batch.png",
+                   "--no-cache"})
+                  .code,
+              0);
+    const Image shot = load_raw_image(folder / "shot.png"), batch = load_raw_image(folder / "batch.png");
+    ASSERT_EQ(shot.width, batch.width);
+    int bright = 0;
+    for (std::int64_t y = 0; y < shot.height; ++y)
+        for (std::int64_t x = 0; x < shot.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const float seen = 255.0f * shot.at(x, y)[c], filed = 255.0f * batch.at(x, y)[c];
+                ASSERT_NEAR(seen, filed, 1.01f) << x << " " << y << " " << c;  // one of them is dithered
+                bright += filed > 100.0f;
+            }
+    EXPECT_GT(bright, 1000);
+}
 
 TEST_F(Settled, EqualsBatchWithTheCameraOfAFile) {
     write_text(folder / "cam.chan", "1 0 6 8 -30 0 0 40\n24 4 5 7 -30 20 0 60\n");

@@ -129,7 +129,8 @@ float clipped_text(ImDrawList* list, const Area& area, float padding, ImU32 colo
     const float right = area.end().x - std::min(padding, px(4));
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     ImGui::PushStyleColor(ImGuiCol_Text, color);
-    ImGui::RenderTextEllipsis(list, from, {right, area.end().y}, right, right, text.c_str(), nullptr, &size);
+    ImGui::RenderTextEllipsis(list, from, {right, area.end().y}, right, right, text.c_str(),
+                              text.c_str() + text.size(), &size);
     ImGui::PopStyleColor();
     return std::min(size.x, right - from.x);
 }

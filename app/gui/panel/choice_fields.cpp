@@ -26,29 +26,54 @@ void boolean_field(Context& context, const Row& row) {
     if (clicked) set_value(context, row.key(), !*on);
 }
 
-void choice_field(Context& context, const Row& row) {
-    const ParameterSpec& spec = row.parameter.spec;
+namespace {
+
+struct Choice {
+    std::string label;
+    Value value;
+};
+
+void list_field(Context& context, const Row& row, const std::string& shown,
+                const std::vector<Choice>& choices) {
     const Area& area = row.layout.value;
     ImGui::SetCursorScreenPos(area.corner);
     ImGui::SetNextItemWidth(area.size.x);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(px(8), (area.size.y - ImGui::GetFontSize()) * 0.5f));
-    const bool open = ImGui::BeginCombo("##choice", in_words(spec, row.value).c_str(),
+    const bool open = ImGui::BeginCombo("##choice", shown.c_str(),
                                         ImGuiComboFlags_NoArrowButton | ImGuiComboFlags_HeightLargest);
     if (!open)
         draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down, {area.end().x - px(12), area.middle().y},
                   px(8), color::dim);
     if (open) {
         ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(8), px(6)));
-        for (const std::string& choice : spec.choices) {
-            const bool selected = row.value == choice_value(choice);
-            if (ImGui::Selectable(choice_label(choice).c_str(), selected) && !selected)
-                set_value(context, row.key(), choice_value(choice));
+        for (const auto& [label, value] : choices) {
+            const bool selected = row.value == value;
+            if (ImGui::Selectable(label.c_str(), selected) && !selected) set_value(context, row.key(), value);
         }
         ImGui::PopStyleVar();
         ImGui::EndCombo();
     }
     ImGui::PopStyleVar();
+}
+
+}  // namespace
+
+void choice_field(Context& context, const Row& row) {
+    const ParameterSpec& spec = row.parameter.spec;
+    std::vector<Choice> choices;
+    for (const std::string& choice : spec.choices)
+        choices.push_back({choice_label(choice), choice_value(choice)});
+    list_field(context, row, in_words(spec, row.value), choices);
+}
+
+void name_field(Context& context, const Row& row, const std::vector<std::string>& names,
+                const std::string& empty) {
+    const std::string* text = row.value.text();
+    const bool set = text && !text->empty();
+    std::vector<Choice> choices{{set ? "Not chosen" : empty, ""}};
+    for (const std::string& name : names) choices.push_back({name, name});
+    list_field(context, row, set ? *text : empty, choices);
 }
 
 // Words of a list as small switches, in as many lines as they need.

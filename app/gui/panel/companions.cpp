@@ -92,6 +92,15 @@ std::vector<Companion> companions(const Scene& scene, const ParameterKey& key, c
     if (is_picture && key != "environment.tile" && !environment.tile.empty())
         others.push_back({"environment.tile", ""});
     if (is_picture) return others;
+    // Names of another configuration, or of another display, mean nothing.
+    const OcioParams& ocio = scene.output.ocio;
+    if (key == "output.ocio.config") {
+        if (!ocio.display.empty()) others.push_back({"output.ocio.display", ""});
+        if (!ocio.space.empty()) others.push_back({"output.ocio.space", ""});
+    }
+    if ((key == "output.ocio.config" || key == "output.ocio.display") && !ocio.view.empty())
+        others.push_back({"output.ocio.view", ""});
+    if (key.is_below("output")) return others;
     for (const LayerParams& layer : scene.layers)
         if (const ParameterKey group = layer_key(layer.name); key.is_below(group))
             return of_layer(layer, group, key, value);

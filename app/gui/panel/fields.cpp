@@ -7,6 +7,7 @@
 #include "core/color.h"
 #include "gui/icons.h"
 #include "gui/panel/choice_fields.h"
+#include "gui/panel/color_rows.h"
 #include "gui/panel/row.h"
 #include "gui/panel/row_sketches.h"
 #include "gui/panel/section.h"
@@ -74,7 +75,7 @@ void text_field(Context& context, const Row& row, const Area& area) {
     content.dimmed = content.shown == "Auto";
     if (content.shown.empty()) {
         content.dimmed = true;
-        content.shown = "None";
+        content.shown = empty_in_words(context, spec);
     }
     const bool empty = row.value.list() && row.value.list()->empty();
     content.typed = text ? *text : empty ? "" : to_toml(row.value);
@@ -233,6 +234,11 @@ bool value_field(Context& context, const Row& row) {
             color_field(context, row);
             return false;
         case Type::text:
+            if (const auto names = names_to_choose(context, row.parameter.spec)) {
+                name_field(context, row, *names, empty_in_words(context, row.parameter.spec));
+                return false;
+            }
+            [[fallthrough]];
         case Type::pattern:
         case Type::curve:
             text_field(context, row, row.layout.value);

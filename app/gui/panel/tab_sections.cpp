@@ -7,6 +7,7 @@
 #include "core/file_format.h"
 #include "edit/camera_moves.h"
 #include "edit/keyframes.h"
+#include "gui/panel/color_rows.h"
 #include "gui/panel/prepare.h"
 #include "gui/panel/section.h"
 #include "gui/panel/whole_look.h"
@@ -281,6 +282,7 @@ const TabSection sections[] = {
     {"Camera", "Reference", nullptr, reference_state, {}, reference_buttons},
     {"Environment", "Environment", unfolded, environment_state, {"environment.visible"}},
     {"Output", "Frame", unfolded, resolution_state},
+    {"Output", "Colour management", nullptr, colors_state, {}, colors_note},
     {"Output", "Frames", unfolded, frames_state},
     {"Output", "File format", nullptr, format_state},
     {"Output", "Provenance", nullptr, provenance_state}};
@@ -308,7 +310,7 @@ bool suits_layer(const Context& context, const ParameterSpec& spec) {
         return is_fits(context);
     if (spec.generic_key == "layer.source.softening")
         return is_fits(context) || context.layer().source.texture.stretch == TextureSettings::Stretch::asinh;
-    return true;
+    return suits_colors(context, spec);
 }
 
 void source_state(Context& context) {

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/color.h"
+#include "support/color_config.h"
+#include "support/temp_folder.h"
 
 namespace astrosplat {
 namespace {
@@ -60,6 +63,24 @@ TEST(View, EveryValueStaysInRange) {
             EXPECT_TRUE(y >= 0.0f && y <= 1.0f) << x;
         }
     EXPECT_EQ(apply_view(View::soft, 1e30f), 1.0f);
+}
+
+TEST(View, OfAConfigurationIsThatOfTheStraightColour) {
+    const TempFolder folder;
+    const OcioParams params{test::write_color_config(folder.path()), "", "", ""};
+    FrameFormat format = format_of(Depth::uint16, Alpha::premultiplied);
+    format.ocio = display_transform(params);
+    const float a = 0.5f, rgba[4] = {0.2f * a, 0.05f * a, 0.4f * a, a};
+    float stored[4];
+    encode_pixel(format, 2.0f, rgba, stored);
+    const auto expected = test::film(0.4, 0.1, 0.8);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(stored[c], expected[static_cast<std::size_t>(c)] * 0.5, 1e-6) << c;
+    EXPECT_EQ(stored[3], a);
+    const std::vector<std::uint16_t> rows = encode_16bit(format, flat(3, 2, 0.2f, 0.05f, 0.4f, 1.0f));
+    encode_pixel(format, 1.0f, std::array{0.2f, 0.05f, 0.4f, 1.0f}.data(), stored);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        EXPECT_EQ(rows[i], static_cast<std::uint16_t>(stored[i % 4] * 65535.0f + 0.5f)) << i;
 }
 
 TEST(Encode, NoneIsOpaqueOverBlack) {

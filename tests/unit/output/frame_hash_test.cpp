@@ -12,6 +12,7 @@
 #include "scene/camera_file.h"
 #include "scene/describe.h"
 #include "scene/load.h"
+#include "support/color_config.h"
 #include "support/errors.h"
 
 namespace astrosplat {
@@ -198,6 +199,31 @@ TEST_F(FrameHashTest, EyesCountWhereThereAreTwo) {
     FrameHasher hasher(scene());
     hasher.show_eye(Eye::right);
     EXPECT_EQ(hasher.frame_hash(1), changed([](Scene& s) { s.camera.eye = Eye::right; }));
+}
+
+TEST_F(FrameHashTest, AConfigurationCountsWhereAViewIsWritten) {
+    const fs::path config = test::write_color_config(folder_);
+    const auto managed = [&](const std::string& file, const OcioParams& ocio) {
+        return changed([&](Scene& s) {
+            s.output.path = file;
+            s.output.ocio = ocio;
+        });
+    };
+    EXPECT_EQ(managed("a.exr", {config, "", "", ""}), hash(scene())) << "scene light knows no view";
+    EXPECT_EQ(managed("a.png", {}), changed([](Scene& s) { s.output.path = "a.png"; }));
+    const std::string film = managed("a.png", {config, "", "", ""});
+    EXPECT_NE(film, managed("a.png", {}));
+    EXPECT_EQ(film, managed("a.png", {config, "Screen", "Film", ""})) << "the names that are used";
+    EXPECT_NE(film, managed("a.png", {config, "", "Plain", ""}));
+    EXPECT_NE(film, managed("a.png", {config, "", "", "doubled"}));
+    Scene other = scene();
+    other.output.path = "a.png";
+    other.output.ocio.config = config;
+    const std::string text = FrameHasher(other).canonical_text(1);
+    EXPECT_NE(text.find("OpenColorIO " + ocio_version()), std::string::npos) << text;
+    EXPECT_EQ(text.find("output.view"), std::string::npos) << "which has no effect";
+    std::ofstream(config, std::ios::app) << "# more\n";
+    EXPECT_NE(film, managed("a.png", {config, "", "", ""}));
 }
 
 TEST_F(FrameHashTest, OtherPrimariesCountAndTheUsualOnesAreNotTold) {

@@ -18,6 +18,7 @@ view = "auto"
 exposure = 0.0
 pixel_filter = 0.5
 samples = 32
+ocio = { config = "", display = "", view = "", space = "" }
 
 [camera]
 projection = "perspective"
