@@ -107,12 +107,17 @@ void add_export(CLI::App& app, Invocation& call) {
     CLI::App& command =
         add_command(app, call, "export", export_help, [&call] { return run_export(call.export_options); });
     add_value(command, "SCENE", options.scene, "SCENE", "The scene")->required();
-    add_value(command, "-o,--output", options.output, "FILE.(ply|glb|usda)", "The file to write")->required();
+    add_value(command, "-o,--output", options.output, "FILE.(ply|glb|usda|vdb)", "The file to write")
+        ->required();
     add_value(command, "--frame", options.frame, "N", "The frame (default: the scene's first)");
     add_value(command, "--layer", options.layer, "NAME", "Only this layer (default: all that are visible)");
     add_value(command, "--count", options.count, "N", "Merges splats until so many are left");
     add_value(command, "--space", options.space, "display|linear",
-              "Of colours (default: display in .ply, linear in .glb)");
+              "Of colours (default: display in .ply and .usda, linear in .glb and .vdb)");
+    add_value(
+        command, "--voxel-size", options.voxel_size, "X",
+        "Side of the voxels of a .vdb, scene units (default: as the splats are wide, 128 to 512 along the "
+        "longest side)");
     add_assignments(command, options.assignments);
     command.add_flag("--overwrite", options.overwrite, "Replaces the file");
     add_progress(command, options.progress);

@@ -9,6 +9,7 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "export_volume.h"
 #include "gaussians/fit.h"
 #include "gaussians/gaussian_file.h"
 #include "gaussians/gaussian_usda.h"
@@ -24,23 +25,31 @@
 namespace astrosplat {
 
 const char* const export_help =
-    "Writes the scene's splats as Gaussians for other programs (3D Gaussian Splatting), with the look and "
-    "the "
-    "exposure of one frame. Approximated: other falloffs by the nearest Gaussian of the same integral; add, "
-    "screen and hybrid by over (what they hide, hybrid as seen from that frame's camera); light above 1 by "
-    "more opacity; dust by grey. Isolated layers lie among the others. Left out: stars, environment, "
-    "children "
-    "of level of detail, near fade, the view transform. Axes and units are the scene's, y up; of display "
-    "colours the light is fitted to that frame, unless all layers are mixed in display values (space = "
-    "\"display\"). Gaussians that were read keep their shapes; colours by direction become those seen from "
-    "that "
-    "frame's camera";
+    "Writes the scene's splats for other programs, with the look and the exposure of one frame: as Gaussians "
+    "(3D "
+    "Gaussian Splatting) in .ply, .glb and .usda, as a volume in .vdb (OpenVDB). Approximated: other "
+    "falloffs by the "
+    "nearest Gaussian of the same integral; screen and hybrid by what they hide (hybrid as seen from that "
+    "frame's "
+    "camera); dust by grey; Gaussians that were read keep their shapes, and colours by direction become "
+    "those seen "
+    "from that frame's camera. As Gaussians: add by over, light above 1 by more opacity; of display colours "
+    "the light "
+    "is fitted to that frame, unless all layers are mixed in display values (space = \"display\"). As a "
+    "volume: float "
+    "grid density (extinction per scene unit), vector grids emission (linear light per scene unit) and Cd "
+    "(straight "
+    "colour); each splat alone hides and shines through the grid what it does on the frame. Isolated layers "
+    "lie among "
+    "the others. Left out: stars, environment, children of level of detail, near fade, the view transform. "
+    "Axes and "
+    "units are the scene's, y up";
 
 namespace {
 
 constexpr std::int64_t fitted_height_px = 540;
 
-enum class Kind { ply, glb, usda };
+enum class Kind { ply, glb, usda, vdb };
 
 Kind kind_of_output(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
@@ -48,16 +57,20 @@ Kind kind_of_output(const std::filesystem::path& file) {
     if (ending == ".ply") return Kind::ply;
     if (ending == ".glb") return Kind::glb;
     if (ending == ".usda") return Kind::usda;
-    bad_input(file.string(), "", "a name ending in .ply, .glb or .usda",
+    if (ending == ".vdb") return Kind::vdb;
+    bad_input(file.string(), "", "a name ending in .ply, .glb, .usda or .vdb",
               "'" + file.extension().string() + "'");
 }
 
 /// Whether colours are encoded for a display.
 bool is_encoded(const ExportOptions& options, Kind kind) {
-    const std::string space = options.space.value_or(kind == Kind::glb ? "linear" : "display");
+    const bool linear = kind == Kind::glb || kind == Kind::vdb;
+    const std::string space = options.space.value_or(linear ? "linear" : "display");
     if (space != "display" && space != "linear")
         bad_input("--space", "", "display or linear", "'" + space + "'");
-    if (space == "linear" && kind != Kind::glb)
+    if (space == "display" && kind == Kind::vdb)
+        bad_input("--space", "", "linear for .vdb, which holds light", "'display'");
+    if (space == "linear" && !linear)
         bad_input("--space", "", "display for .ply and .usda, whose readers know no other", "'linear'");
     return space == "display";
 }
@@ -76,6 +89,17 @@ std::int64_t count_of(const ExportOptions& options) {
     if (!count || *count < 1)
         bad_input("--count", "", "a number of splats, 1 or more", "'" + *options.count + "'");
     return *count;
+}
+
+/// 0: none was asked for.
+double voxel_size_of(const ExportOptions& options, Kind kind) {
+    if (!options.voxel_size) return 0.0;
+    const auto size = parse_double(*options.voxel_size);
+    if (!size || !std::isfinite(*size) || !(*size > 0.0))
+        bad_input("--voxel-size", "", "a number above 0, in scene units", "'" + *options.voxel_size + "'");
+    if (kind != Kind::vdb)
+        bad_input("--voxel-size", "", "a name ending in .vdb", "'" + options.output.string() + "'");
+    return *size;
 }
 
 /// Hides all other layers, and what no Gaussian can be.
@@ -113,24 +137,29 @@ RenderSettings fitted_settings(const Pipeline& pipeline, double frame) {
     return settings;
 }
 
+/// Layers of merged splats, which `reduced` holds.
+void merge_splats(std::vector<RenderLayer>& layers, std::vector<ShadedSplats>& reduced, const Camera& camera,
+                  std::int64_t count, const Progress& progress) {
+    reduced = reduce_splats(layers, camera.world_from_camera, count, progress);
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        layers[i].splats = &reduced[i];
+        layers[i].render.opacity = 1.0f;
+    }
+}
+
 struct Baked {
     Gaussians gaussians;
     BakeCounts counts;
 };
 
-Baked bake(std::vector<RenderLayer> layers, const Camera& camera, double gain, std::int64_t count,
-           const Progress& progress) {
-    std::vector<ShadedSplats> reduced;
-    if (count > 0) {
-        reduced = reduce_splats(layers, camera.world_from_camera, count, progress);
-        for (std::size_t i = 0; i < layers.size(); ++i) {
-            layers[i].splats = &reduced[i];
-            layers[i].render.opacity = 1.0f;
-        }
-    }
+Baked bake(const std::vector<RenderLayer>& layers, const Camera& camera, double gain) {
     Baked baked;
     for (const RenderLayer& layer : layers) bake_layer(layer, camera, gain, baked.gaussians, baked.counts);
     return baked;
+}
+
+[[noreturn]] void refuse_nothing(const Scene& scene) {
+    bad_input(scene.file.string(), "", "splats that are visible at this frame", "none");
 }
 
 void report(const ExportOptions& options, const Baked& baked) {
@@ -151,6 +180,7 @@ int run_export(const ExportOptions& options) {
     const Kind kind = kind_of_output(options.output);
     const bool encoded = is_encoded(options, kind);
     const std::int64_t count = count_of(options);
+    const double voxel_size = voxel_size_of(options, kind);
     Scene scene = load_scene(options.scene, assignments);
     const double frame = frame_of(options, scene);
     keep_exported(scene, options.layer);
@@ -170,12 +200,19 @@ int run_export(const ExportOptions& options) {
         layers = pipeline.shaded_layers(frame);
     }
     for (float& value : wanted.pixels) value *= static_cast<float>(gain);
-    Baked baked = bake(std::move(layers), camera, gain, count, progress.begin_step("baking"));
-    if (baked.gaussians.size() == 0)
-        bad_input(scene.file.string(), "", "splats that are visible at this frame", "none");
+    std::vector<ShadedSplats> reduced;
+    const Progress baking = progress.begin_step("baking");
+    if (count > 0) merge_splats(layers, reduced, camera, count, baking);
+    const WriteTarget target{options.output, existing_of(options.overwrite)};
+    if (kind == Kind::vdb) {
+        const VolumeExport volume{gain, voxel_size, words_about(scene, pipeline, frame), target};
+        if (!export_volume(layers, camera, volume, baking)) refuse_nothing(scene);
+        return exit_done;
+    }
+    Baked baked = bake(layers, camera, gain);
+    if (baked.gaussians.size() == 0) refuse_nothing(scene);
     if (encoded) encode_for_display(baked.gaussians);
     if (encoded && !fits) fit_to_view(baked.gaussians, wanted, camera, settings);
-    const WriteTarget target{options.output, existing_of(options.overwrite)};
     const Progress writing = progress.begin_step("writing");
     if (kind == Kind::ply)
         write_gaussian_ply(target, baked.gaussians, writing);

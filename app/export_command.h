@@ -1,5 +1,5 @@
-// export: a scene's splats with their look baked, as Gaussians for other programs. Prints one line to stdout,
-// everything else to stderr, and returns the exit code.
+// export: a scene's splats with their look baked, as Gaussians or a volume for other programs. Prints one
+// line to stdout, everything else to stderr, and returns the exit code.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace astrosplat {
 
 struct ExportOptions {
     std::filesystem::path scene, output;
-    std::optional<std::string> frame, layer, count, space;
+    std::optional<std::string> frame, layer, count, space, voxel_size;
     std::vector<std::string> assignments;
     SetCache cache;
     bool overwrite = false;

@@ -61,3 +61,12 @@ add_custom_command(
   COMMENT "Generating the OpenGL loader" VERBATIM)
 add_library(glad STATIC ${glad_folder}/src/gl.c ${glad_folder}/include/glad/gl.h)
 target_include_directories(glad SYSTEM PUBLIC ${glad_folder}/include)
+
+# openvdb: Debian has no CMake config for it, only a module with packages that nothing here uses.
+find_path(OPENVDB_INCLUDE_DIR openvdb/openvdb.h REQUIRED)
+find_library(OPENVDB_LIBRARY openvdb REQUIRED)
+find_library(TBB_LIBRARY tbb REQUIRED)
+pkg_check_modules(IMATH REQUIRED IMPORTED_TARGET Imath)
+add_library(openvdb INTERFACE)
+target_include_directories(openvdb SYSTEM INTERFACE ${OPENVDB_INCLUDE_DIR})
+target_link_libraries(openvdb INTERFACE ${OPENVDB_LIBRARY} ${TBB_LIBRARY} PkgConfig::IMATH)

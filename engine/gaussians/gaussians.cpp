@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -13,8 +12,8 @@
 #include "core/quadrature.h"
 #include "core/quaternion.h"
 #include "core/real.h"
+#include "gaussians/appearance.h"
 #include "render/falloff.h"
-#include "render/shared_render.h"
 
 namespace astrosplat {
 namespace {
@@ -48,14 +47,7 @@ double least_place(double low, double high, F&& f) {
     return 0.5 * (low + high);
 }
 
-float largest(const glm::vec3& c) { return std::max({c.x, c.y, c.z}); }
 float luminance_of(const glm::vec3& c) { return luminance(c.x, c.y, c.z); }
-
-/// What a splat hides, and its light, both at its centre for a dot of alpha 1 and peak 1.
-struct Appearance {
-    float hides = 1.0f;
-    glm::vec3 light{0.0f};
-};
 
 /// Gives axes that are 0 directions across the others.
 void complete(glm::dmat3& axes) {
@@ -74,30 +66,27 @@ void complete(glm::dmat3& axes) {
     }
 }
 
+void count(const glm::dvec3& light, const glm::dvec3& kept, double alpha, double area, BakeCounts& counts) {
+    counts.flux += area * luminance_of(glm::vec3(light));
+    const double lost = luminance_of(glm::vec3(light - kept));
+    counts.lost += area * lost;
+    if (lost > 0.0) ++counts.bright;
+    if (alpha < 1.0 / 255.0) ++counts.faint;
+}
+
 /// One layer on its way into Gaussians.
 class Baker {
   public:
     Baker(const RenderLayer& layer, const Camera& camera, double gain)
         : layer_(layer),
-          camera_(camera),
-          gain_(static_cast<float>(gain)),
-          profile_(profile_of(layer)),
-          turn_(quaternion_of_matrix(layer.world_from_layer)),
-          axis_(glm::normalize(layer.world_from_layer * layer.axis)) {}
+          appearance_(layer, camera, gain),
+          turn_(quaternion_of_matrix(layer.world_from_layer)) {}
 
     void add(std::size_t i, Gaussians& out, BakeCounts& counts) const {
-        const ShadedSplats& splats = *layer_.splats;
-        const glm::dvec3 place =
-            layer_.world_from_layer * (layer_.scale * glm::dvec3(splats.position[i])) + layer_.translate;
-        const float s = std::min(1.0f, splats.alpha[i] * layer_.render.opacity);
-        glm::vec3 color = splats.color[i];
-        if (splats.encoded)
-            for (int k = 0; k < 3; ++k) color[k] = static_cast<float>(real::srgb_to_linear(color[k]));
-        const Appearance seen = appearance(color, s, place, counts);
-        const double sigma = profile_.sigma * splats.radius[i] * layer_.scale;
-        double square = sigma * sigma;
-        double hides = profile_.peak * seen.hides;
-        glm::dvec3 light = profile_.peak * glm::dvec3(seen.light);
+        const SplatAppearance seen = appearance_.of(i, counts);
+        double square = seen.sigma * seen.sigma;
+        double hides = seen.hides;
+        glm::dvec3 light = seen.light;
         if (hides > 1.0) {
             square *= hides;
             light /= hides;
@@ -111,27 +100,19 @@ class Baker {
         }
         const glm::dvec3 kept = layer_.gaussians ? light : glm::min(light, glm::dvec3(alpha));
         count(light, kept, alpha, 2.0 * real::pi * square, counts);
-        out.position.push_back(glm::vec3(place));
+        out.position.push_back(glm::vec3(seen.place));
         const glm::vec3 straight(kept / alpha);
         out.color.push_back(layer_.gaussians ? straight : glm::clamp(straight, 0.0f, 1.0f));
         out.alpha.push_back(static_cast<float>(alpha));
-        if (splats.stretch.empty()) {
+        if (layer_.splats->stretch.empty()) {
             out.scale.push_back(glm::vec3(static_cast<float>(std::sqrt(square))));
             out.rotation.push_back({0.0f, 0.0f, 0.0f, 1.0f});
         } else {
-            add_shape(splats.stretch[i], std::sqrt(square), out);
+            add_shape(layer_.splats->stretch[i], std::sqrt(square), out);
         }
     }
 
   private:
-    /// A Gaussian is its own nearest one.
-    static GaussianProfile profile_of(const RenderLayer& layer) {
-        const Falloff& falloff = layer.render.falloff;
-        if (layer.gaussians && falloff.shape == Falloff::Shape::gaussian)
-            return {1.0, std::sqrt(0.5 / double(falloff.sharpness))};
-        return nearest_gaussian(falloff);
-    }
-
     /// What `stretch` makes of a ball, turned as the layer is.
     void add_shape(const glm::mat3& stretch, double sigma, Gaussians& out) const {
         glm::dmat3 axes(stretch);
@@ -145,48 +126,9 @@ class Baker {
         out.rotation.push_back(glm::vec4(quaternion_product(turn_, quaternion_of_matrix(axes))));
     }
 
-    Appearance appearance(const glm::vec3& color, float s, const glm::dvec3& place,
-                          BakeCounts& counts) const {
-        const LayerRender& r = layer_.render;
-        const int blend = static_cast<int>(r.blend);
-        if (r.holdout) return {s, glm::vec3(0.0f)};
-        if (shared::blend_absorbs(blend, color.x)) {
-            ++counts.dust;
-            double let_through = 0.0;
-            for (int k = 0; k < 3; ++k)
-                let_through += real::pow(1.0 - s, shared::blend_exponent(blend, color[k], r.absorb[k])) / 3.0;
-            return {static_cast<float>(1.0 - let_through), glm::vec3(0.0f)};
-        }
-        const glm::vec3 light = s * gain_ * color;
-        const float bright = std::min(1.0f, largest(color) * gain_);
-        return {s * shared::blend_occlusion(blend, bright, hybrid(place)), light};
-    }
-
-    float hybrid(const glm::dvec3& place) const {
-        if (layer_.render.blend != Blend::hybrid) return 0.0f;
-        const glm::dvec3 ray = place - camera_.eye;
-        const double length = glm::length(ray);
-        const bool parallel = camera_.projection == Projection::orthographic || !(length > 0.0);
-        const glm::dvec3 along = parallel ? camera_.world_from_camera[2] : ray / length;
-        return shared::hybrid_amount(static_cast<float>(std::abs(glm::dot(axis_, along))),
-                                     layer_.render.hybrid_from_deg, layer_.render.hybrid_to_deg);
-    }
-
-    static void count(const glm::dvec3& light, const glm::dvec3& kept, double alpha, double area,
-                      BakeCounts& counts) {
-        counts.flux += area * luminance_of(glm::vec3(light));
-        const double lost = luminance_of(glm::vec3(light - kept));
-        counts.lost += area * lost;
-        if (lost > 0.0) ++counts.bright;
-        if (alpha < 1.0 / 255.0) ++counts.faint;
-    }
-
     const RenderLayer& layer_;
-    const Camera& camera_;
-    float gain_;
-    GaussianProfile profile_;
+    LayerAppearance appearance_;
     glm::dvec4 turn_;
-    glm::dvec3 axis_;
 };
 
 }  // namespace
@@ -203,7 +145,6 @@ GaussianProfile nearest_gaussian(const Falloff& falloff) {
 
 void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gaussians& out,
                 BakeCounts& counts) {
-    assert(layer.splats && !layer.stars);
     const std::int64_t all = out.size() + layer.splats->size();
     constexpr std::int64_t bytes = 3 * sizeof(glm::vec3) + sizeof(glm::vec4) + sizeof(float);
     claim_memory(all * bytes, "Gaussians");

@@ -139,7 +139,7 @@ TEST_F(Export, CountIsABudgetOfAllLayers) {
 }
 
 TEST_F(Export, RefusesWhatItCannotDo) {
-    expect_one_line(run(arguments("model.obj")), 2, ".ply, .glb or .usda");
+    expect_one_line(run(arguments("model.obj")), 2, ".ply, .glb, .usda or .vdb");
     const auto with = [&](const std::string& option, const std::string& value) {
         std::vector<std::string> words = arguments("model.ply");
         words.insert(words.end(), {option, value});
