@@ -63,7 +63,11 @@ void refuse_without_screenshot(const ScreenshotOptions& shot) {
 /// The window, or a screenshot of it.
 int run_window(Invocation& call) {
     if (!call.input.empty()) call.input = find_by_name("scenes", call.input).string();
-    ViewerOptions viewer{call.input, {}, call.batch_options.cache, !call.common.threads.empty()};
+    ViewerOptions viewer{call.input,
+                         {},
+                         call.batch_options.cache,
+                         !call.common.threads.empty(),
+                         !call.common.cache.empty() || call.common.no_cache};
     for (const std::string& text : call.batch_options.assignments)
         viewer.assignments.push_back(parse_assignment(text));
     ScreenshotOptions& shot = call.screenshot;

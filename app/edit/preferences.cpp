@@ -69,6 +69,10 @@ Preferences from_json(const Json& json) {
         if (json.contains(row.name) && std::any_of(row.choices.begin(), row.choices.end(), is_it))
             p.settings.*row.value = value;
     }
+    if (json.contains("cache_folder") && json["cache_folder"].is_string()) {
+        const std::string folder = json["cache_folder"].get<std::string>();
+        if (problem_of_cache_folder(folder).empty()) p.settings.cache_folder = folder;
+    }
     p.recent = paths_of(json, "recent", Preferences::most_recent_files, fs::is_regular_file);
     p.recent_folders = paths_of(json, "recent_folders", Preferences::most_recent_folders, fs::is_directory);
     return p;
@@ -81,6 +85,7 @@ Json to_json(const Preferences& p) {
               {"timeline_height", p.timeline_height},
               {"timeline_open", p.timeline_open}};
     for (const SettingRow& row : setting_rows()) json[row.name] = p.settings.*row.value;
+    json["cache_folder"] = p.settings.cache_folder;
     json["recent"] = json_of(p.recent);
     json["recent_folders"] = json_of(p.recent_folders);
     return json;

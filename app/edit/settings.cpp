@@ -1,10 +1,15 @@
 #include "edit/settings.h"
 
+#include <cstdlib>
+
 namespace astrosplat {
 namespace {
 
 constexpr SettingChoice scales[] = {{0, "Auto"},    {100, "100 %"}, {125, "125 %"},
                                     {150, "150 %"}, {200, "200 %"}, {300, "300 %"}};
+constexpr SettingChoice contrasts[] = {{0, "Normal"}, {1, "High"}};
+constexpr SettingChoice memories[] = {{0, "Auto"},    {2, "2 GiB"},   {4, "4 GiB"},  {8, "8 GiB"},
+                                      {16, "16 GiB"}, {32, "32 GiB"}, {64, "64 GiB"}};
 constexpr SettingChoice threads[] = {{0, "All"}, {1, "1"},   {2, "2"},  {4, "4"},
                                      {8, "8"},   {16, "16"}, {32, "32"}};
 constexpr SettingChoice caches[] = {{0, "Auto"},    {5, "5 GiB"},     {20, "20 GiB"},
@@ -16,11 +21,17 @@ constexpr SettingChoice engines[] = {{0, "Auto"}, {1, "OpenGL"}, {2, "Processor"
 constexpr SettingRow rows[] = {
     {"interface_percent", "Interface", "Size of text and controls; Auto: as the screen asks",
      &Settings::interface_percent, scales},
+    {"contrast", "Contrast", "Of text and controls against their background", &Settings::contrast, contrasts},
     {"settles", "View at rest", "How views begin; View > Settle changes the one that is open",
      &Settings::settles, settles},
     {"engine", "Preview by", "How views begin; the tools' Engine changes the one that is open",
      &Settings::engine, engines},
     {"threads", "Threads", "From the next start; --threads wins", &Settings::threads, threads},
+    {"memory_gib", "Memory",
+     "Most that the window takes, from the next start, as if the machine had no more: sets that are larger "
+     "are made "
+     "coarser or refused; Auto: what is free",
+     &Settings::memory_gib, memories},
     {"cache_gib", "Cache",
      "Most that generated sets may take, from the next start; Auto: 20 GiB or a tenth of the disk",
      &Settings::cache_gib, caches},
@@ -30,5 +41,24 @@ constexpr SettingRow rows[] = {
 }  // namespace
 
 std::span<const SettingRow> setting_rows() { return rows; }
+
+std::string problem_of_cache_folder(const std::string& folder) {
+    const std::filesystem::path path = folder;
+    std::error_code ignored;
+    if (folder.empty()) return "";
+    if (!path.is_absolute()) return "expected an absolute path, found '" + folder + "'";
+    if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored))
+        return "expected a folder, found the file '" + folder + "'";
+    return "";
+}
+
+SetCache cache_with(const Settings& settings, const SetCache& asked, bool given) {
+    SetCache cache = asked;
+    const char* const named = std::getenv("ASTROSPLAT_CACHE");
+    const bool free = !given && !(named && *named);
+    if (free && !settings.cache_folder.empty()) cache.folder = settings.cache_folder;
+    cache.limit_bytes = std::int64_t{settings.cache_gib} << 30;
+    return cache;
+}
 
 }  // namespace astrosplat

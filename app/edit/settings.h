@@ -1,18 +1,25 @@
-// What a person sets for the window, whatever the scene: size of text, threads, cache, autosave, how a view
-// begins. One table feeds the dialog and the file of preferences; nothing of it reaches a picture.
+// What a person sets for the window, whatever the scene: size and contrast of text, threads, memory, cache,
+// autosave, how a view begins. One table feeds the dialog and the file of preferences; nothing of it reaches
+// a picture, but for a limit of memory, which acts as a smaller machine does.
 #pragma once
 
 #include <span>
+#include <string>
+
+#include "sets/cache_folder.h"
 
 namespace astrosplat {
 
 struct Settings {
-    int interface_percent = 0;  // of the size at scale 1; 0: as the screen asks
-    int threads = 0;            // 0: the cores this process may use
-    int cache_gib = 0;          // most that generated sets may take; 0: 20 GiB or a tenth of the disk
-    int autosave_s = 60;        // from an edit to the copy that survives a crash
-    int settles = 1;            // 0: views begin without going on to the final frame
-    int engine = 0;             // a PreviewEngine, with which views begin
+    int interface_percent = 0;      // of the size at scale 1; 0: as the screen asks
+    int contrast = 0;               // 1: high
+    int threads = 0;                // 0: the cores this process may use
+    int memory_gib = 0;             // most that the window takes; 0: what is free
+    int cache_gib = 0;              // most that generated sets may take; 0: 20 GiB or a tenth of the disk
+    int autosave_s = 60;            // from an edit to the copy that survives a crash
+    int settles = 1;                // 0: views begin without going on to the final frame
+    int engine = 0;                 // a PreviewEngine, with which views begin
+    std::string cache_folder = {};  // absolute; empty: as default_cache_folder() has it
     bool operator==(const Settings&) const = default;
 };
 
@@ -29,6 +36,14 @@ struct SettingRow {
     std::span<const SettingChoice> choices;
 };
 
+/// All but the folder.
 std::span<const SettingRow> setting_rows();
+
+/// Why this cannot be the cache's folder: "expected an absolute path, found 'x'"; empty: it can.
+std::string problem_of_cache_folder(const std::string& folder);
+
+/// The window's cache: `asked` where the command line (`given`) or the environment names one, else that of
+/// the settings; never larger than these say.
+SetCache cache_with(const Settings& settings, const SetCache& asked, bool given);
 
 }  // namespace astrosplat

@@ -20,8 +20,9 @@
 
 namespace astrosplat {
 
-/// Fonts, colours, spacing: once after ImGui::CreateContext. `content_scale`: of the monitor.
-void apply_theme(float content_scale);
+/// Fonts, colours, spacing: once after ImGui::CreateContext. `content_scale`: of the monitor; `contrast` as
+/// set_contrast() has it.
+void apply_theme(float content_scale, int contrast = 0);
 
 /// What mouse and keyboard did over the viewport this frame. px are relative to the viewport's upper left.
 struct ViewportInput {

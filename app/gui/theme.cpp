@@ -20,6 +20,7 @@ constexpr float regular_px = 15.0f;
 constexpr float small_px = 13.0f;
 
 float scale = 1.0f;  // of the window's monitor; there is one window
+int contrast = 0;
 
 // Folders that hold fonts/, most specific first, as the XDG base directory specification has them.
 std::vector<fs::path> data_folders() {
@@ -108,7 +109,7 @@ void set_colors(ImGuiStyle& style) {
     for (const ImGuiCol c : {ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive}) set(c, color::dim);
     for (const ImGuiCol c : {ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TitleBgCollapsed})
         set(c, color::panel);
-    set(ImGuiCol_ModalWindowDimBg, color::with_opacity(color::line, 0.55f));
+    set(ImGuiCol_ModalWindowDimBg, color::with_opacity(color::window, 0.55f));
     style.Colors[ImGuiCol_TableRowBgAlt] = ImVec4(1, 1, 1, 0.02f);
 }
 
@@ -134,11 +135,36 @@ void set_sizes(ImGuiStyle& style) {
 
 }  // namespace
 
-void apply_theme(float content_scale) {
+void set_contrast(int wanted) {
+    struct Shade {
+        ImU32* color;
+        ImU32 normal, high;
+    };
+    static const Shade shades[] = {{&color::window, color::window, IM_COL32(0x08, 0x09, 0x0A, 255)},
+                                   {&color::panel, color::panel, IM_COL32(0x12, 0x14, 0x16, 255)},
+                                   {&color::field, color::field, IM_COL32(0x26, 0x2A, 0x2F, 255)},
+                                   {&color::hover, color::hover, IM_COL32(0x38, 0x3E, 0x45, 255)},
+                                   {&color::line, color::line, IM_COL32(0x5C, 0x63, 0x6A, 255)},
+                                   {&color::text, color::text, IM_COL32(0xFF, 0xFF, 0xFF, 255)},
+                                   {&color::dim, color::dim, IM_COL32(0xC4, 0xC9, 0xCE, 255)},
+                                   {&color::accent, color::accent, IM_COL32(0x7D, 0xB3, 0xF2, 255)},
+                                   {&color::attention, color::attention, IM_COL32(0xFF, 0xC1, 0x4D, 255)},
+                                   {&color::good, color::good, IM_COL32(0x7F, 0xD6, 0x9A, 255)},
+                                   {&color::error, color::error, IM_COL32(0xFF, 0x8F, 0x7E, 255)}};
+    contrast = wanted;
+    for (const Shade& shade : shades) *shade.color = wanted == 1 ? shade.high : shade.normal;
+    color::selection = color::with_opacity(color::accent, 0.28f);
+    color::fill = color::with_opacity(color::accent, 0.25f);
+    set_colors(ImGui::GetStyle());
+}
+
+int theme_contrast() { return contrast; }
+
+void apply_theme(float content_scale, int wanted_contrast) {
     scale = content_scale;
     ImGuiStyle& style = ImGui::GetStyle();
     style = ImGuiStyle();
-    set_colors(style);
+    set_contrast(wanted_contrast);
     set_sizes(style);
     style.ScaleAllSizes(content_scale);
     add_fonts(content_scale);

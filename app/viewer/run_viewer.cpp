@@ -14,6 +14,7 @@
 #include "core/clock.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "edit/preferences.h"
 #include "exit_code.h"
@@ -59,7 +60,7 @@ class Loop {
         : interrupted_(interrupted),
           window_(preferences.window_width, preferences.window_height, "astrosplat"),
           session_(options, window_.gl()) {
-        apply_theme(wanted_scale());
+        apply_theme(wanted_scale(), wanted_contrast());
         set_log_sink([this](LogLevel level, const std::string& line) { log_.push(level, line); });
     }
 
@@ -104,8 +105,10 @@ class Loop {
         if (title(session_) != title_) window_.set_title(title_ = title(session_));
         if (window_.has_input()) frames_left_ = frames_after_event;
         if (const float scale = wanted_scale(); scale != px(1.0f)) {
-            apply_theme(scale);
+            apply_theme(scale, wanted_contrast());
             window_.reload_fonts();
+        } else if (wanted_contrast() != theme_contrast()) {
+            set_contrast(wanted_contrast());
         }
         if (!window_.begin_frame(gui_.opening())) return;
         const bool was_settled = settled(session_);
@@ -138,6 +141,8 @@ class Loop {
         return percent > 0 ? 0.01f * static_cast<float>(percent) : window_.content_scale();
     }
 
+    int wanted_contrast() const { return session_.view.settings.contrast; }
+
     const std::atomic<bool>& interrupted_;
     LogLines log_;  // before the session, whose threads write into it
     Window window_;
@@ -155,7 +160,8 @@ int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupte
     const Settings& settings = preferences.settings;
     if (settings.threads > 0 && !options.threads_given) set_thread_count(settings.threads);
     ViewerOptions with_settings = options;
-    with_settings.cache.limit_bytes = std::int64_t{settings.cache_gib} << 30;
+    with_settings.cache = cache_with(settings, options.cache, options.cache_given);
+    limit_memory(std::int64_t{settings.memory_gib} << 30);
     std::unique_ptr<Loop> loop;
     try {
         loop = std::make_unique<Loop>(with_settings, preferences, interrupted);

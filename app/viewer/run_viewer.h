@@ -15,7 +15,7 @@ struct ViewerOptions {
     std::filesystem::path input;          // scene, picture, mesh or splat file; empty: the demo
     std::vector<Assignment> assignments;  // --set
     SetCache cache;
-    bool threads_given = false;  // by --threads, which wins over the settings
+    bool threads_given = false, cache_given = false;  // by the command line, which wins over the settings
 };
 /// Once `interrupted`, throws Cancelled; an autosave with what was not saved stays.
 int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupted);

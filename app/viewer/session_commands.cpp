@@ -280,6 +280,11 @@ void add_move(State& s, const Command& c) {
 }
 
 void keep_settings(State& s, const Command&) {
+    const std::string problem = problem_of_cache_folder(s.view.settings.cache_folder);
+    if (!problem.empty()) {
+        say(s.status, "Cache folder: " + problem, true);
+        s.view.settings.cache_folder = s.preferences.settings.cache_folder;
+    }
     s.preferences.settings = s.view.settings;
     save_preferences(s.preferences);
 }

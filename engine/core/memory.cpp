@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -19,6 +20,8 @@ namespace astrosplat {
 namespace {
 
 constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
+
+std::atomic<std::int64_t> own_limit{0};  // 0: none
 
 // Three significant digits, without trailing zeros after the point: 1.25, 12.4, 312, 4.
 std::string three_digits(double value) {
@@ -93,11 +96,16 @@ std::int64_t group_room(const std::string& limit_text, const std::string& usage_
     return std::max<std::int64_t>(0, *limit - std::max<std::int64_t>(0, *usage - cache));
 }
 
+void limit_memory(std::int64_t bytes) { own_limit = bytes; }
+
 std::int64_t available_memory_bytes() {
     const std::int64_t v2 = least_group_room("memory.max", "memory.current", "inactive_file");
     const std::int64_t v1 =
         least_group_room("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file");
-    return std::min({machine_available_bytes(), v2, v1});
+    const std::int64_t limit = own_limit;
+    const std::int64_t own =
+        limit > 0 ? std::max<std::int64_t>(0, limit - resident_memory_bytes()) : unlimited;
+    return std::min({machine_available_bytes(), v2, v1, own});
 }
 
 std::int64_t peak_memory_bytes() {
@@ -120,8 +128,10 @@ void claim_memory(std::int64_t bytes, const std::string& what) {
     const std::string need = human_bytes(static_cast<double>(bytes));
     const std::int64_t available = available_memory_bytes();
     if (bytes > available)
-        throw InputError(fmt::format("{} needs {} of memory, but only {} are available", what, need,
-                                     human_bytes(static_cast<double>(available))));
+        throw InputError(fmt::format(
+            "{} needs {} of memory, but only {} are available{}", what, need,
+            human_bytes(static_cast<double>(available)),
+            own_limit > 0 ? " of the " + human_bytes(static_cast<double>(own_limit)) + " it may take" : ""));
     log_detail(fmt::format("{} takes {} of memory", what, need));
 }
 

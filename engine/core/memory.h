@@ -19,8 +19,11 @@ std::string human_count(std::int64_t count, const std::string& noun);
 std::int64_t group_room(const std::string& limit_text, const std::string& usage_text, const std::string& stat,
                         const std::string& cache_field);
 
-/// Bytes this process may still take: free memory of the machine or of its cgroup, whichever is less.
+/// Bytes this process may still take: free memory of the machine or of its cgroup, or what limit_memory()
+/// leaves, whichever is least.
 std::int64_t available_memory_bytes();
+/// Most bytes that this process is to take; 0: no such limit. What is taken already stays.
+void limit_memory(std::int64_t bytes);
 /// Largest resident size of this process so far.
 std::int64_t peak_memory_bytes();
 /// Resident size of this process now, without what was freed and is lent to the system (core/buffer).

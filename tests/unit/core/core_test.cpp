@@ -136,6 +136,22 @@ TEST(Memory, ClaimOfTooMuchNamesBothFigures) {
     EXPECT_EQ(message.find("a test needs 1048576 TiB of memory, but only "), 0u) << message;
 }
 
+TEST(Memory, ALimitLeavesLess) {
+    const std::int64_t limit = resident_memory_bytes() + (std::int64_t{64} << 20);
+    limit_memory(limit);
+    EXPECT_LE(available_memory_bytes(), std::int64_t{64} << 20);
+    EXPECT_NO_THROW(claim_memory(1024, "a test"));
+    const std::string message =
+        message_of<InputError>([] { claim_memory(std::int64_t{65} << 20, "a test"); });
+    EXPECT_NE(message.find(" are available of the " + human_bytes(double(limit)) + " it may take"),
+              std::string::npos)
+        << message;
+    limit_memory(1);  // less than is taken already
+    EXPECT_EQ(available_memory_bytes(), 0);
+    limit_memory(0);
+    EXPECT_NO_THROW(claim_memory(std::int64_t{65} << 20, "a test"));
+}
+
 TEST(Memory, GroupsLeaveTheirLimitLessWhatCannotBeGivenUp) {
     EXPECT_EQ(group_room("1000\n", "400\n", "anon 100\ninactive_file 300\n", "inactive_file"), 900);
     EXPECT_EQ(group_room("1000\n", "400\n", "", "inactive_file"), 600);

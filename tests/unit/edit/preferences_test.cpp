@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+
 #include "core/log.h"
 #include "core/user_folders.h"
 #include "edit/autosave.h"
@@ -37,6 +39,7 @@ TEST(Preferences, RoundTrip) {
     p.timeline_height = 200.25f;
     p.timeline_open = false;
     for (const SettingRow& row : setting_rows()) p.settings.*row.value = row.choices.back().value;
+    p.settings.cache_folder = "/gro\xc3\x9f/sets \"1\"";
     add_recent(p, folder.file("a \"b\" ä.toml", "x"));
     add_recent_folder(p, folder.path());
     const fs::path file = folder / "neu/tiefer/viewer.json";
@@ -69,7 +72,8 @@ TEST(Preferences, SingleValuesThatAreWrongHaveTheirDefault) {
         folder.file("viewer.json",
                     "{\"window_width\": \"wide\", \"window_height\": -5, \"panel_width\": 1e9,"
                     " \"timeline_open\": 3, \"recent\": [1, \"/gone\"], \"recent_folders\": [\"/gone\"],"
-                    " \"interface_percent\": 7, \"threads\": \"all\", \"engine\": 9, \"autosave_s\": -1}");
+                    " \"interface_percent\": 7, \"threads\": \"all\", \"engine\": 9, \"autosave_s\": -1,"
+                    " \"contrast\": 2, \"memory_gib\": 3, \"cache_folder\": \"sets\"}");
     EXPECT_EQ(load_preferences(file), Preferences{});
 }
 
@@ -77,8 +81,33 @@ TEST(Preferences, EverySettingHasItsDefaultAmongItsChoices) {
     for (const SettingRow& row : setting_rows())
         EXPECT_EQ(std::ranges::count(row.choices, Settings().*row.value, &SettingChoice::value), 1)
             << row.name;
-    EXPECT_EQ(setting_rows().size(), sizeof(Settings) / sizeof(int)) << "one row each";
+    EXPECT_EQ(setting_rows().size(), offsetof(Settings, cache_folder) / sizeof(int)) << "one row each";
     EXPECT_EQ(autosave_interval({.autosave_s = 15}), std::chrono::seconds(15));
+}
+
+TEST(Settings, TheCommandLineAndTheEnvironmentNameTheCacheBeforeTheSettings) {
+    const Settings settings{.cache_gib = 5, .cache_folder = "/mine"};
+    const SetCache standard{"/home/sets"}, named{"/named"}, none;
+    {
+        const Variable no_folder("ASTROSPLAT_CACHE", nullptr);
+        EXPECT_EQ(cache_with(settings, standard, false).folder, "/mine");
+        EXPECT_EQ(cache_with(Settings(), standard, false).folder, standard.folder);
+        EXPECT_EQ(cache_with(settings, named, true).folder, "/named");
+        EXPECT_EQ(cache_with(settings, none, true).folder, "") << "--no-cache";
+        EXPECT_EQ(cache_with(settings, named, true).limit_bytes, std::int64_t{5} << 30);
+    }
+    const Variable folder("ASTROSPLAT_CACHE", "/of/the/environment");
+    EXPECT_EQ(cache_with(settings, {"/of/the/environment"}, false).folder, "/of/the/environment");
+}
+
+TEST(Settings, ACacheFolderIsAbsoluteAndNoFile) {
+    const TempFolder folder;
+    EXPECT_EQ(problem_of_cache_folder(""), "");
+    EXPECT_EQ(problem_of_cache_folder(folder.path().string()), "");
+    EXPECT_EQ(problem_of_cache_folder((folder / "to come").string()), "");
+    EXPECT_EQ(problem_of_cache_folder("sets"), "expected an absolute path, found 'sets'");
+    const std::string file = folder.file("file", "x").string();
+    EXPECT_EQ(problem_of_cache_folder(file), "expected a folder, found the file '" + file + "'");
 }
 
 TEST(Preferences, AFolderThatCannotBeWrittenCostsOneWarning) {
