@@ -42,6 +42,7 @@ struct LayerStatus {
     bool stale = false;                         // the source was changed and not generated again
     std::string error;                          // why it could not be loaded, one line
     double radius_min = 0.0, radius_max = 0.0;  // what radius 0, 0 means for this set, scene units
+    double body_height = 0.0, uv_width = 0.0;   // what 0 means of structure.height, uv_width; 0: not known
     std::optional<glm::vec3> color;             // mean of its splats, linear
     std::shared_ptr<const LayerHistograms> histograms;
 };

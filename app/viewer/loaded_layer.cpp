@@ -100,6 +100,10 @@ LoadedLayer described_layer(LoadedLayer layer) {
     } catch (const InputError&) {  // gone since: when it is back, it is read again
         layer.files = named_files(layer.source);
     }
+    try {
+        layer.automatic = automatic_values(layer.source);
+    } catch (const InputError&) {  // as above
+    }
     layer.histograms = std::make_shared<const LayerHistograms>(histograms(*layer.set, layer.source));
     return layer;
 }

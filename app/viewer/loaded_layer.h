@@ -13,6 +13,7 @@
 #include "core/progress.h"
 #include "edit/status.h"
 #include "merge/sums.h"
+#include "sets/automatic_values.h"
 #include "source/source.h"
 #include "splats/splat_set.h"
 #include "viewer/growing_set.h"
@@ -29,7 +30,8 @@ struct LoadedLayer {
     std::shared_ptr<const LayerHistograms> histograms;  // come a little later than the rest
     Bounds box;                                         // layer space; while it grows a guess
     glm::vec3 color{1.0f};                              // mean of the splats, weighted by alpha, linear
-    glm::dvec2 radius{0.0};  // smallest and largest, scene units: what look.radius 0, 0 means; 0: unknown
+    glm::dvec2 radius{0.0};     // smallest and largest, scene units: what look.radius 0, 0 means; 0: unknown
+    AutomaticValues automatic;  // come with the histograms
     SourceParams source;
     std::string name;                          // which the seed may depend on
     std::vector<std::filesystem::path> files;  // it was made of; come with the histograms

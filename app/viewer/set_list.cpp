@@ -248,6 +248,8 @@ LayerStatus SetList::status(const LayerParams& layer) const {
     status.splats = seen->splats;
     status.radius_min = seen->radius.x;
     status.radius_max = seen->radius.y;
+    status.body_height = seen->automatic.body_height;
+    status.uv_width = seen->automatic.uv_width;
     status.color = seen->color;
     status.histograms = seen->histograms ? seen->histograms : entry.histograms;
     return status;

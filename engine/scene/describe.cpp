@@ -173,7 +173,8 @@ void describe_environment(const Describer& d, EnvironmentParams& e) {
     d(e.image, "image", "Picture", "", "Equirectangular picture behind everything.");
     d(e.cube, "cube", "Cube pictures", "",
       "Or six pictures of the faces of a cube around the origin, in the order +x -x +y -y +z -z.");
-    d(e.gain, "gain", "Gain", "", "Multiplies its light.", within(0, 1e6), slider(0.01, 100), logarithmic());
+    d(e.gain, "gain", "Light gain", "", "Multiplies its light.", within(0, 1e6), slider(0.01, 100),
+      logarithmic());
     d(e.rotation, "rotation", "Rotation", "degrees", "Turns it about x, then y, then z.", slider(-180, 180));
     d(e.behind, "behind", "Distance", "scene units",
       "How far from the origin it lies, so that near things move before it; 0: infinitely far.", at_least(0),

@@ -108,7 +108,7 @@ void describe_rework(const Describer& d, TextureSettings& t) {
 /// One number stands for the same on every axis.
 void describe_buffer(const Describer& d, std::optional<glm::dvec3>& buffer) {
     d.custom(
-        spec("buffer", "Margin", "scene units",
+        spec("buffer", "Buffer", "scene units",
              "Room around the meshes' box: one number or x, y, z; auto: max_distance.", as(Type::vector),
              components(3), or_auto(), at_least(0), slider(0, 10)),
         [&buffer](const ParameterSpec& own) {
@@ -187,8 +187,9 @@ void describe_structure(const Describer& d, StructureParams& s) {
     bodies(s.height, "height", "Scale height", "scene units",
            "Thickness; 0: 1.8 % of the picture's longest side for a disk, else 1.1 %.", at_least(0),
            slider(0, 1), zero_is("Auto"));
-    d(s.depth, "depth", "Depth", "of the width", "Whole depth of walls, or of the relief of a flat sheet.",
-      within(0, 10), slider(0, 0.5), only_with("kind", {"sheet", "walls"}));
+    d(s.depth, "depth", "Structure depth", "of the width",
+      "Whole depth of walls, or of the relief of a flat sheet.", within(0, 10), slider(0, 0.5),
+      only_with("kind", {"sheet", "walls"}), shown_as("Depth"));
     bodies(s.clumps, "clumps", "Clumps", "", "How strongly depths gather in clouds.", within(0, 100),
            slider(0, 3));
     const Describer disk = d.only_with("kind", {"disk"});
@@ -202,14 +203,14 @@ void describe_structure(const Describer& d, StructureParams& s) {
     bodies(s.dust, "dust", "Dust", "",
            "Share of the dark details that becomes dust; auto: four fifths in a disk, else none.", or_auto(),
            range(0, 1));
-    bodies(s.opacity, "opacity", "Opacity", "",
+    bodies(s.opacity, "opacity", "Opacity power", "",
            "Power of brightness that opacity grows with; low makes dim parts denser.", within(0.01, 10),
            slider(0.2, 1.5));
-    bodies(s.density, "density", "Density", "", "Opacity of white.", within(0, 1), slider(0.1, 0.98));
+    bodies(s.density, "density", "Body density", "", "Opacity of white.", within(0, 1), slider(0.1, 0.98));
     bodies(s.border, "border", "Soft border", "of the width",
            "Light fades over this share towards the picture's edges.", within(0, 0.5), slider(0, 0.2));
     bodies(
-        s.margin, "margin", "Margin", "of the width",
+        s.margin, "margin", "Picture margin", "of the width",
         "How far a picture on a plane goes on beyond its edges, mirrored and fading: without straight edges "
         "from aslant, and whole from the front.",
         within(0, 0.5), slider(0, 0.3));
@@ -254,7 +255,7 @@ void describe_source(const Describer& d, SourceParams& s) {
             "reduced until their bodies are no more.",
             range(0, 1e15), slider(1e4, 1e9), logarithmic(), only_with("voxels", {"auto"}),
             only_with("voxel_size", {0.0}), zero_is("Off"));
-    lattice(s.jitter, "jitter", "Jitter", "of half a voxel", "How far positions leave the lattice.",
+    lattice(s.jitter, "jitter", "Lattice jitter", "of half a voxel", "How far positions leave the lattice.",
             range(0, 1));
     lattice(s.max_distance, "max_distance", "Largest distance", "scene units",
             "Positions farther from the meshes are dropped; 0: 2 % of the longest side.", at_least(0),
@@ -274,7 +275,7 @@ void describe_source(const Describer& d, SourceParams& s) {
                        s.uv_camera);
     describe_structure(d.shown_in("Source", "Structure").only_with("kind", {"mesh"}).in("structure", false),
                        s.structure);
-    splats(s.seed, "seed", "Seed", "", "Random numbers of this layer; 0: from the layer's name.",
+    splats(s.seed, "seed", "Layer seed", "", "Random numbers of this layer; 0: from the layer's name.",
            slider(0, 1000), zero_is("Auto"));
     files(s.file, "file", "Splat file", "",
           "For kind = \"splats\": .pda, .ply, .splats, or Gaussians in .glb or .gltf.",

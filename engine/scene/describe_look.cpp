@@ -22,8 +22,8 @@ void describe_curve(const Describer& d, DensityCurve& curve) {
 void describe_thickness_stop(const Describer& d, ThicknessStop& stop) {
     d(stop.color, "color", "Map colour", "", "Colour of the thickness map that this stop stands for.",
       as(Type::color), range(0, 1));
-    d(stop.scale, "scale", "Thickness", "of reach", "Reach where the map has this colour.", within(0, 1e6),
-      slider(0, 4));
+    d(stop.scale, "scale", "Thickness of the stop", "of reach", "Reach where the map has this colour.",
+      within(0, 1e6), slider(0, 4), shown_as("Thickness"));
     describe_curve(d, stop.pdf);
 }
 
@@ -33,12 +33,14 @@ void describe_noise(const Describer& d, Noise& n) {
     d(n.octaves, "octaves", "Octaves", "", "Layers of finer and finer noise.", range(1, 16));
     d(n.lacunarity, "lacunarity", "Lacunarity", "", "Frequency of an octave over the one before.",
       within(0.01, 16), slider(1, 4));
-    d(n.gain, "gain", "Gain", "", "Strength of an octave over the one before.", within(0, 16), slider(0, 1));
-    d(n.seed, "seed", "Seed", "", "Another number gives another noise.", slider(0, 1000));
+    d(n.gain, "gain", "Octave gain", "", "Strength of an octave over the one before.", within(0, 16),
+      slider(0, 1));
+    d(n.seed, "seed", "Noise seed", "", "Another number gives another noise.", slider(0, 1000));
     d(n.cull, "cull", "Thins out", "", "How much of the density the noise takes.", range(0, 1));
     d(n.silhouette, "silhouette", "Frays the edge", "", "How much of the reach the noise takes.",
       range(0, 1));
-    d(n.jitter, "jitter", "Displaces", "scene units", "Moves splats along the layer's axis.", slider(0, 1));
+    d(n.jitter, "jitter", "Jitters positions", "scene units", "Moves splats along the layer's axis.",
+      slider(0, 1));
     d(n.alpha, "alpha", "Varies opacity", "", "Opacity times 1 + this * noise.", within(-1e6, 1e6),
       slider(0, 1));
     d(n.brightness, "brightness", "Varies brightness", "", "Colour times 1 + this * noise.",
@@ -66,7 +68,7 @@ void describe_alpha(const Describer& d, HorizontalAlpha& a) {
     d(a.threshold, "threshold", "Threshold", "", "Opacity from here on is left alone.", range(0, 1));
     d(a.unpremultiply, "unpremultiply", "Divide by alpha", "",
       "Divides colours below the threshold by their opacity.");
-    d(a.gain, "gain", "Gain", "", "Multiplies opacity.", within(0, 1e6), slider(0, 4));
+    d(a.gain, "gain", "Opacity gain", "", "Multiplies opacity.", within(0, 1e6), slider(0, 4));
 }
 
 void describe_vertical(const Describer& d, VerticalAlpha& v) {
@@ -76,8 +78,9 @@ void describe_vertical(const Describer& d, VerticalAlpha& v) {
       only_with("shape", {"exponential"}));
     d(v.points, "points", "Points", "", "Curve: points (x, opacity) with x ascending.", within(0, 1e6),
       only_with("shape", {"curve"}));
-    d(v.reach, "reach", "Reach", "scene units", "Where x = 1 for this alone; 0: the layer's reach.",
-      at_least(0), slider(0, 10), zero_is("Auto"));
+    d(v.reach, "reach", "Reach of opacity", "scene units",
+      "Where x = 1 for this alone; 0: the layer's reach.", at_least(0), slider(0, 10), zero_is("Auto"),
+      shown_as("Reach"));
     d(v.match, "match", "Match the picture", "",
       "Makes the front view show the picture's opacity; picture: its light too, measured part by part; "
       "auto: coverage for meshes, none for splat files.");
@@ -96,7 +99,7 @@ void describe_radius(const Describer& d, Radius& r) {
 }
 
 void describe_grade(const Describer& d, Grade& g) {
-    d(g.gain, "gain", "Brightness", "", "Multiplies the colour.", within(0, 1e6), slider(0.01, 100),
+    d(g.gain, "gain", "Colour gain", "", "Multiplies the colour.", within(0, 1e6), slider(0.01, 100),
       logarithmic());
     d(g.tint, "tint", "Tint", "", "Multiplies the colour per channel.", as(Type::color), within(0, 1e6),
       slider(0, 2));
@@ -156,7 +159,7 @@ void describe_render(const Describer& d, LayerRender& r) {
            "Dots that look larger are split; 0: off.", at_least(0), slider(0, 200), zero_is("Off"));
     detail(r.lod.max_children, "lod.max_children", "Most children", "", "Largest number of parts of one dot.",
            range(1, 16777216), slider(1, 65536), logarithmic());
-    detail(r.lod.noise, "lod.noise", "Structure", "",
+    detail(r.lod.noise, "lod.noise", "Noise of parts", "",
            "How strongly the parts of a dot differ in light, as clouds do; stars of pictures stay whole.",
            range(0, 2));
     mixing(r.holdout, "holdout", "Holdout", "", "Hides what lies behind and shows nothing itself.");

@@ -11,6 +11,7 @@
 #include "bodies/star_places.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/memory.h"
 #include "core/shared_maths.h"
 #include "core/text.h"
 #include "generate/lattice.h"

@@ -70,8 +70,15 @@ TEST(PanelStates, ZerosThatAreNoAmountSayWhatIsUsed) {
     EXPECT_EQ(zero_of("layer.dust.source.max_distance", layer), "Auto (0.250)");
     EXPECT_EQ(zero_of("layer.dust.look.radius.min", layer), "Auto (0.0165)");
     EXPECT_EQ(zero_of("layer.dust.look.reach", layer), "Auto (0.250)");
+    EXPECT_EQ(zero_of("layer.dust.source.uv_width", layer), "Auto");
+    EXPECT_EQ(zero_of("layer.dust.source.structure.height", layer), "Auto");
+    layer.uv_width = 12.0;
+    layer.body_height = 0.198;
+    EXPECT_EQ(zero_of("layer.dust.source.uv_width", layer), "Auto (12.0)");
+    EXPECT_EQ(zero_of("layer.dust.source.structure.height", layer), "Auto (0.198)");
     layer.stale = true;  // the set is that of another distance
     EXPECT_EQ(zero_of("layer.dust.source.max_distance", layer), "Auto");
+    EXPECT_EQ(zero_of("layer.dust.source.structure.height", layer), "Auto");
 }
 
 }  // namespace

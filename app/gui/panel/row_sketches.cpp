@@ -144,6 +144,10 @@ std::string zero_in_words(const Context& context, const ParameterSpec& spec) {
     } else if (spec.generic_key == "layer.source.max_distance") {
         const LayerStatus& status = context.layer_status();
         if (status.histograms && !status.stale) used = status.histograms->max_distance;
+    } else if (spec.generic_key == "layer.source.structure.height") {
+        if (!context.layer_status().stale) used = context.layer_status().body_height;
+    } else if (spec.generic_key == "layer.source.uv_width") {
+        if (!context.layer_status().stale) used = context.layer_status().uv_width;
     } else if (spec.generic_key == "layer.source.seed") {
         const std::uint32_t seed = resolved_seed(0, context.layer().name);
         return fmt::format("{} ({})", spec.zero, seed);

@@ -87,7 +87,7 @@ TEST(Preferences, EverySettingHasItsDefaultAmongItsChoices) {
 
 TEST(Settings, TheCommandLineAndTheEnvironmentNameTheCacheBeforeTheSettings) {
     const Settings settings{.cache_gib = 5, .cache_folder = "/mine"};
-    const SetCache standard{"/home/sets"}, named{"/named"}, none;
+    const SetCache standard{"/standard/sets"}, named{"/named"}, none;
     {
         const Variable no_folder("ASTROSPLAT_CACHE", nullptr);
         EXPECT_EQ(cache_with(settings, standard, false).folder, "/mine");

@@ -2,6 +2,8 @@
 // the names of its choices.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "scene/describe.h"
 #include "scene_texts.h"
@@ -25,6 +27,29 @@ TEST(DescriptionTest, EveryParameterHasAPlaceInTheWindow) {
     }
     EXPECT_EQ(spec_of("layer.look.radius.min").row_label, "Smallest");
     EXPECT_EQ(spec_of("layer.look.noise.cull").section, "Noise");
+}
+
+// Undo, the graph and search name a parameter by its label alone.
+TEST(DescriptionTest, NoTwoParametersOfALayerOrOfTheSceneHaveOneName) {
+    // The same of two things that are never seen together, or of each of a list. What is prepared and masked
+    // is told in the same words.
+    const std::set<std::string> shared{"Rate",     "Points",         "Sigma", "Density with distance",
+                                       "Rotation", "Position",       "Scale", "Width",
+                                       "Height",   "Divide by alpha"};
+    std::map<std::pair<bool, std::string>, std::string> keys;
+    for (const ParameterRow& row : parameter_rows()) {
+        const bool of_layer = row.spec.key.is_below("layer");
+        const bool counts = !row.spec.key.is_below("layer.source.mask") &&
+                            !row.spec.key.is_below("layer.source.prepare") &&
+                            !row.spec.key.is_below("reference");
+        if (!counts || shared.count(row.spec.label)) continue;
+        std::string& first = keys[{of_layer, row.spec.label}];
+        if (first.empty()) first = row.spec.key.text();
+        EXPECT_EQ(first, row.spec.key.text()) << row.spec.label;
+    }
+    EXPECT_EQ(spec_of("layer.look.alpha.gain").label, "Opacity gain");
+    EXPECT_EQ(spec_of("layer.look.noise.gain").label, "Octave gain");
+    EXPECT_EQ(spec_of("environment.gain").label, "Light gain");
 }
 
 TEST(DescriptionTest, ConditionsNameParametersAndValuesTheyTake) {

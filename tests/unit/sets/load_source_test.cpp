@@ -5,6 +5,7 @@
 
 #include "bodies/bodies.h"
 #include "core/log.h"
+#include "sets/automatic_values.h"
 #include "sets/load_source.h"
 #include "source/textured_mesh.h"
 #include "splat_files/splat_file.h"
@@ -187,6 +188,29 @@ TEST_F(LoadSourceTest, BodiesOfAMarginLieBeyondThePictureAndTheOthersWhereTheyWe
     EXPECT_GT(outside, set.size() / 50);
     EXPECT_LT(outside, set.size() / 2);
     EXPECT_NEAR(bounds(set).extent().x, 12.0, 0.5);
+}
+
+// A plane of 10 units by 6.67.
+TEST_F(LoadSourceTest, AutomaticHeightAndWidthAreTold) {
+    SourceParams source = sheet_of_gas(120, 80);
+    EXPECT_NEAR(automatic_values(source).body_height, 0.011 * 10.0, 1e-4);
+    EXPECT_EQ(automatic_values(source).uv_width, 0.0) << "the mesh's own";
+    source.structure.kind = StructureKind::disk;
+    EXPECT_NEAR(automatic_values(source).body_height, 0.018 * 10.0, 1e-4);
+    source.structure.margin = 0.1;  // a disk that goes on is larger
+    EXPECT_NEAR(automatic_values(source).body_height, 0.018 * 11.0, 1e-4);
+    const SplatSet automatic = load_source(source, "gas");
+    source.structure.height = automatic_values(source).body_height;
+    const SplatSet told = load_source(source, "gas");
+    EXPECT_EQ(automatic_values(source).body_height, 0.0) << "nothing is automatic any more";
+    EXPECT_NEAR(bounds(told).extent().y / bounds(automatic).extent().y, 1.0, 1e-3);
+
+    SourceParams planar = mesh_source("sphere", source.meshes[0].texture);
+    planar.uv = UvMode::planar_xy;
+    const double diameter = bounds(load_meshes(planar)).extent().x;
+    EXPECT_NEAR(automatic_values(planar).uv_width, diameter, 1e-9);
+    planar.uv_width = 3.0;
+    EXPECT_EQ(automatic_values(planar).uv_width, 0.0);
 }
 
 TEST_F(LoadSourceTest, AMarginOfAnotherMeshThanAPlaneIsNamed) {
