@@ -22,36 +22,36 @@
 namespace astrosplat {
 namespace {
 
-struct ObjectKind {
+struct NamedObject {
     const char* name;
-    StructureKind structure;
+    SkyObject object;
 };
-constexpr std::array<ObjectKind, 3> object_kinds{
-    {{"galaxy", StructureKind::disk}, {"nebula", StructureKind::sheet}, {"remnant", StructureKind::walls}}};
+constexpr std::array<NamedObject, 3> sky_objects{
+    {{"galaxy", SkyObject::galaxy}, {"nebula", SkyObject::nebula}, {"remnant", SkyObject::remnant}}};
 
-std::optional<StructureKind> structure_of(const std::string& as) {
+std::optional<SkyObject> object_of(const std::string& as) {
     if (as.empty()) return {};
-    for (const ObjectKind& kind : object_kinds)
-        if (kind.name == as) return kind.structure;
+    for (const NamedObject& named : sky_objects)
+        if (named.name == as) return named.object;
     static const std::vector<std::string> names{"galaxy", "nebula", "remnant", "plane"};
     throw InputError(fmt::format("--as: expected galaxy, nebula, remnant or plane, found '{}'{}", as,
                                  did_you_mean(as, names)));
 }
 
-std::string object_name(StructureKind structure) {
-    for (const ObjectKind& kind : object_kinds)
-        if (kind.structure == structure) return kind.name;
-    return "plane";
+std::string object_name(SkyObject object) {
+    for (const NamedObject& named : sky_objects)
+        if (named.object == object) return named.name;
+    return "";
 }
 
 std::string bodies_text(const NewOptions& options) {
-    std::string why;
-    PictureScene scene = picture_scene(options.image, structure_of(options.as), why);
+    StructureChoice choice;
+    PictureScene scene = picture_scene(options.image, object_of(options.as), choice);
     scene.film = options.film;
-    if (!why.empty())
+    if (!choice.why.empty())
         log_info(fmt::format("'{}' is taken for a {}: {}; --as chooses another",
-                             printable(options.image.filename().string()), object_name(scene.structure),
-                             why));
+                             printable(options.image.filename().string()), object_name(choice.object),
+                             choice.why));
     return picture_scene_text(scene, options.scene);
 }
 

@@ -223,8 +223,8 @@ std::string sky_scene_text(const fs::path& file, const fs::path& place) {
 
 std::string picture_text(const fs::path& file, const fs::path& place) {
     require_picture(file);
-    std::string why;
-    return picture_scene_text(picture_scene(file, {}, why), place);
+    StructureChoice choice;
+    return picture_scene_text(picture_scene(file, {}, choice), place);
 }
 
 /// Stars of a picture come with it: prepare writes both into one folder.

@@ -27,7 +27,7 @@ constexpr double dark_edge = 0.3;    // of the mean light
 constexpr double alone_edge = 0.45;  // of the same, for what has a glow around it
 
 constexpr double rim_share = 0.02;  // of the width
-constexpr float dark_rim = 0.004f;  // displayed as a twentieth of white
+constexpr float dark_rim = 0.001f;  // from aslant it shows several times as bright
 
 struct Pixel {
     double radius, light, red, blue;
@@ -129,10 +129,9 @@ Part part_of(const std::vector<Pixel>& pixels, Wanted wanted) {
     return {light / std::max(1.0, count), red / std::max(1e-12, blue)};
 }
 
-}  // namespace
-
-StructureChoice choose_structure(const Image& light) {
-    if (light.width < 16 || light.height < 16) return {StructureKind::sheet, "it is too small to tell"};
+StructureChoice by_looking(const Image& light) {
+    if (light.width < 16 || light.height < 16)
+        return {StructureKind::sheet, SkyObject::nebula, "it is too small to tell"};
     const Image small = small_copy(light);
     const std::vector<Pixel> pixels = by_radius(small);
     const double half = half_light_radius(pixels);
@@ -143,20 +142,42 @@ StructureChoice choose_structure(const Image& light) {
         part_of(pixels, [&](const Pixel& p) { return p.radius > 0.8 * half && p.radius < 1.2 * half; });
     const Part outside =
         part_of(pixels, [&](const Pixel& p) { return p.radius > 0.9 * half && p.radius < 1.6 * half; });
-    if (!(all.light > 0.0)) return {StructureKind::sheet, "it is even up to its edges"};
+    if (!(all.light > 0.0)) return {StructureKind::sheet, SkyObject::nebula, "it is even up to its edges"};
     const double peak = middle.light / std::max(1e-12, ring.light);
     const bool red = middle.redness >= as_red * outside.redness, dark = edge.light <= dark_edge * all.light;
     // Without colour the shape has to tell: real galaxies have .06 to .20, clouds up to .6.
     const bool lopsided = is_grey(pixels) && lopsidedness(small, half) > too_lopsided;
     if (peak >= bright_middle && red && dark && lopsided)
-        return {StructureKind::sheet, "it is grey, and its bright middle has different light on either side"};
+        return {StructureKind::walls, SkyObject::nebula,
+                "it is grey, and its bright middle has different light on either side"};
     if (peak >= bright_middle && red && dark)
-        return {StructureKind::disk,
+        return {StructureKind::disk, SkyObject::galaxy,
                 "its light gathers in a middle that is as red as what is around it, or redder"};
     if (peak < even_middle && edge.light <= alone_edge * all.light)
-        return {StructureKind::walls, "it stands alone on a dark sky and is not much brighter in the middle"};
-    return {StructureKind::sheet, dark ? "it has a bright middle that is bluer than what is around it"
-                                       : "its light goes on to the picture's edges"};
+        return {StructureKind::walls, SkyObject::remnant,
+                "it stands alone on a dark sky and is not much brighter in the middle"};
+    if (dark)
+        return {StructureKind::walls, SkyObject::nebula,
+                "it stands on a dark sky and has a bright middle that is bluer than what is around it"};
+    return {StructureKind::sheet, SkyObject::nebula, "its light goes on to the picture's edges"};
+}
+
+StructureKind of_nebula(const Image& light) {
+    if (light.width < 16 || light.height < 16) return StructureKind::sheet;
+    const std::vector<Pixel> pixels = by_radius(small_copy(light));
+    const Part all = part_of(pixels, [](const Pixel&) { return true; });
+    const Part edge = part_of(pixels, [](const Pixel& p) { return p.edge; });
+    const bool alone = all.light > 0.0 && edge.light <= dark_edge * all.light;
+    return alone ? StructureKind::walls : StructureKind::sheet;
+}
+
+}  // namespace
+
+StructureChoice choose_structure(const Image& light, std::optional<SkyObject> shown) {
+    if (!shown) return by_looking(light);
+    if (*shown == SkyObject::galaxy) return {StructureKind::disk, *shown, ""};
+    if (*shown == SkyObject::remnant) return {StructureKind::walls, *shown, ""};
+    return {of_nebula(light), *shown, ""};
 }
 
 glm::dvec2 subject_of(const Image& light) {

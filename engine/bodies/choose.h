@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec2.hpp>
+#include <optional>
 #include <string>
 
 #include "core/image.h"
@@ -9,15 +10,19 @@
 
 namespace astrosplat {
 
+enum class SkyObject { galaxy, nebula, remnant };
+
 struct StructureChoice {
     StructureKind kind = StructureKind::sheet;
-    std::string why;  // "its light gathers in the middle, which is redder than what is around it"
+    SkyObject object = SkyObject::nebula;
+    std::string why;  // "its light goes on to the picture's edges"; empty where the object was given
 };
 
 /// disk for what has a bright middle that is at least as red as its surroundings (in a grey picture: with
-/// light all around it), walls for what stands alone on a dark sky and is bright all over or at its rim,
-/// sheet for everything else. `light`: RGB, linear, >= 0.
-StructureChoice choose_structure(const Image& light);
+/// light all around it), walls for what stands alone on a dark sky, sheet for what goes on to the
+/// picture's edges. `light`: RGB, linear, >= 0. `shown`: what it is known to show; a nebula may be either of
+/// the latter.
+StructureChoice choose_structure(const Image& light, std::optional<SkyObject> shown = {});
 
 /// Where a picture is brightest over wide areas, its stars left out: from the top left corner, in shares of
 /// its width and height. The middle, where it is too small to tell or dark.

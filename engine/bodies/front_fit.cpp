@@ -26,22 +26,24 @@ constexpr double filter_px = 0.5;               // of the output's pixels, as sc
 constexpr float sky = 0.002f;                   // added to both sides of a ratio
 constexpr int first_steps = 4, last_steps = 3;  // before the rendering and after it
 constexpr double share_blur_px = 2.0;           // coarse pixels, of the share that is supposed
-constexpr std::int64_t cell_px = 32;
+constexpr std::int64_t flux_cell_px = 32;
 // Of the rendering's records; with more it takes its picture in parts.
 constexpr std::int64_t least_projected_bytes = std::int64_t{64} << 20, projected_bytes_a_texel = 12;
 constexpr std::int64_t psnr_step = 16;  // rows between those that the PSNR is measured on
 
 glm::dvec3 light_of_cell(const Image& image, std::int64_t column, std::int64_t row) {
     glm::dvec3 sum(0.0);
-    for (std::int64_t y = row * cell_px; y < std::min((row + 1) * cell_px, image.height); ++y)
-        for (std::int64_t x = column * cell_px; x < std::min((column + 1) * cell_px, image.width); ++x)
+    for (std::int64_t y = row * flux_cell_px; y < std::min((row + 1) * flux_cell_px, image.height); ++y)
+        for (std::int64_t x = column * flux_cell_px; x < std::min((column + 1) * flux_cell_px, image.width);
+             ++x)
             for (int c = 0; c < 3; ++c) sum[c] += static_cast<double>(image.at(x, y)[c]);
     return sum;
 }
 
 // What is wanted over what is seen, in cells.
 Image cell_ratio(const Image& wanted, const Image& seen) {
-    Image cells = make_image((seen.width + cell_px - 1) / cell_px, (seen.height + cell_px - 1) / cell_px, 3);
+    Image cells = make_image((seen.width + flux_cell_px - 1) / flux_cell_px,
+                             (seen.height + flux_cell_px - 1) / flux_cell_px, 3);
     parallel_each(cells.height, 1, [&](std::int64_t row) {
         for (std::int64_t column = 0; column < cells.width; ++column) {
             const glm::dvec3 here = light_of_cell(seen, column, row),
@@ -65,9 +67,9 @@ Image share_of(const Image& seen, const Image& flat) {
     return share;
 }
 
-class FrontView {
+class FittedView {
   public:
-    FrontView(PictureSplats& dots, const Image& picture)
+    FittedView(PictureSplats& dots, const Image& picture)
         : target_(gaussian_blur(picture, filter_px)), flat_(dots, picture.width, picture.height, filter_px) {
         settings_.pixel_filter = static_cast<float>(filter_px);
         layer_.name = "front";
@@ -99,7 +101,7 @@ class FrontView {
     void step_from(Image seen, bool overshoot) { flat_.correct(weighted_ratio(std::move(seen)), overshoot); }
     /// Takes them to the picture's flux, cell by cell.
     void match_cells(const Image& seen) {
-        flat_.multiply(cell_ratio(target_, seen), static_cast<double>(cell_px));
+        flat_.multiply(cell_ratio(target_, seen), static_cast<double>(flux_cell_px));
     }
     /// On sRGB values of some rows.
     double psnr_db(const Image& seen) const;
@@ -117,7 +119,7 @@ class FrontView {
     Image share_;  // of the flat light that reaches the viewer, as smooth as at half the picture's size
 };
 
-Image FrontView::supposed() {
+Image FittedView::supposed() {
     Image flat = flat_.sum();
     share_ = share_of(halved(target_), halved(flat));
     parallel_each(share_.pixels.size(), 65536,
@@ -126,7 +128,7 @@ Image FrontView::supposed() {
     return shown(std::move(flat));
 }
 
-Image FrontView::rendered(const Progress& progress) {
+Image FittedView::rendered(const Progress& progress) {
     share_ = {};
     Image flat = flat_.sum();
     release_spare_pages();  // of the steps
@@ -137,13 +139,13 @@ Image FrontView::rendered(const Progress& progress) {
     return shown(std::move(flat));
 }
 
-Image FrontView::shown(Image flat) const {
+Image FittedView::shown(Image flat) const {
     parallel_each(flat.pixels.size(), 65536, [&](std::size_t i) { flat.pixels[i] *= share_.pixels[i]; });
     return flat;
 }
 
 // The ratio of what is wanted to what is seen, weighted by what is seen.
-Fraction FrontView::weighted_ratio(Image seen) {
+Fraction FittedView::weighted_ratio(Image seen) {
     const bool first = momentum_.pixels.empty();
     if (first) momentum_ = unfilled_image(seen.width, seen.height, 3);
     Fraction ratio{unfilled_image(seen.width, seen.height, 3), std::move(seen)};
@@ -158,7 +160,7 @@ Fraction FrontView::weighted_ratio(Image seen) {
     return ratio;
 }
 
-double FrontView::psnr_db(const Image& seen) const {
+double FittedView::psnr_db(const Image& seen) const {
     std::vector<double> rows(static_cast<std::size_t>((target_.height + psnr_step - 1) / psnr_step), 0.0);
     parallel_each(rows.size(), 16, [&](std::size_t row) {
         const float* const here = seen.at(0, static_cast<std::int64_t>(row) * psnr_step);
@@ -177,7 +179,7 @@ double FrontView::psnr_db(const Image& seen) const {
 }  // namespace
 
 FrontFit fit_front(PictureSplats& dots, Image light, const Progress& progress) {
-    FrontView view(dots, light);
+    FittedView view(dots, light);
     light = {};
     Image seen = view.supposed();
     for (int step = 0; step < first_steps; ++step) {

@@ -16,7 +16,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr double cell_px = 8.0;
+constexpr double star_cell_px = 8.0;
 constexpr std::int64_t splats_per_task = 65536;
 constexpr double least_depth = 1e-6;  // of a splat, optical
 constexpr float most_hiding = 1.0f - 1e-6f;
@@ -41,8 +41,8 @@ class StarGrid {
   public:
     StarGrid(const FrontView& view, const std::vector<glm::vec3>& positions) {
         width_ = std::max<std::int64_t>(
-            1, static_cast<std::int64_t>(view.camera.aspect * view.height_px / cell_px) + 1);
-        height_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(view.height_px / cell_px) + 1);
+            1, static_cast<std::int64_t>(view.camera.aspect * view.height_px / star_cell_px) + 1);
+        height_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(view.height_px / star_cell_px) + 1);
         cells_.resize(static_cast<std::size_t>(width_ * height_));
         for (std::size_t i = 0; i < positions.size(); ++i) {
             const auto seen = seen_by(view, glm::dvec3(positions[i]));
@@ -67,7 +67,7 @@ class StarGrid {
 
   private:
     static std::int64_t cell(double px, std::int64_t count) {
-        return static_cast<std::int64_t>(std::clamp(px / cell_px, 0.0, static_cast<double>(count - 1)));
+        return static_cast<std::int64_t>(std::clamp(px / star_cell_px, 0.0, static_cast<double>(count - 1)));
     }
     std::int64_t row(double y) const { return cell(y, height_); }
     std::int64_t column(double x) const { return cell(x, width_); }

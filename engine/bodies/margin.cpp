@@ -90,8 +90,9 @@ Surroundings surroundings_of(const Image& image, std::int64_t margin_px) {
 // How far light goes on from a place on the rim, as a share of the margin: as far as a disk whose light falls
 // exponentially takes to grow dark, so that outlines follow the galaxy and not the frame of its picture.
 float reach_of(float rim_light, float brightest_rim) {
-    constexpr float dark = 0.004f, least = 0.2f;
-    if (brightest_rim <= dark) return least;
+    constexpr float least = 0.2f;
+    const float dark = std::min(0.004f, 0.1f * brightest_rim);
+    if (dark <= 0.0f) return least;
     const float share =
         shared::as_log(std::max(rim_light, dark) / dark) / shared::as_log(brightest_rim / dark);
     return least + (1.0f - least) * std::min(share, 1.0f);

@@ -25,6 +25,8 @@ constexpr float knot_depth = 0.6f;        // scale height of a knot, of its sigm
 constexpr float widest_in_knots = 5.0f;   // texels, sigma of the largest dots that follow their knot
 constexpr double widest_filament = 45.0;  // texels at a width of 1920; what is wider is glow
 
+constexpr float sky_reach = 0.8f;  // around a shell, of its greatest
+
 constexpr double dots_each[8] = {2.4, 4, 9, 16, 24, 24, 24, 24};  // within 2 pi sigma^2
 constexpr double crowd_in_bulges = 32.0;  // times as many wide dots there, or its outline would be ragged
 
@@ -170,7 +172,10 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
                 *field.at(x, y) *= flare_at(placement, middle(x), middle(y));
         });
     }
-    if (params.kind == StructureKind::walls) placement.relief = shell_field(shown, placement.depth, 0.8);
+    if (params.kind == StructureKind::walls) {
+        placement.relief = shell_field(shown, placement.depth, 0.8);
+        placement.filled = find_filled_light(shown);
+    }
     if (params.kind == StructureKind::sheet && flat)
         placement.relief = relief_field(shown, placement.depth, 0.6);  // counts twice
     placement.knots = find_knots(brightest);
@@ -186,6 +191,16 @@ float Placement::scale_height(float x, float y) const {
 float Placement::relief_at(float x, float y) const {
     const float share = 1.0f / static_cast<float>(1 << field_halvings);
     return bilinear(relief, 0, x * share, y * share);
+}
+
+DepthReach Placement::reach_at(float x, float y, std::uint32_t random) const {
+    if (filled.core_share.pixels.empty()) return {DepthReach::Of::walls, relief_at(x, y)};
+    const float share = 1.0f / static_cast<float>(1 << field_halvings);
+    const auto of = [&](const Image& field) { return bilinear(field, 0, x * share, y * share); };
+    const float u = as_uniform(as_mix(random ^ 0x94d049bbu));
+    if (u < of(filled.core_share)) return {DepthReach::Of::core, of(filled.core_reach)};
+    if (u >= 1.0f - of(filled.sky_share)) return {DepthReach::Of::sky, sky_reach * static_cast<float>(depth)};
+    return {DepthReach::Of::walls, relief_at(x, y)};
 }
 
 float Placement::thickness_at(float x, float y) const {
@@ -246,7 +261,8 @@ void place(const Placement& placement, const BandDots& dots, PlacedBlock& block)
     std::fill_n(block.knot, block.count, -1);
     if (dots.sigma <= widest_in_knots && !placement.knots.knots.empty()) follow_knots(placement, block);
     if (placement.kind == StructureKind::sheet) add_relief(placement, block);
-    if (placement.kind == StructureKind::walls && !dots.glow) add_walls(placement, block);
+    if (placement.kind == StructureKind::walls && !dots.glow)
+        add_walls(placement, static_cast<double>(dots.feature), block);
 }
 
 }  // namespace astrosplat

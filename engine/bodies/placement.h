@@ -8,6 +8,7 @@
 
 #include "bodies/bands.h"
 #include "bodies/depth_kernel.h"
+#include "bodies/filled_light.h"
 #include "bodies/knots.h"
 #include "core/image.h"
 #include "source/source.h"
@@ -23,6 +24,12 @@ inline constexpr double widest_glow_share = 0.06;
 /// Where a disk is so many times as thick, those are as much wider.
 inline constexpr float wider_in_bulges[] = {1.3f, 1.7f};
 
+/// How far from the middle light of a shell lies: on its two walls, or anywhere between in a core or the sky.
+struct DepthReach {
+    enum class Of { walls, core, sky } of = Of::walls;
+    float texels = 0.0f;
+};
+
 /// What depths depend on beside a dot's own place and band.
 struct Placement {
     StructureKind kind = StructureKind::disk;
@@ -36,8 +43,9 @@ struct Placement {
     std::int64_t picture_width = 0, picture_height = 0;  // texels
     int field_halvings = 0;                              // of the size of the fields:
     Image thickness;                                     // H(x, y), texels
-    Image relief;  // how far the middle of a sheet or a wall stands out, texels; empty: not at all
-    Knots knots;   // each at one depth
+    Image relief;        // how far the middle of a sheet or a wall stands out, texels; empty: not at all
+    FilledLight filled;  // of what has walls; empty: none
+    Knots knots;         // each at one depth
     std::vector<float> knot_z;  // theirs, texels
 
     /// Values of the fields at a place of the picture.
@@ -45,6 +53,8 @@ struct Placement {
     float relief_at(float x, float y) const;
     /// H(x, y) over H and without its flare: more than 1 where a disk is a bulge.
     float thickness_at(float x, float y) const;
+    /// Of a dot, by the shares of its column's light.
+    DepthReach reach_at(float x, float y, std::uint32_t random) const;
 };
 
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its

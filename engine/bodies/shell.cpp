@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "bodies/fields.h"
-#include "core/parallel.h"
 #include "image/blur.h"
 #include "image/percentile.h"
 
@@ -19,8 +19,20 @@ constexpr double silhouette_from = 0.04, silhouette_to = 0.13;  // of the range 
 constexpr float leak = 4.0f;                                    // outside of it, by which h falls off
 constexpr int sweeps = 400;
 
-// 0 outside .. 1 inside, with a soft edge.
-void to_silhouette(Image& light) {
+}  // namespace
+
+SilhouetteGrid silhouette_grid(const Image& brightest) {
+    SilhouetteGrid grid{brightest, {}};
+    for (int i = 0; i < field_halvings(brightest); ++i) grid.light = halved(grid.light);
+    grid.light = gaussian_blur(grid.light, silhouette_blur * static_cast<double>(grid.light.width));
+    while (std::max(grid.light.width, grid.light.height) > longest_grid) {
+        grid.finer.push_back({grid.light.width, grid.light.height});
+        grid.light = halved(grid.light);
+    }
+    return grid;
+}
+
+Image silhouette_of(Image light) {
     const std::vector<double> values{light.pixels.begin(), light.pixels.end()};
     const double sky = percentile(values, sky_percentile);
     const double range = std::max(1e-12, percentile(values, bright_percentile) - sky);
@@ -29,6 +41,13 @@ void to_silhouette(Image& light) {
         const double t = std::clamp((share - silhouette_from) / (silhouette_to - silhouette_from), 0.0, 1.0);
         value = static_cast<float>(t * t * (3.0 - 2.0 * t));
     }
+    return light;
+}
+
+Image to_field_size(Image coarse, const SilhouetteGrid& grid) {
+    for (auto size = grid.finer.rbegin(); size != grid.finer.rend(); ++size)
+        coarse = doubled(coarse, size->width, size->height);
+    return coarse;
 }
 
 // Successive over-relaxation, in order of rows: one thread, so that the bits are the same. 0 beyond the
@@ -54,29 +73,16 @@ Image blown_up(const Image& silhouette) {
     return h;
 }
 
-}  // namespace
-
 Image shell_field(const Image& brightest, double depth, double steepest) {
-    const int halvings = field_halvings(brightest);
-    Image field = brightest;
-    for (int i = 0; i < halvings; ++i) field = halved(field);
-    field = gaussian_blur(field, silhouette_blur * static_cast<double>(field.width));
-    std::vector<ImageSize> sizes;
-    Image coarse = field;
-    while (std::max(coarse.width, coarse.height) > longest_grid) {
-        sizes.push_back({coarse.width, coarse.height});
-        coarse = halved(coarse);
-    }
-    to_silhouette(coarse);
-    Image shell = blown_up(coarse);
+    SilhouetteGrid grid = silhouette_grid(brightest);
+    Image shell = blown_up(silhouette_of(grid.light));
     const float highest = *std::max_element(shell.pixels.begin(), shell.pixels.end());
-    if (highest <= 0.0f) return make_image(field.width, field.height, 1);
-    for (float& value : shell.pixels)
-        value = static_cast<float>(depth) * std::sqrt(std::max(0.0f, value) / highest);
-    for (auto size = sizes.rbegin(); size != sizes.rend(); ++size)
-        shell = doubled(shell, size->width, size->height);
-    const double step = static_cast<double>(1 << halvings);
-    limit_slope(shell, steepest * step);
+    if (highest > 0.0f)
+        for (float& value : shell.pixels)
+            value = static_cast<float>(depth) * std::sqrt(std::max(0.0f, value) / highest);
+    shell = to_field_size(std::move(shell), grid);
+    if (highest <= 0.0f) return shell;
+    limit_slope(shell, steepest * static_cast<double>(1 << field_halvings(brightest)));
     return gaussian_blur(shell, 0.005 * static_cast<double>(shell.width));  // takes corners off
 }
 

@@ -17,6 +17,38 @@ float sheet_at(const Placement& placement, float x, float y) {
     return 2.0f * placement.relief_at(x, y) - static_cast<float>(placement.depth);
 }
 
+// -1..1 of any value.
+float between(float value) { return 2.0f / (1.0f + shared::as_exp(-2.0f * value)) - 1.0f; }
+
+// Depths within the reach of each column, which is its height here: all are as likely, and they gather in
+// clouds as a disk's do.
+void spread_in_clouds(const Placement& placement, double feature, DepthBlock& block) {
+    std::fill_n(block.clumping, block.count, 1.0f);
+    disk_depths(stack(placement, placement.depth, feature, clump_gain(placement, feature), 0.75), block);
+    for (int i = 0; i < block.count; ++i)  // sech^2 becomes even
+        block.z[i] =
+            block.height[i] * (1.0f - 2.0f / (1.0f + shared::as_exp(2.0f * block.z[i] / block.height[i])));
+}
+
+// Those of the sky that belong to no knot.
+void spread_in_sky(const Placement& placement, double feature, const DepthReach* reaches,
+                   PlacedBlock& block) {
+    DepthBlock sky;
+    int dots[PlacedBlock::size];
+    sky.count = 0;
+    for (int i = 0; i < block.count; ++i) {
+        if (reaches[i].of != DepthReach::Of::sky || block.knot[i] >= 0) continue;
+        dots[sky.count] = i;
+        sky.x[sky.count] = block.x[i];
+        sky.y[sky.count] = block.y[i];
+        sky.random[sky.count] = block.random[i];
+        sky.height[sky.count++] = reaches[i].texels;
+    }
+    if (sky.count == 0) return;
+    spread_in_clouds(placement, feature, sky);
+    for (int k = 0; k < sky.count; ++k) block.z[dots[k]] = sky.z[k];
+}
+
 }  // namespace
 
 void add_relief(const Placement& placement, PlacedBlock& block) {
@@ -32,7 +64,7 @@ void add_relief(const Placement& placement, PlacedBlock& block) {
     }
 }
 
-void add_walls(const Placement& placement, PlacedBlock& block) {
+void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
     DepthBlock side = block;
     for (int i = 0; i < block.count; ++i) {
         if (block.knot[i] < 0) continue;
@@ -40,10 +72,12 @@ void add_walls(const Placement& placement, PlacedBlock& block) {
         side.x[i] = knot.x;
         side.y[i] = knot.y;
     }
-    DepthBlock bend = side;
+    DepthBlock bend = side, within = side;
     const double unit = 0.26 * placement.depth;
     noise_sum(waves(placement, 1, {{220.0, 1.0}, {90.0, 0.6}}), side);
     noise_sum(waves(placement, 2, {{520.0, 0.22 * unit}, {210.0, 0.07 * unit}}), bend);
+    noise_sum(waves(placement, 3, {{640.0, 1.0}, {260.0, 0.3}}), within);
+    DepthReach reaches[PlacedBlock::size];
     for (int i = 0; i < block.count; ++i) {
         const float front =
             least_side + (1.0f - 2.0f * least_side) / (1.0f + shared::as_exp(-side_sharpness * side.z[i]));
@@ -52,22 +86,21 @@ void add_walls(const Placement& placement, PlacedBlock& block) {
                                          : as_hash(placement.seed, static_cast<std::uint32_t>(block.knot[i]),
                                                    1u, shared::PURPOSE_KNOT);
         const bool in_front = as_uniform(as_mix(random ^ 0x5bd1e995u)) < front;
-        const float out = placement.relief_at(bend.x[i], bend.y[i]);
-        block.z[i] += (in_front ? out : -out) + bend.z[i];
+        const float anywhere = 2.0f * as_uniform(as_mix(random ^ 0x27d4eb2fu)) - 1.0f;
+        reaches[i] = placement.reach_at(bend.x[i], bend.y[i], random);
+        const float at = reaches[i].of == DepthReach::Of::walls  ? (in_front ? 1.0f : -1.0f)
+                         : reaches[i].of == DepthReach::Of::core ? between(within.z[i])
+                                                                 : anywhere;
+        block.z[i] += at * reaches[i].texels + bend.z[i];
     }
+    spread_in_sky(placement, feature, reaches, block);
 }
 
 void fill_between_walls(const Placement& placement, double feature, PlacedBlock& block) {
-    float reach[PlacedBlock::size];
-    for (int i = 0; i < block.count; ++i) {
-        reach[i] = std::max(block.height[i], placement.relief_at(block.x[i], block.y[i]));
-        block.height[i] = reach[i];
-        block.clumping[i] = 1.0f;
-    }
-    const double gain = clump_gain(placement, feature);
-    disk_depths(stack(placement, placement.depth, feature, gain, 0.75), block);
-    for (int i = 0; i < block.count; ++i)  // sech^2 becomes even
-        block.z[i] = reach[i] * (1.0f - 2.0f / (1.0f + shared::as_exp(2.0f * block.z[i] / reach[i])));
+    for (int i = 0; i < block.count; ++i)
+        block.height[i] =
+            std::max(block.height[i], placement.reach_at(block.x[i], block.y[i], block.random[i]).texels);
+    spread_in_clouds(placement, feature, block);
 }
 
 }  // namespace astrosplat

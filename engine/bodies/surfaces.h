@@ -11,8 +11,9 @@ namespace astrosplat {
 void add_relief(const Placement& placement, PlacedBlock& block);
 
 /// Puts dots onto one of two walls, front or back, and bends these. A filament stays on one wall for as long
-/// as it can; what belongs to a knot is where its middle is.
-void add_walls(const Placement& placement, PlacedBlock& block);
+/// as it can; what belongs to a knot is where its middle is. Light of a core or of the sky
+/// is anywhere within its reach; `feature`: texels, of the band's.
+void add_walls(const Placement& placement, double feature, PlacedBlock& block);
 
 /// Depths between two walls. Glow fills what is there, or one would look through the holes of one wall into a
 /// hollow. It gathers in clouds as a disk's light does: spread evenly in every column it would be curtains.

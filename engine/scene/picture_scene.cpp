@@ -115,7 +115,7 @@ CloseViews close_views(double distance, StructureKind kind) {
     if (kind == StructureKind::disk) return {{1.0, 1.0, 2.7}, {-1.2, 0.5, 0.55 * distance}, 0.35, -1.0};
     if (kind == StructureKind::walls)
         return {{1.4, 2.3, 3.1}, {-1.2, 2.2, 0.6 * distance}, 0.3 * distance, -0.6};
-    return {{1.0, 1.6, 2.7}, {-1.2, 2.2, 0.55 * distance}, 0.42 * distance, 0.0};
+    return {{0.9, 2.2, 2.2}, {-1.6, 0.3 * distance, 0.34 * distance}, 0.66 * distance, 0.0};
 }
 
 // Ten seconds at 24 frames/s: the front, a slow tilt, a pass close by the subject, and on: to the edge of a
@@ -230,13 +230,13 @@ double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
     constexpr double lit = 0.1;
     if (scene.lit_rim <= lit || scene.width_px * scene.height_px > most_px) return 0.0;
-    return scene.structure == StructureKind::disk ? 0.08 : 0.05;
+    return 0.08;
 }
 
 }  // namespace
 
-PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
-                           std::string& why, const Progress& progress) {
+PictureScene picture_scene(const std::filesystem::path& image, std::optional<SkyObject> shown,
+                           StructureChoice& choice, const Progress& progress) {
     constexpr std::int64_t most_texels = 4096 * 4096;  // more do not change what is seen in it
     const Texture texture =
         load_texture({image}, {}, TextureSettings::Wrap::clamp, progress, {make_prepared, {}, most_texels});
@@ -247,14 +247,8 @@ PictureScene picture_scene(const std::filesystem::path& image, std::optional<Str
     scene.lit_rim = lit_share_of_rim(light);
     find_stars(scene, progress);
     scene.subject = subject_of(light);
-    why.clear();
-    if (structure) {
-        scene.structure = *structure;
-    } else {
-        const StructureChoice choice = choose_structure(light);
-        scene.structure = choice.kind;
-        why = choice.why;
-    }
+    choice = choose_structure(light, shown);
+    scene.structure = choice.kind;
     return scene;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "bodies/choose.h"
 #include "core/progress.h"
 #include "source/source.h"
 
@@ -25,11 +26,11 @@ struct PictureScene {
     double star_px = 1.0;              // standard deviation of their images, px of the picture
 };
 
-/// Reads the picture, for its size and, unless `structure` is given, to choose one; `why` then says why in
-/// words and is empty otherwise. A stars.csv beside the picture is that of its stars, which are then a layer
-/// of their own. Throws InputError, Cancelled.
-PictureScene picture_scene(const std::filesystem::path& image, std::optional<StructureKind> structure,
-                           std::string& why, const Progress& progress = {});
+/// Reads the picture, for its size and to choose a structure for it, or for what it is said to show. A
+/// stars.csv beside the picture is that of its stars, which are then a layer of their own. Throws InputError,
+/// Cancelled.
+PictureScene picture_scene(const std::filesystem::path& image, std::optional<SkyObject> shown,
+                           StructureChoice& choice, const Progress& progress = {});
 
 /// The text of a scene in `file`. Its first frame is the picture itself, filled exactly; with a film the
 /// camera holds it, tilts, passes close by and flies on.

@@ -18,11 +18,24 @@ TEST(ChooseStructure, TellsPaintedObjectsApart) {
     for (const std::int64_t width : {400, 900}) {
         EXPECT_EQ(choose_structure(painted::galaxy(width, width * 5 / 8)).kind, StructureKind::disk)
             << width << choose_structure(painted::galaxy(width, width * 5 / 8)).why;
-        EXPECT_EQ(choose_structure(painted::nebula(width, width * 5 / 8)).kind, StructureKind::sheet)
+        EXPECT_EQ(choose_structure(painted::nebula(width, width * 5 / 8)).kind, StructureKind::walls)
             << width;
         EXPECT_EQ(choose_structure(painted::remnant(width, width * 5 / 8)).kind, StructureKind::walls)
             << width;
     }
+}
+
+// What is known is not looked for; a nebula is a shell where it stands alone, and a sheet where it does not.
+TEST(ChooseStructure, TakesAPictureForWhatItIsSaidToShow) {
+    const Image remnant = painted::remnant(400, 250), even = make_image(400, 250, 3, 0.3f);
+    for (const Image& light : {remnant, even}) {
+        EXPECT_EQ(choose_structure(light, SkyObject::galaxy).kind, StructureKind::disk);
+        EXPECT_EQ(choose_structure(light, SkyObject::remnant).kind, StructureKind::walls);
+        EXPECT_EQ(choose_structure(light, SkyObject::nebula).why, "");
+    }
+    EXPECT_EQ(choose_structure(remnant, SkyObject::nebula).kind, StructureKind::walls);
+    EXPECT_EQ(choose_structure(even, SkyObject::nebula).kind, StructureKind::sheet);
+    EXPECT_EQ(choose_structure(make_image(8, 8, 3, 0.3f), SkyObject::nebula).kind, StructureKind::sheet);
 }
 
 TEST(ChooseStructure, SaysWhy) {
@@ -47,7 +60,8 @@ Image tailed(int sides) {
 
 TEST(ChooseStructure, InGreyTheShapeTellsAGalaxyFromACloud) {
     EXPECT_EQ(choose_structure(tailed(2)).kind, StructureKind::disk) << choose_structure(tailed(2)).why;
-    EXPECT_EQ(choose_structure(tailed(1)).kind, StructureKind::sheet);
+    EXPECT_EQ(choose_structure(tailed(1)).kind, StructureKind::walls);
+    EXPECT_EQ(choose_structure(tailed(1)).object, SkyObject::nebula);
     EXPECT_NE(choose_structure(tailed(1)).why.find("grey"), std::string::npos)
         << choose_structure(tailed(1)).why;
 }
@@ -59,7 +73,7 @@ StructureKind chosen(const std::filesystem::path& file) {
 
 TEST(ChooseStructure, TellsRealGreyObjectsApart) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(fits, "fits");
-    EXPECT_EQ(chosen(fits / "w5_wise.fits"), StructureKind::sheet);
+    EXPECT_EQ(chosen(fits / "w5_wise.fits"), StructureKind::walls);
     EXPECT_EQ(chosen(fits / "m51_b_kpno.fits"), StructureKind::disk);
 }
 
@@ -68,8 +82,8 @@ TEST(ChooseStructure, TellsRealObjectsApart) {
     EXPECT_EQ(chosen(images / "m101_heic0602a.jpg"), StructureKind::disk);
     EXPECT_EQ(chosen(images / "heic0706a.jpg"), StructureKind::disk);
     EXPECT_EQ(chosen(images / "heic1305a.jpg"), StructureKind::disk);
-    EXPECT_EQ(chosen(images / "red_spider_heic0109a.jpg"), StructureKind::sheet);
-    EXPECT_EQ(chosen(images / "m42.png"), StructureKind::sheet);
+    EXPECT_EQ(chosen(images / "red_spider_heic0109a.jpg"), StructureKind::walls);
+    EXPECT_EQ(chosen(images / "m42.png"), StructureKind::walls);
     EXPECT_EQ(chosen(images / "heic1501a.jpg"), StructureKind::sheet);
     EXPECT_EQ(chosen(images / "heic0515a.jpg"), StructureKind::walls);
     EXPECT_EQ(chosen(images / "heic1310a.jpg"), StructureKind::walls);
