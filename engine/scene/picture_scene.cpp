@@ -115,7 +115,7 @@ CloseViews close_views(double distance, StructureKind kind) {
     if (kind == StructureKind::disk) return {{1.0, 1.0, 2.7}, {-1.2, 0.5, 0.55 * distance}, 0.35, -1.0};
     if (kind == StructureKind::walls)
         return {{1.4, 2.3, 3.1}, {-1.2, 2.2, 0.6 * distance}, 0.3 * distance, -0.6};
-    return {{0.9, 2.2, 2.2}, {-1.6, 0.3 * distance, 0.34 * distance}, 0.66 * distance, 0.0};
+    return {{0.9, 1.9, 2.2}, {-1.6, 0.3 * distance, 0.34 * distance}, 0.66 * distance, 0.0};
 }
 
 // Ten seconds at 24 frames/s: the front, a slow tilt, a pass close by the subject, and on: to the edge of a
