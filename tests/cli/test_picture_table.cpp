@@ -1,6 +1,8 @@
 // What `new` makes of a picture, untouched, against the targets of fidelity: pictures painted by formula at
 // reduced size, and at night real ones where they are present. Columns matched to their picture: its light.
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene_fixture.h"
 #include "support/painted_picture.h"
@@ -65,10 +67,24 @@ TEST_F(TableTest, APaintedGalaxyIsADiskThatReachesThem) {
     EXPECT_GE(edge.at("center_over_half_radius").get<double>(), 2.5);
 }
 
-TEST_F(TableTest, APaintedNebulaIsASheetThatReachesThem) {
-    write_text(folder / "nebula.ppm", field_of(painted::nebula(960, 600)));
-    expect_targets("nebula.ppm", of_most);
-    EXPECT_NE(text_of(folder / "picture.toml").find("kind = \"sheet\""), std::string::npos);
+// The middle of a larger picture: its light goes on to the edges.
+Image middle_of(const Image& image, std::int64_t width, std::int64_t height) {
+    Image out = make_image(width, height, image.channels);
+    for (std::int64_t y = 0; y < height; ++y)
+        std::copy_n(image.at((image.width - width) / 2, (image.height - height) / 2 + y),
+                    width * image.channels, out.at(0, y));
+    return out;
+}
+
+TEST_F(TableTest, APaintedNebulaIsAShellOrASheetThatReachesThem) {
+    write_text(folder / "alone.ppm", field_of(painted::nebula(960, 600)));
+    write_text(folder / "wide.ppm", field_of(middle_of(painted::nebula(1920, 1200), 720, 450)));
+    for (const auto& [picture, kind] : {std::pair("alone.ppm", "walls"), std::pair("wide.ppm", "sheet")}) {
+        SCOPED_TRACE(picture);
+        expect_targets(picture, of_most);
+        EXPECT_NE(text_of(folder / "picture.toml").find(fmt::format("kind = \"{}\"", kind)),
+                  std::string::npos);
+    }
 }
 
 TEST_F(TableTest, APaintedRemnantIsTwoWallsThatReachThem) {
@@ -92,11 +108,13 @@ TEST_F(TableTest, AMatchedPlaneOfColumnsHasItsPicturesLightUnderEveryBlend) {
     }
 }
 
-// m42 and the grey FITS centre of the Milky Way are not here: .07 and .06 of their points are needles.
+// The grey FITS centre of the Milky Way is not here: .06 of its points are needles. Pillars (heic1501a) miss
+// them: .058.
 TEST_F(TableTest, RealPicturesReachThemNightly) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(images, "images");
-    for (const char* name : {"m101_heic0602a.jpg", "heic1305a.jpg", "heic0706a.jpg",
-                             "red_spider_heic0109a.jpg", "heic1310a.jpg", "heic1501a.jpg", "heic1608a.jpg"}) {
+    for (const char* name :
+         {"m101_heic0602a.jpg", "heic1305a.jpg", "heic0706a.jpg", "red_spider_heic0109a.jpg", "heic1310a.jpg",
+          "heic1501a.jpg", "heic1608a.jpg", "m42.png"}) {
         SCOPED_TRACE(name);
         expect_targets((images / name).string(), of_most);
     }
