@@ -49,6 +49,8 @@ void print_plan(const BatchPlan& plan) {
     for (const JobEstimate::Layer& layer : job.layers) {
         fmt::print("layer {}: about {}\n", layer.name, human_count(layer.splats, "splat"));
     }
+    if (job.sky_kept)
+        fmt::print("sky: {}\n", *job.sky_kept ? "in the cache" : "is made of its picture first");
     fmt::print("memory about {}, threads {}\n", human_bytes(static_cast<double>(job.bytes)), thread_count());
     for (const FramePlan& frame : plan.frames) {
         fmt::print("{} {} {}\n", frame.render ? "render" : "keep", frame.frame,

@@ -14,6 +14,7 @@
 #include "scene/animate.h"
 #include "sets/load_source.h"
 #include "sets/prepared_cache.h"
+#include "sets/sky_cache.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {
@@ -92,6 +93,9 @@ Expected expected_of(const SetCache& cache, const LayerParams& layer) {
             bodies_memory_bytes(plan.meshes, dots)};
 }
 
+/// Six faces of three floats.
+std::int64_t sky_bytes(const SkyTiling& tiling) { return 6 * tiling.face_px * tiling.face_px * 12; }
+
 std::int64_t frame_bytes(const BatchPlan& plan) {
     const OutputParams& output = plan.scene.output;
     const bool whole = plan.region.width == 0;
@@ -132,6 +136,12 @@ JobEstimate estimate(const BatchPlan& plan) {
         job.layers.push_back({layer.name, std::min(expected.splats, most_splats)});
         job.splats += job.layers.back().splats;
         held += expected.held_bytes;
+    }
+    const EnvironmentParams& sky = plan.scene.environment;
+    if (sky.visible && !sky.tile.empty()) {
+        job.sky_kept = is_kept(plan.cache, sky.tile, sky.tiling, Progress{{}, &interrupted()});
+        making = std::max(making, 3 * sky_bytes(sky.tiling));  // as made or read, and with borders
+        held += sky_bytes(sky.tiling) * 4 / 3;                 // with mip levels
     }
     std::int64_t screen = job.splats * screen_bytes;
     if (plan.memory_limit_bytes > 0) screen = std::min(screen, plan.memory_limit_bytes);

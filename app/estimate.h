@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct JobEstimate {
     std::vector<Layer> layers;
     std::int64_t splats = 0;
     std::int64_t bytes = 0;
+    std::optional<bool> sky_kept;  // of a scene whose sky is made of one picture: whether it is in the cache
 };
 /// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache, nothing else.
 /// Throws InputError.

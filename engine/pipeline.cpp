@@ -15,6 +15,7 @@
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "scene/layer_source.h"
+#include "sets/sky_cache.h"
 #include "source/texture.h"
 
 namespace astrosplat {
@@ -220,7 +221,7 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache&
     : state_(std::make_unique<State>()) {
     const Progress cancel_only{{}, progress.cancelled};  // pictures are no share of the work reported
     if (has_environment(scene.environment))
-        state_->environment = load_environment(scene.environment, cancel_only);
+        state_->environment = load_environment(scene.environment, cancel_only, kept_skies(cache));
     state_->scene = scene;
     state_->layers.resize(scene.layers.size());
     state_->statistics.resize(scene.layers.size());

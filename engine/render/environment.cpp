@@ -206,7 +206,8 @@ double texels_per_spread(const Environment& environment, double spread) {
 
 }  // namespace
 
-Environment load_environment(const EnvironmentParams& params, const Progress& progress) {
+Environment load_environment(const EnvironmentParams& params, const Progress& progress,
+                             const SkyMaker& make_sky) {
     if (!params.cube.empty() && params.cube.size() != 6)
         throw InputError(
             fmt::format("environment.cube: expected six pictures of the faces of a cube, in the order +x -x "
@@ -230,8 +231,7 @@ Environment load_environment(const EnvironmentParams& params, const Progress& pr
         }
     }
     if (!params.tile.empty())
-        for (const Image& face :
-             tiled_sky(load_linear_image(params.tile, progress), params.tiling, progress)) {
+        for (const Image& face : make_sky(params.tile, params.tiling, progress)) {
             faces.push_back({with_border(face)});
             environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
         }

@@ -46,7 +46,8 @@ EnvironmentParams pictures_of(const EnvironmentParams& params);
 
 /// Loads the pictures and builds their mip levels (box filter). Throws InputError, Cancelled. The picture
 /// part is independent of gain and rotation, which may be animated: see set_environment_params.
-Environment load_environment(const EnvironmentParams& params, const Progress& progress = {});
+Environment load_environment(const EnvironmentParams& params, const Progress& progress = {},
+                             const SkyMaker& make_sky = tiled_sky_of);
 void set_environment_params(Environment& environment, const EnvironmentParams& params);
 
 /// Where an equirectangular picture shows a unit direction (environment space), from its upper left corner,

@@ -18,7 +18,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<PreparedPicture> read_kept(const fs::path& file, const Progress& progress) {
+PreparedPicture kept_or_prepared(const SetCache& cache, const std::vector<fs::path>& files,
+                                 const TextureSettings& settings, const Progress& progress) {
+    const std::string text = cache.folder.empty() ? "" : prepared_recipe_text(files, settings, progress);
+    if (text.empty()) return prepare_picture(files, settings, progress);
+    const fs::path file = cache.folder / (Sha256().add(text).hex() + ".exr");
+    if (std::optional<PreparedPicture> kept =
+            read_kept_picture(file, "the picture is prepared again", progress))
+        return std::move(*kept);
+    PreparedPicture picture = prepare_picture(files, settings, progress);
+    if (prepared_recipe_text(files, settings, progress) == text)
+        keep_picture(cache, file, without_plain_alpha(picture.image), picture.credit);
+    return picture;
+}
+
+}  // namespace
+
+std::optional<PreparedPicture> read_kept_picture(const fs::path& file, const char* remedy,
+                                                 const Progress& progress) {
     std::error_code error;
     if (!fs::is_regular_file(file, error)) return {};
     try {
@@ -29,37 +46,25 @@ std::optional<PreparedPicture> read_kept(const fs::path& file, const Progress& p
         fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // refused: it seems older
         return picture;
     } catch (const InputError& damage) {
-        log_warning(fmt::format("{}; the picture is prepared again", damage.what()));
+        log_warning(fmt::format("{}; {}", damage.what(), remedy));
         fs::remove(file, error);
     }
     return {};
 }
 
-void keep_picture(const SetCache& cache, const fs::path& file, const PreparedPicture& picture) {
-    const auto bytes = static_cast<std::int64_t>(picture.image.pixels.size() * sizeof(float));
+void keep_picture(const SetCache& cache, const fs::path& file, const Image& image,
+                  const std::string& credit) {
+    const auto bytes = static_cast<std::int64_t>(image.pixels.size() * sizeof(float));
     if (bytes > limit_bytes(cache)) return;
     shrink_cache(cache, limit_bytes(cache) - bytes);
     std::error_code error;
     fs::create_directories(cache.folder, error);
     try {
-        write_linear_image(file, without_plain_alpha(picture.image), picture.credit, Existing::replace);
+        write_linear_image(file, image, credit, Existing::replace);
     } catch (const OutputError& failure) {
         warn_unkept(cache, failure.what());
     }
 }
-
-PreparedPicture kept_or_prepared(const SetCache& cache, const std::vector<fs::path>& files,
-                                 const TextureSettings& settings, const Progress& progress) {
-    const std::string text = cache.folder.empty() ? "" : prepared_recipe_text(files, settings, progress);
-    if (text.empty()) return prepare_picture(files, settings, progress);
-    const fs::path file = cache.folder / (Sha256().add(text).hex() + ".exr");
-    if (std::optional<PreparedPicture> kept = read_kept(file, progress)) return std::move(*kept);
-    PreparedPicture picture = prepare_picture(files, settings, progress);
-    if (prepared_recipe_text(files, settings, progress) == text) keep_picture(cache, file, picture);
-    return picture;
-}
-
-}  // namespace
 
 PictureMaker kept_pictures(const SetCache& cache) {
     return [cache](const std::vector<fs::path>& files, const TextureSettings& settings,

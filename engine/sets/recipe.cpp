@@ -212,6 +212,14 @@ std::string prepared_recipe_text(const std::vector<fs::path>& files, const Textu
     return {};
 }
 
+std::string sky_recipe_text(const fs::path& file, const SkyTiling& tiling, const Progress& progress) try {
+    const auto& [height_deg, seed, face_px] = tiling;
+    return fmt::format("sky {} of astrosplat {}\n{}height {} seed {} px {}\n", sky_version,
+                       ASTROSPLAT_VERSION, file_line("tile", file, progress), height_deg, seed, face_px);
+} catch (const InputError&) {
+    return {};
+}
+
 Recipe recipe_of(const SourceParams& source, const std::string& layer_name, const Progress& progress) {
     std::string text = recipe_text(source, layer_name, progress);
     std::string name = text.empty() ? "" : Sha256().add(text).hex();

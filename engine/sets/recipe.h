@@ -10,6 +10,7 @@
 #include "core/progress.h"
 #include "sets/load_source.h"
 #include "source/source.h"
+#include "source/tiled_sky.h"
 
 namespace astrosplat {
 
@@ -25,6 +26,11 @@ inline constexpr int prepare_version = 3;
 /// loader says why. For kind mesh. Throws Cancelled.
 std::string recipe_text(const SourceParams& source, const std::string& layer_name,
                         const Progress& progress = {});
+
+/// The same of skies of cut-outs (source/tiled_sky.h).
+inline constexpr int sky_version = 1;
+std::string sky_recipe_text(const std::filesystem::path& file, const SkyTiling& tiling,
+                            const Progress& progress = {});
 
 /// The same of one prepared picture: its files, how they are read and settings.prepare.
 std::string prepared_recipe_text(const std::vector<std::filesystem::path>& files,

@@ -15,6 +15,7 @@
 #include "source/cube_faces.h"
 #include "source/picture_objects.h"
 #include "source/sky_patches.h"
+#include "source/texture.h"
 
 namespace astrosplat {
 namespace {
@@ -185,6 +186,11 @@ std::array<Image, 6> tiled_sky(const Image& picture, const SkyTiling& tiling, co
     }
     keep_light(wanted, faces);
     return faces;
+}
+
+std::array<Image, 6> tiled_sky_of(const std::filesystem::path& file, const SkyTiling& tiling,
+                                  const Progress& progress) {
+    return tiled_sky(load_linear_image(file, progress), tiling, progress);
 }
 
 }  // namespace astrosplat

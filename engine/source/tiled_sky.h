@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 
 #include "core/image.h"
 #include "core/progress.h"
@@ -23,5 +25,13 @@ struct SkyTiling {
 /// picture. The mean light of all directions is the picture's. The same bits with any number of threads.
 /// Throws InputError for a picture of less than 32 px a side; Cancelled.
 std::array<Image, 6> tiled_sky(const Image& picture, const SkyTiling& tiling, const Progress& progress = {});
+
+/// The same of a picture's file, read as linear light.
+std::array<Image, 6> tiled_sky_of(const std::filesystem::path& file, const SkyTiling& tiling,
+                                  const Progress& progress = {});
+
+/// tiled_sky_of, or what keeps its results (sets/sky_cache.h).
+using SkyMaker =
+    std::function<std::array<Image, 6>(const std::filesystem::path&, const SkyTiling&, const Progress&)>;
 
 }  // namespace astrosplat
