@@ -15,6 +15,7 @@
 #include "edit/disk_file.h"
 #include "edit/keyframes.h"
 #include "edit/layers.h"
+#include "edit/output_preset.h"
 #include "scene/camera_file.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
@@ -258,6 +259,7 @@ void Document::edit(const std::string& name, const std::function<void(Scene&)>& 
 void Document::take(Scene edited, const std::string& edit_name, Gesture gesture) {
     edited.file = scene().file;
     if (edited == scene()) return;
+    if (edited.output.preset != scene().output.preset) apply_output_preset(edited);
     check_edited_scene(edited, name());
     check_new_presets(scene(), edited);
     if (edited == scene()) return;  // its tracks were of nothing

@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 
 // Reaches no pixel of any frame, or is told in other words.
 bool is_elsewhere(const ParameterSpec& spec) {
-    constexpr std::array<std::string_view, 5> keys = {"output.path", "output.frames", "output.fps",
-                                                      "output.compression", "layer.preset"};
+    constexpr std::array<std::string_view, 6> keys = {"output.path",   "output.frames",      "output.fps",
+                                                      "output.preset", "output.compression", "layer.preset"};
     return std::ranges::find(keys, spec.generic_key.text()) != keys.end() ||
            spec.generic_key.text().starts_with("camera.file_") || spec.generic_key.is_below("provenance") ||
            spec.generic_key.is_below("reference") || spec.generic_key.is_below("output.ocio");

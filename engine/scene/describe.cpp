@@ -34,6 +34,10 @@ using namespace traits;
 void describe_output(const Describer& d, OutputParams& o) {
     const Describer picture = d.shown_in("Output", "Frame"), frames = d.shown_in("Output", "Frames"),
                     format = d.shown_in("Output", "File format");
+    picture(o.preset, "preset", "Preset", "",
+            "A file with [output] and [camera] for a kind of screen, by name: dome. Keys of the scene win "
+            "over it, but "
+            "not where --set names it.");
     picture.custom(
         spec("resolution", "Resolution", "px", "Width and height of the frames.", as(Type::vector),
              components(2), range(1, 65536), slider(16, 8192)),

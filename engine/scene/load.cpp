@@ -82,6 +82,18 @@ toml::table parse_raw(const std::string& raw) {
     return toml::table{{"value", raw}};
 }
 
+/// A short name is a preset of one's own or one that comes with the program; scenes beside this one may have
+/// it, too.
+fs::path find_output_preset(const fs::path& wanted) {
+    std::error_code ignored;
+    if (wanted.has_extension()) return wanted;
+    const fs::path file = wanted.filename().string() + ".toml";
+    for (const fs::path& place : {own_assets_folder("masters"), assets_folder("masters")})
+        if (fs::is_regular_file(place / file, ignored)) return place / file;
+    throw InputError(fmt::format("{}: no preset of the output has this name; known are: {}",
+                                 wanted.filename().string(), fmt::join(names_in("masters"), ", ")));
+}
+
 /// Presets that are missing may be meant to be those that come with the program.
 std::string read_preset_file(const fs::path& file) {
     std::error_code ignored;
@@ -102,6 +114,7 @@ class Loader {
         const std::vector<LayerTable> layers = read_layers(root, file_);
         for (const LayerTable& layer : layers) scene_.layers.emplace_back().name = layer.name;
         for (std::size_t i = 0; i < layers.size(); ++i) load_preset(layers[i], scene_.layers[i], assignments);
+        load_output_preset(root);
         read_keys(root, layers);
         if (const toml::node* animation = root.get("animation")) {
             if (!animation->is_table())
@@ -150,6 +163,35 @@ class Loader {
         for (const auto& [key, place] : places) places_[layer_key(layer.name) / key] = place;
     }
 
+    /// Before the scene's own keys, which win.
+    void load_output_preset(const toml::table& root) {
+        const toml::node* node = root.at_path("output.preset").node();
+        if (!node) return;
+        const EntryOrigin origin{file_, folder_};
+        std::vector<Entry> entries;
+        flatten(*node, "output.preset", "output.preset", origin, node->source(), entries);
+        apply_entries(
+            entries, origin, [this] { return describe(scene_); }, places_);
+        read_output_preset();
+    }
+
+    void read_output_preset() {
+        if (scene_.output.preset.empty()) return;
+        const fs::path file = find_output_preset(scene_.output.preset);
+        const toml::table root = parse_toml(read_file(file), file.string());
+        check_version(root, file.string(), false);
+        const EntryOrigin origin{file.string(), file.parent_path(), false, {}};
+        std::vector<Entry> entries;
+        for (const auto& [key, node] : root)
+            if (key.str() != "astrosplat")
+                flatten(node, std::string(key.str()), std::string(key.str()), origin, key.source(), entries);
+        const auto of_the_screen = [](const ParameterKey& group) {
+            return group == "output" || group == "camera";
+        };
+        apply_entries(
+            entries, origin, [&] { return describe(scene_, of_the_screen); }, places_);
+    }
+
     void read_keys(const toml::table& root, const std::vector<LayerTable>& layers) {
         const EntryOrigin origin{file_, folder_};
         std::vector<Entry> entries;
@@ -195,6 +237,7 @@ class Loader {
         apply_entries(
             entries, origin, [this] { return describe(scene_); }, places_);
         for (const Entry& entry : entries) drop_track(entry.key);
+        if (key == "output.preset") read_output_preset();
     }
 
     void check_layer_exists(const std::string& name, const ParameterKey& key) const {

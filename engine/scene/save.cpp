@@ -217,6 +217,10 @@ void rebase_paths(Saver& saver, const std::string& original, const fs::path& fro
 
 /// Presets come first: they change what the other keys start from.
 void set_presets(Saver& saver, const Scene& before, const Scene& scene, const Description& wanted) {
+    if (before.output.preset != scene.output.preset) {
+        const Parameter* parameter = find_parameter(wanted, "output.preset");
+        saver.set(parameter->spec, parameter->get(), wanted);
+    }
     for (const LayerParams& layer : scene.layers) {
         const auto old = std::ranges::find(before.layers, layer.name, &LayerParams::name);
         if (old == before.layers.end() ? layer.preset.empty() : old->preset == layer.preset) continue;

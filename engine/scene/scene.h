@@ -41,6 +41,7 @@ struct OutputParams {
     friend constexpr auto names_of(View) { return names_up_to<View::soft>("auto", "linear", "srgb", "soft"); }
     enum class Primaries { rec709, acescg };
     friend constexpr auto names_of(Primaries) { return names_up_to<Primaries::acescg>("rec709", "acescg"); }
+    std::filesystem::path preset;              // of [output] and [camera], for a kind of screen; empty: none
     std::int64_t width = 1920, height = 1080;  // resolution, px
     std::string frames = "1-240";
     double fps = 24.0;

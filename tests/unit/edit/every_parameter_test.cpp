@@ -77,6 +77,7 @@ Value random_value(const ParameterSpec& spec, Numbers& numbers) {
         case ParameterType::words:
             return random_words(spec, numbers);
         case ParameterType::file:
+            if (spec.generic_key == "output.preset") return "dome";
             return spec.generic_key == "layer.preset" ? "vorlage.toml" : file;
         case ParameterType::files:
             if (numbers.below(2) == 1) return file;

@@ -161,6 +161,43 @@ TEST(Load, SetChoosesThePresetBeforeTheSceneSpeaks) {
     EXPECT_EQ(scene.layers[0].preset, b);
 }
 
+TEST(Load, DomeIsAPresetThatTheSceneWinsOver) {
+    const Folder folder("domes");
+    folder.write("dome.toml", "astrosplat = 1\n[[layer]]\nname = \"a scene beside this one\"\n");
+    const fs::path file = folder.write(
+        "s.toml", "astrosplat = 1\n[camera]\nfisheye_tilt = 20.0\n[output]\nfps = 60.0\npreset = \"dome\"\n");
+    const Scene scene = load_scene(file);
+    EXPECT_EQ(scene.output.width, 4096);  // preset
+    EXPECT_EQ(scene.output.height, 4096);
+    EXPECT_EQ(scene.camera.projection, Projection::fisheye);
+    EXPECT_EQ(scene.camera.fisheye_fov, 180.0);
+    EXPECT_EQ(scene.camera.fisheye_tilt, 20.0);  // scene
+    EXPECT_EQ(scene.output.fps, 60.0);
+    EXPECT_EQ(scene.output.pixel_filter, 0.5);  // default
+    EXPECT_EQ(load_scene(file, std::vector<Assignment>{{"output.resolution", "[1024, 1024]"}}).output.width,
+              1024);
+}
+
+TEST(Load, SetMakesAnySceneADome) {
+    const std::string flat =
+        small_scene() + "[output]\nresolution = [640, 480]\n[camera]\nprojection = \"orthographic\"\n";
+    const Scene scene = parse(flat, {"output.preset=dome", "camera.fisheye_tilt=90"});
+    EXPECT_EQ(scene.output.width, 4096);
+    EXPECT_EQ(scene.output.height, 4096);
+    EXPECT_EQ(scene.camera.projection, Projection::fisheye);
+    EXPECT_EQ(scene.camera.fisheye_tilt, 90.0);
+}
+
+TEST(Load, OutputPresetsOfOnesOwnHaveAnEnding) {
+    const Folder folder("screens");
+    folder.write("wall.toml", "[output]\nresolution = [7680, 1080]\n[camera]\nfov = 20.0\n");
+    const fs::path file = folder.write("s.toml", "astrosplat = 1\n[output]\npreset = \"wall.toml\"\n");
+    EXPECT_EQ(load_scene(file).output.width, 7680);
+    EXPECT_EQ(load_scene(file).camera.fov, 20.0);
+    folder.write("wall.toml", "[look]\ndensity = 0.5\n");
+    EXPECT_THROW(load_scene(file), InputError);
+}
+
 TEST(Load, PathsAreRelativeToTheFileAndKnowTheEnvironment) {
     const Variable folder("ASTROSPLAT_TEST_FOLDER", "/data/n\xC3\xA4he");
     const Scene scene = parse(small_scene() +
@@ -200,7 +237,8 @@ TEST(Load, SetReachesEveryParameter) {
     Scene scene = parse(full_scene);
     for (const Parameter& parameter : describe(scene).parameters) {
         const std::string assignment = parameter.spec.key.text() + "=" + to_toml(parameter.get());
-        if (parameter.spec.key == "layer.stars.preset") continue;  // "" is no file
+        if (parameter.spec.key == "layer.stars.preset" || parameter.spec.key == "output.preset")
+            continue;  // "" is no file
         EXPECT_EQ(message(full_scene, {assignment}), "") << assignment;
     }
 }

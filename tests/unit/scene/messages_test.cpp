@@ -491,6 +491,7 @@ TEST(Messages, Assignments) {
               "--set: layer.name: expected letters, digits and _ beginning with a letter, found '9'");
     EXPECT_EQ(set("animation.camera.fow={keys=[[1,2]]}"),
               "--set: unknown key 'camera.fow'; did you mean 'camera.fov'?");
+    EXPECT_EQ(set("output.preset=dom"), "dom: no preset of the output has this name; known are: dome");
     EXPECT_THROW(parse_assignment("nothing"), InputError);
     EXPECT_THROW(parse_assignment("=3"), InputError);
 }

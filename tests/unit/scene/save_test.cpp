@@ -270,7 +270,8 @@ Scene changed(const Scene& scene, std::size_t index, std::uint32_t seed) {
     const Description description = describe(edited);
     const Parameter& parameter = description.parameters[index];
     const std::string key = parameter.spec.generic_key;
-    if (key == "layer.name" || key == "layer.preset" || key == "camera.file") return scene;
+    if (key == "layer.name" || key == "layer.preset" || key == "output.preset" || key == "camera.file")
+        return scene;
     parameter.set(key == "output.frames" ? Value("1-9") : some_value(parameter.spec, seed));
     return is_valid(edited) ? edited : scene;
 }

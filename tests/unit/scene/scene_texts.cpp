@@ -5,6 +5,7 @@ namespace astrosplat::test {
 const char* const full_scene = R"toml(astrosplat = 1
 
 [output]
+preset = ""
 resolution = [1920, 1080]
 frames = "1-240"
 fps = 24.0

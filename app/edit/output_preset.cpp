@@ -1,0 +1,25 @@
+#include "edit/output_preset.h"
+
+#include <fmt/format.h>
+
+#include "scene/describe.h"
+#include "scene/load.h"
+#include "scene/toml_read.h"
+
+namespace astrosplat {
+
+void apply_output_preset(Scene& scene) {
+    if (scene.output.preset.empty()) return;
+    const std::string head = "astrosplat = 1\n";
+    const std::string text = fmt::format("[output]\npreset = {}\n", to_toml(scene.output.preset.string()));
+    Scene blank = parse_unchecked(head, scene.file), loaded = parse_unchecked(head + text, scene.file);
+    const Description standard = describe(blank), wanted = describe(scene);
+    for (const Parameter& parameter : describe(loaded).parameters) {
+        const ParameterKey& key = parameter.spec.key;
+        const Parameter *before = find_parameter(standard, key), *own = find_parameter(wanted, key);
+        if (before && own && key != "output.preset" && !(before->get() == parameter.get()))
+            own->set(parameter.get());
+    }
+}
+
+}  // namespace astrosplat
