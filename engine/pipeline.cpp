@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "camera/aperture.h"
+#include "core/buffer.h"
 #include "core/clock.h"
 #include "core/text.h"
 #include "look/apply.h"
@@ -17,6 +18,7 @@
 #include "scene/layer_source.h"
 #include "sets/sky_cache.h"
 #include "source/texture.h"
+#include "streamed/streamed_set.h"
 
 namespace astrosplat {
 namespace {
@@ -37,9 +39,10 @@ struct ShadingInputs {
 
 /// One layer between frames; the index is that of Scene::layers.
 struct LayerState {
-    std::shared_ptr<const SplatSet> set;  // null: not drawn
-    std::shared_ptr<SplatSet> to_use_up;  // the same where nobody reads its splats after the first shading
-    Bounds box;                           // of the set, layer space
+    std::shared_ptr<const SplatSet> set;    // null: not drawn
+    std::shared_ptr<SplatSet> to_use_up;    // the same where nobody reads its splats after the first shading
+    std::unique_ptr<StreamedSet> streamed;  // in place of `set` and `shaded`
+    Bounds box;                             // of the set, layer space
     std::filesystem::path thickness_file;
     Derived thickness_derived = Derived::none;
     Image thickness_map;
@@ -47,20 +50,19 @@ struct LayerState {
     ShadedSplats shaded;
 };
 
-void count_set(const SplatSet& set, LayerStatistics& counts) {
-    counts.test_positions = set.test_positions;
-    counts.kept = set.size();
-    counts.zero_alpha = set.zero_alpha;
+void count_set(const SplatSetFacts& facts, std::int64_t splats, LayerStatistics& counts) {
+    counts.test_positions = facts.test_positions;
+    counts.kept = splats;
+    counts.zero_alpha = facts.zero_alpha;
+}
+
+/// What is known of the layer's set, which is there.
+const SplatSetFacts& facts_of(const LayerState& layer) {
+    return layer.streamed ? layer.streamed->file().facts() : *layer.set;
 }
 
 bool same_pictures(const EnvironmentParams& a, const EnvironmentParams& b) {
     return pictures_of(a) == pictures_of(b);
-}
-
-/// Whether the layer's splats are shaded alike in all frames, as far as the tracks tell.
-bool shaded_alike(const Scene& scene, const std::string& name) {
-    const ParameterKey harmless = layer_key(name) / "visible";
-    return !moves(scene, [&](const ParameterKey& key) { return key.layer() == name && key != harmless; });
 }
 
 /// Where the layer is seen from.
@@ -91,9 +93,10 @@ struct Pipeline::State {
     RenderCache render_cache;
 
     bool drawn(const Scene& now, std::size_t index) const {
-        return now.layers[index].visible && layers[index].set;
+        return now.layers[index].visible && (layers[index].set || layers[index].streamed);
     }
     LoadedSet load_set(const LayerParams& params, const SetCache& cache, const Progress& progress) const;
+    void open_layer(std::size_t index);
     void load_layer(std::size_t index, const SetCache& cache, const Progress& progress);
     LayerState take_layer(const std::string& name, const std::shared_ptr<const SplatSet>& set);
     void shade(std::size_t index, const LayerParams& params, const Camera& seen, const Progress& progress);
@@ -117,6 +120,25 @@ LoadedSet Pipeline::State::load_set(const LayerParams& params, const SetCache& c
     return load_source(cache, source, params.name, progress, nullptr, columns_read(look_of(params)));
 }
 
+/// Of a layer that is streamed.
+void Pipeline::State::open_layer(std::size_t index) {
+    const LayerParams& params = scene.layers[index];
+    LayerState& layer = layers[index];
+    statistics[index].name = params.name;
+    try {
+        layer.streamed = std::make_unique<StreamedSet>(params.source.file);
+        layer.box = layer.streamed->bounds();
+        const std::string reason = why_not_streamed(layer.streamed->file(), look_of(params));
+        if (!reason.empty()) throw InputError(reason);
+        if (is_encoded(params.render)) throw InputError("display values are made of all splats at once");
+    } catch (const InputError& error) {
+        throw InputError("layer '" + params.name + "': " + error.what());
+    }
+    check_extent(layer.box, params.name);
+    load_thickness_map(layer, look_of(params).thickness);
+    count_set(facts_of(layer), layer.streamed->file().splats(), statistics[index]);
+}
+
 void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const Progress& progress) {
     const LayerParams& params = scene.layers[index];
     LayerState& layer = layers[index];
@@ -127,14 +149,15 @@ void Pipeline::State::load_layer(std::size_t index, const SetCache& cache, const
     LoadedSet loaded = load_set(params, cache, progress);
     const auto set = std::make_shared<SplatSet>(std::move(loaded.set));
     layer.set = set;
-    if (shaded_alike(scene, params.name) && !holds_gaussians(*set)) layer.to_use_up = set;
+    if (is_shaded_alike(scene, params.name) && !holds_gaussians(*set)) layer.to_use_up = set;
     layer.box = bounds(*layer.set);
     check_extent(layer.box, params.name);
     load_thickness_map(layer, look_of(params).thickness);
-    count_set(*layer.set, counts);
+    count_set(*layer.set, layer.set->size(), counts);
     counts.cached = loaded.cached;
     counts.geometry_cached = loaded.geometry_cached;
     counts.generate_seconds = seconds_since(start);
+    release_spare_pages();  // nothing of their sizes comes again, and frames are long
 }
 
 /// The state of a layer that had this set, under the same name if there are several; else a new one.
@@ -158,10 +181,15 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
                             const Progress& progress) {
     LayerState& layer = layers[index];
     LookInputs inputs = look_inputs(params);
-    ShadingInputs shading{
-        look_of(params),         inputs.axis,   inputs.seed, inputs.falloff_integral,
-        inputs.falloff_variance, inputs.column, {},          is_encoded(params.render) && !layer.set->stars};
-    if (!layer.set->harmonics.empty()) shading.seen_from = seen_from(seen, render_layer(params));
+    ShadingInputs shading{look_of(params),
+                          inputs.axis,
+                          inputs.seed,
+                          inputs.falloff_integral,
+                          inputs.falloff_variance,
+                          inputs.column,
+                          {},
+                          is_encoded(params.render) && !facts_of(layer).stars};
+    if (layer.set && !layer.set->harmonics.empty()) shading.seen_from = seen_from(seen, render_layer(params));
     if (layer.shaded_with == shading) return;
     load_thickness_map(layer, shading.look.thickness);
     inputs.thickness_map = layer.thickness_file.empty() ? nullptr : &layer.thickness_map;
@@ -172,17 +200,21 @@ void Pipeline::State::shade(std::size_t index, const LayerParams& params, const 
         colors = seen_colors(*layer.set, *shading.seen_from, progress);
         inputs.seen_colors = &colors;
     }
-    if (layer.to_use_up) {
+    if (layer.streamed) {
+        const auto start = Clock::now();
+        layer.streamed->set_look(shading.look, inputs, {{}, progress.cancelled});
+        counts = {layer.streamed->splats(), seconds_since(start)};
+    } else if (layer.to_use_up) {
         layer.shaded = apply_look_in_place(*layer.to_use_up, shading.look, inputs, progress, &counts);
         layer.to_use_up.reset();
     } else {
         apply_look(*layer.set, shading.look, inputs, layer.shaded, progress, &counts);
     }
-    if (holds_gaussians(*layer.set)) add_shapes(*layer.set, layer.shaded);
+    if (layer.set && holds_gaussians(*layer.set)) add_shapes(*layer.set, layer.shaded);
     layer.shaded.encoded = false;
     if (shading.encoded) encode_colors(layer.shaded);
     layer.shaded_with = shading;
-    statistics[index].drawn = layer.shaded.size();
+    statistics[index].drawn = layer.streamed ? layer.streamed->splats() : layer.shaded.size();
     statistics[index].look_seconds += counts.seconds;
 }
 
@@ -192,10 +224,13 @@ std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const
     for (std::size_t i = 0; i < now.layers.size(); ++i) {
         if (!drawn(now, i)) continue;
         visible.push_back(render_layer(now, now.layers[i]));
-        visible.back().splats = &layers[i].shaded;
-        visible.back().absorbs = layers[i].set->absorbs;
-        visible.back().gaussians = holds_gaussians(*layers[i].set);
-        visible.back().star_pixels = layers[i].set->star_pixels;
+        if (layers[i].streamed)
+            visible.back().blocks = layers[i].streamed.get();
+        else
+            visible.back().splats = &layers[i].shaded;
+        visible.back().absorbs = facts_of(layers[i]).absorbs;
+        visible.back().gaussians = layers[i].set && holds_gaussians(*layers[i].set);
+        visible.back().star_pixels = facts_of(layers[i]).star_pixels;
     }
     return visible;
 }
@@ -217,7 +252,8 @@ const Environment* Pipeline::State::environment_at(const Scene& now) {
 
 Pipeline::Pipeline() : state_(std::make_unique<State>()) {}
 
-Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache& cache)
+Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache& cache,
+                   const std::vector<std::string>& streamed)
     : state_(std::make_unique<State>()) {
     const Progress cancel_only{{}, progress.cancelled};  // pictures are no share of the work reported
     if (has_environment(scene.environment))
@@ -233,7 +269,11 @@ Pipeline::Pipeline(const Scene& scene, const Progress& progress, const SetCache&
                 progress.report((static_cast<double>(i) + f) / count);
             };
         }
-        state_->load_layer(i, cache, part);
+        const LayerParams& layer = scene.layers[i];
+        if (std::ranges::find(streamed, layer.name) != streamed.end() && ever_visible(scene, layer))
+            state_->open_layer(i);
+        else
+            state_->load_layer(i, cache, part);
     }
 }
 
@@ -255,7 +295,7 @@ void Pipeline::set_scene(const Scene& scene, std::vector<std::shared_ptr<const S
         layers.push_back(state.take_layer(scene.layers[i].name, sets[i]));
         LayerStatistics counts;
         counts.name = scene.layers[i].name;
-        if (sets[i]) count_set(*sets[i], counts);
+        if (sets[i]) count_set(*sets[i], sets[i]->size(), counts);
         counts.drawn = layers.back().shaded.size();
         statistics.push_back(counts);
     }
@@ -345,7 +385,7 @@ std::vector<std::string> Pipeline::layer_names(double frame) const {
 std::string Pipeline::input_credit() const {
     std::vector<std::string> credits;
     for (const LayerState& layer : state_->layers)
-        if (layer.set) credits.push_back(layer.set->credit);
+        if (layer.set || layer.streamed) credits.push_back(facts_of(layer).credit);
     return joined_once(credits);
 }
 

@@ -30,9 +30,11 @@ class Pipeline {
     /// Without layers, until set_scene.
     Pipeline();
     /// Loads all that the scene's files hold, once: the set of every layer that is visible at
-    /// some frame, through the cache where one is given, thickness maps and the environment.
-    /// Throws InputError, Cancelled.
-    explicit Pipeline(const Scene& scene, const Progress& progress = {}, const SetCache& cache = {});
+    /// some frame, through the cache where one is given, thickness maps and the environment. Layers of
+    /// .splats files whose names are in `streamed` stay on disk and are read block by block as frames need
+    /// them: the same bits in less memory. Throws InputError, Cancelled.
+    explicit Pipeline(const Scene& scene, const Progress& progress = {}, const SetCache& cache = {},
+                      const std::vector<std::string>& streamed = {});
     ~Pipeline();
 
     /// Takes another scene with sets that are there already, one a layer; a layer whose set is null is left
@@ -51,7 +53,7 @@ class Pipeline {
                         const TileDone& tile_done = {});
 
     /// The layers of a frame after their looks, as the renderer gets them, in file order; their splats stay
-    /// until the next call of any method that is not const.
+    /// until the next call of any method that is not const. None may be streamed.
     std::vector<RenderLayer> shaded_layers(double frame, const Progress& progress = {});
 
     /// Render settings as the scene's [output] has them.

@@ -12,6 +12,7 @@
 #include "core/image.h"
 #include "render/layer_render.h"
 #include "render/star_psf.h"
+#include "splats/shaded_blocks.h"
 #include "splats/shaded_splats.h"
 #include "splats/star_pixels.h"
 
@@ -20,13 +21,15 @@ namespace astrosplat {
 /// One layer as the renderer sees it. world = world_from_layer * (scale * p) + translate.
 struct RenderLayer {
     std::string name;
-    const ShadedSplats* splats = nullptr;
+    const ShadedSplats* splats = nullptr;  // these, or
+    const ShadedBlocks* blocks = nullptr;  // those, which are not in memory as a whole
     LayerRender render;
     glm::dmat3 world_from_layer{1.0};  // rotation
     double scale = 1.0;                // uniform; scales radii too
     glm::dvec3 translate{0.0};
     glm::dvec3 axis{0.0, 1.0, 0.0};  // the layer's thin direction, layer space
-    std::uint32_t seed = 1;          // for the children of level of detail
+    std::int64_t size() const { return blocks ? blocks->splats() : splats->size(); }
+    std::uint32_t seed = 1;  // for the children of level of detail
     /// Some splats may have colours below 0: these add no light and let (1 - s)^-color through, whatever the
     /// layer's blend.
     bool absorbs = false;
@@ -47,7 +50,9 @@ struct RenderSettings {
     float exposure = 0.0f;      // stops; only tightens the stop rule
     bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
     int tile_px = 0;  // a multiple of 8 from 16 to 128; 0: the quicker of 32 and 64. Changes no bit
-    std::int64_t memory_limit_bytes = 0;  // for screen splats; 0: none. Rendered in bands, same bits
+    /// For all that rendering takes beside the splats in memory and the frame's images; 0: none. What takes
+    /// more is rendered in bands and slabs of depth, same bits.
+    std::int64_t memory_limit_bytes = 0;
     /// For previews: the whole frame's backdrop (backdrop.h), which stands for the environment; null: none.
     const Image* backdrop = nullptr;
 };

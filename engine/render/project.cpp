@@ -209,6 +209,7 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
     LayerProjection p;
     const glm::dmat3 camera_from_world = glm::transpose(camera.world_from_camera);
     p.splats = layer.splats;
+    p.blocks = layer.blocks;
     p.camera_from_layer = camera_from_world * layer.world_from_layer * layer.scale;
     p.origin_in_camera = camera_from_world * (layer.translate - camera.eye);
     const glm::dvec3 axis = camera_from_world * layer.world_from_layer * layer.axis;

@@ -31,8 +31,9 @@ struct StarDot {
 /// One layer's constants for one frame.
 struct LayerProjection {
     const ShadedSplats* splats = nullptr;
-    glm::dmat3 camera_from_layer{1.0};  // rotation * scale
-    glm::dvec3 origin_in_camera{0.0};   // of layer space
+    const ShadedBlocks* blocks = nullptr;  // then `splats` are those of one block or of the sample
+    glm::dmat3 camera_from_layer{1.0};     // rotation * scale
+    glm::dvec3 origin_in_camera{0.0};      // of layer space
     glm::vec3 axis_in_camera{0.0f, 1.0f, 0.0f};
     float layer_scale = 1.0f, radius_scale = 1.0f;      // of the layer, and with it of radii
     bool gaussians = false;                             // as in RenderLayer

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "render/footprint.h"
 #include "render/project.h"
 
 namespace astrosplat {

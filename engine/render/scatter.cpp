@@ -1,6 +1,8 @@
 #include "render/scatter.h"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -11,11 +13,24 @@ namespace {
 
 constexpr std::int64_t slab_bytes = std::int64_t{40} << 20, line_bytes = 64;
 constexpr std::int64_t chunk_splats = 8192;  // handed out to a worker
+constexpr std::int64_t least_block = 8;      // records
 constexpr std::int64_t step_splats = 512;    // projected before they are written: they stay in cache
 
-ScreenRect rect_of(const TileGrid& grid) {
-    return {static_cast<float>(grid.x0), static_cast<float>(grid.y0),
-            static_cast<float>(grid.x0 + grid.width), static_cast<float>(grid.y0 + grid.height)};
+/// Drops those that lie in other slabs, and their shapes, which begin at `first_shape`.
+void keep_in_slab(const DepthRange& slab, std::size_t first_shape, Buffer<ScreenSplat>& splats,
+                  Buffer<Shape>& shapes) {
+    std::erase_if(splats, [&](const ScreenSplat& splat) { return !slab.holds(splat.depth); });
+    if (shapes.size() == first_shape) return;
+    std::size_t end = first_shape;
+    std::uint32_t last = 0xffffffffu;  // shape, before
+    for (ScreenSplat& splat : splats) {
+        if (is_round(splat)) continue;
+        const std::uint32_t number = shape_number(splat);
+        if (number != last) shapes[end++] = shapes[number];
+        last = number;
+        set_shape_number(splat, static_cast<std::uint32_t>(end - 1));
+    }
+    shapes.resize(end);
 }
 
 /// Whether a splat that touches a band is to be counted in it: by its centre, so that it counts once.
@@ -26,9 +41,16 @@ bool counts_here(const TileGrid& grid, float y_px) {
 
 }  // namespace
 
+ScreenRect rect_of(const TileGrid& grid) {
+    return {static_cast<float>(grid.x0), static_cast<float>(grid.y0),
+            static_cast<float>(grid.x0 + grid.width), static_cast<float>(grid.y0 + grid.height)};
+}
+
 std::byte* SplatStore::take_bytes(std::int64_t bytes) {
     const std::int64_t needed = (bytes + line_bytes - 1) / line_bytes;
     const std::lock_guard lock(mutex_);
+    if (limit_ > 0 && used_ + needed * line_bytes > limit_) throw StoreFull();
+    used_ += needed * line_bytes;
     while (slab_ < slabs_.size() && filled_ + needed > std::ssize(slabs_[slab_])) {
         ++slab_;
         filled_ = 0;
@@ -43,6 +65,7 @@ std::byte* SplatStore::take_bytes(std::int64_t bytes) {
 void SplatStore::clear() {
     slab_ = 0;
     filled_ = 0;
+    used_ = 0;
 }
 
 void SplatStore::shrink(std::int64_t limit_bytes) {
@@ -69,7 +92,7 @@ TileBins::TileBins(const TileGrid& grid, int groups, std::int64_t expected_recor
     }
     // The last block of each bin and worker is half empty on average: an eighth of the memory at most.
     const std::int64_t writers_bins = std::max<std::int64_t>(1, bins() * thread_count());
-    block_records_ = std::clamp<std::int64_t>(expected_records / (4 * writers_bins), 8, 128);
+    block_records_ = std::clamp<std::int64_t>(expected_records / (4 * writers_bins), least_block, 128);
 }
 
 /// Adds the splats just projected to the sums over their chunk.
@@ -136,7 +159,10 @@ std::span<const TileBins::Entry> TileBins::list_entries(const LayerProjection& l
 }
 
 void TileBins::begin_block(std::uint32_t bin, SplatStore& store, Writer& writer) const {
-    constexpr std::int64_t blocks_at_once = 64;  // the store is shared
+    // The store is shared; a limit is not to be spent on blocks that nobody uses.
+    const std::int64_t share =
+        store.limit_bytes() / (8 * thread_count() * block_records_ * std::int64_t{sizeof(ScreenSplat)});
+    const std::int64_t blocks_at_once = store.limit_bytes() > 0 ? std::clamp<std::int64_t>(share, 1, 64) : 64;
     if (writer.unused == writer.unused_end) {
         writer.unused = store.take<ScreenSplat>(blocks_at_once * block_records_);
         writer.unused_end = writer.unused + blocks_at_once * block_records_;
@@ -188,37 +214,108 @@ void TileBins::sort_blocks(std::span<const Writer> writers) {
         for (const Block& block : writer.blocks) blocks_[next[block.bin]++] = records_of(writer, block);
 }
 
-void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
-                       SplatStore& store, const Progress& progress) {
-    struct Chunk {
-        std::size_t layer;
-        std::int64_t begin, end;
-    };
+/// The work in pieces; also makes room for the ids of blocks.
+std::vector<TileBins::Chunk> TileBins::chunks_of(std::span<const LayerProjection> layers,
+                                                 const DepthRange& slab,
+                                                 std::span<const VisibleBlock> blocks) {
     std::vector<Chunk> chunks;
     for (std::size_t l = 0; l < layers.size(); ++l)
-        for (std::int64_t begin = 0; begin < layers[l].splats->size(); begin += chunk_splats)
+        for (std::int64_t begin = 0; !layers[l].blocks && begin < layers[l].splats->size();
+             begin += chunk_splats)
             chunks.push_back({l, begin, std::min(begin + chunk_splats, layers[l].splats->size())});
+    tie_ids_.of_layer.clear();
+    if (!blocks.empty()) tie_ids_.of_layer.resize(layers.size());
+    for (const VisibleBlock& block : blocks) {
+        if (!block.depths.meets(slab)) continue;
+        const auto number = static_cast<std::int64_t>(block.block);
+        std::vector<const std::uint64_t*>& ids = tie_ids_.of_layer[block.layer];
+        if (ids.size() >> (32 - TieIds::row_bits)) throw StoreFull();
+        chunks.push_back({block.layer, number, number + 1, true, static_cast<std::uint32_t>(ids.size())});
+        ids.push_back(nullptr);
+    }
+    return chunks;
+}
+
+void TileBins::scatter_chunk(const LayerProjection& layer, int group, const Chunk& chunk,
+                             const DepthRange& slab, Sums& sums, SplatStore& store, Writer& writer,
+                             const Progress& progress) const {
+    const ScreenRect rect = rect_of(grid_);
+    // Level of detail may turn a splat into thousands.
+    const std::int64_t step = layer.lod ? 16 : step_splats;
+    for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
+        progress.check();
+        writer.splats.clear();
+        const std::size_t first_shape = writer.shapes.size();
+        project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats, writer.shapes);
+        if (!slab.is_all()) keep_in_slab(slab, first_shape, writer.splats, writer.shapes);
+        if (layer.blocks) number_by_ids(*layer.splats, chunk.slot, writer);
+        sum_up(writer, sums);
+        write(list_entries(layer, group, writer), store, writer);
+    }
+}
+
+/// The rows that records name become places in the list of ids.
+void TileBins::number_by_ids(const ShadedSplats& block, std::uint32_t slot, Writer& writer) {
+    for (ScreenSplat& splat : writer.splats) {
+        if (writer.ids.empty() || splat.index != writer.last_row) {
+            writer.last_row = splat.index;
+            writer.ids.push_back(block.id[splat.index]);
+        }
+        splat.index = slot << TieIds::row_bits | static_cast<std::uint32_t>(writer.ids.size() - 1);
+    }
+}
+
+void TileBins::scatter_block(const LayerProjection& layer, int group, const Chunk& chunk,
+                             const DepthRange& slab, Sums& sums, SplatStore& store, Writer& writer,
+                             const Progress& progress) {
+    layer.blocks->shade(static_cast<std::size_t>(chunk.begin), writer.block);
+    LayerProjection here = layer;
+    here.splats = &writer.block;
+    writer.ids.clear();
+    scatter_chunk(here, group, {chunk.layer, 0, writer.block.size(), true, chunk.slot}, slab, sums, store,
+                  writer, progress);
+    auto* const ids = store.take<std::uint64_t>(std::ssize(writer.ids));
+    std::ranges::copy(writer.ids, ids);
+    tie_ids_.of_layer[chunk.layer][chunk.slot] = ids;
+}
+
+void TileBins::scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
+                       const DepthRange& slab, std::span<const VisibleBlock> blocks, SplatStore& store,
+                       const Progress& progress) {
+    const std::vector<Chunk> chunks = chunks_of(layers, slab, blocks);
     sums_.assign(chunks.size(), {});
     std::vector<Writer> writers(static_cast<std::size_t>(thread_count()));
     for (Writer& writer : writers) writer.cursors.resize(bins());
-    const ScreenRect rect = rect_of(grid_);
     parallel_for(static_cast<std::int64_t>(chunks.size()), [&](std::int64_t c, int worker) {
         const Chunk& chunk = chunks[c];
         const LayerProjection& layer = layers[chunk.layer];
         const int group = group_of_layer[chunk.layer];
-        Writer& writer = writers[worker];
-        // Level of detail may turn a splat into thousands.
-        const std::int64_t step = layer.lod ? 16 : step_splats;
-        for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
-            progress.check();
-            writer.splats.clear();
-            project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats, writer.shapes);
-            sum_up(writer, sums_[c]);
-            write(list_entries(layer, group, writer), store, writer);
-        }
+        if (chunk.is_block)
+            scatter_block(layer, group, chunk, slab, sums_[c], store, writers[worker], progress);
+        else
+            scatter_chunk(layer, group, chunk, slab, sums_[c], store, writers[worker], progress);
     });
     join_shapes(writers);
     sort_blocks(writers);
+}
+
+std::int64_t TileBins::least_bytes(const TileGrid& grid, int groups) {
+    const std::int64_t bins = TileBins(grid, groups, 0).bins();
+    return 4 * bins * thread_count() * least_block * static_cast<std::int64_t>(sizeof(ScreenSplat));
+}
+
+std::int64_t TileBins::records_of_fullest(int tiles) const {
+    std::vector<std::int64_t> records;
+    std::vector<std::span<const ScreenSplat>> runs;
+    for (std::int64_t tile = 0; tile < grid_.tiles(); ++tile)
+        for (int group = 0; group < groups_; ++group) {
+            collect(tile, group, runs);
+            records.push_back(0);
+            for (const auto& run : runs) records.back() += std::ssize(run);
+        }
+    std::ranges::sort(records, std::greater<>());
+    records.resize(std::min<std::size_t>(records.size(), static_cast<std::size_t>(tiles)));
+    return std::accumulate(records.begin(), records.end(), std::int64_t{0});
 }
 
 void TileBins::collect(std::int64_t tile, int group, std::vector<std::span<const ScreenSplat>>& out) const {
@@ -244,39 +341,6 @@ TileBins::Sums TileBins::sums() const {
         all.largest_px = std::max(all.largest_px, chunk.largest_px);
     }
     return all;
-}
-
-std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
-                                           std::span<const int> tile_sizes_px, const Progress& progress) {
-    constexpr std::int64_t block = 16, stride = 64 * block;
-    const ScreenRect rect = rect_of(grid);
-    std::vector<double> sums(tile_sizes_px.size(), 0.0);
-    Buffer<ScreenSplat> splats;
-    Buffer<Shape> shapes;
-    for (const LayerProjection& layer : layers) {
-        const std::int64_t count = layer.splats->size();
-        std::vector<double> found(tile_sizes_px.size(), 0.0);
-        std::int64_t sampled = 0;
-        for (std::int64_t begin = 0; begin < count; begin += stride) {
-            progress.check();
-            const std::int64_t end = std::min(begin + block, count);
-            splats.clear();
-            shapes.clear();
-            project(layer, begin, end, rect, splats, shapes);
-            sampled += end - begin;
-            for (const ScreenSplat& splat : splats)
-                for (std::size_t t = 0; t < found.size(); ++t) {
-                    const float tiles =
-                        1.0f + 2.0f * support_px(layer, splat, shapes) / static_cast<float>(tile_sizes_px[t]);
-                    found[t] += std::min(9.0f, tiles * tiles);
-                }
-        }
-        for (std::size_t t = 0; t < found.size() && sampled > 0; ++t)
-            sums[t] += found[t] * static_cast<double>(count) / static_cast<double>(sampled);
-    }
-    std::vector<std::int64_t> records;
-    for (const double sum : sums) records.push_back(static_cast<std::int64_t>(sum));
-    return records;
 }
 
 }  // namespace astrosplat

@@ -17,15 +17,20 @@
 #include "core/buffer.h"
 #include "core/progress.h"
 #include "render/bin_rects.h"
+#include "render/depth_slabs.h"
 #include "render/project.h"
 #include "render/screen_splat.h"
+#include "render/tie_ids.h"
 
 namespace astrosplat {
+
+/// Thrown where records would take more than they may.
+struct StoreFull {};
 
 /// Memory for records and their index, kept between frames.
 class SplatStore {
   public:
-    /// Space for `count` things in one piece, at the start of a cache line. Thread-safe.
+    /// Space for `count` things in one piece, at the start of a cache line. Thread-safe. Throws StoreFull.
     template <class T>
     T* take(std::int64_t count) {
         return reinterpret_cast<T*>(take_bytes(count * static_cast<std::int64_t>(sizeof(T))));
@@ -35,6 +40,10 @@ class SplatStore {
     /// Gives memory back until at most `bytes` are held.
     void shrink(std::int64_t bytes);
     std::int64_t bytes() const;
+    /// Bytes that may be in use from now on; 0: any number.
+    void limit(std::int64_t bytes) { limit_ = bytes; }
+    std::int64_t limit_bytes() const { return limit_; }
+    std::int64_t used_bytes() const { return used_; }
 
   private:
     std::byte* take_bytes(std::int64_t bytes);
@@ -47,6 +56,7 @@ class SplatStore {
     std::vector<Buffer<CacheLine>> slabs_;  // of lines: a debug build visits every element of a buffer
     std::size_t slab_ = 0;                  // being filled
     std::int64_t filled_ = 0;               // lines of it in use
+    std::int64_t used_ = 0, limit_ = 0;     // bytes
 };
 
 /// The tiles of the part of the frame being rendered, px of the whole frame.
@@ -59,19 +69,32 @@ struct TileGrid {
     std::int64_t tiles() const { return columns() * rows(); }
 };
 
+ScreenRect rect_of(const TileGrid& grid);
+
 /// All records of one frame (or band), by bin.
 class TileBins {
   public:
     /// `expected_records` decides how much memory is taken at a time.
     TileBins(const TileGrid& grid, int groups, std::int64_t expected_records);
 
-    /// Projects and scatters every layer; group_of_layer[i] is the blend group of layer i.
+    /// Projects and scatters the splats of every layer that lie in a slab; group_of_layer[i] is the blend
+    /// group of layer i, `blocks` those that visible_blocks() found. Throws StoreFull.
     void scatter(std::span<const LayerProjection> layers, std::span<const int> group_of_layer,
-                 SplatStore& store, const Progress& progress);
+                 const DepthRange& slab, std::span<const VisibleBlock> blocks, SplatStore& store,
+                 const Progress& progress);
 
     /// Where the records of a tile and group lie whose square of support touches the tile (or a tile beside
     /// it), in no meaningful order.
     void collect(std::int64_t tile, int group, std::vector<std::span<const ScreenSplat>>& out) const;
+
+    /// What the bins' blocks may take where they are nearly empty.
+    static std::int64_t least_bytes(const TileGrid& grid, int groups);
+
+    /// Records of the fullest tiles of all, so many.
+    std::int64_t records_of_fullest(int tiles) const;
+
+    /// Of the splats that come by the block.
+    const TieIds& tie_ids() const { return tie_ids_; }
 
     /// Of the records that are not round.
     std::span<const Shape> shapes() const { return shapes_; }
@@ -94,6 +117,12 @@ class TileBins {
         ScreenSplat* records;
         std::uint32_t bin;
     };
+    struct Chunk {  // of the splats, for one worker
+        std::size_t layer;
+        std::int64_t begin, end;
+        bool is_block = false;  // number `begin` of the layer's
+        std::uint32_t slot = 0;
+    };
     struct Writer {  // of one worker
         struct Cursor {
             ScreenSplat* next = nullptr;
@@ -108,7 +137,17 @@ class TileBins {
         Discs discs;                 // their supports
         Buffer<BinRect> rects;
         Buffer<Entry> entries;
+        ShadedSplats block;          // just made
+        Buffer<std::uint64_t> ids;   // of those of its splats that left records
+        std::uint32_t last_row = 0;  // of these
     };
+    std::vector<Chunk> chunks_of(std::span<const LayerProjection> layers, const DepthRange& slab,
+                                 std::span<const VisibleBlock> blocks);
+    void scatter_chunk(const LayerProjection& layer, int group, const Chunk& chunk, const DepthRange& slab,
+                       Sums& sums, SplatStore& store, Writer& writer, const Progress& progress) const;
+    static void number_by_ids(const ShadedSplats& block, std::uint32_t slot, Writer& writer);
+    void scatter_block(const LayerProjection& layer, int group, const Chunk& chunk, const DepthRange& slab,
+                       Sums& sums, SplatStore& store, Writer& writer, const Progress& progress);
     std::int64_t bins() const { return bins_per_group_ * groups_; }
     void sum_up(const Writer& writer, Sums& sums) const;
     void add_shape(const Shape& shape, float y_px, Sums& sum) const;
@@ -125,14 +164,10 @@ class TileBins {
     std::int64_t block_records_ = 0;
     std::vector<BinLevel> levels_;
     Buffer<Shape> shapes_;
+    TieIds tie_ids_;
     std::vector<Sums> sums_;                            // by chunk
     std::vector<std::span<const ScreenSplat>> blocks_;  // bin by bin
     std::vector<std::size_t> first_block_;              // of each bin; one more at the end
 };
-
-/// Records that the layers will take in tiles of each of the sizes, estimated from every 64th block
-/// of splats.
-std::vector<std::int64_t> estimate_records(std::span<const LayerProjection> layers, const TileGrid& grid,
-                                           std::span<const int> tile_sizes_px, const Progress& progress);
 
 }  // namespace astrosplat

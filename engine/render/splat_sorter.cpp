@@ -47,8 +47,8 @@ int SplatSorter::read(std::span<const std::span<const ScreenSplat>> runs, const 
 
 /// Sets order_ from the sorted codes. Those whose depths differ in their lowest `open_bits` bits at most, by
 /// which the codes are not sorted, are put into total order.
-void SplatSorter::put_in_order(int open_bits, const Progress& progress) {
-    const auto before = [](const ScreenSplat* a, const ScreenSplat* b) { return in_front_of(*a, *b); };
+template <class Before>
+void SplatSorter::put_in_order(int open_bits, const Before& before, const Progress& progress) {
     const auto close = [&](std::size_t a, std::size_t b) {
         return (codes_[a] ^ codes_[b]) >> (32 + open_bits) == 0;
     };
@@ -64,7 +64,7 @@ void SplatSorter::put_in_order(int open_bits, const Progress& progress) {
 }
 
 std::span<const ScreenSplat* const> SplatSorter::sort(std::span<const std::span<const ScreenSplat>> runs,
-                                                      const Progress& progress) {
+                                                      const Progress& progress, const TieIds& ids) {
     const int bits = read(runs, progress);
     // Two digits tell nearly all depths of a tile apart.
     const int open_bits = std::max(0, bits - 2 * digit_bits);
@@ -72,7 +72,14 @@ std::span<const ScreenSplat* const> SplatSorter::sort(std::span<const std::span<
         codes_.data(), other_.data(), codes_.size(), unsigned(32 + open_bits), unsigned(32 + bits),
         [](std::uint64_t code) { return code; }, [&] { progress.check(); });
     if (sorted != codes_.data()) codes_.swap(other_);
-    put_in_order(open_bits, progress);
+    if (ids.of_layer.empty())
+        put_in_order(
+            open_bits, [](const ScreenSplat* a, const ScreenSplat* b) { return in_front_of(*a, *b); },
+            progress);
+    else
+        put_in_order(
+            open_bits, [&](const ScreenSplat* a, const ScreenSplat* b) { return in_front_of(*a, *b, ids); },
+            progress);
     return order_;
 }
 

@@ -8,6 +8,7 @@
 #include "core/buffer.h"
 #include "core/progress.h"
 #include "render/screen_splat.h"
+#include "render/tie_ids.h"
 
 namespace astrosplat {
 
@@ -16,11 +17,14 @@ class SplatSorter {
   public:
     /// Radix sort on depth, ties by in_front_of. The result lives until the next call.
     std::span<const ScreenSplat* const> sort(std::span<const std::span<const ScreenSplat>> runs,
-                                             const Progress& progress);
+                                             const Progress& progress, const TieIds& ids = {});
+    /// What sort() takes for each record, beside the records.
+    static constexpr std::int64_t bytes_per_record = 2 * sizeof(std::uint64_t) + 2 * sizeof(void*);
 
   private:
     int read(std::span<const std::span<const ScreenSplat>> runs, const Progress& progress);
-    void put_in_order(int open_bits, const Progress& progress);
+    template <class Before>
+    void put_in_order(int open_bits, const Before& before, const Progress& progress);
 
     Buffer<std::uint64_t> codes_, other_;  // depth less the least one above, place of arrival below
     Buffer<const ScreenSplat*> splats_, order_;

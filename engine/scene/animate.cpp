@@ -147,4 +147,9 @@ bool ever_visible(const Scene& scene, const LayerParams& layer) {
                                [](const auto& k) { return !k.value.empty() && k.value[0] != 0.0; });
 }
 
+bool is_shaded_alike(const Scene& scene, const std::string& layer) {
+    const ParameterKey harmless = layer_key(layer) / "visible";
+    return !moves(scene, [&](const ParameterKey& key) { return key.layer() == layer && key != harmless; });
+}
+
 }  // namespace astrosplat

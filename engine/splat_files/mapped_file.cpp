@@ -93,6 +93,16 @@ MappedFile::~MappedFile() {
     guard.taken = false;
 }
 
+void forget_pages(std::string_view bytes) {
+    const auto begin = reinterpret_cast<std::uintptr_t>(bytes.data()), end = begin + bytes.size();
+    for (const Guard& guard : guards) {
+        if (begin < guard.begin || end > guard.end) continue;
+        const std::uintptr_t page = page_size();
+        const std::uintptr_t first = (begin + page - 1) / page * page, last = end / page * page;
+        if (first < last) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+    }
+}
+
 void MappedFile::require_whole() const {
     struct stat status {};
     const bool shorter = ::fstat(input_.descriptor(), &status) == 0 && status.st_size < input_.size();

@@ -32,6 +32,10 @@ class MappedFile {
     std::size_t guard_ = 0;  // place in the table of mappings that the signal handler knows
 };
 
+/// For a reader that is done with some bytes of a mapped file: their pages no longer count as this program's
+/// memory. Elsewhere it does nothing. From any thread.
+void forget_pages(std::string_view bytes);
+
 /// What read(bytes) makes of the file's bytes. Throws InputError, in words about the file's length where that
 /// changed meanwhile, whatever the reader made of it.
 template <class Read>

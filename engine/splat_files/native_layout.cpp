@@ -72,6 +72,13 @@ BlockEntry describe_block(std::uint32_t flags, std::string_view bytes, std::size
     return entry;
 }
 
+void add_to_box(std::span<const glm::vec3> positions, BlockEntry& entry) {
+    for (const glm::vec3& p : positions) {
+        entry.lo = glm::min(entry.lo, p);
+        entry.hi = glm::max(entry.hi, p);
+    }
+}
+
 void Checker::fail(std::string_view place, const std::string& expected, const std::string& found) const {
     bad_input(file, place, expected, found);
 }
@@ -155,6 +162,22 @@ Layout read_layout(const Checker& checker, std::string_view bytes, NativePart pa
     if (part_of(layout.header) != part)
         checker.fail("header", name_of(part), name_of(part_of(layout.header)));
     return layout;
+}
+
+SplatSetFacts facts_of(const Layout& layout) {
+    const Header& header = layout.header;
+    SplatSetFacts facts;
+    facts.spacing = header.spacing;
+    facts.max_distance = header.max_distance;
+    facts.generated = header.flags & generated;
+    facts.divided = header.flags & divided;
+    facts.absorbs = header.flags & absorbs;
+    facts.display_harmonics = header.flags & display_harmonics;
+    facts.test_positions = header.test_positions;
+    facts.zero_alpha = header.zero_alpha;
+    facts.credit = layout.credit;
+    facts.recipe = layout.recipe;
+    return facts;
 }
 
 Block block_at(const Layout& layout, std::size_t number) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -64,6 +65,9 @@ std::size_t block_count(std::uint64_t splats, std::uint32_t block);
 /// Bounds and checksum of a packed block, whose first array is the positions where there are any.
 BlockEntry describe_block(std::uint32_t flags, std::string_view bytes, std::size_t rows);
 
+/// Widens the entry's bounds by positions.
+void add_to_box(std::span<const glm::vec3> positions, BlockEntry& entry);
+
 /// A file whose lengths are known to be right.
 struct Layout {
     Header header;
@@ -85,6 +89,9 @@ struct Checker {
 Layout read_layout(const Checker& checker, std::string_view bytes);
 /// The same, and that it is this part of a set.
 Layout read_layout(const Checker& checker, std::string_view bytes, NativePart part);
+
+/// What the header says of the set.
+SplatSetFacts facts_of(const Layout& layout);
 
 /// A block of the file.
 struct Block {

@@ -36,23 +36,13 @@ std::uint32_t flags_to_read(const Header& header, const OptionalColumns& wanted)
 /// A set of so many rows, with all that is known of the whole.
 SplatSet empty_set(const Layout& layout, std::size_t rows, const OptionalColumns& wanted,
                    const std::string& file) {
-    const Header& header = layout.header;
-    const std::uint32_t flags = flags_to_read(header, wanted);
+    const std::uint32_t flags = flags_to_read(layout.header, wanted);
     if (rows > 0) claim_memory(static_cast<std::int64_t>(rows * row_bytes(flags)), "splats of " + file);
     SplatSet set;
     for_each_column([&](auto column, SplatColumn which) {
         if (has(flags, which)) (set.*column).resize(rows);
     });
-    set.spacing = header.spacing;
-    set.max_distance = header.max_distance;
-    set.generated = header.flags & generated;
-    set.divided = header.flags & divided;
-    set.absorbs = header.flags & absorbs;
-    set.display_harmonics = header.flags & display_harmonics;
-    set.test_positions = header.test_positions;
-    set.zero_alpha = header.zero_alpha;
-    set.credit = layout.credit;
-    set.recipe = layout.recipe;
+    static_cast<SplatSetFacts&>(set) = facts_of(layout);
     return set;
 }
 
@@ -121,6 +111,7 @@ void read_block(const Checker& checker, const Layout& layout, std::size_t number
     if (stored.lo != found.lo || stored.hi != found.hi)
         checker.fail(place, "positions within its bounds", "others");
     if (!unpack_rows(block)) checker.fail(place, "finite numbers", "infinity or NaN");
+    forget_pages(block.bytes);
 }
 
 void check_order(const Checker& checker, const Layout& layout, const SplatSet& set) {
@@ -183,6 +174,7 @@ Buffer<std::int64_t> lit_rows_of(const Layout& layout, const Progress& progress)
         std::size_t to = before[number];
         for (std::size_t i = 0; i < block.rows; ++i)
             if (alpha_at(block, i) > 0.0f) rows[to++] = static_cast<std::int64_t>(block.first + i);
+        forget_pages(block.bytes);
     });
     return rows;
 }

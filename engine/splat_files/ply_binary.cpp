@@ -16,6 +16,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "splat_files/mapped_file.h"
 
 namespace astrosplat {
 
@@ -225,6 +226,7 @@ void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& t
     parallel_parts(starts.size() - 1, progress, [&](std::size_t chunk) {
         const std::int64_t first = static_cast<std::int64_t>(chunk) * rows_read_at_once;
         reader.read_rows(table, first, std::min(first + rows_read_at_once, count), starts[chunk]);
+        forget_pages(header.data.substr(starts[chunk], starts[chunk + 1] - starts[chunk]));
     });
 }
 

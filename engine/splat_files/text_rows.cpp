@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "splat_files/mapped_file.h"
 #include "splat_files/number_scan.h"
 
 namespace astrosplat {
@@ -49,6 +50,7 @@ void count(TextChunk& chunk) {
         ++chunk.first_line;
         p = newline + 1;
     }
+    forget_pages(chunk.text);
 }
 
 std::string describe(const SplatTable& table) {
@@ -158,8 +160,10 @@ TextRows split_rows(std::string_view text, std::int64_t first_line) {
 
 void read_text_rows(const TextRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
                     const std::filesystem::path& file, const Progress& progress) {
-    parallel_parts(rows.chunks.size(), progress,
-                   [&](std::size_t chunk) { read_chunk(rows.chunks[chunk], begin, end, table, file); });
+    parallel_parts(rows.chunks.size(), progress, [&](std::size_t chunk) {
+        read_chunk(rows.chunks[chunk], begin, end, table, file);
+        forget_pages(rows.chunks[chunk].text);
+    });
 }
 
 std::string quoted(std::string_view text) {

@@ -83,6 +83,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
         {"stars", {"core", "splats", "stars"}},
         {"generate", {"core", "source", "splats", "splat_files", "generate"}},
         {"look", {"core", "image", "source", "splats", "look"}},
+        {"streamed", {"core", "splats", "splat_files", "look", "streamed"}},
         {"camera", {"core", "camera"}},
         {"camera_files", {"core", "gltf", "camera", "camera_files"}},
         {"render", {"core", "source", "splats", "camera", "render"}},
@@ -99,7 +100,7 @@ TEST(Structure, EngineIncludesPointOneWay) {
           "ocio", "output"}},
         {"",
          {"core", "source", "splats", "splat_files", "generate", "sets", "look", "camera", "render", "scene",
-          "output", "image", "fidelity", ""}},  // pipeline, measure_fidelity
+          "output", "image", "fidelity", "streamed", ""}},  // pipeline, measure_fidelity
     };
     const std::vector<Include> includes = includes_below("engine");
     ASSERT_GT(includes.size(), 100u);

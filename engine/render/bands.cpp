@@ -1,0 +1,265 @@
+#include "render/bands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <optional>
+
+#include "core/error.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "render/record_sample.h"
+#include "render/tiles.h"
+
+namespace astrosplat {
+namespace {
+
+// Of a record: itself with the unused ends of blocks, and an id where they are kept.
+constexpr double record_bytes = 1.125 * sizeof(ScreenSplat), id_bytes = sizeof(std::uint64_t);
+
+bool has_blocks(const RenderJob& job) {
+    return std::ranges::any_of(job.layers, [](const RenderLayer& layer) { return layer.blocks != nullptr; });
+}
+
+/// The frame's tiles, and the records they will take, roughly.
+struct Tiles {
+    TileGrid grid;
+    std::int64_t records = 0;
+};
+
+/// Large tiles cut fewer splats into several records; small ones keep a tile's records in a core's cache.
+Tiles choose_tiles(const RenderJob& job) {
+    constexpr int small_px = 32, large_px = 64;
+    constexpr std::int64_t records_in_cache = 16384;  // measured: up to here the larger tiles are quicker,
+    constexpr double worth_missing_it = 1.5;          // and beyond if they save so many records
+    TileGrid grid{job.region.x, job.region.y, job.region.width, job.region.height, large_px};
+    if (job.settings.tile_px > 0) {
+        grid.tile_px = job.settings.tile_px;
+        return {grid, estimate_records(job.projections, grid, {&grid.tile_px, 1}, job.progress)[0]};
+    }
+    const int sizes[] = {small_px, large_px};
+    const std::vector<std::int64_t> records = estimate_records(job.projections, grid, sizes, job.progress);
+    const bool enough_to_share = grid.tiles() >= 8 * thread_count();
+    const bool in_cache = records[1] <= records_in_cache * grid.tiles();
+    const bool saves = static_cast<double>(records[0]) >= worth_missing_it * static_cast<double>(records[1]);
+    if (enough_to_share && (in_cache || saves)) return {grid, records[1]};
+    grid.tile_px = small_px;
+    return {grid, records[0]};
+}
+
+/// Tile rows of each band so that it takes no more than the limit: its records, or the pixels between slabs.
+std::int64_t rows_per_band(const RenderJob& job, const Tiles& tiles) {
+    const std::int64_t limit = job.settings.memory_limit_bytes, rows = tiles.grid.rows();
+    const std::int64_t records = tiles.records * static_cast<std::int64_t>(sizeof(ScreenSplat));
+    if (limit <= 0 || records <= limit) return rows;
+    const std::int64_t bytes = has_blocks(job) ? 4 * CarriedTiles::bytes(job, tiles.grid) : records;
+    const std::int64_t bands = std::max<std::int64_t>(1, (bytes + limit - 1) / limit);
+    return std::max<std::int64_t>(1, rows / std::min(rows, bands));
+}
+
+/// One band while it is rendered.
+class BandRun {
+  public:
+    BandRun(const RenderJob& job, const TileGrid& grid, std::int64_t records, double before,
+            RenderCache::State& cache, RenderedFrame& frame)
+        : job_(job),
+          grid_(grid),
+          records_(records),
+          before_(before),
+          cache_(cache),
+          frame_(frame),
+          workers_(make_tile_workers(job)),
+          order_(tile_order(job, grid)) {
+        const ScreenRect rect{static_cast<float>(grid.x0), static_cast<float>(grid.y0),
+                              static_cast<float>(grid.x0 + grid.width),
+                              static_cast<float>(grid.y0 + grid.height)};
+        blocks_ = visible_blocks(job.projections, rect);
+        for (const VisibleBlock& block : blocks_) visible_splats_ += splats_of(block);
+    }
+
+    void run() {
+        std::vector<DepthRange> slabs = plan();
+        if (slabs.size() == 1 && try_whole()) return;
+        if (slabs.size() == 1) slabs = refined(slabs[0]);
+        CarriedTiles carried(job_, grid_);
+        limit_store(CarriedTiles::bytes(job_, grid_));
+        while (!slabs.empty()) {
+            if (try_slab(slabs.front(), carried))
+                slabs.erase(slabs.begin());
+            else
+                slabs = refined(slabs.front());
+        }
+        for_each_tile(0.95, 0.05,
+                      [&](std::int64_t tile, TileWorker& worker) { carried.finish(tile, worker, frame_); });
+    }
+
+  private:
+    std::int64_t splats_of(const VisibleBlock& block) const {
+        return job_.projections[block.layer].blocks->blocks()[block.block].splats;
+    }
+
+    /// What records may take beside the pixels between slabs.
+    void limit_store(std::int64_t pixels_bytes) {
+        const std::int64_t limit = job_.settings.memory_limit_bytes;
+        // Where all is in memory bands alone do, but for frames of few tiles.
+        constexpr std::int64_t few = 16'000'000;
+        const std::int64_t least = std::max(
+            TileBins::least_bytes(grid_, static_cast<int>(job_.groups.size())), blocks_.empty() ? few : 0);
+        limit_ = limit > 0 ? std::max({limit - pixels_bytes, limit / 4, least}) : 0;
+        cache_.store.limit(limit_);
+    }
+
+    /// One slab where all records fit, as far as can be told.
+    std::vector<DepthRange> plan() {
+        limit_store(0);
+        const double bytes = record_bytes + (blocks_.empty() ? 0.0 : id_bytes);
+        if (limit_ == 0 || blocks_.empty() ||
+            static_cast<double>(records_) * bytes <= 0.9 * static_cast<double>(limit_))
+            return std::vector<DepthRange>(1);
+        limit_store(CarriedTiles::bytes(job_, grid_));
+        sample_ = sample_depths(job_.projections, grid_, job_.progress);
+        most_records_ = 0.9 * static_cast<double>(limit_) / bytes;
+        return sample_->cut(most_records_, 0);
+    }
+
+    /// The depths from the range on, in smaller slabs than before.
+    std::vector<DepthRange> refined(const DepthRange& range) {
+        if (range.first == range.last)
+            throw InputError(
+                fmt::format("splats at one distance need more than {} of memory, which --memory leaves "
+                            "for them",
+                            human_bytes(static_cast<double>(limit_))));
+        if (!sample_) sample_ = sample_depths(job_.projections, grid_, job_.progress);
+        if (most_records_ == 0.0) most_records_ = sample_->records();
+        most_records_ *= 0.7;
+        std::vector<DepthRange> slabs = sample_->cut(most_records_, range.first);
+        if (slabs[0].last < range.last) return slabs;
+        const auto [near, far] = sample_->halve(range);
+        slabs[0].first = far.first;
+        slabs.insert(slabs.begin(), near);
+        return slabs;
+    }
+
+    /// The records of a slab into bins; none where they take too much.
+    std::optional<TileBins> scatter(const DepthRange& slab) try {
+        std::optional<TileBins> bins(std::in_place, grid_, static_cast<int>(job_.groups.size()),
+                                     records_in(slab));
+        cache_.store.clear();
+        bins->scatter(job_.projections, job_.group_of_layer, slab, blocks_, cache_.store, job_.progress);
+        if (limit_ > 0 &&
+            cache_.store.used_bytes() + fold_bytes_per_record * bins->records_of_fullest(thread_count()) >
+                limit_)
+            throw StoreFull();
+        const TileBins::Sums sums = bins->sums();
+        make_footprints(job_, sums, cache_);
+        frame_.statistics.splats_drawn += sums.instances;
+        frame_.statistics.mean_overlap += sums.footprint_px;
+        return bins;
+    } catch (const StoreFull&) {
+        return {};
+    }
+
+    std::int64_t records_in(const DepthRange& slab) const {
+        return slab.is_all() || most_records_ == 0.0
+                   ? records_
+                   : std::min(records_, static_cast<std::int64_t>(most_records_));
+    }
+
+    bool try_whole() {
+        const std::optional<TileBins> bins = scatter({});
+        if (!bins) return false;
+        progress_at(0.4);
+        for_each_tile(0.4, 0.6, [&](std::int64_t tile, TileWorker& worker) {
+            render_tile(job_, *bins, tile, worker, frame_);
+        });
+        return true;
+    }
+
+    bool try_slab(const DepthRange& slab, CarriedTiles& carried) {
+        const std::optional<TileBins> bins = scatter(slab);
+        if (!bins) return false;
+        const double share =
+            0.95 * std::min(1.0 - done_, visible_splats_ > 0 ? share_of(slab) : 0.5 * (1.0 - done_));
+        for_each_tile(0.95 * done_ + 0.4 * share, 0.6 * share,
+                      [&](std::int64_t tile, TileWorker& worker) { carried.fold_slab(*bins, tile, worker); });
+        done_ += share / 0.95;
+        return true;
+    }
+
+    /// Of all splats that come by the block, those of which a slab is likely to be the last; for progress
+    /// alone.
+    double share_of(const DepthRange& slab) const {
+        std::int64_t splats = 0;
+        for (const VisibleBlock& block : blocks_)
+            if (slab.holds(block.depths.last)) splats += splats_of(block);
+        return static_cast<double>(splats) / static_cast<double>(visible_splats_);
+    }
+
+    void progress_at(double fraction) const {
+        const double share = static_cast<double>(grid_.height) / static_cast<double>(job_.region.height);
+        job_.progress.at(before_ + share * fraction);
+    }
+
+    /// body(tile, worker) for all tiles, which is so much of the band's work.
+    template <class Body>
+    void for_each_tile(double before, double share, const Body& body) {
+        progress_at(before);
+        std::atomic<std::int64_t> done = 0;
+        parallel_for(grid_.tiles(), [&](std::int64_t i, int worker) {
+            job_.progress.check();
+            body(order_[i], workers_[worker]);
+            const std::int64_t finished = ++done;
+            if (finished % 64 == 0)
+                progress_at(before +
+                            share * static_cast<double>(finished) / static_cast<double>(grid_.tiles()));
+        });
+    }
+
+    const RenderJob& job_;
+    const TileGrid& grid_;
+    std::int64_t records_;
+    double before_, done_ = 0.0;
+    RenderCache::State& cache_;
+    RenderedFrame& frame_;
+    std::vector<TileWorker> workers_;
+    std::vector<std::int64_t> order_;
+    std::vector<VisibleBlock> blocks_;
+    std::int64_t visible_splats_ = 0;  // in them
+    std::int64_t limit_ = 0;           // bytes for records and what folding them takes; 0: none
+    double most_records_ = 0.0;        // of a slab, as planned; 0: all
+    std::optional<DepthSample> sample_;
+};
+
+}  // namespace
+
+Bands make_bands(const RenderJob& job) {
+    const Tiles tiles = choose_tiles(job);
+    const TileGrid& grid = tiles.grid;
+    const std::int64_t band_rows = rows_per_band(job, tiles);
+    Bands bands;
+    for (std::int64_t row = 0; row < grid.rows(); row += band_rows) {
+        TileGrid band = grid;
+        band.y0 = grid.y0 + row * grid.tile_px;
+        band.height = std::min(band_rows * grid.tile_px, grid.y0 + grid.height - band.y0);
+        band.first_band = row == 0;
+        band.last_band = row + band_rows >= grid.rows();
+        bands.grids.push_back(band);
+    }
+    bands.records = tiles.records / std::ssize(bands.grids);
+    if (!job.tile_done) return bands;
+    const auto from_middle = [&](const TileGrid& band) {
+        return std::abs(2 * (band.y0 - grid.y0) + band.height - grid.height);
+    };
+    std::ranges::stable_sort(
+        bands.grids, [&](const TileGrid& a, const TileGrid& b) { return from_middle(a) < from_middle(b); });
+    return bands;
+}
+
+void render_band(const RenderJob& job, const TileGrid& grid, std::int64_t records, double before,
+                 RenderCache::State& cache, RenderedFrame& frame) {
+    BandRun(job, grid, records, before, cache, frame).run();
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,32 @@
+// A band of the frame: its splats are scattered into tiles, and these are folded. Splats that would take more
+// memory than there may be come in slabs of depth, near to far. In: a job and a band. Out: the band's pixels
+// in the frame.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/frame.h"
+#include "render/render_job.h"
+#include "render/scatter.h"
+#include "render/splat_sorter.h"
+
+namespace astrosplat {
+
+/// Of a record of the tile being folded, beside itself: its places in the order, and its disc.
+constexpr std::int64_t fold_bytes_per_record = SplatSorter::bytes_per_record + 6 * sizeof(float);
+
+/// The frame in bands, each of some rows of tiles, so that what they take keeps to the memory limit as far as
+/// can be told before; with tile_done those nearest to the middle first.
+struct Bands {
+    std::vector<TileGrid> grids;
+    std::int64_t records = 0;  // that each will take, roughly
+};
+Bands make_bands(const RenderJob& job);
+
+/// `before` of the frame's share is done already. Throws InputError where what lies at one distance takes
+/// more than the limit.
+void render_band(const RenderJob& job, const TileGrid& grid, std::int64_t records, double before,
+                 RenderCache::State& cache, RenderedFrame& frame);
+
+}  // namespace astrosplat

@@ -1,0 +1,135 @@
+// A block is as near as the nearest point of its box, and as far as the farthest of its corners; both with a
+// margin for the largest radius, within which children lie, and for what floats round away.
+#include "render/depth_slabs.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "camera/projection.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double rounding = 1e-5;  // of distances; floats round by 1e-7
+
+/// A block's box in camera space.
+struct BlockPlace {
+    glm::dvec3 center;
+    double ball = 0.0;             // all of its splats, with their radii, lie so near the centre
+    double near = 0.0, far = 0.0;  // what distances are sorted by
+};
+
+double length(const glm::dvec3& v) { return std::sqrt(glm::dot(v, v)); }
+
+BlockPlace place_of(const LayerProjection& layer, const BlockFacts& block) {
+    const auto to_camera = [&](const glm::dvec3& p) {
+        return layer.camera_from_layer * p + layer.origin_in_camera;
+    };
+    const double scale = static_cast<double>(layer.layer_scale);
+    const double reach = static_cast<double>(block.radius * layer.radius_scale);
+    BlockPlace place;
+    place.center = to_camera(block.box.center());
+    double farthest = 0.0, deepest = -std::numeric_limits<double>::infinity(), nearest = -deepest,
+           size = reach;
+    for (int i = 0; i < 8; ++i) {
+        const glm::dvec3 corner = to_camera(block.box.corner(i));
+        place.ball = std::max(place.ball, length(corner - place.center));
+        farthest = std::max(farthest, length(corner));
+        nearest = std::min(nearest, -corner.z);
+        deepest = std::max(deepest, -corner.z);
+        size = std::max(size, scale * length(block.box.corner(i)));
+    }
+    if (!shared::has_parallel_rays(layer.lens)) {
+        const glm::dvec3 eye =
+            glm::transpose(layer.camera_from_layer) * -layer.origin_in_camera / (scale * scale);
+        nearest = scale * length(glm::clamp(eye, block.box.lo, block.box.hi) - eye);
+        deepest = farthest;
+    }
+    const double margin = reach + rounding * (size + std::fabs(deepest));
+    place.ball += margin;
+    place.near = nearest - margin;
+    place.far = deepest + margin;
+    return place;
+}
+
+std::uint32_t key_of(double depth) {
+    const double most = 3.4e38;
+    return std::bit_cast<std::uint32_t>(static_cast<float>(std::clamp(depth, 0.0, most)));
+}
+
+DepthRange depths_of(const Lens& lens, const BlockPlace& place) {
+    const double near = std::max(0.0, place.near), far = std::max(0.0, place.far);
+    if (shared::has_parallel_rays(lens)) return {key_of(near), key_of(far)};
+    return {key_of(near * near * (1.0 - rounding)), key_of(far * far * (1.0 + rounding))};
+}
+
+/// False only where none of the block's splats can leave a record.
+bool may_show(const LayerProjection& layer, const BlockPlace& place, const ScreenRect& rect) {
+    if (!(place.far > 0.0)) return false;
+    const glm::vec3 center(place.center);
+    const auto ball = static_cast<float>(place.ball * (1.0 + rounding));
+    const shared::Instance at = shared::instance_of(layer.lens, center);
+    if (at.depth + ball < layer.lens.near) return false;
+    if (!(at.depth - ball > layer.lens.near)) return true;
+    const float wide = std::max(1.0f, layer.reach) * ball;
+    const float support_px = shared::reach_px(layer.lens, center, wide, layer.margin_px + 1.0f);
+    return shared::appears_in_rect(layer.lens, at.x_px, at.y_px, support_px, rect.x0, rect.y0, rect.x1,
+                                   rect.y1);
+}
+
+}  // namespace
+
+std::vector<VisibleBlock> visible_blocks(std::span<const LayerProjection> layers, const ScreenRect& rect) {
+    std::vector<VisibleBlock> visible;
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+        const LayerProjection& layer = layers[l];
+        if (!layer.blocks) continue;
+        for (std::size_t b = 0; b < layer.blocks->size(); ++b) {
+            const BlockFacts& block = layer.blocks->blocks()[b];
+            if (block.splats == 0) continue;
+            const BlockPlace place = place_of(layer, block);
+            if (may_show(layer, place, rect)) visible.push_back({l, b, depths_of(layer.lens, place)});
+        }
+    }
+    return visible;
+}
+
+double DepthSample::records() const {
+    double all = 0.0;
+    for (const DepthShare& share : shares) all += share.records;
+    return all;
+}
+
+std::vector<DepthRange> DepthSample::cut(double most_records, std::uint32_t first) const {
+    std::vector<DepthRange> ranges = {{first, 0xffffffffu}};
+    double records = 0.0;
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+        if (shares[i].depth < first) continue;
+        records += shares[i].records;
+        const bool may_cut = i > 0 && shares[i].depth > std::max(shares[i - 1].depth, ranges.back().first);
+        if (!may_cut || records <= most_records) continue;
+        ranges.back().last = shares[i].depth - 1;
+        ranges.push_back({shares[i].depth, 0xffffffffu});
+        records = shares[i].records;
+    }
+    return ranges;
+}
+
+std::pair<DepthRange, DepthRange> DepthSample::halve(const DepthRange& range) const {
+    double all = 0.0, near = 0.0;
+    for (const DepthShare& share : shares) all += range.holds(share.depth) ? share.records : 0.0;
+    std::uint32_t last = range.first + (range.last - range.first) / 2;
+    for (const DepthShare& share : shares) {
+        if (!range.holds(share.depth)) continue;
+        near += share.records;
+        if (2.0 * near < all) continue;
+        // Beyond the sample's ends there may be many; no range is to be tried twice.
+        if (share.depth > range.first && share.depth < range.last) last = share.depth;
+        break;
+    }
+    return {{range.first, last}, {last + 1, range.last}};
+}
+
+}  // namespace astrosplat

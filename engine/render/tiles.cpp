@@ -1,0 +1,130 @@
+#include "render/tiles.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/parallel.h"
+
+namespace astrosplat {
+namespace {
+
+Region tile_region(const TileGrid& grid, std::int64_t tile) {
+    const std::int64_t x = grid.x0 + tile % grid.columns() * grid.tile_px;
+    const std::int64_t y = grid.y0 + tile / grid.columns() * grid.tile_px;
+    return {x, y, std::min<std::int64_t>(grid.tile_px, grid.x0 + grid.width - x),
+            std::min<std::int64_t>(grid.tile_px, grid.y0 + grid.height - y)};
+}
+
+FoldSettings fold_settings(const RenderJob& job, std::size_t group) {
+    FoldSettings settings = job.fold;
+    if (group < job.groups.size()) settings.kind = job.groups[group].kind;
+    return settings;
+}
+
+void reset(const RenderJob& job, const Region& region, std::size_t group, TilePlanes& planes) {
+    planes.reset(region, fold_settings(job, group), job.layers.size());
+}
+
+/// Folds the records that the worker has collected.
+void fold_runs(const RenderJob& job, const TileBins& bins, std::size_t group, TileWorker& worker,
+               TilePlanes& planes) {
+    const std::span<const ScreenSplat* const> order =
+        worker.sorter.sort(worker.runs, job.progress, bins.tie_ids());
+    fold({order, job.fold_layers, fold_settings(job, group), job.progress, bins.shapes()}, planes);
+}
+
+/// Whether a tile's only group goes straight into the frame.
+bool stands_alone(const RenderJob& job) {
+    const bool nothing_behind = !job.environment || job.settings.backdrop;
+    return job.groups.size() == 1 && !job.groups[0].isolated && !job.fold.aovs && nothing_behind;
+}
+
+/// Composites the groups, far to near, and writes the tile. folded(group): its planes, or null where no splat
+/// reached them.
+template <class Folded>
+void resolve_tile(const RenderJob& job, const Region& region, TileWorker& worker, RenderedFrame& frame,
+                  const Folded& folded) {
+    const bool alone = stands_alone(job), behind = job.environment || job.settings.backdrop;
+    const TilePlanes* tile = nullptr;  // of any group; until then the tile is as black as the new frame
+    for (std::size_t g = 0; g < std::max<std::size_t>(1, job.groups.size()); ++g) {
+        const TilePlanes* planes = g < job.groups.size() ? folded(g) : nullptr;
+        if (!planes && !behind) continue;
+        if (!planes) {
+            reset(job, region, g, worker.planes);
+            planes = &worker.planes;
+        }
+        if (!tile && !alone) worker.resolver.begin(*planes, job.camera, job.environment);
+        tile = planes;
+        if (g == job.groups.size()) break;  // nothing but the environment
+        if (!alone) worker.resolver.composite(job.groups[g], *planes);
+    }
+    if (tile && alone)
+        worker.resolver.write_alone(job.groups[0], *tile, job.region.x, job.region.y, frame);
+    else if (tile)
+        worker.resolver.write(*tile, job.region.x, job.region.y, frame);
+    if (job.tile_done) job.tile_done(region, frame);
+}
+
+}  // namespace
+
+std::vector<TileWorker> make_tile_workers(const RenderJob& job) {
+    std::vector<TileWorker> workers;
+    for (int i = 0; i < thread_count(); ++i)
+        workers.push_back({{}, {}, {}, TileResolver(job.layers, job.settings)});
+    return workers;
+}
+
+std::vector<std::int64_t> tile_order(const RenderJob& job, const TileGrid& grid) {
+    std::vector<std::int64_t> order(static_cast<std::size_t>(grid.tiles()));
+    std::iota(order.begin(), order.end(), std::int64_t{0});
+    if (!job.tile_done) return order;
+    const auto from_middle = [&](std::int64_t tile) {  // twice the distance between centres, squared
+        const Region r = tile_region(grid, tile);
+        const std::int64_t x = 2 * (r.x - job.region.x) + r.width - job.region.width;
+        const std::int64_t y = 2 * (r.y - job.region.y) + r.height - job.region.height;
+        return x * x + y * y;
+    };
+    std::ranges::stable_sort(order,
+                             [&](std::int64_t a, std::int64_t b) { return from_middle(a) < from_middle(b); });
+    return order;
+}
+
+void render_tile(const RenderJob& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
+                 RenderedFrame& frame) {
+    const Region region = tile_region(bins.grid(), tile);
+    resolve_tile(job, region, worker, frame, [&](std::size_t g) -> const TilePlanes* {
+        bins.collect(tile, static_cast<int>(g), worker.runs);
+        if (worker.runs.empty()) return nullptr;
+        reset(job, region, g, worker.planes);
+        fold_runs(job, bins, g, worker, worker.planes);
+        return &worker.planes;
+    });
+}
+
+std::int64_t CarriedTiles::bytes(const RenderJob& job, const TileGrid& grid) {
+    const std::int64_t planes =
+        9 + (job.fold.aovs ? 3 + 4 * static_cast<std::int64_t>(job.layers.size()) : 0);
+    const std::int64_t pixels = grid.tiles() * grid.tile_px * grid.tile_px;
+    return pixels * planes * static_cast<std::int64_t>(sizeof(float) * job.groups.size());
+}
+
+void CarriedTiles::fold_slab(const TileBins& bins, std::int64_t tile, TileWorker& worker) {
+    for (std::size_t g = 0; g < job_.groups.size(); ++g) {
+        bins.collect(tile, static_cast<int>(g), worker.runs);
+        if (worker.runs.empty()) continue;
+        TilePlanes& planes = planes_of(tile, g);
+        if (planes.width == 0) reset(job_, tile_region(grid_, tile), g, planes);
+        fold_runs(job_, bins, g, worker, planes);
+        for (Buffer<float>& toward : planes.toward) toward = {};  // made anew, and no state
+    }
+}
+
+void CarriedTiles::finish(std::int64_t tile, TileWorker& worker, RenderedFrame& frame) {
+    resolve_tile(job_, tile_region(grid_, tile), worker, frame, [&](std::size_t g) -> const TilePlanes* {
+        TilePlanes& planes = planes_of(tile, g);
+        return planes.width == 0 ? nullptr : &planes;
+    });
+    for (std::size_t g = 0; g < job_.groups.size(); ++g) planes_of(tile, g) = {};
+}
+
+}  // namespace astrosplat

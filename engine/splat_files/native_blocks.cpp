@@ -1,0 +1,170 @@
+// Columns are read one by one straight into the set's arrays: those that nobody wants are not read at all.
+#include "splat_files/native_blocks.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "core/file.h"
+#include "splat_files/checksum.h"
+#include "splat_files/mapped_file.h"
+#include "splat_files/native_layout.h"
+
+namespace astrosplat {
+
+struct NativeBlocks::State {
+    std::filesystem::path path;
+    native::Layout layout;  // without the blocks' bytes
+    SplatSetFacts facts;
+    InputFile file;
+
+    State(const std::filesystem::path& of, NativePart part)
+        : path(of),
+          layout(read_mapped(
+              of, [&](std::string_view bytes) { return native::read_layout({of.string()}, bytes, part); })),
+          facts(native::facts_of(layout)),
+          file(of) {
+        layout.blocks = {};
+    }
+
+    std::size_t rows(std::size_t block) const {
+        const std::size_t first = block * layout.header.block;
+        return std::min<std::size_t>(layout.header.block, layout.header.splats - first);
+    }
+    std::size_t offset(std::size_t block) const {
+        return native::data_offset(layout.header.credit_bytes) +
+               block * layout.header.block * native::row_bytes(layout.header.flags);
+    }
+    void read_at(std::size_t offset, char* out, std::size_t bytes) const;
+};
+
+void NativeBlocks::State::read_at(std::size_t offset, char* out, std::size_t bytes) const {
+    while (bytes > 0) {
+        const ssize_t got = ::pread(file.descriptor(), out, bytes, static_cast<off_t>(offset));
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0)
+            throw InputError(
+                fmt::format("{}: cannot be read: {}", path.string(),
+                            got < 0 ? std::strerror(errno) : "it became shorter while it was read"));
+        offset += static_cast<std::size_t>(got);
+        out += got;
+        bytes -= static_cast<std::size_t>(got);
+    }
+}
+
+namespace {
+
+bool all_finite(const float* values, std::size_t count) {
+    bool finite = true;
+    for (std::size_t i = 0; i < count; ++i) finite &= std::fabs(values[i]) <= FLT_MAX;
+    return finite;
+}
+template <class T>
+bool all_finite(const Buffer<T>& array) {
+    if constexpr (std::is_integral_v<T>)
+        return true;
+    else
+        return all_finite(reinterpret_cast<const float*>(array.data()),
+                          array.size() * sizeof(T) / sizeof(float));
+}
+
+bool is_wanted(SplatColumn column, const OptionalColumns& wanted) {
+    switch (column) {
+        case SplatColumn::uv:
+            return wanted.uv;
+        case SplatColumn::normal:
+            return wanted.normal;
+        case SplatColumn::mesh:
+            return wanted.mesh;
+        case SplatColumn::face:
+            return wanted.face;
+        default:
+            return true;
+    }
+}
+
+}  // namespace
+
+NativeBlocks::NativeBlocks(const std::filesystem::path& file, NativePart part)
+    : state_(std::make_unique<State>(file, part)) {}
+NativeBlocks::~NativeBlocks() = default;
+
+const SplatSetFacts& NativeBlocks::facts() const { return state_->facts; }
+std::size_t NativeBlocks::size() const { return state_->layout.table.size(); }
+std::int64_t NativeBlocks::splats() const { return static_cast<std::int64_t>(state_->layout.header.splats); }
+std::int64_t NativeBlocks::bytes() const {
+    return splats() * static_cast<std::int64_t>(native::row_bytes(state_->layout.header.flags));
+}
+std::int64_t NativeBlocks::most_rows() const { return state_->layout.header.block; }
+bool NativeBlocks::has(SplatColumn column) const { return native::has(state_->layout.header.flags, column); }
+
+Bounds NativeBlocks::box(std::size_t block) const {
+    const native::BlockEntry& entry = state_->layout.table[block];
+    return {glm::dvec3(entry.lo), glm::dvec3(entry.hi)};
+}
+
+SplatSet NativeBlocks::sample(std::int64_t places) const {
+    constexpr std::int64_t at_once = 32;  // rows
+    const State& state = *state_;
+    SplatSet out;
+    static_cast<SplatSetFacts&>(out) = state.facts;
+    places = std::min(places, (splats() + at_once - 1) / at_once);
+    for (std::int64_t n = 0; n < places; ++n) {
+        const auto row = static_cast<std::size_t>(static_cast<double>(n) / static_cast<double>(places) *
+                                                  static_cast<double>(splats()));
+        const std::size_t block = row / state.layout.header.block, first = row % state.layout.header.block;
+        const std::size_t rows = state.rows(block), count = std::min<std::size_t>(at_once, rows - first);
+        std::size_t offset = state.offset(block);
+        for_each_column([&](auto column, SplatColumn which) {
+            if (!has(which)) return;
+            auto& array = out.*column;
+            const std::size_t size = sizeof array[0], end = array.size();
+            array.resize(end + count);
+            state.read_at(offset + first * size, reinterpret_cast<char*>(array.data() + end), count * size);
+            offset += rows * size;
+        });
+    }
+    return out;
+}
+
+void NativeBlocks::read(std::size_t block, const OptionalColumns& wanted, Check check, SplatSet& out) const {
+    const State& state = *state_;
+    const native::Checker checker{state.path.string()};
+    const std::string place = fmt::format("block {}", block);
+    const std::size_t rows = state.rows(block);
+    std::size_t offset = state.offset(block);
+    RunningChecksum checksum;
+    bool finite = true;
+    for_each_column([&](auto column, SplatColumn which) {
+        auto& array = out.*column;
+        array.clear();
+        if (!has(which)) return;
+        array.resize(rows);
+        const std::size_t bytes = rows * sizeof array[0];
+        const bool used = is_wanted(which, wanted);
+        if (used || check == Check::all) state.read_at(offset, reinterpret_cast<char*>(array.data()), bytes);
+        offset += bytes;
+        if (check == Check::all) {
+            checksum.add({reinterpret_cast<const char*>(array.data()), bytes});
+            if (used) finite &= all_finite(array);
+        }
+        if (!used) array.clear();
+    });
+    if (check == Check::none) return;
+    const native::BlockEntry& stored = state.layout.table[block];
+    if (checksum.value() != stored.checksum)
+        checker.fail(place, "the checksum written with it", "another (damaged file)");
+    native::BlockEntry found{glm::vec3(FLT_MAX), glm::vec3(-FLT_MAX), stored.checksum};
+    native::add_to_box(out.position, found);
+    if (stored.lo != found.lo || stored.hi != found.hi)
+        checker.fail(place, "positions within its bounds", "others");
+    if (!finite) checker.fail(place, "finite numbers", "infinity or NaN");
+}
+
+}  // namespace astrosplat

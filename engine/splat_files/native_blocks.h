@@ -1,0 +1,45 @@
+// A whole set's native file, block by block, for sets that are not to be in memory as a whole. In: a .splats
+// file. Out: what is known of the set, and the rows of the blocks that are asked for. Bytes are read, not
+// mapped, so that they count as this program's memory while it has them and no longer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "core/bounds.h"
+#include "splat_files/native.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+class NativeBlocks {
+  public:
+    /// Checks header and table. Throws InputError as read_native does.
+    explicit NativeBlocks(const std::filesystem::path& file, NativePart part = NativePart::whole);
+    ~NativeBlocks();
+
+    const SplatSetFacts& facts() const;
+    std::size_t size() const;             // blocks
+    std::int64_t splats() const;          // of the whole set
+    std::int64_t bytes() const;           // that the set takes in memory, with all columns
+    std::int64_t most_rows() const;       // of a block
+    bool has(SplatColumn column) const;   // whether the file holds it
+    Bounds box(std::size_t block) const;  // of its positions, as the file says
+
+    enum class Check { all, none };
+    /// Sets the columns of `out` that are there and wanted to the block's rows; the others become empty. With
+    /// Check::all also what read_native checks. From any thread, several at a time. Throws InputError.
+    void read(std::size_t block, const OptionalColumns& wanted, Check check, SplatSet& out) const;
+
+    /// Some rows of about so many places, evenly spread over the file, with all columns that are there;
+    /// unchecked.
+    SplatSet sample(std::int64_t places) const;
+
+  private:
+    struct State;
+    std::unique_ptr<const State> state_;
+};
+
+}  // namespace astrosplat
