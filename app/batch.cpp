@@ -51,6 +51,7 @@ void print_plan(const BatchPlan& plan) {
     }
     if (job.sky_kept)
         fmt::print("sky: {}\n", *job.sky_kept ? "in the cache" : "is made of its picture first");
+    if (!job.streamed.empty()) fmt::print("read block by block: {}\n", fmt::join(job.streamed, ", "));
     fmt::print("memory about {}, threads {}\n", human_bytes(static_cast<double>(job.bytes)), thread_count());
     for (const FramePlan& frame : plan.frames) {
         fmt::print("{} {} {}\n", frame.render ? "render" : "keep", frame.frame,
@@ -92,24 +93,30 @@ class BatchRun {
     FrameHasher hasher_;
     ProgressReport report_;
     std::unique_ptr<Pipeline> pipeline_;
+    std::int64_t renderer_bytes_ = 0;  // limit; 0: none
     RunFigures figures_;
     Clock::time_point start_ = Clock::now();
 };
 
 void BatchRun::prepare() {
     const JobEstimate job = estimate(plan_);
+    renderer_bytes_ = job.renderer_bytes;
     const auto frames = frames_to_render(plan_);
     log_info(fmt::format("{} of {}x{} px, about {}, about {} of memory", counted(frames, "frame"),
                          plan_.scene.output.width, plan_.scene.output.height,
                          human_count(job.splats, "splat"), human_bytes(static_cast<double>(job.bytes))));
-    pipeline_ = std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache);
+    if (!job.streamed.empty())
+        log_info(fmt::format("read block by block, as there is not memory for all: {}",
+                             fmt::join(job.streamed, ", ")));
+    pipeline_ =
+        std::make_unique<Pipeline>(plan_.scene, report_.begin_step("preparing"), plan_.cache, job.streamed);
     check_unchanged(plan_.hasher.files(), Progress{{}, &interrupted()});
 }
 
 RenderSettings BatchRun::settings(const FramePlan& frame) const {
     RenderSettings settings = pipeline_->settings(static_cast<double>(frame.frame));
     settings.region = plan_.region;
-    settings.memory_limit_bytes = plan_.memory_limit_bytes;
+    settings.memory_limit_bytes = renderer_bytes_;
     return settings;
 }
 

@@ -21,7 +21,7 @@ struct BatchOptions {
     std::optional<std::string> resolution;  // "1920x1080" or "50%"
     std::optional<std::string> layers;      // "A,B": only these
     std::optional<std::string> region;      // "X,Y,W,H" from the top left, px
-    std::optional<std::string> memory_gib;  // limit of the renderer's working memory
+    std::optional<std::string> memory_gib;  // limit of all that is taken
     std::optional<std::filesystem::path> stats;
     SetCache cache;
     bool resume = false, overwrite = false, dry_run = false;

@@ -50,10 +50,10 @@ void add_frame_choice(CLI::App& app, BatchOptions& batch) {
     add_value(app, "--resolution", batch.resolution, "1920x1080|50%", "Size of the frame");
     add_assignments(app, batch.assignments);
     add_value(app, "--layers", batch.layers, "A,B", "Only these layers");
-    add_value(
-        app, "--memory", batch.memory_gib, "GiB",
-        "Limit of the renderer's working memory, and of what bodies are made in: pictures that would take "
-        "more are reduced");
+    add_value(app, "--memory", batch.memory_gib, "GiB",
+              "Limit of all that the program takes: larger .splats files are read block by block, and "
+              "pictures that "
+              "bodies are made of are reduced");
     add_value(app, "--region", batch.region, "X,Y,W,H", "Part of the frame, from the top left, in pixels");
 }
 

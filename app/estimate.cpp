@@ -2,63 +2,64 @@
 // without generating anything.
 #include "estimate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <memory>
+#include <string_view>
 
 #include "bodies/bodies.h"
+#include "camera/aperture.h"
 #include "core/error.h"
+#include "core/file_format.h"
+#include "core/memory.h"
+#include "core/parallel.h"
 #include "core/text.h"
-#include "generate/generate.h"
+#include "generate/columns.h"
 #include "generate/lattice.h"
 #include "interrupt.h"
+#include "look/apply.h"
 #include "pipeline.h"
+#include "render/render.h"
+#include "render/screen_splat.h"
 #include "scene/animate.h"
+#include "scene/layer_setup.h"
 #include "sets/load_source.h"
 #include "sets/prepared_cache.h"
 #include "sets/sky_cache.h"
+#include "splat_files/native_blocks.h"
 #include "splat_files/splat_file.h"
+#include "streamed/streamed_set.h"
 
 namespace astrosplat {
 namespace {
 
-// Bytes per splat: the set (position, colour, alpha, distance, id, uv, normal, mesh), the shaded splat, and
-// one projected splat with its place in a tile.
-constexpr std::int64_t set_bytes = 64, shaded_bytes = 40, screen_bytes = 64;
-constexpr std::int64_t program_bytes = 140'000'000;  // with its libraries, before any scene
-constexpr std::int64_t file_bytes_per_splat =
-    100;  // a row of a PDA with colour, opacity, distance and radius
-// Of captures: a row of a file with normals; and beside set_bytes and shaded_bytes shape and radius,
-// harmonics and colours by direction.
+constexpr std::int64_t program_bytes = 85'000'000;  // with its libraries, before any scene
+constexpr std::int64_t drawing_bytes = 55'000'000;  // what rendering and writing any frame adds
+constexpr std::int64_t worker_bytes = 12'000'000;   // what a thread that renders works with
+constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splats that any frame is worth
+// A projected splat lies in so many tiles, where nothing is known of the splats' places; and its place in a
+// bin.
+constexpr double usual_records = 1.4, record_bytes = 44.0, fold_bytes = 56.0;
+constexpr std::int64_t shaded_bytes = 40;
+// Of captures: a row of a file with normals; and beside what all have shape and radius, harmonics and colours
+// by direction.
 constexpr std::int64_t capture_row_bytes = 68, harmonics_row_bytes = 180;
 constexpr std::int64_t shape_bytes = 68, harmonics_bytes = 204;
-constexpr std::int64_t catalogue_bytes_per_star = 100;  // HYG; Hipparcos, compressed
+constexpr std::int64_t sorting_bytes = 20;  // a row of a file whose rows are not in order of id
+constexpr std::int64_t streamed_bytes_per_block = 128 * shaded_bytes + 256;  // sample, bounds
+constexpr std::int64_t catalogue_bytes_per_star = 100;                       // HYG; Hipparcos, compressed
 
 // More than any machine holds, few enough that bytes of many layers still fit 63 bits.
 constexpr std::int64_t most_splats = 1'000'000'000'000'000;
 
 struct Expected {
     std::int64_t splats = 0;
-    std::int64_t making_bytes = 0;  // while the set is made
-    std::int64_t held_bytes = 0;    // by the set and by what is shaded, beyond what all have
+    std::int64_t making_bytes = 0;  // while the set is made or read; 0: what it takes then
+    std::shared_ptr<const NativeBlocks> file = nullptr;  // of kind splats, where it is .splats
+    bool has_radius = false;
+    std::int64_t held_bytes = 0;  // by the set and by what is shaded, beyond what all have
 };
-
-Expected expected_of_file(const std::filesystem::path& file) {
-    std::error_code ignored;
-    const auto size = std::filesystem::file_size(file, ignored);
-    if (ignored) return {};
-    const auto bytes = static_cast<std::int64_t>(size);
-    std::vector<std::string> attributes;
-    try {
-        attributes = splat_attributes(file);
-    } catch (const InputError&) {  // whose reader will say so
-    }
-    const auto has = [&](const char* name) {
-        return std::ranges::find(attributes, name) != attributes.end();
-    };
-    if (!has("scale")) return {bytes / file_bytes_per_splat};
-    const bool harmonics = has("harmonics");
-    const std::int64_t splats = bytes / (capture_row_bytes + (harmonics ? harmonics_row_bytes : 0));
-    return {splats, 0, splats * (shape_bytes + (harmonics ? harmonics_bytes : 0))};
-}
 
 bool has_automatic_voxels(const SourceParams& source) { return !source.voxels && source.voxel_size <= 0.0; }
 
@@ -73,9 +74,35 @@ Expected expected_columns(const SourceParams& source, const std::vector<Textured
         columns_memory_bytes(meshes, lattice, max_distance)};
 }
 
+/// Of a file that cannot be read nothing: the reader will say why.
+Expected expected_file(const std::filesystem::path& path) try {
+    Expected expected;
+    const std::vector<std::string> attributes = splat_attributes(path);
+    const auto has = [&](const char* name) {
+        return std::ranges::find(attributes, name) != attributes.end();
+    };
+    const std::string_view format = format_of_file(path)->id;
+    if (format == "splats") {
+        expected.file = std::make_shared<NativeBlocks>(path);
+        expected.splats = expected.file->splats();
+        expected.making_bytes = expected.file->bytes() + expected.splats * sorting_bytes;
+    } else if (format == "gltf") {
+        const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
+        expected.splats = bytes / (capture_row_bytes + (has("harmonics") ? harmonics_row_bytes : 0));
+    } else {
+        expected.splats = splat_count(path);
+    }
+    expected.has_radius = has("radius") || has("scale");
+    if (has("scale"))
+        expected.held_bytes = expected.splats * (shape_bytes + (has("harmonics") ? harmonics_bytes : 0));
+    return expected;
+} catch (const InputError&) {
+    return {};
+}
+
 Expected expected_of(const SetCache& cache, const LayerParams& layer) {
     const SourceParams& source = layer.source;
-    if (source.kind == SourceKind::splats) return expected_of_file(source.file);
+    if (source.kind == SourceKind::splats) return expected_file(source.file);
     if (source.kind == SourceKind::stars) {
         if (!source.stars.along.empty()) return {source.count};
         std::error_code ignored;
@@ -83,7 +110,8 @@ Expected expected_of(const SetCache& cache, const LayerParams& layer) {
         return {ignored ? 0 : static_cast<std::int64_t>(size) / catalogue_bytes_per_star};
     }
     const bool bodies = source.structure.kind != StructureKind::columns;
-    if (!bodies && has_automatic_voxels(source) && source.splats <= 0) return {source.count};
+    if (!bodies && has_automatic_voxels(source) && source.splats <= 0)
+        return {source.count, columns_memory_bytes(source.count)};
     std::vector<TexturedMesh> meshes =
         load_meshes(cache, source, Progress{{}, &interrupted()}, most_texels_read(source, room_for_bodies()));
     if (!bodies) return expected_columns(source, meshes);
@@ -96,12 +124,128 @@ Expected expected_of(const SetCache& cache, const LayerParams& layer) {
 /// Six faces of three floats.
 std::int64_t sky_bytes(const SkyTiling& tiling) { return 6 * tiling.face_px * tiling.face_px * 12; }
 
+/// The frame, and what writing it takes.
 std::int64_t frame_bytes(const BatchPlan& plan) {
     const OutputParams& output = plan.scene.output;
     const bool whole = plan.region.width == 0;
     const std::int64_t pixels = whole ? output.width * output.height : plan.region.width * plan.region.height;
-    const auto aovs = static_cast<std::int64_t>(output.aovs.size());
-    return pixels * 4 * (4 + aovs + 4 * static_cast<std::int64_t>(plan.scene.layers.size()) * (aovs > 0));
+    const std::int64_t layers =
+        output.holds("layers") ? static_cast<std::int64_t>(plan.scene.layers.size()) : 0;
+    const std::int64_t planes = output.holds("depth") + output.holds("coverage") + output.holds("count");
+    const std::int64_t images = is_blurred(plan.scene.camera) ? 2 : 1;
+    const std::int64_t written = 4 + 4 * layers;
+    return pixels * 4 * (images * (4 + planes + 4 * layers) + written);
+}
+
+/// A layer of the job.
+struct LayerNeed {
+    const LayerParams* params;
+    Expected expected;
+    std::int64_t making = 0, held = 0;  // bytes while it is made, and from then on
+    bool may_stream = false;
+};
+
+LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer) {
+    const auto cached = cached_splats(plan.cache, layer.source, layer.name);
+    LayerNeed need{&layer, cached ? Expected{*cached} : expected_of(plan.cache, layer)};
+    Expected& expected = need.expected;
+    expected.splats = std::min(expected.splats, most_splats);
+    const Look look = look_of(layer);
+    const OptionalColumns wanted = columns_read(look);
+    const std::int64_t row = 40 + (wanted.uv ? 8 : 0) + (wanted.mesh ? 4 : 0) + (expected.has_radius ? 4 : 0);
+    need.making = std::max(expected.making_bytes, expected.splats * row);
+    need.held = expected.splats * (is_shaded_alike(plan.scene, layer.name) ? row : row + shaded_bytes);
+    need.making += expected.held_bytes;
+    need.held += expected.held_bytes;
+    need.may_stream =
+        expected.file && !is_encoded(layer.render) && why_not_streamed(*expected.file, look).empty();
+    return need;
+}
+
+std::int64_t streamed_bytes(const LayerNeed& need) {
+    return static_cast<std::int64_t>(need.expected.file->size()) * streamed_bytes_per_block;
+}
+
+/// Bytes of all layers: at the most while they are made one after the other, and when all are there.
+struct SetBytes {
+    std::int64_t making = 0, held = 0;
+};
+SetBytes sets_of(const std::vector<LayerNeed>& needs, const std::vector<std::string>& streamed) {
+    SetBytes bytes;
+    for (const LayerNeed& need : needs) {
+        const bool on_disk = std::ranges::find(streamed, need.params->name) != streamed.end();
+        if (!on_disk) bytes.making = std::max(bytes.making, bytes.held + need.making);
+        bytes.held += on_disk ? streamed_bytes(need) : need.held;
+    }
+    return bytes;
+}
+
+/// Some of a layer's splats after the look, which stand for all.
+class SampledLayer : public ShadedBlocks {
+  public:
+    SampledLayer(const LayerParams& layer, const NativeBlocks& file) {
+        constexpr std::int64_t places = 64;
+        SplatSet set = file.sample(places);
+        const double each =
+            static_cast<double>(file.splats()) / static_cast<double>(std::max<std::int64_t>(1, set.size()));
+        for (std::size_t i = 0; i < file.size(); ++i) box.add(file.box(i));
+        if (set.max_distance <= 0.0 && set.size() > 0)
+            set.max_distance = *std::ranges::max_element(set.distance);
+        Look look = look_of(layer);
+        look.thickness.map.clear();  // which is not loaded yet
+        look.vertical.match = VerticalAlpha::Match::none;
+        sample_ = apply_look(set, look, look_inputs(layer));
+        BlockFacts facts;
+        for (const glm::vec3& p : sample_.position) facts.box.add(glm::dvec3(p));
+        splats_ = static_cast<std::int64_t>(each * static_cast<double>(sample_.size()));
+        facts.splats = splats_;
+        blocks_ = {facts, {{}, 0.0f, 0, sample_.size()}};
+    }
+    void shade(std::size_t, ShadedSplats& out) const override { out = sample_; }
+
+    Bounds box;  // of all splats, layer space
+};
+
+/// Bytes of projected splats in the fullest of the first, the middle and the last frame.
+std::int64_t records_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
+    double unknown = 0.0;
+    const double tiles = static_cast<double>(plan.scene.output.width * plan.scene.output.height) / 4096.0;
+    const double folded = fold_bytes * std::min(1.0, 3.0 * thread_count() / std::max(1.0, tiles));
+    std::vector<std::pair<std::string, std::unique_ptr<SampledLayer>>> samples;
+    for (const LayerNeed& need : needs) {
+        if (need.expected.file && need.expected.held_bytes == 0)
+            samples.emplace_back(need.params->name,
+                                 std::make_unique<SampledLayer>(*need.params, *need.expected.file));
+        else
+            unknown += usual_records * (record_bytes + folded) * static_cast<double>(need.expected.splats);
+    }
+    if (samples.empty() || plan.frames.empty()) return static_cast<std::int64_t>(unknown);
+    RenderCache cache;
+    std::int64_t most = 0;
+    for (const std::size_t i : {std::size_t{0}, plan.frames.size() / 2, plan.frames.size() - 1}) {
+        const Scene now = scene_at(plan.scene, static_cast<double>(plan.frames[i].frame));
+        RenderSettings settings;
+        settings.width = now.output.width;
+        settings.height = now.output.height;
+        settings.region = plan.region;
+        settings.pixel_filter = static_cast<float>(now.output.pixel_filter);
+        std::vector<RenderLayer> layers;
+        Bounds box;
+        for (const LayerParams& layer : now.layers) {
+            const auto found =
+                std::ranges::find_if(samples, [&](const auto& s) { return s.first == layer.name; });
+            if (!layer.visible || found == samples.end()) continue;
+            layers.push_back(render_layer(layer));
+            layers.back().blocks = found->second.get();
+            box.add(world_bounds(found->second->box, layers.back()));
+        }
+        if (box.empty()) continue;
+        const Camera camera = make_camera(now.camera, static_cast<double>(settings.width),
+                                          static_cast<double>(settings.height), box);
+        most = std::max(most, expected_record_bytes(layers, camera, settings, cache));
+    }
+    const double per_record = record_bytes / static_cast<double>(sizeof(ScreenSplat));
+    return static_cast<std::int64_t>(unknown + per_record * static_cast<double>(most));
 }
 
 }  // namespace
@@ -114,6 +258,8 @@ std::int64_t parse_memory(const std::string& text) {
 }
 
 void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache) {
+    constexpr std::int64_t renderer_bytes = 104'000'000;  // whatever the threads are: pixels depend on it
+    bytes = std::max<std::int64_t>(bytes - program_bytes - renderer_bytes, 1);
     SourceParams& source = layer.source;
     if (source.kind != SourceKind::mesh || source.structure.kind == StructureKind::columns) return;
     std::vector<TexturedMesh> meshes =
@@ -127,27 +273,50 @@ void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache)
 
 JobEstimate estimate(const BatchPlan& plan) {
     JobEstimate job;
-    std::int64_t making = 0, held = 0;  // bytes, at its peak; beyond set_bytes
+    std::vector<LayerNeed> needs;
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
-        const auto cached = cached_splats(plan.cache, layer.source, layer.name);
-        const Expected expected = cached ? Expected{*cached} : expected_of(plan.cache, layer);
-        making = std::max(making, job.splats * set_bytes + expected.making_bytes);
-        job.layers.push_back({layer.name, std::min(expected.splats, most_splats)});
-        job.splats += job.layers.back().splats;
-        held += expected.held_bytes;
+        needs.push_back(need_of(plan, layer));
+        job.layers.push_back({layer.name, needs.back().expected.splats});
+        job.splats += needs.back().expected.splats;
     }
+    const bool is_limited = plan.memory_limit_bytes > 0;
+    const std::int64_t limit = is_limited ? plan.memory_limit_bytes : available_memory_bytes() / 10 * 9;
+    const std::int64_t working =
+        program_bytes + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes;
+    const std::int64_t records = records_bytes(plan, needs);
+    std::int64_t sky_making = 0, sky_held = 0;
     const EnvironmentParams& sky = plan.scene.environment;
     if (sky.visible && !sky.tile.empty()) {
         job.sky_kept = is_kept(plan.cache, sky.tile, sky.tiling, Progress{{}, &interrupted()});
-        making = std::max(making, 3 * sky_bytes(sky.tiling));  // as made or read, and with borders
-        held += sky_bytes(sky.tiling) * 4 / 3;                 // with mip levels
+        sky_making = 3 * sky_bytes(sky.tiling);    // as made or read, and with borders
+        sky_held = sky_bytes(sky.tiling) * 4 / 3;  // with mip levels
     }
-    std::int64_t screen = job.splats * screen_bytes;
-    if (plan.memory_limit_bytes > 0) screen = std::min(screen, plan.memory_limit_bytes);
-    const std::int64_t rendering =
-        job.splats * (set_bytes + shaded_bytes) + held + screen + frame_bytes(plan);
-    job.bytes = program_bytes + std::max(making, rendering);
+    const auto needed = [&](std::int64_t of_records) {
+        const SetBytes sets = sets_of(needs, job.streamed);
+        return std::max(program_bytes + std::max(sets.making, sky_making),
+                        working + sets.held + sky_held + of_records);
+    };
+    // Less than a part of the records makes many passes over what is in memory.
+    std::vector<const LayerNeed*> largest;
+    for (const LayerNeed& need : needs)
+        if (need.may_stream) largest.push_back(&need);
+    std::ranges::sort(largest, {}, [](const LayerNeed* need) { return -need->held; });
+    for (const LayerNeed* need : largest)
+        if (needed(std::max(records / 4, std::min(records, least_records))) > limit)
+            job.streamed.push_back(need->params->name);
+    job.bytes = needed(records);
+    if (!is_limited && job.streamed.empty()) return job;
+    const std::int64_t least = needed(std::min(records, least_records));
+    if (is_limited && least > limit)
+        bad_input("--memory", "",
+                  fmt::format("at least {:.2f} GiB, which this needs",
+                              static_cast<double>(least) / 1073741824.0 + 0.005),
+                  fmt::format("{:.4g}", static_cast<double>(limit) / 1073741824.0));
+    // What malloc does not give back, and the last piece of memory of each kind, is a thirtieth.
+    job.renderer_bytes =
+        std::max(limit - limit / 32 - working - sets_of(needs, job.streamed).held - sky_held, least_records);
+    job.bytes = std::min(job.bytes, std::max(limit, least));
     return job;
 }
 

@@ -21,17 +21,20 @@ struct JobEstimate {
     std::int64_t splats = 0;
     std::int64_t bytes = 0;
     std::optional<bool> sky_kept;  // of a scene whose sky is made of one picture: whether it is in the cache
+    /// Layers of .splats files that stay on disk, because all in memory would be more than there may be.
+    std::vector<std::string> streamed;
+    std::int64_t renderer_bytes = 0;  // what is left for RenderSettings::memory_limit_bytes; 0: any number
 };
-/// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache, nothing else.
-/// Throws InputError.
+/// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache, and a sample
+/// of .splats files, nothing else. Throws InputError, also where --memory is less than what the job needs.
 JobEstimate estimate(const BatchPlan& plan);
 
 /// "--memory GiB" in bytes. Throws InputError.
 std::int64_t parse_memory(const std::string& text);
 
-/// Sets most_texels of a layer of bodies whose pictures would take more than `bytes`, so that it is made of
-/// smaller ones; a warning says so. The sizes follow from the pictures and `bytes` alone. Throws as
-/// load_meshes does.
+/// Sets most_texels of a layer of bodies whose pictures would take more than `bytes` with the program, so
+/// that it is made of smaller ones; a warning says so. The sizes follow from the pictures and `bytes` alone.
+/// Throws as load_meshes does.
 void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache);
 
 }  // namespace astrosplat

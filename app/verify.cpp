@@ -16,6 +16,7 @@
 #include "core/log.h"
 #include "core/temporary_folder.h"
 #include "core/text.h"
+#include "estimate.h"
 #include "interrupt.h"
 #include "output/compare_stored.h"
 #include "output/hashed_text.h"
@@ -44,6 +45,7 @@ Verdict damaged(const std::string& why) { return {Verdict::Kind::damaged, why, {
 struct VerifyJob {
     std::string resolution, region;
     BatchPlan plan;
+    std::int64_t renderer_bytes = 0;     // limit; 0: none
     std::unique_ptr<Pipeline> pipeline;  // made for the first frame that is rendered
 };
 
@@ -98,7 +100,7 @@ class Verification {
         batch.resolution = resolution;
         if (!region.empty()) batch.region = region;
         batch.output = file.string();
-        job_ = std::make_unique<VerifyJob>(VerifyJob{resolution, region, plan_scene(batch), {}});
+        job_ = std::make_unique<VerifyJob>(VerifyJob{resolution, region, plan_scene(batch), 0, {}});
         return *job_;
     }
 
@@ -123,8 +125,10 @@ class Verification {
         const auto time = static_cast<double>(*header.frame);
         BatchPlan& plan = job_->plan;
         if (!job_->pipeline) {
-            job_->pipeline =
-                std::make_unique<Pipeline>(plan.scene, report_.begin_step("preparing"), plan.cache);
+            const JobEstimate job = estimate(plan);
+            job_->renderer_bytes = job.renderer_bytes;
+            job_->pipeline = std::make_unique<Pipeline>(plan.scene, report_.begin_step("preparing"),
+                                                        plan.cache, job.streamed);
             check_unchanged(plan.hasher.files(), Progress{{}, &interrupted()});
         }
         Pipeline& pipeline = *job_->pipeline;
@@ -134,7 +138,7 @@ class Verification {
         take_compression(now.output, header.compression);
         RenderSettings settings = pipeline.settings(time);
         settings.region = plan.region;
-        settings.memory_limit_bytes = plan.memory_limit_bytes;
+        settings.memory_limit_bytes = job_->renderer_bytes;
         const RenderedFrame rendered = pipeline.frame(time, settings, progress);
         progress.check();
         write_frame(

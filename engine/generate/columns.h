@@ -25,6 +25,9 @@ struct Columns {
 std::int64_t columns_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
                                   double max_distance);
 
+/// The same for so many positions on meshes of few triangles.
+std::int64_t columns_memory_bytes(std::int64_t positions);
+
 /// Runs the cull over the whole lattice, block by block; cost follows what is kept. Deterministic for any
 /// thread count. Announces memory before taking it. `progress` may cancel; `watcher`, where there is one,
 /// sees the positions as they are kept.

@@ -181,16 +181,29 @@ void describe_set(std::span<const TexturedMesh> meshes, const Lattice& lattice, 
 
 }  // namespace
 
+namespace {
+
+/// What so many positions take, and a batch of them that exists twice.
+double bytes_of_positions(double positions) {
+    constexpr double most_in_batch = 0.5 * batch_blocks * block_positions;  // a surface keeps half of a block
+    return positions * static_cast<double>(bytes_per_splat(is_generated)) +
+           std::min(0.5 * positions, most_in_batch) * static_cast<double>(sizeof(KeptSplat));
+}
+
+}  // namespace
+
+std::int64_t columns_memory_bytes(std::int64_t positions) {
+    return static_cast<std::int64_t>(bytes_of_positions(static_cast<double>(positions)));
+}
+
 std::int64_t columns_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
                                   double max_distance) {
     double triangles = 0.0;
     for (const TexturedMesh& m : meshes) triangles += static_cast<double>(m.mesh.triangles.size());
-    const double per_position =
-        1.02 * static_cast<double>(bytes_per_splat(is_generated));  // and a batch that exists twice
     const double per_triangle =
         sizeof(TreeTriangle) + sizeof(SurfaceTriangle) + 6.9 * sizeof(float);  // 8/7 boxes
     const double bytes =
-        expected_positions(lattice, meshes, max_distance) * per_position + triangles * per_triangle;
+        bytes_of_positions(expected_positions(lattice, meshes, max_distance)) + triangles * per_triangle;
     return static_cast<std::int64_t>(std::min(bytes, 9e18));
 }
 

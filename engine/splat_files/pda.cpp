@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -230,6 +231,13 @@ SplatSet read_pda_bytes(const std::filesystem::path& file, std::string_view byte
 std::vector<std::string> pda_attributes(const std::filesystem::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         return attribute_names(columns_of(read_header(file, bytes).attributes));
+    });
+}
+
+std::int64_t pda_splat_count(const std::filesystem::path& file) {
+    return read_mapped(file, [&](std::string_view bytes) {
+        constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
+        return static_cast<std::int64_t>(std::min(most, read_header(file, bytes).particles));
     });
 }
 

@@ -4,6 +4,7 @@
 // their type.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,5 +25,8 @@ void write_pda(const WriteTarget& target, const SplatSet& set, const Progress& p
 
 /// splat_attributes() of a PDA file.
 std::vector<std::string> pda_attributes(const std::filesystem::path& file);
+
+/// splat_count() of a PDA file.
+std::int64_t pda_splat_count(const std::filesystem::path& file);
 
 }  // namespace astrosplat

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -226,6 +227,14 @@ std::vector<std::string> ply_attributes(const std::filesystem::path& file) {
             names.emplace_back("radius");
         }
         return names;
+    });
+}
+
+std::int64_t ply_splat_count(const std::filesystem::path& file) {
+    return read_mapped(file, [&](std::string_view bytes) {
+        constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
+        const PlyHeader header = read_ply_header(file, bytes);
+        return static_cast<std::int64_t>(std::min(most, header.elements[find_vertex(header, file)].count));
     });
 }
 

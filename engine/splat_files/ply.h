@@ -4,6 +4,7 @@
 // else is skipped. Or Gaussians as 3D Gaussian Splatting stores them (ply_gaussians.h).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -24,5 +25,8 @@ void write_ply(const WriteTarget& target, const SplatSet& set, const Progress& p
 
 /// splat_attributes() of a PLY file.
 std::vector<std::string> ply_attributes(const std::filesystem::path& file);
+
+/// splat_count() of a PLY file.
+std::int64_t ply_splat_count(const std::filesystem::path& file);
 
 }  // namespace astrosplat

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <string>
 #include <string_view>
 
@@ -27,16 +28,17 @@ struct Functions {
     SplatSet (*read)(const std::filesystem::path&, const Progress&);
     void (*write)(const WriteTarget&, const SplatSet&, const Progress&);
     std::vector<std::string> (*attributes)(const std::filesystem::path&);
+    std::int64_t (*count)(const std::filesystem::path&);
     bool keeps_all;  // splats that absorb are told from those that shine; shapes of Gaussians
 };
 
 constexpr std::array<Functions, 4> functions = {{
-    {"pda", read_pda, write_pda, pda_attributes, false},
-    {"ply", read_ply, write_ply, ply_attributes, false},
-    {"gltf", read_gltf_splats, nullptr, gltf_splat_attributes, false},
+    {"pda", read_pda, write_pda, pda_attributes, pda_splat_count, false},
+    {"ply", read_ply, write_ply, ply_attributes, ply_splat_count, false},
+    {"gltf", read_gltf_splats, nullptr, gltf_splat_attributes, nullptr, false},
     {"splats", [](const auto& file, const auto& progress) { return read_native(file, progress); },
      [](const auto& file, const auto& set, const auto& progress) { write_native(file, set, progress); },
-     native_attributes, true},
+     native_attributes, native_splat_count, true},
 }};
 
 const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file,
@@ -59,6 +61,13 @@ SplatSet read_splats(const std::filesystem::path& file, const Progress& progress
 std::vector<std::string> splat_attributes(const std::filesystem::path& file) {
     require_readable(file);
     return functions_of(format_of_file(file), file).attributes(file);
+}
+
+std::int64_t splat_count(const std::filesystem::path& file) {
+    require_readable(file);
+    const Functions& functions = functions_of(format_of_file(file), file);
+    assert(functions.count);
+    return functions.count(file);
 }
 
 void write_splats(const WriteTarget& target, const SplatSet& set, const Progress& progress) {

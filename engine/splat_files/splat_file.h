@@ -20,6 +20,9 @@ SplatSet read_splats(const std::filesystem::path& file, const Progress& progress
 /// normal, mesh, scale, rotation, harmonics, id. Throws InputError.
 std::vector<std::string> splat_attributes(const std::filesystem::path& file);
 
+/// How many splats a PDA, PLY or native file says that it holds. Throws InputError.
+std::int64_t splat_count(const std::filesystem::path& file);
+
 /// In the format of the ending. Writes to a temporary name, then renames: the file appears whole or not at
 /// all. Throws OutputError.
 void write_splats(const WriteTarget& target, const SplatSet& set, const Progress& progress = {});

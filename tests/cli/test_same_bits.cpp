@@ -102,7 +102,7 @@ TEST_F(SameBits, AFrameAloneIsTheFrameInASequence) {
     EXPECT_EQ(hashes({"-f", "1-3x2"}), (std::vector<std::string>{expected[0], expected[2]}));
 }
 
-TEST_F(SameBits, LittleMemory) { EXPECT_EQ(hashes({"--memory", "0.001"}), hashes({})); }
+TEST_F(SameBits, LittleMemory) { EXPECT_EQ(hashes({"--memory", "0.18"}), hashes({})); }
 
 TEST_F(SameBits, AnyLocale) {
     RunOptions german;

@@ -1,0 +1,112 @@
+// --memory bounds the whole program, and what a run announces is what it takes. Files that are larger than
+// the memory are read block by block, for the same pixels.
+#include <fmt/format.h>
+
+#include "scene_fixture.h"
+
+namespace astrosplat::test {
+namespace {
+
+class Memory : public SceneTest {
+  protected:
+    /// A ball of so many splats in ball.splats, drawn by scene.toml.
+    void make_ball(int splats, const std::string& resolution, const std::string& more = "") {
+        write_text(folder / "ball.ppm", small_picture());
+        write_text(folder / "mesh.toml", fmt::format(R"(astrosplat = 1
+[[layer]]
+name = "ball"
+[layer.source]
+meshes = [ {{ mesh = "sphere", texture = "ball.ppm" }} ]
+splats = {}
+)",
+                                                     splats));
+        ASSERT_EQ(
+            run({"generate", "mesh.toml", "--layer", "ball", "-o", "ball.splats", "-q", "--no-cache"}).code,
+            0);
+        write_text(folder / "scene.toml", fmt::format(R"(astrosplat = 1
+[output]
+resolution = {}
+frames = "1"
+path = "frames/shot.####.exr"
+[camera]
+position = [3.0, 6.0, 13.0]
+[[layer]]
+name = "ball"
+[layer.source]
+kind = "splats"
+file = "ball.splats"
+{}
+)",
+                                                      resolution, more));
+    }
+
+    struct Run {
+        std::string hash, err;
+        double told_mib = 0.0, taken_mib = 0.0;
+    };
+    Run rendered(std::vector<std::string> more) const {
+        more.insert(more.end(), {"--overwrite", "--no-cache", "--stats", "stats.json"});
+        const RunResult result = batch(more);
+        EXPECT_EQ(result.code, 0) << result.err;
+        if (result.code != 0) return {};
+        const nlohmann::json stats = json("stats.json");
+        Run run{stats.at("frames")[0].at("sha256"), result.err, 0.0,
+                stats.at("peak_memory_bytes").get<double>() / 1048576.0};
+        const std::string about = " splats, about ";
+        const std::size_t at = result.err.find(about);
+        EXPECT_NE(at, std::string::npos) << result.err;
+        std::istringstream rest(result.err.substr(at + about.size()));
+        std::string unit;
+        rest >> run.told_mib >> unit;
+        if (unit == "GiB") run.told_mib *= 1024.0;
+        return run;
+    }
+};
+
+TEST_F(Memory, AFileLargerThanTheMemoryGivesTheSamePixels) {
+    make_ball(400000, "[64, 48]", "[layer.render]\nblend = \"hybrid\"\n[layer.look]\ndensity = 0.9\n");
+    const Run whole = rendered({});
+    EXPECT_EQ(whole.err.find("block by block"), std::string::npos) << whole.err;
+    for (const auto& [threads, gib] : {std::pair("1", "0.172"), std::pair("2", "0.183")}) {
+        const Run streamed = rendered({"--memory", gib, "-t", threads});
+        EXPECT_NE(streamed.err.find("block by block, as there is not memory for all: ball"),
+                  std::string::npos)
+            << streamed.err;
+        EXPECT_EQ(streamed.hash, whole.hash);
+        EXPECT_LE(streamed.taken_mib, std::stod(gib) * 1024.0);
+    }
+    EXPECT_EQ(rendered({"--memory", "0.3"}).hash, whole.hash);
+}
+
+TEST_F(Memory, WhatWillNotFitIsSaidBeforeAnythingIsDone) {
+    expect_one_line(batch({"--memory", "0.1"}), 2, "--memory: expected at least 0.");
+    EXPECT_EQ(names_in("frames"), std::set<std::string>{});
+}
+
+TEST_F(Memory, ARunTakesWhatItAnnounces) {
+    make_ball(2500000, "[640, 360]");
+    const Run whole = rendered({});
+    EXPECT_NEAR(whole.told_mib, whole.taken_mib, 0.15 * whole.taken_mib) << whole.err;
+    const Run large = rendered({"--resolution", "3840x2160"});
+    EXPECT_NEAR(large.told_mib, large.taken_mib, 0.15 * large.taken_mib) << large.err;
+    EXPECT_GT(large.taken_mib, whole.taken_mib + 100.0);
+}
+
+TEST_F(Memory, GeneratingTakesWhatIsAnnounced) {
+    make_ball(1000, "[64, 36]");
+    std::string text = text_of(folder / "mesh.toml");
+    text.replace(text.find("splats = 1000"), 13, "splats = 2500000");
+    write_text(folder / "scene.toml", text + R"(
+[output]
+resolution = [640, 360]
+frames = "1"
+path = "frames/shot.####.exr"
+[camera]
+position = [3.0, 6.0, 13.0]
+)");
+    const Run run = rendered({});
+    EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+}
+
+}  // namespace
+}  // namespace astrosplat::test
