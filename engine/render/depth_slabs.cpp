@@ -65,6 +65,30 @@ DepthRange depths_of(const Lens& lens, const BlockPlace& place) {
     return {key_of(near * near * (1.0 - rounding)), key_of(far * far * (1.0 + rounding))};
 }
 
+/// What the corners of the box, grown by the largest radius, say of a lens that shows straight lines
+/// straight: all of it lies between them, its footprints within the widest of theirs. True where a corner is
+/// not before the camera.
+bool may_show_between_corners(const LayerProjection& layer, const BlockFacts& block, const ScreenRect& rect) {
+    const Bounds grown{block.box.lo - static_cast<double>(block.radius),
+                       block.box.hi + static_cast<double>(block.radius)};
+    constexpr float inf = std::numeric_limits<float>::infinity();
+    float x0 = inf, y0 = inf, x1 = -inf, y1 = -inf, widest = 0.0f;
+    for (int i = 0; i < 8; ++i) {
+        const shared::Instance at = shared::instance_of(
+            layer.lens, glm::vec3(layer.camera_from_layer * grown.corner(i) + layer.origin_in_camera));
+        if (!(at.depth > layer.lens.near)) return true;
+        x0 = std::min(x0, at.x_px);
+        x1 = std::max(x1, at.x_px);
+        y0 = std::min(y0, at.y_px);
+        y1 = std::max(y1, at.y_px);
+        widest = std::max(widest, at.px_per_unit);
+    }
+    const float radius_px = block.radius * layer.radius_scale * widest * std::max(1.0f, layer.reach);
+    const float margin = radius_px * 1.0001f + layer.margin_px + 1.0f +
+                         1e-5f * std::max({x1 - x0, y1 - y0, std::fabs(x0), std::fabs(y0)});
+    return x1 + margin > rect.x0 && x0 - margin < rect.x1 && y1 + margin > rect.y0 && y0 - margin < rect.y1;
+}
+
 /// False only where none of the block's splats can leave a record.
 bool may_show(const LayerProjection& layer, const BlockPlace& place, const ScreenRect& rect) {
     if (!(place.far > 0.0)) return false;
@@ -90,6 +114,8 @@ std::vector<VisibleBlock> visible_blocks(std::span<const LayerProjection> layers
             const BlockFacts& block = layer.blocks->blocks()[b];
             if (block.splats == 0) continue;
             const BlockPlace place = place_of(layer, block);
+            if (!shared::is_onto_sphere(layer.lens) && !may_show_between_corners(layer, block, rect))
+                continue;
             if (may_show(layer, place, rect)) visible.push_back({l, b, depths_of(layer.lens, place)});
         }
     }
