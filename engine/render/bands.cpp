@@ -19,7 +19,7 @@ namespace {
 // Of a record: itself with the unused ends of blocks, and an id where they are kept.
 constexpr double record_bytes = 1.125 * sizeof(ScreenSplat), id_bytes = sizeof(std::uint64_t);
 
-bool has_blocks(const RenderJob& job) {
+bool has_blocks(const FrameJob& job) {
     return std::ranges::any_of(job.layers, [](const RenderLayer& layer) { return layer.blocks != nullptr; });
 }
 
@@ -30,7 +30,7 @@ struct Tiles {
 };
 
 /// Large tiles cut fewer splats into several records; small ones keep a tile's records in a core's cache.
-Tiles choose_tiles(const RenderJob& job) {
+Tiles choose_tiles(const FrameJob& job) {
     constexpr int small_px = 32, large_px = 64;
     constexpr std::int64_t records_in_cache = 16384;  // measured: up to here the larger tiles are quicker,
     constexpr double worth_missing_it = 1.5;          // and beyond if they save so many records
@@ -50,7 +50,7 @@ Tiles choose_tiles(const RenderJob& job) {
 }
 
 /// Tile rows of each band so that it takes no more than the limit: its records, or the pixels between slabs.
-std::int64_t rows_per_band(const RenderJob& job, const Tiles& tiles) {
+std::int64_t rows_per_band(const FrameJob& job, const Tiles& tiles) {
     const std::int64_t limit = job.settings.memory_limit_bytes, rows = tiles.grid.rows();
     const std::int64_t records = tiles.records * static_cast<std::int64_t>(sizeof(ScreenSplat));
     if (limit <= 0 || records <= limit) return rows;
@@ -62,7 +62,7 @@ std::int64_t rows_per_band(const RenderJob& job, const Tiles& tiles) {
 /// One band while it is rendered.
 class BandRun {
   public:
-    BandRun(const RenderJob& job, const TileGrid& grid, std::int64_t records, double before,
+    BandRun(const FrameJob& job, const TileGrid& grid, std::int64_t records, double before,
             RenderCache::State& cache, RenderedFrame& frame)
         : job_(job),
           grid_(grid),
@@ -217,7 +217,7 @@ class BandRun {
         });
     }
 
-    const RenderJob& job_;
+    const FrameJob& job_;
     const TileGrid& grid_;
     std::int64_t records_;
     double before_, done_ = 0.0;
@@ -234,7 +234,7 @@ class BandRun {
 
 }  // namespace
 
-Bands make_bands(const RenderJob& job) {
+Bands make_bands(const FrameJob& job) {
     const Tiles tiles = choose_tiles(job);
     const TileGrid& grid = tiles.grid;
     const std::int64_t band_rows = rows_per_band(job, tiles);
@@ -257,7 +257,7 @@ Bands make_bands(const RenderJob& job) {
     return bands;
 }
 
-void render_band(const RenderJob& job, const TileGrid& grid, std::int64_t records, double before,
+void render_band(const FrameJob& job, const TileGrid& grid, std::int64_t records, double before,
                  RenderCache::State& cache, RenderedFrame& frame) {
     BandRun(job, grid, records, before, cache, frame).run();
 }

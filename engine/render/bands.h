@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/frame.h"
-#include "render/render_job.h"
+#include "render/frame_job.h"
 #include "render/scatter.h"
 #include "render/splat_sorter.h"
 
@@ -22,11 +22,11 @@ struct Bands {
     std::vector<TileGrid> grids;
     std::int64_t records = 0;  // that each will take, roughly
 };
-Bands make_bands(const RenderJob& job);
+Bands make_bands(const FrameJob& job);
 
 /// `before` of the frame's share is done already. Throws InputError where what lies at one distance takes
 /// more than the limit.
-void render_band(const RenderJob& job, const TileGrid& grid, std::int64_t records, double before,
+void render_band(const FrameJob& job, const TileGrid& grid, std::int64_t records, double before,
                  RenderCache::State& cache, RenderedFrame& frame);
 
 }  // namespace astrosplat

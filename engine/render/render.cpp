@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "render/bands.h"
-#include "render/render_job.h"
+#include "render/frame_job.h"
 
 namespace astrosplat {
 namespace {
@@ -77,7 +77,7 @@ std::int64_t expected_record_bytes(std::span<const RenderLayer> layers, const Ca
     RenderSettings unlimited = settings;
     unlimited.memory_limit_bytes = 0;
     const TileDone nobody;
-    RenderJob job{drawn, camera, nullptr, unlimited, progress, nobody, {}, {}, {}, {}, {}, {}};
+    FrameJob job{drawn, camera, nullptr, unlimited, progress, nobody, {}, {}, {}, {}, {}, {}};
     prepare(job, *cache.state);
     const Bands bands = make_bands(job);
     // The fullest tiles have some three times as many records as the others.
@@ -101,7 +101,7 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     std::unique_ptr<RenderCache> own = cache ? nullptr : std::make_unique<RenderCache>();
     RenderCache::State& state = cache ? *cache->state : *own->state;
     const std::vector<RenderLayer> drawn = as_drawn(layers);
-    RenderJob job{drawn, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
+    FrameJob job{drawn, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
     prepare(job, state);
     const Bands bands = make_bands(job);
     std::int64_t bytes = bands.records * static_cast<std::int64_t>(sizeof(ScreenSplat));

@@ -15,18 +15,18 @@ Region tile_region(const TileGrid& grid, std::int64_t tile) {
             std::min<std::int64_t>(grid.tile_px, grid.y0 + grid.height - y)};
 }
 
-FoldSettings fold_settings(const RenderJob& job, std::size_t group) {
+FoldSettings fold_settings(const FrameJob& job, std::size_t group) {
     FoldSettings settings = job.fold;
     if (group < job.groups.size()) settings.kind = job.groups[group].kind;
     return settings;
 }
 
-void reset(const RenderJob& job, const Region& region, std::size_t group, TilePlanes& planes) {
+void reset(const FrameJob& job, const Region& region, std::size_t group, TilePlanes& planes) {
     planes.reset(region, fold_settings(job, group), job.layers.size());
 }
 
 /// Folds the records that the worker has collected.
-void fold_runs(const RenderJob& job, const TileBins& bins, std::size_t group, TileWorker& worker,
+void fold_runs(const FrameJob& job, const TileBins& bins, std::size_t group, TileWorker& worker,
                TilePlanes& planes) {
     const std::span<const ScreenSplat* const> order =
         worker.sorter.sort(worker.runs, job.progress, bins.tie_ids());
@@ -34,7 +34,7 @@ void fold_runs(const RenderJob& job, const TileBins& bins, std::size_t group, Ti
 }
 
 /// Whether a tile's only group goes straight into the frame.
-bool stands_alone(const RenderJob& job) {
+bool stands_alone(const FrameJob& job) {
     const bool nothing_behind = !job.environment || job.settings.backdrop;
     return job.groups.size() == 1 && !job.groups[0].isolated && !job.fold.aovs && nothing_behind;
 }
@@ -42,7 +42,7 @@ bool stands_alone(const RenderJob& job) {
 /// Composites the groups, far to near, and writes the tile. folded(group): its planes, or null where no splat
 /// reached them.
 template <class Folded>
-void resolve_tile(const RenderJob& job, const Region& region, TileWorker& worker, RenderedFrame& frame,
+void resolve_tile(const FrameJob& job, const Region& region, TileWorker& worker, RenderedFrame& frame,
                   const Folded& folded) {
     const bool alone = stands_alone(job), behind = job.environment || job.settings.backdrop;
     const TilePlanes* tile = nullptr;  // of any group; until then the tile is as black as the new frame
@@ -67,14 +67,14 @@ void resolve_tile(const RenderJob& job, const Region& region, TileWorker& worker
 
 }  // namespace
 
-std::vector<TileWorker> make_tile_workers(const RenderJob& job) {
+std::vector<TileWorker> make_tile_workers(const FrameJob& job) {
     std::vector<TileWorker> workers;
     for (int i = 0; i < thread_count(); ++i)
         workers.push_back({{}, {}, {}, TileResolver(job.layers, job.settings)});
     return workers;
 }
 
-std::vector<std::int64_t> tile_order(const RenderJob& job, const TileGrid& grid) {
+std::vector<std::int64_t> tile_order(const FrameJob& job, const TileGrid& grid) {
     std::vector<std::int64_t> order(static_cast<std::size_t>(grid.tiles()));
     std::iota(order.begin(), order.end(), std::int64_t{0});
     if (!job.tile_done) return order;
@@ -89,7 +89,7 @@ std::vector<std::int64_t> tile_order(const RenderJob& job, const TileGrid& grid)
     return order;
 }
 
-void render_tile(const RenderJob& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
+void render_tile(const FrameJob& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
                  RenderedFrame& frame) {
     const Region region = tile_region(bins.grid(), tile);
     resolve_tile(job, region, worker, frame, [&](std::size_t g) -> const TilePlanes* {
@@ -101,7 +101,7 @@ void render_tile(const RenderJob& job, const TileBins& bins, std::int64_t tile, 
     });
 }
 
-std::int64_t CarriedTiles::bytes(const RenderJob& job, const TileGrid& grid) {
+std::int64_t CarriedTiles::bytes(const FrameJob& job, const TileGrid& grid) {
     const std::int64_t planes =
         9 + (job.fold.aovs ? 3 + 4 * static_cast<std::int64_t>(job.layers.size()) : 0);
     const std::int64_t pixels = grid.tiles() * grid.tile_px * grid.tile_px;

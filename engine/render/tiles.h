@@ -8,7 +8,7 @@
 
 #include "render/fold.h"
 #include "render/frame.h"
-#include "render/render_job.h"
+#include "render/frame_job.h"
 #include "render/resolve.h"
 #include "render/scatter.h"
 #include "render/splat_sorter.h"
@@ -22,23 +22,23 @@ struct TileWorker {
     TilePlanes planes;
     TileResolver resolver;
 };
-std::vector<TileWorker> make_tile_workers(const RenderJob& job);
+std::vector<TileWorker> make_tile_workers(const FrameJob& job);
 
 /// The tiles in the order in which they are rendered: with tile_done from the middle of the frame outwards.
-std::vector<std::int64_t> tile_order(const RenderJob& job, const TileGrid& grid);
+std::vector<std::int64_t> tile_order(const FrameJob& job, const TileGrid& grid);
 
 /// A tile whose records are all there.
-void render_tile(const RenderJob& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
+void render_tile(const FrameJob& job, const TileBins& bins, std::int64_t tile, TileWorker& worker,
                  RenderedFrame& frame);
 
 /// All tiles of a band between its slabs of depth.
 class CarriedTiles {
   public:
-    CarriedTiles(const RenderJob& job, const TileGrid& grid)
+    CarriedTiles(const FrameJob& job, const TileGrid& grid)
         : job_(job), grid_(grid), planes_(static_cast<std::size_t>(grid.tiles()) * job.groups.size()) {}
 
     /// What the tiles take where splats are everywhere.
-    static std::int64_t bytes(const RenderJob& job, const TileGrid& grid);
+    static std::int64_t bytes(const FrameJob& job, const TileGrid& grid);
 
     /// Folds a slab's records into a tile. Different tiles may be folded at once.
     void fold_slab(const TileBins& bins, std::int64_t tile, TileWorker& worker);
@@ -50,7 +50,7 @@ class CarriedTiles {
         return planes_[static_cast<std::size_t>(tile) * job_.groups.size() + group];
     }
 
-    const RenderJob& job_;
+    const FrameJob& job_;
     TileGrid grid_;
     std::vector<TilePlanes> planes_;  // by tile and group; of width 0 until a splat comes
 };

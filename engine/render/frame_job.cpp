@@ -1,4 +1,4 @@
-#include "render/render_job.h"
+#include "render/frame_job.h"
 
 #include <algorithm>
 
@@ -77,7 +77,7 @@ const LodTable& RenderCache::State::lod(const Falloff& falloff, int finest, cons
     return *table;
 }
 
-void prepare(RenderJob& job, RenderCache::State& cache) {
+void prepare(FrameJob& job, RenderCache::State& cache) {
     const RenderSettings& settings = job.settings;
     const std::span<const RenderLayer> layers = job.layers;
     const Camera& camera = job.camera;
@@ -112,7 +112,7 @@ void prepare(RenderJob& job, RenderCache::State& cache) {
     job.fold.lens = make_lens(camera);
 }
 
-void make_footprints(const RenderJob& job, const TileBins::Sums& sums, RenderCache::State& cache) {
+void make_footprints(const FrameJob& job, const TileBins::Sums& sums, RenderCache::State& cache) {
     if (sums.least_px > sums.largest_px) return;
     const float largest_px = shared::is_onto_sphere(job.fold.lens)
                                  ? std::max(sums.largest_px, sphere_spectrum_px * 1.05f)

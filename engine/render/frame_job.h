@@ -30,7 +30,7 @@ struct RenderCache::State {
 };
 
 /// One frame being rendered: what every band and tile shares.
-struct RenderJob {
+struct FrameJob {
     std::span<const RenderLayer> layers;
     const Camera& camera;
     const Environment* environment;
@@ -46,9 +46,9 @@ struct RenderJob {
 };
 
 /// What remains to be said of a job after its arguments.
-void prepare(RenderJob& job, RenderCache::State& cache);
+void prepare(FrameJob& job, RenderCache::State& cache);
 
 /// Makes the footprints that the splats of a band ask for.
-void make_footprints(const RenderJob& job, const TileBins::Sums& sums, RenderCache::State& cache);
+void make_footprints(const FrameJob& job, const TileBins::Sums& sums, RenderCache::State& cache);
 
 }  // namespace astrosplat
