@@ -90,6 +90,9 @@ TEST_F(Memory, ARunTakesWhatItAnnounces) {
     const Run large = rendered({"--resolution", "3840x2160"});
     EXPECT_NEAR(large.told_mib, large.taken_mib, 0.15 * large.taken_mib) << large.err;
     EXPECT_GT(large.taken_mib, whole.taken_mib + 100.0);
+    // Away from the ball; then reading its file takes the most.
+    const Run nothing = rendered({"--set", "camera.target=[6.0, 12.0, 26.0]"});
+    EXPECT_NEAR(nothing.told_mib, nothing.taken_mib, 0.15 * nothing.taken_mib) << nothing.err;
 }
 
 TEST_F(Memory, GeneratingTakesWhatIsAnnounced) {

@@ -29,7 +29,9 @@ class Streamed : public testing::Test {
         for (LayerParams& layer : scene.layers) {
             layer.source.count = 90000;  // two blocks
             const std::filesystem::path file = folder / (layer.name + ".splats");
-            write_native(file, load_source(layer.source, layer.name));
+            SplatSet set = load_source(layer.source, layer.name);
+            set.max_distance = 0.0;  // as in files that do not say it: it is found in the rows
+            write_native(file, set);
             layer.source.kind = SourceKind::splats;
             layer.source.file = file;
             layer.look.density = 0.8f;
@@ -75,7 +77,13 @@ TEST_F(Streamed, LooksGiveTheSameBits) {
 }
 
 TEST_F(Streamed, WhatIsSaidOfABlockIsTrue) {
-    const LayerParams& layer = small.scene.layers[0];
+    LayerParams& layer = small.scene.layers[0];
+    // The first block is to hold the brightest splat.
+    SplatSet file = read_native(layer.source.file);
+    file.color[0] = glm::vec3(3.0f);
+    file.alpha[0] = 1.0f;
+    write_native(layer.source.file, file, {}, RowOrder::space);
+    layer.look = {};
     StreamedSet set(layer.source.file);
     set.set_look(look_of(layer), look_inputs(layer), {});
     ASSERT_EQ(set.size(), 2u);
