@@ -231,21 +231,6 @@ TEST(ByTheBlock, WhatDoesNotShowIsNotMade) {
     EXPECT_LT(sky.made(), 100);  // of 150
 }
 
-TEST(ByTheBlock, WhatADomesPartDoesNotShowIsNotMade) {
-    Sky sky({Blend::over});
-    sky.camera.projection = Projection::equirectangular;
-    sky.camera.focal_px = width_px / (2.0 * 3.14159265358979);
-    sky.camera.eye = {0.3, 0.2, 0.1};
-    sky.settings.region = {40, 20, 16, 16};
-    for (float& radius : sky.sets[0].radius) radius = 0.01f;
-    const std::vector<RenderLayer> some = sky.by_block(10, {0});
-    const RenderedFrame whole = render(sky.layers, sky.camera, nullptr, sky.settings);
-    const RenderedFrame frame = render(some, sky.camera, nullptr, sky.settings);
-    EXPECT_EQ(whole.beauty.pixels, frame.beauty.pixels);
-    EXPECT_GT(sky.made(), 5);
-    EXPECT_LT(sky.made(), 100);  // of 150
-}
-
 TEST(ByTheBlock, TheStoreKeepsToItsLimit) {
     SplatStore store;
     store.limit(1000);

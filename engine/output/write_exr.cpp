@@ -1,0 +1,226 @@
+#include "output/write_exr.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfRationalAttribute.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+#include <fmt/format.h>
+#include <half.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/primaries.h"
+#include "output/encode.h"
+#include "output/exr_stream.h"
+#include "output/metadata.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr float largest_half = 65504.0f;
+constexpr std::int64_t band_rows = 256;  // a multiple of every compression's block height
+
+/// One channel: where its floats lie and how they are stored.
+struct Channel {
+    std::string name;
+    const Image* image;
+    int index;
+    bool half;
+
+    std::int64_t bytes() const { return half ? 2 : 4; }  // of a pixel
+};
+
+std::vector<Channel> channels_of(const Image& beauty, const std::vector<Image>& layers,
+                                 const RenderedFrame& frame, const FrameFile& target, bool half) {
+    const OutputParams& output = target.output;
+    static const char* const names[4] = {"R", "G", "B", "A"};
+    std::vector<Channel> channels;
+    for (int c = 0; c < beauty.channels; ++c) channels.push_back({names[c], &beauty, c, half});
+    if (output.holds("depth")) channels.push_back({"Z", &frame.depth, 0, false});
+    if (output.holds("coverage")) channels.push_back({"coverage", &frame.coverage, 0, half});
+    if (output.holds("count")) channels.push_back({"count", &frame.count, 0, false});
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        for (int c = 0; c < layers[i].channels; ++c)
+            channels.push_back({fmt::format("{}.{}", target.layer_names[i], names[c]), &layers[i], c, half});
+    return channels;
+}
+
+Imf::Compression compression_of(OutputParams::Compression compression) {
+    using Compression = OutputParams::Compression;
+    switch (compression) {
+        case Compression::zips:
+            return Imf::ZIPS_COMPRESSION;
+        case Compression::piz:
+            return Imf::PIZ_COMPRESSION;
+        case Compression::dwaa:
+            return Imf::DWAA_COMPRESSION;
+        case Compression::none:
+            return Imf::NO_COMPRESSION;
+        default:
+            return Imf::ZIP_COMPRESSION;
+    }
+}
+
+Imf::Chromaticities chromaticities_of(OutputParams::Primaries primaries) {
+    const bool acescg = primaries == OutputParams::Primaries::acescg;
+    const Chromaticities& set = acescg ? acescg_chromaticities : rec709_chromaticities;
+    const auto at = [](const glm::dvec2& xy) {
+        return Imath::V2f(static_cast<float>(xy.x), static_cast<float>(xy.y));
+    };
+    return {at(set.red), at(set.green), at(set.blue), at(set.white)};
+}
+
+Imath::M44f matrix_of(const float (&values)[16]) {
+    Imath::M44f matrix;
+    std::copy(values, values + 16, matrix.getValue());
+    return matrix;
+}
+
+void set_text(Imf::Header& header, const FrameMetadata& metadata) {
+    const auto set = [&](const std::string& name, const std::string& value) {
+        header.insert(name, Imf::StringAttribute(value));
+    };
+    for (const auto& [name, value] : metadata_entries(metadata)) set(name, value);
+    if (!metadata.provenance.credit.empty()) set("owner", metadata.provenance.credit);
+    set("capDate", "");  // no clock
+    if (metadata.eye != Eye::centre) set("view", std::string(name_of(metadata.eye)));
+}
+
+Imf::Header make_header(const FrameFile& target, const FrameFormat& format, const Image& beauty,
+                        const std::vector<Channel>& channels, const FrameMetadata& metadata) {
+    const auto box = [](std::int64_t x, std::int64_t y, std::int64_t width, std::int64_t height) {
+        return Imath::Box2i({static_cast<int>(x), static_cast<int>(y)},
+                            {static_cast<int>(x + width - 1), static_cast<int>(y + height - 1)});
+    };
+    Imf::Header header(box(0, 0, target.whole_width, target.whole_height),
+                       box(target.region.x, target.region.y, beauty.width, beauty.height));
+    header.compression() = compression_of(format.compression);
+    header.zipCompressionLevel() = 4;  // a few per cent larger than 6, and several times as quick
+    for (const Channel& channel : channels)
+        header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
+    Imf::addChromaticities(header, chromaticities_of(format.primaries));
+    const Rational fps = rational_fps(metadata.fps);
+    Imf::addFramesPerSecond(header, Imf::Rational(fps.numerator, fps.denominator));
+    if (metadata.matrices) {
+        Imf::addWorldToCamera(header, matrix_of(metadata.matrices->world_to_camera));
+        Imf::addWorldToNDC(header, matrix_of(metadata.matrices->world_to_ndc));
+    }
+    set_text(header, metadata);
+    return header;
+}
+
+/// Some rows of the channels, each channel's one after the other, as they are stored.
+class Band {
+  public:
+    Band(const std::vector<Channel>& channels, std::int64_t rows)
+        : channels_(channels), width_(channels[0].image->width) {
+        for (const Channel& channel : channels_) {
+            places_.push_back(bytes_.size());
+            bytes_.resize(bytes_.size() + static_cast<std::size_t>(rows * width_ * channel.bytes()));
+        }
+    }
+
+    /// Takes rows y0 .. y1 of the images; light beyond half's range stays finite.
+    void take(std::int64_t y0, std::int64_t y1) {
+        parallel_for(y1 - y0, [&](std::int64_t row, int) {
+            for (std::size_t c = 0; c < channels_.size(); ++c) {
+                const Channel& channel = channels_[c];
+                char* const to = bytes_.data() + places_[c] + row * width_ * channel.bytes();
+                const float* const from = channel.image->at(0, y0 + row) + channel.index;
+                channel.half ? copy<half>(from, channel, to) : copy<float>(from, channel, to);
+            }
+        });
+    }
+
+    /// The band begins at the file's row y, its columns at x.
+    Imf::FrameBuffer frame_buffer(std::int64_t x, std::int64_t y) {
+        Imf::FrameBuffer buffer;
+        for (std::size_t c = 0; c < channels_.size(); ++c) {
+            const Channel& channel = channels_[c];
+            char* const origin = bytes_.data() + places_[c] - (y * width_ + x) * channel.bytes();
+            buffer.insert(channel.name, Imf::Slice(channel.half ? Imf::HALF : Imf::FLOAT, origin,
+                                                   static_cast<std::size_t>(channel.bytes()),
+                                                   static_cast<std::size_t>(channel.bytes() * width_)));
+        }
+        return buffer;
+    }
+
+  private:
+    template <class Stored>
+    void copy(const float* from, const Channel& channel, char* to) const {
+        const float limit = channel.half ? largest_half : std::numeric_limits<float>::max();
+        for (std::int64_t x = 0; x < width_; ++x, from += channel.image->channels, to += sizeof(Stored)) {
+            const Stored stored(std::clamp(*from, -limit, limit));
+            std::memcpy(to, &stored, sizeof stored);
+        }
+    }
+
+    const std::vector<Channel>& channels_;
+    std::int64_t width_;
+    std::vector<std::size_t> places_;  // of the channels in the bytes
+    std::vector<char> bytes_;
+};
+
+/// Threads that OpenEXR may compress with; it does without where there are none to be had.
+int compressing_threads() {
+    try {
+        if (Imf::globalThreadCount() != thread_count()) Imf::setGlobalThreadCount(thread_count());
+        return Imf::globalThreadCount();
+    } catch (const std::exception&) {
+        return 0;
+    }
+}
+
+void write_rows(ExrStream& stream, const Imf::Header& header, const std::vector<Channel>& channels) {
+    Imf::OutputFile out(stream, header, compressing_threads());
+    const std::int64_t height = channels[0].image->height;
+    const Imath::Box2i& window = header.dataWindow();
+    Band band(channels, std::min(band_rows, height));
+    for (std::int64_t y = 0; y < height; y += band_rows) {
+        const std::int64_t end = std::min(y + band_rows, height);
+        band.take(y, end);
+        out.setFrameBuffer(band.frame_buffer(window.min.x, window.min.y + y));
+        out.writePixels(static_cast<int>(end - y));
+    }
+}
+
+}  // namespace
+
+void write_exr(const FrameFile& target, const FrameFormat& format, const RenderedFrame& frame,
+               const FrameMetadata& metadata) {
+    const Image beauty = encode_float(format, frame.beauty);
+    std::vector<Image> layers;
+    if (target.output.holds("layers"))
+        for (const Image& layer : frame.layers) layers.push_back(encode_float(format, layer));
+    assert(layers.size() <= target.layer_names.size());
+    const bool half = format.depth == OutputParams::Depth::half_float;
+    const std::vector<Channel> channels = channels_of(beauty, layers, frame, target, half);
+    AtomicFile file(target.file, target.existing);
+    ExrStream stream(file);
+    try {
+        write_rows(stream, make_header(target, format, beauty, channels, metadata), channels);
+        stream.flush();
+    } catch (const OutputError&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        std::string reason = error.what();
+        std::ranges::replace(reason, '\n', ' ');
+        throw OutputError(fmt::format("{}: cannot be written: {}", target.file.string(), reason));
+    }
+    file.commit();
+}
+
+}  // namespace astrosplat
