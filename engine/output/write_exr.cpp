@@ -106,7 +106,9 @@ Imf::Header make_header(const FrameFile& target, const FrameFormat& format, cons
     Imf::Header header(box(0, 0, target.whole_width, target.whole_height),
                        box(target.region.x, target.region.y, beauty.width, beauty.height));
     header.compression() = compression_of(format.compression);
-    header.zipCompressionLevel() = 4;  // a few per cent larger than 6, and several times as quick
+    const Imf::Compression kind = header.compression();
+    // A few per cent larger than 6, and several times as quick. DWA asks for it too, and keeps its own.
+    if (kind == Imf::ZIP_COMPRESSION || kind == Imf::ZIPS_COMPRESSION) header.zipCompressionLevel() = 4;
     for (const Channel& channel : channels)
         header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
     Imf::addChromaticities(header, chromaticities_of(format.primaries));
