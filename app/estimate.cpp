@@ -34,9 +34,10 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t program_bytes = 85'000'000;  // with its libraries, before any scene
-constexpr std::int64_t drawing_bytes = 55'000'000;  // what rendering and writing any frame adds
-constexpr std::int64_t worker_bytes = 12'000'000;   // what a thread that renders works with
+constexpr std::int64_t program_bytes = 55'000'000;  // with its libraries, before any scene
+constexpr std::int64_t picture_bytes = 45'000'000;  // libraries that read pictures, and write all but EXR
+constexpr std::int64_t drawing_bytes = 15'000'000;  // what rendering and writing any frame adds
+constexpr std::int64_t worker_bytes = 6'000'000;    // what a thread that renders works with
 constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splats that any frame is worth
 // A projected splat lies in so many tiles, where nothing is known of the splats' places; and its place in a
 // bin.
@@ -142,7 +143,7 @@ struct LayerNeed {
     const LayerParams* params;
     Expected expected;
     std::int64_t making = 0, held = 0;  // bytes while it is made, and from then on
-    bool may_stream = false;
+    bool may_stream = false, reads_pictures = false;
 };
 
 LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer) {
@@ -155,11 +156,19 @@ LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer) {
     const std::int64_t row = 40 + (wanted.uv ? 8 : 0) + (wanted.mesh ? 4 : 0) + (expected.has_radius ? 4 : 0);
     need.making = std::max(expected.making_bytes, expected.splats * row);
     need.held = expected.splats * (is_shaded_alike(plan.scene, layer.name) ? row : row + shaded_bytes);
+    need.reads_pictures = !cached && layer.source.kind == SourceKind::mesh;
     need.making += expected.held_bytes;
     need.held += expected.held_bytes;
     need.may_stream =
         expected.file && !is_encoded(layer.render) && why_not_streamed(*expected.file, look).empty();
     return need;
+}
+
+bool uses_pictures(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
+    const EnvironmentParams& sky = plan.scene.environment;
+    const bool has_sky = sky.visible && !(sky.image.empty() && sky.cube.empty() && sky.tile.empty());
+    return has_sky || !plan.scene.output.path.ends_with(".exr") ||
+           std::ranges::any_of(needs, &LayerNeed::reads_pictures);
 }
 
 std::int64_t streamed_bytes(const LayerNeed& need) {
@@ -258,8 +267,8 @@ std::int64_t parse_memory(const std::string& text) {
 }
 
 void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache) {
-    constexpr std::int64_t renderer_bytes = 104'000'000;  // whatever the threads are: pixels depend on it
-    bytes = std::max<std::int64_t>(bytes - program_bytes - renderer_bytes, 1);
+    constexpr std::int64_t others_bytes = 189'000'000;  // never another number: pixels depend on it
+    bytes = std::max<std::int64_t>(bytes - others_bytes, 1);
     SourceParams& source = layer.source;
     if (source.kind != SourceKind::mesh || source.structure.kind == StructureKind::columns) return;
     std::vector<TexturedMesh> meshes =
@@ -282,8 +291,8 @@ JobEstimate estimate(const BatchPlan& plan) {
     }
     const bool is_limited = plan.memory_limit_bytes > 0;
     const std::int64_t limit = is_limited ? plan.memory_limit_bytes : available_memory_bytes() / 10 * 9;
-    const std::int64_t working =
-        program_bytes + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes;
+    const std::int64_t program = program_bytes + (uses_pictures(plan, needs) ? picture_bytes : 0);
+    const std::int64_t working = program + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes;
     const std::int64_t records = records_bytes(plan, needs);
     std::int64_t sky_making = 0, sky_held = 0;
     const EnvironmentParams& sky = plan.scene.environment;
@@ -294,7 +303,7 @@ JobEstimate estimate(const BatchPlan& plan) {
     }
     const auto needed = [&](std::int64_t of_records) {
         const SetBytes sets = sets_of(needs, job.streamed);
-        return std::max(program_bytes + std::max(sets.making, sky_making),
+        return std::max(program + std::max(sets.making, sky_making),
                         working + sets.held + sky_held + of_records);
     };
     // Less than a part of the records makes many passes over what is in memory.

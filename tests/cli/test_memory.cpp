@@ -67,7 +67,7 @@ TEST_F(Memory, AFileLargerThanTheMemoryGivesTheSamePixels) {
     make_ball(400000, "[64, 48]", "[layer.render]\nblend = \"hybrid\"\n[layer.look]\ndensity = 0.9\n");
     const Run whole = rendered({});
     EXPECT_EQ(whole.err.find("block by block"), std::string::npos) << whole.err;
-    for (const auto& [threads, gib] : {std::pair("1", "0.172"), std::pair("2", "0.183")}) {
+    for (const auto& [threads, gib] : {std::pair("1", "0.1"), std::pair("2", "0.106")}) {
         const Run streamed = rendered({"--memory", gib, "-t", threads});
         EXPECT_NE(streamed.err.find("block by block, as there is not memory for all: ball"),
                   std::string::npos)
@@ -79,7 +79,7 @@ TEST_F(Memory, AFileLargerThanTheMemoryGivesTheSamePixels) {
 }
 
 TEST_F(Memory, WhatWillNotFitIsSaidBeforeAnythingIsDone) {
-    expect_one_line(batch({"--memory", "0.1"}), 2, "--memory: expected at least 0.");
+    expect_one_line(batch({"--memory", "0.05"}), 2, "--memory: expected at least 0.");
     EXPECT_EQ(names_in("frames"), std::set<std::string>{});
 }
 
