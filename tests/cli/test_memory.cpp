@@ -95,6 +95,13 @@ TEST_F(Memory, ARunTakesWhatItAnnounces) {
     EXPECT_NEAR(nothing.told_mib, nothing.taken_mib, 0.15 * nothing.taken_mib) << nothing.err;
 }
 
+// What writes PNG and reads pictures is more than what a small frame takes.
+TEST_F(Memory, LibrariesThatAreNeededAreCounted) {
+    make_ball(1000, "[640, 360]");
+    const Run run = rendered({"--set", "output.path=frames/shot.####.png"});
+    EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+}
+
 TEST_F(Memory, GeneratingTakesWhatIsAnnounced) {
     make_ball(1000, "[64, 36]");
     std::string text = text_of(folder / "mesh.toml");
