@@ -61,7 +61,7 @@ NewValue dragged_crop(const LayerParams& layer, std::size_t index, HandleTool to
                       const Handled& handled, const HandleDrag& drag) {
     const std::string at = layer_key(layer.name) / "look.crop" / index;
     const Crop& crop = layer.look.crop[index];
-    const Placement placement = placement_of(layer.transform);
+    const LayerPlacement placement = placement_of(layer.transform);
     const double step = units_per_px(camera, handled.origin) / placement.scale;
     if (tool == HandleTool::rotate) {
         const glm::dmat3 in_world = turned_by(camera, handled, drag) * placement.rotation * axes_of(crop);
@@ -102,7 +102,7 @@ std::optional<Handled> handled_in(const Scene& now, const ViewState& view) {
     const Crop* crop = chosen_crop(now, view);
     const bool is_sphere = crop && crop->shape == Crop::Shape::sphere;
     if (!crop || (is_sphere && view.tool == HandleTool::rotate)) return std::nullopt;
-    const Placement placement = placement_of(layer.transform);
+    const LayerPlacement placement = placement_of(layer.transform);
     handled.origin = to_world(placement, glm::dvec3(crop->center));
     handled.axes = placement.rotation * axes_of(*crop);
     handled.uniform = is_sphere;
@@ -125,7 +125,7 @@ NewValue dragged_value(const Scene& pressed, const ViewState& view, const Camera
 
 std::vector<std::vector<glm::dvec3>> crop_outline(const LayerParams& layer, std::size_t index) {
     const Crop& crop = layer.look.crop[index];
-    const Placement placement = placement_of(layer.transform);
+    const LayerPlacement placement = placement_of(layer.transform);
     const glm::dmat3 axes = axes_of(crop);
     const auto at = [&](const glm::dvec3& from_center) {
         return to_world(placement, glm::dvec3(crop.center) + axes * from_center);

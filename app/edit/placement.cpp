@@ -22,15 +22,15 @@ glm::dvec3 nearest_turns(const glm::dvec3& degrees, const glm::dvec3& near) {
 
 }  // namespace
 
-Placement placement_of(const LayerTransform& transform) {
+LayerPlacement placement_of(const LayerTransform& transform) {
     return {rotation_from_degrees(transform.rotate), transform.scale, transform.translate};
 }
 
-glm::dvec3 to_world(const Placement& placement, const glm::dvec3& in_layer) {
+glm::dvec3 to_world(const LayerPlacement& placement, const glm::dvec3& in_layer) {
     return placement.rotation * (placement.scale * in_layer) + placement.translate;
 }
 
-glm::dvec3 to_layer(const Placement& placement, const glm::dvec3& in_world) {
+glm::dvec3 to_layer(const LayerPlacement& placement, const glm::dvec3& in_world) {
     return glm::transpose(placement.rotation) * (in_world - placement.translate) / placement.scale;
 }
 

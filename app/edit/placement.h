@@ -9,15 +9,15 @@
 
 namespace astrosplat {
 
-struct Placement {
+struct LayerPlacement {
     glm::dmat3 rotation{1.0};  // world from layer
     double scale = 1.0;
     glm::dvec3 translate{0.0};  // scene units
 };
 
-Placement placement_of(const LayerTransform& transform);
-glm::dvec3 to_world(const Placement& placement, const glm::dvec3& in_layer);
-glm::dvec3 to_layer(const Placement& placement, const glm::dvec3& in_world);
+LayerPlacement placement_of(const LayerTransform& transform);
+glm::dvec3 to_world(const LayerPlacement& placement, const glm::dvec3& in_layer);
+glm::dvec3 to_layer(const LayerPlacement& placement, const glm::dvec3& in_world);
 
 /// Degrees about x, then y, then z of a rotation: those nearest to `near`, which say it as well.
 glm::dvec3 degrees_of(const glm::dmat3& rotation, const glm::dvec3& near);

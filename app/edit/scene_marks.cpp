@@ -34,7 +34,7 @@ std::array<int, 3> plane_of(ViewKind view) {
 std::vector<MarkLine> box_edges(const Bounds& box, const LayerTransform& transform) {
     std::vector<MarkLine> edges;
     if (box.empty()) return edges;
-    const Placement placement = placement_of(transform);
+    const LayerPlacement placement = placement_of(transform);
     for (int corner = 0; corner < 8; ++corner)
         for (const int side : {1, 2, 4})
             if (!(corner & side))

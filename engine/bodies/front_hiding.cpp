@@ -28,7 +28,7 @@ struct OnPicture {
 };
 
 std::optional<OnPicture> seen_by(const FrontView& view, const glm::dvec3& p) {
-    const std::optional<PicturePlace> place = place_in_picture(view.camera, p);
+    const std::optional<PlaceInPicture> place = place_in_picture(view.camera, p);
     if (!place) return {};
     const bool parallel = view.camera.projection == Projection::orthographic;
     return OnPicture{place->uv.x * view.camera.aspect * view.height_px, place->uv.y * view.height_px,

@@ -32,7 +32,7 @@ glm::vec2 texels_per_voxel(const SurfaceTriangle& t, const TriangleShape& s, con
 // The same for a picture that is seen through a camera, at the face's own depth.
 glm::vec2 texels_per_voxel(const TexturedMesh& m, const SurfaceTriangle& t, const TriangleShape& s,
                            const glm::dvec3& spacing) {
-    const std::optional<PicturePlace> seen = place_in_picture(*m.camera, s.a + (s.ab + s.ac) / 3.0);
+    const std::optional<PlaceInPicture> seen = place_in_picture(*m.camera, s.a + (s.ab + s.ac) / 3.0);
     if (!seen) return glm::vec2(0.0f);
     const double texels_per_unit =
         static_cast<double>(t.texture->image.height) / picture_height_at(*m.camera, seen->depth);
@@ -107,7 +107,7 @@ std::optional<glm::vec2> uv_of(const SurfaceTriangle& triangle, const glm::dvec2
                                            ac = glm::dvec2(triangle.uv_c) - a;
         return glm::vec2(a + ab * barycentric.x + ac * barycentric.y);
     }
-    const std::optional<PicturePlace> seen = place_in_picture(*triangle.camera, position);
+    const std::optional<PlaceInPicture> seen = place_in_picture(*triangle.camera, position);
     if (!seen) return std::nullopt;
     return glm::vec2(seen->uv);
 }

@@ -22,7 +22,7 @@ std::vector<double> corners(const LookProfile& profile) {
     return xs;
 }
 
-std::vector<double> piece_ends(const Column& column) {
+std::vector<double> piece_ends(const ColumnProfile& column) {
     std::vector<double> ends = {0.0, column.end};
     for (double x : corners(column.pdf)) ends.push_back(x);
     for (double x : corners(column.vertical)) ends.push_back(x / column.vertical_ratio);
@@ -33,7 +33,7 @@ std::vector<double> piece_ends(const Column& column) {
     return ends;
 }
 
-double integrand(const Column& column, double vertical_scale, double x) {
+double integrand(const ColumnProfile& column, double vertical_scale, double x) {
     const double p = double(shared::look_profile(column.pdf, float(x)));
     const double f = double(shared::look_profile(column.vertical, float(x * column.vertical_ratio)));
     const double v = 1.0 + (vertical_scale - 1.0) * x;
@@ -42,7 +42,7 @@ double integrand(const Column& column, double vertical_scale, double x) {
 
 }  // namespace
 
-double column_integral(const Column& column, double vertical_scale) {
+double column_integral(const ColumnProfile& column, double vertical_scale) {
     const std::vector<double> ends = piece_ends(column);
     double sum = 0.0;
     for (std::size_t i = 1; i < ends.size(); ++i) {

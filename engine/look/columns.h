@@ -7,7 +7,7 @@
 namespace astrosplat {
 
 /// Profiles and lengths of one column, on one side of the surface.
-struct Column {
+struct ColumnProfile {
     LookProfile pdf;              // p(x)
     LookProfile vertical;         // f(x)
     double density = 1.0;         // positions kept: min(1, density * p(x))
@@ -16,7 +16,7 @@ struct Column {
 };
 
 /// Integral over x in [0, end] of min(1, density p(x)) f(x vertical_ratio) lerp(1, vertical_scale, x)^2.
-double column_integral(const Column& column, double vertical_scale);
+double column_integral(const ColumnProfile& column, double vertical_scale);
 
 /// Mean of the square of a radius uniform in [min, max].
 double mean_square(double min, double max);

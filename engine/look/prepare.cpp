@@ -223,7 +223,7 @@ void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inpu
     for (int k = 0; k < u.stop_count; ++k) {
         const double reach = double(u.reach) * double(u.stops[k].scale);
         if (!(reach > 0.0)) continue;
-        Column column{u.stops[k].pdf, u.vertical, double(u.density), 1.0, 1.0};
+        ColumnProfile column{u.stops[k].pdf, u.vertical, double(u.density), 1.0, 1.0};
         column.end = std::min(1.0, set.max_distance / reach);
         if (u.vertical_reach > 0.0f) column.vertical_ratio = reach / double(u.vertical_reach);
         u.stops[k].column = float(factor * column_integral(column, vertical_scale));

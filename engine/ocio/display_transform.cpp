@@ -107,7 +107,7 @@ DisplayTransform::DisplayTransform(const OcioParams& params) : state_(std::make_
                            displays_of(*config), file);
     state.view = chosen("output.ocio.view", params.view, config->getDefaultView(state.display.c_str()),
                         views_of(*config, state.display), file);
-    const Entry entry = entry_of(*config, params, file);
+    const LightEntry entry = entry_of(*config, params, file);
     state.space = entry.space;
     try {
         state.processor = processor_for(*config, entry, state.display, state.view);

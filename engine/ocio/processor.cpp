@@ -70,7 +70,7 @@ std::string chosen(const char* key, const std::string& wanted, const std::string
                                      file.string(), name.empty() ? "none" : "'" + name + "'"));
 }
 
-Entry entry_of(const ocio::Config& config, const OcioParams& params, const fs::path& file) {
+LightEntry entry_of(const ocio::Config& config, const OcioParams& params, const fs::path& file) {
     const auto has = [&](const char* name) { return bool(config.getColorSpace(name)); };
     if (!params.space.empty()) {
         if (has(params.space.c_str())) return {params.space};
@@ -87,7 +87,7 @@ Entry entry_of(const ocio::Config& config, const OcioParams& params, const fs::p
                                 file.string(), linear_role));
 }
 
-ocio::ConstProcessorRcPtr processor_for(const ocio::Config& config, const Entry& entry,
+ocio::ConstProcessorRcPtr processor_for(const ocio::Config& config, const LightEntry& entry,
                                         const std::string& display, const std::string& view) {
     const ocio::GroupTransformRcPtr all = ocio::GroupTransform::Create();
     if (entry.from_aces) {

@@ -26,15 +26,15 @@ std::string chosen(const char* key, const std::string& wanted, const std::string
                    const std::vector<std::string>& known, const std::filesystem::path& file);
 
 /// Where scene light enters the configuration.
-struct Entry {
+struct LightEntry {
     std::string space;
     bool from_aces = false;  // the space is ACES2065-1
 };
 /// Throws OcioError.
-Entry entry_of(const ocio::Config& config, const OcioParams& params, const std::filesystem::path& file);
+LightEntry entry_of(const ocio::Config& config, const OcioParams& params, const std::filesystem::path& file);
 
 /// Throws what OpenColorIO throws.
-ocio::ConstProcessorRcPtr processor_for(const ocio::Config& config, const Entry& entry,
+ocio::ConstProcessorRcPtr processor_for(const ocio::Config& config, const LightEntry& entry,
                                         const std::string& display, const std::string& view);
 
 }  // namespace astrosplat

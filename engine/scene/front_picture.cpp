@@ -34,7 +34,7 @@ struct SeenFace {
 
 // The same through a camera; faces stay flat where nearness is the inverse of depth.
 glm::dvec3 seen_through(const Camera& camera, const glm::dvec3& point) {
-    const std::optional<PicturePlace> place = place_in_picture(camera, point);
+    const std::optional<PlaceInPicture> place = place_in_picture(camera, point);
     assert(place);  // the face has texture coordinates
     const bool parallel = camera.projection == Projection::orthographic;
     return {place->uv.x - 0.5, (0.5 - place->uv.y) / camera.aspect,

@@ -38,12 +38,12 @@ CameraParams params_of(const Camera& camera) {
     return params;
 }
 
-std::optional<PicturePlace> place_in_picture(const Camera& camera, const glm::dvec3& point) {
+std::optional<PlaceInPicture> place_in_picture(const Camera& camera, const glm::dvec3& point) {
     const ExactLens lens = make_exact_lens(camera);
     const glm::dvec3 p = glm::transpose(camera.world_from_camera) * (point - camera.eye);
     if (!exact::is_in_range(lens, -p.z)) return std::nullopt;
     const auto seen = exact::instance_of(lens, p);
-    return PicturePlace{{seen.x_px / camera.aspect, 1.0 - seen.y_px}, -p.z};
+    return PlaceInPicture{{seen.x_px / camera.aspect, 1.0 - seen.y_px}, -p.z};
 }
 
 double picture_height_at(const Camera& camera, double depth) {
@@ -62,7 +62,7 @@ void apply_camera_uv(Mesh& mesh, const Camera& camera) {
     std::vector<bool> seen;
     mesh.uvs.clear();
     for (const glm::vec3& position : mesh.positions) {
-        const std::optional<PicturePlace> place = place_in_picture(camera, glm::dvec3(position));
+        const std::optional<PlaceInPicture> place = place_in_picture(camera, glm::dvec3(position));
         seen.push_back(place.has_value());
         mesh.uvs.push_back(place ? glm::vec2(place->uv) : glm::vec2(0.0f));
     }

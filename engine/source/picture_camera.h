@@ -17,12 +17,12 @@ Camera picture_camera(const UvCamera& params, double aspect);
 /// The same as parameters, for rendering what it saw.
 CameraParams params_of(const Camera& camera);
 
-struct PicturePlace {
+struct PlaceInPicture {
     glm::dvec2 uv;  // v = 0 is the bottom row; 0..1 within the picture
     double depth;   // scene units before the eye, along the view axis
 };
 /// Where the picture shows a point; empty for what is not before the eye.
-std::optional<PicturePlace> place_in_picture(const Camera& camera, const glm::dvec3& point);
+std::optional<PlaceInPicture> place_in_picture(const Camera& camera, const glm::dvec3& point);
 
 /// Scene units from the picture's bottom to its top at a depth.
 double picture_height_at(const Camera& camera, double depth);

@@ -26,7 +26,7 @@ double difference(const glm::dmat3& a, const glm::dmat3& b) {
 }
 
 TEST(Placement, ScalesThenTurnsThenMoves) {
-    const Placement placement = placement_of({{10.0, 0.0, 0.0}, {0.0, 0.0, 90.0}, 2.0});
+    const LayerPlacement placement = placement_of({{10.0, 0.0, 0.0}, {0.0, 0.0, 90.0}, 2.0});
     expect_near(to_world(placement, {1.0, 0.0, 3.0}), {10.0, 2.0, 6.0});
     expect_near(to_layer(placement, {10.0, 2.0, 6.0}), {1.0, 0.0, 3.0});
 }

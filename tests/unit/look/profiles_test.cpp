@@ -130,8 +130,8 @@ TEST(Density, KeepsWhatEveryPdfSays) {
         }
 }
 
-Column column_of(int pdf, int vertical) {
-    Column column{};
+ColumnProfile column_of(int pdf, int vertical) {
+    ColumnProfile column{};
     column.pdf.shape = pdf;
     column.pdf.rate = 3.0f;
     column.vertical.shape = vertical;
@@ -152,13 +152,13 @@ TEST(ColumnIntegral, ClosedForms) {
     const double s106 = (0.33 - 1.515 * 0.33 * 0.33 / 2.0) +
                         (0.9 * 0.33 - 1.212 * (0.66 * 0.66 - 0.33 * 0.33) / 2.0) + 0.294 * 0.34 * 0.34 / 2.0;
     EXPECT_NEAR(column_integral(column_of(PROFILE_CONSTANT, PROFILE_S106), 1.0), s106, 1e-6);
-    Column half = column_of(PROFILE_CONSTANT, PROFILE_LINEAR);
+    ColumnProfile half = column_of(PROFILE_CONSTANT, PROFILE_LINEAR);
     half.vertical_ratio = 2.0;  // 1 - 2x up to 1/2
     EXPECT_NEAR(column_integral(half, 1.0), 0.25, 1e-6);
-    Column cut = column_of(PROFILE_CONSTANT, PROFILE_LINEAR);
+    ColumnProfile cut = column_of(PROFILE_CONSTANT, PROFILE_LINEAR);
     cut.end = 0.5;
     EXPECT_NEAR(column_integral(cut, 1.0), 0.375, 1e-6);
-    Column dense = column_of(PROFILE_LINEAR, PROFILE_CONSTANT);
+    ColumnProfile dense = column_of(PROFILE_LINEAR, PROFILE_CONSTANT);
     dense.density = 2.0;  // min(1, 2 - 2x)
     EXPECT_NEAR(column_integral(dense, 1.0), 0.75, 1e-4);
 }

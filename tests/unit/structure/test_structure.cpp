@@ -2,6 +2,7 @@
 // them, and the top level holds only what was agreed. A rule nobody checks is lost.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -172,6 +173,50 @@ TEST(Structure, LibrariesStayBehindTheFilesThatWrapThem) {
 
 // Who reads a call finds its code beside the header that declares it. Mains, and parts of one declared whole,
 // have no header of their own name; their number may only fall.
+// "astrosplat::native Block" of what a file defines at the level of namespaces that have names. What ends
+// one is said by its comment.
+std::vector<std::string> types_defined_in(const fs::path& file) {
+    static const std::regex type(
+        R"re(^(?:struct|class|enum class|union) (\w+)(?: final)?(?: :[^;{]*)? \{)re");
+    static const std::regex opening(R"re(^namespace ?(\S*) \{)re");
+    std::vector<std::string> types, namespaces;
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+        std::smatch match;
+        if (line == "namespace {") {
+            namespaces.emplace_back();
+        } else if (std::regex_search(line, match, opening)) {
+            namespaces.push_back(match[1]);
+        } else if (line.starts_with("}  // namespace") && !namespaces.empty()) {
+            namespaces.pop_back();
+        } else if (std::regex_search(line, match, type) &&
+                   std::find(namespaces.begin(), namespaces.end(), "") == namespaces.end()) {
+            std::string where;
+            for (const std::string& name : namespaces) where += (where.empty() ? "" : "::") + name;
+            types.push_back(where + " " + match[1].str());
+        }
+    }
+    return types;
+}
+
+// The linker takes one destructor for both, and no one says so.
+TEST(Structure, NoTwoTypesHaveOneName) {
+    std::map<std::string, std::string> file_of;
+    for (const char* const folder : {"engine", "app"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+            if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+            const std::string file = fs::relative(entry.path(), root).generic_string();
+            for (const std::string& type : types_defined_in(entry.path())) {
+                const auto [known, is_new] = file_of.emplace(type, file);
+                EXPECT_TRUE(is_new) << type << ": in " << known->second << " and " << file;
+            }
+        }
+    }
+    EXPECT_GT(file_of.size(), 300u);
+    EXPECT_TRUE(file_of.contains("astrosplat SplatSet"));
+    EXPECT_TRUE(file_of.contains("astrosplat::native Block"));
+}
+
 TEST(Structure, SourcesHaveTheHeaderOfTheirName) {
     constexpr std::size_t without_header = 1;
     std::string missing;
