@@ -42,6 +42,7 @@ constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splat
 // A projected splat lies in so many tiles, where nothing is known of the splats' places; and its place in a
 // bin.
 constexpr double usual_records = 1.4, record_bytes = 44.0, fold_bytes = 56.0;
+constexpr double split_records = 4.0;  // where large ones are split, in a pass close by
 constexpr std::int64_t shaded_bytes = 40;
 // Of captures: a row of a file with normals; and beside what all have shape and radius, harmonics and colours
 // by direction.
@@ -215,6 +216,8 @@ class SampledLayer : public ShadedBlocks {
     Bounds box;  // of all splats, layer space
 };
 
+bool is_split(const LayerParams& layer) { return layer.render.lod.max_px > 0.0; }
+
 /// Bytes of projected splats in the fullest of the first, the middle and the last frame.
 std::int64_t records_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
     double unknown = 0.0;
@@ -226,7 +229,8 @@ std::int64_t records_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& 
             samples.emplace_back(need.params->name,
                                  std::make_unique<SampledLayer>(*need.params, *need.expected.file));
         else
-            unknown += usual_records * (record_bytes + folded) * static_cast<double>(need.expected.splats);
+            unknown += (is_split(*need.params) ? split_records : usual_records) * (record_bytes + folded) *
+                       static_cast<double>(need.expected.splats);
     }
     if (samples.empty() || plan.frames.empty()) return static_cast<std::int64_t>(unknown);
     RenderCache cache;

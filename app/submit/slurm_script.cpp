@@ -13,7 +13,7 @@ namespace {
 constexpr std::int64_t mebibyte = 1 << 20;
 
 // What an estimate may be short of, and Slurm ends a task that takes more than it asked for.
-constexpr double memory_margin = 1.25;
+constexpr double memory_margin = 1.5;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
