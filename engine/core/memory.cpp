@@ -2,7 +2,6 @@
 #include "core/memory.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -109,9 +108,9 @@ std::int64_t available_memory_bytes() {
 }
 
 std::int64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+    // getrusage() also counts the program that started this one: Linux carries its size over exec.
+    const std::int64_t kib = field(text_of("/proc/self/status"), "VmHWM:");
+    return std::max<std::int64_t>(0, kib) * 1024;
 }
 
 std::int64_t resident_memory_bytes() {
