@@ -1,6 +1,7 @@
 #include "output/write_exr.h"
 
 #include <ImfChannelList.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfMatrixAttribute.h>
@@ -107,8 +108,10 @@ Imf::Header make_header(const FrameFile& target, const FrameFormat& format, cons
                        box(target.region.x, target.region.y, beauty.width, beauty.height));
     header.compression() = compression_of(format.compression);
     const Imf::Compression kind = header.compression();
-    // A few per cent larger than 6, and several times as quick. DWA asks for it too, and keeps its own.
+    // A few per cent larger than 6, and several times as quick.
     if (kind == Imf::ZIP_COMPRESSION || kind == Imf::ZIPS_COMPRESSION) header.zipCompressionLevel() = 4;
+    // The usual loss, said in the file: whoever writes it again keeps to it.
+    if (kind == Imf::DWAA_COMPRESSION) header.insert("dwaCompressionLevel", Imf::FloatAttribute(45.0f));
     for (const Channel& channel : channels)
         header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
     Imf::addChromaticities(header, chromaticities_of(format.primaries));

@@ -182,8 +182,12 @@ TEST_F(WriteTest, DwaaIsWrittenToo) {
     OutputParams output;
     output.compression = Compression::dwaa;
     RenderedFrame frame = soft_frame(64, 64);
-    RawFile raw = read_raw(write("a.exr", output, frame));
+    const fs::path file = write("a.exr", output, frame);
+    RawFile raw = read_raw(file);
     EXPECT_EQ(raw.spec.get_string_attribute("compression"), "dwaa");
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    EXPECT_NE(bytes.find("dwaCompressionLevel"), std::string::npos);
     EXPECT_NEAR(raw.at(40, 10, "R"), frame.beauty.at(40, 10)[0], 0.02f);
 }
 
