@@ -1,14 +1,18 @@
 // How much memory there is, and how it is spoken about.
 #include "core/memory.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <string_view>
 
 #include "core/cgroup.h"
 #include "core/error.h"
@@ -109,8 +113,21 @@ std::int64_t available_memory_bytes() {
 
 std::int64_t peak_memory_bytes() {
     // getrusage() also counts the program that started this one: Linux carries its size over exec.
-    const std::int64_t kib = field(text_of("/proc/self/status"), "VmHWM:");
-    return std::max<std::int64_t>(0, kib) * 1024;
+    // Read without an allocation: it is asked for when memory may be short.
+    std::array<char, 4096> status{};
+    const int file = ::open("/proc/self/status", O_RDONLY | O_CLOEXEC);
+    if (file < 0) return 0;
+    const ssize_t size = ::read(file, status.data(), status.size());
+    ::close(file);
+    const std::string_view text(status.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size)));
+    constexpr std::string_view name = "VmHWM:";
+    const std::size_t at = text.find(name);
+    if (at == text.npos) return 0;
+    const std::size_t digits = text.find_first_of("0123456789", at + name.size());
+    if (digits == text.npos) return 0;
+    std::int64_t kib = 0;
+    std::from_chars(text.data() + digits, text.data() + text.size(), kib);
+    return kib * 1024;
 }
 
 std::int64_t resident_memory_bytes() {
