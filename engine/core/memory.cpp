@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -47,14 +46,14 @@ std::string human(double value, double step, const char* const (&units)[5]) {
 }
 
 // Finds "name   123" at the start of a line; -1 without it.
-std::int64_t field(const std::string& text, const std::string& name) {
-    std::size_t at = text.rfind(name, 0) == 0 ? 0 : text.find("\n" + name);
-    if (at == std::string::npos) return -1;
-    at = text.find_first_of("0123456789", at);
-    if (at == std::string::npos) return -1;
+std::int64_t field(std::string_view text, std::string_view name) {
+    std::size_t at = text.find(name);
+    while (at != text.npos && at > 0 && text[at - 1] != '\n') at = text.find(name, at + 1);
+    if (at == text.npos) return -1;
+    at = text.find_first_of("0123456789", at + name.size());
+    if (at == text.npos) return -1;
     const std::size_t end = text.find_first_not_of("0123456789", at);
-    return parse_int64(std::string_view(text).substr(at, end == std::string::npos ? end : end - at))
-        .value_or(-1);
+    return parse_int64(text.substr(at, end == text.npos ? end : end - at)).value_or(-1);
 }
 
 std::string text_of(const char* file) {
@@ -120,14 +119,7 @@ std::int64_t peak_memory_bytes() {
     const ssize_t size = ::read(file, status.data(), status.size());
     ::close(file);
     const std::string_view text(status.data(), static_cast<std::size_t>(std::max<ssize_t>(0, size)));
-    constexpr std::string_view name = "VmHWM:";
-    const std::size_t at = text.find(name);
-    if (at == text.npos) return 0;
-    const std::size_t digits = text.find_first_of("0123456789", at + name.size());
-    if (digits == text.npos) return 0;
-    std::int64_t kib = 0;
-    std::from_chars(text.data() + digits, text.data() + text.size(), kib);
-    return kib * 1024;
+    return std::max<std::int64_t>(0, field(text, "VmHWM:")) * 1024;
 }
 
 std::int64_t resident_memory_bytes() {
