@@ -66,6 +66,8 @@ void apply_resolution(OutputParams& output, const std::string& text) {
     if (size.empty() || std::min(size[0], size[1]) < 1 || std::max(size[0], size[1]) > 65536) {
         bad_input("--resolution", "", expected, "'" + text + "'");
     }
+    if (is_dome(output) && size[0] != size[1])  // drafts may be smaller, but nothing else than square
+        bad_input("--resolution", "", "a square for the preset dome", "'" + text + "'");
     output.width = size[0];
     output.height = size[1];
 }

@@ -168,7 +168,18 @@ void check_layer(const LayerParams& layer, const Checker& check) {
     check.require(layer.axis != glm::dvec3(0.0), {at / "axis"}, "expected a direction, found 0, 0, 0");
 }
 
+/// What a planetarium takes as a dome master.
+void check_dome(const OutputParams& output, const Checker& check) {
+    constexpr std::int64_t least_px = 1024, largest_px = 8192;
+    const bool fits = output.width == output.height && least_px <= output.width && output.width <= largest_px;
+    check.require(!is_dome(output) || fits, {"output.preset", "output.resolution"},
+                  fmt::format("expected a square of {} to {} px for the preset dome, found {} x {}", least_px,
+                              largest_px, output.width, output.height));
+}
+
 }  // namespace
+
+bool is_dome(const OutputParams& output) { return output.preset.stem() == "dome"; }
 
 std::optional<KeyProblem> problem_of(const PrepareParams& prepare) {
     if (prepare.ellipse && !(prepare.ellipse->z > 0.0 && prepare.ellipse->w > 0.0))
@@ -212,6 +223,7 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
     const auto frames = places.find("output.frames");
     parse_frames(scene.output.frames, (frames == places.end() ? file : frames->second) + ": output.frames");
     check.require(!scene.output.path.empty(), {"output.path"}, "expected a file name, found an empty one");
+    check_dome(scene.output, check);
     const CameraParams& c = scene.camera;
     check.require(c.up != glm::dvec3(0.0), {"camera.up"}, "expected a direction, found 0, 0, 0");
     check.require(!c.rotation || *c.rotation != glm::dvec4(0.0), {"camera.rotation"},

@@ -17,6 +17,9 @@ void check_scene(const Scene& scene, const std::string& file, const Places& plac
 /// out.
 void check_renderable(const Scene& scene, const Places& places);
 
+/// Whether frames are dome masters: of the preset of this name, one of one's own included.
+bool is_dome(const OutputParams& output);
+
 /// A key of a group whose value cannot stand, and "expected ..., found ...".
 struct KeyProblem {
     std::string key, message;

@@ -81,6 +81,12 @@ TEST_F(Usage, BadOptionValuesNameTheOptionAndTheValue) {
     EXPECT_FALSE(fs::exists(folder / "frames"));
 }
 
+TEST_F(Usage, DraftsOfDomesAreSmallerButSquare) {
+    expect_one_line(batch({"--set", "output.preset=dome", "--resolution", "64x48"}), 2,
+                    "--resolution: expected a square for the preset dome, found '64x48'");
+    EXPECT_EQ(batch({"--set", "output.preset=dome", "--resolution", "64x64", "-f", "1"}).code, 0);
+}
+
 TEST_F(Usage, BadScenesNameFileAndLine) {
     write_scene("[outptu]\n");
     const RunResult result = batch();

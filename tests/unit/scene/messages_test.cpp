@@ -430,6 +430,22 @@ TEST(Messages, FilesThatCannotBeRead) {
     EXPECT_EQ(load("no such.toml"), "no such.toml: cannot be read: No such file or directory");
 }
 
+TEST(Messages, DomesAreSquareAndOfAPlanetariumsSize) {
+    const auto sized = [](const std::string& size) {
+        return message(head + "[output]\npreset = \"dome\"\nresolution = [" + size + "]\n");
+    };
+    const std::string expected =
+        "scene.toml:7: output.resolution: expected a square of 1024 to 8192 px for the preset dome, found ";
+    EXPECT_EQ(sized("4096, 2160"), expected + "4096 x 2160");
+    EXPECT_EQ(sized("1023, 1023"), expected + "1023 x 1023");
+    EXPECT_EQ(sized("8193, 8193"), expected + "8193 x 8193");
+    for (const char* size : {"1024, 1024", "8192, 8192"}) EXPECT_EQ(sized(size), "") << size;
+    const fs::path own = fs::temp_directory_path() / "dome.toml";
+    write_file_atomically(own, "[output]\nresolution = [500, 500]\n");
+    EXPECT_EQ(message(head + "[output]\npreset = \"" + own.string() + "\"\n"),
+              own.string() + ":2" + expected.substr(std::string("scene.toml:7").size()) + "500 x 500");
+}
+
 TEST(Messages, PresetsNameTheirOwnFileAndLine) {
     const fs::path preset = fs::temp_directory_path() / "astrosplat preset messages.toml";
     write_file_atomically(preset, "[look]\nalpha.powr = 2\n");
