@@ -22,6 +22,8 @@ struct Log {
     std::map<std::string, std::int64_t> warnings;  // line -> how often it came
 };
 
+thread_local int quiet_depth = 0;
+
 Log& the_log() {
     static Log log;
     return log;
@@ -29,7 +31,7 @@ Log& the_log() {
 
 // Called with the mutex held, so that lines of several threads never mix.
 void emit(Log& log, LogLevel level, const std::string& line) {
-    if (level > log.level) return;
+    if (level > log.level || quiet_depth > 0) return;
     if (log.sink)
         log.sink(level, printable(line));
     else
@@ -69,6 +71,7 @@ void log_info(const std::string& line) { log_line(LogLevel::info, line); }
 void log_detail(const std::string& line) { log_line(LogLevel::detail, line); }
 
 void log_warning(const std::string& line) {
+    if (quiet_depth > 0) return;
     Log& log = the_log();
     const std::lock_guard lock(log.mutex);
     if (++log.warnings[line] == 1) emit(log, LogLevel::warning, line);
@@ -81,5 +84,8 @@ void flush_warning_counts() {
         if (count > 1) emit(log, LogLevel::warning, fmt::format("{} ({} times)", line, count));
     log.warnings.clear();
 }
+
+QuietLog::QuietLog() { ++quiet_depth; }
+QuietLog::~QuietLog() { --quiet_depth; }
 
 }  // namespace astrosplat

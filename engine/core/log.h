@@ -34,4 +34,14 @@ void log_detail(const std::string& line);
 void log_warning(const std::string& line);
 void flush_warning_counts();
 
+/// While it lives, nothing that this thread says is heard or counted: it looks at files that nobody has asked
+/// for yet.
+class QuietLog {
+  public:
+    QuietLog();
+    ~QuietLog();
+    QuietLog(const QuietLog&) = delete;
+    QuietLog& operator=(const QuietLog&) = delete;
+};
+
 }  // namespace astrosplat

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/bounds.h"
@@ -61,6 +62,21 @@ TEST(Log, LevelsAndRepeatedWarnings) {
     flush_warning_counts();
     set_log_sink(nullptr);
     EXPECT_EQ(lines, (std::vector<std::string>{"shown", "odd", "odd (3 times)", "odd"}));
+}
+
+TEST(Log, AQuietThreadIsNeitherHeardNorCounted) {
+    std::vector<std::string> lines;
+    set_log_sink([&](LogLevel, const std::string& line) { lines.push_back(line); });
+    {
+        const QuietLog quiet;
+        log_error("whispered");
+        log_warning("odd");
+        std::thread([] { log_info("beside"); }).join();
+    }
+    log_warning("odd");
+    flush_warning_counts();
+    set_log_sink(nullptr);
+    EXPECT_EQ(lines, (std::vector<std::string>{"beside", "odd"}));
 }
 
 TEST(Text, NumbersDoNotDependOnTheLocale) {
