@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "camera/camera.h"
 #include "core/bounds.h"
+#include "edit/listed_picture.h"
 #include "scene/scene.h"
 
 namespace astrosplat {
@@ -136,6 +138,12 @@ struct FinishedFrame {
     std::string error;        // why it cannot be shown, one line
 };
 
+/// A picture file as it looks. Zeros and nothing: it cannot be read.
+struct ListedThumbnail {
+    void* texture = nullptr;             // handle for the widgets, top row first
+    std::int64_t width = 0, height = 0;  // px of the picture in the file
+};
+
 /// An autosave that may be wanted.
 struct RecoveryOffer {
     std::filesystem::path autosave;
@@ -173,7 +181,8 @@ struct Status {
     int threads = 1;
     std::vector<std::filesystem::path> recent;
     bool changed_on_disk = false;
-    std::vector<RecoveryOffer> recoveries;  // of scenes that were not closed
+    std::vector<RecoveryOffer> recoveries;                // of scenes that were not closed
+    std::map<ListedPicture, ListedThumbnail> thumbnails;  // of the files listed that are looked at so far
     bool has_ffmpeg = false;
     std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
 

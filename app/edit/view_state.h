@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "edit/listed_picture.h"
 #include "edit/render_task.h"
 #include "edit/settings.h"
 #include "scene/scene.h"
@@ -119,7 +120,8 @@ struct ViewState : PanelSizes {
     bool queue_playing = false;
     bool changed_on_disk = false;  // the line that offers Reload or Keep is shown
     std::string grey_layer;        // whose mesh has no picture: the line that offers to choose one is shown
-    bool hint_open = false;        // "Drop a picture, mesh or splat file here. F1 shows the keys."
+    std::vector<ListedPicture> listed_pictures;  // rows of the file dialog that are seen; set every frame
+    bool hint_open = false;  // "Drop a picture, mesh or splat file here. F1 shows the keys."
 };
 
 /// The references that a view shows, besides those for any.

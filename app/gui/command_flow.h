@@ -21,6 +21,8 @@ class CommandFlow {
     void run(GuiFrame& frame, Panel& panel, Commands& out);
     /// A dialog is open, or an answer is waited for.
     bool busy() const;
+    /// A text field is about to take what is typed.
+    bool awaits_typing() const { return dialog_.awaits_typing(); }
 
   private:
     void take(GuiFrame& frame, Command command, Commands& out);

@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/file_format.h"
 #include "edit/preferences.h"
 #include "gui/dialog.h"
-#include "gui/file_rows.h"
 #include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
@@ -32,13 +32,16 @@ int on_tab(ImGuiInputTextCallbackData* data) {
     return 0;
 }
 
+bool is_picture(const FileEntry& entry) {
+    return !entry.folder && kind_of(format_by_name(entry.name)) == FileKind::picture;
+}
+
 }  // namespace
 
 void FileDialog::open(const FileQuery& query) {
     query_ = query;
     open_ = true;
     all_files_ = replaces_ = false;
-    focus_path_ = true;
     std::error_code ignored;
     go_to(fs::is_directory(query.folder, ignored) ? query.folder : home_folder());
     typed_ = query.name;
@@ -50,11 +53,14 @@ void FileDialog::go_to(const fs::path& folder) {
     list_entries();
     complaint_.clear();
     if (!query_.saving) typed_.clear();
+    focus_path_ = awaits_typing_ = true;  // the name comes next
 }
 
 void FileDialog::list_entries() {
     entries_ = list_folder(folder_, all_files_ ? std::vector<std::string>{} : query_.extensions);
     sort_entries(entries_, order_, backwards_);
+    folders_ = static_cast<std::size_t>(std::ranges::count_if(entries_, &FileEntry::folder));
+    pictures_ = std::ranges::any_of(entries_, is_picture);
 }
 
 void FileDialog::draw_places(GuiFrame& frame) {
@@ -70,7 +76,7 @@ void FileDialog::draw_places(GuiFrame& frame) {
     for (const fs::path& folder : frame.view.recent_folders) add(folder);
     for (const fs::path& file : frame.status.recent) add(file.parent_path());
     for (const auto& [name, folder] : places) {
-        if (file_row(folder.c_str(), Icon::folder, name, folder == folder_).once) go_to(folder);
+        if (file_row(folder.c_str(), {Icon::folder, name, folder == folder_}).once) go_to(folder);
         note_item(frame, "place/" + folder.string());
         tooltip(folder.c_str());
     }
@@ -90,6 +96,7 @@ void FileDialog::draw_path(GuiFrame& frame) {
     ImGui::InputTextWithHint("##path", "File, or a path; Tab completes it", &typed_,
                              ImGuiInputTextFlags_CallbackCompletion, on_tab, &folder_);
     ImGui::PopStyleVar();
+    if (ImGui::IsItemActive()) awaits_typing_ = false;
     note_item(frame, "file/path");
     if (typed_ != before) {
         replaces_ = false;
@@ -97,21 +104,43 @@ void FileDialog::draw_path(GuiFrame& frame) {
     }
 }
 
+FileClick FileDialog::draw_entry(GuiFrame& frame, const FileEntry& entry) {
+    FileRow row{entry.folder ? Icon::folder : Icon::file, entry.name, entry.name == typed_,
+                time_text(entry.changed), entry.folder ? "" : size_text(entry.bytes)};
+    row.high = !entry.folder && pictures_;
+    row.picture = is_picture(entry);
+    if (row.picture) {
+        const ListedPicture listed{folder_ / entry.name, entry.changed, entry.bytes};
+        const auto seen = frame.status.thumbnails.find(listed);
+        if (seen != frame.status.thumbnails.end()) row.thumbnail = &seen->second;
+        frame.view.listed_pictures.push_back(listed);
+    }
+    const FileClick click = file_row(entry.name.c_str(), row);
+    note_item(frame, "file/" + entry.name);
+    return click;
+}
+
+// Only rows that are seen are drawn: a folder may hold every frame of a film.
 bool FileDialog::draw_entries(GuiFrame& frame) {
     bool chosen = false;
     fs::path enter;
-    for (const FileEntry& entry : entries_) {
-        const FileClick click = file_row(entry.name.c_str(), entry.folder ? Icon::folder : Icon::file,
-                                         entry.name, entry.name == typed_, time_text(entry.changed),
-                                         entry.folder ? "" : size_text(entry.bytes));
-        note_item(frame, "file/" + entry.name);
-        if (entry.folder && click.once) enter = folder_ / entry.name;
-        if (!entry.folder && click.once) {
-            typed_ = entry.name;
-            replaces_ = false;
-        }
-        if (!entry.folder && click.twice) chosen = true;
-    }
+    const auto draw_rows = [&](std::size_t begin, std::size_t end, float height) {
+        ImGuiListClipper clipper;
+        clipper.Begin(static_cast<int>(end - begin), px(height));
+        while (clipper.Step())
+            for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+                const FileEntry& entry = entries_[begin + static_cast<std::size_t>(i)];
+                const FileClick click = draw_entry(frame, entry);
+                if (entry.folder && click.once) enter = folder_ / entry.name;
+                if (!entry.folder && click.once) {
+                    typed_ = entry.name;
+                    replaces_ = false;
+                }
+                if (!entry.folder && click.twice) chosen = true;
+            }
+    };
+    draw_rows(0, folders_, file_row_height);
+    draw_rows(folders_, entries_.size(), pictures_ ? picture_row_height : file_row_height);
     if (entries_.empty()) {
         ImGui::SetCursorPosX(px(12));
         row_text(all_files_ ? "This folder is empty." : "No " + query_.kind + " here.", px(file_row_height),
@@ -170,6 +199,7 @@ FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
 }
 
 FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
+    frame.view.listed_pictures.clear();
     if (!begin_dialog("file dialog", query_.title, open_, dialog_width, dialog_height)) return {};
     draw_path(frame);
     ImGui::Dummy({0, px(4)});
@@ -181,8 +211,9 @@ FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     ImGui::EndChild();
     ImGui::SameLine(0, px(8));
     ImGui::BeginChild("files", {0, list_height});
-    if (draw_file_columns(frame, order_, backwards_)) sort_entries(entries_, order_, backwards_);
+    if (draw_file_columns(frame, rows_px_, order_, backwards_)) sort_entries(entries_, order_, backwards_);
     ImGui::BeginChild("entries");
+    rows_px_ = ImGui::GetContentRegionAvail().x;
     const bool chosen = draw_entries(frame);
     ImGui::EndChild();
     ImGui::EndChild();

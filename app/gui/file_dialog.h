@@ -1,5 +1,6 @@
 // The window's own file dialog: a path that completes with Tab, the folder's files of the wanted kind, places
-// to jump to, and a question before a file is replaced. It lists by name, time or size.
+// to jump to, and a question before a file is replaced. It lists by name, time or size, pictures as they
+// look.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +10,7 @@
 
 #include "gui/file_list.h"
 #include "gui/file_queries.h"
+#include "gui/file_rows.h"
 #include "gui/gui_frame.h"
 
 namespace astrosplat {
@@ -17,6 +19,8 @@ class FileDialog {
   public:
     void open(const FileQuery& query);
     bool is_open() const { return open_; }
+    /// The path is about to take what is typed.
+    bool awaits_typing() const { return open_ && awaits_typing_; }
 
     struct Answer {
         bool done = false;  // the dialog has closed
@@ -30,16 +34,20 @@ class FileDialog {
     void draw_places(GuiFrame& frame);
     void draw_path(GuiFrame& frame);
     void list_entries();
+    FileClick draw_entry(GuiFrame& frame, const FileEntry& entry);
     bool draw_entries(GuiFrame& frame);
     Answer draw_bottom(GuiFrame& frame, bool chosen);
     std::optional<std::filesystem::path> accept();
 
     FileQuery query_;
-    bool open_ = false, all_files_ = false, focus_path_ = false;
+    bool open_ = false, all_files_ = false, focus_path_ = false, awaits_typing_ = false;
     bool replaces_ = false;  // the file exists and the person was told
     std::filesystem::path folder_;
     std::string typed_, complaint_;
-    std::vector<FileEntry> entries_;
+    std::vector<FileEntry> entries_;     // folders first
+    std::size_t folders_ = 0;            // of these
+    bool pictures_ = false;              // some of the files are
+    float rows_px_ = 0.0f;               // width of the rows drawn last: less beside a scroll bar
     FileOrder order_ = FileOrder::name;  // stays for the next file
     bool backwards_ = false;
 };

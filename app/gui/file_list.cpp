@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
+#include <utility>
 
 #include "core/text.h"
 
@@ -48,15 +49,25 @@ std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std
 }
 
 void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool backwards) {
-    std::sort(entries.begin(), entries.end(), [&](const FileEntry& a, const FileEntry& b) {
+    std::vector<std::pair<std::string, FileEntry>> named;  // names in lower case, made once each
+    named.reserve(entries.size());
+    for (FileEntry& entry : entries) {
+        std::string name = lower_case(entry.name);
+        named.emplace_back(std::move(name), std::move(entry));
+    }
+    std::sort(named.begin(), named.end(), [&](const auto& one, const auto& other) {
+        const auto& [name_a, a] = one;
+        const auto& [name_b, b] = other;
         if (a.folder != b.folder) return a.folder;
         if (order == FileOrder::changed && a.changed != b.changed)
             return (a.changed > b.changed) != backwards;
         if (order == FileOrder::size && a.bytes != b.bytes) return (a.bytes > b.bytes) != backwards;
-        const std::string la = lower_case(a.name), lb = lower_case(b.name);
         const bool backwards_names = backwards && order == FileOrder::name;
-        return (la != lb ? la < lb : a.name < b.name) != (backwards_names && a.name != b.name);
+        return (name_a != name_b ? name_a < name_b : a.name < b.name) !=
+               (backwards_names && a.name != b.name);
     });
+    entries.clear();
+    for (auto& [name, entry] : named) entries.push_back(std::move(entry));
 }
 
 std::string time_text(fs::file_time_type time) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "gui/theme.h"
@@ -12,6 +13,7 @@ namespace astrosplat {
 namespace {
 
 constexpr float time_width = 128, size_width = 76;
+constexpr float thumbnail_width = 72, thumbnail_height = 48;
 
 struct FileColumn {
     const char* label;
@@ -38,6 +40,26 @@ bool draw_column(GuiFrame& frame, const FileColumn& column, const ImVec2& corner
     return clicked;
 }
 
+// As large as its frame allows; the sign of a file where it cannot be read.
+void draw_picture(ImDrawList* list, ImVec2 corner, const ListedThumbnail* thumbnail) {
+    const float w = px(thumbnail_width), h = px(thumbnail_height);
+    list->AddRectFilled(corner, {corner.x + w, corner.y + h}, IM_COL32_BLACK, px(2));
+    if (!thumbnail) return;
+    const ImVec2 middle{corner.x + w * 0.5f, corner.y + h * 0.5f};
+    if (!thumbnail->texture) return draw_icon(list, Icon::file, middle, px(13), color::dim);
+    const auto width = static_cast<float>(thumbnail->width), height = static_cast<float>(thumbnail->height);
+    const float scale = std::min(w / width, h / height);
+    const float half_w = std::max(px(0.5f), width * scale * 0.5f),
+                half_h = std::max(px(0.5f), height * scale * 0.5f);
+    list->AddImage(thumbnail->texture, {middle.x - half_w, middle.y - half_h},
+                   {middle.x + half_w, middle.y + half_h});
+}
+
+std::string note_of(const FileRow& row) {
+    if (!row.thumbnail || !row.thumbnail->texture) return {};
+    return fmt::format("{} x {} px", row.thumbnail->width, row.thumbnail->height);
+}
+
 }  // namespace
 
 std::string size_text(std::uintmax_t bytes) {
@@ -48,29 +70,39 @@ std::string size_text(std::uintmax_t bytes) {
     return fmt::format("{:.1f} GB", n / 1e9);
 }
 
-FileClick file_row(const char* id, Icon icon, const std::string& text, bool chosen, const std::string& time,
-                   const std::string& size) {
+FileClick file_row(const char* id, const FileRow& row) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float row = px(file_row_height), room = ImGui::GetContentRegionAvail().x;
+    const float height = px(row.high ? picture_row_height : file_row_height);
+    const float room = ImGui::GetContentRegionAvail().x;
     FileClick click;
-    click.once = ImGui::InvisibleButton(id, {room, row});
+    click.once = ImGui::InvisibleButton(id, {room, height});
     click.twice = ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImU32 back = chosen ? color::selection : ImGui::IsItemHovered() ? color::hover : color::none;
-    list->AddRectFilled(corner, {corner.x + room, corner.y + row}, back, px(3));
-    draw_icon(list, icon, {corner.x + px(14), corner.y + row * 0.5f}, px(13), color::dim);
-    const float y = corner.y + std::floor((row - ImGui::GetFontSize()) * 0.5f);
-    const float beside = time.empty() ? 0.0f : px(time_width + size_width);
-    list->AddText({corner.x + px(28), y}, color::text, fitting(text, room - px(36) - beside).c_str());
-    list->AddText({corner.x + room - beside, y}, color::dim, time.c_str());
-    const float size_x = corner.x + room - px(8) - ImGui::CalcTextSize(size.c_str()).x;
-    list->AddText({size_x, y}, color::dim, size.c_str());
+    const ImU32 back = row.chosen ? color::selection : ImGui::IsItemHovered() ? color::hover : color::none;
+    list->AddRectFilled(corner, {corner.x + room, corner.y + height}, back, px(3));
+    const float middle = corner.y + height * 0.5f;
+    if (row.picture)
+        draw_picture(list, {corner.x + px(6), middle - px(0.5f * thumbnail_height)}, row.thumbnail);
+    else
+        draw_icon(list, row.icon, {corner.x + px(row.high ? 6 + 0.5f * thumbnail_width : 14), middle}, px(13),
+                  color::dim);
+    const float text_x = corner.x + px(row.high ? thumbnail_width + 16 : 28);
+    const float beside = row.time.empty() ? 0.0f : px(time_width + size_width);
+    const float text_room = corner.x + room - px(8) - beside - text_x;
+    const float line = std::floor(ImGui::GetFontSize()), y = std::floor(middle - line * 0.5f);
+    const std::string note = note_of(row);
+    const float name_y = note.empty() ? y : y - std::floor(line * 0.6f);
+    list->AddText({text_x, name_y}, color::text, fitting(row.text, text_room).c_str());
+    list->AddText({text_x, name_y + std::floor(line * 1.2f)}, color::dim, note.c_str());
+    list->AddText({corner.x + room - beside, y}, color::dim, row.time.c_str());
+    const float size_x = corner.x + room - px(8) - ImGui::CalcTextSize(row.size.c_str()).x;
+    list->AddText({size_x, y}, color::dim, row.size.c_str());
     return click;
 }
 
-bool draw_file_columns(GuiFrame& frame, FileOrder& order, bool& backwards) {
+bool draw_file_columns(GuiFrame& frame, float room, FileOrder& order, bool& backwards) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float room = ImGui::GetContentRegionAvail().x, time_x = room - px(time_width + size_width);
+    const float time_x = room - px(time_width + size_width);
     const FileColumn columns[] = {{"Name", FileOrder::name, px(28), time_x - px(28), false},
                                   {"Changed", FileOrder::changed, time_x, px(time_width), false},
                                   {"Size", FileOrder::size, room - px(size_width), px(size_width), true}};

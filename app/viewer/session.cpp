@@ -18,6 +18,7 @@
 #include "viewer/session_render.h"
 #include "viewer/session_select.h"
 #include "viewer/session_status.h"
+#include "viewer/session_thumbnails.h"
 
 namespace astrosplat {
 namespace {
@@ -185,6 +186,7 @@ void advance(Session& session, double now) {
     check_disk(session, now);
     attempt(session.status, [&] { show_renderings(session, now); });
     attempt(session.status, [&] { take_alignment(session); });
+    show_thumbnails(session);
     session.autosave.update(session.document);
     fill_status(session);
     forget_old_message(session.status, session.message_age, now);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -37,6 +38,7 @@
 #include "viewer/rendered_frames.h"
 #include "viewer/run_viewer.h"
 #include "viewer/set_wishes.h"
+#include "viewer/thumbnails.h"
 #include "viewer/view_frame.h"
 
 namespace astrosplat {
@@ -94,7 +96,9 @@ struct Session {
     std::shared_ptr<const RenderedFrame8> rendered_shown;  // in the texture; null: none
     ImageTexture rendered_texture;
     std::uint64_t rendered_uploads = 0;
-    std::optional<ChildProcess> file_manager;  // that a folder was opened with
+    Thumbnails thumbnails;
+    std::map<ListedPicture, ImageTexture> thumbnail_textures;  // of those that are seen
+    std::optional<ChildProcess> file_manager;                  // that a folder was opened with
     Autosave autosave{autosave_folder(), autosave_interval(preferences.settings)};
 
     bool quitting = false, fresh_demo = false;

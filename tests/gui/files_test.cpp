@@ -172,6 +172,56 @@ TEST_F(FileDialogTest, FoldersThatFilesWereChosenInArePlaces) {
     EXPECT_TRUE(window.has("file/old.toml"));
 }
 
+/// Pictures beside one another, of which one is read, one cannot be, and one is still to be read.
+TEST_F(FileDialogTest, PicturesAreListedAsTheyLook) {
+    for (const char* name : {"a.png", "b.png", "c.FITS", "d.txt"})
+        folder.file(std::string("scenes/") + name, "");
+    fs::create_directory(folder / "scenes/more");
+    window.choose("File/Import as a layer...");
+    window.frame(2);
+    type_path((folder / "scenes").string());
+    window.tap(key_code::enter);
+    window.frame(2);
+    const std::vector<ListedPicture> listed = window.view.listed_pictures;
+    ASSERT_EQ(listed.size(), 3U);
+    EXPECT_EQ(listed[0].file, folder / "scenes/a.png");
+    Picture8 red(30, 20);
+    std::ranges::fill(red.pixels, Rgba8{200, 30, 20, 255});
+    window.status.thumbnails[listed[0]] = {&red, 3000, 2000};
+    window.status.thumbnails[listed[1]] = {};
+    window.frame(2);
+    EXPECT_EQ(window.view.listed_pictures, listed);
+    window.keep_screen("thumbnails");
+    const glm::vec2 first = window.at("file/more"), last = window.at("file/c.FITS");
+    const int top = static_cast<int>(first.y) - 14, bottom = static_cast<int>(last.y) + 28;
+    expect_like_reference("thumbnails", cropped(window.picture(Style::schematic),
+                                                static_cast<int>(first.x) - 300, top, 380, bottom - top));
+    window.tap(key_code::escape);
+    window.tap(key_code::escape);
+    window.frame(2);
+    EXPECT_TRUE(window.view.listed_pictures.empty()) << "nothing is read behind a closed dialog";
+}
+
+TEST_F(FileDialogTest, OfAFolderOfThousandsOnlyRowsThatAreSeenAreDrawn) {
+    for (int i = 0; i < 3000; ++i) folder.file("scenes/frame" + std::to_string(10000 + i) + ".png", "");
+    window.choose("File/Import as a layer...");
+    window.frame(2);
+    type_path((folder / "scenes").string());
+    window.tap(key_code::enter);
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/frame10000.png"));
+    EXPECT_FALSE(window.has("file/frame10100.png"));
+    EXPECT_LT(window.view.listed_pictures.size(), 12U);
+    window.move(window.at("file/frame10000.png"));
+    window.frame(2);
+    for (int i = 0; i < 200 && !window.has("file/frame10100.png"); ++i) window.wheel(-1.0f);
+    for (int i = 0; i < 3; ++i) window.wheel(-1.0f);  // to where the whole row is seen
+    EXPECT_TRUE(window.has("file/frame10100.png"));
+    window.click("file/frame10100.png");
+    window.click("file/Open");
+    EXPECT_EQ(window.take_commands().at(0).path, folder / "scenes/frame10100.png");
+}
+
 TEST_F(FileDialogTest, AMissingFileIsSaid) {
     window.choose("File/Open...");
     window.frame(2);

@@ -62,6 +62,12 @@ void Person::drag(glm::vec2 from, glm::vec2 by) const {
     act(words);
 }
 
+void Person::scroll(glm::vec2 at, int notches) const {
+    Words words = to(at);
+    add(words, {"sleep", "0.15", "click", "--delay", "8", "--repeat", std::to_string(notches), "5"});
+    act(words);
+}
+
 void Person::press(const std::string& key) const {
     act({"keydown", key, "sleep", "0.2", "keyup", key, "sleep", "0.15"});
 }
@@ -70,6 +76,12 @@ void Person::press_often(const std::string& key, int times) const {
     act({"key", "--delay", "30", "--repeat", std::to_string(times), "--repeat-delay", "30", key});
 }
 
-void Person::type(const std::string& text) const { act({"type", "--delay", "60", text}); }
+void Person::type(const std::string& text, int delay_ms) const {
+    act({"type", "--delay", std::to_string(delay_ms), text});
+}
+
+void Person::enter_and_type(const std::string& text, int delay_ms) const {
+    act({"key", "Return", "type", "--delay", std::to_string(delay_ms), text});
+}
 
 }  // namespace astrosplat::test

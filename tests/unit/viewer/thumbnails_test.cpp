@@ -1,0 +1,145 @@
+// Small pictures of files: how each kind looks, what is kept, what is let go.
+#include "viewer/thumbnails.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+#include "core/log.h"
+#include "source/write_image.h"
+#include "support/fits_text.h"
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ThumbnailsTest : testing::Test {
+    TempFolder folder;
+
+    ListedPicture listed(const std::string& name) const {
+        return {folder / name, fs::last_write_time(folder / name), fs::file_size(folder / name)};
+    }
+    /// Left half of one grey, right half of another.
+    ListedPicture write(const std::string& name, unsigned char left, unsigned char right, int width = 300,
+                        int height = 200) const {
+        std::vector<unsigned char> rgba;
+        for (int i = 0; i < width * height; ++i) {
+            const unsigned char level = i % width < width / 2 ? left : right;
+            rgba.insert(rgba.end(), {level, level, level, 255});
+        }
+        write_image(folder / name, width, height, rgba);
+        return listed(name);
+    }
+    static std::shared_ptr<const Thumbnail> read(Thumbnails& thumbnails, const ListedPicture& picture) {
+        thumbnails.want({picture});
+        while (thumbnails.working()) std::this_thread::yield();
+        return thumbnails.found(picture);
+    }
+    static int grey(const Thumbnail& t, std::int64_t x, std::int64_t y) {
+        return t.rgb[static_cast<std::size_t>(3 * (y * t.small_width + x))];
+    }
+};
+
+TEST_F(ThumbnailsTest, LookAsTheirFilesDoWhateverTheKind) {
+    for (const char* name : {"a.png", "a.jpg", "a.tif"}) {
+        const Thumbnail t = thumbnail_of_file(write(name, 40, 200).file, 60);
+        EXPECT_EQ(t.width, 300) << name;
+        EXPECT_EQ(t.height, 200) << name;
+        EXPECT_EQ(t.small_width, 60) << name;
+        EXPECT_EQ(t.small_height, 40) << name;
+        EXPECT_NEAR(grey(t, 10, 20), 40, 2) << name;
+        EXPECT_NEAR(grey(t, 50, 20), 200, 2) << name;
+    }
+    const Thumbnail small = thumbnail_of_file(write("b.png", 1, 2, 8, 4).file, 60);
+    EXPECT_EQ(small.small_width, 8) << "none is enlarged";
+    const Thumbnail thin = thumbnail_of_file(write("c.png", 9, 9, 300, 1).file, 60);
+    EXPECT_EQ(thin.small_height, 1);
+}
+
+TEST_F(ThumbnailsTest, LightGetsTheScreensCurve) {
+    Image light = make_image(4, 4, 4, 1.0f);
+    for (std::size_t i = 0; i < 16; ++i) light.pixels[4 * i] = 0.25f;
+    write_linear_image(folder / "a.exr", light, "", Existing::replace);
+    const Thumbnail t = thumbnail_of_file(folder / "a.exr", 60);
+    EXPECT_EQ(t.rgb[0], 137) << "255 * (1.055 * 0.25^(1 / 2.4) - 0.055)";
+    EXPECT_EQ(t.rgb[1], 255);
+}
+
+TEST_F(ThumbnailsTest, FitsIsStretchedAndItsGapsAreBlack) {
+    const auto value = [](int x, int y) {
+        return x < 32 || y % 4 == 0 ? std::nan("") : x < 64 ? 100.0 : 900.0;
+    };
+    folder.file("a.fits", fits_file(128, 64, "", value));
+    const Thumbnail t = thumbnail_of_file(folder / "a.fits", 32);
+    EXPECT_EQ(t.width, 128);
+    EXPECT_EQ(grey(t, 2, 15), 0) << "no value there";
+    EXPECT_EQ(grey(t, 12, 4), 0) << "black";
+    EXPECT_EQ(grey(t, 30, 4), 191) << "white, three rows of four";
+}
+
+TEST_F(ThumbnailsTest, BrokenFilesAreEmptyAndNothingIsSaid) {
+    std::vector<std::string> lines;
+    set_log_sink([&](LogLevel, const std::string& line) { lines.push_back(line); });
+    set_log_level(LogLevel::detail);
+    folder.file("a.png", "no picture");
+    const std::string whole = [&] {
+        std::ifstream in(write("b.png", 1, 250).file, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    }();
+    folder.file("b.png", whole.substr(0, whole.size() / 2));
+    Thumbnails thumbnails;
+    for (const char* name : {"a.png", "b.png"}) {
+        const auto found = read(thumbnails, listed(name));
+        ASSERT_TRUE(found) << name;
+        EXPECT_TRUE(found->rgb.empty()) << name;
+    }
+    EXPECT_FALSE(thumbnails.working()) << "not tried for ever";
+    set_log_level(LogLevel::info);
+    set_log_sink(nullptr);
+    EXPECT_TRUE(lines.empty()) << lines.front();
+}
+
+TEST_F(ThumbnailsTest, AreKeptUntilTheFileIsAnother) {
+    const ListedPicture before = write("a.png", 40, 40);
+    Thumbnails thumbnails;
+    const auto found = read(thumbnails, before);
+    EXPECT_EQ(grey(*found, 0, 0), 40);
+    thumbnails.want({});
+    EXPECT_EQ(read(thumbnails, before), found) << "not for nothing";
+    write("a.png", 90, 90);
+    ListedPicture after = before;
+    after.changed += std::chrono::seconds(5);
+    EXPECT_EQ(grey(*read(thumbnails, after), 0, 0), 90);
+    after.bytes += 1;
+    EXPECT_FALSE(thumbnails.found(after));
+}
+
+TEST_F(ThumbnailsTest, AreForgottenBeyondTheirMemoryTheOldestFirst) {
+    const ListedPicture one = write("a.png", 1, 1, 64, 64), two = write("b.png", 2, 2, 64, 64),
+                        three = write("c.png", 3, 3, 64, 64);
+    Thumbnails thumbnails(64, 30'000);  // two of 12 KiB
+    for (const ListedPicture& picture : {one, two}) read(thumbnails, picture);
+    read(thumbnails, one);
+    read(thumbnails, three);
+    EXPECT_TRUE(thumbnails.found(one));
+    EXPECT_FALSE(thumbnails.found(two));
+    thumbnails.want({one, two, three});
+    while (thumbnails.working()) std::this_thread::yield();
+    EXPECT_TRUE(thumbnails.found(one) && thumbnails.found(two) && thumbnails.found(three)) << "all are seen";
+}
+
+/// A large picture that is scrolled away does not hold up what is seen then.
+TEST_F(ThumbnailsTest, AFileThatIsNotWantedAnyMoreIsLetGo) {
+    const ListedPicture large = write("large.tif", 10, 20, 9000, 6000), small = write("small.png", 40, 40);
+    Thumbnails thumbnails;
+    thumbnails.want({large});
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    EXPECT_EQ(grey(*read(thumbnails, small), 0, 0), 40);
+    EXPECT_FALSE(thumbnails.found(large));
+}
+
+}  // namespace
+}  // namespace astrosplat
