@@ -53,7 +53,7 @@ BlockPart block_part(const TilePlanes& planes, const Cell& cell, int block, int 
         part.y_px[p] = hn::Add(load(row + first + p * lanes), all(y_px));
     }
     part.at = cell.first_pixel + static_cast<std::size_t>(block * TilePlanes::block_pixels + first);
-    if constexpr (kOutline == Outline::sphere)
+    if constexpr (is_onto_sphere(kOutline))
         for (std::size_t k = 0; k < 3; ++k)
             for (std::size_t p = 0; p < parts; ++p)
                 part.toward[k][p] = load(&planes.toward[k][part.at + p * lanes]);
@@ -171,7 +171,7 @@ template <class Pixels, Outline kOutline>
 void fold_batch(const FoldJob& job, const FoldCommon& common, SplatBatch& batch, Cell& cell,
                 TilePlanes& planes) {
     for (int i = 0; i < batch.count; ++i) prefetch(*job.splats[batch.index[i]]);
-    if constexpr (kOutline == Outline::sphere)
+    if constexpr (is_onto_sphere(kOutline))
         find_touched_caps(batch, cell.caps);
     else
         find_touched_blocks(batch, cell.x0_px, cell.y0_px);
@@ -283,7 +283,7 @@ void fold_found(const FoldJob& job, const FoldCommon& common, bool last, CellSpl
         batch.y_px = &found.discs.y_px[begin];
         batch.reach_px = &found.discs.reach_px[begin];
         batch.index = &found.index[begin];
-        if constexpr (kOutline == Outline::sphere) {
+        if constexpr (is_onto_sphere(kOutline)) {
             batch.toward[0] = &found.toward.x[begin];
             batch.toward[1] = &found.toward.y[begin];
             batch.toward[2] = &found.toward.z[begin];
@@ -307,8 +307,10 @@ void fold_cells(const FoldJob& job, TilePlanes& planes) {
     find_discs(job, scratch->discs);
     CellSplats& found = scratch->found;
     found.resize(step + SplatBatch::size + lanes);
-    constexpr bool sphere = kOutline == Outline::sphere;
+    constexpr bool sphere = is_onto_sphere(kOutline);
     if constexpr (sphere) {
+        const float focal_px = job.settings.lens.focal_px;
+        scratch->batch.per_square = 1.0f / (4.0f * focal_px * focal_px);
         find_directions(job.settings.lens, scratch->discs, job.splats.size(), scratch->toward);
         found.toward.resize(step + SplatBatch::size + lanes);
     } else {
@@ -380,9 +382,11 @@ void fold_general(const FoldJob& job, TilePlanes& planes) {
 
 void fold_here(const FoldJob& job, TilePlanes& planes) {
     const bool aovs = job.settings.aovs;
+    const bool shaped = !job.shapes.empty();
     if (shared::is_onto_sphere(job.settings.lens))
-        fold_general<Outline::sphere>(job, planes);
-    else if (!job.shapes.empty())
+        shaped ? fold_general<Outline::sphere_shaped>(job, planes)
+               : fold_general<Outline::sphere>(job, planes);
+    else if (shaped)
         fold_general<Outline::shaped>(job, planes);
     else if (job.settings.kind == FoldKind::over)
         fold_pixels<OverPixels>(job, planes);

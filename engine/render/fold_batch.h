@@ -53,7 +53,7 @@ struct SplatBatch {
     const float* y_px = nullptr;
     const float* reach_px = nullptr;
     const std::uint32_t* index = nullptr;   // in the job's splats
-    const float* toward[3] = {};            // Outline::sphere: directions, of length focal_px
+    const float* toward[3] = {};            // onto the sphere: directions, of length focal_px
     alignas(64) SplatBits touches[blocks];  // splats that may have weight in the block
     std::uint16_t layer[places];
     std::uint8_t linear_in_distance[places];  // as in FootprintTable
@@ -67,6 +67,11 @@ struct SplatBatch {
     alignas(64) float weight_gain[places];  // amplitude alone, for coverage
     // Outline::shaped: what offsets are mapped by, as in ShapedFootprint.
     alignas(64) float map_xx[places], map_xy[places], map_yy[places];
+    // Outline::sphere_shaped: which are not round, and what their offsets are mapped by, as in
+    // SphereFootprint.
+    std::uint8_t shaped[places];
+    alignas(64) float row[2][3][places];
+    float per_square = 0.0f;  // 1 / (2 focal_px)^2
 
     alignas(64) float opacity[places];       // times the footprint's amplitude
     alignas(64) float color[3][places];      // 0 for holdouts
@@ -84,11 +89,13 @@ struct SplatBatch {
 
 /// The footprints of a tile's splats; each kind takes those before it, with the same bits.
 enum class Outline {
-    soft,    // round
-    flat,    // round, some flat inside
-    shaped,  // some not round
-    sphere,  // round on the sphere, not on the frame
+    soft,           // round
+    flat,           // round, some flat inside
+    shaped,         // some not round
+    sphere,         // round on the sphere, not on the frame
+    sphere_shaped,  // some not round there, either
 };
+constexpr bool is_onto_sphere(Outline outline) { return outline >= Outline::sphere; }
 
 /// What all layers have in common, if anything.
 struct FoldCommon {

@@ -75,7 +75,7 @@ constexpr std::size_t part_of(int side) { return parts == 1 ? 0 : static_cast<st
 /// Some of a block's pixels: those of one vector or two.
 struct BlockPart {
     V x_px[parts], y_px[parts];  // of the whole frame
-    V toward[3][parts];          // Outline::sphere: the pixels' directions, of length focal_px
+    V toward[3][parts];          // onto the sphere: the pixels' directions, of length focal_px
     std::size_t at;              // in the planes
 };
 
@@ -110,6 +110,21 @@ HWY_INLINE V squared_chord(const SplatBatch& batch, int i, const BlockPart& part
     return sum;
 }
 
+/// Squared distance on the map around splat i, in the plane of the round footprint (SphereFootprint): what
+/// lies across its direction, longer by what a chord is longer than its share across.
+HWY_INLINE V squared_on_map(const SplatBatch& batch, int i, const BlockPart& part, std::size_t p, V chord) {
+    V sum = hn::Zero(D());
+    for (const auto& row : batch.row) {
+        V along = hn::Zero(D());
+        for (int k = 0; k < 3; ++k)
+            along =
+                hn::Add(along, hn::Mul(all(row[k][i]), hn::Sub(part.toward[k][p], all(batch.toward[k][i]))));
+        sum = hn::Add(sum, hn::Mul(along, along));
+    }
+    const V half_cosine = hn::Sub(all(1.0f), hn::Mul(chord, all(batch.per_square)));  // squared
+    return hn::Div(sum, hn::Max(half_cosine, all(1e-6f)));
+}
+
 /// Takes the next splats out of `bits` (with none left, SplatBatch::none).
 template <Outline kOutline>
 HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits, const BlockPart& part) {
@@ -118,8 +133,10 @@ HWY_INLINE SplatsUnderway begin_splats(const SplatBatch& batch, SplatBits& bits,
     for (int n = 0; n < sides; ++n) to.i[n] = n == 0 || parts == 1 ? bits.take_first() : to.i[0];
     for (int n = 0; n < sides; ++n) {
         const int i = to.i[n];
-        if constexpr (kOutline == Outline::sphere) {
+        if constexpr (is_onto_sphere(kOutline)) {
             u[n] = squared_chord(batch, i, part, part_of(n));
+            if constexpr (kOutline == Outline::sphere_shaped)
+                if (batch.shaped[i]) u[n] = squared_on_map(batch, i, part, part_of(n), u[n]);
         } else {
             const V dx = hn::Sub(part.x_px[part_of(n)], all(batch.x_px[i])),
                     dy = hn::Sub(part.y_px[part_of(n)], all(batch.y_px[i]));

@@ -16,6 +16,7 @@
 #include "render/shape.h"
 #include "render/shared_render.h"
 #include "render/sphere.h"
+#include "render/sphere_shape.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {
@@ -158,13 +159,23 @@ HWY_INLINE void normalise_footprints(const FootprintTable& table, SplatBatch& ba
 /// Weights of a splat whose layer is not the only one, or that is beside splats that are not round.
 HWY_INLINE void prepare_weight(const FoldJob& job, const ScreenSplat& splat, SplatBatch& batch, int i) {
     const FootprintTable& table = *job.layers[splat.layer].footprints;
+    const Lens& lens = job.settings.lens;
+    const bool round = job.shapes.empty() || is_round(splat), sphere = shared::is_onto_sphere(lens);
     ShapedFootprint shaped;
-    if (shared::is_onto_sphere(job.settings.lens))
-        shaped.round = sphere_footprint_at(table, job.settings.lens, splat.radius_px, splat.x_px, splat.y_px);
-    else if (job.shapes.empty() || is_round(splat))
+    batch.shaped[i] = !round;
+    if (sphere && round) {
+        shaped.round = sphere_footprint_at(table, lens, splat.radius_px, splat.x_px, splat.y_px);
+    } else if (sphere) {
+        const SphereFootprint on_map =
+            shaped_sphere_footprint_at(table, lens, job.shapes[shape_number(splat)], splat.x_px, splat.y_px);
+        shaped.round = on_map.round;
+        for (int r = 0; r < 2; ++r)
+            for (int k = 0; k < 3; ++k) batch.row[r][k][i] = on_map.rows[r][k];
+    } else if (round) {
         footprint_at(table, splat.radius_px, splat.x_px, splat.y_px, shaped.round);
-    else
+    } else {
         shaped = shaped_footprint_at(table, job.shapes[shape_number(splat)], splat.x_px, splat.y_px);
+    }
     const Footprint& f = shaped.round;
     batch.linear_in_distance[i] = table.linear_in_distance;
     interpolate_cubics(*f.node_a, *f.node_b, f.t, batch, i);

@@ -11,6 +11,7 @@
 #include "render/project_vector.h"
 #include "render/shape.h"
 #include "render/shared_render.h"
+#include "render/sphere_shape.h"
 #include "splats/star_id.h"
 
 namespace astrosplat {
@@ -78,7 +79,15 @@ Shape outline_of(const LayerProjection& layer, const CameraSplat& splat, const s
                  std::int64_t index) {
     const glm::mat3 ellipsoid =
         splat.radius / layer.layer_scale * glm::mat3(layer.camera_from_layer) * layer.splats->stretch[index];
-    if (!layer.gaussians || shared::has_parallel_rays(layer.lens) || shared::is_onto_sphere(layer.lens))
+    if (shared::is_onto_sphere(layer.lens)) {
+        // Of its own direction, which a stereo pair does not show it in.
+        float x_px = shared::snap_px(at.x_px);
+        if (layer.lens.parallax != 0.0f)
+            x_px -= layer.lens.focal_px * shared::panorama_parallax(layer.lens, at.depth);
+        const SphereAxes axes = sphere_axes(layer.lens, double(x_px), double(shared::snap_px(at.y_px)));
+        return project_onto_sphere(axes, ellipsoid, at.px_per_unit);
+    }
+    if (!layer.gaussians || shared::has_parallel_rays(layer.lens))
         return project_ellipsoid(layer.lens, splat.position, ellipsoid, at.px_per_unit);
     const glm::vec2 slope =
         glm::clamp(glm::vec2(splat.position) / at.depth, layer.least_slope, layer.largest_slope);
@@ -93,14 +102,12 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
     if (!shared::is_in_range(layer.lens, at.depth)) return;
     const Shape shape = outline_of(layer, splat, at, index);
     const ShapeRadii radii = shape_radii(shape);
-    if (shared::is_onto_sphere(layer.lens)) {  // whose footprints are round: of the same area
-        splat.radius = std::sqrt(radii.larger * radii.smaller) / at.px_per_unit;
-        return project_one(layer, splat, index, rect, out);
-    }
     splat.radius = radii.larger / at.px_per_unit;
     if (layer.gaussians) splat.radius *= layer.deviation;
     ScreenSplat screen;
-    const float support = shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance});
+    const float support =
+        shared::frame_reach_px(layer.lens, at.x_px, at.y_px,
+                               shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance}));
     if (!place_splat(layer, splat, at, index, support, rect, screen)) return;
     set_shape_number(screen, static_cast<std::uint32_t>(shapes.size()));
     push_places(screen, shared::period_px(layer.lens), support, rect, out);
@@ -238,10 +245,11 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
 }
 
 float support_px(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes) {
-    if (shapes.empty() || is_round(splat))
-        return shared::frame_reach_px(layer.lens, splat.x_px, splat.y_px,
-                                      splat.radius_px * layer.reach + layer.margin_px);
-    return shape_support_px(shapes[shape_number(splat)], {layer.reach, layer.margin_px, layer.variance});
+    const bool round = shapes.empty() || is_round(splat);
+    const float reach_px =
+        round ? splat.radius_px * layer.reach + layer.margin_px
+              : shape_support_px(shapes[shape_number(splat)], {layer.reach, layer.margin_px, layer.variance});
+    return shared::frame_reach_px(layer.lens, splat.x_px, splat.y_px, reach_px);
 }
 
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,

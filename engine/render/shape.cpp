@@ -11,10 +11,15 @@
 namespace astrosplat {
 namespace {
 
-/// An ellipse by its radii, px, and the direction of the larger one.
-struct Ellipse {
-    double larger, smaller, x, y;
-};
+/// A profile of the smaller radius stretched along the larger one.
+Spectrum spectrum_of(const FootprintTable& table, const Ellipse& e, double stretch) {
+    const double gain = stretch * stretch - 1.0;
+    return {table, std::max(e.smaller, double(shared::SMALLEST_RADIUS_PX)),
+            PixelStretch{1.0 + gain * e.x * e.x, gain * e.x * e.y, 1.0 + gain * e.y * e.y}};
+}
+
+}  // namespace
+
 Ellipse ellipse_of(const Shape& s) {
     const double xx = double(s.xx) * s.xx + double(s.xy) * s.xy,
                  yy = double(s.yx) * s.yx + double(s.yy) * s.yy;
@@ -29,25 +34,12 @@ Ellipse ellipse_of(const Shape& s) {
     return e;
 }
 
-/// How much longer the profile of the smaller radius is made along the larger one.
 double stretch_of(const Ellipse& e, double variance, double filter_px) {
     const double tabulated = std::max(e.smaller, double(shared::SMALLEST_RADIUS_PX));
     return std::sqrt((e.larger * e.larger * variance + filter_px * filter_px) /
                      (tabulated * tabulated * variance + filter_px * filter_px));
 }
 
-/// A profile of the smaller radius stretched along the larger one.
-Spectrum spectrum_of(const FootprintTable& table, const Ellipse& e, double stretch) {
-    const double gain = stretch * stretch - 1.0;
-    return {table, std::max(e.smaller, double(shared::SMALLEST_RADIUS_PX)),
-            PixelStretch{1.0 + gain * e.x * e.x, gain * e.x * e.y, 1.0 + gain * e.y * e.y}};
-}
-
-}  // namespace
-
-namespace {
-
-/// The outline that rows of the matrix give, which say how far the unit ball's axes reach across and down.
 Shape outline_of(const glm::dvec3& across, const glm::dvec3& down) {
     // A lower triangular matrix of the same product with its transpose.
     const double width = glm::length(across);
@@ -55,8 +47,6 @@ Shape outline_of(const glm::dvec3& across, const glm::dvec3& down) {
     return {static_cast<float>(width), 0.0f, static_cast<float>(glm::dot(across, down) / width),
             static_cast<float>(glm::length(glm::cross(across, down)) / width)};
 }
-
-}  // namespace
 
 Shape project_affine(const glm::vec2& slope, const glm::mat3& ellipsoid, float px_per_unit) {
     const glm::dmat3 m(ellipsoid);
@@ -104,15 +94,20 @@ ShapedFootprint shaped_footprint_at(const FootprintTable& table, const Shape& sh
     const FootprintMass mass = footprint_mass(table, radius_px);
     const Spectrum spectrum = spectrum_of(table, e, stretch);
     const double wanted = double(table.integral) * e.larger * e.smaller;
-    const double found = mass.profile * stretch * (1.0 + spectrum.ripple(false, x_px, y_px));
-    f.round.amplitude = 1.0f;
-    f.round.edge_gain = 0.0f;
-    if (table.flat_core && (wanted >= found || f.round.lo > 0.0f))
-        f.round.edge_gain = static_cast<float>(
-            (wanted - found) / (mass.edge * stretch * (1.0 + spectrum.ripple(true, x_px, y_px))));
-    else
-        f.round.amplitude = static_cast<float>(wanted / found);
+    set_gains(table, wanted,
+              {mass.profile * stretch * (1.0 + spectrum.ripple(false, x_px, y_px)),
+               table.flat_core ? mass.edge * stretch * (1.0 + spectrum.ripple(true, x_px, y_px)) : 1.0},
+              f.round);
     return f;
+}
+
+void set_gains(const FootprintTable& table, double wanted, const StretchedSums& found, Footprint& f) {
+    f.amplitude = 1.0f;
+    f.edge_gain = 0.0f;
+    if (table.flat_core && (wanted >= found.profile || f.lo > 0.0f))
+        f.edge_gain = static_cast<float>((wanted - found.profile) / found.edge);
+    else
+        f.amplitude = static_cast<float>(wanted / found.profile);
 }
 
 NodeRange node_range(const Shape& shape) {

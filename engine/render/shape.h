@@ -18,6 +18,9 @@
 
 namespace astrosplat {
 
+/// The outline that rows of a matrix give, which say how far the unit ball's axes reach across and down.
+Shape outline_of(const glm::dvec3& across, const glm::dvec3& down);
+
 /// The footprint of an ellipsoid: the unit ball under `ellipsoid` (columns in camera space, scene units) at
 /// p. What px_per_unit makes of a ball's radius it makes of the ellipsoid's outline as seen along the ray.
 Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& ellipsoid, float px_per_unit);
@@ -26,6 +29,16 @@ Shape project_ellipsoid(const Lens& lens, const glm::vec3& p, const glm::mat3& e
 /// in perspective; `slope` is where p / depth counts as being: beside the frame, what would come out is far
 /// too long.
 Shape project_affine(const glm::vec2& slope, const glm::mat3& ellipsoid, float px_per_unit);
+
+/// A shape by its radii, px, and the direction of the larger one.
+struct Ellipse {
+    double larger, smaller, x, y;
+};
+Ellipse ellipse_of(const Shape& shape);
+
+/// How much longer the profile of the smaller radius is made along the larger one; `variance` as in
+/// FootprintTable.
+double stretch_of(const Ellipse& e, double variance, double filter_px);
 
 /// The two radii of a shape, px.
 struct ShapeRadii {
@@ -48,6 +61,13 @@ struct ShapedFootprint {
 };
 /// x_px, y_px: the centre, snapped to 1/256 px. The table needs the nodes for the radii of node_range.
 ShapedFootprint shaped_footprint_at(const FootprintTable& table, const Shape& shape, float x_px, float y_px);
+
+/// The gains that bring a stretched profile to the light `wanted`, square px; all its pixels add up to
+/// `profile`, those of P (1 - P) to `edge`.
+struct StretchedSums {
+    double profile, edge;
+};
+void set_gains(const FootprintTable& table, double wanted, const StretchedSums& found, Footprint& f);
 
 /// Least and largest radius whose nodes a shape's footprint asks for, px.
 struct NodeRange {

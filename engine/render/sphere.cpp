@@ -7,14 +7,10 @@
 #include "camera/projection.h"
 #include "core/real.h"
 #include "render/spectrum.h"
+#include "render/sphere_sums.h"
 
 namespace astrosplat {
 namespace {
-
-ExactLens exact_lens(const Lens& lens) {
-    return {lens.projection, lens.focal_px,  lens.center_x_px, lens.center_y_px, lens.near,
-            lens.far,        lens.near_fade, lens.edge,        lens.parallax};
-}
 
 /// What a place's pixels are wide on the sphere goes into the square of: the frame's px per px of the sphere
 /// there, as a matrix times its transpose.
@@ -88,39 +84,6 @@ class PoleSum {
     bool north_;
 };
 
-/// From the view axis, px.
-double focal_angle(const Lens& lens, const glm::dvec3& toward) {
-    return double(lens.focal_px) * real::acos(-toward.z);
-}
-
-/// The same sum for the rim of a fisheye that sees all round, where one direction is the whole circle.
-template <class Weight>
-double rim_sum(const Lens& lens, const glm::dvec3& toward, double support_px, const Weight& weight) {
-    const ExactLens exact_one = exact_lens(lens);
-    const double focal = lens.focal_px, rim = real::pi * focal;
-    const double inner = std::fmax(0.0, focal_angle(lens, toward) - support_px - 1.0);
-    const auto middles_from = [](double px) { return std::ceil(px - 0.5) + 0.5; };
-    double sum = 0.0;
-    const auto add = [&](double from_px, double to_px, double y_px) {
-        for (double x_px = middles_from(from_px); x_px <= to_px; x_px += 1.0) {
-            if (!exact::shows(exact_one, x_px, y_px)) continue;
-            const glm::dvec3 ray = exact::ray_through(exact_one, x_px, y_px), away = focal * (ray - toward);
-            const double x = x_px - double(lens.center_x_px), y = y_px - double(lens.center_y_px);
-            const double angle = std::sqrt(x * x + y * y) / focal;
-            sum += weight(glm::dot(away, away)) * real::sin(angle) / angle;
-        }
-    };
-    for (double y_px = middles_from(double(lens.center_y_px) - rim); y_px <= double(lens.center_y_px) + rim;
-         y_px += 1.0) {
-        const double y = y_px - double(lens.center_y_px);
-        const double outside = std::sqrt(std::fmax(0.0, rim * rim - y * y)),
-                     inside = std::sqrt(std::fmax(0.0, inner * inner - y * y));
-        add(double(lens.center_x_px) - outside, double(lens.center_x_px) - inside, y_px);
-        add(double(lens.center_x_px) + std::fmax(inside, 1e-9), double(lens.center_x_px) + outside, y_px);
-    }
-    return sum;
-}
-
 void normalise(const FootprintTable& table, float radius_px, double found, double edge_found, Footprint& f) {
     const double wanted = double(table.integral) * radius_px * radius_px;
     f.amplitude = 1.0f;
@@ -163,14 +126,15 @@ Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, flo
         const double p = profile(squared);
         return p * (1.0 - p);
     };
-    constexpr double near_pole_px = 12.0, near_rim_px = 4.0;  // so near pixels are counted one by one
-    if (lens.projection == shared::PROJECTION_FISHEYE && double(lens.edge) > 3.14159) {
-        const ExactLens exact_one = exact_lens(lens);
-        const glm::dvec3 toward = glm::normalize(exact::ray_through(exact_one, double(x_px), double(y_px)));
-        if (focal_angle(lens, toward) >
-            real::pi * double(lens.focal_px) - double(f.support_px) - near_rim_px) {
-            normalise(table, radius_px, rim_sum(lens, toward, f.support_px, profile),
-                      table.flat_core ? rim_sum(lens, toward, f.support_px, edge_of) : 1.0, f);
+    if (shows_all_round(lens)) {
+        const glm::dvec3 toward =
+            glm::normalize(exact::ray_through(exact_lens(lens), double(x_px), double(y_px)));
+        if (is_near_rim(lens, toward, f.support_px)) {
+            const auto sum = [&](const auto& weight) {
+                return rim_sum(lens, toward, f.support_px,
+                               [&](const glm::dvec3& away) { return weight(glm::dot(away, away)); });
+            };
+            normalise(table, radius_px, sum(profile), table.flat_core ? sum(edge_of) : 1.0, f);
             return f;
         }
     }

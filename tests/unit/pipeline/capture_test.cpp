@@ -199,8 +199,8 @@ TEST(Capture, HasTheSameBitsOnThreadsTilesAndInstructionSets) {
             for (int k = 0; k < 4; ++k) ASSERT_EQ(part.at(x, y)[k], expected.at(40 + x, 30 + y)[k]);
 }
 
-// Round there, of the same area: in domes and panoramas footprints know no ellipses.
-TEST(Capture, KeepsItsLightInPanoramas) {
+// Wide and low in the middle of a dome, as it is to the eye.
+TEST(Capture, KeepsItsLightAndShapeInDomes) {
     Trained g;
     g.scale = glm::dvec3(0.4, 0.1, 0.2);
     g.opacity = 0.5;
@@ -210,11 +210,20 @@ TEST(Capture, KeepsItsLightInPanoramas) {
     scene.scene.camera.position = glm::dvec3(0.0, 0.0, 5.0);
     scene.scene.camera.target = glm::dvec3(0.0);
     const Camera camera = scene.camera();
-    double alpha = 0.0;
+    double alpha = 0.0, wide = 0.0, high = 0.0;
     const Image picture = scene.picture();
-    for (std::size_t i = 3; i < picture.pixels.size(); i += 4) alpha += picture.pixels[i];
+    for (std::int64_t y = 0; y < picture.height; ++y)
+        for (std::int64_t x = 0; x < picture.width; ++x) {
+            const double a = picture.at(x, y)[3], right = double(x) + 0.5 - camera.center_x_px,
+                         down = double(y) + 0.5 - camera.center_y_px;
+            alpha += a;
+            wide += a * right * right;
+            high += a * down * down;
+        }
     const double px = camera.focal_px / 5.0;
     EXPECT_NEAR(alpha / (0.5 * 2.0 * 3.14159265 * 0.4 * 0.1 * px * px), 1.0, 0.02);
+    EXPECT_NEAR(wide / alpha / (0.4 * 0.4 * px * px + 0.25), 1.0, 0.03);
+    EXPECT_NEAR(high / alpha / (0.1 * 0.1 * px * px + 0.25), 1.0, 0.03);
 }
 
 }  // namespace

@@ -14,55 +14,12 @@
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
 #include "support/printing.h"
-#include "unit/render/scenes.h"
+#include "unit/render/sphere_scenes.h"
 
 namespace astrosplat {
 namespace {
 
 using namespace astrosplat::test;
-
-constexpr int wide_px = 512, high_px = 256;
-
-CameraParams params_of(Projection projection) {
-    CameraParams params;
-    params.projection = projection;
-    params.position = glm::dvec3(0.0);
-    params.target = {0.0, 0.0, -1.0};
-    params.fisheye_fov = projection == Projection::fisheye ? 360.0 : 180.0;
-    params.near = 1e-4;
-    return params;
-}
-
-Camera camera_of(Projection projection) { return make_camera(params_of(projection), wide_px, high_px, {}); }
-
-/// From longitude, to the right of -z, and latitude.
-glm::dvec3 direction(double longitude_deg, double latitude_deg) {
-    const double l = real::radians(longitude_deg), b = real::radians(latitude_deg);
-    return {real::cos(b) * real::sin(l), real::sin(b), -real::cos(b) * real::cos(l)};
-}
-
-/// Solid angle of a pixel in px of the middle of the frame; 0 where nothing is shown.
-double solid_angle(const Camera& camera, std::int64_t x, std::int64_t y) {
-    const double x_px = double(x) + 0.5, y_px = double(y) + 0.5;
-    if (!shows(camera, x_px, y_px)) return 0.0;
-    const double u = (x_px - camera.center_x_px) / camera.focal_px,
-                 v = (y_px - camera.center_y_px) / camera.focal_px;
-    if (camera.projection == Projection::fisheye) {
-        const double angle = std::sqrt(u * u + v * v);
-        return angle > 0.0 ? real::sin(angle) / angle : 1.0;
-    }
-    if (camera.projection == Projection::cylindrical) return 1.0 / ((1.0 + v * v) * std::sqrt(1.0 + v * v));
-    const double half = 0.5 / camera.focal_px;
-    return camera.focal_px * (real::sin(v + half) - real::sin(v - half));
-}
-
-double light_on_sphere(const Image& picture, const Camera& camera, int channel) {
-    double sum = 0.0;
-    for (std::int64_t y = 0; y < picture.height; ++y)
-        for (std::int64_t x = 0; x < picture.width; ++x)
-            sum += double(picture.at(x, y)[channel]) * solid_angle(camera, x, y);
-    return sum;
-}
 
 /// A splat of alpha 1/2 in a direction, so wide that its radius is radius_px in the middle of the frame.
 Image one_splat(const Camera& camera, const glm::dvec3& toward, double radius_px, const Falloff& falloff) {

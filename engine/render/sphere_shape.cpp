@@ -1,0 +1,221 @@
+#include "render/sphere_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/real.h"
+#include "render/spectrum.h"
+#include "render/sphere_sums.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr double least_sine = 1e-3;  // stretching around poles and rims ends there
+
+SphereAxes fisheye_axes(double focal, double x, double y) {
+    const double angle = std::sqrt(x * x + y * y), sine = real::sin(angle), cosine = real::cos(angle);
+    const bool axis = !(angle > 1e-9);
+    const double right = axis ? 1.0 : x / angle, up = axis ? 0.0 : y / angle;
+    const double least = std::fmax(std::fabs(sine), least_sine);
+    const double across = axis ? 1.0 : angle / least;
+    // A great circle's second derivative towards the middle, and around it.
+    const bool close = angle < 1e-3;
+    const double inwards = close ? -2.0 * angle / 3.0 : (cosine - angle / least) / least,
+                 around = close ? angle / 3.0 : (1.0 - cosine * angle / least) / least;
+    return {{sine * right, sine * up, -cosine},
+            {cosine * right, cosine * up, sine},
+            {-up, right, 0.0},
+            {right, -up},
+            {-up * across, -right * across},
+            glm::dvec3(0.0, -up * around, right * inwards) / focal,
+            glm::dvec3(0.0, -right * around, -up * inwards) / focal};
+}
+
+SphereAxes panorama_axes(const Lens& lens, double longitude, double height) {
+    const double focal = lens.focal_px;
+    const bool cylinder = lens.projection == shared::PROJECTION_CYLINDRICAL;
+    const double latitude = cylinder ? real::atan2(height, 1.0) : height;
+    const double right = real::sin(longitude), ahead = real::cos(longitude);
+    const double sine = real::sin(latitude), cosine = real::cos(latitude);
+    const double across = 1.0 / std::fmax(std::fabs(cosine), least_sine), tangent = sine * across;
+    const double upwards = cylinder ? 1.0 + height * height : 1.0;
+    return {{cosine * right, sine, -cosine * ahead},
+            {ahead, 0.0, right},
+            {-sine * right, cosine, sine * ahead},
+            {across, 0.0},
+            {0.0, -upwards},
+            glm::dvec3(0.0, tangent * across, 0.0) / focal,
+            glm::dvec3(upwards * tangent, 0.0, cylinder ? -2.0 * upwards * tangent : 0.0) / focal};
+}
+
+/// Where a weight is looked up: from the ellipse's middle to a pixel, both of length focal_px.
+struct MapPlace {
+    glm::dvec3 rows[2];
+    double focal;
+    double squared(const glm::dvec3& away) const {
+        const double x = glm::dot(rows[0], away), y = glm::dot(rows[1], away);
+        const double half_cosine = 1.0 - glm::dot(away, away) / (4.0 * focal * focal);  // squared
+        return (x * x + y * y) / std::fmax(half_cosine, 1e-6);
+    }
+};
+
+/// A thin gaussian on the map around a place, by its variances along and across, the pixel filter's included:
+/// a needle follows a row of pixels only as far as it is straight on the frame, which great circles are not.
+class BentNeedle {
+  public:
+    BentNeedle(const SphereAxes& axes, const Ellipse& e, double along_variance, double across_variance)
+        : along_(along_variance),
+          across_(across_variance),
+          along_px_(e.x * axes.first_px + e.y * axes.second_px),
+          across_px_(e.x * axes.second_px - e.y * axes.first_px),
+          bend_(bend_of(axes.bend_x, e), bend_of(axes.bend_y, e)) {}
+
+    /// By how much the relative excess of its sum over pixels differs from that of a straight one.
+    double excess(float x_px, float y_px) const {
+        const double turns = 2.0 * real::pi * along_ * (std::fabs(bend_.x) + std::fabs(bend_.y));
+        if (across_ > 1.0 || turns < 0.02) return 0.0;  // wide ones have none; short ones do not bend
+        const double cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
+        const double sx = pixel_cosine(x_px - 0.25f), sy = pixel_cosine(y_px - 0.25f);
+        return 2.0 * (excess_at(1, 0, cx, sx) + excess_at(0, 1, cy, sy) +
+                      excess_at(1, 1, cx * cy - sx * sy, sx * cy + cx * sy) +
+                      excess_at(1, -1, cx * cy + sx * sy, sx * cy - cx * sy) +
+                      excess_at(2, 0, cx * cx - sx * sx, 2.0 * sx * cx) +
+                      excess_at(0, 2, cy * cy - sy * sy, 2.0 * sy * cy));
+    }
+
+  private:
+    /// Second derivative of a coordinate along the needle.
+    static double bend_of(const glm::dvec3& bend, const Ellipse& e) {
+        return e.x * e.x * bend.x + 2.0 * e.x * e.y * bend.y + e.y * e.y * bend.z;
+    }
+
+    /// The part of the frequency (kx, ky) cycles per px, whose phase at the middle has this cosine and sine:
+    /// the spectrum of a gaussian whose places go with the square of the way is that of one with a complex
+    /// variance, along_ / (1 + i t).
+    double excess_at(double kx, double ky, double cosine, double sine) const {
+        const double turn = 2.0 * real::pi * real::pi;
+        const double g = kx * along_px_.x + ky * along_px_.y, h = kx * across_px_.x + ky * across_px_.y;
+        const double t = 2.0 * real::pi * along_ * (kx * bend_.x + ky * bend_.y), size = 1.0 + t * t;
+        const double thin = real::exp(-turn * h * h * across_), exponent = turn * g * g * along_;
+        // 1 / sqrt(1 + i t): half the angle, the root of the length.
+        const double root = std::sqrt(size), re = std::sqrt(0.5 * (1.0 + 1.0 / root) / root),
+                     im = -0.5 * t / (size * re);
+        const double phase = exponent * t / size, c = real::cos(phase), s = real::sin(phase);
+        const double bent = thin * real::exp(-exponent / size);
+        return bent * ((re * c - im * s) * cosine + (re * s + im * c) * sine) -
+               thin * real::exp(-exponent) * cosine;
+    }
+
+    double along_, across_;
+    glm::dvec2 along_px_, across_px_, bend_;
+};
+
+}  // namespace
+
+SphereAxes sphere_axes(const Lens& lens, double x_px, double y_px) {
+    const double focal = lens.focal_px, period = shared::period_px(lens);
+    double x = x_px - double(lens.center_x_px);
+    if (period > 0.0) x -= period * std::floor(x / period + 0.5);  // the same at all of its places
+    const double y = double(lens.center_y_px) - y_px;
+    if (lens.projection == shared::PROJECTION_FISHEYE) return fisheye_axes(focal, x / focal, y / focal);
+    return panorama_axes(lens, x / focal, y / focal);
+}
+
+Shape project_onto_sphere(const SphereAxes& axes, const glm::mat3& ellipsoid, float px_per_unit) {
+    const glm::dmat3 m(ellipsoid);
+    return outline_of(double(px_per_unit) * (axes.first * m), double(px_per_unit) * (axes.second * m));
+}
+
+double frame_area(const SphereAxes& axes) {
+    return std::fabs(axes.first_px.x * axes.second_px.y - axes.first_px.y * axes.second_px.x);
+}
+
+Shape onto_sphere(const SphereAxes& axes, const Shape& on_frame) {
+    const glm::dvec2 a = axes.first_px, b = axes.second_px;
+    const double area = a.x * b.y - a.y * b.x;
+    const auto along_first = [&](double x, double y) { return (b.y * x - b.x * y) / area; };
+    const auto along_second = [&](double x, double y) { return (a.x * y - a.y * x) / area; };
+    const Shape& s = on_frame;
+    return outline_of({along_first(s.xx, s.yx), along_first(s.xy, s.yy), 0.0},
+                      {along_second(s.xx, s.yx), along_second(s.xy, s.yy), 0.0});
+}
+
+SphereFootprint shaped_sphere_footprint_at(const FootprintTable& table, const Lens& lens, const Shape& shape,
+                                           float x_px, float y_px) {
+    const Ellipse e = ellipse_of(shape);
+    const double filter = table.pixel_filter_px, stretch = stretch_of(e, table.variance, filter);
+    const auto radius_px = static_cast<float>(e.smaller);
+    const SphereAxes axes = sphere_axes(lens, x_px, y_px);
+    const MapPlace map{
+        {(e.x * axes.first + e.y * axes.second) / stretch, e.x * axes.second - e.y * axes.first},
+        double(lens.focal_px)};
+    SphereFootprint f;
+    footprint_at(table, radius_px, x_px, y_px, f.round);
+    for (int i = 0; i < 2; ++i) f.rows[i] = glm::vec3(map.rows[i]);
+    if (!shared::is_tabulated(shared::node_of_radius(radius_px))) return f;
+
+    Footprint plain = f.round;
+    plain.amplitude = 1.0f;
+    plain.edge_gain = 0.0f;
+    const auto profile = [&](const glm::dvec3& away) {
+        return double(footprint_weight(table, plain, static_cast<float>(std::sqrt(map.squared(away)))));
+    };
+    const auto edge = [&](const glm::dvec3& away) {
+        const double p = profile(away);
+        return p * (1.0 - p);
+    };
+    const double wanted = double(table.integral) * e.larger * e.smaller;
+    const double support =
+        shape_support_px(shape, {table.reach, 4.0f * table.pixel_filter_px, table.variance});
+    const double along = e.larger * e.larger * double(table.variance) + filter * filter;
+    const double least = std::fmax(e.smaller, double(shared::SMALLEST_RADIUS_PX));
+    const double across = least * least * double(table.variance) + filter * filter;
+    // Counting pixels one by one is for what is small enough that they matter.
+    constexpr double counted_px = 36.0, excessive_px = 2500.0;
+    const double size = along * across;
+    const bool counted = size < counted_px;
+    if (counted && shows_all_round(lens) && is_near_rim(lens, axes.toward, support)) {
+        const auto sum = [&](const auto& weight) { return rim_sum(lens, axes.toward, support, weight); };
+        set_gains(table, wanted, {sum(profile), table.flat_core ? sum(edge) : 1.0}, f.round);
+        return f;
+    }
+    const bool has_poles = lens.projection == shared::PROJECTION_EQUIRECTANGULAR;
+    const NearPole pole = near_pole(lens, y_px);
+    const auto rows = [&](const auto& weight) {
+        return PoleRows(lens, pole, axes.toward, support, std::clamp(1.5 * filter, 0.25, 1.0), weight);
+    };
+    if (counted && has_poles && pole.from_pole_px < support + near_pole_px) {
+        set_gains(table, wanted, {rows(profile).sum(), table.flat_core ? rows(edge).sum() : 1.0}, f.round);
+        return f;
+    }
+    const double gain = stretch * stretch - 1.0;
+    const glm::dvec2 longer = e.x * axes.first_px + e.y * axes.second_px;
+    const auto product = [&](int i, int j) {
+        return axes.first_px[i] * axes.first_px[j] + axes.second_px[i] * axes.second_px[j] +
+               gain * longer[i] * longer[j];
+    };
+    const FootprintMass mass = footprint_mass(table, radius_px);
+    const Spectrum spectrum(table, least, {product(0, 0), product(0, 1), product(1, 1)});
+    // At a pole itself nothing is straight or of one stretch.
+    const bool at_pole = has_poles && pole.from_pole_px < near_pole_px;
+    const auto ripple = [&](bool of_edge) { return at_pole ? 0.0 : spectrum.ripple(of_edge, x_px, y_px); };
+    const auto bent = [&](double share) {
+        return at_pole ? 0.0 : BentNeedle(axes, e, share * along, share * across).excess(x_px, y_px);
+    };
+    const double bent_profile = bent(1.0);
+    StretchedSums found{mass.profile * stretch * (1.0 + ripple(false) + bent_profile), 1.0};
+    if (table.flat_core) {  // P (1 - P): P^2 is a gaussian of half the variances
+        const double rest = double(mass.edge) / double(mass.profile);
+        found.edge =
+            mass.edge * stretch * (1.0 + ripple(true) + (bent_profile - (1.0 - rest) * bent(0.5)) / rest);
+    }
+    if (has_poles && size < excessive_px && pole.from_pole_px < support + near_pole_px) {
+        found.profile += rows(profile).excess();
+        if (table.flat_core) found.edge += rows(edge).excess();
+    }
+    set_gains(table, wanted, found, f.round);
+    return f;
+}
+
+}  // namespace astrosplat

@@ -1,0 +1,363 @@
+// Splats that are not round, onto the sphere, through the whole renderer: light, second moments and pixels
+// against sums over the sphere by brute force, at poles, seams and rims as anywhere, and the same bits for
+// every tile size, number of threads, region and instruction set.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <ostream>
+
+#include "core/parallel.h"
+#include "core/real.h"
+#include "core/rotation.h"
+#include "core/shared_maths.h"
+#include "core/vector_target.h"
+#include "support/printing.h"
+#include "unit/render/sphere_scenes.h"
+
+namespace astrosplat {
+namespace {
+
+using namespace astrosplat::test;
+
+constexpr double distance = 7.0;
+
+/// An ellipse in a direction: its radii in px of the middle of the frame, and by how much the larger one is
+/// turned from the east to the north.
+struct SphereEllipse {
+    double larger_px, smaller_px, degrees, longitude, latitude;
+};
+void PrintTo(const SphereEllipse& e, std::ostream* out) {
+    *out << e.larger_px << " x " << e.smaller_px << " px at " << e.degrees << " degrees, longitude "
+         << e.longitude << ", latitude " << e.latitude;
+}
+
+/// The directions of both radii.
+struct Axes {
+    glm::dvec3 toward, larger, smaller;
+};
+Axes axes_of(const SphereEllipse& e) {
+    const glm::dvec3 toward = direction(e.longitude, e.latitude), east = direction(e.longitude + 90.0, 0.0),
+                     north = direction(e.longitude, e.latitude + 90.0);
+    const double c = real::cos(real::radians(e.degrees)), s = real::sin(real::radians(e.degrees));
+    return {toward, c * east + s * north, c * north - s * east};
+}
+
+/// One of alpha 1/2, whose depth along the line of sight must not matter.
+ShadedSplats ellipse_splats(const Camera& camera, const SphereEllipse& e) {
+    const Axes axes = axes_of(e);
+    const double per_px = distance / camera.focal_px;
+    ShadedSplats splats = make_splats({{glm::vec3(distance * axes.toward), 1.0f, 0.5f}});
+    splats.stretch.push_back(
+        glm::mat3(glm::dmat3(e.larger_px * per_px * axes.larger, 0.3 * e.smaller_px * per_px * axes.toward,
+                             e.smaller_px * per_px * axes.smaller)));
+    return splats;
+}
+
+Image ellipse_picture(const Camera& camera, const SphereEllipse& e, const Falloff& falloff) {
+    const ShadedSplats splats = ellipse_splats(camera, e);
+    RenderLayer layer = layer_of("ellipse", splats);
+    layer.render.falloff = falloff;
+    return render({&layer, 1}, camera, nullptr, settings_of(wide_px, high_px)).beauty;
+}
+
+/// Where a direction is on Lambert's equal-area map around the ellipse, along both radii, px.
+glm::dvec2 on_map(const Camera& camera, const Axes& axes, const glm::dvec3& ray) {
+    const double half_cosine = std::sqrt(std::fmax(0.5 * (1.0 + glm::dot(ray, axes.toward)), 1e-12));
+    return camera.focal_px / half_cosine *
+           glm::dvec2(glm::dot(ray, axes.larger), glm::dot(ray, axes.smaller));
+}
+
+/// Whether an ellipse stays inside of a cylinder's frame.
+bool fits(const Camera& camera, const SphereEllipse& e) {
+    return camera.projection != Projection::cylindrical ||
+           std::fabs(e.latitude) + 2.0 * real::degrees(e.larger_px / camera.focal_px) <= 38.0;
+}
+
+constexpr Projection projections[] = {Projection::fisheye, Projection::equirectangular,
+                                      Projection::cylindrical};
+
+struct LightCase {
+    Projection projection;
+    Falloff::Shape shape;
+};
+void PrintTo(const LightCase& c, std::ostream* out) {
+    *out << name_of(c.projection) << ", " << name_of(c.shape);
+}
+
+class SphereEllipseLight : public ::testing::TestWithParam<LightCase> {};
+
+// Also of needles that follow a row or column of pixels for a while, where those of a plane's lattice add up.
+TEST_P(SphereEllipseLight, IsConservedAtEveryPlaceSizeAndOrientation) {
+    const Camera camera = camera_of(GetParam().projection);
+    const Falloff falloff{GetParam().shape, 0.5f, 4.5f};
+    const double integral = falloff_integral(falloff);
+    double worst = 0.0;
+    for (const auto& [larger, smaller] :
+         {std::pair{30.0, 0.5}, {3.0, 0.05}, {9.0, 2.0}, {1.3, 0.8}, {40.0, 12.0}})
+        for (const glm::dvec3& place : {glm::dvec3(0.0, 0.1, 20.0),
+                                        {0.0, -120.9, 90.0},
+                                        {-33.3, 180.0, 0.0},
+                                        {61.7, 180.0, 0.0},
+                                        {61.7, -120.9, 90.0},
+                                        {87.1, 180.0, 0.0},
+                                        {87.1, -120.9, 90.0},
+                                        {-89.3, 180.0, 0.0},
+                                        {90.0, 0.1, 20.0}}) {
+            const SphereEllipse e{larger, smaller, place.z, place.y, place.x};
+            if (larger > 0.9 * camera.focal_px || !fits(camera, e)) continue;
+            const double wanted = 0.5 * integral * larger * smaller;
+            const double error =
+                light_on_sphere(ellipse_picture(camera, e, falloff), camera, 3) / wanted - 1.0;
+            worst = std::max(worst, std::fabs(error));
+            EXPECT_NEAR(error, 0.0, 0.005) << ::testing::PrintToString(e);
+        }
+    RecordProperty("worst", std::to_string(worst));
+}
+
+std::vector<LightCase> light_cases() {
+    std::vector<LightCase> cases;
+    for (const Projection projection : projections)
+        for (const Falloff::Shape shape : all_shapes) cases.push_back({projection, shape});
+    return cases;
+}
+INSTANTIATE_TEST_SUITE_P(All, SphereEllipseLight, ::testing::ValuesIn(light_cases()));
+
+// Its own and the pixel filter's together, over solid angles.
+TEST(SphereEllipse, HasItsSecondMomentsOnTheEqualAreaMap) {
+    const Falloff falloff{Falloff::Shape::gaussian, 0.5f, 4.5f};
+    const double variance = begin_footprint_table(falloff, 0.5f).variance, filter = 0.25;
+    double worst = 0.0;
+    for (const Projection projection : projections) {
+        const Camera camera = camera_of(projection);
+        for (const auto& [larger, smaller] :
+             {std::pair{12.0, 3.0}, std::pair{6.0, 0.2}, std::pair{25.0, 6.0}, std::pair{1.5, 1.0}})
+            for (const double latitude : {0.0, 25.0, -71.0, 88.0, -90.0})
+                for (const auto& [longitude, degrees] : {std::pair{10.3, 35.0}, std::pair{-179.8, 110.0}}) {
+                    const SphereEllipse e{larger, smaller, degrees, longitude, latitude};
+                    if (larger > 0.6 * camera.focal_px || !fits(camera, e)) continue;
+                    // A pole's few rows show how much light, not how wide.
+                    if (smaller < 3.0 && std::fabs(latitude) > 80.0) continue;
+                    const Axes axes = axes_of(e);
+                    const Image picture = ellipse_picture(camera, e, falloff);
+                    glm::dvec3 sum(0.0);  // xx, xy, yy
+                    double light = 0.0;
+                    for (std::int64_t y = 0; y < high_px; ++y)
+                        for (std::int64_t x = 0; x < wide_px; ++x) {
+                            const double alpha = picture.at(x, y)[3];
+                            if (!(alpha > 0.0)) continue;
+                            const double share = alpha * solid_angle(camera, x, y);
+                            const glm::dvec2 at =
+                                on_map(camera, axes, ray_direction(camera, double(x) + 0.5, double(y) + 0.5));
+                            sum += share * glm::dvec3(at.x * at.x, at.x * at.y, at.y * at.y);
+                            light += share;
+                        }
+                    sum /= light;
+                    const double xx = variance * larger * larger + filter,
+                                 yy = variance * smaller * smaller + filter;
+                    const double error = std::max({std::fabs(sum.x / xx - 1.0), std::fabs(sum.z / yy - 1.0),
+                                                   std::fabs(sum.y) / std::sqrt(xx * yy)});
+                    worst = std::max(worst, error);
+                    EXPECT_LT(error, 0.015) << name_of(projection) << ", " << ::testing::PrintToString(e);
+                }
+    }
+    RecordProperty("worst", std::to_string(worst));
+}
+
+// So wide that the pixel filter does not matter: each pixel is the falloff of its place on the map, also
+// round the seam, over the poles and behind a fisheye.
+TEST(SphereEllipse, PixelsAreTheFalloffOnTheEqualAreaMap) {
+    const Falloff falloff{Falloff::Shape::gaussian, 0.5f, 4.5f};
+    for (const Projection projection : projections) {
+        const Camera camera = camera_of(projection);
+        for (const SphereEllipse& e : {SphereEllipse{0.9, 0.3, 30.0, 0.0, 0.0},
+                                       {0.6, 0.4, 80.0, 179.0, 20.0},
+                                       {0.8, 0.3, 0.0, -60.0, 80.0},
+                                       {0.9, 0.5, 50.0, 100.0, -90.0}}) {
+            SphereEllipse wide = e;
+            wide.larger_px *= camera.focal_px;
+            wide.smaller_px *= camera.focal_px;
+            if (projection == Projection::cylindrical && std::fabs(e.latitude) > 85.0) continue;
+            const Axes axes = axes_of(wide);
+            const Image picture = ellipse_picture(camera, wide, falloff);
+            double worst = 0.0;
+            for (std::int64_t y = 0; y < high_px; ++y)
+                for (std::int64_t x = 0; x < wide_px; ++x) {
+                    const double x_px = double(x) + 0.5, y_px = double(y) + 0.5;
+                    glm::dvec2 at = on_map(camera, axes, ray_direction(camera, x_px, y_px));
+                    at /= glm::dvec2(wide.larger_px, wide.smaller_px);
+                    const double wanted = shows(camera, x_px, y_px)
+                                              ? 0.5 * falloff_value(falloff, std::sqrt(glm::dot(at, at)))
+                                              : 0.0;
+                    worst = std::max(worst, std::fabs(double(picture.at(x, y)[3]) - wanted));
+                }
+            EXPECT_LT(worst, 0.005) << name_of(projection) << ", " << ::testing::PrintToString(wide);
+        }
+    }
+}
+
+TEST(SphereEllipse, ABallIsADisc) {
+    const Falloff falloff{Falloff::Shape::gaussian, 0.5f, 4.5f};
+    for (const Projection projection : projections) {
+        const Camera camera = camera_of(projection);
+        for (const double latitude : {10.0, -35.0, 89.0}) {
+            const double radius = 0.1 * distance;
+            ShadedSplats splats =
+                make_splats({{glm::vec3(distance * direction(170.0, latitude)), float(radius), 0.5f}});
+            RenderLayer layer = layer_of("ball", splats);
+            layer.render.falloff = falloff;
+            const Image disc = render({&layer, 1}, camera, nullptr, settings_of(wide_px, high_px)).beauty;
+            splats.stretch.push_back(glm::mat3(rotation_from_degrees({20.0, 50.0, 70.0})));
+            const Image ball = render({&layer, 1}, camera, nullptr, settings_of(wide_px, high_px)).beauty;
+            for (std::size_t i = 0; i < disc.pixels.size(); ++i)
+                ASSERT_NEAR(disc.pixels[i], ball.pixels[i], 3e-4) << name_of(projection) << " " << i;
+        }
+    }
+}
+
+float drawn(std::uint32_t n, std::uint32_t purpose) {
+    return shared::as_uniform(shared::as_hash(13u, n, 0u, purpose));
+}
+
+/// Ellipsoids and balls of all sizes all around the eye, some across every seam and pole.
+struct EllipsesAround {
+    ShadedSplats stretched, round;
+    std::vector<RenderLayer> layers;
+
+    EllipsesAround(Blend blend, Falloff::Shape shape) {
+        for (ShadedSplats* set : {&stretched, &round}) {
+            std::vector<OneSplat> splats;
+            for (std::uint32_t i = 0; i < 700; ++i) {
+                const std::uint32_t n = i + (set == &round ? 5000u : 0u);
+                const double height = 2.0 * drawn(n, 1) - 1.0;
+                const float size = drawn(n, 3);
+                splats.push_back(
+                    {glm::vec3(direction(360.0 * drawn(n, 2), real::degrees(real::asin(height)))) *
+                         (2.0f + std::floor(drawn(n, 4) * 8.0f)),
+                     0.01f + 1.5f * size * size * size * size,
+                     drawn(n, 5),
+                     {drawn(n, 6), drawn(n, 7), drawn(n, 8)}});
+            }
+            *set = make_splats(splats);
+        }
+        for (std::uint32_t i = 0; i < 700; ++i) {
+            glm::mat3 stretch = glm::mat3(
+                rotation_from_degrees({360.0 * drawn(i, 20), 360.0 * drawn(i, 21), 360.0 * drawn(i, 23)}));
+            stretch[1] *= 0.02f + drawn(i, 22);
+            stretch[2] *= 0.3f;
+            stretched.stretch.push_back(stretch);
+        }
+        layers = {layer_of("round", round, Blend::over, Falloff::Shape::gaussian),
+                  layer_of("stretched", stretched, blend, shape)};
+        for (RenderLayer& layer : layers) layer.render.opacity = 0.6f;
+    }
+    Image picture(const Camera& camera,
+                  const RenderSettings& settings = settings_of(wide_px, high_px)) const {
+        return render(layers, camera, nullptr, settings).beauty;
+    }
+};
+
+class SphereEllipseBits : public ::testing::TestWithParam<Projection> {
+  protected:
+    EllipsesAround scene{
+        GetParam() == Projection::fisheye ? Blend::screen : Blend::over,
+        GetParam() == Projection::cylindrical ? Falloff::Shape::constant : Falloff::Shape::gaussian};
+    Camera camera = [] {
+        CameraParams params = params_of(GetParam());
+        params.fisheye_fov = 240.0;
+        return make_camera(params, wide_px, high_px, {});
+    }();
+};
+
+TEST_P(SphereEllipseBits, DoNotDependOnThreadsTilesTargetsMemoryOrRegions) {
+    const Image expected = scene.picture(camera);
+    EXPECT_GT(total(expected, 3), 1000.0);
+    const int before = thread_count();
+    for (const int threads : {1, 3}) {
+        set_thread_count(threads);
+        EXPECT_EQ(expected.pixels, scene.picture(camera).pixels) << threads << " threads";
+    }
+    set_thread_count(before);
+    RenderSettings settings = settings_of(wide_px, high_px);
+    for (const int tile : {16, 128}) {
+        settings.tile_px = tile;
+        EXPECT_EQ(expected.pixels, scene.picture(camera, settings).pixels) << "tiles of " << tile;
+    }
+    settings.tile_px = 0;
+    settings.memory_limit_bytes = 100000;
+    EXPECT_EQ(expected.pixels, scene.picture(camera, settings).pixels) << "in bands";
+    for (const std::string& target : vector_targets()) {
+        set_vector_target(target);
+        EXPECT_EQ(expected.pixels, scene.picture(camera).pixels) << target;
+    }
+    set_vector_target("best");
+    settings = settings_of(wide_px, high_px);
+    settings.region = {401, 10, 111, 200};
+    const Image part = scene.picture(camera, settings);
+    for (std::int64_t y = 0; y < 200; ++y)
+        for (std::int64_t x = 0; x < 4 * 111; ++x)
+            ASSERT_EQ(part.at(0, y)[x], expected.at(401, 10 + y)[x]) << x / 4 << ", " << y;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SphereEllipseBits, ::testing::ValuesIn(projections));
+
+// Black ellipsoids, too faint to hide anything, change no bit of what is round.
+TEST(SphereEllipse, RoundSplatsKeepTheirBitsBesideOthers) {
+    for (const Falloff::Shape shape : {Falloff::Shape::gaussian, Falloff::Shape::trapezoid}) {
+        EllipsesAround scene(Blend::over, Falloff::Shape::gaussian);
+        scene.layers[0].render.falloff.shape = shape;
+        scene.layers[1].render.opacity = 1e-30f;
+        for (glm::vec3& color : scene.stretched.color) color = glm::vec3(0.0f);
+        const Camera camera = camera_of(Projection::equirectangular);
+        const Image both = scene.picture(camera);
+        scene.layers.pop_back();
+        const Image alone = scene.picture(camera);
+        for (std::size_t i = 0; i < alone.pixels.size(); i += 4)
+            for (std::size_t k = i; k < i + 3; ++k) ASSERT_EQ(both.pixels[k], alone.pixels[k]) << k;
+    }
+}
+
+// The seam of one is in the middle of the other.
+TEST(SphereEllipse, HasNoSeam) {
+    const EllipsesAround scene(Blend::over, Falloff::Shape::gaussian);
+    for (const Projection projection : {Projection::equirectangular, Projection::cylindrical}) {
+        CameraParams params = params_of(projection);
+        const Image ahead = scene.picture(make_camera(params, wide_px, high_px, {}));
+        params.target = {0.0, 0.0, 1.0};
+        const Image behind = scene.picture(make_camera(params, wide_px, high_px, {}));
+        double worst = 0.0;
+        for (std::int64_t y = 0; y < high_px; ++y)
+            for (std::int64_t x = 0; x < wide_px; ++x)
+                for (int k = 0; k < 4; ++k)
+                    worst = std::max(worst, std::fabs(double(ahead.at(x, y)[k]) -
+                                                      double(behind.at((x + wide_px / 2) % wide_px, y)[k])));
+        EXPECT_LT(worst, 0.012) << name_of(projection);
+    }
+}
+
+// Through a narrow one the sphere is as good as flat.
+TEST(SphereEllipse, ANarrowFisheyeIsPerspective) {
+    CameraParams params = params_of(Projection::fisheye);
+    params.fisheye_fov = 1.0;
+    ShadedSplats splats =
+        make_splats({{{0.03f, -0.02f, -10.0f}, 0.02f, 0.7f}, {{-0.05f, 0.01f, -9.0f}, 0.004f}});
+    glm::mat3 stretch = glm::mat3(rotation_from_degrees({20.0, 50.0, 70.0}));
+    stretch[1] *= 0.1f;
+    splats.stretch = {stretch, stretch};
+    RenderLayer layer = layer_of("two", splats, Blend::over, Falloff::Shape::gaussian);
+    const auto picture = [&](const Camera& camera) {
+        return render({&layer, 1}, camera, nullptr, settings_of(high_px, high_px)).beauty;
+    };
+    const Image fisheye = picture(make_camera(params, high_px, high_px, {}));
+    params.projection = Projection::perspective;
+    params.fov = 1.0;
+    const Image flat = picture(make_camera(params, high_px, high_px, {}));
+    EXPECT_GT(*std::ranges::max_element(flat.pixels), 0.5f);
+    for (std::size_t i = 0; i < flat.pixels.size(); ++i)
+        ASSERT_NEAR(fisheye.pixels[i], flat.pixels[i], 0.004);
+}
+
+}  // namespace
+}  // namespace astrosplat

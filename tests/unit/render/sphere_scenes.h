@@ -1,0 +1,58 @@
+// Cameras that show the sphere, directions, and light by solid angle.
+#pragma once
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/real.h"
+#include "unit/render/scenes.h"
+
+namespace astrosplat::test {
+
+inline constexpr int wide_px = 512, high_px = 256;
+
+inline CameraParams params_of(Projection projection) {
+    CameraParams params;
+    params.projection = projection;
+    params.position = glm::dvec3(0.0);
+    params.target = {0.0, 0.0, -1.0};
+    params.fisheye_fov = projection == Projection::fisheye ? 360.0 : 180.0;
+    params.near = 1e-4;
+    return params;
+}
+
+inline Camera camera_of(Projection projection) {
+    return make_camera(params_of(projection), wide_px, high_px, {});
+}
+
+/// From longitude, to the right of -z, and latitude.
+inline glm::dvec3 direction(double longitude_deg, double latitude_deg) {
+    const double l = real::radians(longitude_deg), b = real::radians(latitude_deg);
+    return {real::cos(b) * real::sin(l), real::sin(b), -real::cos(b) * real::cos(l)};
+}
+
+/// Solid angle of a pixel in px of the middle of the frame; 0 where nothing is shown.
+inline double solid_angle(const Camera& camera, std::int64_t x, std::int64_t y) {
+    const double x_px = double(x) + 0.5, y_px = double(y) + 0.5;
+    if (!shows(camera, x_px, y_px)) return 0.0;
+    const double u = (x_px - camera.center_x_px) / camera.focal_px,
+                 v = (y_px - camera.center_y_px) / camera.focal_px;
+    if (camera.projection == Projection::fisheye) {
+        const double angle = std::sqrt(u * u + v * v);
+        return angle > 0.0 ? real::sin(angle) / angle : 1.0;
+    }
+    if (camera.projection == Projection::cylindrical) return 1.0 / ((1.0 + v * v) * std::sqrt(1.0 + v * v));
+    const double half = 0.5 / camera.focal_px;
+    return camera.focal_px * (real::sin(v + half) - real::sin(v - half));
+}
+
+inline double light_on_sphere(const Image& picture, const Camera& camera, int channel) {
+    double sum = 0.0;
+    for (std::int64_t y = 0; y < picture.height; ++y)
+        for (std::int64_t x = 0; x < picture.width; ++x)
+            if (const double light = picture.at(x, y)[channel]; light != 0.0)
+                sum += light * solid_angle(camera, x, y);
+    return sum;
+}
+
+}  // namespace astrosplat::test
