@@ -9,6 +9,7 @@
 #include "core/real.h"
 #include "render/project_vector.h"
 #include "render/shape.h"
+#include "render/sphere_shape.h"
 
 namespace astrosplat {
 namespace {
@@ -145,26 +146,34 @@ void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_
         const float light = brightest(star.light);
         if (!(light > 0.0f) || !(splat.opacity > 0.0f)) continue;
         const auto draw = [&](const StarDot& dot, float share) {
-            const float support =
-                dot.is_round || sphere
-                    ? shared::frame_reach_px(lens, splat.x_px, splat.y_px,
-                                             dot.radius_px * layer.reach + layer.margin_px)
-                    : shape_support_px(dot.shape, {layer.reach, layer.margin_px, layer.variance});
+            ScreenSplat drawn = splat;
+            Shape shape = dot.shape;
+            float light_here = share * dot.per_light,
+                  reach_px = dot.radius_px * layer.reach + layer.margin_px;
+            if (!dot.is_round) {
+                if (sphere) {
+                    const SphereAxes axes = sphere_axes(lens, double(splat.x_px), double(splat.y_px));
+                    shape = onto_sphere(axes, dot.shape);
+                    light_here *= static_cast<float>(frame_area(axes));
+                }
+                reach_px = shape_support_px(shape, {layer.reach, layer.margin_px, layer.variance});
+            }
+            const float support = shared::frame_reach_px(lens, splat.x_px, splat.y_px, reach_px);
             if (!shared::appears_in_rect(lens, splat.x_px, splat.y_px, support, rect.x0, rect.y0, rect.x1,
                                          rect.y1))
                 return;
-            for (int k = 0; k < 3; ++k) splat.color[k] = star.light[k] * share * dot.per_light;
-            splat.radius_px = dot.radius_px;
+            for (int k = 0; k < 3; ++k) drawn.color[k] = star.light[k] * light_here;
+            drawn.radius_px = dot.radius_px;
             if (!dot.is_round) {
-                set_shape_number(splat, static_cast<std::uint32_t>(shapes.size()));
-                shapes.push_back(dot.shape);
+                set_shape_number(drawn, static_cast<std::uint32_t>(shapes.size()));
+                shapes.push_back(shape);
             }
-            push_places(splat, period, support, rect, out);
+            push_places(drawn, period, support, rect, out);
         };
         float core_share = layer.star_dots[0].share;
         for (std::size_t d = 1; d < layer.star_dots.size(); ++d) {
             const StarDot& dot = layer.star_dots[d];
-            const float shown = sphere && !dot.is_round ? 0.0f : shown_share(dot, light);
+            const float shown = shown_share(dot, light);
             core_share += dot.share * (1.0f - shown);
             if (shown > 0.0f) draw(dot, dot.share * shown);
         }

@@ -19,7 +19,8 @@ std::vector<StarDot> star_dots(const StarPsf& psf, const FootprintTable& footpri
 /// As project() does. A star at r from the layer's origin and c from the eye has (r / c)^2 of its colour as
 /// light over all pixels, c no less than near and near_fade; at infinity just its colour. Wings and spikes
 /// whose peak is below 2^-14 of scene light are left out with a soft edge, their light goes to the core. Onto
-/// the sphere stars are round there and have no spikes: the core has their light.
+/// the sphere cores and wings are round there; spikes point and are as long as on a flat frame, in px of this
+/// one, at the star.
 void project_stars(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
                    Buffer<ScreenSplat>& out, Buffer<Shape>& shapes);
 

@@ -3,13 +3,16 @@
 // set.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "camera/projection.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
-#include "unit/render/scenes.h"
+#include "unit/render/sphere_scenes.h"
 
 namespace astrosplat {
 namespace {
@@ -112,6 +115,64 @@ TEST(Stars, WingsAndSpikesTakeTheirLightFromTheCore) {
         EXPECT_TRUE(is_bright(90) && is_bright(270)) << "the first vane is upright";
         EXPECT_EQ(is_bright(0), vanes == 4);
         EXPECT_EQ(is_bright(30), vanes == 3);
+    }
+}
+
+/// A star's spikes at so many px around its place: to the right and left, up and down, and the brightest
+/// between them.
+struct Spikes {
+    double level = 0.0, upright = 0.0, between = 0.0;
+};
+Spikes spikes_at(const Image& picture, const Camera& camera, const glm::dvec3& toward, double px) {
+    const shared::Instance at = shared::instance_of(make_lens(camera), glm::vec3(toward));
+    const auto light = [&](double right, double down) {
+        double sum = 0.0;  // over 5 x 5 px
+        for (int y = -2; y <= 2; ++y)
+            for (int x = -2; x <= 2; ++x)
+                sum += double(picture.at(static_cast<std::int64_t>(double(at.x_px) + right) + x,
+                                         static_cast<std::int64_t>(double(at.y_px) + down) + y)[0]);
+        return sum;
+    };
+    const double aslant = px / std::sqrt(2.0);
+    return {light(px, 0.0) + light(-px, 0.0), light(0.0, px) + light(0.0, -px),
+            std::max({light(aslant, aslant), light(aslant, -aslant), light(-aslant, aslant),
+                      light(-aslant, -aslant)})};
+}
+
+// As on a flat frame: so many px long, level and upright in the frame, and with the light that solid angles
+// have there.
+TEST(Stars, HaveTheirSpikesOnDomesAndPanoramas) {
+    const StarPsf psf{.core_px = 1.0f, .spike_share = 0.4f, .spike_px = 12.0f};
+    const auto picture_to = [&](const Camera& camera, const glm::dvec3& toward, const RenderSettings& s) {
+        const ShadedSplats splats = make_splats({star_at(glm::vec3(50.0 * toward), 5000.0f)});
+        const RenderLayer layer = star_layer(splats, psf);
+        return render({&layer, 1}, camera, nullptr, s).beauty;
+    };
+    const glm::dvec3 ahead(0.0, 0.0, -1.0);
+    const Image flat = picture_to(star_camera(), ahead, settings_of(side_px, side_px));
+    for (const Projection projection :
+         {Projection::fisheye, Projection::equirectangular, Projection::cylindrical}) {
+        CameraParams params = params_of(projection);
+        params.fisheye_fov = 180.0;
+        const RenderSettings settings = settings_of(projection == Projection::fisheye ? 512 : 1024, 512);
+        const Camera camera = make_camera(params, double(settings.width), double(settings.height), {});
+        for (const glm::dvec2& place : {glm::dvec2(0.1, 0.1), {51.0, 3.0}, {-23.0, 33.0}, {150.0, -12.0}}) {
+            if (projection == Projection::fisheye && place.x > 90.0) continue;
+            const glm::dvec3 toward = direction(place.x, place.y);
+            const Image picture = picture_to(camera, toward, settings);
+            SCOPED_TRACE(std::string(name_of(projection)) + ", longitude " + std::to_string(place.x));
+            EXPECT_NEAR(light_on_sphere(picture, camera, 0), 5000.0, 25.0);
+            const shared::Instance at = shared::instance_of(make_lens(camera), glm::vec3(toward));
+            const double area = 1.0 / solid_angle(camera, static_cast<std::int64_t>(at.x_px),
+                                                  static_cast<std::int64_t>(at.y_px));
+            for (const double px : {12.0, 24.0}) {
+                const Spikes wanted = spikes_at(flat, star_camera(), ahead, px),
+                             found = spikes_at(picture, camera, toward, px);
+                EXPECT_NEAR(found.level / (area * wanted.level), 1.0, 0.1) << px << " px";
+                EXPECT_NEAR(found.upright / (area * wanted.upright), 1.0, 0.1) << px << " px";
+                EXPECT_LT(found.between, 0.05 * found.upright) << px << " px";
+            }
+        }
     }
 }
 
