@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "core/real.h"
+#include "render/bent_needle.h"
+#include "render/counted_gains.h"
 #include "render/spectrum.h"
 #include "render/sphere_sums.h"
 
@@ -49,66 +51,125 @@ SphereAxes panorama_axes(const Lens& lens, double longitude, double height) {
             glm::dvec3(upwards * tangent, 0.0, cylinder ? -2.0 * upwards * tangent : 0.0) / focal};
 }
 
-/// Where a weight is looked up: from the ellipse's middle to a pixel, both of length focal_px.
-struct MapPlace {
-    glm::dvec3 rows[2];
-    double focal;
-    double squared(const glm::dvec3& away) const {
-        const double x = glm::dot(rows[0], away), y = glm::dot(rows[1], away);
-        const double half_cosine = 1.0 - glm::dot(away, away) / (4.0 * focal * focal);  // squared
-        return (x * x + y * y) / std::fmax(half_cosine, 1e-6);
-    }
-};
-
-/// A thin gaussian on the map around a place, by its variances along and across, the pixel filter's included:
-/// a needle follows a row of pixels only as far as it is straight on the frame, which great circles are not.
-class BentNeedle {
+/// A footprint that is not round at a place of the frame, and what its pixels add up to.
+class ShapeOnMap {
   public:
-    BentNeedle(const SphereAxes& axes, const Ellipse& e, double along_variance, double across_variance)
-        : along_(along_variance),
-          across_(across_variance),
-          along_px_(e.x * axes.first_px + e.y * axes.second_px),
-          across_px_(e.x * axes.second_px - e.y * axes.first_px),
-          bend_(bend_of(axes.bend_x, e), bend_of(axes.bend_y, e)) {}
+    ShapeOnMap(const FootprintTable& table, const Lens& lens, const Shape& shape, float x_px, float y_px)
+        : table_(table),
+          lens_(lens),
+          x_px_(x_px),
+          y_px_(y_px),
+          e_(ellipse_of(shape)),
+          filter_(table.pixel_filter_px),
+          stretch_(stretch_of(e_, table.variance, filter_)),
+          least_(std::fmax(e_.smaller, double(shared::SMALLEST_RADIUS_PX))),
+          along_(e_.larger * e_.larger * double(table.variance) + filter_ * filter_),
+          across_(least_ * least_ * double(table.variance) + filter_ * filter_),
+          support_(shape_support_px(shape, {table.reach, 4.0f * table.pixel_filter_px, table.variance})),
+          axes_(sphere_axes(lens, x_px, y_px)),
+          rows_{(e_.x * axes_.first + e_.y * axes_.second) / stretch_,
+                e_.x * axes_.second - e_.y * axes_.first},
+          has_poles_(lens.projection == shared::PROJECTION_EQUIRECTANGULAR),
+          pole_(near_pole(lens, y_px)) {
+        footprint_at(table, radius_px(), x_px, y_px, plain_);
+        plain_.amplitude = 1.0f;
+        plain_.edge_gain = 0.0f;
+    }
 
-    /// By how much the relative excess of its sum over pixels differs from that of a straight one.
-    double excess(float x_px, float y_px) const {
-        const double turns = 2.0 * real::pi * along_ * (std::fabs(bend_.x) + std::fabs(bend_.y));
-        if (across_ > 1.0 || turns < 0.02) return 0.0;  // wide ones have none; short ones do not bend
-        const double cx = pixel_cosine(x_px), cy = pixel_cosine(y_px);
-        const double sx = pixel_cosine(x_px - 0.25f), sy = pixel_cosine(y_px - 0.25f);
-        return 2.0 * (excess_at(1, 0, cx, sx) + excess_at(0, 1, cy, sy) +
-                      excess_at(1, 1, cx * cy - sx * sy, sx * cy + cx * sy) +
-                      excess_at(1, -1, cx * cy + sx * sy, sx * cy - cx * sy) +
-                      excess_at(2, 0, cx * cx - sx * sx, 2.0 * sx * cx) +
-                      excess_at(0, 2, cy * cy - sy * sy, 2.0 * sy * cy));
+    float radius_px() const { return static_cast<float>(e_.smaller); }
+    glm::vec3 row(int i) const { return glm::vec3(rows_[i]); }
+    double light() const { return double(table_.integral) * e_.larger * e_.smaller; }
+
+    /// Whether pixels around a pole or a rim are looked at one by one: of what is small enough that they
+    /// matter.
+    bool is_counted() const {
+        return has_poles_ ? along_ * across_ < excessive_px && pole_.from_pole_px < support_ + near_pole_px
+                          : is_at_rim();
+    }
+
+    /// Over all pixels, px of the sphere.
+    StretchedSums sums() const {
+        const bool small = along_ * across_ < small_px;
+        if (is_at_rim())
+            return both([&](const auto& weight) { return rim_sum(lens_, axes_.toward, support_, weight); });
+        if (!is_counted()) return straight_sums();
+        if (small) return both([&](const auto& weight) { return rows(weight).sum(); });
+        const StretchedSums all = straight_sums(),
+                            more = both([&](const auto&weight) { return rows(weight).excess(); });
+        return {all.profile + more.profile, table_.flat_core ? all.edge + more.edge : 1.0};
     }
 
   private:
-    /// Second derivative of a coordinate along the needle.
-    static double bend_of(const glm::dvec3& bend, const Ellipse& e) {
-        return e.x * e.x * bend.x + 2.0 * e.x * e.y * bend.y + e.y * e.y * bend.z;
+    static constexpr double small_px = 36.0, excessive_px = 2500.0;  // variances along times across
+
+    bool is_at_rim() const {
+        return along_ * across_ < small_px && shows_all_round(lens_) &&
+               is_near_rim(lens_, axes_.toward, support_);
     }
 
-    /// The part of the frequency (kx, ky) cycles per px, whose phase at the middle has this cosine and sine:
-    /// the spectrum of a gaussian whose places go with the square of the way is that of one with a complex
-    /// variance, along_ / (1 + i t).
-    double excess_at(double kx, double ky, double cosine, double sine) const {
-        const double turn = 2.0 * real::pi * real::pi;
-        const double g = kx * along_px_.x + ky * along_px_.y, h = kx * across_px_.x + ky * across_px_.y;
-        const double t = 2.0 * real::pi * along_ * (kx * bend_.x + ky * bend_.y), size = 1.0 + t * t;
-        const double thin = real::exp(-turn * h * h * across_), exponent = turn * g * g * along_;
-        // 1 / sqrt(1 + i t): half the angle, the root of the length.
-        const double root = std::sqrt(size), re = std::sqrt(0.5 * (1.0 + 1.0 / root) / root),
-                     im = -0.5 * t / (size * re);
-        const double phase = exponent * t / size, c = real::cos(phase), s = real::sin(phase);
-        const double bent = thin * real::exp(-exponent / size);
-        return bent * ((re * c - im * s) * cosine + (re * s + im * c) * sine) -
-               thin * real::exp(-exponent) * cosine;
+    template <class Weight>
+    PoleRows<Weight> rows(const Weight& weight) const {
+        return {lens_, pole_, axes_.toward, support_, std::clamp(1.5 * filter_, 0.25, 1.0), weight};
     }
 
-    double along_, across_;
-    glm::dvec2 along_px_, across_px_, bend_;
+    /// P at a pixel, `away` from the middle, both of length focal_px.
+    double profile(const glm::dvec3& away) const {
+        const double x = glm::dot(rows_[0], away), y = glm::dot(rows_[1], away), focal = lens_.focal_px;
+        const double half_cosine = 1.0 - glm::dot(away, away) / (4.0 * focal * focal);  // squared
+        const double squared = (x * x + y * y) / std::fmax(half_cosine, 1e-6);
+        return double(footprint_weight(table_, plain_, static_cast<float>(std::sqrt(squared))));
+    }
+
+    /// A sum of P and, where it is asked for, of P (1 - P).
+    template <class Sum>
+    StretchedSums both(const Sum& sum) const {
+        const auto weight = [&](const glm::dvec3& away) { return profile(away); };
+        const auto edge = [&](const glm::dvec3& away) {
+            const double p = profile(away);
+            return p * (1.0 - p);
+        };
+        return {sum(weight), table_.flat_core ? sum(edge) : 1.0};
+    }
+
+    /// By the spectrum on a frame of one stretch, and the bend of needles.
+    StretchedSums straight_sums() const {
+        const double gain = stretch_ * stretch_ - 1.0;
+        const glm::dvec2 longer = e_.x * axes_.first_px + e_.y * axes_.second_px;
+        const auto product = [&](int i, int j) {
+            return axes_.first_px[i] * axes_.first_px[j] + axes_.second_px[i] * axes_.second_px[j] +
+                   gain * longer[i] * longer[j];
+        };
+        const FootprintMass mass = footprint_mass(table_, radius_px());
+        const Spectrum spectrum(table_, least_, {product(0, 0), product(0, 1), product(1, 1)});
+        // At a pole itself nothing is straight or of one stretch.
+        const bool at_pole = has_poles_ && pole_.from_pole_px < near_pole_px;
+        const auto ripple = [&](bool of_edge) {
+            return at_pole ? 0.0 : spectrum.ripple(of_edge, x_px_, y_px_);
+        };
+        const auto bent = [&](double share) {
+            const BentNeedle needle(axes_, e_, share * along_, share * across_);
+            return at_pole ? 0.0 : needle.excess(x_px_, y_px_);
+        };
+        const double bent_profile = bent(1.0);
+        StretchedSums found{mass.profile * stretch_ * (1.0 + ripple(false) + bent_profile), 1.0};
+        if (table_.flat_core) {  // P (1 - P): P^2 is a gaussian of half the variances
+            const double rest = double(mass.edge) / double(mass.profile);
+            const double bent_edge = (bent_profile - (1.0 - rest) * bent(0.5)) / rest;
+            found.edge = mass.edge * stretch_ * (1.0 + ripple(true) + bent_edge);
+        }
+        return found;
+    }
+
+    const FootprintTable& table_;
+    const Lens& lens_;
+    float x_px_, y_px_;
+    Ellipse e_;
+    double filter_, stretch_, least_, along_, across_, support_;
+    SphereAxes axes_;
+    glm::dvec3 rows_[2];
+    bool has_poles_;
+    NearPole pole_;
+    Footprint plain_;
 };
 
 }  // namespace
@@ -143,78 +204,28 @@ Shape onto_sphere(const SphereAxes& axes, const Shape& on_frame) {
 
 SphereFootprint shaped_sphere_footprint_at(const FootprintTable& table, const Lens& lens, const Shape& shape,
                                            float x_px, float y_px) {
-    const Ellipse e = ellipse_of(shape);
-    const double filter = table.pixel_filter_px, stretch = stretch_of(e, table.variance, filter);
-    const auto radius_px = static_cast<float>(e.smaller);
-    const SphereAxes axes = sphere_axes(lens, x_px, y_px);
-    const MapPlace map{
-        {(e.x * axes.first + e.y * axes.second) / stretch, e.x * axes.second - e.y * axes.first},
-        double(lens.focal_px)};
+    const ShapeOnMap ellipse(table, lens, shape, x_px, y_px);
     SphereFootprint f;
-    footprint_at(table, radius_px, x_px, y_px, f.round);
-    for (int i = 0; i < 2; ++i) f.rows[i] = glm::vec3(map.rows[i]);
-    if (!shared::is_tabulated(shared::node_of_radius(radius_px))) return f;
-
-    Footprint plain = f.round;
-    plain.amplitude = 1.0f;
-    plain.edge_gain = 0.0f;
-    const auto profile = [&](const glm::dvec3& away) {
-        return double(footprint_weight(table, plain, static_cast<float>(std::sqrt(map.squared(away)))));
-    };
-    const auto edge = [&](const glm::dvec3& away) {
-        const double p = profile(away);
-        return p * (1.0 - p);
-    };
-    const double wanted = double(table.integral) * e.larger * e.smaller;
-    const double support =
-        shape_support_px(shape, {table.reach, 4.0f * table.pixel_filter_px, table.variance});
-    const double along = e.larger * e.larger * double(table.variance) + filter * filter;
-    const double least = std::fmax(e.smaller, double(shared::SMALLEST_RADIUS_PX));
-    const double across = least * least * double(table.variance) + filter * filter;
-    // Counting pixels one by one is for what is small enough that they matter.
-    constexpr double counted_px = 36.0, excessive_px = 2500.0;
-    const double size = along * across;
-    const bool counted = size < counted_px;
-    if (counted && shows_all_round(lens) && is_near_rim(lens, axes.toward, support)) {
-        const auto sum = [&](const auto& weight) { return rim_sum(lens, axes.toward, support, weight); };
-        set_gains(table, wanted, {sum(profile), table.flat_core ? sum(edge) : 1.0}, f.round);
+    footprint_at(table, ellipse.radius_px(), x_px, y_px, f.round);
+    for (int i = 0; i < 2; ++i) f.rows[i] = ellipse.row(i);
+    if (!shared::is_tabulated(shared::node_of_radius(ellipse.radius_px()))) return f;
+    const auto set = [&] { set_gains(table, ellipse.light(), ellipse.sums(), f.round); };
+    if (!ellipse.is_counted()) {
+        set();
         return f;
     }
-    const bool has_poles = lens.projection == shared::PROJECTION_EQUIRECTANGULAR;
-    const NearPole pole = near_pole(lens, y_px);
-    const auto rows = [&](const auto& weight) {
-        return PoleRows(lens, pole, axes.toward, support, std::clamp(1.5 * filter, 0.25, 1.0), weight);
-    };
-    if (counted && has_poles && pole.from_pole_px < support + near_pole_px) {
-        set_gains(table, wanted, {rows(profile).sum(), table.flat_core ? rows(edge).sum() : 1.0}, f.round);
-        return f;
+    CountedGains& gains = CountedGains::of(
+        {shape.xx, shape.xy, shape.yx, shape.yy, x_px, y_px, lens.focal_px, lens.center_x_px,
+         lens.center_y_px, lens.edge, float(lens.projection), float(int(table.falloff.shape)),
+         table.falloff.core, table.falloff.sharpness, table.pixel_filter_px});
+    if (!gains.known) {
+        set();
+        gains.amplitude = f.round.amplitude;
+        gains.edge_gain = f.round.edge_gain;
+        gains.known = true;
     }
-    const double gain = stretch * stretch - 1.0;
-    const glm::dvec2 longer = e.x * axes.first_px + e.y * axes.second_px;
-    const auto product = [&](int i, int j) {
-        return axes.first_px[i] * axes.first_px[j] + axes.second_px[i] * axes.second_px[j] +
-               gain * longer[i] * longer[j];
-    };
-    const FootprintMass mass = footprint_mass(table, radius_px);
-    const Spectrum spectrum(table, least, {product(0, 0), product(0, 1), product(1, 1)});
-    // At a pole itself nothing is straight or of one stretch.
-    const bool at_pole = has_poles && pole.from_pole_px < near_pole_px;
-    const auto ripple = [&](bool of_edge) { return at_pole ? 0.0 : spectrum.ripple(of_edge, x_px, y_px); };
-    const auto bent = [&](double share) {
-        return at_pole ? 0.0 : BentNeedle(axes, e, share * along, share * across).excess(x_px, y_px);
-    };
-    const double bent_profile = bent(1.0);
-    StretchedSums found{mass.profile * stretch * (1.0 + ripple(false) + bent_profile), 1.0};
-    if (table.flat_core) {  // P (1 - P): P^2 is a gaussian of half the variances
-        const double rest = double(mass.edge) / double(mass.profile);
-        found.edge =
-            mass.edge * stretch * (1.0 + ripple(true) + (bent_profile - (1.0 - rest) * bent(0.5)) / rest);
-    }
-    if (has_poles && size < excessive_px && pole.from_pole_px < support + near_pole_px) {
-        found.profile += rows(profile).excess();
-        if (table.flat_core) found.edge += rows(edge).excess();
-    }
-    set_gains(table, wanted, found, f.round);
+    f.round.amplitude = gains.amplitude;
+    f.round.edge_gain = gains.edge_gain;
     return f;
 }
 

@@ -133,11 +133,15 @@ class PoleRows {
         const double half = real::acos(std::fmax(reach, -1.0));
         const double places = std::ceil(16.0 + 2.0 * half * sine * focal_ / step_px_);
         const double longitude = real::atan2(toward_.x, -toward_.z);
-        double sum = 0.0;
-        for (double i = 0.5; i < places; i += 1.0) {
-            const double at = longitude + half * (2.0 * i / places - 1.0);
-            const glm::dvec3 ray(sine * real::sin(at), pole_.side * cosine, -sine * real::cos(at));
-            sum += weight_(focal_ * (ray - toward_));
+        // From one to the next by a turn: sines and cosines are dear.
+        const double begin = longitude + half * (1.0 / places - 1.0), step = 2.0 * half / places;
+        const double turn_sine = real::sin(step), turn_cosine = real::cos(step);
+        double right = real::sin(begin), ahead = real::cos(begin), sum = 0.0;
+        for (double i = 0.0; i < places; i += 1.0) {
+            sum += weight_(focal_ * (glm::dvec3(sine * right, pole_.side * cosine, -sine * ahead) - toward_));
+            const double before = right;
+            right = before * turn_cosine + ahead * turn_sine;
+            ahead = ahead * turn_cosine - before * turn_sine;
         }
         return sum / places * (half / real::pi);
     }
