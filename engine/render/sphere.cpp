@@ -6,6 +6,7 @@
 
 #include "camera/projection.h"
 #include "core/real.h"
+#include "render/counted_gains.h"
 #include "render/spectrum.h"
 #include "render/sphere_sums.h"
 
@@ -126,26 +127,25 @@ Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, flo
         const double p = profile(squared);
         return p * (1.0 - p);
     };
+    const auto set_counted = [&](const auto& sum) {
+        set_counted_gains(CountedGains::key_of(table, lens, {radius_px, x_px, y_px, -1.0f}), f, [&] {
+            normalise(table, radius_px, sum(profile), table.flat_core ? sum(edge_of) : 1.0, f);
+        });
+        return f;
+    };
     if (shows_all_round(lens)) {
         const glm::dvec3 toward =
             glm::normalize(exact::ray_through(exact_lens(lens), double(x_px), double(y_px)));
-        if (is_near_rim(lens, toward, f.support_px)) {
-            const auto sum = [&](const auto& weight) {
+        if (is_near_rim(lens, toward, f.support_px))
+            return set_counted([&](const auto& weight) {
                 return rim_sum(lens, toward, f.support_px,
                                [&](const glm::dvec3& away) { return weight(glm::dot(away, away)); });
-            };
-            normalise(table, radius_px, sum(profile), table.flat_core ? sum(edge_of) : 1.0, f);
-            return f;
-        }
+            });
     }
     if (lens.projection == shared::PROJECTION_EQUIRECTANGULAR) {
         const PoleSum pole(lens, y_px);
-        if (pole.colatitude_px() < double(f.support_px) + near_pole_px) {
-            const double found = pole(f.support_px, profile);
-            const double edge = table.flat_core ? pole(f.support_px, edge_of) : 1.0;
-            normalise(table, radius_px, found, edge, f);
-            return f;
-        }
+        if (pole.colatitude_px() < double(f.support_px) + near_pole_px)
+            return set_counted([&](const auto& weight) { return pole(f.support_px, weight); });
     }
     const FootprintMass mass = footprint_mass(table, drawn_px);
     const Spectrum spectrum(table, drawn_px, stretch_at(lens, x_px, y_px));

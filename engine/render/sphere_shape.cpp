@@ -210,22 +210,12 @@ SphereFootprint shaped_sphere_footprint_at(const FootprintTable& table, const Le
     for (int i = 0; i < 2; ++i) f.rows[i] = ellipse.row(i);
     if (!shared::is_tabulated(shared::node_of_radius(ellipse.radius_px()))) return f;
     const auto set = [&] { set_gains(table, ellipse.light(), ellipse.sums(), f.round); };
-    if (!ellipse.is_counted()) {
+    if (ellipse.is_counted())
+        set_counted_gains(
+            CountedGains::key_of(table, lens, {shape.xx, shape.xy, shape.yx, shape.yy, x_px, y_px}), f.round,
+            set);
+    else
         set();
-        return f;
-    }
-    CountedGains& gains = CountedGains::of(
-        {shape.xx, shape.xy, shape.yx, shape.yy, x_px, y_px, lens.focal_px, lens.center_x_px,
-         lens.center_y_px, lens.edge, float(lens.projection), float(int(table.falloff.shape)),
-         table.falloff.core, table.falloff.sharpness, table.pixel_filter_px});
-    if (!gains.known) {
-        set();
-        gains.amplitude = f.round.amplitude;
-        gains.edge_gain = f.round.edge_gain;
-        gains.known = true;
-    }
-    f.round.amplitude = gains.amplitude;
-    f.round.edge_gain = gains.edge_gain;
     return f;
 }
 
