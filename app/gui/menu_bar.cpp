@@ -19,10 +19,12 @@ void recent_files(GuiFrame& frame) {
     const bool any = !frame.status.recent.empty();
     if (ImGui::BeginMenu("Open recent", any)) {
         for (const auto& file : frame.status.recent) {
+            ImGui::PushID(file.c_str());  // two of one name are two
             if (ImGui::MenuItem(file.filename().string().c_str()))
                 request_path(frame, Command::Kind::open, file);
             note_item(frame, "File/Open recent/" + file.filename().string());
             if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", file.string().c_str());
+            ImGui::PopID();
         }
         ImGui::EndMenu();
     } else {

@@ -120,6 +120,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     find_recoveries(status);
     status.has_ffmpeg = has_program("ffmpeg");
     status.recent = preferences.recent;
+    if (!options.input.empty()) note_recent(*this, options.input);
     open_snapshots(*this);
 }
 
@@ -144,12 +145,16 @@ void take_document(Session& session, Document next) {
     view.grey_layer.clear();
     open_snapshots(session);
     session.autosave.remove();
-    if (!session.document.file().empty()) add_recent(session.preferences, session.document.file());
+}
+
+void note_recent(Session& session, const fs::path& file) {
+    add_recent(session.preferences, file);
     session.status.recent = session.preferences.recent;
 }
 
 void open_file(Session& session, const fs::path& file) {
     take_document(session, document_for(file));
+    note_recent(session, file);
     choose_first_view(session.view, file);
     if (kind_of_file(file) == FileKind::mesh) offer_picture(session, 0);
 }

@@ -141,6 +141,8 @@ void say(Status& status, const std::string& text, bool error = false);
 void take_document(Session& session, Document next);
 /// Offers to choose a picture for a layer whose mesh has none; takes an older offer back.
 void offer_picture(Session& session, std::size_t layer);
+/// The first of File > Open recent.
+void note_recent(Session& session, const std::filesystem::path& file);
 /// A scene, or anything that becomes one. Throws InputError.
 void open_file(Session& session, const std::filesystem::path& file);
 /// Fills Status::recoveries.

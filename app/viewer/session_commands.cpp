@@ -52,8 +52,7 @@ void save(State& s, const Command&) {
 
 void save_as(State& s, const Command& c) {
     s.document.save_as(c.path);
-    add_recent(s.preferences, s.document.file());
-    s.status.recent = s.preferences.recent;
+    note_recent(s, s.document.file());
     note_saved(s);
     s.comparison.snapshots().move_to(s.document.file());
 }
@@ -67,6 +66,7 @@ void keep(State& s, const Command&) { s.document.ignore_change_on_disk(); }
 
 void recover_autosave(State& s, const Command& c) {
     take_document(s, recover(c.path));
+    if (!s.document.file().empty()) note_recent(s, s.document.file());
     if (s.autosave.write(s.document)) discard_recovery(c.path);
     find_recoveries(s.status);
     say(s.status, "Recovered; save to keep it");

@@ -1,5 +1,6 @@
 // The window's own file dialog by real keys and clicks: names typed faster than anybody types, pictures seen
 // before they are chosen, in folders as large as a film's.
+#include "edit/preferences.h"
 #include "source/write_image.h"
 #include "window/window_test.h"
 
@@ -57,6 +58,18 @@ TEST_F(WindowFileDialog, PicturesAreSeenBeforeTheyAreChosen) {
     EXPECT_TRUE(comes_true([&] { return seen(105, 106); }));
     EXPECT_FALSE(seen(201, 40));
     EXPECT_EQ(end(SIGTERM).err.find("broken"), std::string::npos) << "nobody opened it";
+}
+
+TEST_F(WindowFileDialog, WhateverWasOpenedIsRecent) {
+    start({(folder / "rings.png").string(), "--no-cache"});
+    person->press("ctrl+o");
+    person->type(scene_file.filename().string(), 30);
+    person->press("Return");
+    expect_title("scene.toml");
+    person->press("ctrl+q");
+    end();
+    const Preferences kept = load_preferences(folder / "home/config/astrosplat/viewer.json");
+    EXPECT_EQ(kept.recent, (std::vector<fs::path>{scene_file, folder / "rings.png"}));
 }
 
 }  // namespace
