@@ -59,6 +59,7 @@ void render_run(Pipeline& pipeline, Run& run) {
     settings.height = request.height;
     settings.region = request.region;
     settings.aov_depth = request.depth;
+    settings.memory_limit_bytes = RenderSettings::what_is_free;
     settings.aov_coverage = settings.aov_count = settings.aov_layers = false;
     const Region region = whole_region(request);
     progress.report = [&run](double fraction) { run.progress = static_cast<float>(fraction); };

@@ -161,7 +161,7 @@ int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupte
     if (settings.threads > 0 && !options.threads_given) set_thread_count(settings.threads);
     ViewerOptions with_settings = options;
     with_settings.cache = cache_with(settings, options.cache, options.cache_given);
-    limit_memory(std::int64_t{settings.memory_gib} << 30);
+    limit_memory(std::int64_t{settings.memory_gib} << 30, "Edit > Settings > Memory");
     std::unique_ptr<Loop> loop;
     try {
         loop = std::make_unique<Loop>(with_settings, preferences, interrupted);

@@ -23,7 +23,13 @@ namespace {
 
 constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
 
-std::atomic<std::int64_t> own_limit{0};  // 0: none
+std::atomic<std::int64_t> own_limit{0};               // 0: none
+std::atomic<const char*> own_limit_name{"--memory"};  // where a person sets it
+
+std::int64_t room_in_own_limit() {
+    const std::int64_t limit = own_limit;
+    return limit > 0 ? std::max<std::int64_t>(0, limit - resident_memory_bytes()) : unlimited;
+}
 
 // Three significant digits, without trailing zeros after the point: 1.25, 12.4, 312, 4.
 std::string three_digits(double value) {
@@ -98,16 +104,16 @@ std::int64_t group_room(const std::string& limit_text, const std::string& usage_
     return std::max<std::int64_t>(0, *limit - std::max<std::int64_t>(0, *usage - cache));
 }
 
-void limit_memory(std::int64_t bytes) { own_limit = bytes; }
+void limit_memory(std::int64_t bytes, const char* set_by) {
+    own_limit = bytes;
+    own_limit_name = set_by;
+}
 
 std::int64_t available_memory_bytes() {
     const std::int64_t v2 = least_group_room("memory.max", "memory.current", "inactive_file");
     const std::int64_t v1 =
         least_group_room("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file");
-    const std::int64_t limit = own_limit;
-    const std::int64_t own =
-        limit > 0 ? std::max<std::int64_t>(0, limit - resident_memory_bytes()) : unlimited;
-    return std::min({machine_available_bytes(), v2, v1, own});
+    return std::min({machine_available_bytes(), v2, v1, room_in_own_limit()});
 }
 
 std::int64_t peak_memory_bytes() {
@@ -133,13 +139,17 @@ std::int64_t resident_memory_bytes() {
 }
 
 void claim_memory(std::int64_t bytes, const std::string& what) {
-    const std::string need = human_bytes(static_cast<double>(bytes));
-    const std::int64_t available = available_memory_bytes();
-    if (bytes > available)
-        throw InputError(fmt::format(
-            "{} needs {} of memory, but only {} are available{}", what, need,
-            human_bytes(static_cast<double>(available)),
-            own_limit > 0 ? " of the " + human_bytes(static_cast<double>(own_limit)) + " it may take" : ""));
+    const auto text = [](std::int64_t n) { return human_bytes(static_cast<double>(n)); };
+    const std::string need = text(bytes);
+    const std::int64_t available = available_memory_bytes(), limit = own_limit;
+    if (bytes > available) {
+        const bool own = limit > 0 && available >= room_in_own_limit();
+        throw InputError(
+            fmt::format("{} needs {} of memory, but only {} are available{}", what, need, text(available),
+                        own ? fmt::format(" of the {} that {} allows; this takes {} in all", text(limit),
+                                          own_limit_name.load(), text(resident_memory_bytes() + bytes))
+                            : ""));
+    }
     log_detail(fmt::format("{} takes {} of memory", what, need));
 }
 

@@ -22,15 +22,16 @@ std::int64_t group_room(const std::string& limit_text, const std::string& usage_
 /// Bytes this process may still take: free memory of the machine or of its cgroup, or what limit_memory()
 /// leaves, whichever is least.
 std::int64_t available_memory_bytes();
-/// Most bytes that this process is to take; 0: no such limit. What is taken already stays.
-void limit_memory(std::int64_t bytes);
+/// Most bytes that this process is to take; 0: no such limit. What is taken already stays. `set_by`, which
+/// outlives the process: where a person sets it, for messages.
+void limit_memory(std::int64_t bytes, const char* set_by = "--memory");
 /// Largest resident size of this process so far.
 std::int64_t peak_memory_bytes();
 /// Resident size of this process now, without what was freed and is lent to the system (core/buffer).
 std::int64_t resident_memory_bytes();
 
 /// Announces `bytes` for `what` (at detail level), and throws InputError with one line that states both
-/// figures when they exceed available_memory_bytes().
+/// figures when they exceed available_memory_bytes(), and with a limit of its own what that would have to be.
 void claim_memory(std::int64_t bytes, const std::string& what);
 
 }  // namespace astrosplat

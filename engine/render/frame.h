@@ -51,8 +51,10 @@ struct RenderSettings {
     bool aov_depth = false, aov_coverage = false, aov_count = false, aov_layers = false;
     int tile_px = 0;  // a multiple of 8 from 16 to 128; 0: the quicker of 32 and 64. Changes no bit
     /// For all that rendering takes beside the splats in memory and the frame's images; 0: none. What takes
-    /// more is rendered in bands and slabs of depth, same bits.
+    /// more is rendered in bands and slabs of depth, same bits. `what_is_free`: what there is of memory when
+    /// the splats are shaded.
     std::int64_t memory_limit_bytes = 0;
+    static constexpr std::int64_t what_is_free = -1;
     /// For previews: the whole frame's backdrop (backdrop.h), which stands for the environment; null: none.
     const Image* backdrop = nullptr;
 };

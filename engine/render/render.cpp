@@ -14,12 +14,29 @@
 namespace astrosplat {
 namespace {
 
-RenderedFrame make_frame(std::span<const RenderLayer> layers, const RenderSettings& settings,
-                         const Region& region) {
+std::int64_t image_bytes(std::span<const RenderLayer> layers, const RenderSettings& settings,
+                         std::int64_t width, std::int64_t height) {
     const std::int64_t channels = 4 + settings.aov_depth + settings.aov_coverage + settings.aov_count +
                                   (settings.aov_layers ? 4 * static_cast<std::int64_t>(layers.size()) : 0);
-    claim_memory(region.width * region.height * channels * static_cast<std::int64_t>(sizeof(float)),
-                 "the frame");
+    return width * height * channels * static_cast<std::int64_t>(sizeof(float));
+}
+
+/// Of what there is now; less than any frame is worth is left to fail.
+std::int64_t free_bytes(std::span<const RenderLayer> layers, const RenderSettings& settings,
+                        const RenderCache::State& state) {
+    constexpr std::int64_t least = 24'000'000, of_a_thread = 6'000'000;
+    const Region& part = settings.region;
+    const bool whole = part.width <= 0 || part.height <= 0;
+    const std::int64_t images = image_bytes(layers, settings, whole ? settings.width : part.width,
+                                            whole ? settings.height : part.height);
+    const std::int64_t room = available_memory_bytes() - images - thread_count() * of_a_thread;
+    // What malloc does not give back is a thirtieth. The buffers of the last frame are used again.
+    return std::max(least, room - room / 32 + state.store.bytes());
+}
+
+RenderedFrame make_frame(std::span<const RenderLayer> layers, const RenderSettings& settings,
+                         const Region& region) {
+    claim_memory(image_bytes(layers, settings, region.width, region.height), "the frame");
     RenderedFrame frame;
     frame.beauty = make_image(region.width, region.height, 4);
     if (settings.aov_depth) frame.depth = make_image(region.width, region.height, 1);
@@ -88,10 +105,10 @@ std::int64_t expected_record_bytes(std::span<const RenderLayer> layers, const Ca
 }
 
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
-                     const Environment* environment, const RenderSettings& settings, const Progress& progress,
+                     const Environment* environment, const RenderSettings& asked, const Progress& progress,
                      RenderCache* cache, const TileDone& tile_done) {
-    assert(settings.tile_px == 0 || (settings.tile_px >= 16 && settings.tile_px <= TilePlanes::widest_px &&
-                                     settings.tile_px % 8 == 0));
+    assert(asked.tile_px == 0 ||
+           (asked.tile_px >= 16 && asked.tile_px <= TilePlanes::widest_px && asked.tile_px % 8 == 0));
     const auto start = Clock::now();
     for (const RenderLayer& layer : layers)
         if (layer.splats && layer.splats->size() > 0xffffffffLL)
@@ -101,6 +118,9 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
     std::unique_ptr<RenderCache> own = cache ? nullptr : std::make_unique<RenderCache>();
     RenderCache::State& state = cache ? *cache->state : *own->state;
     const std::vector<RenderLayer> drawn = as_drawn(layers);
+    RenderSettings settings = asked;
+    if (settings.memory_limit_bytes == RenderSettings::what_is_free)
+        settings.memory_limit_bytes = free_bytes(layers, settings, state);
     FrameJob job{drawn, camera, environment, settings, progress, tile_done, {}, {}, {}, {}, {}, {}};
     prepare(job, state);
     const Bands bands = make_bands(job);

@@ -159,9 +159,15 @@ TEST(Memory, ALimitLeavesLess) {
     EXPECT_NO_THROW(claim_memory(1024, "a test"));
     const std::string message =
         message_of<InputError>([] { claim_memory(std::int64_t{65} << 20, "a test"); });
-    EXPECT_NE(message.find(" are available of the " + human_bytes(double(limit)) + " it may take"),
+    EXPECT_NE(message.find(" are available of the " + human_bytes(double(limit)) +
+                           " that --memory allows; this takes "),
               std::string::npos)
         << message;
+    limit_memory(limit, "a dial");
+    EXPECT_NE(message_of<InputError>([] {
+                  claim_memory(std::int64_t{65} << 20, "a test");
+              }).find(" that a dial allows"),
+              std::string::npos);
     limit_memory(1);  // less than is taken already
     EXPECT_EQ(available_memory_bytes(), 0);
     limit_memory(0);

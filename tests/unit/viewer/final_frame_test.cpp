@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "core/memory.h"
 #include "core/shared_maths.h"
 #include "output/write.h"
 #include "pipeline.h"
@@ -163,6 +164,40 @@ TEST_F(FinalFrameTest, ACancelledPictureStaysUnfinished) {
     EXPECT_EQ(picture.outcome().state, State::done);
     const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
     std::printf("from cancel to the next picture's pixel: %.1f ms\n", taken.count());
+}
+
+/// Where memory does not suffice for a frame at once, it comes in bands, as --batch makes them.
+TEST_F(FinalFrameTest, ALimitOfMemoryMakesBandsAndNotAnError) {
+    small.scene.layers.resize(1);
+    small.scene.layers[0].source.count = 2'500'000;
+    FinalRequest wanted;
+    wanted.scene = small.scene;
+    wanted.sets = {std::make_shared<const SplatSet>(load_source(small.scene.layers[0].source, "gas"))};
+    wanted.width = 400;
+    wanted.height = 260;
+    const std::string hash = hash_of(wanted);
+    FinalFrame picture;
+    FinalRequest pixel = wanted;  // so that the splats are shaded
+    pixel.region = {0, 0, 1, 1};
+    picture.start(pixel);
+    wait(picture);
+    const std::int64_t before = resident_memory_bytes(), left = 72'000'000;
+    limit_memory(before + left, "a dial");
+    picture.start(wanted);
+    wait(picture);
+    EXPECT_LT(resident_memory_bytes(), before + left);
+    limit_memory(before + 1'000'000, "a dial");
+    wanted.scene.camera.position = glm::dvec3(5.0, 6.0, 12.0);
+    wanted.width = wanted.height = 3000;
+    FinalFrame refused;
+    refused.start(wanted);
+    wait(refused);
+    limit_memory(0);
+    ASSERT_EQ(picture.outcome().state, State::done) << picture.outcome().error;
+    EXPECT_EQ(pixel_hash(picture.outcome().frame->beauty), hash);
+    EXPECT_EQ(refused.outcome().state, State::failed);
+    EXPECT_NE(refused.outcome().error.find(" that a dial allows; this takes "), std::string::npos)
+        << refused.outcome().error;
 }
 
 TEST_F(FinalFrameTest, AFailureIsOneLineAndTheNextPictureWorks) {
