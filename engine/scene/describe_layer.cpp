@@ -65,8 +65,8 @@ void describe_texture(const Describer& d, TextureSettings& t) {
       "How the picture's numbers are read; auto: 8 and 16 bit as sRGB, float as linear.");
     d(t.alpha, "alpha", "Alpha from", "",
       "Where opacity comes from; auto: the file's, else the largest channel.");
-    d(t.unpremultiply, "unpremultiply", "Divide by alpha", "",
-      "Stored colours are matted on black and are divided by alpha.");
+    d(t.unpremultiply, "unpremultiply", "Unpremultiply picture", "",
+      "Stored colours are matted on black and are divided by alpha.", shown_as("Unpremultiply"));
     describe_fits(d, t);
     d(t.filter, "filter", "Filter", "", "How the picture is read between its pixels.");
     d(t.wrap, "wrap", "Outside the picture", "",

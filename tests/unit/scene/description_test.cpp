@@ -33,9 +33,9 @@ TEST(DescriptionTest, EveryParameterHasAPlaceInTheWindow) {
 TEST(DescriptionTest, NoTwoParametersOfALayerOrOfTheSceneHaveOneName) {
     // The same of two things that are never seen together, or of each of a list. What is prepared and masked
     // is told in the same words.
-    const std::set<std::string> shared{"Rate",     "Points",         "Sigma", "Density with distance",
-                                       "Rotation", "Position",       "Scale", "Width",
-                                       "Height",   "Divide by alpha"};
+    const std::set<std::string> shared{"Rate",     "Points",   "Sigma", "Density with distance",
+                                       "Rotation", "Position", "Scale", "Width",
+                                       "Height"};
     std::map<std::pair<bool, std::string>, std::string> keys;
     for (const ParameterRow& row : parameter_rows()) {
         const bool of_layer = row.spec.key.is_below("layer");
