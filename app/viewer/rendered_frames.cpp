@@ -3,25 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <glm/gtc/packing.hpp>
 
-#include "viewer/finished_frames.h"
+#include "viewer/small_picture.h"
 
 namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
 
-RenderedFrame8 read_frame(const fs::path& file, std::int64_t most_px) {
-    RenderedFrame8 frame;
+constexpr float half_max = 65504.0f;
+
+FrameOnDisk read_frame(const fs::path& file, std::int64_t most_px) {
+    FrameOnDisk frame;
     try {
-        const Image image = finished_view(file, most_px).image;
-        frame.width = image.width;
-        frame.height = image.height;
-        frame.rgba.reserve(static_cast<std::size_t>(4 * image.width * image.height));
-        for (std::int64_t y = 0; y < image.height; ++y)
-            for (std::int64_t x = 0; x < image.width; ++x)
-                for (int c = 0; c < 4; ++c)
-                    frame.rgba.push_back(static_cast<std::uint8_t>(std::lround(255.0f * image.at(x, y)[c])));
+        const SmallPicture small = read_small_picture(file, most_px);
+        frame.width = small.image.width;
+        frame.height = small.image.height;
+        const auto values = static_cast<std::size_t>(3 * frame.width * frame.height);
+        if (small.light)
+            frame.light.resize(values);
+        else
+            frame.codes.resize(values);
+        for (std::size_t i = 0; i < values; ++i) {
+            const float value = small.image.pixels[i / 3 * 4 + i % 3];
+            if (small.light)
+                frame.light[i] = glm::packHalf1x16(std::clamp(value, -half_max, half_max));
+            else
+                frame.codes[i] =
+                    static_cast<std::uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
+        }
     } catch (const std::exception& error) {
         frame.error = error.what();
     }
@@ -30,13 +41,12 @@ RenderedFrame8 read_frame(const fs::path& file, std::int64_t most_px) {
 
 }  // namespace
 
-Image to_image(const RenderedFrame8& frame) {
+Image to_image(const FrameOnDisk& frame) {
     Image image = make_image(frame.width, frame.height, 4, 1.0f);
-    std::size_t i = 0;
-    for (std::int64_t y = 0; y < frame.height; ++y)
-        for (std::int64_t x = 0; x < frame.width; ++x)
-            for (int c = 0; c < 4; ++c)
-                image.at(x, y)[c] = static_cast<float>(frame.rgba[i++]) * (1.0f / 255.0f);
+    for (std::size_t i = 0; i < frame.codes.size(); ++i)
+        image.pixels[i / 3 * 4 + i % 3] = static_cast<float>(frame.codes[i]) * (1.0f / 255.0f);
+    for (std::size_t i = 0; i < frame.light.size(); ++i)
+        image.pixels[i / 3 * 4 + i % 3] = glm::unpackHalf1x16(frame.light[i]);
     return image;
 }
 
@@ -63,7 +73,7 @@ void RenderedFrames::want(const std::vector<fs::path>& files) {
     worker_.wake();
 }
 
-std::shared_ptr<const RenderedFrame8> RenderedFrames::found(const fs::path& file) const {
+std::shared_ptr<const FrameOnDisk> RenderedFrames::found(const fs::path& file) const {
     const auto held = worker_.lock();
     const auto kept = kept_.find(file);
     return kept == kept_.end() ? nullptr : kept->second.frame;
@@ -82,7 +92,7 @@ Worker::Task RenderedFrames::next_task() {
 }
 
 void RenderedFrames::read(const fs::path& file, fs::file_time_type written) {
-    auto frame = std::make_shared<const RenderedFrame8>(read_frame(file, most_px_));
+    auto frame = std::make_shared<const FrameOnDisk>(read_frame(file, most_px_));
     const auto held = worker_.lock();
     const auto kept = kept_.find(file);
     if (kept != kept_.end() && kept->second.written == written) kept->second.frame = std::move(frame);
@@ -91,13 +101,13 @@ void RenderedFrames::read(const fs::path& file, fs::file_time_type written) {
 /// Those that are not wanted now, until the rest fits.
 void RenderedFrames::forget_some() {
     std::size_t bytes = 0;
-    for (const auto& [file, kept] : kept_) bytes += kept.frame ? kept.frame->rgba.size() : 0;
+    for (const auto& [file, kept] : kept_) bytes += kept.frame ? kept.frame->bytes() : 0;
     for (auto kept = kept_.begin(); kept != kept_.end() && bytes > most_bytes_;) {
         if (std::ranges::find(wanted_, kept->first) != wanted_.end()) {
             ++kept;
             continue;
         }
-        bytes -= kept->second.frame ? kept->second.frame->rgba.size() : 0;
+        bytes -= kept->second.frame ? kept->second.frame->bytes() : 0;
         kept = kept_.erase(kept);
     }
 }

@@ -1,5 +1,5 @@
-// Frames of the output's files as they look, read ahead in the background and kept, so that they play. In:
-// the files that are wanted. Out: pictures for the screen.
+// Frames of the output's files, read ahead in the background and kept, so that they play. In: the files that
+// are wanted. Out: their pictures: scene light, to be seen through the viewport's view, or display values.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,18 @@
 
 namespace astrosplat {
 
-struct RenderedFrame8 {
+/// RGB, the first row on top, in one of two ways.
+struct FrameOnDisk {
     std::int64_t width = 0, height = 0;
-    std::vector<std::uint8_t> rgba;  // display values, the first row on top
-    std::string error;               // one line: it cannot be read
+    std::vector<std::uint8_t> codes;   // display values, 255 is 1
+    std::vector<std::uint16_t> light;  // linear, primaries of Rec. 709, as half floats
+    std::string error;                 // one line: it cannot be read
+    bool is_light() const { return !light.empty(); }
+    std::size_t bytes() const { return codes.size() + light.size() * sizeof(std::uint16_t); }
 };
 
 /// For a texture.
-Image to_image(const RenderedFrame8& frame);
+Image to_image(const FrameOnDisk& frame);
 
 class RenderedFrames {
   public:
@@ -32,14 +36,14 @@ class RenderedFrames {
     /// at once.
     void want(const std::vector<std::filesystem::path>& files);
     /// Null while it is not read, or not wanted.
-    std::shared_ptr<const RenderedFrame8> found(const std::filesystem::path& file) const;
+    std::shared_ptr<const FrameOnDisk> found(const std::filesystem::path& file) const;
     /// Something wanted is not read yet.
     bool working() const;
 
   private:
     struct Kept {
         std::filesystem::file_time_type written;
-        std::shared_ptr<const RenderedFrame8> frame;  // null: not read yet
+        std::shared_ptr<const FrameOnDisk> frame;  // null: not read yet
     };
     Worker::Task next_task();
     void read(const std::filesystem::path& file, std::filesystem::file_time_type written);

@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "edit/autosave.h"
@@ -22,6 +23,7 @@
 #include "gl/display.h"
 #include "gl/image_texture.h"
 #include "gui/gui.h"
+#include "output/read_frame.h"
 #include "viewer/camera_overlay.h"
 #include "viewer/child_process.h"
 #include "viewer/color_management.h"
@@ -90,10 +92,11 @@ struct Session {
     RenderQueue jobs;
     std::optional<CommandSource> command_source;  // of the command in the status
     FinishedFrames finished;
-    std::shared_ptr<const FinishedView> finished_shown;  // in the texture
+    std::pair<std::filesystem::path, FrameHeader> finished_header;  // of the file looked at
+    std::shared_ptr<const FinishedView> finished_shown;             // in the texture
     ImageTexture finished_texture;
     RenderedFrames rendered;
-    std::shared_ptr<const RenderedFrame8> rendered_shown;  // in the texture; null: none
+    std::shared_ptr<const FrameOnDisk> rendered_shown;  // in the texture; null: none
     ImageTexture rendered_texture;
     std::uint64_t rendered_uploads = 0;
     Thumbnails thumbnails;

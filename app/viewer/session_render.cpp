@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include "edit/batch_command.h"
+#include "scene/animate.h"
 #include "viewer/child_process.h"
 #include "viewer/comparison.h"
+#include "viewer/session_view.h"
 
 namespace astrosplat {
 namespace {
@@ -35,6 +37,20 @@ const QueuedJob* job_looked_at(const Session& session) {
     return jobs.empty() ? nullptr : &jobs.back();
 }
 
+/// As the viewport shows that frame of the scene that is open.
+FinishedRequest request_for(Session& session, const fs::path& file) {
+    if (session.finished_header.first != file) session.finished_header = {file, read_frame_header(file)};
+    const Scene& scene = session.document.scene();
+    const std::optional<std::int64_t> told = session.finished_header.second.frame;
+    const double frame = told ? static_cast<double>(*told) : session.view.frame;
+    FinishedRequest request;
+    request.file = file;
+    request.view = display_view(session.view.display, scene.output.view);
+    if (session.view.display == OutputParams::View::automatic) request.ocio = session.color.transform();
+    request.exposure = scene_at(scene, frame).output.exposure;
+    return request;
+}
+
 void show_finished_frame(Session& session) {
     FinishedFrame& shown = session.status.finished;
     const QueuedJob* const job = session.view.queue_open ? job_looked_at(session) : nullptr;
@@ -45,8 +61,9 @@ void show_finished_frame(Session& session) {
     const auto last = static_cast<int>(job->files.size()) - 1;
     const int index = session.view.queue_frame < 0 ? last : std::min(session.view.queue_frame, last);
     const fs::path& file = job->files[static_cast<std::size_t>(index)];
-    session.finished.want(file);
-    const auto found = session.finished.found(file);
+    const FinishedRequest request = request_for(session, file);
+    session.finished.want(request);
+    const auto found = session.finished.found(request);
     if (!found || found == session.finished_shown) return;  // while it is read, the last one stays
     session.finished_shown = found;
     shown.error = found->error;

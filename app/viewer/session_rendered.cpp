@@ -67,7 +67,7 @@ bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& s
         session.rendered_shown = nullptr;
         return false;
     }
-    const std::shared_ptr<const RenderedFrame8> found = session.rendered.found(file);
+    const std::shared_ptr<const FrameOnDisk> found = session.rendered.found(file);
     if (found && !found->error.empty()) {
         status.missing_frame = file.filename().string();
         return false;
@@ -83,7 +83,7 @@ bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& s
                height = static_cast<float>(session.rendered_shown->height);
     const float scale = std::min(place.width / width, place.height / height);
     shown.b = session.rendered_texture.handle();
-    shown.b_is_display = true;
+    shown.b_is_display = !session.rendered_shown->is_light();
     shown.mode = DisplaySettings::Mode::b;
     shown.width = scale * width;
     shown.height = scale * height;

@@ -43,11 +43,6 @@ void forget_what_is_not_seen(Scene& scene) {
     std::erase_if(output.aovs, [](const std::string& aov) { return aov != "depth"; });  // the probe shows it
 }
 
-OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of_scene) {
-    const OutputParams::View view = chosen == OutputParams::View::automatic ? of_scene : chosen;
-    return view == OutputParams::View::automatic ? OutputParams::View::srgb : view;
-}
-
 /// The part of a 1:1 frame that the viewport shows; empty: all of it.
 Region visible_part(const Rect& place, int width, int height, int viewport_width, int viewport_height) {
     const double scale = static_cast<double>(place.width) / width;
@@ -212,6 +207,11 @@ std::optional<Camera> camera_in_viewport(const ViewRequest& request, const Rect&
 
 }  // namespace
 
+OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of_scene) {
+    const OutputParams::View view = chosen == OutputParams::View::automatic ? of_scene : chosen;
+    return view == OutputParams::View::automatic ? OutputParams::View::srgb : view;
+}
+
 Scene evaluated(const Scene& scene, const ViewState& view) {
     Scene now = scene_at(scene, view.frame);
     if (!view.solo.empty())
@@ -278,6 +278,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     if (from_disk) {
         rendered.view = shown.view;
         rendered.ocio = shown.ocio;
+        rendered.exposure = shown.exposure;
         rendered.a = shown.a;
         shown = rendered;
     }

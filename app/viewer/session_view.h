@@ -9,6 +9,9 @@ namespace astrosplat {
 /// Any scene as it stands at the view's frame, with solo.
 Scene evaluated(const Scene& scene, const ViewState& view);
 
+/// What the viewport shows a scene through: what the person chose, else the scene. Never automatic.
+OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of_scene);
+
 /// The preview is drawn by OpenGL rather than by the processor.
 bool draws_by_opengl(const Session& session);
 

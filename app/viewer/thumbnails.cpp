@@ -1,4 +1,4 @@
-// A picture is read by rows and made small on the way, so that a large one takes time but no memory.
+// One thread reads, the window asks.
 #include "viewer/thumbnails.h"
 
 #include <algorithm>
@@ -7,57 +7,25 @@
 
 #include "core/color.h"
 #include "core/log.h"
-#include "image/area.h"
-#include "source/stored_picture.h"
+#include "viewer/small_picture.h"
 
 namespace astrosplat {
 namespace {
-
-/// Values of a FITS plane that are held at once.
-constexpr std::int64_t most_values = std::int64_t{1} << 22;
-
-/// What has no value is black: a gap must not take the light around it.
-ImageRows without_gaps(ImageRows rows) {
-    const std::int64_t row_values = rows.width * rows.channels;
-    rows.read = [row_values, read = std::move(rows.read)](std::int64_t begin, std::int64_t end, float* out) {
-        read(begin, end, out);
-        std::replace_if(
-            out, out + (end - begin) * row_values, [](float value) { return std::isnan(value); }, 0.0f);
-    };
-    return rows;
-}
 
 std::uint8_t byte_of(float value, bool light) {
     const float shown = light ? display_srgb(value) : std::clamp(value, 0.0f, 1.0f);
     return static_cast<std::uint8_t>(std::lround(255.0f * shown));
 }
 
-std::int64_t shrunk(std::int64_t length, std::int64_t longer, std::int64_t most_px) {
-    return longer <= most_px ? length : std::max<std::int64_t>(1, length * most_px / longer);
-}
-
 }  // namespace
 
 Thumbnail thumbnail_of_file(const std::filesystem::path& file, std::int64_t most_px,
                             const Progress& progress) {
-    StoredRows from = open_stored(file, TextureSettings{}, progress, most_values);
-    const Picture& picture = from.stored.picture;
-    Thumbnail made;
-    made.width = from.rows.width;
-    made.height = from.rows.height;
-    const std::int64_t longer = std::max(made.width, made.height);
-    made.small_width = shrunk(made.width, longer, most_px);
-    made.small_height = shrunk(made.height, longer, most_px);
-    const Image small =
-        reduced_by_area(without_gaps(std::move(from.rows)), made.small_width, made.small_height);
-    progress.check();
-    const bool divides = small.channels == 4 && !picture.associated;
+    const SmallPicture small = read_small_picture(file, most_px, progress);
+    Thumbnail made{small.width, small.height, small.image.width, small.image.height, {}};
     made.rgb.reserve(static_cast<std::size_t>(3 * made.small_width * made.small_height));
-    for (std::int64_t i = 0; i < made.small_width * made.small_height; ++i) {
-        const float* const p = small.pixels.data() + i * small.channels;
-        for (int c = 0; c < 3; ++c)
-            made.rgb.push_back(byte_of(divides ? p[c] * p[3] : p[c], !from.stored.display_values));
-    }
+    for (std::size_t i = 0; i < small.image.pixels.size(); ++i)
+        if (i % 4 < 3) made.rgb.push_back(byte_of(small.image.pixels[i], small.light));
     return made;
 }
 

@@ -88,5 +88,21 @@ TEST_F(WindowPath, RenderedFramesAreShownAndTheOthersAsPreviews) {
     EXPECT_TRUE(comes_true([&] { return sees(150); })) << "and now it is";
 }
 
+/// Frames of scene light are seen through the viewport's view and exposure, as the preview is.
+TEST_F(WindowPath, RenderedLightIsShownThroughTheView) {
+    std::ostringstream text;
+    text << std::ifstream(scene_file).rdbuf();
+    std::string scene = text.str();
+    scene.replace(scene.find("shot.####.png"), 13, "shot.####.exr");
+    scene.insert(scene.find("frames = "), "view = \"linear\"\nexposure = 1.0\n");
+    write_text(scene_file, scene);
+    fs::create_directories(folder / "frames");
+    write_linear_image(folder / "frames/shot.0001.exr", make_image(320, 180, 4, 0.2f), "", Existing::replace);
+    start();
+    settled_frame();
+    person->click(same_widgets().at("playing/Rendered"));
+    EXPECT_TRUE(comes_true([&] { return sees(102); })) << "2 * 0.2 of 255";
+}
+
 }  // namespace
 }  // namespace astrosplat::test
