@@ -13,6 +13,7 @@
 #include "gaussians/fit.h"
 #include "gaussians/gaussian_file.h"
 #include "gaussians/gaussian_usda.h"
+#include "gaussians/harmonics_export.h"
 #include "gaussians/reduce.h"
 #include "interrupt.h"
 #include "pipeline.h"
@@ -31,9 +32,12 @@ const char* const export_help =
     "falloffs by the "
     "nearest Gaussian of the same integral; screen and hybrid by what they hide (hybrid as seen from that "
     "frame's "
-    "camera); dust by grey; Gaussians that were read keep their shapes, and colours by direction become "
-    "those seen "
-    "from that frame's camera. As Gaussians: add by over, light above 1 by more opacity; of display colours "
+    "camera); dust by grey; Gaussians that were read keep their shapes, and in .ply and .glb their harmonics "
+    "up to the degree of their file: exact in the direction of that frame's camera, in all others times what "
+    "the look and the frame did to that one, channel by channel (.usda, .vdb and splats merged by --count "
+    "have "
+    "the one colour that the camera sees). As Gaussians: add by over, light above 1 by more opacity; of "
+    "display colours "
     "the light "
     "is fitted to that frame, unless all layers are mixed in display values (space = \"display\"). As a "
     "volume: float "
@@ -140,10 +144,13 @@ RenderSettings fitted_settings(const Pipeline& pipeline, double frame) {
 /// Layers of merged splats, which `reduced` holds.
 void merge_splats(std::vector<RenderLayer>& layers, std::vector<ShadedSplats>& reduced, const Camera& camera,
                   std::int64_t count, const Progress& progress) {
+    std::int64_t all = 0;
+    for (const RenderLayer& layer : layers) all += layer.splats->size();
     reduced = reduce_splats(layers, camera.world_from_camera, count, progress);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         layers[i].splats = &reduced[i];
         layers[i].render.opacity = 1.0f;
+        if (all > count) layers[i].directional = nullptr;  // dots that stand for many look alike all around
     }
 }
 
@@ -209,10 +216,13 @@ int run_export(const ExportOptions& options) {
         if (!export_volume(layers, camera, volume, baking)) refuse_nothing(scene);
         return exit_done;
     }
+    if (kind == Kind::usda)
+        for (RenderLayer& layer : layers) layer.directional = nullptr;
     Baked baked = bake(layers, camera, gain);
     if (baked.gaussians.size() == 0) refuse_nothing(scene);
     if (encoded) encode_for_display(baked.gaussians);
     if (encoded && !fits) fit_to_view(baked.gaussians, wanted, camera, settings);
+    finish_harmonics(baked.gaussians, camera, encoded);
     const Progress writing = progress.begin_step("writing");
     if (kind == Kind::ply)
         write_gaussian_ply(target, baked.gaussians, writing);

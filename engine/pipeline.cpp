@@ -230,6 +230,8 @@ std::vector<RenderLayer> Pipeline::State::visible_layers(const Scene& now) const
             visible.back().splats = &layers[i].shaded;
         visible.back().absorbs = facts_of(layers[i]).absorbs;
         visible.back().gaussians = layers[i].set && holds_gaussians(*layers[i].set);
+        if (layers[i].set && !layers[i].set->harmonics.empty())
+            visible.back().directional = layers[i].set.get();
         visible.back().star_pixels = facts_of(layers[i]).star_pixels;
     }
     return visible;

@@ -21,8 +21,15 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::int64_t gaussians_written_at_once = 1 << 14;
-constexpr double least_scale = 1e-30;  // scene units, of a Gaussian that is flat
-constexpr int ply_floats = 17, glb_floats = 18;
+constexpr double least_scale = 1e-30;            // scene units, of a Gaussian that is flat
+constexpr int ply_floats = 17, glb_floats = 18;  // without harmonics beyond degree 0
+
+/// Harmonics beyond degree 0, each of three numbers.
+int rest_of(const Gaussians& g) { return (g.degree + 1) * (g.degree + 1) - 1; }
+
+glm::vec3 first_harmonic(const Gaussians& g, std::size_t i) {
+    return g.degree > 0 ? g.harmonics[i].c[0] : mean_coefficient(g.color[i]);
+}
 
 char* put(char* out, std::initializer_list<float> values) {
     std::memcpy(out, values.begin(), values.size() * sizeof(float));
@@ -36,21 +43,27 @@ char* put_ply_row(char* out, const Gaussians& g, std::size_t i) {
     glm::vec3 scale;
     for (int k = 0; k < 3; ++k)
         scale[k] = static_cast<float>(real::log(std::max(double(g.scale[i][k]), least_scale)));
-    const glm::vec3 p = g.position[i], sh = mean_coefficient(g.color[i]);
+    const glm::vec3 p = g.position[i], sh = first_harmonic(g, i);
     const glm::vec4 q = g.rotation[i];
-    return put(out, {p.x, p.y, p.z, 0.0f, 0.0f, 0.0f, sh.x, sh.y, sh.z, logit, scale.x, scale.y, scale.z, q.w,
-                     q.x, q.y, q.z});
+    out = put(out, {p.x, p.y, p.z, 0.0f, 0.0f, 0.0f, sh.x, sh.y, sh.z});
+    for (int k = 0; k < 3; ++k)  // all of red first
+        for (int j = 1; j <= rest_of(g); ++j) out = put(out, {g.harmonics[i].c[j][k]});
+    return put(out, {logit, scale.x, scale.y, scale.z, q.w, q.x, q.y, q.z});
 }
 
 char* put_glb_row(char* out, const Gaussians& g, bool encoded, std::size_t i) {
-    const glm::vec3 p = g.position[i], sh = mean_coefficient(g.color[i]), s = g.scale[i];
+    const glm::vec3 p = g.position[i], sh = first_harmonic(g, i), s = g.scale[i];
     const glm::vec4 q = g.rotation[i];
     glm::vec3 c = glm::min(g.color[i], glm::vec3(1.0f));
     if (encoded)
         for (int k = 0; k < 3; ++k) c[k] = static_cast<float>(real::srgb_to_linear(c[k]));
     const float a = g.alpha[i];
-    return put(out,
-               {p.x, p.y, p.z, q.x, q.y, q.z, q.w, s.x, s.y, s.z, a, sh.x, sh.y, sh.z, c.x, c.y, c.z, a});
+    out = put(out, {p.x, p.y, p.z, q.x, q.y, q.z, q.w, s.x, s.y, s.z, a, sh.x, sh.y, sh.z});
+    for (int j = 1; j <= rest_of(g); ++j) {
+        const glm::vec3& rest = g.harmonics[i].c[j];
+        out = put(out, {rest.x, rest.y, rest.z});
+    }
+    return put(out, {c.x, c.y, c.z, a});
 }
 
 template <class PutRow>
@@ -77,20 +90,27 @@ std::string bounds_text(const Gaussians& g) {
 }
 
 struct GlbAttribute {
-    const char* name;
+    std::string name;
     int floats;
 };
-constexpr GlbAttribute glb_attributes[] = {{"POSITION", 3},
-                                           {"KHR_gaussian_splatting:ROTATION", 4},
-                                           {"KHR_gaussian_splatting:SCALE", 3},
-                                           {"KHR_gaussian_splatting:OPACITY", 1},
-                                           {"KHR_gaussian_splatting:SH_DEGREE_0_COEF_0", 3},
-                                           {"COLOR_0", 4}};
+std::vector<GlbAttribute> glb_attributes(int degree) {
+    const std::string prefix = "KHR_gaussian_splatting:";
+    std::vector<GlbAttribute> attributes{
+        {"POSITION", 3}, {prefix + "ROTATION", 4}, {prefix + "SCALE", 3}, {prefix + "OPACITY", 1}};
+    for (int l = 0; l <= degree; ++l)
+        for (int n = 0; n < 2 * l + 1; ++n)
+            attributes.push_back({fmt::format("{}SH_DEGREE_{}_COEF_{}", prefix, l, n), 3});
+    attributes.push_back({"COLOR_0", 4});
+    return attributes;
+}
+int glb_floats_of(const Gaussians& g) {
+    return glb_floats + 3 * rest_of(g);
+}  // 63 are the most that glTF allows
 
 std::string glb_json(const Gaussians& g, bool encoded, std::int64_t bytes) {
     std::string names, accessors;
     int number = 0, offset = 0;
-    for (const GlbAttribute& attribute : glb_attributes) {
+    for (const GlbAttribute& attribute : glb_attributes(g.degree)) {
         const std::string comma = number ? "," : "";
         const std::string type = attribute.floats == 1 ? "SCALAR" : fmt::format("VEC{}", attribute.floats);
         names += fmt::format(R"({}"{}":{})", comma, attribute.name, number);
@@ -107,7 +127,7 @@ std::string glb_json(const Gaussians& g, bool encoded, std::int64_t bytes) {
         R"("colorSpace":"{}","projection":"perspective","sortingMethod":"cameraDistance"}}}}}}]}}],)"
         R"("accessors":[{}],"bufferViews":[{{"buffer":0,"byteLength":{},"byteStride":{},"target":34962}}],)"
         R"("buffers":[{{"byteLength":{}}}]}})",
-        names, encoded ? "srgb_rec709_display" : "lin_rec709_display", accessors, bytes, glb_floats * 4,
+        names, encoded ? "srgb_rec709_display" : "lin_rec709_display", accessors, bytes, glb_floats_of(g) * 4,
         bytes);
     json.append((4 - json.size() % 4) % 4, ' ');
     return json;
@@ -118,25 +138,29 @@ std::string glb_json(const Gaussians& g, bool encoded, std::int64_t bytes) {
 void write_gaussian_ply(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress) {
     std::string header = "ply\nformat binary_little_endian 1.0\n";
     header += fmt::format("element vertex {}\n", gaussians.size());
-    for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity",
-                             "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
-        header += fmt::format("property float {}\n", name);
-    write_rows(target, header + "end_header\n", gaussians, ply_floats, progress,
+    const auto name = [&](const std::string& text) { header += fmt::format("property float {}\n", text); };
+    for (const char* text : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2"}) name(text);
+    for (int i = 0; i < 3 * rest_of(gaussians); ++i) name(fmt::format("f_rest_{}", i));
+    for (const char* text : {"opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
+        name(text);
+    write_rows(target, header + "end_header\n", gaussians, ply_floats + 3 * rest_of(gaussians), progress,
                [&](char* out, std::size_t i) { return put_ply_row(out, gaussians, i); });
 }
 
 void write_gaussian_glb(const WriteTarget& target, const Gaussians& gaussians, bool encoded,
                         const Progress& progress) {
-    const std::int64_t bytes = gaussians.size() * glb_floats * 4;
+    const int floats = glb_floats_of(gaussians);
+    const std::int64_t bytes = gaussians.size() * floats * 4;
     const std::string json = glb_json(gaussians, encoded, bytes);
     const std::int64_t all = 28 + static_cast<std::int64_t>(json.size()) + bytes;
     if (all > std::numeric_limits<std::uint32_t>::max())
-        bad_input(target.file.string(), "", "at most 4 GiB, some 59 million splats (see --count)",
+        bad_input(target.file.string(), "",
+                  fmt::format("at most 4 GiB, some {} million splats (see --count)", 1073 / floats),
                   fmt::format("{} splats", gaussians.size()));
     const std::string header = "glTF" + number_bytes(2) + number_bytes(static_cast<std::uint32_t>(all)) +
                                number_bytes(static_cast<std::uint32_t>(json.size())) + "JSON" + json +
                                number_bytes(static_cast<std::uint32_t>(bytes)) + std::string("BIN\0", 4);
-    write_rows(target, header, gaussians, glb_floats, progress,
+    write_rows(target, header, gaussians, floats, progress,
                [&](char* out, std::size_t i) { return put_glb_row(out, gaussians, encoded, i); });
 }
 

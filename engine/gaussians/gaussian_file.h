@@ -8,9 +8,10 @@
 
 namespace astrosplat {
 
-/// Binary little endian: x y z, normals of 0, f_dc_0..2 = (colour - 1/2) sqrt(4 pi), logit of alpha, natural
-/// logarithms of the scale, and rotation as w x y z. Its readers blend the colours as they are, so these are
-/// encoded for a display. Throws OutputError, Cancelled.
+/// Binary little endian: x y z, normals of 0, f_dc_0..2 = (colour - 1/2) sqrt(4 pi), f_rest_* where there are
+/// harmonics beyond degree 0 (all of red, of green, of blue), logit of alpha, natural logarithms of the
+/// scale, and rotation as w x y z. Its readers blend the colours as they are, so these are encoded for a
+/// display. Throws OutputError, Cancelled.
 void write_gaussian_ply(const WriteTarget& target, const Gaussians& gaussians, const Progress& progress = {});
 
 /// `encoded`: colours were encoded for a display (srgb_rec709_display); else they are linear light

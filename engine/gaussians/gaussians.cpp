@@ -13,6 +13,7 @@
 #include "core/quaternion.h"
 #include "core/real.h"
 #include "gaussians/appearance.h"
+#include "gaussians/harmonics_export.h"
 #include "render/falloff.h"
 
 namespace astrosplat {
@@ -154,7 +155,11 @@ void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gau
     out.scale.reserve(all);
     out.rotation.reserve(all);
     const Baker baker(layer, camera, gain);
-    for (std::size_t i = 0; i < layer.splats->position.size(); ++i) baker.add(i, out, counts);
+    HarmonicsTaker harmonics(layer, out);
+    for (std::size_t i = 0; i < layer.splats->position.size(); ++i) {
+        baker.add(i, out, counts);
+        harmonics.take(i, out);
+    }
 }
 
 void encode_for_display(Gaussians& gaussians) {

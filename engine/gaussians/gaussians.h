@@ -3,13 +3,24 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
 
 #include "camera/camera.h"
 #include "core/buffer.h"
 #include "render/frame.h"
+#include "splats/harmonics.h"
 
 namespace astrosplat {
+
+/// Some Gaussians whose harmonics are of one set.
+struct HarmonicsSource {
+    std::size_t begin = 0, end = 0;
+    bool display = false;  // they give display values (sRGB); else linear light
+    glm::dmat3 turn{1.0};  // of their axes to the world's
+};
 
 /// A Gaussian's weight is alpha e^(-d^2 / 2), d the distance from its centre on the frame in its own standard
 /// deviations there.
@@ -19,6 +30,11 @@ struct Gaussians {
     Buffer<float> alpha;         // 0..1, of the centre, > 0
     Buffer<glm::vec3> scale;     // standard deviations along its own axes, scene units
     Buffer<glm::vec4> rotation;  // of these: unit quaternion x y z w
+    /// Empty: all look alike from everywhere. Else the colour of each by direction, in world axes and the
+    /// space of `color`, up to `degree`; until finish_harmonics as their files have them.
+    Buffer<Harmonics> harmonics;
+    int degree = 0;                        // 0 to 3
+    std::vector<HarmonicsSource> sources;  // in ascending order; Gaussians of none have no directions
 
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
@@ -51,7 +67,7 @@ struct BakeCounts {
 /// its alpha is what the splat hides under the layer's blend (add nothing, screen its colour, hybrid as seen
 /// from the camera), but never less than its light needs with colours of at most 1. Stars have no size in
 /// the scene: none may be given. Gaussians keep their shape, and their colour also beyond 1; it is the one
-/// seen from the camera.
+/// seen from the camera, and their harmonics are kept beside it (harmonics_export.h).
 void bake_layer(const RenderLayer& layer, const Camera& camera, double gain, Gaussians& out,
                 BakeCounts& counts);
 

@@ -18,6 +18,8 @@
 
 namespace astrosplat {
 
+struct SplatSet;
+
 /// One layer as the renderer sees it. world = world_from_layer * (scale * p) + translate.
 struct RenderLayer {
     std::string name;
@@ -36,6 +38,9 @@ struct RenderLayer {
     /// Gaussians: the radius of each is three standard deviations. The gaussian falloff is drawn out to four,
     /// and the footprint is that of the frame's affine approximation at the centre (EWA).
     bool gaussians = false;
+    /// Of Gaussians whose colours depend on where they are seen from: the set that the splats were made of.
+    /// Not for the renderer.
+    const SplatSet* directional = nullptr;
     double radius_scale = 1.0;  // of radii alone
     /// Stars: the splats' colours are their light over all pixels as seen from the layer's origin, radii and
     /// alphas are not used. Stars at infinity lie 1e15 units or more away.

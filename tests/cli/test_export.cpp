@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "scene_fixture.h"
+#include "support/capture.h"
 
 namespace astrosplat::test {
 namespace {
@@ -127,6 +128,33 @@ TEST_F(Export, GlbHoldsTheSplatsInLinearLight) {
         run({"export", "scene.toml", "-o", "display.glb", "--space", "display", "--progress", "none"}).code,
         0);
     EXPECT_NE(text_of(folder / "display.glb").find("\"srgb_rec709_display\""), std::string::npos);
+}
+
+TEST_F(Export, CapturesKeepTheirHarmonicsUntilTheyAreMerged) {
+    const std::string bytes = ply_of(capture(40, 2), 2);
+    write_text(folder / "capture.ply", bytes);
+    write_text(folder / "capture.toml",
+               "astrosplat = 1\ncamera.position = [2, 1, 9]\n[[layer]]\nname = \"capture\"\n"
+               "source = { kind = \"splats\", file = \"capture.ply\" }\n"
+               "render = { isolate = true, space = \"display\" }\n");
+    const auto exported = [&](const std::string& count) {
+        EXPECT_EQ(run({"export", "capture.toml", "-o", "out.ply", "--count", count, "--overwrite",
+                       "--progress", "none"})
+                      .code,
+                  0);
+        return text_of(folder / "out.ply");
+    };
+    const std::string whole = exported("40"), merged = exported("10");
+    EXPECT_EQ(merged.find("f_rest_0"), std::string::npos);
+    EXPECT_NE(whole.find("property float f_rest_23\nproperty float opacity\n"), std::string::npos);
+    const auto begin = [](const std::string& file) { return file.find("end_header\n") + 11; };
+    constexpr std::size_t columns = 17 + 24;
+    ASSERT_EQ(whole.size() - begin(whole), 40 * columns * 4);
+    for (std::size_t i = 0; i < 40; ++i)
+        for (std::size_t k = 6; k < 6 + 3 + 24; ++k) {
+            const std::size_t at = (i * columns + k) * 4;
+            EXPECT_NEAR(float_at(whole, begin(whole) + at), float_at(bytes, begin(bytes) + at), 1e-4);
+        }
 }
 
 TEST_F(Export, CountIsABudgetOfAllLayers) {
