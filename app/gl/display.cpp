@@ -1,8 +1,6 @@
-// Background by clearing, then the image, or its parts on both sides of the wipe, each cut to its rectangle
-// and drawn by a program made for exactly what it shows: a pixel costs one read and one curve.
+// Background by clearing, then the image, or its parts on both sides of the wipe, each cut to its rectangle.
 #include "gl/display.h"
 
-#include <fmt/format.h>
 #include <glad/gl.h>
 
 #include <algorithm>
@@ -10,53 +8,15 @@
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
-#include <map>
 
 #include "core/real.h"
+#include "gl/display_programs.h"
 #include "gl/objects.h"
-#include "gl/ocio_tables.h"
-#include "gl/program.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr int view_none = 3, view_ocio = 4;  // VIEW_NONE, VIEW_OCIO of display_fragment.glsl
-
-/// VIEW_LINEAR, VIEW_SRGB, VIEW_SOFT of display_fragment.glsl.
-int view_number(const DisplaySettings& settings) {
-    return settings.ocio ? view_ocio : static_cast<int>(settings.view) - 1;
-}
-
-constexpr int ocio_unit = 2;  // its tables' first texture unit
-
-/// What one program of display_fragment.glsl is made for.
-struct Variant {
-    int view_a = 0, view_b = 0;
-    int taps_a = 1, taps_b = 1;
-    enum class Mix { alone, over, difference } mix = Mix::alone;
-    bool masked = false, dither = false;
-    auto operator<=>(const Variant&) const = default;
-    bool managed() const { return view_a == view_ocio || (mix != Mix::alone && view_b == view_ocio); }
-};
-
-ProgramSource source_of(const Variant& v, const OcioTables& ocio) {
-    ProgramSource source{{fmt::format("VIEW {}", v.view_a), fmt::format("TAPS_A {}", v.taps_a)},
-                         {"screen_vertex.glsl"},
-                         {"display_fragment.glsl"},
-                         {}};
-    if (v.mix != Variant::Mix::alone) {
-        const char* mix = v.mix == Variant::Mix::over ? "OVER" : "DIFFERENCE";
-        source.defines.insert(source.defines.end(),
-                              {mix, fmt::format("VIEW_B {}", v.view_b), fmt::format("TAPS_B {}", v.taps_b)});
-    }
-    if (v.masked) source.defines.push_back("MASKED");
-    if (v.dither) source.defines.push_back("DITHER");
-    if (v.managed()) {
-        source.defines.push_back("WITH_OCIO");
-        source.fragment_head = ocio.text();
-    }
-    return source;
-}
+using Mix = DisplayVariant::Mix;
 
 /// A texture and how it is read: pixels one to one, or at least twice as large, as they are; else smoothed,
 /// shrunk ones with several taps.
@@ -120,8 +80,7 @@ constexpr float line_brightness = 0.85f;
 }  // namespace
 
 struct Display::State {
-    std::map<Variant, std::unique_ptr<GlProgram>> programs;  // compiled when first needed
-    OcioTables ocio;
+    DisplayPrograms programs;
     GlVertexArray nothing;
     GlTarget target;
     GlTarget values;        // of what is compared, as floats
@@ -132,25 +91,6 @@ struct Display::State {
     bool holds(const DisplaySettings& settings, int width, int height) const {
         return settings.content != 0 && version != 0 && settings == drawn && width == target.width() &&
                height == target.height();
-    }
-
-    const GlProgram& program(const Variant& variant) {
-        std::unique_ptr<GlProgram>& entry = programs[variant];
-        if (!entry) {
-            entry = std::make_unique<GlProgram>(source_of(variant, ocio));
-            entry->set_sampler("image_a", 0);
-            entry->set_sampler("image_b", 1);
-            if (variant.managed()) ocio.name_samplers(*entry, ocio_unit);
-        }
-        return *entry;
-    }
-
-    /// Programs of another transform go.
-    void use_ocio(const std::shared_ptr<const DisplayTransform>& wanted) {
-        if (ocio.holds(wanted)) return ocio.bind(ocio_unit);
-        std::erase_if(programs, [](const auto& entry) { return entry.first.managed(); });
-        ocio.take(wanted, ocio_unit);
-        ocio.bind(ocio_unit);
     }
 
     void begin_drawing(GlTarget& into) {
@@ -185,37 +125,35 @@ struct Display::State {
         glUniform1f(p.uniform("difference_gain"), s.difference_gain);
     }
 
-    void draw(const PixelRect& r, const Variant& variant, const DisplaySettings& s) {
+    void draw(const PixelRect& r, const DisplayVariant& variant, const DisplaySettings& s) {
         if (!cut(r)) return;
-        if (variant.managed()) use_ocio(s.ocio);
-        const GlProgram& p = program(variant);
-        p.use();
+        const GlProgram& p = programs.use(variant, s.ocio);
         glUniform4f(p.uniform("place"), s.x, static_cast<float>(height) - s.y, 1.0f / s.width,
                     1.0f / s.height);
         glUniform1f(p.uniform("gain"), float(real::pow(2.0, double(s.exposure))));
-        if (variant.mix != Variant::Mix::alone) set_b(p, s);
+        if (variant.mix != Mix::alone) set_b(p, s);
         glBindVertexArray(nothing.get());
         glDrawArrays(GL_TRIANGLES, 0, 3);
         glBindVertexArray(0);
     }
 
     void draw_side(const PixelRect& r, bool b, const DisplaySettings& s) {
-        if (b && s.b_place && s.a != 0) return draw_both(r, Variant::Mix::over, s);
+        if (b && s.b_place && s.a != 0) return draw_both(r, Mix::over, s);
         const ShownImage image = b ? image_of(s.b, s.width) : image_a_of(s);
         bind(0, image);
-        Variant variant;
-        variant.view_a = b && s.b_is_display ? view_none : view_number(s);
+        DisplayVariant variant;
+        variant.view_a = view_number(s, b && s.b_is_display);
         variant.taps_a = image.taps;
         variant.dither = s.dither;
         draw(r, variant, s);
     }
 
-    void draw_both(const PixelRect& r, Variant::Mix mix, const DisplaySettings& s, bool masked = false) {
+    void draw_both(const PixelRect& r, Mix mix, const DisplaySettings& s, bool masked = false) {
         const ShownImage a = image_a_of(s), b = image_b_of(s);
         bind(0, a);
         bind(1, b);
-        const int view = view_number(s);
-        draw(r, {view, s.b_is_display ? view_none : view, a.taps, b.taps, mix, masked, false}, s);
+        draw(r, {view_number(s, false), view_number(s, s.b_is_display), a.taps, b.taps, mix, masked, false},
+             s);
     }
 
     void draw_wipe(const PixelRect& r, const DisplaySettings& s) {
@@ -248,7 +186,7 @@ unsigned Display::draw(const DisplaySettings& settings, int target_width, int ta
     const bool anything = settings.a != 0 || settings.b != 0;
     if (anything && settings.width > 0.0f && settings.height > 0.0f) {
         if (mode == Mode::difference)
-            state.draw_both(r, Variant::Mix::difference, settings);
+            state.draw_both(r, Mix::difference, settings);
         else if (mode == Mode::wipe)
             state.draw_wipe(r, settings);
         else
@@ -276,7 +214,7 @@ Display::Compared Display::read_compared(const DisplaySettings& settings, int ta
     };
     state.draw_side(r, false, alone);
     read(sides.a);
-    state.draw_both(r, Variant::Mix::over, alone, true);
+    state.draw_both(r, Mix::over, alone, true);
     read(sides.b);
     end_drawing();
     return sides;
