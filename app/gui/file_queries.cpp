@@ -1,8 +1,13 @@
 // Titles, kinds and folders of the file dialogs.
 #include "gui/file_queries.h"
 
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+
 #include "core/file_format.h"
 #include "scene/camera_file.h"
+#include "scene/describe.h"
 #include "scene/export_camera.h"
 
 namespace astrosplat {
@@ -30,6 +35,46 @@ FileQuery reading(const char* title, const char* kind, const Extensions& extensi
 FileQuery writing(const char* title, const char* kind, const Extensions& extensions, const Document& document,
                   const std::string& name) {
     return {title, true, kind, extensions, folder_of_document(document), name};
+}
+
+/// What a file of the scene is.
+struct FileWish {
+    std::string_view key;  // generic
+    const char* kind;
+    Extensions (*extensions)();
+};
+
+template <FileKind kind>
+Extensions all_of() {
+    return endings_of({kind});
+}
+
+constexpr FileWish wishes[] = {{"layer.source.meshes.texture", "pictures", all_of<FileKind::picture>},
+                               {"layer.source.meshes.depth_map", "pictures", all_of<FileKind::picture>},
+                               {"layer.source.meshes.mesh", "meshes", all_of<FileKind::mesh>},
+                               {"layer.source.prepare.align", "pictures", all_of<FileKind::picture>},
+                               {"layer.source.prepare.fill", "pictures", all_of<FileKind::picture>},
+                               {"layer.source.prepare.mask", "pictures", all_of<FileKind::picture>},
+                               {"layer.source.mask.image", "pictures", all_of<FileKind::picture>},
+                               {"layer.source.mask.any.image", "pictures", all_of<FileKind::picture>},
+                               {"layer.source.file", "splats", all_of<FileKind::splats>},
+                               {"layer.look.thickness.map", "pictures", all_of<FileKind::picture>},
+                               {"layer.preset", "looks", all_of<FileKind::scene>},
+                               {"environment.image", "pictures", all_of<FileKind::picture>},
+                               {"environment.cube", "pictures", all_of<FileKind::picture>},
+                               {"environment.tile", "pictures", all_of<FileKind::picture>},
+                               {"reference.file", "pictures", all_of<FileKind::picture>},
+                               {"output.preset", "presets", all_of<FileKind::scene>},
+                               {"camera.file", "cameras", all_camera_endings}};
+
+/// That of the file which is there now; empty where there is none.
+fs::path folder_of_value(const Value& value, const fs::path& scene_folder) {
+    const bool listed = value.list() && !value.list()->empty();
+    const std::string* const text = listed ? value.list()->front().text() : value.text();
+    if (!text || text->empty()) return {};
+    const fs::path file = scene_folder / *text;
+    std::error_code ignored;
+    return fs::exists(file, ignored) ? file.parent_path().lexically_normal() : fs::path();
 }
 
 }  // namespace
@@ -76,7 +121,21 @@ std::optional<FileQuery> query_for(Command::Kind kind, const Document& document)
 }
 
 FileQuery query_for(const ParameterKey& key, const Document& document) {
-    return {"File for " + key.text(), false, "files", {}, folder_of_document(document), ""};
+    Scene scene = document.scene();
+    const Description description = describe(scene);
+    const Parameter* const parameter = find_parameter(description, key);
+    const std::string label = parameter ? parameter->spec.label : key.text(), layer = key.layer();
+    FileQuery query{layer.empty() ? label : label + " of " + layer, false, "files", {}, {}, ""};
+    const ParameterKey generic = key.generic();
+    const auto wish = std::ranges::find_if(
+        wishes, [&](const FileWish& w) { return w.key == generic.text() || generic.is_below(w.key); });
+    if (wish != std::end(wishes)) {
+        query.kind = wish->kind;
+        query.extensions = wish->extensions();
+    }
+    query.folder = parameter ? folder_of_value(parameter->get(), scene.file.parent_path()) : fs::path();
+    if (query.folder.empty()) query.folder = folder_of_document(document);
+    return query;
 }
 
 }  // namespace astrosplat

@@ -1,10 +1,15 @@
 // The file dialog: what it lists and completes, and its questions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "gui/file_list.h"
+#include "gui/file_queries.h"
 #include "gui/key_codes.h"
 #include "gui/reference_screens.h"
 #include "gui/test_window.h"
+#include "scene/describe.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {
@@ -77,6 +82,40 @@ TEST(FileList, TypedPathsKnowHome) {
     EXPECT_EQ(typed_path("~/a", "/x"), home_folder() / "a");
     EXPECT_EQ(typed_path("a", "/x"), "/x/a");
     EXPECT_EQ(typed_path("/a", "/x"), "/a");
+}
+
+/// A file of the scene is asked for in plain words, where it lies now, among files of its kind.
+TEST(FileQueries, AFileOfTheSceneIsSoughtWhereItIs) {
+    const TempFolder folder;
+    fs::create_directory(folder / "textures");
+    folder.file("textures/a.png", "");
+    const Document document = Document::untitled(
+        "astrosplat = 1\n[[layer]]\nname = \"gas\"\n[layer.source]\n"
+        "meshes = [ { mesh = \"plane\", texture = \"textures/a.png\" } ]\n",
+        folder / "scene.toml");
+    const FileQuery picture = query_for("layer.gas.source.meshes.0.texture", document);
+    EXPECT_EQ(picture.title, "Picture of gas");
+    EXPECT_EQ(picture.folder, folder / "textures");
+    EXPECT_NE(std::ranges::find(picture.extensions, ".png"), picture.extensions.end());
+    const FileQuery mesh = query_for("layer.gas.source.meshes.0.mesh", document);
+    EXPECT_FALSE(fs::equivalent(mesh.folder, folder / "textures"));
+    EXPECT_EQ(mesh.extensions, std::vector<std::string>{".obj"});
+    EXPECT_EQ(query_for("environment.image", document).title, "Picture");
+}
+
+TEST(FileQueries, EveryFileOfASceneHasAKind) {
+    const std::set<std::string> of_any_kind{"output.ocio.config", "layer.source.catalogue"};
+    const Document document = example_document();
+    int files = 0;
+    for (const ParameterRow& row : parameter_rows()) {
+        if (row.spec.type != ParameterType::file && row.spec.type != ParameterType::files) continue;
+        const bool any = of_any_kind.count(row.spec.key.text()) > 0;
+        const ParameterKey key =
+            row.spec.key.is_below("layer") ? row.spec.key.moved("layer", layer_key("dust")) : row.spec.key;
+        EXPECT_EQ(query_for(key, document).extensions.empty(), any) << key;
+        ++files;
+    }
+    EXPECT_GT(files, 10);
 }
 
 class FileDialogTest : public testing::Test {
