@@ -1,10 +1,12 @@
-// Other people's programs read what export writes, and write what we read: a validator of glTF, and
-// PlayCanvas' splat-transform. They come from npm: `npm install gltf-validator @playcanvas/splat-transform`
-// in a folder that ASTROSPLAT_NODE_FOLDER names.
+// Other people's programs read what export writes, show it, and write what we read: a validator of glTF,
+// PlayCanvas' splat-transform, and PlayCanvas itself in Chromium. They come from npm: `npm install
+// gltf-validator playcanvas @playcanvas/splat-transform` in a folder that ASTROSPLAT_NODE_FOLDER names.
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <initializer_list>
 #include <sstream>
+#include <utility>
 
 #include "scene_fixture.h"
 #include "support/capture.h"
@@ -21,6 +23,14 @@ require("gltf-validator").validateBytes(new Uint8Array(bytes), { maxIssues: 0 })
     console.log("primitives", report.info.totalVertexCount, "vertices");
 });
 )";
+
+/// A frame of 320 x 240 px of one layer of splats.
+std::string scene_of(const std::string& file, const std::string& rest) {
+    return "astrosplat = 1\noutput = { resolution = [320, 240], frames = \"1\", path = \"own.png\" }\n"
+           "camera = { position = [2.0, 1.5, 9.0], target = [0.2, 0.1, 0.0], fov = 45.0 }\n"
+           "[[layer]]\nname = \"splats\"\nsource = { kind = \"splats\", file = \"" +
+           file + "\" }\n" + rest;
+}
 
 class ReadersNightly : public SceneTest {
   protected:
@@ -69,6 +79,10 @@ TEST_F(ReadersNightly, GlbIsValid) {
     write_text(folder / "validate.cjs", validate);
     const RunResult result = run_node({"validate.cjs", "model.glb"});
     EXPECT_EQ(result.out, "primitives 400 vertices\n") << result.err;
+    write_text(folder / "capture.ply", ply_of(capture(50, 3), 3));
+    write_text(folder / "capture.toml", scene_of("capture.ply", ""));
+    ASSERT_EQ(run({"export", "capture.toml", "-o", "capture.glb", "--progress", "none"}).code, 0);
+    EXPECT_EQ(run_node({"validate.cjs", "capture.glb"}).out, "primitives 50 vertices\n");
     write_text(folder / "broken.glb", text_of(folder / "model.glb").replace(12, 1, "\x01"));
     EXPECT_NE(run_node({"validate.cjs", "broken.glb"}).out, result.out);
 }
@@ -131,6 +145,39 @@ space = "display"
     }
     const RunResult compared = run({"compare", "ply.exr", "glb.exr", "--max-difference", "0.001"});
     EXPECT_EQ(compared.code, 0) << compared.out << compared.err;
+}
+
+/// The same view for a page.
+constexpr const char* page_view =
+    R"({"width":320,"height":240,"fov":45,"position":[2.0,1.5,9.0],"target":[0.2,0.1,0.0]})";
+
+// A capture with its harmonics, and dots whose light was fitted to the view.
+TEST_F(ReadersNightly, GlbLooksTheSameInAPageOfPlayCanvas) {
+    std::string chromium;
+    for (const char* place : {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"})
+        if (chromium.empty() && fs::exists(place)) chromium = place;
+    if (is_absent("playcanvas") || chromium.empty())
+        GTEST_SKIP() << "Chromium, or node with packages of npm, is not there (ASTROSPLAT_NODE_FOLDER)";
+    write_text(folder / "capture.ply", ply_of(capture(200, 3), 3));
+    write_text(folder / "capture.toml",
+               scene_of("capture.ply", "render = { isolate = true, space = \"display\" }\n"));
+    write_text(folder / "dots.toml", scene_of("stars.pda", ""));
+    for (const auto& [scene, least_db] :
+         std::initializer_list<std::pair<std::string, double>>{{"capture", 40.0}, {"dots", 28.0}}) {
+        const std::string model = scene + ".glb", picture = scene + ".png";
+        ASSERT_EQ(
+            run({"export", scene + ".toml", "-o", model, "--space", "display", "--progress", "none"}).code,
+            0);
+        ASSERT_EQ(run({"--batch", scene + ".toml", "--overwrite", "--progress", "none"}).code, 0);
+        const std::string program = ASTROSPLAT_SOURCE_DIR "/tests/cli/playcanvas_page.cjs";
+        const RunResult shown = run_node({program, chromium, modules.string(), model, picture, page_view});
+        ASSERT_EQ(shown.code, 0) << shown.out << shown.err;
+        const RunResult compared = run({"compare", "own.png", picture});
+        const std::size_t at = compared.out.find("psnr_db: ");
+        ASSERT_NE(at, std::string::npos) << compared.out << compared.err;
+        RecordProperty(scene, compared.out.substr(at + 9, 5));
+        EXPECT_GE(std::stod(compared.out.substr(at + 9)), least_db) << scene;
+    }
 }
 
 }  // namespace
