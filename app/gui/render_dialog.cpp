@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "gui/dialog.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/frames.h"
@@ -127,7 +128,12 @@ void name_row(GuiFrame& frame) {
     ImGui::SameLine(0, px(row_gap));
     const std::string ending = std::filesystem::path(render.name).extension().string();
     ImGui::SetNextItemWidth(px(92));
-    if (ImGui::BeginCombo("##format", ending.c_str())) {
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    const bool open = ImGui::BeginCombo("##format", ending.c_str(), ImGuiComboFlags_NoArrowButton);
+    if (!open)  // beside the list, whose window it would be drawn in
+        draw_icon(ImGui::GetWindowDrawList(), Icon::chevron_down,
+                  {corner.x + px(92 - 12), corner.y + ImGui::GetFrameHeight() * 0.5f}, px(9), color::dim);
+    if (open) {
         for (const std::string& other : render_endings(render.kind))
             if (ImGui::Selectable(other.c_str(), other == ending))
                 render.name = with_ending(render.name, other);
