@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/file_format.h"
 #include "edit/preferences.h"
@@ -22,15 +23,6 @@ namespace {
 
 constexpr float dialog_width = 820, dialog_height = 520, places_width = 168;
 constexpr std::size_t most_places = 12;
-
-// Tab: lengthens what is typed; `folder` is what relative paths are relative to.
-int on_tab(ImGuiInputTextCallbackData* data) {
-    const auto& folder = *static_cast<const fs::path*>(data->UserData);
-    const std::string longer = complete_path(std::string(data->Buf, data->Buf + data->BufTextLen), folder);
-    data->DeleteChars(0, data->BufTextLen);
-    data->InsertChars(0, longer.c_str());
-    return 0;
-}
 
 bool is_picture(const FileEntry& entry) {
     return !entry.folder && kind_of(format_by_name(entry.name)) == FileKind::picture;
@@ -82,6 +74,22 @@ void FileDialog::draw_places(GuiFrame& frame) {
     }
 }
 
+// In the path: Tab lengthens what is typed, Up and Down go through the list.
+int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
+    const auto& dialog = *static_cast<const FileDialog*>(data->UserData);
+    std::string typed(data->Buf, data->Buf + data->BufTextLen);
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory) {
+        const int step = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
+        if (const auto entry = entry_beside(dialog.entries_, typed, step))
+            typed = dialog.entries_[*entry].name;
+    } else {
+        typed = complete_path(typed, dialog.folder_);
+    }
+    data->DeleteChars(0, data->BufTextLen);
+    data->InsertChars(0, typed.c_str());
+    return 0;
+}
+
 void FileDialog::draw_path(GuiFrame& frame) {
     if (icon_button("up", Icon::chevron_up, {px(28), px(28)}, px(11), color::dim, "Folder above"))
         go_to(folder_.parent_path());
@@ -93,15 +101,31 @@ void FileDialog::draw_path(GuiFrame& frame) {
     ImGui::SetNextItemWidth(-1);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(8), px(6)));
     const std::string before = typed_;
-    ImGui::InputTextWithHint("##path", "File, or a path; Tab completes it", &typed_,
-                             ImGuiInputTextFlags_CallbackCompletion, on_tab, &folder_);
+    ImGui::InputTextWithHint("##path", "File, or a path; Tab completes it, Up and Down choose", &typed_,
+                             ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackHistory,
+                             on_key, this);
     ImGui::PopStyleVar();
     if (ImGui::IsItemActive()) awaits_typing_ = false;
     note_item(frame, "file/path");
     if (typed_ != before) {
         replaces_ = false;
         complaint_.clear();
+        typed_anew_ = true;
     }
+}
+
+// What is typed, or begun, comes into sight.
+void FileDialog::scroll_to_typed() {
+    if (!std::exchange(typed_anew_, false)) return;
+    const std::optional<std::size_t> entry = entry_begun(entries_, typed_);
+    if (!entry) return;
+    const float row = px(*entry >= folders_ && pictures_ ? picture_row_height : file_row_height);
+    const std::size_t high = *entry > folders_ ? *entry - folders_ : 0;
+    const float top = px(file_row_height) * static_cast<float>(*entry - high) +
+                      px(pictures_ ? picture_row_height : file_row_height) * static_cast<float>(high);
+    const float seen = ImGui::GetScrollY(), room = ImGui::GetWindowHeight();
+    if (top < seen) ImGui::SetScrollY(top);
+    if (top + row > seen + room) ImGui::SetScrollY(top + row - room);
 }
 
 FileClick FileDialog::draw_entry(GuiFrame& frame, const FileEntry& entry) {
@@ -214,6 +238,7 @@ FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     if (draw_file_columns(frame, rows_px_, order_, backwards_)) sort_entries(entries_, order_, backwards_);
     ImGui::BeginChild("entries");
     rows_px_ = ImGui::GetContentRegionAvail().x;
+    scroll_to_typed();
     const bool chosen = draw_entries(frame);
     ImGui::EndChild();
     ImGui::EndChild();

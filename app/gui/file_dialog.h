@@ -13,6 +13,8 @@
 #include "gui/file_rows.h"
 #include "gui/gui_frame.h"
 
+struct ImGuiInputTextCallbackData;
+
 namespace astrosplat {
 
 class FileDialog {
@@ -33,6 +35,8 @@ class FileDialog {
     void go_to(const std::filesystem::path& folder);
     void draw_places(GuiFrame& frame);
     void draw_path(GuiFrame& frame);
+    void scroll_to_typed();
+    static int on_key(ImGuiInputTextCallbackData* data);
     void list_entries();
     FileClick draw_entry(GuiFrame& frame, const FileEntry& entry);
     bool draw_entries(GuiFrame& frame);
@@ -44,6 +48,7 @@ class FileDialog {
     bool replaces_ = false;  // the file exists and the person was told
     std::filesystem::path folder_;
     std::string typed_, complaint_;
+    bool typed_anew_ = false;            // the list has not followed yet
     std::vector<FileEntry> entries_;     // folders first
     std::size_t folders_ = 0;            // of these
     bool pictures_ = false;              // some of the files are

@@ -70,6 +70,26 @@ void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool backwar
     for (auto& [name, entry] : named) entries.push_back(std::move(entry));
 }
 
+std::optional<std::size_t> entry_begun(const std::vector<FileEntry>& entries, const std::string& typed) {
+    if (typed.empty()) return std::nullopt;
+    const std::string begun = lower_case(typed);
+    const auto found = std::ranges::find_if(
+        entries, [&](const FileEntry& entry) { return lower_case(entry.name).starts_with(begun); });
+    if (found == entries.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - entries.begin());
+}
+
+std::optional<std::size_t> entry_beside(const std::vector<FileEntry>& entries, const std::string& typed,
+                                        int step) {
+    if (entries.empty()) return std::nullopt;
+    const auto last = static_cast<std::ptrdiff_t>(entries.size()) - 1;
+    const auto chosen = std::ranges::find(entries, typed, &FileEntry::name);
+    if (chosen != entries.end())
+        return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(chosen - entries.begin() + step, 0, last));
+    if (const auto begun = entry_begun(entries, typed)) return begun;
+    return step > 0 ? 0 : static_cast<std::size_t>(last);
+}
+
 std::string time_text(fs::file_time_type time) {
     const auto since_1970 = std::chrono::file_clock::to_sys(time).time_since_epoch();
     const std::time_t seconds = std::chrono::duration_cast<std::chrono::seconds>(since_1970).count();

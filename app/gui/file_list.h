@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,13 @@ std::vector<FileEntry> list_folder(const std::filesystem::path& folder,
 /// Folders first; each by `order`, then by name without regard to case. What is newer or larger comes first,
 /// unless `backwards`.
 void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool backwards);
+
+/// The first entry whose name begins with what is typed, in capitals or not; none: where nothing is.
+std::optional<std::size_t> entry_begun(const std::vector<FileEntry>& entries, const std::string& typed);
+/// The entry above (`step` -1) or below (1) the one that is typed; where none is, the one begun, else the
+/// first or the last.
+std::optional<std::size_t> entry_beside(const std::vector<FileEntry>& entries, const std::string& typed,
+                                        int step);
 
 /// "2026-03-01 18:30", on this machine's clock.
 std::string time_text(std::filesystem::file_time_type time);

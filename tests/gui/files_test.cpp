@@ -61,6 +61,22 @@ TEST(FileList, SortsByTimeAndSizeAndBackwards) {
     EXPECT_EQ(sorted(FileOrder::name, false), (Names{"zoom", "a", "b", "c"}));
 }
 
+TEST(FileList, KeysGoThroughTheList) {
+    std::vector<FileEntry> entries(3);
+    entries[0].name = "alpha";
+    entries[1].name = "Beta";
+    entries[2].name = "gamma";
+    EXPECT_EQ(entry_beside(entries, "alpha", 1), 1U);
+    EXPECT_EQ(entry_beside(entries, "alpha", -1), 0U);
+    EXPECT_EQ(entry_beside(entries, "gamma", 1), 2U);
+    EXPECT_EQ(entry_beside(entries, "be", -1), 1U);
+    EXPECT_EQ(entry_beside(entries, "", 1), 0U);
+    EXPECT_EQ(entry_beside(entries, "x", -1), 2U);
+    EXPECT_EQ(entry_beside({}, "x", 1), std::nullopt);
+    EXPECT_EQ(entry_begun(entries, "G"), 2U);
+    EXPECT_EQ(entry_begun(entries, ""), std::nullopt);
+}
+
 TEST(FileList, CompletesAsFarAsThereIsNoChoice) {
     const TempFolder folder;
     fs::create_directory(folder / "scenes");
@@ -259,6 +275,28 @@ TEST_F(FileDialogTest, OfAFolderOfThousandsOnlyRowsThatAreSeenAreDrawn) {
     window.click("file/frame10100.png");
     window.click("file/Open");
     EXPECT_EQ(window.take_commands().at(0).path, folder / "scenes/frame10100.png");
+}
+
+TEST_F(FileDialogTest, UpAndDownChooseAndTheListFollows) {
+    for (int i = 0; i < 200; ++i) folder.file("scenes/shot" + std::to_string(100 + i) + ".png", "");
+    window.choose("File/Import as a layer...");
+    window.frame(2);
+    type_path((folder / "scenes").string());
+    window.tap(key_code::enter);
+    window.frame(4);
+    EXPECT_FALSE(window.has("file/shot250.png"));
+    window.type("SHOT250");
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/shot250.png")) << "what is begun is in sight";
+    window.tap(key_code::down);
+    window.tap(key_code::down);
+    window.tap(key_code::up);
+    window.tap(key_code::down);
+    for (int i = 0; i < 20; ++i) window.tap(key_code::down);
+    EXPECT_TRUE(window.has("file/shot271.png"));
+    window.tap(key_code::enter);
+    window.frame(2);
+    EXPECT_EQ(window.take_commands().at(0).path, folder / "scenes/shot271.png");
 }
 
 TEST_F(FileDialogTest, AMissingFileIsSaid) {
