@@ -7,6 +7,7 @@
 #include "edit/keyframes.h"
 #include "gui/theme.h"
 #include "source/write_image.h"
+#include "support/color_config.h"
 #include "window/window_test.h"
 
 namespace astrosplat::test {
@@ -44,6 +45,21 @@ class WindowPath : public WindowTest {
         for (int i = 0; i < 320 * 180; ++i) rgba.insert(rgba.end(), {level, level, level, 255});
         fs::create_directories(folder / "frames");
         write_image(folder / fmt::format("frames/shot.{:04}.png", frame), 320, 180, rgba);
+    }
+    /// Frame 1 lies there as light of 0.2, and one stop of exposure.
+    void show_rendered_light(const std::string& view) {
+        std::ostringstream text;
+        text << std::ifstream(scene_file).rdbuf();
+        std::string scene = text.str();
+        scene.replace(scene.find("shot.####.png"), 13, "shot.####.exr");
+        scene.insert(scene.find("frames = "), view + "\nexposure = 1.0\n");
+        write_text(scene_file, scene);
+        fs::create_directories(folder / "frames");
+        write_linear_image(folder / "frames/shot.0001.exr", make_image(320, 180, 4, 0.2f), "",
+                           Existing::replace);
+        start();
+        settled_frame();
+        person->click(same_widgets().at("playing/Rendered"));
     }
     bool sees(unsigned char level) const {
         return count_of(frame_pixels(), IM_COL32(level, level, level, 255)) > 10'000;
@@ -88,20 +104,16 @@ TEST_F(WindowPath, RenderedFramesAreShownAndTheOthersAsPreviews) {
     EXPECT_TRUE(comes_true([&] { return sees(150); })) << "and now it is";
 }
 
-/// Frames of scene light are seen through the viewport's view and exposure, as the preview is.
+/// Frames of scene light are seen through the viewport's exposure and view, as the preview is.
 TEST_F(WindowPath, RenderedLightIsShownThroughTheView) {
-    std::ostringstream text;
-    text << std::ifstream(scene_file).rdbuf();
-    std::string scene = text.str();
-    scene.replace(scene.find("shot.####.png"), 13, "shot.####.exr");
-    scene.insert(scene.find("frames = "), "view = \"linear\"\nexposure = 1.0\n");
-    write_text(scene_file, scene);
-    fs::create_directories(folder / "frames");
-    write_linear_image(folder / "frames/shot.0001.exr", make_image(320, 180, 4, 0.2f), "", Existing::replace);
-    start();
-    settled_frame();
-    person->click(same_widgets().at("playing/Rendered"));
+    show_rendered_light("view = \"linear\"");
     EXPECT_TRUE(comes_true([&] { return sees(102); })) << "2 * 0.2 of 255";
+}
+
+TEST_F(WindowPath, RenderedLightIsShownThroughOpenColorIO) {
+    write_color_config(folder);
+    show_rendered_light("ocio = { config = \"colors.ocio\", display = \"Screen\", view = \"Film\" }");
+    EXPECT_TRUE(comes_true([&] { return sees(161); })) << "the root of 2 * 0.2, of 255";
 }
 
 }  // namespace
