@@ -7,16 +7,19 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <mutex>
+#include <unordered_map>
+#include <utility>
 
 #include "core/shared_maths.h"
 #include "render/footprint.h"
 
 namespace astrosplat {
 
-struct CountedGains {
-    static constexpr std::size_t places = 4096, numbers = 15;
-    using Key = std::array<float, numbers>;
+/// Those of all threads together.
+class CountedGains {
+  public:
+    using Key = std::array<float, 15>;
     /// `splat`: what the gains depend on beside the table and the lens.
     static Key key_of(const FootprintTable& table, const Lens& lens, const std::array<float, 6>& splat) {
         return {splat[0],
@@ -35,34 +38,44 @@ struct CountedGains {
                 table.falloff.sharpness,
                 table.pixel_filter_px};
     }
-    Key key{};
-    bool known = false;
-    float amplitude = 1.0f, edge_gain = 0.0f;
+    /// Sets a footprint's gains to those known of the key, or by find(), which is a function of the key: a
+    /// thread may find what another is about to know.
+    template <class Find>
+    static void set(const Key& key, Footprint& f, const Find& find) {
+        Part& part = part_of(key);
+        {
+            const std::lock_guard lock(part.mutex);
+            if (const auto known = part.gains.find(key); known != part.gains.end()) {
+                f.amplitude = known->second.first;
+                f.edge_gain = known->second.second;
+                return;
+            }
+        }
+        find();
+        const std::lock_guard lock(part.mutex);
+        if (part.gains.size() >= most_kept / parts) part.gains.clear();
+        part.gains.emplace(key, std::pair{f.amplitude, f.edge_gain});
+    }
 
-    /// That of a key, among those of this thread; unknown when it is new.
-    static CountedGains& of(const Key& key) {
-        static thread_local std::vector<CountedGains> all(places);
+  private:
+    static constexpr std::size_t most_kept = 1 << 16, parts = 64;  // 8 MB; threads seldom meet
+
+    static std::uint32_t hash_of(const Key& key) {
         std::uint32_t hash = 0;
         for (const float number : key) hash = shared::as_mix(hash ^ std::bit_cast<std::uint32_t>(number));
-        CountedGains& gains = all[hash % places];
-        if (gains.known && gains.key == key) return gains;
-        gains = {key};
-        return gains;
+        return hash;
+    }
+    struct Hash {
+        std::size_t operator()(const Key& key) const { return hash_of(key); }
+    };
+    struct Part {
+        std::mutex mutex;
+        std::unordered_map<Key, std::pair<float, float>, Hash> gains;
+    };
+    static Part& part_of(const Key& key) {
+        static std::array<Part, parts> all;
+        return all[hash_of(key) >> 26];
     }
 };
-
-/// Sets a footprint's gains to those known of the key, or by find().
-template <class Find>
-void set_counted_gains(const CountedGains::Key& key, Footprint& f, const Find& find) {
-    CountedGains& gains = CountedGains::of(key);
-    if (!gains.known) {
-        find();
-        gains.amplitude = f.amplitude;
-        gains.edge_gain = f.edge_gain;
-        gains.known = true;
-    }
-    f.amplitude = gains.amplitude;
-    f.edge_gain = gains.edge_gain;
-}
 
 }  // namespace astrosplat

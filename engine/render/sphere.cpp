@@ -128,7 +128,7 @@ Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, flo
         return p * (1.0 - p);
     };
     const auto set_counted = [&](const auto& sum) {
-        set_counted_gains(CountedGains::key_of(table, lens, {radius_px, x_px, y_px, -1.0f}), f, [&] {
+        CountedGains::set(CountedGains::key_of(table, lens, {radius_px, x_px, y_px, -1.0f}), f, [&] {
             normalise(table, radius_px, sum(profile), table.flat_core ? sum(edge_of) : 1.0, f);
         });
         return f;
@@ -136,7 +136,7 @@ Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, flo
     if (shows_all_round(lens)) {
         const glm::dvec3 toward =
             glm::normalize(exact::ray_through(exact_lens(lens), double(x_px), double(y_px)));
-        if (is_near_rim(lens, toward, f.support_px))
+        if (is_near_rim(lens, toward, double(f.support_px) + near_rim_px))
             return set_counted([&](const auto& weight) {
                 return rim_sum(lens, toward, f.support_px,
                                [&](const glm::dvec3& away) { return weight(glm::dot(away, away)); });

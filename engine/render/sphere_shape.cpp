@@ -104,7 +104,7 @@ class ShapeOnMap {
 
     bool is_at_rim() const {
         return along_ * across_ < small_px && shows_all_round(lens_) &&
-               is_near_rim(lens_, axes_.toward, support_);
+               is_near_rim(lens_, axes_.toward, support_ + near_rim_shaped_px);
     }
 
     template <class Weight>
@@ -211,7 +211,7 @@ SphereFootprint shaped_sphere_footprint_at(const FootprintTable& table, const Le
     if (!shared::is_tabulated(shared::node_of_radius(ellipse.radius_px()))) return f;
     const auto set = [&] { set_gains(table, ellipse.light(), ellipse.sums(), f.round); };
     if (ellipse.is_counted())
-        set_counted_gains(
+        CountedGains::set(
             CountedGains::key_of(table, lens, {shape.xx, shape.xy, shape.yx, shape.yy, x_px, y_px}), f.round,
             set);
     else

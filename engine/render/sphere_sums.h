@@ -13,8 +13,8 @@
 
 namespace astrosplat {
 
-/// So near pixels are counted one by one.
-constexpr double near_pole_px = 12.0, near_rim_px = 4.0;
+/// So near pixels are counted one by one; around a rim more of them where splats are not round.
+constexpr double near_pole_px = 12.0, near_rim_px = 4.0, near_rim_shaped_px = 20.0;
 
 inline ExactLens exact_lens(const Lens& lens) {
     return {lens.projection, lens.focal_px,  lens.center_x_px, lens.center_y_px, lens.near,
@@ -31,8 +31,8 @@ inline double focal_angle(const Lens& lens, const glm::dvec3& toward) {
     return double(lens.focal_px) * real::acos(-toward.z);
 }
 
-inline bool is_near_rim(const Lens& lens, const glm::dvec3& toward, double support_px) {
-    return focal_angle(lens, toward) > real::pi * double(lens.focal_px) - support_px - near_rim_px;
+inline bool is_near_rim(const Lens& lens, const glm::dvec3& toward, double within_px) {
+    return focal_angle(lens, toward) > real::pi * double(lens.focal_px) - within_px;
 }
 
 /// Over the pixels near the rim of such a fisheye: weight(from `toward` to the pixel, px of the middle).
@@ -42,13 +42,19 @@ double rim_sum(const Lens& lens, const glm::dvec3& toward, double support_px, co
     const double focal = lens.focal_px, rim = real::pi * focal;
     const double inner = std::fmax(0.0, focal_angle(lens, toward) - support_px - 1.0);
     const auto middles_from = [](double px) { return std::ceil(px - 0.5) + 0.5; };
+    const double sine = std::sqrt(toward.x * toward.x + toward.y * toward.y);
     double sum = 0.0;
     const auto add = [&](double from_px, double to_px, double y_px) {
         for (double x_px = middles_from(from_px); x_px <= to_px; x_px += 1.0) {
-            if (!exact::shows(exact_one, x_px, y_px)) continue;
-            const glm::dvec3 ray = exact::ray_through(exact_one, x_px, y_px), away = focal * (ray - toward);
             const double x = x_px - double(lens.center_x_px), y = y_px - double(lens.center_y_px);
             const double angle = std::sqrt(x * x + y * y) / focal;
+            // Too far around the axis, for which no angle has to be known: the chord's square is no less than
+            // 2 (1 - cosine) of the turn times both sines, and a sine than its own chord.
+            const double least_sine = 2.0 / real::pi * std::fmin(angle, std::fmax(real::pi - angle, 0.0));
+            const double cosine = sine > 0.0 ? (x * toward.x - y * toward.y) / (angle * focal * sine) : 1.0;
+            if (focal * focal * 2.0 * (1.0 - cosine) * sine * least_sine > support_px * support_px) continue;
+            if (!exact::shows(exact_one, x_px, y_px)) continue;
+            const glm::dvec3 ray = exact::ray_through(exact_one, x_px, y_px), away = focal * (ray - toward);
             sum += weight(away) * real::sin(angle) / angle;
         }
     };

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <ostream>
+#include <string>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -124,6 +125,33 @@ std::vector<LightCase> light_cases() {
     return cases;
 }
 INSTANTIATE_TEST_SUITE_P(All, SphereEllipseLight, ::testing::ValuesIn(light_cases()));
+
+// Anywhere, of any size and direction, also around poles and rims.
+TEST(SphereEllipseNightly, LightIsRightOfManyAtRandom) {
+    const auto drawn = [](std::uint32_t n, std::uint32_t purpose) {
+        return double(shared::as_uniform(shared::as_hash(29u, n, 0u, purpose)));
+    };
+    for (const Projection projection : projections) {
+        const Camera camera = camera_of(projection);
+        double worst = 0.0;
+        for (std::uint32_t n = 0; n < 1500; ++n) {
+            const double larger = 40.0 * std::exp(-5.0 * drawn(n, 1));
+            SphereEllipse e{larger, larger * std::exp(-5.0 * drawn(n, 2)), 180.0 * drawn(n, 3),
+                            360.0 * drawn(n, 4) - 180.0, real::degrees(real::asin(2.0 * drawn(n, 5) - 1.0))};
+            if (n % 3 == 0) e.latitude = 90.0 - 8.0 * drawn(n, 5) * drawn(n, 5);
+            if (n % 3 == 1) e.degrees = 90.0 * std::floor(4.0 * drawn(n, 3));
+            if (larger > 0.7 * camera.focal_px || !fits(camera, e)) continue;
+            const Falloff falloff{all_shapes[n % 5], 0.5f, 4.5f};
+            const double wanted = 0.5 * falloff_integral(falloff) * e.larger_px * e.smaller_px;
+            const double error =
+                light_on_sphere(ellipse_picture(camera, e, falloff), camera, 3) / wanted - 1.0;
+            worst = std::max(worst, std::fabs(error));
+            EXPECT_NEAR(error, 0.0, 0.005) << name_of(projection) << ", " << ::testing::PrintToString(e)
+                                           << ", " << name_of(falloff.shape);
+        }
+        RecordProperty(std::string(name_of(projection)), std::to_string(worst));
+    }
+}
 
 // Its own and the pixel filter's together, over solid angles.
 TEST(SphereEllipse, HasItsSecondMomentsOnTheEqualAreaMap) {
