@@ -365,6 +365,22 @@ TEST(SphereEllipse, HasNoSeam) {
     }
 }
 
+// An eye beside the middle sees it elsewhere, but no other way.
+TEST(SphereEllipse, StereoPanoramasOnlyMoveIt) {
+    const Falloff falloff{Falloff::Shape::gaussian, 0.5f, 4.5f};
+    Camera camera = camera_of(Projection::equirectangular);
+    const SphereEllipse e{20.0, 3.0, 35.0, 40.0, 50.0};
+    const Image middle = ellipse_picture(camera, e, falloff);
+    constexpr std::int64_t moved_px = 24;
+    camera.parallax = distance * real::sin(double(moved_px) / camera.focal_px);
+    const Image aside = ellipse_picture(camera, e, falloff);
+    EXPECT_GT(total(middle, 3), 10.0);
+    for (std::int64_t y = 0; y < high_px; ++y)
+        for (std::int64_t x = 0; x < wide_px; ++x)
+            ASSERT_NEAR(aside.at((x + moved_px) % wide_px, y)[3], middle.at(x, y)[3], 0.003)
+                << x << ", " << y;
+}
+
 // Through a narrow one the sphere is as good as flat.
 TEST(SphereEllipse, ANarrowFisheyeIsPerspective) {
     CameraParams params = params_of(Projection::fisheye);
