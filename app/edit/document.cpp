@@ -259,7 +259,10 @@ void Document::edit(const std::string& name, const std::function<void(Scene&)>& 
 void Document::take(Scene edited, const std::string& edit_name, Gesture gesture) {
     edited.file = scene().file;
     if (edited == scene()) return;
-    if (edited.output.preset != scene().output.preset) apply_output_preset(edited);
+    if (edited.output.preset != scene().output.preset)
+        apply_output_preset(edited);
+    else
+        keep_dome_square(edited, scene());
     check_edited_scene(edited, name());
     check_new_presets(scene(), edited);
     if (edited == scene()) return;  // its tracks were of nothing

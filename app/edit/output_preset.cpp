@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "scene/check.h"
 #include "scene/describe.h"
 #include "scene/load.h"
 #include "scene/toml_read.h"
@@ -20,6 +21,15 @@ void apply_output_preset(Scene& scene) {
         if (before && own && key != "output.preset" && !(before->get() == parameter.get()))
             own->set(parameter.get());
     }
+}
+
+void keep_dome_square(Scene& scene, const Scene& before) {
+    OutputParams& output = scene.output;
+    if (!is_dome(output)) return;
+    const bool width_changed = output.width != before.output.width,
+               height_changed = output.height != before.output.height;
+    if (width_changed && !height_changed) output.height = output.width;
+    if (height_changed && !width_changed) output.width = output.height;
 }
 
 }  // namespace astrosplat

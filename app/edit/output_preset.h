@@ -9,4 +9,7 @@ namespace astrosplat {
 /// Throws InputError.
 void apply_output_preset(Scene& scene);
 
+/// Makes the frame of a dome master square again where one side of it was changed, by that side.
+void keep_dome_square(Scene& scene, const Scene& before);
+
 }  // namespace astrosplat

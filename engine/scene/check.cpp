@@ -172,7 +172,7 @@ void check_layer(const LayerParams& layer, const Checker& check) {
 void check_dome(const OutputParams& output, const Checker& check) {
     constexpr std::int64_t least_px = 1024, largest_px = 8192;
     const bool fits = output.width == output.height && least_px <= output.width && output.width <= largest_px;
-    check.require(!is_dome(output) || fits, {"output.preset", "output.resolution"},
+    check.require(!is_dome(output) || fits, {"output.resolution"},
                   fmt::format("expected a square of {} to {} px for the preset dome, found {} x {}", least_px,
                               largest_px, output.width, output.height));
 }

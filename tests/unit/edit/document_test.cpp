@@ -72,6 +72,26 @@ TEST(Document, AGestureThatComesBackIsNoStep) {
     EXPECT_EQ(value_of(document, opacity), Value(0.5));
 }
 
+// Sides are dragged one by one.
+TEST(Document, FramesOfDomesStaySquare) {
+    const SceneFolder f;
+    Document document = Document::open(f.file);
+    const auto set_size = [&](std::int64_t width, std::int64_t height) {
+        document.set("output.resolution", Value::List{width, height}, 1.0);
+    };
+    set_size(2048, 360);
+    EXPECT_EQ(document.scene().output.height, 360);
+    document.set("output.preset", "dome", 1.0);
+    EXPECT_EQ(document.scene().output.width, 4096);
+    set_size(2048, 4096);
+    EXPECT_EQ(document.scene().output.height, 2048);
+    set_size(2048, 8192);
+    EXPECT_EQ(document.scene().output.width, 8192);
+    EXPECT_THROW(set_size(512, 8192), InputError);
+    document.save();
+    EXPECT_EQ(load_scene(f.file).output.height, 8192);
+}
+
 TEST(Document, AnEditThatChangesNothingIsNotRecorded) {
     const SceneFolder f;
     Document document = Document::open(f.file);
