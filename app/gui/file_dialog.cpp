@@ -148,6 +148,10 @@ FileClick FileDialog::draw_entry(GuiFrame& frame, const FileEntry& entry) {
 bool FileDialog::draw_entries(GuiFrame& frame) {
     bool chosen = false;
     fs::path enter;
+    // The first one went into the folder; what lies there now is not meant.
+    const double pressed = ImGui::GetIO().MouseClickedTime[ImGuiMouseButton_Left];
+    const bool is_rest_of_double_click =
+        pressed > entered_ && pressed - entered_ < double{ImGui::GetIO().MouseDoubleClickTime};
     const auto draw_rows = [&](std::size_t begin, std::size_t end, float height) {
         ImGuiListClipper clipper;
         clipper.Begin(static_cast<int>(end - begin), px(height));
@@ -155,6 +159,7 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
             for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
                 const FileEntry& entry = entries_[begin + static_cast<std::size_t>(i)];
                 const FileClick click = draw_entry(frame, entry);
+                if (is_rest_of_double_click) continue;
                 if (entry.folder && click.once) enter = folder_ / entry.name;
                 if (!entry.folder && click.once) {
                     typed_ = entry.name;
@@ -170,7 +175,10 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
         row_text(all_files_ ? "This folder is empty." : "No " + query_.kind + " here.", px(file_row_height),
                  color::dim);
     }
-    if (!enter.empty()) go_to(enter);
+    if (!enter.empty()) {
+        entered_ = pressed;
+        go_to(enter);
+    }
     return chosen;
 }
 

@@ -48,6 +48,7 @@ class FileDialog {
     bool replaces_ = false;  // the file exists and the person was told
     std::filesystem::path folder_;
     std::string typed_, complaint_;
+    double entered_ = -1e9;              // when the click began that went into the folder, s
     bool typed_anew_ = false;            // the list has not followed yet
     std::vector<FileEntry> entries_;     // folders first
     std::size_t folders_ = 0;            // of these

@@ -277,6 +277,37 @@ TEST_F(FileDialogTest, OfAFolderOfThousandsOnlyRowsThatAreSeenAreDrawn) {
     EXPECT_EQ(window.take_commands().at(0).path, folder / "scenes/frame10100.png");
 }
 
+/// As in a file manager: the second click is not one on what lies there in the new list.
+TEST_F(FileDialogTest, ADoubleClickOnAFolderOnlyEntersIt) {
+    fs::create_directories(folder / "scenes/deep/deeper");
+    folder.file("scenes/deep/deeper/x.toml", "");
+    const auto double_click = [&](glm::vec2 at) {
+        window.click(at);
+        window.frame(6);  // a hand takes a tenth of a second
+        window.press();
+        window.release();
+        window.frame();
+    };
+    window.choose("File/Open...");
+    window.frame(2);
+    type_path((folder / "scenes").string());
+    window.tap(key_code::enter);
+    window.frame(4);
+    double_click(window.at("file/deep"));
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/deeper"));
+    EXPECT_FALSE(window.has("file/x.toml"));
+    window.frame(30);
+    double_click(window.at("file/deeper"));
+    window.frame(2);
+    EXPECT_TRUE(window.has("file/x.toml")) << "nor does it open a file";
+    EXPECT_TRUE(window.take_commands().empty());
+    window.frame(30);
+    double_click(window.at("file/x.toml"));
+    window.frame(2);
+    EXPECT_EQ(window.take_commands().at(0).path, folder / "scenes/deep/deeper/x.toml");
+}
+
 TEST_F(FileDialogTest, UpAndDownChooseAndTheListFollows) {
     for (int i = 0; i < 200; ++i) folder.file("scenes/shot" + std::to_string(100 + i) + ".png", "");
     window.choose("File/Import as a layer...");
