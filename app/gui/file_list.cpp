@@ -28,6 +28,38 @@ std::size_t common_length(const std::string& a, const std::string& b) {
     return n;
 }
 
+/// The end of the digits from `begin` on, and where they begin without zeros.
+struct Digits {
+    std::size_t first, end;
+};
+Digits digits_at(const std::string& text, std::size_t begin) {
+    constexpr const char* all = "0123456789";
+    const std::size_t end = std::min(text.find_first_not_of(all, begin), text.size());
+    return {std::min(text.find_first_not_of('0', begin), end), end};
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// As people count: "p9" before "p10".
+bool comes_before(const std::string& a, const std::string& b) {
+    std::size_t i = 0, j = 0;
+    while (i < a.size() && j < b.size()) {
+        if (!is_digit(a[i]) || !is_digit(b[j])) {
+            if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
+            ++i;
+            ++j;
+            continue;
+        }
+        const Digits m = digits_at(a, i), n = digits_at(b, j);
+        const std::size_t length = m.end - m.first;
+        if (length != n.end - n.first) return length < n.end - n.first;
+        if (const int order = a.compare(m.first, length, b, n.first, length); order != 0) return order < 0;
+        i = m.end;
+        j = n.end;
+    }
+    return a.size() - i != b.size() - j ? a.size() - i < b.size() - j : a < b;
+}
+
 }  // namespace
 
 std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std::string>& extensions) {
@@ -63,7 +95,7 @@ void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool backwar
             return (a.changed > b.changed) != backwards;
         if (order == FileOrder::size && a.bytes != b.bytes) return (a.bytes > b.bytes) != backwards;
         const bool backwards_names = backwards && order == FileOrder::name;
-        return (name_a != name_b ? name_a < name_b : a.name < b.name) !=
+        return (name_a != name_b ? comes_before(name_a, name_b) : a.name < b.name) !=
                (backwards_names && a.name != b.name);
     });
     entries.clear();

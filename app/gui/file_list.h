@@ -24,7 +24,8 @@ enum class FileOrder { name, changed, size };
 std::vector<FileEntry> list_folder(const std::filesystem::path& folder,
                                    const std::vector<std::string>& extensions);
 
-/// Folders first; each by `order`, then by name without regard to case. What is newer or larger comes first,
+/// Folders first; each by `order`, then by name without regard to case, numbers in names as numbers. What is
+/// newer or larger comes first,
 /// unless `backwards`.
 void sort_entries(std::vector<FileEntry>& entries, FileOrder order, bool backwards);
 

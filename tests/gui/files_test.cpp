@@ -61,6 +61,32 @@ TEST(FileList, SortsByTimeAndSizeAndBackwards) {
     EXPECT_EQ(sorted(FileOrder::name, false), (Names{"zoom", "a", "b", "c"}));
 }
 
+TEST(FileList, NumbersInNamesCount) {
+    const std::vector<std::string> in_order{"10 a",
+                                            "a",
+                                            "p",
+                                            "p.png",
+                                            "p2.png",
+                                            "p9.png",
+                                            "p010.png",
+                                            "p10.png",
+                                            "P10b.png",
+                                            "p11.png",
+                                            "p100.2.png",
+                                            "p100.10.png",
+                                            "pa",
+                                            "q99999999999999999998",
+                                            "q99999999999999999999"};
+    std::vector<FileEntry> entries;
+    for (const std::string& name : in_order) entries.push_back({name, false, 0, {}});
+    std::ranges::reverse(entries);
+    sort_entries(entries, FileOrder::name, false);
+    EXPECT_EQ(names(entries), in_order);
+    sort_entries(entries, FileOrder::name, true);
+    std::ranges::reverse(entries);
+    EXPECT_EQ(names(entries), in_order);
+}
+
 TEST(FileList, KeysGoThroughTheList) {
     std::vector<FileEntry> entries(3);
     entries[0].name = "alpha";
