@@ -1,11 +1,13 @@
 #include "gaussians/harmonics_export.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "core/color.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/real.h"

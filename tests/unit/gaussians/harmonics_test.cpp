@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <iterator>
 
+#include "core/color.h"
 #include "core/quaternion.h"
 #include "core/real.h"
 #include "core/rotation.h"

@@ -15,6 +15,7 @@
 #include "core/rotation.h"
 #include "core/shared_maths.h"
 #include "core/vector_target.h"
+#include "render/footprint.h"
 #include "support/printing.h"
 #include "unit/render/sphere_scenes.h"
 
