@@ -366,6 +366,24 @@ TEST(SphereEllipse, HasNoSeam) {
     }
 }
 
+// Points, threads as long as the sky and what is wider than it, also at poles and rims.
+TEST(SphereEllipse, OddOnesAreFinite) {
+    const Falloff falloff{Falloff::Shape::gaussian, 0.5f, 4.5f};
+    for (const Projection projection : projections)
+        for (const auto& [larger, smaller] :
+             {std::pair{0.0, 0.0}, {1e-9, 1e-12}, {1e7, 0.0}, {1e7, 1e-9}, {300.0, 200.0}, {1e12, 1e12}})
+            for (const double latitude : {0.0, 90.0, -89.999}) {
+                const SphereEllipse e{larger, smaller, 40.0, 180.0, latitude};
+                const Image picture = ellipse_picture(camera_of(projection), e, falloff);
+                for (const float value : picture.pixels)
+                    ASSERT_TRUE(value >= 0.0f && value <= 1.0f)
+                        << name_of(projection) << ", " << ::testing::PrintToString(e);
+                if (larger < 1e-6) {
+                    EXPECT_LT(total(picture, 3), 1e-6) << name_of(projection) << " " << latitude;
+                }
+            }
+}
+
 // An eye beside the middle sees it elsewhere, but no other way.
 TEST(SphereEllipse, StereoPanoramasOnlyMoveIt) {
     const Falloff falloff{Falloff::Shape::gaussian, 0.5f, 4.5f};
