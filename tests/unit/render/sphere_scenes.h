@@ -11,6 +11,9 @@ namespace astrosplat::test {
 
 inline constexpr int wide_px = 512, high_px = 256;
 
+inline constexpr Projection projections[] = {Projection::fisheye, Projection::equirectangular,
+                                             Projection::cylindrical};
+
 inline CameraParams params_of(Projection projection) {
     CameraParams params;
     params.projection = projection;
