@@ -20,6 +20,7 @@ namespace {
 
 std::string entry(const OIIO::ImageSpec& spec, const char* name) {
     std::string value = spec.get_string_attribute(name);
+    value.resize(value.find_last_not_of(' ') + 1);  // write_exr.cpp pads long ones
     if (!value.empty()) return value;
     return find_metadata_line(spec.get_string_attribute("ImageDescription"), name);
 }

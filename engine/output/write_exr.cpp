@@ -88,9 +88,19 @@ Imath::M44f matrix_of(const float (&values)[16]) {
     return matrix;
 }
 
+// FFmpeg before 6.1 (libavcodec/exr.c, decode_header) reads 255 bytes of a text and goes on behind them as if
+// they were all, in rounds of name, type, size and value of 255 + 1 + 255 + 1 + 4 + 255 bytes, until it has
+// eaten the end of the text, and maybe the compression with it. Blanks at the end let it arrive where the
+// next attribute begins.
+std::string padded_for_ffmpeg(std::string text) {
+    constexpr std::size_t portion = 255, round = 771;
+    if (text.size() > portion) text.append((round - (text.size() - portion) % round) % round, ' ');
+    return text;
+}
+
 void set_text(Imf::Header& header, const FrameMetadata& metadata) {
     const auto set = [&](const std::string& name, const std::string& value) {
-        header.insert(name, Imf::StringAttribute(value));
+        header.insert(name, Imf::StringAttribute(padded_for_ffmpeg(value)));
     };
     for (const auto& [name, value] : metadata_entries(metadata)) set(name, value);
     if (!metadata.provenance.credit.empty()) set("owner", metadata.provenance.credit);

@@ -352,6 +352,21 @@ TEST_F(WriteTest, ExrHeaderHoldsProvenanceAndGeometryButNoClock) {
         EXPECT_NE(bytes.find(std::string(name) + '\0'), std::string::npos) << name;
 }
 
+TEST_F(WriteTest, FfmpegReadsExrWithLongTexts) {
+    if (std::system("ffmpeg -version >/dev/null 2>&1") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+    const std::string ffmpeg =
+        "ffmpeg -nostdin -v error -xerror -i '" + (folder_ / "a.exr").string() + "' -f null - 2>&1";
+    for (std::size_t length : {255, 256, 400, 700, 900, 1026, 1027, 1500, 4856}) {
+        metadata_.provenance.credit = std::string(length, 'c');
+        const fs::path file = write("a.exr", {}, soft_frame(5, 3));
+        EXPECT_EQ(std::system(ffmpeg.c_str()), 0) << "a text of " << length << " bytes";
+        const std::string credit = read_raw(file).spec.get_string_attribute("astrosplat/credit");
+        EXPECT_EQ(credit.substr(0, length), metadata_.provenance.credit);
+        EXPECT_EQ(credit.find_first_not_of(' ', length), std::string::npos);
+        EXPECT_EQ(read_frame_hashes(file), std::make_pair(metadata_.frame_hash, metadata_.pixel_hash));
+    }
+}
+
 TEST_F(WriteTest, EveryFormatTellsItsHashes) {
     RenderedFrame frame = soft_frame(5, 3);
     for (const char* name : {"a.exr", "a.tif", "a.png"}) {
