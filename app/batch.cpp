@@ -34,9 +34,30 @@ std::int64_t frames_to_render(const BatchPlan& plan) {
     return count;
 }
 
+std::string human_seconds(double seconds) {
+    if (seconds < 99.5) return fmt::format("{:.{}f} s", seconds, seconds < 0.95 ? 2 : seconds < 9.5 ? 1 : 0);
+    return clock_text(seconds);
+}
+
+/// What is to be made, and what the frames take: told from a hundredth of the splats.
+void print_costs(const BatchPlan& plan, SampledRun& sample) {
+    const std::int64_t count = frames_to_render(plan);
+    if (sample.making_seconds() > 0.0)
+        fmt::print("sets are made in about {}\n", human_seconds(sample.making_seconds()));
+    if (count == 0) return;
+    const FrameCost cost = sample.frame_cost();
+    const auto all = static_cast<double>(count);
+    fmt::print("time about {} a frame, {} in all\n", human_seconds(cost.seconds),
+               human_seconds(sample.making_seconds() + all * cost.seconds));
+    if (!cost.file_bytes) return;
+    const auto bytes = static_cast<double>(*cost.file_bytes);
+    fmt::print("files about {} a frame, {} in all\n", human_bytes(bytes), human_bytes(all * bytes));
+}
+
 void print_plan(const BatchPlan& plan) {
     const OutputParams& output = plan.scene.output;
-    const JobEstimate job = estimate(plan);
+    SampledRun sample(plan, SampledRun::Layers::all);
+    const JobEstimate job = estimate(plan, sample);
     const auto count = static_cast<std::int64_t>(plan.frames.size());
     fmt::print("scene {}\n", printable(plan.scene.file.string()));
     fmt::print("frame {}x{} px", output.width, output.height);
@@ -53,6 +74,7 @@ void print_plan(const BatchPlan& plan) {
         fmt::print("sky: {}\n", *job.sky_kept ? "in the cache" : "is made of its picture first");
     if (!job.streamed.empty()) fmt::print("read block by block: {}\n", fmt::join(job.streamed, ", "));
     fmt::print("memory about {}, threads {}\n", human_bytes(static_cast<double>(job.bytes)), thread_count());
+    print_costs(plan, sample);
     for (const FramePlan& frame : plan.frames) {
         fmt::print("{} {} {}\n", frame.render ? "render" : "keep", frame.frame,
                    printable(frame.file.string()));

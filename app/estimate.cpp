@@ -1,11 +1,9 @@
-// What a batch run will take, before it takes it: from the scene and from file sizes,
-// without generating anything.
+// What a batch run will take, before it takes it: from the scene, from file sizes and from a sample.
 #include "estimate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <string_view>
 
 #include "bodies/bodies.h"
@@ -20,13 +18,12 @@
 #include "interrupt.h"
 #include "look/apply.h"
 #include "pipeline.h"
-#include "render/render.h"
-#include "render/screen_splat.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
 #include "sets/load_source.h"
 #include "sets/prepared_cache.h"
 #include "sets/sky_cache.h"
+#include "source/picture.h"
 #include "splat_files/native_blocks.h"
 #include "splat_files/splat_file.h"
 #include "streamed/streamed_set.h"
@@ -40,8 +37,8 @@ constexpr std::int64_t drawing_bytes = 15'000'000;  // what rendering and writin
 constexpr std::int64_t worker_bytes = 6'000'000;    // what a thread that renders works with
 constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splats that any frame is worth
 // A projected splat lies in so many tiles, where nothing is known of the splats' places; and its place in a
-// bin.
-constexpr double usual_records = 1.4, record_bytes = 44.0, fold_bytes = 56.0;
+// bin. A twentieth of the memory for those that are known stays unused, at the end of blocks.
+constexpr double usual_records = 1.4, record_bytes = 44.0, fold_bytes = 56.0, unused_share = 1.05;
 constexpr double split_records = 4.0;  // where large ones are split, in a pass close by
 constexpr std::int64_t shaded_bytes = 40;
 // Of captures: a row of a file with normals; and beside what all have shape and radius, harmonics and colours
@@ -63,17 +60,13 @@ struct Expected {
     std::int64_t held_bytes = 0;  // by the set and by what is shaded, beyond what all have
 };
 
-bool has_automatic_voxels(const SourceParams& source) { return !source.voxels && source.voxel_size <= 0.0; }
-
 Expected expected_columns(const SourceParams& source, const std::vector<TexturedMesh>& meshes) {
     Bounds box;
     for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
     const double max_distance = resolved_max_distance(source, box);
     const Lattice lattice = make_lattice(source, meshes, max_distance);
-    const bool asked_for = source.splats > 0 && has_automatic_voxels(source);
-    return {
-        asked_for ? source.splats : static_cast<std::int64_t>(expected_kept(lattice, meshes, max_distance)),
-        columns_memory_bytes(meshes, lattice, max_distance)};
+    return {static_cast<std::int64_t>(expected_splats(source, lattice, meshes, max_distance)),
+            columns_memory_bytes(meshes, lattice, max_distance)};
 }
 
 /// Of a file that cannot be read nothing: the reader will say why.
@@ -123,8 +116,31 @@ Expected expected_of(const SetCache& cache, const LayerParams& layer) {
             bodies_memory_bytes(plan.meshes, dots)};
 }
 
-/// Six faces of three floats.
-std::int64_t sky_bytes(const SkyTiling& tiling) { return 6 * tiling.face_px * tiling.face_px * 12; }
+/// Of an environment's pictures: while they are read, and from then on, with borders and mip levels.
+struct SkyBytes {
+    std::int64_t making = 0, held = 0;
+};
+
+/// Nothing of files that cannot be read: their reader will say why.
+SkyBytes sky_bytes(const EnvironmentParams& sky) try {
+    constexpr std::int64_t held = 16, read = 60;  // bytes a texel, of which one picture at a time is read
+    if (!sky.tile.empty()) {
+        const std::int64_t texels = 6 * sky.tiling.face_px * sky.tiling.face_px;
+        return {36 * texels, held * texels};  // of three floats: as made or read, and with borders
+    }
+    std::vector<std::filesystem::path> files = sky.cube;
+    if (!sky.image.empty()) files = {sky.image};
+    SkyBytes bytes;
+    for (const std::filesystem::path& file : files) {
+        const ImageRows rows = open_picture_rows(file).rows;
+        const std::int64_t texels = rows.width * rows.height;
+        bytes.making = std::max(bytes.making, bytes.held + read * texels);
+        bytes.held += held * texels;
+    }
+    return bytes;
+} catch (const InputError&) {
+    return {};
+}
 
 /// The frame, and what writing it takes.
 std::int64_t frame_bytes(const BatchPlan& plan) {
@@ -147,17 +163,19 @@ struct LayerNeed {
     bool may_stream = false, reads_pictures = false;
 };
 
-LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer) {
-    const auto cached = cached_splats(plan.cache, layer.source, layer.name);
-    LayerNeed need{&layer, cached ? Expected{*cached} : expected_of(plan.cache, layer)};
+LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const SampledRun::Layer* sampled) {
+    const bool is_kept = sampled && !sampled->is_made && layer.source.kind == SourceKind::mesh;
+    LayerNeed need{&layer, is_kept ? Expected{} : expected_of(plan.cache, layer)};
     Expected& expected = need.expected;
+    if (sampled) expected.splats = sampled->splats;
+    if (sampled && sampled->has_radius) expected.has_radius = true;
     expected.splats = std::min(expected.splats, most_splats);
     const Look look = look_of(layer);
     const OptionalColumns wanted = columns_read(look);
     const std::int64_t row = 40 + (wanted.uv ? 8 : 0) + (wanted.mesh ? 4 : 0) + (expected.has_radius ? 4 : 0);
     need.making = std::max(expected.making_bytes, expected.splats * row);
     need.held = expected.splats * (is_shaded_alike(plan.scene, layer.name) ? row : row + shaded_bytes);
-    need.reads_pictures = !cached && layer.source.kind == SourceKind::mesh;
+    need.reads_pictures = !is_kept && layer.source.kind == SourceKind::mesh;
     need.making += expected.held_bytes;
     need.held += expected.held_bytes;
     need.may_stream =
@@ -190,75 +208,18 @@ SetBytes sets_of(const std::vector<LayerNeed>& needs, const std::vector<std::str
     return bytes;
 }
 
-/// Some of a layer's splats after the look, which stand for all.
-class SampledLayer : public ShadedBlocks {
-  public:
-    SampledLayer(const LayerParams& layer, const NativeBlocks& file) {
-        constexpr std::int64_t places = 64;
-        SplatSet set = file.sample(places);
-        const double each =
-            static_cast<double>(file.splats()) / static_cast<double>(std::max<std::int64_t>(1, set.size()));
-        for (std::size_t i = 0; i < file.size(); ++i) box.add(file.box(i));
-        if (set.max_distance <= 0.0 && set.size() > 0)
-            set.max_distance = *std::ranges::max_element(set.distance);
-        Look look = look_of(layer);
-        look.thickness.map.clear();  // which is not loaded yet
-        look.vertical.match = VerticalAlpha::Match::none;
-        sample_ = apply_look(set, look, look_inputs(layer));
-        BlockFacts facts;
-        for (const glm::vec3& p : sample_.position) facts.box.add(glm::dvec3(p));
-        splats_ = static_cast<std::int64_t>(each * static_cast<double>(sample_.size()));
-        facts.splats = splats_;
-        blocks_ = {facts, {{}, 0.0f, 0, sample_.size()}};
-    }
-    void shade(std::size_t, ShadedSplats& out) const override { out = sample_; }
-
-    Bounds box;  // of all splats, layer space
-};
-
 bool is_split(const LayerParams& layer) { return layer.render.lod.max_px > 0.0; }
 
-/// Bytes of projected splats in the fullest of the first, the middle and the last frame.
-std::int64_t records_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
+/// Bytes of projected splats in the fullest of some frames.
+std::int64_t records_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& needs, SampledRun& sample) {
     double unknown = 0.0;
     const double tiles = static_cast<double>(plan.scene.output.width * plan.scene.output.height) / 4096.0;
     const double folded = fold_bytes * std::min(1.0, 3.0 * thread_count() / std::max(1.0, tiles));
-    std::vector<std::pair<std::string, std::unique_ptr<SampledLayer>>> samples;
-    for (const LayerNeed& need : needs) {
-        if (need.expected.file && need.expected.held_bytes == 0)
-            samples.emplace_back(need.params->name,
-                                 std::make_unique<SampledLayer>(*need.params, *need.expected.file));
-        else
+    for (const LayerNeed& need : needs)
+        if (!sample.find(need.params->name))
             unknown += (is_split(*need.params) ? split_records : usual_records) * (record_bytes + folded) *
                        static_cast<double>(need.expected.splats);
-    }
-    if (samples.empty() || plan.frames.empty()) return static_cast<std::int64_t>(unknown);
-    RenderCache cache;
-    std::int64_t most = 0;
-    for (const std::size_t i : {std::size_t{0}, plan.frames.size() / 2, plan.frames.size() - 1}) {
-        const Scene now = scene_at(plan.scene, static_cast<double>(plan.frames[i].frame));
-        RenderSettings settings;
-        settings.width = now.output.width;
-        settings.height = now.output.height;
-        settings.region = plan.region;
-        settings.pixel_filter = static_cast<float>(now.output.pixel_filter);
-        std::vector<RenderLayer> layers;
-        Bounds box;
-        for (const LayerParams& layer : now.layers) {
-            const auto found =
-                std::ranges::find_if(samples, [&](const auto& s) { return s.first == layer.name; });
-            if (!layer.visible || found == samples.end()) continue;
-            layers.push_back(render_layer(layer));
-            layers.back().blocks = found->second.get();
-            box.add(world_bounds(found->second->box, layers.back()));
-        }
-        if (box.empty()) continue;
-        const Camera camera = make_camera(now.camera, static_cast<double>(settings.width),
-                                          static_cast<double>(settings.height), box);
-        most = std::max(most, expected_record_bytes(layers, camera, settings, cache));
-    }
-    const double per_record = record_bytes / static_cast<double>(sizeof(ScreenSplat));
-    return static_cast<std::int64_t>(unknown + per_record * static_cast<double>(most));
+    return static_cast<std::int64_t>(unknown + unused_share * static_cast<double>(sample.record_bytes()));
 }
 
 }  // namespace
@@ -285,11 +246,16 @@ void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache)
 }
 
 JobEstimate estimate(const BatchPlan& plan) {
+    SampledRun sample(plan, SampledRun::Layers::there);
+    return estimate(plan, sample);
+}
+
+JobEstimate estimate(const BatchPlan& plan, SampledRun& sample) {
     JobEstimate job;
     std::vector<LayerNeed> needs;
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
-        needs.push_back(need_of(plan, layer));
+        needs.push_back(need_of(plan, layer, sample.find(layer.name)));
         job.layers.push_back({layer.name, needs.back().expected.splats});
         job.splats += needs.back().expected.splats;
     }
@@ -297,18 +263,15 @@ JobEstimate estimate(const BatchPlan& plan) {
     const std::int64_t limit = is_limited ? plan.memory_limit_bytes : available_memory_bytes() / 10 * 9;
     const std::int64_t program = program_bytes + (uses_pictures(plan, needs) ? picture_bytes : 0);
     const std::int64_t working = program + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes;
-    const std::int64_t records = records_bytes(plan, needs);
-    std::int64_t sky_making = 0, sky_held = 0;
+    const std::int64_t records = records_bytes(plan, needs, sample);
     const EnvironmentParams& sky = plan.scene.environment;
-    if (sky.visible && !sky.tile.empty()) {
+    const SkyBytes skies = sky_bytes(sky);
+    if (sky.visible && !sky.tile.empty())
         job.sky_kept = is_kept(plan.cache, sky.tile, sky.tiling, Progress{{}, &interrupted()});
-        sky_making = 3 * sky_bytes(sky.tiling);    // as made or read, and with borders
-        sky_held = sky_bytes(sky.tiling) * 4 / 3;  // with mip levels
-    }
     const auto needed = [&](std::int64_t of_records) {
         const SetBytes sets = sets_of(needs, job.streamed);
-        return std::max(program + std::max(sets.making, sky_making),
-                        working + sets.held + sky_held + of_records);
+        return std::max(program + std::max(sets.making + skies.held, skies.making),
+                        working + sets.held + skies.held + of_records);
     };
     // Less than a part of the records makes many passes over what is in memory.
     std::vector<const LayerNeed*> largest;
@@ -327,8 +290,8 @@ JobEstimate estimate(const BatchPlan& plan) {
                               static_cast<double>(least) / 1073741824.0 + 0.005),
                   fmt::format("{:.4g}", static_cast<double>(limit) / 1073741824.0));
     // What malloc does not give back, and the last piece of memory of each kind, is a thirtieth.
-    job.renderer_bytes =
-        std::max(limit - limit / 32 - working - sets_of(needs, job.streamed).held - sky_held, least_records);
+    job.renderer_bytes = std::max(
+        limit - limit / 32 - working - sets_of(needs, job.streamed).held - skies.held, least_records);
     job.bytes = std::min(job.bytes, std::max(limit, least));
     return job;
 }

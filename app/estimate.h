@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "batch_plan.h"
+#include "sampled_run.h"
 
 namespace astrosplat {
 
@@ -25,8 +26,11 @@ struct JobEstimate {
     std::vector<std::string> streamed;
     std::int64_t renderer_bytes = 0;  // what is left for RenderSettings::memory_limit_bytes; 0: any number
 };
-/// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache, and a sample
-/// of .splats files, nothing else. Throws InputError, also where --memory is less than what the job needs.
+/// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache, nothing else.
+/// Throws InputError, also where --memory is less than what the job needs.
+JobEstimate estimate(const BatchPlan& plan, SampledRun& sample);
+
+/// The same with a sample of what is there (SampledRun::Layers::there).
 JobEstimate estimate(const BatchPlan& plan);
 
 /// "--memory GiB" in bytes. Throws InputError.

@@ -144,4 +144,10 @@ double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshe
     return expected_in_band(lattice, meshes, max_distance, lattice.filling);
 }
 
+double expected_splats(const SourceParams& source, const Lattice& lattice,
+                       std::span<const TexturedMesh> meshes, double max_distance) {
+    if (source.splats > 0 && has_automatic_voxels(source)) return static_cast<double>(source.splats);
+    return expected_kept(lattice, meshes, max_distance);
+}
+
 }  // namespace astrosplat

@@ -40,6 +40,11 @@ inline double lattice_coordinate(const Lattice& lattice, int axis, double cells)
            (lattice.box.hi[axis] - lattice.box.lo[axis]) * cells / static_cast<double>(lattice.n[axis]);
 }
 
+/// Whether `count` or `splats` chooses the lattice.
+inline bool has_automatic_voxels(const SourceParams& source) {
+    return !source.voxels && source.voxel_size <= 0.0;
+}
+
 /// source.max_distance, or 2 % of the longest side of the meshes' box where that is 0. Throws InputError.
 double resolved_max_distance(const SourceParams& source, const Bounds& meshes_box);
 
@@ -58,5 +63,9 @@ double expected_positions(const Lattice& lattice, std::span<const TexturedMesh> 
 
 /// How many of them will not be transparent, by the lattice's own filling.
 double expected_kept(const Lattice& lattice, std::span<const TexturedMesh> meshes, double max_distance);
+
+/// How many a source's set will have, about: that, or source.splats where the lattice is chosen by it.
+double expected_splats(const SourceParams& source, const Lattice& lattice,
+                       std::span<const TexturedMesh> meshes, double max_distance);
 
 }  // namespace astrosplat

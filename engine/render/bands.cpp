@@ -42,7 +42,8 @@ Tiles choose_tiles(const FrameJob& job) {
     const int sizes[] = {small_px, large_px};
     const std::vector<std::int64_t> records = estimate_records(job.projections, grid, sizes, job.progress);
     const bool enough_to_share = grid.tiles() >= 8 * thread_count();
-    const bool in_cache = records[1] <= records_in_cache * grid.tiles();
+    const bool in_cache = static_cast<double>(records[1]) * job.settings.splats_each <=
+                          static_cast<double>(records_in_cache * grid.tiles());
     const bool saves = static_cast<double>(records[0]) >= worth_missing_it * static_cast<double>(records[1]);
     if (enough_to_share && (in_cache || saves)) return {grid, records[1]};
     grid.tile_px = small_px;
@@ -260,6 +261,17 @@ Bands make_bands(const FrameJob& job) {
 void render_band(const FrameJob& job, const TileGrid& grid, std::int64_t records, double before,
                  RenderCache::State& cache, RenderedFrame& frame) {
     BandRun(job, grid, records, before, cache, frame).run();
+}
+
+std::int64_t scattered_bytes(const FrameJob& job, RenderCache::State& cache) {
+    const auto [grid, expected] = choose_tiles(job);
+    TileBins bins(grid, static_cast<int>(job.groups.size()), expected);
+    cache.store.limit(0);
+    cache.store.clear();
+    bins.scatter(job.projections, job.group_of_layer, {}, {}, cache.store, job.progress);
+    return bins.records() * static_cast<std::int64_t>(sizeof(ScreenSplat)) +
+           std::ssize(bins.shapes()) * static_cast<std::int64_t>(sizeof(Shape)) +
+           bins.records_of_fullest(thread_count()) * fold_bytes_per_record;
 }
 
 }  // namespace astrosplat

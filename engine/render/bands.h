@@ -24,6 +24,9 @@ struct Bands {
 };
 Bands make_bands(const FrameJob& job);
 
+/// Bytes of all records of the frame with what folding them takes, without the memory that no record uses.
+std::int64_t scattered_bytes(const FrameJob& job, RenderCache::State& cache);
+
 /// `before` of the frame's share is done already. Throws InputError where what lies at one distance takes
 /// more than the limit.
 void render_band(const FrameJob& job, const TileGrid& grid, std::int64_t records, double before,

@@ -60,6 +60,9 @@ struct RenderSettings {
     /// the splats are shaded.
     std::int64_t memory_limit_bytes = 0;
     static constexpr std::int64_t what_is_free = -1;
+    /// Of a sample: how many splats each stands for, at least 1. Tiles are then as large as those of all.
+    /// Changes no bit.
+    double splats_each = 1.0;
     /// For previews: the whole frame's backdrop (backdrop.h), which stands for the environment; null: none.
     const Image* backdrop = nullptr;
 };

@@ -87,21 +87,16 @@ std::vector<RenderLayer> as_drawn(std::span<const RenderLayer> layers) {
 
 }  // namespace
 
-std::int64_t expected_record_bytes(std::span<const RenderLayer> layers, const Camera& camera,
-                                   const RenderSettings& settings, RenderCache& cache,
-                                   const Progress& progress) {
+std::int64_t scattered_bytes(std::span<const RenderLayer> layers, const Camera& camera,
+                             const RenderSettings& settings, RenderCache& cache, const Progress& progress) {
     const std::vector<RenderLayer> drawn = as_drawn(layers);
     RenderSettings unlimited = settings;
     unlimited.memory_limit_bytes = 0;
     const TileDone nobody;
     FrameJob job{drawn, camera, nullptr, unlimited, progress, nobody, {}, {}, {}, {}, {}, {}};
     prepare(job, *cache.state);
-    const Bands bands = make_bands(job);
-    // The fullest tiles have some three times as many records as the others.
-    const double folded = std::min(1.0, 3.0 * thread_count() / static_cast<double>(bands.grids[0].tiles()));
-    return static_cast<std::int64_t>(
-        static_cast<double>(bands.records) *
-        (static_cast<double>(sizeof(ScreenSplat)) + folded * fold_bytes_per_record));
+    return static_cast<std::int64_t>(settings.splats_each *
+                                     static_cast<double>(scattered_bytes(job, *cache.state)));
 }
 
 RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,

@@ -37,10 +37,11 @@ RenderedFrame render(std::span<const RenderLayer> layers, const Camera& camera,
                      const Progress& progress = {}, RenderCache* cache = nullptr,
                      const TileDone& tile_done = {});
 
-/// Bytes that the projected splats of a frame will take with what folding them takes, told from the layers'
-/// samples or every 64th block of their splats; the memory limit is not looked at.
-std::int64_t expected_record_bytes(std::span<const RenderLayer> layers, const Camera& camera,
-                                   const RenderSettings& settings, RenderCache& cache,
-                                   const Progress& progress = {});
+/// Bytes that the projected splats of a frame take with what folding them takes, whatever the memory limit:
+/// they are projected and scattered into their tiles, and no pixel is made. Of a sample
+/// (RenderSettings::splats_each), what all splats would take.
+std::int64_t scattered_bytes(std::span<const RenderLayer> layers, const Camera& camera,
+                             const RenderSettings& settings, RenderCache& cache,
+                             const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -304,6 +304,12 @@ std::int64_t TileBins::least_bytes(const TileGrid& grid, int groups) {
     return 4 * bins * thread_count() * least_block * static_cast<std::int64_t>(sizeof(ScreenSplat));
 }
 
+std::int64_t TileBins::records() const {
+    std::int64_t records = 0;
+    for (const auto& block : blocks_) records += std::ssize(block);
+    return records;
+}
+
 std::int64_t TileBins::records_of_fullest(int tiles) const {
     std::vector<std::int64_t> records;
     std::vector<std::span<const ScreenSplat>> runs;

@@ -90,6 +90,9 @@ class TileBins {
     /// What the bins' blocks may take where they are nearly empty.
     static std::int64_t least_bytes(const TileGrid& grid, int groups);
 
+    /// Of all tiles.
+    std::int64_t records() const;
+
     /// Records of the fullest tiles of all, so many.
     std::int64_t records_of_fullest(int tiles) const;
 

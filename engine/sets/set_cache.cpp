@@ -182,16 +182,4 @@ SplatSet load_picture_stars(const SetCache& cache, const SourceParams& source, c
     throw InputError(fmt::format("layer '{}': {}", layer_name, error.what()));
 }
 
-std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,
-                                          const std::string& layer_name) try {
-    const std::string name = serves(cache, source) ? recipe_of(source, layer_name).name : "";
-    if (name.empty()) return std::nullopt;
-    const fs::path file = makes_columns(source) ? texel_file(cache, name) : set_file(cache, name);
-    std::error_code error;
-    if (!fs::is_regular_file(file, error)) return std::nullopt;
-    return native_splat_count(file);
-} catch (const InputError&) {
-    return std::nullopt;  // load_source will say what is wrong with it
-}
-
 }  // namespace astrosplat

@@ -41,8 +41,4 @@ LoadedSet load_source(const SetCache& cache, const SourceParams& source, const s
 SplatSet load_picture_stars(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                             const SplatSet& of_picture, const Progress& progress = {});
 
-/// Splats of a source's set, if it is kept: what an estimate asks before anything is loaded.
-std::optional<std::int64_t> cached_splats(const SetCache& cache, const SourceParams& source,
-                                          const std::string& layer_name);
-
 }  // namespace astrosplat

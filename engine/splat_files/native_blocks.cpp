@@ -109,15 +109,18 @@ Bounds NativeBlocks::box(std::size_t block) const {
     return {glm::dvec3(entry.lo), glm::dvec3(entry.hi)};
 }
 
-SplatSet NativeBlocks::sample(std::int64_t places) const {
-    constexpr std::int64_t at_once = 32;  // rows
+SplatSet NativeBlocks::sample(std::int64_t rows_wanted) const {
+    // Neighbours are alike: of longer runs a sample says less. Of single rows it takes longer to read.
+    constexpr std::int64_t at_once = 4;
     const State& state = *state_;
     SplatSet out;
     static_cast<SplatSetFacts&>(out) = state.facts;
-    places = std::min(places, (splats() + at_once - 1) / at_once);
+    const std::int64_t all = (splats() + at_once - 1) / at_once;
+    const std::int64_t places = std::min((rows_wanted + at_once - 1) / at_once, all);
+    const double stride = places == all ? static_cast<double>(at_once)
+                                        : static_cast<double>(splats()) / static_cast<double>(places);
     for (std::int64_t n = 0; n < places; ++n) {
-        const auto row = static_cast<std::size_t>(static_cast<double>(n) / static_cast<double>(places) *
-                                                  static_cast<double>(splats()));
+        const auto row = static_cast<std::size_t>(static_cast<double>(n) * stride);
         const std::size_t block = row / state.layout.header.block, first = row % state.layout.header.block;
         const std::size_t rows = state.rows(block), count = std::min<std::size_t>(at_once, rows - first);
         std::size_t offset = state.offset(block);

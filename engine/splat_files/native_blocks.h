@@ -33,9 +33,9 @@ class NativeBlocks {
     /// Check::all also what read_native checks. From any thread, several at a time. Throws InputError.
     void read(std::size_t block, const OptionalColumns& wanted, Check check, SplatSet& out) const;
 
-    /// Some rows of about so many places, evenly spread over the file, with all columns that are there;
-    /// unchecked.
-    SplatSet sample(std::int64_t places) const;
+    /// About so many rows, evenly spread over the file, with all columns that are there; unchecked. All of
+    /// them where there are no more.
+    SplatSet sample(std::int64_t rows_wanted) const;
 
   private:
     struct State;

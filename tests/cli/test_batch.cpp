@@ -159,18 +159,18 @@ TEST_F(Batch, DryRunTellsAndWritesNothing) {
 /// Four floats a pixel, and four more as it is written; extra outputs theirs.
 TEST_F(Batch, DryRunEstimatesThePicturesThatAreKept) {
     const auto mib = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments = {"--dry-run"};
+        std::vector<std::string> arguments = {"--dry-run", "-f", "1"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const RunResult result = batch(arguments);
         const std::string before = "memory about ";
         EXPECT_NE(result.out.find(" MiB, threads"), std::string::npos) << result.out;
         return std::stod(result.out.substr(result.out.find(before) + before.size()));
     };
-    const double small = mib({}), pixels_mib = 4000.0 * 3000.0 / 1048576.0;
-    EXPECT_NEAR(mib({"--resolution", "4000x3000"}) - small, 32.0 * pixels_mib, 2.0);
-    EXPECT_NEAR(mib({"--resolution", "4000x3000", "--set", "output.aovs=[\"depth\"]"}) - small,
+    const double small = mib({}), pixels_mib = 2000.0 * 1500.0 / 1048576.0;
+    EXPECT_NEAR(mib({"--resolution", "2000x1500"}) - small, 32.0 * pixels_mib, 2.0);
+    EXPECT_NEAR(mib({"--resolution", "2000x1500", "--set", "output.aovs=[\"depth\"]"}) - small,
                 (32.0 + 4.0) * pixels_mib, 2.0);
-    EXPECT_NEAR(mib({"--resolution", "4000x3000", "--region", "0,0,4000,1000"}) - small,
+    EXPECT_NEAR(mib({"--resolution", "2000x1500", "--region", "0,0,2000,500"}) - small,
                 32.0 / 3.0 * pixels_mib, 2.0);
 }
 

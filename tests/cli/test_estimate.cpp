@@ -111,5 +111,42 @@ TEST_F(Estimate, ARunWithLittleMemoryReducesThePictureOfBodiesAndSaysSoOnce) {
     EXPECT_LT(made({"--memory", "0.19"}), made() / 2);
 }
 
+// Of so few splats the sample is all: its frames are those that will be written.
+TEST_F(Estimate, ADryRunTellsTimeAndTheSizeOfFiles) {
+    write_scene();
+    const RunResult result = batch({"--dry-run", "-q", "-f", "1-3", "--resolution", "320x240"});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(result.out.find("sets are made"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("\ntime about "), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(" s a frame, "), std::string::npos) << result.out;
+    EXPECT_EQ(names_in("frames"), std::set<std::string>{});
+    const double told =
+        number_after(result.out, "files about ", {{'K', 1024.0}, {'k', 1024.0}, {'M', 1048576.0}});
+    ASSERT_EQ(batch({"-q", "-f", "1-3", "--resolution", "320x240"}).code, 0);
+    double taken = 0.0;
+    for (const std::string& name : names_in("frames"))
+        taken += static_cast<double>(fs::file_size(folder / "frames" / name)) / 3.0;
+    EXPECT_NEAR(told, taken, 0.1 * taken);
+}
+
+TEST_F(Estimate, SetsThatAreMissingAreMadeSmall) {
+    write_source(bodies);
+    const RunResult before = batch({"--dry-run", "-q"});
+    EXPECT_NE(before.out.find("sets are made in about "), std::string::npos) << before.out;
+    EXPECT_EQ(names_in("sets"), std::set<std::string>{});
+    EXPECT_EQ(batch({"--sets-only", "-q"}).code, 0);
+    const RunResult after = batch({"--dry-run", "-q"});
+    EXPECT_EQ(after.out.find("sets are made"), std::string::npos) << after.out;
+    EXPECT_NE(after.out.find("time about "), std::string::npos) << after.out;
+}
+
+TEST_F(Estimate, WithNothingToRenderThereIsNothingToTell) {
+    write_scene();
+    ASSERT_EQ(batch({"-q", "-f", "1"}).code, 0);
+    const RunResult result = batch({"--dry-run", "-q", "-f", "1", "--resume"});
+    EXPECT_NE(result.out.find("0 to render"), std::string::npos) << result.out;
+    EXPECT_EQ(result.out.find("time about"), std::string::npos) << result.out;
+}
+
 }  // namespace
 }  // namespace astrosplat::test

@@ -44,8 +44,9 @@ file = "ball.splats"
         std::string hash, err;
         double told_mib = 0.0, taken_mib = 0.0;
     };
-    Run rendered(std::vector<std::string> more) const {
-        more.insert(more.end(), {"--overwrite", "--no-cache", "--stats", "stats.json"});
+    Run rendered(std::vector<std::string> more, bool cached = false) const {
+        more.insert(more.end(), {"--overwrite", "--stats", "stats.json"});
+        if (!cached) more.push_back("--no-cache");
         const RunResult result = batch(more);
         EXPECT_EQ(result.code, 0) << result.err;
         if (result.code != 0) return {};
@@ -123,6 +124,40 @@ position = [3.0, 6.0, 13.0]
 )");
     const Run run = rendered({});
     EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+}
+
+// Splats close by, which are split, wide and out of the frame; their set is in the cache.
+TEST_F(Memory, WhatAPassCloseByTakesIsToldFromASample) {
+    make_ball(1000, "[64, 36]");
+    std::string text = text_of(folder / "mesh.toml");
+    text.replace(text.find("splats = 1000"), 13, "splats = 1200000");
+    write_text(folder / "scene.toml", text + R"(
+[layer.render]
+lod = { max_px = 8 }
+[layer.look]
+radius = { min = 0.02, max = 0.02 }
+[output]
+resolution = [640, 360]
+frames = "1"
+path = "frames/shot.####.exr"
+[camera]
+position = [0.6, 0.4, 1.3]
+)");
+    ASSERT_EQ(batch({"--sets-only", "-q"}).code, 0);
+    const Run run = rendered({}, true);
+    EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+}
+
+// Also of one that is not seen, as it is read.
+TEST_F(Memory, TheSkyIsCounted) {
+    std::string sky = "P6\n3000 1500\n255\n";
+    sky.append(3000 * 1500 * 3, '\x30');
+    write_text(folder / "sky.ppm", sky);
+    make_ball(1000, "[64, 36]", "[environment]\nimage = \"sky.ppm\"\n");
+    for (const char* visible : {"true", "false"}) {
+        const Run run = rendered({"--set", fmt::format("environment.visible={}", visible)});
+        EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+    }
 }
 
 }  // namespace

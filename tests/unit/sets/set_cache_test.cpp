@@ -19,6 +19,7 @@
 #include "core/log.h"
 #include "sets/load_source.h"
 #include "sets/recipe.h"
+#include "sets/set_sample.h"
 #include "splat_files/native.h"
 #include "support/temp_folder.h"
 #include "support/variable.h"
@@ -99,13 +100,13 @@ TEST_F(SetCacheTest, TheSecondTimeTheSameBitsComeFromTheFile) {
     for (const SourceParams& source : {source_, mesh_source()}) {
         const SplatSet plain = load_source(source, "dust");
         ASSERT_GT(plain.size(), 500);
-        EXPECT_EQ(cached_splats(cache_, source, "dust"), std::nullopt);
+        EXPECT_FALSE(sample_there(cache_, source, "dust"));
         const LoadedSet first = load(source), second = load(source);
         EXPECT_FALSE(first.cached);
         EXPECT_TRUE(second.cached);
         expect_same_set(first.set, plain);
         expect_same_set(second.set, plain);
-        EXPECT_EQ(cached_splats(cache_, source, "dust"), plain.size());
+        EXPECT_EQ(sample_there(cache_, source, "dust").value().splats, plain.size());
     }
     EXPECT_EQ(entries().size(), 2u);
     EXPECT_TRUE(entries(".lock").empty());
@@ -337,7 +338,7 @@ TEST_F(SetCacheTest, TheLeastRecentlyUsedGoFirst) {
     load(with_seed(4));
     EXPECT_EQ(entries().size(), 3u);
     EXPECT_EQ(entries(".texels").size(), 3u);
-    EXPECT_EQ(cached_splats(cache_, with_seed(2), "dust"), std::nullopt);
+    EXPECT_FALSE(sample_there(cache_, with_seed(2), "dust"));
     for (const std::uint32_t seed : {1u, 3u, 4u}) EXPECT_TRUE(load(with_seed(seed)).cached) << seed;
 }
 
@@ -419,7 +420,7 @@ TEST_F(SetCacheTest, HowPicturesAreReadNeedsNoOtherGeometry) {
         const LoadedSet again = load(source);
         EXPECT_TRUE(again.cached);
         expect_same_set(again.set, loaded.set);
-        EXPECT_EQ(cached_splats(cache_, source, "dust"), loaded.set.size());
+        EXPECT_EQ(sample_there(cache_, source, "dust").value().splats, loaded.set.size());
     }
 }
 

@@ -63,9 +63,9 @@ TEST_F(NativeBlocksTest, AFileThatIsCutShortIsSaid) {
 
 TEST_F(NativeBlocksTest, ASampleIsSomeOfTheRows) {
     const SplatSet whole = read_native(path("a.splats"), {}, all);
-    const SplatSet sample = NativeBlocks(path("a.splats")).sample(20);
+    const SplatSet sample = NativeBlocks(path("a.splats")).sample(638);
     check_consistent(sample);
-    EXPECT_GT(sample.size(), 500);
+    EXPECT_GT(sample.size(), 630);
     EXPECT_LE(sample.size(), 640);
     for (std::size_t i = 0; i < sample.id.size(); ++i) {
         const auto row =
@@ -76,6 +76,13 @@ TEST_F(NativeBlocksTest, ASampleIsSomeOfTheRows) {
         EXPECT_EQ(std::bit_cast<std::uint32_t>(whole.position[row].z),
                   std::bit_cast<std::uint32_t>(sample.position[i].z));
     }
+}
+
+TEST_F(NativeBlocksTest, ASampleOfAllRowsIsTheSet) {
+    const SplatSet whole = read_native(path("a.splats"), {}, all);
+    const SplatSet sample = NativeBlocks(path("a.splats")).sample(whole.size());
+    EXPECT_TRUE(std::ranges::equal(sample.id, whole.id));
+    EXPECT_TRUE(std::ranges::equal(sample.alpha, whole.alpha));
 }
 
 }  // namespace

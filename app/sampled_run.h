@@ -1,0 +1,63 @@
+// A batch run over a hundredth of its splats, from which is told what the whole will take. In: a plan. Out:
+// seconds, bytes of memory and bytes of files.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "batch_plan.h"
+#include "pipeline.h"
+
+namespace astrosplat {
+
+/// Of one frame, a mean over some of the run.
+struct FrameCost {
+    double seconds = 0.0;
+    std::optional<std::int64_t> file_bytes;  // none: there is no place to write a sample to
+};
+
+class SampledRun {
+  public:
+    /// What is sampled: layers whose sets are in the cache or in .splats files, for a quick answer; or all,
+    /// for which those that are missing are made small and other inputs are read, with the environment.
+    enum class Layers { there, all };
+    /// Layers of one that is hidden in all frames, and stars, which are few, are left out. Throws as
+    /// load_source does, Cancelled.
+    SampledRun(const BatchPlan& plan, Layers layers);
+
+    struct Layer {
+        std::string name;
+        std::int64_t splats = 0;  // of the whole set, about
+        bool is_made = false;     // was not there
+        bool has_radius = false;  // of every splat
+    };
+    const std::vector<Layer>& layers() const { return layers_; }
+    const Layer* find(const std::string& name) const;
+
+    /// Of all sets that are not there, about.
+    double making_seconds() const { return making_seconds_; }
+
+    /// Of the projected splats in the fullest of some frames.
+    std::int64_t record_bytes();
+
+    FrameCost frame_cost();
+
+  private:
+    RenderSettings settings(const FramePlan& frame) const;
+    double seconds_of(Pipeline& pipeline, const FramePlan& frame, RenderedFrame& rendered) const;
+    std::optional<std::int64_t> bytes_of(const FramePlan& frame, const RenderedFrame& rendered) const;
+
+    const BatchPlan& plan_;
+    std::vector<const FramePlan*> frames_;  // that are looked at
+    std::vector<Layer> layers_;
+    double making_seconds_ = 0.0;
+    double each_ = 1.0;  // splats that a row stands for
+    Pipeline pipeline_;
+    Pipeline empty_;  // the same scene with a splat a layer
+    RenderCache cache_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,144 @@
+#include "sets/set_sample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "bodies/bodies.h"
+#include "core/clock.h"
+#include "core/error.h"
+#include "core/file_format.h"
+#include "generate/columns.h"
+#include "sets/kept_sets.h"
+#include "sets/load_source.h"
+#include "sets/prepared_cache.h"
+#include "sets/recipe.h"
+#include "sets/set_cache.h"
+#include "splat_files/native_blocks.h"
+#include "splats/take_rows.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double share = 0.01;
+constexpr std::int64_t enough = 100'000;  // splats or texels: of fewer, what does not grow with them is most
+
+std::int64_t rows_of(std::int64_t all) {
+    return std::min(all, std::max(enough, static_cast<std::int64_t>(share * static_cast<double>(all))));
+}
+
+SplatSet sample_file(const NativeBlocks& file) { return file.sample(rows_of(file.splats())); }
+
+SetSample sample_whole(const fs::path& path) {
+    const NativeBlocks file(path);
+    return {sample_file(file), file.splats()};
+}
+
+/// Of geometry and texels, whose rows are the same splats'.
+SetSample sample_columns(const SetCache& cache, const Recipe& recipe) {
+    const NativeBlocks texels(texel_file(cache, recipe.name), NativePart::colors);
+    const std::string beginning = texel_recipe(recipe, "");
+    if (!texels.facts().recipe.starts_with(beginning)) throw InputError("made of something else");
+    const NativeBlocks geometry(set_file(cache, texels.facts().recipe.substr(beginning.size())),
+                                NativePart::geometry);
+    if (geometry.splats() != texels.splats()) throw InputError("not of these texels");
+    SplatSet set = sample_file(geometry), colors = sample_file(texels);
+    const auto positions = static_cast<double>(set.size());
+    set.color = std::move(colors.color);
+    set.alpha = std::move(colors.alpha);
+    set.divided = colors.divided;
+    set = lit_splats({std::move(set)});
+    const double lit = static_cast<double>(set.size()) / std::max(1.0, positions);
+    return {std::move(set), static_cast<std::int64_t>(lit * static_cast<double>(texels.splats()))};
+}
+
+/// The sample was made in this time beside reading the inputs.
+double seconds_for_all(double sample_seconds, double reading_seconds, double all_over_sample) {
+    return reading_seconds + sample_seconds * all_over_sample;
+}
+
+SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                        const Progress& progress) {
+    const auto start = Clock::now();
+    BodiesPlan plan =
+        plan_bodies(source, load_meshes(cache, source, progress, most_texels_read(source, room_for_bodies())),
+                    layer_name);
+    const std::int64_t dots = expected_dots(plan.meshes, plan.structure);
+    const std::int64_t texels = largest_picture(plan.meshes);
+    const double reading = seconds_since(start);
+    reduce_to(plan.meshes, rows_of(texels), layer_name);
+    const double smaller = static_cast<double>(texels) /
+                           static_cast<double>(std::max<std::int64_t>(1, largest_picture(plan.meshes)));
+    const auto making = Clock::now();
+    SetSample sample;
+    sample.set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
+                             layer_name, progress);
+    sample.making_seconds = seconds_for_all(seconds_since(making), reading, smaller);
+    sample.splats = source.splats > 0 ? std::min(dots, source.splats) : dots;
+    const auto narrower = static_cast<float>(1.0 / std::sqrt(smaller));
+    for (float& radius : sample.set.radius) radius *= narrower;
+    return sample;
+}
+
+/// As many voxels as would keep a part of the positions.
+SetSample sample_lattice(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                         const Progress& progress) {
+    const auto start = Clock::now();
+    ColumnPlan plan = plan_columns(source, layer_name, progress, kept_pictures(cache));
+    const Lattice whole = plan.lattice;
+    SetSample sample;
+    sample.splats = static_cast<std::int64_t>(
+        std::min(expected_splats(source, whole, plan.meshes, plan.max_distance), 1e15));
+    const double smaller = static_cast<double>(sample.splats) /
+                           static_cast<double>(std::max<std::int64_t>(1, rows_of(sample.splats)));
+    SourceParams coarse = source;
+    coarse.voxels = glm::max(glm::i64vec3(glm::dvec3(whole.n) / std::cbrt(smaller)), glm::i64vec3(1));
+    plan.lattice = make_lattice(coarse, plan.meshes, plan.max_distance);
+    const double reading = seconds_since(start);
+    const auto making = Clock::now();
+    sample.set = lit_splats(make_columns(plan, layer_name, progress));
+    sample.set.spacing = whole.spacing();
+    sample.making_seconds = seconds_for_all(seconds_since(making), reading, smaller);
+    return sample;
+}
+
+SetSample sample_all(SplatSet set) {
+    const std::int64_t splats = set.size();
+    return {sample_rows(set, rows_of(splats)), splats};
+}
+
+}  // namespace
+
+std::optional<SetSample> sample_there(const SetCache& cache, const SourceParams& source,
+                                      const std::string& layer_name) try {
+    if (source.kind == SourceKind::splats) {
+        const FileFormat* const format = format_of_file(source.file);
+        return format && format->id == std::string_view("splats") ? std::optional(sample_whole(source.file))
+                                                                  : std::nullopt;
+    }
+    if (cache.folder.empty() || source.kind != SourceKind::mesh) return std::nullopt;
+    const Recipe recipe = recipe_of(source, layer_name);
+    const bool columns = makes_columns(source);
+    const fs::path file = columns ? texel_file(cache, recipe.name) : set_file(cache, recipe.name);
+    std::error_code error;
+    if (recipe.name.empty() || !fs::is_regular_file(file, error)) return std::nullopt;
+    return columns ? sample_columns(cache, recipe) : sample_whole(file);
+} catch (const InputError&) {
+    return std::nullopt;
+}
+
+SetSample sample_set(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                     const Progress& progress) {
+    if (auto there = sample_there(cache, source, layer_name)) return std::move(*there);
+    if (source.kind != SourceKind::mesh)
+        return sample_all(load_source(cache, source, layer_name, progress).set);
+    return makes_columns(source) ? sample_lattice(cache, source, layer_name, progress)
+                                 : sample_bodies(cache, source, layer_name, progress);
+}
+
+}  // namespace astrosplat

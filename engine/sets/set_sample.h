@@ -1,0 +1,38 @@
+// A hundredth of a layer's splats, to tell from what all of them will take. In: what load_source takes. Out:
+// rows of a set that is kept, or of a splat file; of a set that is not kept yet the dots of a smaller picture
+// or of a coarser lattice, as wide as those of the whole set, and how long the whole will take to make.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/progress.h"
+#include "sets/cache_folder.h"
+#include "source/source.h"
+#include "splats/splat_set.h"
+
+namespace astrosplat {
+
+struct SetSample {
+    SplatSet set;
+    std::int64_t splats = 0;      // of the whole set, about
+    double making_seconds = 0.0;  // of the whole set, about; 0: it is there
+    /// How many splats a row stands for, at least 1; 0: there are none.
+    double each() const {
+        return set.size() > 0 ? static_cast<double>(splats) / static_cast<double>(set.size()) : 0.0;
+    }
+};
+
+/// Of a set that is in the cache, or of a .splats file: at once. Of small sets more than a hundredth, up to
+/// all of them: about 100,000 splats. Nothing where the set has to be made, or its file to be read as a
+/// whole, or where it cannot be used: then load_source says why.
+std::optional<SetSample> sample_there(const SetCache& cache, const SourceParams& source,
+                                      const std::string& layer_name);
+
+/// That, or else a sample that is made; of splat files of other formats and of catalogues some of all rows.
+/// Not for stars of a picture (is_like_a_layer). Nothing is kept. Throws as load_source does.
+SetSample sample_set(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
+                     const Progress& progress = {});
+
+}  // namespace astrosplat
