@@ -130,12 +130,12 @@ position = [3.0, 6.0, 13.0]
 TEST_F(Memory, WhatAPassCloseByTakesIsToldFromASample) {
     make_ball(1000, "[64, 36]");
     std::string text = text_of(folder / "mesh.toml");
-    text.replace(text.find("splats = 1000"), 13, "splats = 1200000");
+    text.replace(text.find("splats = 1000"), 13, "splats = 300000");
     write_text(folder / "scene.toml", text + R"(
 [layer.render]
 lod = { max_px = 8 }
 [layer.look]
-radius = { min = 0.02, max = 0.02 }
+radius = { min = 0.05, max = 0.05 }
 [output]
 resolution = [640, 360]
 frames = "1"
