@@ -16,7 +16,8 @@
 #include "generate/columns.h"
 #include "generate/lattice.h"
 #include "interrupt.h"
-#include "look/apply.h"
+#include "output/format.h"
+#include "output/frame_path.h"
 #include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
@@ -31,10 +32,12 @@
 namespace astrosplat {
 namespace {
 
-constexpr std::int64_t program_bytes = 55'000'000;  // with its libraries, before any scene
-constexpr std::int64_t picture_bytes = 45'000'000;  // libraries that read pictures, and write all but EXR
-constexpr std::int64_t drawing_bytes = 15'000'000;  // what rendering and writing any frame adds
-constexpr std::int64_t worker_bytes = 6'000'000;    // what a thread that renders works with
+constexpr std::int64_t program_bytes = 45'000'000;  // with its libraries, before any scene
+constexpr std::int64_t picture_bytes = 78'000'000;  // libraries that read pictures, and write all but EXR
+constexpr std::int64_t drawing_bytes = 10'000'000;  // what rendering and writing any frame adds
+constexpr std::int64_t worker_bytes = 800'000;      // a thread that renders, beside what folding takes
+constexpr std::int64_t block_bytes = 6'700'000;     // the same where sets come by the block
+constexpr std::int64_t reserve_bytes = 6'000'000;   // for what an estimate is short of, where a limit is kept
 constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splats that any frame is worth
 // A projected splat lies in so many tiles, where nothing is known of the splats' places; and its place in a
 // bin. A twentieth of the memory for those that are known stays unused, at the end of blocks.
@@ -45,7 +48,7 @@ constexpr std::int64_t shaded_bytes = 40;
 // by direction.
 constexpr std::int64_t capture_row_bytes = 68, harmonics_row_bytes = 180;
 constexpr std::int64_t shape_bytes = 68, harmonics_bytes = 204;
-constexpr std::int64_t sorting_bytes = 20;  // a row of a file whose rows are not in order of id
+constexpr std::int64_t sorting_bytes = 32;  // a row of a file whose rows are not in order of id
 constexpr std::int64_t streamed_bytes_per_block = 128 * shaded_bytes + 256;  // sample, bounds
 constexpr std::int64_t catalogue_bytes_per_star = 100;                       // HYG; Hipparcos, compressed
 
@@ -123,7 +126,7 @@ struct SkyBytes {
 
 /// Nothing of files that cannot be read: their reader will say why.
 SkyBytes sky_bytes(const EnvironmentParams& sky) try {
-    constexpr std::int64_t held = 16, read = 60;  // bytes a texel, of which one picture at a time is read
+    constexpr std::int64_t held = 16, read = 50;  // bytes a texel, of which one picture at a time is read
     if (!sky.tile.empty()) {
         const std::int64_t texels = 6 * sky.tiling.face_px * sky.tiling.face_px;
         return {36 * texels, held * texels};  // of three floats: as made or read, and with borders
@@ -142,6 +145,18 @@ SkyBytes sky_bytes(const EnvironmentParams& sky) try {
     return {};
 }
 
+/// Of a sample while it is written: EXR takes floats.
+std::int64_t written_bytes(const OutputParams& output) {
+    switch (resolve_format(output, frame_file(output.path, 1)).depth) {
+        case OutputParams::Depth::uint8:
+            return 1;
+        case OutputParams::Depth::uint16:
+            return 2;
+        default:
+            return sizeof(float);
+    }
+}
+
 /// The frame, and what writing it takes.
 std::int64_t frame_bytes(const BatchPlan& plan) {
     const OutputParams& output = plan.scene.output;
@@ -151,8 +166,8 @@ std::int64_t frame_bytes(const BatchPlan& plan) {
         output.holds("layers") ? static_cast<std::int64_t>(plan.scene.layers.size()) : 0;
     const std::int64_t planes = output.holds("depth") + output.holds("coverage") + output.holds("count");
     const std::int64_t images = is_blurred(plan.scene.camera) ? 2 : 1;
-    const std::int64_t written = 4 + 4 * layers;
-    return pixels * 4 * (images * (4 + planes + 4 * layers) + written);
+    const std::int64_t made = images * (4 + planes + 4 * layers);
+    return pixels * (made * std::int64_t{sizeof(float)} + (4 + 4 * layers) * written_bytes(output));
 }
 
 /// A layer of the job.
@@ -185,8 +200,8 @@ LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const Sampled
 
 bool uses_pictures(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
     const EnvironmentParams& sky = plan.scene.environment;
-    const bool has_sky = sky.visible && !(sky.image.empty() && sky.cube.empty() && sky.tile.empty());
-    return has_sky || !plan.scene.output.path.ends_with(".exr") ||
+    return has_environment(sky) ||  // read also where it is not visible
+           !plan.scene.output.path.ends_with(".exr") ||
            std::ranges::any_of(needs, &LayerNeed::reads_pictures);
 }
 
@@ -205,6 +220,7 @@ SetBytes sets_of(const std::vector<LayerNeed>& needs, const std::vector<std::str
         if (!on_disk) bytes.making = std::max(bytes.making, bytes.held + need.making);
         bytes.held += on_disk ? streamed_bytes(need) : need.held;
     }
+    if (!streamed.empty()) bytes.held += thread_count() * block_bytes;
     return bytes;
 }
 
@@ -262,7 +278,8 @@ JobEstimate estimate(const BatchPlan& plan, SampledRun& sample) {
     const bool is_limited = plan.memory_limit_bytes > 0;
     const std::int64_t limit = is_limited ? plan.memory_limit_bytes : available_memory_bytes() / 10 * 9;
     const std::int64_t program = program_bytes + (uses_pictures(plan, needs) ? picture_bytes : 0);
-    const std::int64_t working = program + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes;
+    const std::int64_t working = program + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes +
+                                 (is_limited ? reserve_bytes : 0);
     const std::int64_t records = records_bytes(plan, needs, sample);
     const EnvironmentParams& sky = plan.scene.environment;
     const SkyBytes skies = sky_bytes(sky);

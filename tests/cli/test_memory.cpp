@@ -65,7 +65,7 @@ file = "ball.splats"
 };
 
 TEST_F(Memory, AFileLargerThanTheMemoryGivesTheSamePixels) {
-    make_ball(400000, "[64, 48]", "[layer.render]\nblend = \"hybrid\"\n[layer.look]\ndensity = 0.9\n");
+    make_ball(1000000, "[64, 48]", "[layer.render]\nblend = \"hybrid\"\n[layer.look]\ndensity = 0.9\n");
     const Run whole = rendered({});
     EXPECT_EQ(whole.err.find("block by block"), std::string::npos) << whole.err;
     for (const auto& [threads, gib] : {std::pair("1", "0.1"), std::pair("2", "0.106")}) {
