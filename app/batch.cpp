@@ -15,6 +15,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "dry_run.h"
 #include "estimate.h"
 #include "generate/generate.h"
 #include "interrupt.h"
@@ -27,59 +28,6 @@
 
 namespace astrosplat {
 namespace {
-
-std::int64_t frames_to_render(const BatchPlan& plan) {
-    std::int64_t count = 0;
-    for (const FramePlan& frame : plan.frames) count += frame.render;
-    return count;
-}
-
-std::string human_seconds(double seconds) {
-    if (seconds < 99.5) return fmt::format("{:.{}f} s", seconds, seconds < 0.95 ? 2 : seconds < 9.5 ? 1 : 0);
-    return clock_text(seconds);
-}
-
-/// What is to be made, and what the frames take: told from a hundredth of the splats.
-void print_costs(const BatchPlan& plan, SampledRun& sample) {
-    const std::int64_t count = frames_to_render(plan);
-    if (sample.making_seconds() > 0.0)
-        fmt::print("sets are made in about {}\n", human_seconds(sample.making_seconds()));
-    if (count == 0) return;
-    const FrameCost cost = sample.frame_cost();
-    const auto all = static_cast<double>(count);
-    fmt::print("time about {} a frame, {} in all\n", human_seconds(cost.seconds),
-               human_seconds(sample.making_seconds() + all * cost.seconds));
-    if (!cost.file_bytes) return;
-    const auto bytes = static_cast<double>(*cost.file_bytes);
-    fmt::print("files about {} a frame, {} in all\n", human_bytes(bytes), human_bytes(all * bytes));
-}
-
-void print_plan(const BatchPlan& plan) {
-    const OutputParams& output = plan.scene.output;
-    SampledRun sample(plan, SampledRun::Layers::all);
-    const JobEstimate job = estimate(plan, sample);
-    const auto count = static_cast<std::int64_t>(plan.frames.size());
-    fmt::print("scene {}\n", printable(plan.scene.file.string()));
-    fmt::print("frame {}x{} px", output.width, output.height);
-    if (plan.region.width > 0) {
-        fmt::print(", region {},{},{},{}", plan.region.x, plan.region.y, plan.region.width,
-                   plan.region.height);
-    }
-    fmt::print("\nframes {}: {} to render, {} there already\n", count, frames_to_render(plan),
-               count - frames_to_render(plan));
-    for (const JobEstimate::Layer& layer : job.layers) {
-        fmt::print("layer {}: about {}\n", layer.name, human_count(layer.splats, "splat"));
-    }
-    if (job.sky_kept)
-        fmt::print("sky: {}\n", *job.sky_kept ? "in the cache" : "is made of its picture first");
-    if (!job.streamed.empty()) fmt::print("read block by block: {}\n", fmt::join(job.streamed, ", "));
-    fmt::print("memory about {}, threads {}\n", human_bytes(static_cast<double>(job.bytes)), thread_count());
-    print_costs(plan, sample);
-    for (const FramePlan& frame : plan.frames) {
-        fmt::print("{} {} {}\n", frame.render ? "render" : "keep", frame.frame,
-                   printable(frame.file.string()));
-    }
-}
 
 /// Throws OutputError where a frame or the figures could not be written.
 void check_writable(const BatchPlan& plan, const BatchOptions& options) {
@@ -123,7 +71,7 @@ class BatchRun {
 void BatchRun::prepare() {
     const JobEstimate job = estimate(plan_);
     renderer_bytes_ = job.renderer_bytes;
-    const auto frames = frames_to_render(plan_);
+    const auto frames = count_to_render(plan_);
     log_info(fmt::format("{} of {}x{} px, about {}, about {} of memory", counted(frames, "frame"),
                          plan_.scene.output.width, plan_.scene.output.height,
                          human_count(job.splats, "splat"), human_bytes(static_cast<double>(job.bytes))));
@@ -220,7 +168,7 @@ void BatchRun::try_frame(const FramePlan& frame, std::int64_t index, std::int64_
 }
 
 void BatchRun::render_frames() {
-    const std::int64_t count = frames_to_render(plan_);
+    const std::int64_t count = count_to_render(plan_);
     std::int64_t index = 0;
     for (const FramePlan& frame : plan_.frames)
         if (frame.render) try_frame(frame, ++index, count);
@@ -268,11 +216,11 @@ bool keep_stats(const BatchOptions& options, const BatchRun& run) try {
 
 int run_batch(const BatchOptions& options) {
     const BatchPlan plan = plan_batch(options);
+    defer_interrupts();
     if (options.dry_run) {
         print_plan(plan);
         return exit_done;
     }
-    defer_interrupts();
     check_writable(plan, options);
     std::vector<FailedFrame> failed;
     bool kept = true;
@@ -280,7 +228,7 @@ int run_batch(const BatchOptions& options) {
         BatchRun run(plan, options.progress);
         const auto keep_figures = [&] { kept = keep_stats(options, run); };
         try {
-            if (frames_to_render(plan) > 0) {
+            if (count_to_render(plan) > 0) {
                 run.prepare();
                 run.render_frames();
             }

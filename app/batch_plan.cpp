@@ -192,6 +192,12 @@ Found found_at(const FramePlan& plan) {
     return read_frame_hashes(plan.file).first == plan.hash ? Found::same : Found::other;
 }
 
+std::int64_t count_to_render(const BatchPlan& plan) {
+    std::int64_t count = 0;
+    for (const FramePlan& frame : plan.frames) count += frame.render;
+    return count;
+}
+
 BatchPlan plan_scene(const BatchOptions& options) {
     BatchPlan plan;
     plan.scene = batch_scene(options);

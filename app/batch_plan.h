@@ -34,6 +34,9 @@ struct BatchPlan {
     bool resume = false;            // frames of the right hash are as good as rendered ones
 };
 
+/// How many of the frames are rendered.
+std::int64_t count_to_render(const BatchPlan& plan);
+
 /// What lies at a frame's place: a whole frame of the planned hash, a picture that cannot be read to its end,
 /// or anything else.
 enum class Found { nothing, same, damaged, other };
