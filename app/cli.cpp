@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "build_facts.h"
 #include "cli_commands.h"
 #include "cli_options.h"
-#include "core/assets.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/parallel.h"
@@ -20,7 +20,7 @@
 #include "json_log.h"
 #include "places.h"
 #include "sets_only.h"
-#include "viewer/run_viewer.h"
+#include "window.h"
 
 namespace astrosplat {
 namespace {
@@ -48,37 +48,6 @@ void silence_progress(Invocation& call) {
                                &call.export_options.progress, &call.fidelity.progress, &call.prepare.progress,
                                &call.verify.batch.progress})
         if (*mode == ProgressMode::automatic) *mode = ProgressMode::none;
-}
-
-void refuse_without_screenshot(const ScreenshotOptions& shot) {
-    const char* option = shot.size      ? "--size"
-                         : shot.frame   ? "--frame"
-                         : shot.ui      ? "--ui"
-                         : shot.settled ? "--settled"
-                         : shot.opengl  ? "--opengl"
-                                        : nullptr;
-    if (option) bad_input(option, "", "--screenshot OUT.png beside it", "none");
-}
-
-/// The window, or a screenshot of it.
-int run_window(Invocation& call) {
-    if (!call.input.empty()) call.input = find_by_name("scenes", call.input).string();
-    ViewerOptions viewer{call.input,
-                         {},
-                         call.batch_options.cache,
-                         !call.common.threads.empty(),
-                         !call.common.cache.empty() || call.common.no_cache};
-    for (const std::string& text : call.batch_options.assignments)
-        viewer.assignments.push_back(parse_assignment(text));
-    ScreenshotOptions& shot = call.screenshot;
-    if (shot.output.empty()) {
-        refuse_without_screenshot(shot);
-        defer_interrupts();
-        return run_viewer(viewer, interrupted());
-    }
-    prove_writable(folder_of(shot.output));
-    shot.scene = viewer;
-    return run_screenshot(shot);
 }
 
 int run(Invocation& call) {
@@ -131,7 +100,7 @@ int run_command_line(int argc, char** argv) {
         fmt::print("{}", commands.empty() ? app.help() : commands.front()->help());
         return exit_done;
     } catch (const CLI::CallForVersion&) {
-        fmt::print("{}\n", "astrosplat " ASTROSPLAT_VERSION);
+        fmt::print("{}", version_text());
         return exit_done;
     } catch (const CLI::ParseError& error) {
         return report_usage_error(error);

@@ -10,7 +10,7 @@ void add_batch(CLI::App& app, Invocation& call) {
     add_frame_choice(app, batch);
     app.add_flag("--resume", batch.resume, "Skips frames that are there already, renders missing ones");
     app.add_flag("--overwrite", batch.overwrite, "Replaces files that are there already");
-    app.add_flag("--dry-run", batch.dry_run, "Says what would be done, and does nothing");
+    app.add_flag("--dry-run", batch.dry_run, "Tells frames, time, memory and bytes, and does nothing");
     app.add_flag("--sets-only", batch.sets_only, "Generates the sets into the cache, renders nothing");
     add_value(app, "--stats", batch.stats, "FILE.json", "Writes figures as JSON");
     add_progress(app, batch.progress);

@@ -31,7 +31,8 @@ void add_progress(CLI::App& app, ProgressMode& mode) {
 
 void add_common(CLI::App& app, CommonOptions& common) {
     app.set_help_flag("-h,--help", "Prints this help");
-    app.set_version_flag("--version", "astrosplat " ASTROSPLAT_VERSION, "Prints the version");
+    app.set_version_flag("--version", "astrosplat " ASTROSPLAT_VERSION,
+                         "Prints version, commit and libraries");
     add_value(app, "-t,--threads", common.threads, "N", "Threads (default: the cores this process may use)");
     add_value(app, "--cache", common.cache, "DIR",
               "Folder that keeps generated sets and prepared pictures (default: $ASTROSPLAT_CACHE, "

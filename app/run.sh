@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scene=assets/scenes/spiral.toml
 
-bash third_party/install.sh build
+bash third_party/install.sh build window
 cmake --preset release -DASTROSPLAT_TESTS=OFF >/dev/null
 cmake --build --preset release --target astrosplat
 

@@ -26,7 +26,7 @@ test_with() {
     return $result
 }
 
-bash third_party/install.sh build tests
+bash third_party/install.sh build window tests
 case "${1:-release}" in
 nightly)
     test_with '^(ci|nightly)$' release

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs those Debian packages of packages.txt that are missing. Silent and quick when there is nothing to do.
-# In: sections of packages.txt ("build", "tests"; default: build). As root, or with a sudo that asks for no password,
+# In: sections of packages.txt ("build", "window", "tests"; default: build). As root, or with a sudo that asks for no password,
 # it installs; otherwise it prints the one line to run, with the size of the download, and stops with exit code 2.
 set -euo pipefail
 export LC_ALL=C DEBIAN_FRONTEND=noninteractive

@@ -16,9 +16,11 @@ pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO>=2.1)
 pkg_check_modules(CFITSIO REQUIRED IMPORTED_TARGET cfitsio)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(HWY REQUIRED IMPORTED_TARGET libhwy)
-find_package(glfw3 3.3 REQUIRED)
-find_package(OpenGL REQUIRED COMPONENTS EGL)
-pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+if(ASTROSPLAT_WINDOW)
+  find_package(glfw3 3.3 REQUIRED)
+  find_package(OpenGL REQUIRED COMPONENTS EGL)
+  pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+endif()
 
 # lazy_library(NAME PREFIX LIBRARY PATTERN): the target NAME stands for a shared library that is loaded when the first of
 # its functions that match is called. Sanitizers look at the classes' type information, so there it is linked.
@@ -54,14 +56,16 @@ lazy_library(ocio OCIO OpenColorIO
 
 # OpenGL's function loader is generated in the build from the Khronos registry that Debian's glad brings; without
 # --reproducible it would ask the network for a newer one.
-find_program(GLAD_COMMAND glad REQUIRED)
-set(glad_folder ${PROJECT_BINARY_DIR}/glad)
-add_custom_command(
-  OUTPUT ${glad_folder}/src/gl.c ${glad_folder}/include/glad/gl.h ${glad_folder}/include/KHR/khrplatform.h
-  COMMAND ${GLAD_COMMAND} --api gl:core=4.5 --extensions "" --reproducible --quiet --out-path ${glad_folder} c
-  COMMENT "Generating the OpenGL loader" VERBATIM)
-add_library(glad STATIC ${glad_folder}/src/gl.c ${glad_folder}/include/glad/gl.h)
-target_include_directories(glad SYSTEM PUBLIC ${glad_folder}/include)
+if(ASTROSPLAT_WINDOW)
+  find_program(GLAD_COMMAND glad REQUIRED)
+  set(glad_folder ${PROJECT_BINARY_DIR}/glad)
+  add_custom_command(
+    OUTPUT ${glad_folder}/src/gl.c ${glad_folder}/include/glad/gl.h ${glad_folder}/include/KHR/khrplatform.h
+    COMMAND ${GLAD_COMMAND} --api gl:core=4.5 --extensions "" --reproducible --quiet --out-path ${glad_folder} c
+    COMMENT "Generating the OpenGL loader" VERBATIM)
+  add_library(glad STATIC ${glad_folder}/src/gl.c ${glad_folder}/include/glad/gl.h)
+  target_include_directories(glad SYSTEM PUBLIC ${glad_folder}/include)
+endif()
 
 # openvdb: Debian has no CMake config for it, only a module with packages that nothing here uses.
 find_path(OPENVDB_INCLUDE_DIR openvdb/openvdb.h REQUIRED)
@@ -71,3 +75,11 @@ pkg_check_modules(IMATH REQUIRED IMPORTED_TARGET Imath)
 add_library(openvdb INTERFACE)
 target_include_directories(openvdb SYSTEM INTERFACE ${OPENVDB_INCLUDE_DIR})
 target_link_libraries(openvdb INTERFACE ${OPENVDB_LIBRARY} ${TBB_LIBRARY} PkgConfig::IMATH)
+
+# For --version, of those that have a say in pictures or files.
+set(astrosplat_library_versions "OpenEXR ${OPENEXR_VERSION}" "OpenImageIO ${OIIO_VERSION}" "OpenColorIO ${OCIO_VERSION}"
+  "CFITSIO ${CFITSIO_VERSION}" "Highway ${HWY_VERSION}" "fmt ${fmt_VERSION}" "zlib ${ZLIB_VERSION_STRING}"
+  "OpenSSL ${OPENSSL_VERSION}")
+if(ASTROSPLAT_WINDOW)
+  list(APPEND astrosplat_library_versions "GLFW ${glfw3_VERSION}" "Dear ImGui ${IMGUI_VERSION}")
+endif()

@@ -24,6 +24,23 @@ TEST_F(Usage, HelpAndVersionAreEverywhere) {
     }
 }
 
+TEST_F(Usage, TheVersionSaysWhatItWasBuiltOf) {
+    const std::string text = run({"--version"}).out;
+    EXPECT_TRUE(std::regex_match(
+        text,
+        std::regex(
+            "astrosplat [0-9.]+\\ncommit ([0-9a-f]{12}(-dirty)?|unknown)\\nbuilt with (GCC|Clang) [^\\n]+, "
+            "[A-Za-z]+\\nlibraries OpenEXR 3[^\\n]+, OpenImageIO 2[^\\n]+\\ninstructions [a-z0-9]+\\n")))
+        << text;
+    // Where a library was not found, its number would be missing.
+    EXPECT_FALSE(std::regex_search(text, std::regex("[A-Za-z] ?(,|\\n[^\\n]*instructions)"))) << text;
+    const std::string head =
+        run_program({"/bin/sh", "-c", "git -C '" ASTROSPLAT_SOURCE_DIR "' rev-parse --short=12 HEAD"}).out;
+    if (head.size() == 13) {
+        EXPECT_NE(text.find("commit " + head.substr(0, 12)), std::string::npos) << text << head;
+    }
+}
+
 TEST_F(Usage, HelpNamesEveryOptionOfTheDesign) {
     const std::string help = run({"--help"}).out;
     for (const char* option :
