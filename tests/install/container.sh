@@ -49,13 +49,13 @@ done <"$recipe"
 
 depends=$(chroot "$stage" dpkg-query --show --showformat='${Depends}' astrosplat)
 ! grep -E 'libgl1|libegl1|libglfw3|libimgui' <<<"$depends" || { echo "the package asks for OpenGL"; exit 1; }
-mkdir "$stage/work"
-cp -a "$source/assets" "$stage/work/"
+mkdir "$stage/films"
+cp -a "$source/assets" "$stage/films/"
 arguments=(--batch assets/scenes/s106.toml --frames 1 --resolution 160x120 --overwrite --no-cache -q)
 pixels() { sed -n 's/.*"sha256": "\([0-9a-f]*\)".*/\1/p' "$1"; }
-chroot "$stage" /bin/sh -c "cd /work && $entry ${arguments[*]} --output there.exr --stats there.json"
-(cd "$stage/work" && "$program" "${arguments[@]}" --output here.exr --stats here.json)
-[ -n "$(pixels "$stage/work/here.json")" ]
-[ "$(pixels "$stage/work/there.json")" = "$(pixels "$stage/work/here.json")" ] || { echo "other pixels"; exit 1; }
+chroot "$stage" /bin/sh -c "cd /films && $entry ${arguments[*]} --output there.exr --stats there.json"
+(cd "$stage/films" && "$program" "${arguments[@]}" --output here.exr --stats here.json)
+[ -n "$(pixels "$stage/films/here.json")" ]
+[ "$(pixels "$stage/films/there.json")" = "$(pixels "$stage/films/here.json")" ] || { echo "other pixels"; exit 1; }
 chroot "$stage" /bin/sh -c "$entry; [ \$? = 2 ]"
 echo "the container's program renders the same pixels"
