@@ -43,7 +43,6 @@ struct LaneInts {
 template <class D>
 struct Lanes {
     hn::Vec<D> v;
-    Lanes() = default;  // of no value yet
     HWY_INLINE Lanes(hn::Vec<D> values) : v(values) {}
     HWY_INLINE Lanes(float value) : v(hn::Set(D(), value)) {}
     HWY_INLINE explicit Lanes(LaneInts<D> values) : v(hn::ConvertTo(D(), values.v)) {}

@@ -8,7 +8,7 @@ Instance fisheye_instance(Lens lens, Vec3 p) {
     across = max(across, tiny);
     Float px_per_across = lens.focal_px * angle_of(across, -p.z) / across;
     Float distance = sqrt(dot(p, p));
-    return instance_at(lens.center_x_px + x * px_per_across, lens.center_y_px - p.y * px_per_across, lens.focal_px / distance,
+    return Instance(lens.center_x_px + x * px_per_across, lens.center_y_px - p.y * px_per_across, lens.focal_px / distance,
                     distance);
 }
 

@@ -15,13 +15,3 @@ struct Instance {
     Float px_per_unit;  // px per scene unit of the splat's radius
     Float depth;        // what near, far and near fade mean, scene units
 };
-
-// Member by member: what GLSL's constructor would say, not every compiler of C++20 takes.
-Instance instance_at(Float x_px, Float y_px, Float px_per_unit, Float depth) {
-    Instance at;
-    at.x_px = x_px;
-    at.y_px = y_px;
-    at.px_per_unit = px_per_unit;
-    at.depth = depth;
-    return at;
-}

@@ -1,7 +1,7 @@
 // Orthographic: px from the optical axis = focal_px * x; all rays are parallel to the axis.
 
 Instance orthographic_instance(Lens lens, Vec3 p) {
-    return instance_at(lens.center_x_px + p.x * lens.focal_px, lens.center_y_px - p.y * lens.focal_px, lens.focal_px, -p.z);
+    return Instance(lens.center_x_px + p.x * lens.focal_px, lens.center_y_px - p.y * lens.focal_px, lens.focal_px, -p.z);
 }
 
 Vec3 orthographic_point(Lens lens, Float x_px, Float y_px, Float depth) {

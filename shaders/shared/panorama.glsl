@@ -16,7 +16,7 @@ Instance panorama_instance(Lens lens, Vec3 p) {
     if (lens.projection == PROJECTION_CYLINDRICAL) height = p.y / from_pole(p);
     Float distance = sqrt(dot(p, p));
     if (lens.parallax != 0.0f) longitude = longitude + panorama_parallax(lens, distance);
-    return instance_at(lens.center_x_px + lens.focal_px * longitude, lens.center_y_px - lens.focal_px * height,
+    return Instance(lens.center_x_px + lens.focal_px * longitude, lens.center_y_px - lens.focal_px * height,
                     lens.focal_px / distance, distance);
 }
 

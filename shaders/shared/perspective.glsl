@@ -3,7 +3,7 @@
 Instance perspective_instance(Lens lens, Vec3 p) {
     Float depth = -p.z;
     Float px_per_unit = lens.focal_px / depth;
-    return instance_at(lens.center_x_px + p.x * px_per_unit, lens.center_y_px - p.y * px_per_unit, px_per_unit, depth);
+    return Instance(lens.center_x_px + p.x * px_per_unit, lens.center_y_px - p.y * px_per_unit, px_per_unit, depth);
 }
 
 Vec3 perspective_ray(Lens lens, Float x_px, Float y_px) {
