@@ -24,8 +24,8 @@ class SampledRun {
     /// What is sampled: layers whose sets are in the cache or in .splats files, for a quick answer; or all,
     /// for which those that are missing are made small and other inputs are read, with the environment.
     enum class Layers { there, all };
-    /// Layers of one that is hidden in all frames, and stars, which are few, are left out. Throws as
-    /// load_source does, Cancelled.
+    /// Layers that no frame shows and stars of a picture, which are few, are left out. Throws as load_source
+    /// does, Cancelled.
     SampledRun(const BatchPlan& plan, Layers layers);
 
     struct Layer {

@@ -57,11 +57,6 @@ SetSample sample_columns(const SetCache& cache, const Recipe& recipe) {
     return {std::move(set), static_cast<std::int64_t>(lit * static_cast<double>(texels.splats()))};
 }
 
-/// The sample was made in this time beside reading the inputs.
-double seconds_for_all(double sample_seconds, double reading_seconds, double all_over_sample) {
-    return reading_seconds + sample_seconds * all_over_sample;
-}
-
 SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const std::string& layer_name,
                         const Progress& progress) {
     const auto start = Clock::now();
@@ -78,7 +73,7 @@ SetSample sample_bodies(const SetCache& cache, const SourceParams& source, const
     SetSample sample;
     sample.set = make_bodies(std::move(plan.meshes), plan.structure, resolved_seed(source.seed, layer_name),
                              layer_name, progress);
-    sample.making_seconds = seconds_for_all(seconds_since(making), reading, smaller);
+    sample.making_seconds = reading + smaller * seconds_since(making);
     sample.splats = source.splats > 0 ? std::min(dots, source.splats) : dots;
     const auto narrower = static_cast<float>(1.0 / std::sqrt(smaller));
     for (float& radius : sample.set.radius) radius *= narrower;
@@ -103,7 +98,7 @@ SetSample sample_lattice(const SetCache& cache, const SourceParams& source, cons
     const auto making = Clock::now();
     sample.set = lit_splats(make_columns(plan, layer_name, progress));
     sample.set.spacing = whole.spacing();
-    sample.making_seconds = seconds_for_all(seconds_since(making), reading, smaller);
+    sample.making_seconds = reading + smaller * seconds_since(making);
     return sample;
 }
 

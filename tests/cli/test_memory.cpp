@@ -40,6 +40,22 @@ file = "ball.splats"
                                                       resolution, more));
     }
 
+    /// The same ball, which scene.toml generates, seen from a place; `more` belongs to its layer.
+    void make_ball_to_generate(int splats, const std::string& position, const std::string& more = "") {
+        make_ball(1000, "[64, 36]");
+        std::string text = text_of(folder / "mesh.toml");
+        text.replace(text.find("splats = 1000"), 13, fmt::format("splats = {}", splats));
+        write_text(folder / "scene.toml", fmt::format(R"({}{}
+[output]
+resolution = [640, 360]
+frames = "1"
+path = "frames/shot.####.exr"
+[camera]
+position = {}
+)",
+                                                      text, more, position));
+    }
+
     struct Run {
         std::string hash, err;
         double told_mib = 0.0, taken_mib = 0.0;
@@ -111,38 +127,16 @@ TEST_F(Memory, TheProgramThatStartsThisOneIsNotCounted) {
 }
 
 TEST_F(Memory, GeneratingTakesWhatIsAnnounced) {
-    make_ball(1000, "[64, 36]");
-    std::string text = text_of(folder / "mesh.toml");
-    text.replace(text.find("splats = 1000"), 13, "splats = 2500000");
-    write_text(folder / "scene.toml", text + R"(
-[output]
-resolution = [640, 360]
-frames = "1"
-path = "frames/shot.####.exr"
-[camera]
-position = [3.0, 6.0, 13.0]
-)");
+    make_ball_to_generate(2500000, "[3.0, 6.0, 13.0]");
     const Run run = rendered({});
     EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
 }
 
 // Splats close by, which are split, wide and out of the frame; their set is in the cache.
 TEST_F(Memory, WhatAPassCloseByTakesIsToldFromASample) {
-    make_ball(1000, "[64, 36]");
-    std::string text = text_of(folder / "mesh.toml");
-    text.replace(text.find("splats = 1000"), 13, "splats = 300000");
-    write_text(folder / "scene.toml", text + R"(
-[layer.render]
-lod = { max_px = 8 }
-[layer.look]
-radius = { min = 0.05, max = 0.05 }
-[output]
-resolution = [640, 360]
-frames = "1"
-path = "frames/shot.####.exr"
-[camera]
-position = [0.6, 0.4, 1.3]
-)");
+    make_ball_to_generate(
+        300000, "[0.6, 0.4, 1.3]",
+        "[layer.render]\nlod = { max_px = 8 }\n[layer.look]\nradius = { min = 0.05, max = 0.05 }\n");
     ASSERT_EQ(batch({"--sets-only", "-q"}).code, 0);
     const Run run = rendered({}, true);
     EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;

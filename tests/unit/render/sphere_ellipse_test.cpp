@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <ostream>
 #include <string>
 
 #include "core/real.h"
@@ -75,15 +74,7 @@ bool fits(const Camera& camera, const SphereEllipse& e) {
            std::fabs(e.latitude) + 2.0 * real::degrees(e.larger_px / camera.focal_px) <= 38.0;
 }
 
-struct LightCase {
-    Projection projection;
-    Falloff::Shape shape;
-};
-void PrintTo(const LightCase& c, std::ostream* out) {
-    *out << name_of(c.projection) << ", " << name_of(c.shape);
-}
-
-class SphereEllipseLight : public ::testing::TestWithParam<LightCase> {};
+class SphereEllipseLight : public ::testing::TestWithParam<SphereCase> {};
 
 // Also of needles that follow a row or column of pixels for a while, where those of a plane's lattice add up.
 TEST_P(SphereEllipseLight, IsConservedAtEveryPlaceSizeAndOrientation) {
@@ -113,8 +104,8 @@ TEST_P(SphereEllipseLight, IsConservedAtEveryPlaceSizeAndOrientation) {
     RecordProperty("worst", std::to_string(worst));
 }
 
-std::vector<LightCase> light_cases() {
-    std::vector<LightCase> cases;
+std::vector<SphereCase> light_cases() {
+    std::vector<SphereCase> cases;
     for (const Projection projection : projections)
         for (const Falloff::Shape shape : all_shapes) cases.push_back({projection, shape});
     return cases;

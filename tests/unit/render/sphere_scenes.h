@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <ostream>
 
 #include "core/real.h"
 #include "unit/render/scenes.h"
@@ -56,6 +57,15 @@ inline double light_on_sphere(const Image& picture, const Camera& camera, int ch
             if (const double light = picture.at(x, y)[channel]; light != 0.0)
                 sum += light * solid_angle(camera, x, y);
     return sum;
+}
+
+/// What light is measured of.
+struct SphereCase {
+    Projection projection;
+    Falloff::Shape shape;
+};
+inline void PrintTo(const SphereCase& c, std::ostream* out) {
+    *out << name_of(c.projection) << ", " << name_of(c.shape);
 }
 
 }  // namespace astrosplat::test

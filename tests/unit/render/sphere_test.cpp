@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <ostream>
 
 #include "core/parallel.h"
 #include "core/real.h"
@@ -29,14 +28,6 @@ Image one_splat(const Camera& camera, const glm::dvec3& toward, double radius_px
     RenderLayer layer = layer_of("splat", splats);
     layer.render.falloff = falloff;
     return render({&layer, 1}, camera, nullptr, settings_of(wide_px, high_px)).beauty;
-}
-
-struct SphereCase {
-    Projection projection;
-    Falloff::Shape shape;
-};
-void PrintTo(const SphereCase& c, std::ostream* out) {
-    *out << name_of(c.projection) << ", " << name_of(c.shape);
 }
 
 class SphereLight : public ::testing::TestWithParam<SphereCase> {};
