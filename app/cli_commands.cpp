@@ -139,6 +139,9 @@ void add_reports(CLI::App& app, Invocation& call) {
 
     CLI::App& parameters = add_command(app, call, "parameters", "Lists every key of a scene file",
                                        [&call] { return run_parameters(call.parameters); });
+    add_value(parameters, "SCENE", call.parameters.scene, "SCENE",
+              "Lists the keys of this scene as --set takes them, with their values");
+    parameters.add_flag("--names", call.parameters.names, "Prints only the keys");
     parameters.add_flag("--json", call.parameters.json, "Prints JSON");
 }
 
@@ -178,7 +181,8 @@ void add_verify(CLI::App& app, Invocation& call) {
     add_progress(command, verify.batch.progress);
 }
 
-/// Keys that --set takes as they stand: those of layers need a layer's name.
+/// Keys that --set takes as they stand: those of layers need a layer's name, for which the scripts ask the
+/// program.
 std::vector<std::string> keys_to_set() {
     std::vector<std::string> keys;
     for (const ParameterRow& row : parameter_rows())

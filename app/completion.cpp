@@ -54,11 +54,11 @@ std::string bash_values(const CommandWords& command) {
         if (option.placeholder.empty()) continue;
         Words patterns;
         for (const std::string& name : option.names) patterns.push_back(quoted(command.name + " " + name));
-        const std::string reply =
-            option.is_assignment()      ? "words \"${keys[@]}\"; compopt -o nospace 2>/dev/null"
-            : option.is_file()          ? "files"
-            : !option.choices().empty() ? fmt::format("words {}", fmt::join(option.choices(), " "))
-                                        : ":";
+        const std::string reply = option.is_assignment() ? "keys"
+                                  : option.is_file()     ? "files"
+                                  : !option.choices().empty()
+                                      ? fmt::format("words {}", fmt::join(option.choices(), " "))
+                                      : ":";
         text += fmt::format("        {}) {} ;;\n", fmt::join(patterns, "|"), reply);
     }
     return text;
@@ -81,11 +81,19 @@ std::string bash_script(const std::vector<CommandWords>& commands, const Words& 
     return fmt::format(R"(# bash completion of astrosplat
 _astrosplat() {{
     local cur=${{COMP_WORDS[COMP_CWORD]}} prev=${{COMP_WORDS[COMP_CWORD-1]}} command= word
-    local keys=({keys})
     words() {{ mapfile -t -O "${{#COMPREPLY[@]}}" COMPREPLY < <(compgen -W "$*" -- "$cur"); }}
     files() {{
         compopt -o filenames 2>/dev/null
         mapfile -t -O "${{#COMPREPLY[@]}}" COMPREPLY < <(compgen -f -- "$cur")
+    }}
+    # Those of layers are known where a scene is named.
+    keys() {{
+        local scene of_layers=
+        for scene in "${{COMP_WORDS[@]:1}}"; do
+            case $scene in *.toml) of_layers=$("${{COMP_WORDS[0]}}" parameters --names "${{scene//\\/}}" 2>/dev/null) ;; esac
+        done
+        words {keys} $(printf '%s\n' "$of_layers" | sed -n 's/^layer\..*/&=/p')
+        compopt -o nospace 2>/dev/null
     }}
     COMPREPLY=()
     for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
@@ -101,7 +109,7 @@ _astrosplat() {{
             esac ;;
         esac ;;
     esac
-    unset -f words files
+    unset -f words files keys
 }}
 complete -F _astrosplat astrosplat
 )",
@@ -111,12 +119,12 @@ complete -F _astrosplat astrosplat
                        fmt::arg("values", values), fmt::arg("places", places), fmt::arg("options", options));
 }
 
-std::string zsh_arguments(const CommandWords& command, const Words& keys) {
+std::string zsh_arguments(const CommandWords& command) {
     std::string text;
     for (const OptionWords& option : command.options) {
         std::string value;
         if (option.is_assignment())
-            value = fmt::format(":key:({}=)", fmt::join(keys, "= "));
+            value = ":key:_astrosplat_keys";
         else if (!option.choices().empty())
             value = fmt::format(":value:({})", fmt::join(option.choices(), " "));
         else if (!option.placeholder.empty())
@@ -136,10 +144,19 @@ std::string zsh_script(const std::vector<CommandWords>& commands, const Words& k
     for (const CommandWords& command : commands) {
         if (command.name.empty()) continue;
         list += "\n        " + quoted(command.name + ":" + command.help);
-        cases +=
-            fmt::format("        {})\n        _arguments{} ;;\n", command.name, zsh_arguments(command, keys));
+        cases += fmt::format("        {})\n        _arguments{} ;;\n", command.name, zsh_arguments(command));
     }
-    return fmt::format(R"(#compdef astrosplat
+    return fmt::format(R"zsh(#compdef astrosplat
+# Those of layers are known where a scene is named.
+_astrosplat_keys() {{
+    local -a keys
+    local scene
+    keys=({keys}=)
+    for scene in ${{(M)words:#*.toml}}; do
+        keys+=(${{^${{(M)${{(f)"$(${{(Q)words[1]}} parameters --names ${{(Q)scene}} 2>/dev/null)"}}:#layer.*}}}}=)
+    done
+    compadd -S '' -a keys
+}}
 _astrosplat() {{
     local -a commands
     commands=({list}
@@ -155,12 +172,12 @@ _astrosplat() {{
     esac
 }}
 _astrosplat "$@"
-)",
-                       fmt::arg("list", list), fmt::arg("cases", cases),
-                       fmt::arg("own", zsh_arguments(commands.front(), keys)));
+)zsh",
+                       fmt::arg("keys", fmt::format("{}", fmt::join(keys, "= "))), fmt::arg("list", list),
+                       fmt::arg("cases", cases), fmt::arg("own", zsh_arguments(commands.front())));
 }
 
-std::string fish_line(const CommandWords& command, const OptionWords& option, const Words& keys) {
+std::string fish_line(const CommandWords& command, const OptionWords& option) {
     std::string line =
         "complete -c astrosplat -n " + (command.name.empty()
                                             ? std::string("__fish_use_subcommand")
@@ -168,7 +185,7 @@ std::string fish_line(const CommandWords& command, const OptionWords& option, co
     for (const std::string& name : option.names)
         line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
     if (option.is_assignment())
-        line += fmt::format(" -x -a {}", quoted_for_fish(fmt::format("{}=", fmt::join(keys, "= "))));
+        line += " -x -a '(__astrosplat_keys)'";
     else if (!option.choices().empty())
         line +=
             fmt::format(" -x -a {}", quoted_for_fish(fmt::format("{}", fmt::join(option.choices(), " "))));
@@ -178,14 +195,24 @@ std::string fish_line(const CommandWords& command, const OptionWords& option, co
 }
 
 std::string fish_script(const std::vector<CommandWords>& commands, const Words& keys) {
-    std::string text = "# fish completion of astrosplat\n";
+    std::string text = fmt::format(R"fish(# fish completion of astrosplat
+# Keys of layers are known where a scene is named.
+function __astrosplat_keys
+    printf '%s=\n' {}
+    set -l words (commandline -opc)
+    for scene in (string match -- '*.toml' $words)
+        $words[1] parameters --names $scene 2>/dev/null | string match -- 'layer.*' | string replace -r '$' '='
+    end
+end
+)fish",
+                                   fmt::join(keys, " "));
     for (const CommandWords& command : commands) {
         if (!command.name.empty())
             text += fmt::format("complete -c astrosplat -n __fish_use_subcommand -a {} -d {}\n", command.name,
                                 quoted_for_fish(command.help));
-        for (const OptionWords& option : command.options) text += fish_line(command, option, keys);
+        for (const OptionWords& option : command.options) text += fish_line(command, option);
         for (const OptionWords& positional : command.positionals)
-            if (!positional.choices().empty()) text += fish_line(command, positional, keys);
+            if (!positional.choices().empty()) text += fish_line(command, positional);
     }
     return text;
 }

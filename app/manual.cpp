@@ -78,7 +78,7 @@ std::string options_text(const CommandWords& command) {
 
 std::string key_entry(const ParameterRow& row) {
     const ParameterSpec& spec = row.spec;
-    return entry(bold(spec.key.text()) + plain(" = " + to_toml(row.standard)),
+    return entry(bold(spec.key.text()) + plain(" = " + to_toml(row.value)),
                  plain(spec.help) + "\n" + plain(value_words(spec)));
 }
 

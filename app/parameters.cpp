@@ -1,5 +1,5 @@
-// parameters: every key of a scene file with default, range and meaning, from the one description
-// in the engine.
+// parameters: every key of a scene file with default, range and meaning, from the one description in the
+// engine; of one scene also what they are there.
 #include "parameters.h"
 
 #include <fmt/format.h>
@@ -9,8 +9,11 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "core/assets.h"
+#include "core/file.h"
 #include "report.h"
 #include "scene/describe.h"
+#include "scene/load.h"
 
 namespace astrosplat {
 namespace {
@@ -27,11 +30,9 @@ Report to_report(const Value& value) {
     return value.number();
 }
 
-Report to_report(const ParameterRow& row) {
-    const ParameterSpec& spec = row.spec;
-    Report report = {
-        {"key", spec.key.text()}, {"type", name_of(spec.type)}, {"default", to_report(row.standard)},
-        {"unit", spec.unit},      {"label", spec.label},        {"help", spec.help}};
+Report to_report(const ParameterSpec& spec, const char* value_name, const Value& value) {
+    Report report = {{"key", spec.key.text()}, {"type", name_of(spec.type)}, {value_name, to_report(value)},
+                     {"unit", spec.unit},      {"label", spec.label},        {"help", spec.help}};
     if (is_numeric(spec.type)) {
         report["min"] = spec.min;
         report["max"] = spec.max;
@@ -42,16 +43,38 @@ Report to_report(const ParameterRow& row) {
     return report;
 }
 
+/// Keys as --set takes them, with their values; also of a scene on its way to becoming one.
+std::vector<ParameterRow> rows_of(const std::string& name) {
+    const std::filesystem::path file = find_by_name("scenes", name);
+    Scene scene = parse_unchecked(read_file(file), file);
+    std::vector<ParameterRow> rows;
+    for (const Parameter& parameter : describe(scene).parameters)
+        rows.push_back({parameter.spec, parameter.get()});
+    return rows;
+}
+
+std::string value_table(const std::vector<ParameterRow>& rows) {
+    std::string table;
+    for (const ParameterRow& row : rows)
+        table += fmt::format("{:<44} = {}\n", row.spec.key, to_toml(row.value));
+    return table;
+}
+
 }  // namespace
 
 int run_parameters(const ParametersOptions& options) {
-    if (!options.json) {
-        fmt::print("{}", parameter_table());
-        return exit_done;
+    const bool of_scene = !options.scene.empty();
+    const std::vector<ParameterRow> rows = of_scene ? rows_of(options.scene) : parameter_rows();
+    if (options.json) {
+        Report report = Report::array();
+        for (const ParameterRow& row : rows)
+            report.push_back(to_report(row.spec, of_scene ? "value" : "default", row.value));
+        print_report(report, true);
+    } else if (options.names) {
+        for (const ParameterRow& row : rows) fmt::print("{}\n", row.spec.key);
+    } else {
+        fmt::print("{}", of_scene ? value_table(rows) : parameter_table());
     }
-    Report rows = Report::array();
-    for (const ParameterRow& row : parameter_rows()) rows.push_back(to_report(row));
-    print_report(rows, true);
     return exit_done;
 }
 

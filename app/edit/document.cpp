@@ -294,7 +294,7 @@ Value Document::default_value(const ParameterSpec& spec) {
     const auto& rows = parameter_rows();
     const auto row = std::find_if(rows.begin(), rows.end(),
                                   [&](const ParameterRow& r) { return r.spec.key == spec.generic_key; });
-    return row == rows.end() ? Value() : row->standard;
+    return row == rows.end() ? Value() : row->value;
 }
 
 bool Document::set_by_command_line(const std::string& key) const {

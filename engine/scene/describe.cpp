@@ -332,8 +332,7 @@ std::string parameter_table() {
             table += fmt::format("{}[{}]\n", table.empty() ? "" : "\n", own);
             section = own;
         }
-        table +=
-            fmt::format("{:<34} = {:<20} # {} {}\n", s.key, to_toml(row.standard), s.help, value_words(s));
+        table += fmt::format("{:<34} = {:<20} # {} {}\n", s.key, to_toml(row.value), s.help, value_words(s));
     }
     return table;
 }

@@ -35,11 +35,13 @@ const Parameter* find_parameter(const Description& description, const ParameterK
 /// The section of a scene file that a generic key is written in: "output", "layer.look", ...; "" at the top.
 ParameterKey section_of(const ParameterKey& generic_key);
 
-/// One row of the manual, from a scene with one layer and one element in every list.
 struct ParameterRow {
-    ParameterSpec spec;  // key == generic_key
-    Value standard;      // the default
+    ParameterSpec spec;
+    Value value;
 };
+
+/// The rows of the manual: generic keys with their defaults, from a scene with one layer and one element in
+/// every list.
 const std::vector<ParameterRow>& parameter_rows();
 
 /// parameter_rows() as a table for a terminal: key, default, unit, range, animation and help.

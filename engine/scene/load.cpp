@@ -17,26 +17,12 @@
 #include "scene/check.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
+#include "scene/preset_file.h"
 #include "scene/tracks.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
-
-void check_version(const toml::table& table, const std::string& file, bool required) {
-    const toml::node* node = table.get("astrosplat");
-    if (!node && !required) return;
-    if (!node)
-        throw InputError(fmt::format("{}: expected a scene that begins with 'astrosplat = 1', found {}", file,
-                                     table.empty() ? "an empty file" : "no such line"));
-    const std::string place = place_of(file, node->source());
-    if (!node->is_integer())
-        throw InputError(
-            fmt::format("{}: astrosplat: expected the format version 1, found {}", place, kind_of(*node)));
-    if (node->as_integer()->get() != 1)
-        throw InputError(fmt::format("{}: astrosplat: expected the format version 1, found {}", place,
-                                     node->as_integer()->get()));
-}
 
 /// One layer of the file: its table, and what names it in keys.
 struct LayerTable {
@@ -79,30 +65,9 @@ toml::table parse_raw(const std::string& raw) {
     } catch (const toml::parse_error&) {
         // a bare word
     }
+    if (const std::optional<double> number = parse_double(raw); number && raw.find('.') != std::string::npos)
+        return toml::table{{"value", *number}};  // ".5" and "5.", which people write and TOML does not take
     return toml::table{{"value", raw}};
-}
-
-/// A short name is a preset of one's own or one that comes with the program; scenes beside this one may have
-/// it, too.
-fs::path find_output_preset(const fs::path& wanted) {
-    std::error_code ignored;
-    if (wanted.has_extension()) return wanted;
-    const fs::path file = wanted.filename().string() + ".toml";
-    for (const fs::path& place : {own_assets_folder("masters"), assets_folder("masters")})
-        if (fs::is_regular_file(place / file, ignored)) return place / file;
-    throw InputError(fmt::format("{}: no preset of the output has this name; known are: {}",
-                                 wanted.filename().string(), fmt::join(names_in("masters"), ", ")));
-}
-
-/// Presets that are missing may be meant to be those that come with the program.
-std::string read_preset_file(const fs::path& file) {
-    std::error_code ignored;
-    const fs::path looks = assets_folder("looks");
-    if (fs::exists(file, ignored) || looks.empty()) return read_file(file);
-    throw InputError(
-        fmt::format("{}: cannot be read: No such file or directory; the looks that come with astrosplat are "
-                    "in {}, by name: {}",
-                    file.string(), looks.string(), fmt::join(names_in("looks"), ", ")));
 }
 
 class Loader {
@@ -149,17 +114,9 @@ class Loader {
     }
 
     void read_preset(LayerParams& layer) {
-        const fs::path file = find_by_name("looks", layer.preset);
-        const toml::table root = parse_toml(read_preset_file(file), file.string());
-        check_version(root, file.string(), false);
-        const EntryOrigin origin{file.string(), file.parent_path(), false, {}};
-        std::vector<Entry> entries;
-        for (const auto& [key, node] : root)
-            if (key.str() != "astrosplat")
-                flatten(node, std::string(key.str()), std::string(key.str()), origin, key.source(), entries);
         Places places;
-        apply_entries(
-            entries, origin, [&] { return describe_preset(layer.look, layer.render); }, places);
+        apply_preset(
+            find_look(layer.preset), [&] { return describe_preset(layer.look, layer.render); }, places);
         for (const auto& [key, place] : places) places_[layer_key(layer.name) / key] = place;
     }
 
@@ -177,19 +134,12 @@ class Loader {
 
     void read_output_preset() {
         if (scene_.output.preset.empty()) return;
-        const fs::path file = find_output_preset(scene_.output.preset);
-        const toml::table root = parse_toml(read_file(file), file.string());
-        check_version(root, file.string(), false);
-        const EntryOrigin origin{file.string(), file.parent_path(), false, {}};
-        std::vector<Entry> entries;
-        for (const auto& [key, node] : root)
-            if (key.str() != "astrosplat")
-                flatten(node, std::string(key.str()), std::string(key.str()), origin, key.source(), entries);
         const auto of_the_screen = [](const ParameterKey& group) {
             return group == "output" || group == "camera";
         };
-        apply_entries(
-            entries, origin, [&] { return describe(scene_, of_the_screen); }, places_);
+        apply_preset(
+            find_output_preset(scene_.output.preset), [&] { return describe(scene_, of_the_screen); },
+            places_);
     }
 
     void read_keys(const toml::table& root, const std::vector<LayerTable>& layers) {

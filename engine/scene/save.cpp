@@ -22,7 +22,7 @@ namespace {
 /// The default of an element's parameter.
 const Value& standard_value(const ParameterKey& generic_key) {
     for (const ParameterRow& row : parameter_rows())
-        if (row.spec.key == generic_key) return row.standard;
+        if (row.spec.key == generic_key) return row.value;
     throw std::logic_error("no parameter " + generic_key.text());
 }
 

@@ -38,7 +38,7 @@ class Manual : public SceneTest {
     /// What bash offers after these words.
     std::vector<std::string> completed(const std::vector<std::string>& words) const {
         write_text(folder / "completion.bash", printed({"completion", "bash"}));
-        std::string script = "source completion.bash; COMP_WORDS=(astrosplat";
+        std::string script = fmt::format("source completion.bash; COMP_WORDS=('{}'", ASTROSPLAT_PROGRAM);
         for (const std::string& word : words) script += " '" + word + "'";
         script +=
             fmt::format("); COMP_CWORD={}; _astrosplat; printf '%s\\n' \"${{COMPREPLY[@]}}\"", words.size());
@@ -108,6 +108,36 @@ TEST_F(Manual, BashCompletes) {
     EXPECT_EQ(completed({"--threads", ""}), Offers{});
     EXPECT_EQ(completed({"export", "x.toml", "--sp"}), Offers{"--space"});
     EXPECT_EQ(completed({"completion", "f"}), Offers{"fish"});
+}
+
+/// A scene that is named anywhere on the line tells how its layers are called.
+TEST_F(Manual, BashCompletesKeysOfLayers) {
+    if (!has("bash")) GTEST_SKIP() << "bash is not installed";
+    using Offers = std::vector<std::string>;
+    write_text(folder / "zwei worte.toml", "astrosplat = 1\n[[layer]]\nname = \"gas\"\n");
+    EXPECT_EQ(completed({"--batch", "zwei worte.toml", "--set", "layer.gas.look.alpha.po"}),
+              Offers{"layer.gas.look.alpha.power="});
+    EXPECT_EQ(completed({"--batch", "zwei worte.toml", "--set", "output.fp"}), Offers{"output.fps="});
+    EXPECT_EQ(completed({"--batch", "missing.toml", "--set", "layer."}), Offers{});
+}
+
+TEST_F(Manual, ParametersOfASceneAreThoseThatSetTakes) {
+    write_text(folder / "a.toml",
+               "astrosplat = 1\n[[layer]]\nname = \"gas\"\n"
+               "look = { alpha = { power = 3 } }\n");
+    const std::string scene = (folder / "a.toml").string();
+    EXPECT_NE(printed({"parameters", scene}).find("layer.gas.look.alpha.power"), std::string::npos);
+    const auto keys = nlohmann::json::parse(printed({"parameters", scene, "--json"}));
+    const auto power = std::ranges::find(keys, "layer.gas.look.alpha.power", [](const auto& row) {
+        return row.at("key").template get<std::string>();
+    });
+    ASSERT_NE(power, keys.end());
+    EXPECT_EQ(power->at("value"), 3);
+    std::istringstream names(printed({"parameters", scene, "--names"}));
+    std::size_t count = 0;
+    for (std::string name; std::getline(names, name); ++count)
+        EXPECT_EQ(name, keys.at(count).at("key").get<std::string>());
+    EXPECT_EQ(count, keys.size());
 }
 
 TEST_F(Manual, OtherShellsReadTheirScripts) {

@@ -130,6 +130,21 @@ TEST(Load, StarsAreUnderstood) {
     EXPECT_EQ(scene.layers[0].source.count, 800000);
 }
 
+TEST(Load, SetTakesFractionsAsPeopleWriteThem) {
+    const Folder folder("fractions");
+    const fs::path file = folder.write("s.toml", small_scene());
+    const auto power = [&](const char* text) {
+        return load_scene(file, std::vector<Assignment>{{"layer.stars.look.alpha.power", text}})
+            .layers[0]
+            .look.alpha.power;
+    };
+    EXPECT_EQ(power(".5"), 0.5f);
+    EXPECT_EQ(power("5."), 5.0f);
+    EXPECT_EQ(power("+.25"), 0.25f);
+    EXPECT_THROW(power("0.5.1"), InputError);
+    EXPECT_EQ(load_scene(file, std::vector<Assignment>{{"provenance.title", ".5"}}).provenance.title, ".5");
+}
+
 TEST(Load, PrecedenceIsDefaultsPresetSceneSet) {
     const Folder folder("precedence");
     folder.write("looks/p.toml",
