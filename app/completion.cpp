@@ -177,11 +177,9 @@ _astrosplat "$@"
                        fmt::arg("cases", cases), fmt::arg("own", zsh_arguments(commands.front())));
 }
 
-std::string fish_line(const CommandWords& command, const OptionWords& option) {
-    std::string line =
-        "complete -c astrosplat -n " + (command.name.empty()
-                                            ? std::string("__fish_use_subcommand")
-                                            : quoted_for_fish("__fish_seen_subcommand_from " + command.name));
+// `condition` is when the option may be meant.
+std::string fish_line(const std::string& condition, const OptionWords& option) {
+    std::string line = "complete -c astrosplat -n " + quoted_for_fish(condition);
     for (const std::string& name : option.names)
         line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
     if (option.is_assignment())
@@ -210,9 +208,13 @@ end
         if (!command.name.empty())
             text += fmt::format("complete -c astrosplat -n __fish_use_subcommand -a {} -d {}\n", command.name,
                                 quoted_for_fish(command.help));
-        for (const OptionWords& option : command.options) text += fish_line(command, option);
+        // Not __fish_use_subcommand: behind a scene the program's own options are still meant.
+        const std::string meant = command.name.empty() ? fmt::format("not __fish_seen_subcommand_from {}",
+                                                                     fmt::join(command_names(commands), " "))
+                                                       : "__fish_seen_subcommand_from " + command.name;
+        for (const OptionWords& option : command.options) text += fish_line(meant, option);
         for (const OptionWords& positional : command.positionals)
-            if (!positional.choices().empty()) text += fish_line(command, positional);
+            if (!positional.choices().empty()) text += fish_line(meant, positional);
     }
     return text;
 }

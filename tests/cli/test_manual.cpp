@@ -121,6 +121,20 @@ TEST_F(Manual, BashCompletesKeysOfLayers) {
     EXPECT_EQ(completed({"--batch", "missing.toml", "--set", "layer."}), Offers{});
 }
 
+TEST_F(Manual, FishCompletesBehindAScene) {
+    if (!has("fish")) GTEST_SKIP() << "fish is not installed";
+    write_text(folder / "a.toml", "astrosplat = 1\n[[layer]]\nname = \"gas\"\n");
+    write_text(folder / "completion.fish", printed({"completion", "fish"}));
+    RunOptions options = in_folder();
+    options.environment.push_back("PATH=" + std::filesystem::path(ASTROSPLAT_PROGRAM).parent_path().string() +
+                                  ":/usr/bin:/bin");
+    const RunResult result = run_program(
+        {"/usr/bin/env", "fish", "-c",
+         "source completion.fish; complete -C 'astrosplat --batch a.toml --set layer.gas.look.alpha.po'"},
+        options);
+    EXPECT_TRUE(result.out.starts_with("layer.gas.look.alpha.power=")) << result.out << result.err;
+}
+
 TEST_F(Manual, ParametersOfASceneAreThoseThatSetTakes) {
     write_text(folder / "a.toml",
                "astrosplat = 1\n[[layer]]\nname = \"gas\"\n"
