@@ -82,10 +82,10 @@ LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& 
     return layer;
 }
 
-LoadedLayer arranged_layer(LoadedLayer layer, const Progress& progress) {
+LoadedLayer arranged_layer(LoadedLayer layer, std::shared_ptr<const MergeTree> tree) {
     constexpr std::int64_t rows_per_sampled = 16;
     layer.whole.set = layer.set;
-    layer.whole.tree = std::make_shared<const MergeTree>(build_merge_tree(*layer.set, progress));
+    layer.whole.tree = std::move(tree);
     const std::int64_t count = std::max(layer.sample.set->size(), layer.set->size() / rows_per_sampled);
     layer.sample =
         source_of(std::make_shared<const SplatSet>(sample_tree(*layer.whole.tree, *layer.set, count)),

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "core/progress.h"
 #include "edit/status.h"
 #include "merge/sums.h"
 #include "sets/automatic_values.h"
@@ -48,7 +47,7 @@ LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams&
 LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& source,
                           const std::string& name);
 /// The same with the tree of the whole, and a sixteenth of it, taken evenly over space, as the sample.
-LoadedLayer arranged_layer(LoadedLayer layer, const Progress& progress);
+LoadedLayer arranged_layer(LoadedLayer layer, std::shared_ptr<const MergeTree> tree);
 /// The same with histograms and files, for which meshes and pictures are read once more.
 LoadedLayer described_layer(LoadedLayer layer);
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "pipeline.h"
+#include "viewer/kept_trees.h"
 
 namespace astrosplat {
 namespace {
@@ -55,7 +56,9 @@ void SetLoader::load(SetJob& job) {
 void SetLoader::arrange(const SetJob& job) {
     Progress progress;
     progress.cancelled = &job.cancelled;
-    replace(job, arranged_layer(*job.loaded, progress));
+    const KeptTree kept = read_or_build_tree(trees_, *job.loaded->set, progress);
+    replace(job, arranged_layer(*job.loaded, kept.tree));
+    keep_tree(trees_, kept, progress);
 }
 
 /// After everything that is waited for.
@@ -72,7 +75,9 @@ SetLoader::SetLoader(const SetCache& cache, std::int64_t sample_limit)
     : SetLoader(
           [cache](const SourceParams& source, const std::string& name, const Progress& progress,
                   KeptWatcher& watcher) { return load_source(cache, source, name, progress, &watcher).set; },
-          sample_limit) {}
+          sample_limit) {
+    trees_ = cache;
+}
 SetLoader::SetLoader(Load load, std::int64_t sample_limit)
     : load_set_(std::move(load)), sample_limit_(sample_limit), list_(sample_limit) {}
 

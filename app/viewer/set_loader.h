@@ -24,7 +24,7 @@ class SetLoader {
 
     /// `sample_limit`: splats of a layer that is shown before its tree is there.
     SetLoader(const SetCache& cache, std::int64_t sample_limit);
-    /// Sets come from `load`, called in another thread.
+    /// Sets come from `load`, called in another thread; no trees are kept.
     SetLoader(Load load, std::int64_t sample_limit);
     ~SetLoader();  // cancels and waits
 
@@ -70,6 +70,7 @@ class SetLoader {
     void replace(const SetJob& job, LoadedLayer layer);
 
     Load load_set_;
+    SetCache trees_;  // where those of large sets are kept
     std::int64_t sample_limit_;
     SetList list_;  // used with the worker's lock
     Worker worker_{[this] { return next_task(); }};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
 #include <tuple>
@@ -50,8 +51,9 @@ void shrink_cache(const SetCache& cache, std::int64_t bytes) {
     std::int64_t total = 0;
     std::error_code error;
     for (const fs::path& file : files_in(cache.folder)) {
-        const bool entry =
-            file.extension() == ".splats" || file.extension() == ".texels" || file.extension() == ".exr";
+        constexpr std::array endings = {".splats", ".texels", ".tree", ".exr"};
+        const std::string ending = file.extension().string();
+        const bool entry = std::ranges::any_of(endings, [&](const char* own) { return ending == own; });
         if (!entry || file.filename().string().front() == '.') continue;
         entries.push_back({fs::last_write_time(file, error), file, 0});
         const std::uintmax_t size = fs::file_size(file, error);

@@ -25,8 +25,8 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
 /// What the limit 0 means for this folder, or the limit.
 std::int64_t limit_bytes(const SetCache& cache);
 
-/// Removes entries (.splats, .texels, .exr), least recently used first, until they take at most `bytes`
-/// together.
+/// Removes entries (.splats, .texels, .tree, .exr), least recently used first, until they take at most
+/// `bytes` together.
 void shrink_cache(const SetCache& cache, std::int64_t bytes);
 
 /// A warning: the run goes on without the cache.

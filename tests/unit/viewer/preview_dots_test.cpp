@@ -197,7 +197,9 @@ class SampledDotsTest : public PreviewDotsTest {
     SampledDotsTest() : PreviewDotsTest(1500) {}
     void arrange() {
         for (auto& layer : loaded)
-            if (!layer->arranged) layer = std::make_shared<const LoadedLayer>(arranged_layer(*layer, {}));
+            if (!layer->arranged)
+                layer = std::make_shared<const LoadedLayer>(
+                    arranged_layer(*layer, std::make_shared<const MergeTree>(build_merge_tree(*layer->set))));
     }
 };
 
