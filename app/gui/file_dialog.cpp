@@ -34,22 +34,31 @@ void FileDialog::open(const FileQuery& query) {
     query_ = query;
     open_ = true;
     all_files_ = replaces_ = false;
-    std::error_code ignored;
-    go_to(fs::is_directory(query.folder, ignored) ? query.folder : home_folder());
+    go_to(query.folder, home_folder());
     typed_ = query.name;
 }
 
-void FileDialog::go_to(const fs::path& folder) {
-    std::error_code ignored;
-    folder_ = fs::weakly_canonical(folder, ignored);
-    list_entries();
+void FileDialog::go_to(const fs::path& folder, const fs::path& otherwise) {
+    folder_ = folder.lexically_normal();
+    list_entries(otherwise);
     complaint_.clear();
     if (!query_.saving) typed_.clear();
     focus_path_ = awaits_typing_ = true;  // the name comes next
 }
 
-void FileDialog::list_entries() {
-    entries_ = list_folder(folder_, all_files_ ? std::vector<std::string>{} : query_.extensions);
+void FileDialog::list_entries(const fs::path& otherwise) {
+    constexpr std::chrono::milliseconds moment(200);  // in which most disks answer: the list does not flash
+    reader_.begin(folder_, otherwise, all_files_ ? std::vector<std::string>{} : query_.extensions);
+    entries_.clear();
+    folders_ = 0;
+    take_entries(moment);
+}
+
+void FileDialog::take_entries(std::chrono::milliseconds at_most) {
+    std::optional<FolderContents> found = reader_.take(at_most);
+    if (!found) return;
+    folder_ = std::move(found->folder);
+    entries_ = std::move(found->entries);
     sort_entries(entries_, order_, backwards_);
     folders_ = static_cast<std::size_t>(std::ranges::count_if(entries_, &FileEntry::folder));
     pictures_ = std::ranges::any_of(entries_, is_picture);
@@ -82,7 +91,7 @@ int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
         const int step = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
         if (const auto entry = entry_beside(dialog.entries_, typed, step))
             typed = dialog.entries_[*entry].name;
-    } else {
+    } else if (!dialog.reader_.reading()) {
         typed = complete_path(typed, dialog.folder_);
     }
     data->DeleteChars(0, data->BufTextLen);
@@ -172,8 +181,10 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
     draw_rows(folders_, entries_.size(), pictures_ ? picture_row_height : file_row_height);
     if (entries_.empty()) {
         ImGui::SetCursorPosX(px(12));
-        row_text(all_files_ ? "This folder is empty." : "No " + query_.kind + " here.", px(file_row_height),
-                 color::dim);
+        row_text(reader_.reading() ? "Reading the folder..."
+                 : all_files_      ? "This folder is empty."
+                                   : "No " + query_.kind + " here.",
+                 px(file_row_height), color::dim);
     }
     if (!enter.empty()) {
         entered_ = pressed;
@@ -216,7 +227,7 @@ FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
         row_text(fitting(complaint_, px(400)), px(28), color::attention);
     else if (!query_.extensions.empty()) {
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(4), px(4)));
-        if (ImGui::Checkbox("All files", &all_files_)) list_entries();
+        if (ImGui::Checkbox("All files", &all_files_)) list_entries(folder_);
         ImGui::PopStyleVar();
         note_item(frame, "file/All files");
     }
@@ -232,6 +243,7 @@ FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
 
 FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     frame.view.listed_pictures.clear();
+    if (open_) take_entries({});
     if (!begin_dialog("file dialog", query_.title, open_, dialog_width, dialog_height)) return {};
     draw_path(frame);
     ImGui::Dummy({0, px(4)});

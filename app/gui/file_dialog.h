@@ -3,6 +3,7 @@
 // look.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "gui/file_list.h"
 #include "gui/file_queries.h"
 #include "gui/file_rows.h"
+#include "gui/folder_reader.h"
 #include "gui/gui_frame.h"
 
 struct ImGuiInputTextCallbackData;
@@ -32,12 +34,15 @@ class FileDialog {
     Answer draw(GuiFrame& frame);
 
   private:
-    void go_to(const std::filesystem::path& folder);
+    /// `otherwise`: where there is no such folder.
+    void go_to(const std::filesystem::path& folder, const std::filesystem::path& otherwise);
+    void go_to(const std::filesystem::path& folder) { go_to(folder, folder); }
     void draw_places(GuiFrame& frame);
     void draw_path(GuiFrame& frame);
     void scroll_to_typed();
     static int on_key(ImGuiInputTextCallbackData* data);
-    void list_entries();
+    void list_entries(const std::filesystem::path& otherwise);
+    void take_entries(std::chrono::milliseconds at_most);
     FileClick draw_entry(GuiFrame& frame, const FileEntry& entry);
     bool draw_entries(GuiFrame& frame);
     Answer draw_bottom(GuiFrame& frame, bool chosen);
@@ -47,6 +52,7 @@ class FileDialog {
     bool open_ = false, all_files_ = false, focus_path_ = false, awaits_typing_ = false;
     bool replaces_ = false;  // the file exists and the person was told
     std::filesystem::path folder_;
+    FolderReader reader_;
     std::string typed_, complaint_;
     double entered_ = -1e9;              // when the click began that went into the folder, s
     bool typed_anew_ = false;            // the list has not followed yet

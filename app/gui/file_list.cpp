@@ -62,10 +62,12 @@ bool comes_before(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std::string>& extensions) {
+std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std::string>& extensions,
+                                   const std::atomic<bool>* cancelled) {
     std::vector<FileEntry> entries;
     std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        if (cancelled && *cancelled) break;
         std::error_code ignored;
         FileEntry entry{it->path().filename().string(), it->is_directory(ignored), 0};
         if (entry.name.empty() || entry.name[0] == '.' || !wanted(entry, extensions)) continue;

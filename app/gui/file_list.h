@@ -2,6 +2,7 @@
 // beginning is typed.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -20,9 +21,11 @@ struct FileEntry {
 enum class FileOrder { name, changed, size };
 
 /// Folders first, then files, each by name without regard to case; hidden ones left out. `extensions`
-/// (".toml", lower case) limit the files; empty: all. An unreadable folder is empty.
+/// (".toml", lower case) limit the files; empty: all. An unreadable folder is empty; the rest is missing once
+/// `cancelled`.
 std::vector<FileEntry> list_folder(const std::filesystem::path& folder,
-                                   const std::vector<std::string>& extensions);
+                                   const std::vector<std::string>& extensions,
+                                   const std::atomic<bool>* cancelled = nullptr);
 
 /// Folders first; each by `order`, then by name without regard to case, numbers in names as numbers. What is
 /// newer or larger comes first,
