@@ -79,8 +79,10 @@ std::vector<ShadedSplats> reduce_splats(std::span<const RenderLayer> layers,
         const std::shared_ptr<const SplatSet> set = set_of(layers[i]);
         const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set, progress));
         merged[i] = merge_splats({set, tree}, *layers[i].splats, progress);
+        RenderLayer plain = layers[i];
+        plain.render.lod = {};  // nobody looks from there, however near
         cuts.push_back(
-            {&merged[i], &dots[i], make_projection(layers[i], static_cast<std::uint16_t>(i), camera, frame)});
+            {&merged[i], &dots[i], make_projection(plain, static_cast<std::uint16_t>(i), camera, frame)});
     }
     CutSettings settings;
     settings.budget = count;

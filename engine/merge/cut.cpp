@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
@@ -11,7 +13,9 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "merge/cloud_light.h"
 #include "render/shared_render.h"
+#include "splats/star_id.h"
 
 namespace astrosplat {
 namespace {
@@ -73,7 +77,10 @@ class SeenLayer {
 
     void put(const Piece& piece, ShadedSplats& out, std::size_t i) const {
         const ShadedSplats& splats = merged().splats;
+        CloudPlace place;
         if (piece.is_splat) {
+            place.radius = is_star(splats.id[piece.index]) ? 0.0f : splats.radius[piece.index];
+            place.spread = glm::vec3(child_spread * place.radius);
             out.position[i] = splats.position[piece.index];
             out.color[i] = splats.color[piece.index];
             out.alpha[i] = splats.alpha[piece.index] * layer_.dots->render.opacity;
@@ -81,6 +88,8 @@ class SeenLayer {
         } else {
             const NodeSums& sums = merged().sums[piece.index];
             const LayerProjection& l = layer_.projection;
+            place.radius = std::sqrt(sums.own);
+            place.spread = glm::sqrt(glm::max(sums.spread, 0.0f) + child_spread * child_spread * sums.own);
             const float cosine = shared::axis_cosine(l.lens, l.axis_in_camera, to_camera(sums.centre));
             const LayerRender& r = layer_.dots->render;
             const float hybrid = shared::hybrid_amount(cosine, r.hybrid_from_deg, r.hybrid_to_deg);
@@ -90,10 +99,17 @@ class SeenLayer {
             out.alpha[i] = dot.alpha;
             out.radius[i] = dot.radius;
         }
+        place.centre = out.position[i];
+        place.in_camera = to_camera(place.centre);
+        place.alpha = out.alpha[i];
+        place.color = out.color[i];
+        out.color[i] *= cloud_light(layer_.projection, place);
         out.id[i] = i;
     }
 
   private:
+    static constexpr float child_spread = 0.4f;  // of a splat's children along an axis, radii
+
     /// Second moment along two directions.
     static float along(const NodeSums& s, const glm::vec3& a, const glm::vec3& b) {
         return glm::dot(s.spread, a * b) + s.skew.x * (a.y * b.z + a.z * b.y) +

@@ -114,18 +114,6 @@ void project_stretched(const LayerProjection& layer, CameraSplat splat, std::int
     shapes.push_back(shape);
 }
 
-/// How much structure children get: dust half of it. Light that screen saturates has no room for it, and
-/// would be lost.
-float structure_of(const LayerProjection& layer, const CameraSplat& splat) {
-    const Blend blend = layer.render.blend;
-    if (shared::blend_absorbs(static_cast<int>(blend), splat.color.x)) return 0.5f * layer.render.lod.noise;
-    if (blend != Blend::screen && blend != Blend::hybrid) return layer.render.lod.noise;
-    const float screened =
-        blend == Blend::screen ? 1.0f : static_cast<float>(hybrid_of(layer, splat.position)) / 65535.0f;
-    const float brightest = std::max({splat.color.x, splat.color.y, splat.color.z});
-    return layer.render.lod.noise * (1.0f - screened * std::min(1.0f, splat.alpha * brightest));
-}
-
 /// Alpha and colour of the two levels for the layer's blend. Under screen and hybrid the light of a channel
 /// depends on s o with its own occlusion o, so each channel is solved by itself and the colour takes up the
 /// difference: exact for screen, to first order for hybrid.
@@ -165,7 +153,8 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
     if (!(shade.alpha > 0.0f)) return;
     const ShadedSplats& splats = *layer.splats;
     const float radius = splats.radius[index];
-    const ChildNoise noise = make_child_noise(structure_of(layer, parent), radius, level, layer.seed);
+    const float structure = structure_of(layer, parent.position, parent.color, parent.alpha);
+    const ChildNoise noise = make_child_noise(structure, radius, level, layer.seed);
     CameraSplat child{parent.position, parent.radius * child_radius_scale(level), shade.alpha, shade.color};
     const std::int64_t children = children_of_level(level);
     for (std::int64_t k = 0; k < children; ++k) {
@@ -210,6 +199,17 @@ bool project_as_children(const LayerProjection& layer, const CameraSplat& splat,
 }
 
 }  // namespace
+
+float structure_of(const LayerProjection& layer, const glm::vec3& position, const glm::vec3& color,
+                   float alpha) {
+    const Blend blend = layer.render.blend;
+    if (shared::blend_absorbs(static_cast<int>(blend), color.x)) return 0.5f * layer.render.lod.noise;
+    if (blend != Blend::screen && blend != Blend::hybrid) return layer.render.lod.noise;
+    const float screened =
+        blend == Blend::screen ? 1.0f : static_cast<float>(hybrid_of(layer, position)) / 65535.0f;
+    const float brightest = std::max({color.x, color.y, color.z});
+    return layer.render.lod.noise * (1.0f - screened * std::min(1.0f, alpha * brightest));
+}
 
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,
                                 const RenderSettings& settings) {

@@ -55,6 +55,11 @@ struct LayerProjection {
 LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, const Camera& camera,
                                 const RenderSettings& settings);
 
+/// How much structure (lod.noise) the children of a splat get: those of dust half of it. Light that screen
+/// saturates has no room for it, and would be lost. `position` in camera space.
+float structure_of(const LayerProjection& layer, const glm::vec3& position, const glm::vec3& color,
+                   float alpha);
+
 /// Half the width of the square around a splat's place on the frame outside of which all its weights are 0.
 float support_px(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes);
 

@@ -113,7 +113,7 @@ ViewTruth compare_frames(const Image& preview, const Image& final, bool is_edge)
     return truth;
 }
 
-ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache& cache, bool clouds) {
+ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache& cache) {
     const TempFolder folder;
     ViewerOptions options;
     options.cache = cache;
@@ -125,11 +125,7 @@ ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache
     session.view.free = view.camera;
     session.fixed_splats = dots;
     session.view.settle = false;
-    session.document.edit("No sky", [&](Scene& scene) {
-        scene.environment.image.clear();
-        for (LayerParams& layer : scene.layers)
-            if (!clouds) layer.render.lod.noise = 0.0f;
-    });
+    session.document.edit("No sky", [](Scene& scene) { scene.environment.image.clear(); });
     draw_until(session, [&] { return preview_exact(session); });
     const Image preview = session.view_frame.read();
     const ViewFrameStatus status = session.view_frame.status();

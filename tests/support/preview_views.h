@@ -33,9 +33,8 @@ struct ViewTruth {
     Image preview, final;             // RGBA
 };
 
-/// The preview has so many dots; sets come from the cache. `clouds`: dots close by become clouds, as the
-/// scene says (lod.noise), of which previews know nothing.
-ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache& cache, bool clouds = true);
+/// The preview has so many dots; sets come from the cache.
+ViewTruth measure_truth(const NamedView& view, std::int64_t dots, const SetCache& cache);
 
 /// Compares two frames of the same size. `is_edge`: also how thick they are.
 ViewTruth compare_frames(const Image& preview, const Image& final, bool is_edge);

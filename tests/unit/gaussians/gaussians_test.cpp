@@ -168,6 +168,8 @@ TEST(Gaussians, FewerHaveTheSameLight) {
     EXPECT_GE(reduced.front().size(), 100);
     EXPECT_NEAR(light_of(reduced.front()) / (0.5 * light_of(many)), 1.0, 1e-4);
     EXPECT_EQ(reduce_splats({&layer, 1}, glm::dmat3(1.0), 3000).front().size(), 3000);
+    layer.render.lod = {1.0f, 64, 1.0f};  // a camera's
+    EXPECT_EQ(reduce_splats({&layer, 1}, glm::dmat3(1.0), 200).front().color, reduced.front().color);
 }
 
 /// Root of the mean square of display differences between two frames in linear light and encoded light.

@@ -21,7 +21,7 @@ TEST_F(PreviewViewsNightly, MovingPicturesHaveTheLightOfTheFinalOnes) {
     const TempFolder folder;
     for (const NamedView& view : preview_views()) {
         SCOPED_TRACE(view.name);
-        const ViewTruth truth = measure_truth(view, dots, {folder.path(), 0}, false);
+        const ViewTruth truth = measure_truth(view, dots, {folder.path(), 0});
         EXPECT_LE(truth.dots, dots);
         EXPECT_NEAR(truth.light, 1.0, 0.03);
         EXPECT_GT(truth.bright_blocks, 3);
