@@ -95,6 +95,7 @@ Report to_report(const Farm& farm) {
                          {"sets_job", one.sets_job},
                          {"sets", farm.states[i].sets},
                          {"frames_job", one.frames_job},
+                         {"active", farm.states[i].is_active()},
                          {"tasks", farm.states[i].counts()}});
     }
     return queue;

@@ -89,8 +89,8 @@ BatchCommand batch_command(const Document& document, const BatchCommandOptions& 
     const std::vector<Assignment> assignments = assignments_between(document.saved_scene(), shown);
     if (!gives(document.file(), assignments, shown))
         return {"", "save the scene first: its edits cannot be said as --set"};
-    std::string text =
-        fmt::format("{} --batch {}", shell_word(options.program), shell_word(document.file().string()));
+    std::string text = fmt::format("{} {} {}", shell_word(options.program), options.mode,
+                                   shell_word(document.file().string()));
     if (options.frame) text += fmt::format(" --frames={:.0f}", std::floor(*options.frame + 0.5));
     if (options.width > 0) text += fmt::format(" --resolution {}x{}", options.width, options.height);
     if (options.region) {
@@ -105,7 +105,8 @@ BatchCommand batch_command(const Document& document, const BatchCommandOptions& 
 
 BatchCommand render_command(const Document& document, const RenderTask& task, const std::string& program) {
     BatchCommandOptions options;
-    options.arguments = batch_arguments(task);
+    options.arguments = renders_by_slurm(task) ? submit_arguments(task) : batch_arguments(task);
+    if (renders_by_slurm(task)) options.mode = "--submit slurm";
     options.program = program;
     BatchCommand command = batch_command(document, options);
     if (command.text.empty() || task.kind != RenderKind::movie) return command;

@@ -19,6 +19,7 @@ struct BatchCommandOptions {
     std::optional<Region> region;        // of that frame
     std::optional<CameraParams> camera;  // a free view instead of the scene's camera
     std::vector<std::string> arguments;  // more words of --batch
+    std::string mode = "--batch";        // or "--submit slurm"
     std::string program = "astrosplat";
 };
 

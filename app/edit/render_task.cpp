@@ -82,7 +82,7 @@ std::string with_ending(const std::string& name, const std::string& ending) {
 }
 
 std::string render_problem(const RenderTask& task) {
-    constexpr std::int64_t largest = 65536;
+    constexpr std::int64_t largest = 65536, largest_chunk = 1'000'000;
     if (task.width < 1 || task.height < 1 || task.width > largest || task.height > largest)
         return fmt::format("a side is 1 to {} px long, not {} and {}", largest, task.width, task.height);
     if (task.folder.empty() || !task.folder.is_absolute()) return "choose a folder";
@@ -92,6 +92,8 @@ std::string render_problem(const RenderTask& task) {
     const std::string ending = fs::path(task.name).extension().string();
     if (std::find(endings.begin(), endings.end(), ending) == endings.end())
         return fmt::format("the name ends with one of {}, not with '{}'", fmt::join(endings, " "), ending);
+    if (renders_by_slurm(task) && (task.chunk < 1 || task.chunk > largest_chunk))
+        return fmt::format("a task has 1 to {} frames, not {}", largest_chunk, task.chunk);
     return frame_problem(task);
 }
 
@@ -102,10 +104,24 @@ std::string render_title(const RenderTask& task) {
     return fmt::format("{}{}, {}x{}", what, task.frames, task.width, task.height);
 }
 
+std::vector<std::string> frame_arguments(const RenderTask& task) {
+    return {"--frames=" + task.frames,  // also where it begins with a minus
+            fmt::format("--resolution={}x{}", task.width, task.height),
+            "--output=" + render_files(task).string()};
+}
+
+bool renders_by_slurm(const RenderTask& task) { return task.by_slurm && task.kind != RenderKind::movie; }
+
+std::vector<std::string> submit_arguments(const RenderTask& task) {
+    std::vector<std::string> words = frame_arguments(task);
+    words.push_back(fmt::format("--chunk={}", task.chunk));
+    if (!task.partition.empty()) words.push_back("--partition=" + task.partition);
+    words.push_back("--overwrite");
+    return words;
+}
+
 std::vector<std::string> batch_arguments(const RenderTask& task) {
-    std::vector<std::string> words{"--frames=" + task.frames,  // also where it begins with a minus
-                                   fmt::format("--resolution={}x{}", task.width, task.height),
-                                   "--output=" + render_files(task).string()};
+    std::vector<std::string> words = frame_arguments(task);
     // A movie's frames lie in a folder of its own, where nothing is in the way.
     const bool refuse = task.existing == ExistingFrames::refuse && task.kind != RenderKind::movie;
     if (task.existing != ExistingFrames::replace && !refuse) words.push_back("--resume");

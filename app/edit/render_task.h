@@ -1,5 +1,5 @@
 // What a rendering from the window is asked to make: of which frames, how large, where to, and what becomes
-// of files that are there. In: the dialog's values. Out: the words of a --batch command.
+// of files that are there. In: the dialog's values. Out: the words of a --batch or --submit command.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +25,9 @@ struct RenderTask {
     std::filesystem::path folder;        // absolute
     std::string name;                    // of the file or files in it: "galaxy.####.exr", "galaxy.mp4"
     ExistingFrames existing = ExistingFrames::resume;
+    bool by_slurm = false;    // on the machines of a farm; movies never are
+    std::int64_t chunk = 10;  // frames of a task there
+    std::string partition;    // of the cluster; empty: its own choice
     bool operator==(const RenderTask&) const = default;
 };
 
@@ -50,8 +53,17 @@ std::filesystem::path render_files(const RenderTask& task);
 /// Where a movie's frames wait until it is written: beside it, so that what was cancelled can go on.
 std::filesystem::path movie_folder(const std::filesystem::path& movie);
 
+/// Words that decide frames and their files, as --batch and `status` have them.
+std::vector<std::string> frame_arguments(const RenderTask& task);
+
 /// Words of --batch behind the scene: frames, size, files, and what becomes of those that are there.
 std::vector<std::string> batch_arguments(const RenderTask& task);
+
+/// The farm renders it.
+bool renders_by_slurm(const RenderTask& task);
+
+/// Words of --submit slurm behind the scene. Finished frames always stay there, others are replaced.
+std::vector<std::string> submit_arguments(const RenderTask& task);
 
 /// ffmpeg's command, which writes a movie of the frames in its folder. Sides of odd size get a black line
 /// more, as H.264 wants it.

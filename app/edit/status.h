@@ -120,7 +120,8 @@ struct Snapshot {
 
 /// One of the jobs that write files.
 struct QueuedJob {
-    enum class State { waiting, running, done, failed, cancelled };
+    /// submitted: a farm has it, whatever else runs here.
+    enum class State { waiting, running, submitted, done, failed, cancelled };
     std::uint64_t number = 0;  // its name among all of this session
     State state = State::waiting;
     std::string title;             // "galaxy.toml: Frames 1-240, 1920x1080"
@@ -184,6 +185,7 @@ struct Status {
     std::vector<RecoveryOffer> recoveries;                // of scenes that were not closed
     std::map<ListedPicture, ListedThumbnail> thumbnails;  // of the files listed that are looked at so far
     bool has_ffmpeg = false;
+    bool has_slurm = false;
     std::string engine;  // "OpenGL 4.5, llvmpipe" or "processor"
 
     double played_fps = 0.0;     // frames a second that playing reaches; 0: not playing

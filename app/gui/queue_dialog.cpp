@@ -32,6 +32,8 @@ std::string state_text(const QueuedJob& job) {
         case JobState::running:
             return job.seconds_left ? fmt::format("{}, {} left", job.text, duration_text(*job.seconds_left))
                                     : job.text;
+        case JobState::submitted:
+            return job.text;
         case JobState::done:
             return "Done";
         case JobState::failed:
@@ -54,14 +56,15 @@ void draw_card_text(const QueuedJob& job, ImVec2 corner, float width) {
     list->AddText({x, corner.y + px(46)}, state_color(job.state),
                   fitting(state_text(job), room - px(64)).c_str());
     ImGui::PopFont();
-    if (job.state != JobState::running) return;
+    if (job.state != JobState::running && job.state != JobState::submitted) return;
     const float y = corner.y + px(job_height) - px(8), end = x + room * std::clamp(job.progress, 0.0f, 1.0f);
     list->AddRectFilled({x, y}, {x + room, y + px(4)}, color::field, px(2));
     list->AddRectFilled({x, y}, {end, y + px(4)}, color::accent, px(2));
 }
 
 void card_button(GuiFrame& frame, const QueuedJob& job, ImVec2 corner, float width) {
-    const bool ends = job.state == JobState::running || job.state == JobState::waiting;
+    const bool ends =
+        job.state == JobState::running || job.state == JobState::waiting || job.state == JobState::submitted;
     const float side = px(22);
     ImGui::SetCursorScreenPos({corner.x + width - side - px(card_gap), corner.y + px(42)});
     if (icon_button("end", Icon::cross, {side, side}, px(10), color::dim,

@@ -66,6 +66,9 @@ void kind_row(GuiFrame& frame) {
     render.height = before.height;
     render.folder = before.folder;
     render.existing = before.existing;
+    render.by_slurm = before.by_slurm;
+    render.chunk = before.chunk;
+    render.partition = before.partition;
 }
 
 std::string count_of_frames(const RenderTask& render) {
@@ -143,8 +146,35 @@ void name_row(GuiFrame& frame) {
     note_item(frame, "render/format");
 }
 
+// Where the program finds a farm. Movies are written here, of frames rendered here.
+void machine_row(GuiFrame& frame) {
+    RenderTask& render = frame.view.render;
+    if (!frame.status.has_slurm || render.kind == RenderKind::movie) return;
+    label("On");
+    const int clicked =
+        render_choice(frame, "machine",
+                      {{"This machine", "In the background, one job after the other"},
+                       {"Slurm", "As tasks of the farm, which go on when the window is closed"}},
+                      render.by_slurm ? 1 : 0);
+    if (clicked >= 0) render.by_slurm = clicked == 1;
+    if (!render.by_slurm) return;
+    const auto word = [](const char* text) {
+        ImGui::SameLine(0, px(row_gap));
+        ImGui::TextColored(color4(color::dim), "%s", text);
+        ImGui::SameLine(0, px(row_gap));
+    };
+    word("frames a task");
+    side_field(frame, "chunk", render.chunk);
+    word("partition");
+    text_field(frame, "partition", render.partition, px(120));
+    tooltip("A name of the cluster's, such as short; empty: its own choice");
+}
+
 void existing_row(GuiFrame& frame) {
     label("Existing");
+    if (renders_by_slurm(frame.view.render))
+        return ImGui::TextColored(color4(color::dim),
+                                  "Finished frames of these settings stay, others are replaced");
     const int clicked = render_choice(frame, "existing",
                                       {{"Keep finished",
                                         "Frames of these settings that are there already stay; "
@@ -199,13 +229,16 @@ void draw_render_dialog(GuiFrame& frame) {
     size_row(frame);
     folder_row(frame);
     name_row(frame);
+    machine_row(frame);
     existing_row(frame);
     command_row(frame);
     const std::string wrong = problem(frame);
     ImGui::TextColored(color4(color::error), "%s", fitting(wrong, ImGui::GetContentRegionAvail().x).c_str());
     if (!wrong.empty()) tooltip(wrong.c_str());
     ImGui::PopStyleVar(2);
-    const char* const go = running_job(frame.status) ? "Add to the queue" : "Render";
+    const char* const go = renders_by_slurm(frame.view.render) ? "Submit"
+                           : running_job(frame.status)         ? "Add to the queue"
+                                                               : "Render";
     const int button = dialog_buttons(frame, "render", {"Cancel", go}, true);
     const bool render = button == 1 && wrong.empty();
     if (render) request(frame, Command::Kind::render);

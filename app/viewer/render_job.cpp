@@ -17,8 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* busy_message = "a rendering is under way: cancel it first, or wait";
 
-std::string own_program() { return fs::read_symlink("/proc/self/exe").string(); }
-
 std::string without_prefix(const std::string& line) {
     constexpr std::string_view prefix = "astrosplat: ";
     return line.rfind(prefix, 0) == 0 ? line.substr(prefix.size()) : line;
@@ -59,6 +57,8 @@ std::optional<float> share_of_line(const std::string& line) {
         done = (static_cast<double>(*index - 1) + done) / static_cast<double>(*count);
     return static_cast<float>(std::clamp(done, 0.0, 1.0));
 }
+
+std::string own_program() { return fs::read_symlink("/proc/self/exe").string(); }
 
 struct RenderJob::Impl {
     State state = State::none;

@@ -6,7 +6,9 @@
 #include <system_error>
 #include <utility>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/sha256.h"
 #include "core/temporary_folder.h"
 #include "edit/prepare_command.h"
 #include "scene/frames.h"
@@ -16,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using JobState = QueuedJob::State;
+
+constexpr const char* cancelled_text = "Cancelled; finished files are kept";
 
 void remove_folder(const fs::path& folder) {
     std::error_code ignored;
@@ -28,6 +32,10 @@ void expect_no_movie(const RenderTask& task) {
         throw InputError(movie.string() + ": exists already");
 }
 
+void append(std::vector<std::string>& words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 void RenderQueue::push(QueuedJob job, Work work) {
@@ -36,9 +44,37 @@ void RenderQueue::push(QueuedJob job, Work work) {
     work_.push_back(std::move(work));
 }
 
+/// Tasks read the scene until the last of them has run, whatever becomes of the document meanwhile. The same
+/// text has the same name, so that what is submitted again is known to be the same.
+void RenderQueue::add_to_farm(const RenderTask& task, const Document& document) {
+    constexpr std::size_t few = 8;  // digits
+    const fs::path folder = render_target(task).parent_path() / "slurm";
+    const std::string text = document.text_for(folder / "scene.toml");
+    const std::string name = fs::path(document.name()).stem().string();
+    const fs::path scene = folder / fmt::format("{}-{}.toml", name, Sha256().add(text).hex().substr(0, few));
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    write_file_atomically(scene, text);
+    FarmCommands commands;
+    commands.pattern = render_files(task).string();
+    commands.submit = {own_program(), "--submit", "slurm", scene.string()};
+    commands.status = {own_program(), "status", scene.string(), "--json"};
+    append(commands.submit, submit_arguments(task));
+    append(commands.status, frame_arguments(task));
+    if (!cache_.folder.empty()) append(commands.submit, {"--cache", cache_.folder.string()});
+    QueuedJob job;
+    job.state = JobState::submitted;
+    job.title = document.name() + ": " + render_title(task) + ", Slurm";
+    job.target = render_target(task);
+    Work work;
+    work.farm = std::make_unique<FarmJob>(std::move(commands));
+    push(std::move(job), std::move(work));
+}
+
 void RenderQueue::add(const RenderTask& task, const Document& document) {
     const std::string problem = render_problem(task);
     if (!problem.empty()) throw InputError(problem);
+    if (renders_by_slurm(task)) return add_to_farm(task, document);
     expect_no_movie(task);
     QueuedJob job;
     job.title = document.name() + ": " + render_title(task);
@@ -82,16 +118,18 @@ RenderQueue::~RenderQueue() {
 void RenderQueue::cancel(std::uint64_t number) {
     const auto job = std::ranges::find(jobs_, number, &QueuedJob::number);
     if (job == jobs_.end()) return;
+    const Work& work = work_[static_cast<std::size_t>(job - jobs_.begin())];
     if (job->state == JobState::running) job_.cancel();
+    if (job->state == JobState::submitted) work.farm->cancel();
     if (job->state != JobState::waiting) return;
     job->state = JobState::cancelled;
-    remove_folder(work_[static_cast<std::size_t>(job - jobs_.begin())].folder);
+    remove_folder(work.folder);
 }
 
 void RenderQueue::remove(std::uint64_t number) {
     cancel(number);
     const auto job = std::ranges::find(jobs_, number, &QueuedJob::number);
-    if (job == jobs_.end() || job->state == JobState::running) return;
+    if (job == jobs_.end() || job->state == JobState::running || job->state == JobState::submitted) return;
     work_.erase(work_.begin() + (job - jobs_.begin()));
     jobs_.erase(job);
 }
@@ -135,7 +173,27 @@ std::optional<RenderQueue::News> RenderQueue::take_end(QueuedJob& job) {
             return News{last, true};
         case RenderJob::State::cancelled:
             job.state = JobState::cancelled;
-            return News{"Cancelled; finished files are kept"};
+            return News{cancelled_text};
+        default:
+            return std::nullopt;
+    }
+}
+
+std::optional<RenderQueue::News> RenderQueue::poll_farm(QueuedJob& job, FarmJob& farm, double now) {
+    farm.poll(now);
+    job.text = farm.text();
+    job.progress = farm.progress();
+    job.files = farm.files();
+    switch (farm.state()) {
+        case FarmJob::State::done:
+            job.state = JobState::done;
+            return News{"Saved " + job.target.string()};
+        case FarmJob::State::failed:
+            job.state = JobState::failed;
+            return News{job.text, true};
+        case FarmJob::State::cancelled:
+            job.state = JobState::cancelled;
+            return News{cancelled_text};
         default:
             return std::nullopt;
     }
@@ -143,6 +201,9 @@ std::optional<RenderQueue::News> RenderQueue::take_end(QueuedJob& job) {
 
 std::optional<RenderQueue::News> RenderQueue::poll(double now) {
     constexpr float enough = 0.02f;  // of the work, to tell how long the rest takes
+    for (std::size_t i = 0; i < jobs_.size(); ++i)
+        if (jobs_[i].state == JobState::submitted)
+            if (auto news = poll_farm(jobs_[i], *work_[i].farm, now)) return news;
     job_.poll();
     QueuedJob* const job = running_job();
     if (!job) {

@@ -1,9 +1,11 @@
-// Jobs that write files for the window, one after the other: renderings, and prepared pictures. In: what the
-// person asked for and the document as it stood then. Out: how far each is, and what has come of it.
+// Jobs that write files for the window: renderings and prepared pictures, one after the other, and renderings
+// that a farm has. In: what the person asked for and the document as it stood then. Out: how far each is, and
+// what has come of it.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "edit/render_task.h"
 #include "edit/status.h"
 #include "sets/set_cache.h"
+#include "viewer/farm_job.h"
 #include "viewer/render_job.h"
 
 namespace astrosplat {
@@ -21,13 +24,13 @@ class RenderQueue {
     explicit RenderQueue(SetCache cache) : cache_(std::move(cache)) {}
     ~RenderQueue();  // jobs that wait are dropped
 
-    /// Renders the scene as it stands, once all before it is done. Throws InputError where the task
-    /// cannot be rendered.
+    /// Renders the scene as it stands, once all before it is done; a farm's job is submitted at once, with a
+    /// copy of the scene beside its frames. Throws InputError where the task cannot be rendered, OutputError.
     void add(const RenderTask& task, const Document& document);
     /// Writes a layer's prepared picture, as the command `prepare` does. Throws InputError.
     void add_preparation(const SourceParams& source, const std::filesystem::path& folder);
 
-    /// A job that waits never begins; one that runs ends, and its finished files stay.
+    /// A job that waits never begins; one that runs, here or on a farm, ends, and its finished files stay.
     void cancel(std::uint64_t number);
     void cancel_running() { job_.cancel(); }
     /// Takes a job that has ended, or waits, off the list.
@@ -51,6 +54,7 @@ class RenderQueue {
         std::int64_t frames = 0;
         std::vector<std::string> arguments;
         std::optional<ProcessStep> movie;
+        std::unique_ptr<FarmJob> farm;  // null: this machine does it
     };
 
     void push(QueuedJob job, Work work);
@@ -58,6 +62,8 @@ class RenderQueue {
     void begin(const Work& work);
     QueuedJob* running_job();
     std::optional<News> take_end(QueuedJob& job);
+    void add_to_farm(const RenderTask& task, const Document& document);
+    std::optional<News> poll_farm(QueuedJob& job, FarmJob& farm, double now);
 
     SetCache cache_;
     RenderJob job_;

@@ -119,6 +119,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     if (!options.input.empty() && kind_of_file(options.input) == FileKind::mesh) offer_picture(*this, 0);
     find_recoveries(status);
     status.has_ffmpeg = has_program("ffmpeg");
+    status.has_slurm = has_program("sbatch");
     status.recent = preferences.recent;
     if (!options.input.empty()) note_recent(*this, options.input);
     open_snapshots(*this);

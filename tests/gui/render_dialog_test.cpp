@@ -71,6 +71,37 @@ TEST(RenderDialog, WhatCannotBeRenderedIsNot) {
     EXPECT_TRUE(window.take_commands().empty());
 }
 
+TEST(RenderDialog, AFarmIsOfferedWhereThereIsOne) {
+    RenderWindow window;
+    EXPECT_FALSE(window.has("render/Slurm"));
+    window.status.has_slurm = true;
+    window.frame(2);
+    ASSERT_TRUE(window.has("render/This machine"));
+    EXPECT_FALSE(window.has("render/partition"));
+    window.click("render/Slurm");
+    window.frame(2);
+    EXPECT_FALSE(window.has("render/Render again")) << "finished frames always stay there";
+    window.type_into("render/chunk", "25");
+    window.type_into("render/partition", "long");
+    const RenderTask& task = window.view.render;
+    EXPECT_TRUE(renders_by_slurm(task));
+    EXPECT_EQ(task.chunk, 25);
+    EXPECT_EQ(task.partition, "long");
+    window.click("render/Movie");
+    window.frame(2);
+    EXPECT_FALSE(window.has("render/Slurm"));
+    EXPECT_FALSE(renders_by_slurm(task));
+    window.click("render/Frames");
+    window.frame(2);
+    EXPECT_TRUE(renders_by_slurm(task)) << "a kind keeps the machine";
+    window.type_into("render/chunk", "0");
+    window.click("render/Submit");
+    EXPECT_TRUE(window.view.render_open) << "a task without frames";
+    window.type_into("render/chunk", "5");
+    window.click("render/Submit");
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::render});
+}
+
 TEST(RenderDialog, TheCommandIsCopied) {
     RenderWindow window;
     window.status.render_command = "astrosplat --batch a.toml";
@@ -103,6 +134,17 @@ TEST(Queue, JobsEndOrLeaveTheList) {
     commands = window.take_commands();
     ASSERT_EQ(kinds(commands), std::vector<Kind>{Kind::remove_job});
     EXPECT_EQ(commands[0].index, 2u);
+}
+
+TEST(Queue, AFarmsJobIsCancelledAndLeavesTheStatusBarAlone) {
+    QueueWindow window;
+    window.status.jobs = {running_job_of("3 of 12 done, in the queue: 2 running", 0.25f)};
+    window.status.jobs[0].state = QueuedJob::State::submitted;
+    window.frame(2);
+    EXPECT_EQ(running_job(window.status), nullptr);
+    EXPECT_FALSE(window.has("cancel job"));
+    window.click("queue/end 1");
+    EXPECT_EQ(kinds(window.take_commands()), std::vector<Kind>{Kind::cancel_job});
 }
 
 TEST(Queue, FramesOfTheChosenJobAreFlippedThrough) {

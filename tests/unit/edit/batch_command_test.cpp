@@ -119,6 +119,15 @@ TEST_F(BatchCommandTest, AFreeViewIsACamera) {
     EXPECT_FALSE(is_animated(loaded, "camera.fov"));
 }
 
+TEST_F(BatchCommandTest, AFarmsCommandSubmits) {
+    RenderTask task = make_render_task(document, RenderKind::range, 1.0);
+    task.by_slurm = true;
+    const BatchCommand command = render_command(document, task, "astrosplat");
+    std::string wanted = "astrosplat --submit slurm " + shell_word(document.file().string());
+    for (const std::string& word : submit_arguments(task)) wanted += " " + shell_word(word);
+    EXPECT_EQ(command.text, wanted);
+}
+
 TEST_F(BatchCommandTest, WhatCannotBeSaidIsNotSaid) {
     const std::string reason = "save the scene first: its edits cannot be said as --set";
     document.edit("Layer", [](Scene& s) { duplicate_layer(s, 1); });

@@ -67,5 +67,24 @@ TEST(RenderTask, AnotherEndingKeepsTheName) {
     EXPECT_EQ(with_ending("a.b.####.exr", ".png"), "a.b.####.png");
 }
 
+TEST(RenderTask, AFarmGetsChunksAndKeepsWhatIsFinished) {
+    RenderTask task = task_of(RenderKind::range, "a.####.exr");
+    EXPECT_FALSE(renders_by_slurm(task));
+    task.by_slurm = true;
+    task.existing = ExistingFrames::replace;
+    task.chunk = 25;
+    std::vector<std::string> words = frame_arguments(task);
+    words.insert(words.end(), {"--chunk=25", "--overwrite"});
+    EXPECT_EQ(submit_arguments(task), words);
+    task.partition = "long,short";
+    EXPECT_EQ(submit_arguments(task)[4], "--partition=long,short");
+    for (const std::int64_t chunk : {0, 1'000'001}) {
+        task.chunk = chunk;
+        EXPECT_NE(render_problem(task), "") << chunk;
+    }
+    task.kind = RenderKind::movie;
+    EXPECT_FALSE(renders_by_slurm(task)) << "a movie is written here";
+}
+
 }  // namespace
 }  // namespace astrosplat

@@ -1,0 +1,133 @@
+// A farm's job in the window's queue: what is asked of the program, what it answers, and what becomes of it.
+// The program is a stand-in here; tests/window has the real one.
+#include "viewer/farm_job.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "support/temp_folder.h"
+
+namespace astrosplat {
+namespace {
+
+std::string status_of(int done, const std::string& frames, bool complete, const std::string& queue,
+                      const std::string& problem = "") {
+    return R"({"scene": "a", "output": "b", "complete": )" + std::string(complete ? "true" : "false") +
+           R"(, "eyes": [{"eye": "centre", "frames": 12, "done": {"count": )" + std::to_string(done) +
+           R"(, "frames": ")" + frames + R"("}}], "queue": [)" + queue + R"(], "queue_problem": ")" +
+           problem + "\"}\n";
+}
+
+const std::string at_work =
+    R"({"sets_job": 7, "sets": "COMPLETED", "frames_job": 8, "active": true, "tasks": {"PENDING": 2, "RUNNING": 1}})";
+const std::string waiting =
+    R"({"sets_job": 7, "sets": "RUNNING", "frames_job": 8, "active": true, "tasks": {"PENDING": 3}})";
+const std::string over =
+    R"({"sets_job": 7, "sets": "", "frames_job": 8, "active": false, "tasks": {"FAILED": 3}})";
+
+TEST(FarmReport, CountsFramesAndTasks) {
+    const auto report = read_farm_report("astrosplat: warning: {\n" + status_of(5, "1-4,9", false, at_work));
+    ASSERT_TRUE(report);
+    EXPECT_EQ(report->done, 5);
+    EXPECT_EQ(report->frames, 12);
+    EXPECT_EQ(report->done_frames, (std::vector<std::int64_t>{1, 2, 3, 4, 9}));
+    EXPECT_EQ(report->jobs, (std::vector<std::int64_t>{7, 8}));
+    EXPECT_TRUE(report->active);
+    EXPECT_FALSE(report->complete);
+    EXPECT_EQ(report->text, "5 of 12 done, in the queue: 2 pending, 1 running");
+}
+
+TEST(FarmReport, SaysWhatTheFramesWaitFor) {
+    EXPECT_EQ(read_farm_report(status_of(0, "", false, waiting))->text,
+              "0 of 12 done, in the queue: the sets running, 3 pending");
+    const auto ended = read_farm_report(status_of(0, "", false, over));
+    EXPECT_EQ(ended->text, "0 of 12 done");
+    EXPECT_FALSE(ended->active);
+    EXPECT_TRUE(ended->jobs.empty());
+    const auto unknown = read_farm_report(status_of(0, "", false, "", "squeue is not on the PATH"));
+    EXPECT_EQ(unknown->text, "0 of 12 done, queue unknown: squeue is not on the PATH");
+    EXPECT_TRUE(unknown->active) << "for all that is known";
+}
+
+TEST(FarmReport, WhatIsNoReportIsNone) {
+    for (const std::string& text :
+         {std::string(), std::string("astrosplat: a.toml: cannot be read"), std::string("{}"),
+          std::string("{\"complete\": true}"), status_of(1, "x", false, "")})
+        EXPECT_FALSE(read_farm_report(text)) << text;
+}
+
+TEST(FarmReport, JobsOfASubmission) {
+    EXPECT_EQ(
+        submitted_jobs("30 frames in 3 tasks submitted as job 218, which waits for the sets of job 217\n"
+                       "scripts and logs in /a\n"),
+        (std::vector<std::int64_t>{218, 217}));
+    EXPECT_TRUE(submitted_jobs("no frame is missing: nothing to submit\n").empty());
+    EXPECT_TRUE(submitted_jobs("submitted as job x, which waits for the sets of job 2").empty());
+}
+
+class FarmJobTest : public testing::Test {
+  protected:
+    /// The program says `submitted`, then what lies in the file "status".
+    FarmJob job(const std::string& submitted, int code = 0) {
+        FarmCommands commands;
+        commands.submit = {"/bin/sh", "-c", "echo '" + submitted + "'; exit " + std::to_string(code)};
+        commands.status = {"/bin/cat", (folder_ / "status").string()};
+        commands.pattern = "/frames/a.####.png";
+        return FarmJob(commands);
+    }
+    void status(const std::string& text) { folder_.file("status", text); }
+    /// Until `done`; a second of the job's time goes by in a moment.
+    template <class Done>
+    bool poll_until(FarmJob& job, const Done& done) {
+        for (int i = 0; i < 2000 && !done(); ++i) {
+            job.poll(now_ += 1.0);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        return done();
+    }
+    bool ends(FarmJob& job) {
+        return poll_until(job, [&] { return job.state() != FarmJob::State::running; });
+    }
+
+    const std::string submitted_ =
+        "9 frames in 3 tasks submitted as job 8, which waits for the sets of job 7";
+    TempFolder folder_;
+    double now_ = 0.0;
+};
+
+TEST_F(FarmJobTest, IsDoneWhenAllFramesAreThere) {
+    status(status_of(3, "1-3", false, at_work));
+    FarmJob farm = job(submitted_);
+    ASSERT_TRUE(poll_until(farm, [&] { return farm.progress() > 0.0f; }));
+    EXPECT_EQ(farm.progress(), 0.25f);
+    EXPECT_EQ(farm.text(), "3 of 12 done, in the queue: 2 pending, 1 running");
+    EXPECT_EQ(farm.files(), (std::vector<std::filesystem::path>{"/frames/a.0001.png", "/frames/a.0002.png",
+                                                                "/frames/a.0003.png"}));
+    status("the disk is away");
+    EXPECT_TRUE(poll_until(farm, [&] { return farm.text() == "the disk is away"; }));
+    EXPECT_EQ(farm.state(), FarmJob::State::running);
+    status(status_of(12, "1-12", true, over));
+    ASSERT_TRUE(ends(farm));
+    EXPECT_EQ(farm.state(), FarmJob::State::done);
+    EXPECT_EQ(farm.files().size(), 12u);
+}
+
+TEST_F(FarmJobTest, FailsWhenTheQueueIsOverAndFramesAreMissing) {
+    status(status_of(3, "1-3", false, over));
+    FarmJob farm = job(submitted_);
+    ASSERT_TRUE(ends(farm));
+    EXPECT_EQ(farm.state(), FarmJob::State::failed);
+    EXPECT_EQ(farm.text(), "9 of 12 frames are missing, and nothing is in the queue any more");
+}
+
+TEST_F(FarmJobTest, SaysWhyItWasNotSubmitted) {
+    FarmJob farm = job("astrosplat: sbatch: error: invalid partition: x", 2);
+    ASSERT_TRUE(ends(farm));
+    EXPECT_EQ(farm.state(), FarmJob::State::failed);
+    EXPECT_EQ(farm.text(), "sbatch: error: invalid partition: x");
+}
+
+}  // namespace
+}  // namespace astrosplat
