@@ -74,7 +74,7 @@ void add_generate(CLI::App& app, Invocation& call) {
 void add_convert(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "convert", "Converts between splat files",
                                     [&call] { return run_convert(call.convert); });
-    add_value(command, "IN", call.convert.input, "IN", "A .pda, .ply, .splats, .glb or .gltf file")
+    add_value(command, "IN", call.convert.input, "IN", "A .pda, .ply, .splats, .glb, .gltf or .usda file")
         ->required();
     add_value(command, "OUT", call.convert.output, "OUT", "A .pda, .ply or .splats file")->required();
     command.add_flag("--overwrite", call.convert.overwrite, "Replaces the file");

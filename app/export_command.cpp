@@ -32,9 +32,9 @@ const char* const export_help =
     "falloffs by the "
     "nearest Gaussian of the same integral; screen and hybrid by what they hide (hybrid as seen from that "
     "frame's "
-    "camera); dust by grey; Gaussians that were read keep their shapes, and in .ply and .glb their harmonics "
+    "camera); dust by grey; Gaussians that were read keep their shapes, and their harmonics "
     "up to the degree of their file: exact in the direction of that frame's camera, in all others times what "
-    "the look and the frame did to that one, channel by channel (.usda, .vdb and splats merged by --count "
+    "the look and the frame did to that one, channel by channel (.vdb and splats merged by --count "
     "have "
     "the one colour that the camera sees). As Gaussians: add by over, light above 1 by more opacity; of "
     "display colours "
@@ -216,8 +216,6 @@ int run_export(const ExportOptions& options) {
         if (!export_volume(layers, camera, volume, baking)) refuse_nothing(scene);
         return exit_done;
     }
-    if (kind == Kind::usda)
-        for (RenderLayer& layer : layers) layer.directional = nullptr;
     Baked baked = bake(layers, camera, gain);
     if (baked.gaussians.size() == 0) refuse_nothing(scene);
     if (encoded) encode_for_display(baked.gaussians);

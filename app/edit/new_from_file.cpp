@@ -20,7 +20,6 @@
 #include "source/mesh.h"
 #include "source/obj.h"
 #include "source/picture.h"
-#include "splat_files/gltf_splats.h"
 #include "splat_files/splat_file.h"
 #include "splats/take_rows.h"
 #include "stars/catalogue_kind.h"
@@ -242,7 +241,7 @@ std::string catalogue_scene_text(const fs::path& file, CatalogueKind kind, const
 FileKind kind_of_file(const fs::path& file) {
     const FileFormat* const format = format_of_file(file);
     const FileKind kind = kind_of(format);
-    if (format && format->id == "gltf" && !may_hold_gltf_splats(file)) return FileKind::unknown;
+    if (kind == FileKind::splats && !may_hold_splats(file)) return FileKind::unknown;
     return kind == FileKind::scene && is_look(file) ? FileKind::look : kind;
 }
 

@@ -7,12 +7,12 @@
 #include "camera_files/text_rows.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/shown.h"
 #include "core/text.h"
 
 namespace astrosplat {
 namespace {
 
-using camera_files::shown;
 using camera_files::TextRows;
 
 constexpr double gaia_sky_fps = 60.0;

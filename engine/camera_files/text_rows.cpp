@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/shown.h"
 #include "core/text.h"
 
 namespace astrosplat::camera_files {
@@ -52,11 +53,6 @@ double TextRows::number(std::string_view word, std::string_view what) const {
 
 void TextRows::fail(const std::string& expected, const std::string& found) const {
     bad_input(file_, std::to_string(line_), expected, found);
-}
-
-std::string shown(std::string_view word) {
-    constexpr std::size_t most = 40;
-    return "'" + printable(word.substr(0, most)) + (word.size() > most ? "...'" : "'");
 }
 
 }  // namespace astrosplat::camera_files

@@ -33,7 +33,4 @@ class TextRows {
     std::vector<std::string_view> words_;
 };
 
-/// A word of a file as a message shows it: in quotes, control characters written out, cut after 40 bytes.
-std::string shown(std::string_view word);
-
 }  // namespace astrosplat::camera_files

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <set>
 
-#include "camera_files/usda_stage.h"
-#include "camera_files/usda_transform.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/real.h"
 #include "core/text.h"
+#include "usd/usda_stage.h"
+#include "usd/usda_transform.h"
 
 namespace astrosplat {
 namespace {
@@ -124,8 +124,6 @@ class CameraReader {
 
 CameraTrack read_usda(const std::filesystem::path& file, const FrameRate& rate) {
     const std::string text = read_file(file), name = file.string();
-    if (text.starts_with("PXR-USDC") || text.starts_with("PK\x03\x04"))
-        bad_input(name, "", "USD as text (usdcat FILE -o FILE.usda makes it)", "a binary file");
     const UsdStage stage = parse_usda(text, name);
     Chain here, first;
     std::int64_t count = 0;

@@ -44,6 +44,7 @@ const std::vector<FileFormat>& formats() {
         {"pda", "PDA", FileKind::splats, {".pda"}, {"ATTRIBUTES"}, true},
         {"ply", "PLY", FileKind::splats, {".ply"}, {"ply\n", "ply\r"}, true},
         {"gltf", "glTF", FileKind::splats, {".glb", ".gltf"}, {"glTF"}},
+        {"usda", "USD", FileKind::splats, {".usda", ".usd"}, {"#usda"}},
         {"splats", "SPLATS", FileKind::splats, {".splats"}, {"\x89SPLAT\r\n"}, true},
         {"toml", "TOML", FileKind::scene, {".toml"}, {}, true},
     };

@@ -1,9 +1,10 @@
-// Each array is as many rows of text as there are Gaussians; they follow each other as rows of one long
-// table.
+// Each array is as many rows of text as there are Gaussians, or as their harmonics; they follow each other as
+// rows of one long table.
 #include "gaussians/gaussian_usda.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <glm/common.hpp>
@@ -26,11 +27,8 @@ constexpr std::string_view beginnings[arrays] = {
     "    quatf[] orientations = [",
     "    float3[] scales = [",
     "    float[] opacities = [",
-    "    uniform int radiance:sphericalHarmonicsDegree = 0\n"
     "    float3[] radiance:sphericalHarmonicsCoefficients = [",
 };
-constexpr std::string_view radiance_end =
-    "] (\n        elementSize = 1\n        interpolation = \"vertex\"\n    )\n";
 constexpr std::size_t longest_row = 4 * (float_text_room + 2) + 256;  // with what begins or ends an array
 
 char* put_text(char* out, std::string_view text) {
@@ -48,7 +46,14 @@ char* put_numbers(char* out, std::initializer_list<float> numbers) {
     return out;
 }
 
+std::int64_t harmonics_each(const Gaussians& g) { return (g.degree + 1) * (g.degree + 1); }
+
 char* put_value(char* out, const Gaussians& g, int array, std::size_t i) {
+    if (array == radiance && !g.harmonics.empty()) {
+        const auto each = static_cast<std::size_t>(harmonics_each(g));
+        const glm::vec3 c = g.harmonics[i / each].c[i % each];
+        return put_numbers(out, {c.x, c.y, c.z});
+    }
     const glm::vec3 p = g.position[i], s = g.scale[i], c = mean_coefficient(g.color[i]);
     const glm::vec4 q = g.rotation[i];
     if (array == positions) return put_numbers(out, {p.x, p.y, p.z});
@@ -58,14 +63,20 @@ char* put_value(char* out, const Gaussians& g, int array, std::size_t i) {
     return put_numbers(out, {c.x, c.y, c.z});
 }
 
+std::string array_end(const Gaussians& g, int array) {
+    if (array != radiance) return "]\n";
+    return fmt::format("] (\n        elementSize = {}\n        interpolation = \"vertex\"\n    )\n",
+                       harmonics_each(g));
+}
+
 char* put_row(char* out, const Gaussians& g, std::int64_t row) {
-    const auto array = static_cast<int>(row / g.size());
-    const std::int64_t i = row % g.size();
+    const auto array = static_cast<int>(std::min<std::int64_t>(row / g.size(), radiance));
+    const std::int64_t i = row - array * g.size(),
+                       count = g.size() * (array == radiance ? harmonics_each(g) : 1);
     out = put_text(out, i == 0 ? beginnings[array] : ", ");
     if (i > 0 && i % 8 == 0) out = put_text(out, "\n        ");
     out = put_value(out, g, array, static_cast<std::size_t>(i));
-    if (i + 1 < g.size()) return out;
-    return put_text(out, array == radiance ? radiance_end : "]\n");
+    return i + 1 < count ? out : put_text(out, array_end(g, array));
 }
 
 /// Three standard deviations around all centres.
@@ -89,9 +100,11 @@ void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians, 
         "def ParticleField3DGaussianSplat \"Splats\"\n{\n    float3[] extent = " +
         extent_text(gaussians) +
         "\n    uniform token projectionModeHint = \"perspective\"\n"
-        "    uniform token sortingModeHint = \"cameraDistance\"\n";
+        "    uniform token sortingModeHint = \"cameraDistance\"\n" +
+        fmt::format("    uniform int radiance:sphericalHarmonicsDegree = {}\n", gaussians.degree);
     write_ordered(
-        target, header, arrays * gaussians.size(), rows_written_at_once, longest_row, progress,
+        target, header, (radiance + harmonics_each(gaussians)) * gaussians.size(), rows_written_at_once,
+        longest_row, progress,
         [&](std::int64_t begin, std::int64_t end, char* out) {
             for (std::int64_t row = begin; row < end; ++row) out = put_row(out, gaussians, row);
             return out;

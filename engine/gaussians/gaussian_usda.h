@@ -8,8 +8,9 @@
 
 namespace astrosplat {
 
-/// Positions, orientations (w first), scales (standard deviations), opacities and harmonics of degree 0; y
-/// up. Shortest numbers that read back to the same floats. Throws OutputError, Cancelled.
+/// Positions, orientations (w first), scales (standard deviations), opacities and harmonics, those of
+/// each together and in the order of their degrees; y up. Shortest numbers that read back to the same floats.
+/// Throws OutputError, Cancelled.
 void write_gaussian_usda(const WriteTarget& target, const Gaussians& gaussians,
                          const Progress& progress = {});
 

@@ -204,8 +204,8 @@ void check_renderable(const Scene& scene, const Places& places) {
         check.require(
             source.kind != SourceKind::splats || kind_of(format_of_file(source.file)) == FileKind::splats,
             {at / "file"},
-            "expected a file ending in .pda, .ply, .splats, .glb or .gltf, found '" + source.file.string() +
-                "'");
+            "expected a file ending in .pda, .ply, .splats, .glb, .gltf or .usda, found '" +
+                source.file.string() + "'");
     }
 }
 

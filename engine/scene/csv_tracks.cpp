@@ -10,6 +10,7 @@
 #include "camera_files/text_rows.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/shown.h"
 #include "core/text.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
@@ -18,7 +19,6 @@
 namespace astrosplat {
 namespace {
 
-using camera_files::shown;
 using camera_files::TextRows;
 
 constexpr std::array<std::string_view, 2> component_names{"xyzw", "rgb"};

@@ -278,7 +278,7 @@ void describe_source(const Describer& d, SourceParams& s) {
     splats(s.seed, "seed", "Layer seed", "", "Random numbers of this layer; 0: from the layer's name.",
            slider(0, 1000), zero_is("Auto"));
     files(s.file, "file", "Splat file", "",
-          "For kind = \"splats\": .pda, .ply, .splats, or Gaussians in .glb or .gltf.",
+          "For kind = \"splats\": .pda, .ply, .splats, or Gaussians in .glb, .gltf or .usda.",
           only_with("kind", {"splats"}));
     describe_stars(files.only_with("kind", {"stars"}), s.stars);
     describe_star_image(d.shown_in("Source", "Star image").only_with("kind", {"stars"}).animated(), s.stars);

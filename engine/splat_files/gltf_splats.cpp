@@ -4,17 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
-#include <glm/matrix.hpp>
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/memory.h"
 #include "core/quaternion.h"
 #include "core/text.h"
 #include "gltf/gltf_file.h"
 #include "splat_files/finish_gaussians.h"
+#include "splat_files/gaussian_rows.h"
 #include "splats/harmonics.h"
 
 namespace astrosplat {
@@ -169,35 +167,9 @@ std::vector<float> column_of(GltfFile& file, const Part& part, const std::string
     return file.numbers(index, components);
 }
 
-/// How a node changes what it holds: sizes by one number, axes by a matrix of orthonormal columns.
-struct Placement {
-    double scale = 1.0;
-    glm::dmat3 turn{1.0};
-    glm::dvec3 place{0.0};
-    bool turns = false;
-};
-Placement placement_of(const GltfFile& file, const glm::dmat4& world) {
-    constexpr double tolerance = 1e-3;
-    const glm::dmat3 m(world);
-    Placement p;
-    p.place = glm::dvec3(world[3]);
-    p.scale = std::cbrt(std::fabs(glm::determinant(m)));
-    p.turn = m / p.scale;
-    const glm::dmat3 square = glm::transpose(p.turn) * p.turn;
-    bool alike = p.scale > 0.0 && std::isfinite(p.scale);
-    for (int i = 0; i < 9; ++i)
-        alike = alike && std::fabs(square[i / 3][i % 3] - (i % 4 == 0 ? 1.0 : 0.0)) < tolerance;
-    if (!alike) file.fail("nodes that scale Gaussians alike along all axes", "others");
-    for (int i = 0; i < 9; ++i)
-        p.turns = p.turns || std::fabs(p.turn[i / 3][i % 3] - (i % 4 == 0 ? 1.0 : 0.0)) > 1e-9;
-    return p;
-}
-
 void read_part(GltfFile& file, const Part& part, std::size_t first, SplatSet& set) {
-    const Placement placement = placement_of(file, part.world);
-    // A mirrored Gaussian is the one that the opposite matrix turns.
-    const glm::dmat3 proper = glm::determinant(placement.turn) < 0.0 ? -placement.turn : placement.turn;
-    const glm::dvec4 by = quaternion_of_matrix(proper);
+    const std::optional<GaussianPlacement> placement = gaussian_placement(part.world);
+    if (!placement) file.fail("nodes that scale Gaussians alike along all axes", "others");
     const auto count = static_cast<std::size_t>(part.count);
     {
         const std::vector<float> position = column_of(file, part, "POSITION", 3),
@@ -205,15 +177,11 @@ void read_part(GltfFile& file, const Part& part, std::size_t first, SplatSet& se
                                  rotation = column_of(file, part, extension + ":ROTATION", 4),
                                  opacity = column_of(file, part, extension + ":OPACITY", 1);
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::dvec3 p(position[3 * i], position[3 * i + 1], position[3 * i + 2]);
-            set.position[first + i] = glm::vec3(placement.scale * (placement.turn * p) + placement.place);
-            set.scale[first + i] =
-                glm::vec3(placement.scale * glm::dvec3(scale[3 * i], scale[3 * i + 1], scale[3 * i + 2]));
-            const glm::vec4 q(rotation[4 * i], rotation[4 * i + 1], rotation[4 * i + 2], rotation[4 * i + 3]);
-            set.rotation[first + i] = placement.turns ? glm::vec4(quaternion_product(by, q)) : q;
+            set.position[first + i] = {position[3 * i], position[3 * i + 1], position[3 * i + 2]};
+            set.scale[first + i] = {scale[3 * i], scale[3 * i + 1], scale[3 * i + 2]};
+            set.rotation[first + i] = {rotation[4 * i], rotation[4 * i + 1], rotation[4 * i + 2],
+                                       rotation[4 * i + 3]};
             set.alpha[first + i] = opacity[i];
-            set.distance[first + i] = 0.0f;
-            set.id[first + i] = first + i;
         }
     }
     for (int l = 0; l <= part.degree; ++l)
@@ -225,9 +193,7 @@ void read_part(GltfFile& file, const Part& part, std::size_t first, SplatSet& se
                                        : set.harmonics[first + i].c[static_cast<std::size_t>(l * l + n)]) = c;
             }
         }
-    if (!placement.turns || set.harmonics.empty()) return;
-    const HarmonicsTurn turn = harmonics_turn(placement.turn);
-    for (std::size_t i = first; i < first + count; ++i) set.harmonics[i] = turned(set.harmonics[i], turn);
+    place_gaussians(set, first, first + count, *placement);
 }
 
 SplatSet read_parts(GltfFile& file, const Progress& progress) {
@@ -239,22 +205,7 @@ SplatSet read_parts(GltfFile& file, const Progress& progress) {
         count += part.count;
         directional = directional || part.degree > 0;
     }
-    SplatSet set;
-    claim_memory(count * static_cast<std::int64_t>(bytes_per_splat([&](SplatColumn column) {
-                     return !is_optional(column) || column == SplatColumn::radius ||
-                            column == SplatColumn::scale || column == SplatColumn::rotation ||
-                            (directional && column == SplatColumn::harmonics);
-                 })),
-                 "splats of " + file.path().string());
-    const auto size = static_cast<std::size_t>(count);
-    set.position.resize(size);
-    set.alpha.resize(size);
-    set.distance.resize(size);
-    set.id.resize(size);
-    set.color.resize(size);
-    set.scale.resize(size);
-    set.rotation.resize(size);
-    if (directional) set.harmonics.assign(size, Harmonics{});
+    SplatSet set = room_for_gaussians(count, directional, "splats of " + file.path().string());
     std::size_t first = 0;
     for (const Part& part : parts) {
         progress.check();

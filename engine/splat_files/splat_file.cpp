@@ -18,6 +18,7 @@
 #include "splat_files/native.h"
 #include "splat_files/pda.h"
 #include "splat_files/ply.h"
+#include "splat_files/usda_splats.h"
 
 namespace astrosplat {
 
@@ -29,16 +30,18 @@ struct Functions {
     void (*write)(const WriteTarget&, const SplatSet&, const Progress&);
     std::vector<std::string> (*attributes)(const std::filesystem::path&);
     std::int64_t (*count)(const std::filesystem::path&);
+    bool (*may_hold)(const std::filesystem::path&);  // null: such a file holds nothing else
     bool keeps_all;  // splats that absorb are told from those that shine; shapes of Gaussians
 };
 
-constexpr std::array<Functions, 4> functions = {{
-    {"pda", read_pda, write_pda, pda_attributes, pda_splat_count, false},
-    {"ply", read_ply, write_ply, ply_attributes, ply_splat_count, false},
-    {"gltf", read_gltf_splats, nullptr, gltf_splat_attributes, nullptr, false},
+constexpr std::array<Functions, 5> functions = {{
+    {"pda", read_pda, write_pda, pda_attributes, pda_splat_count, nullptr, false},
+    {"ply", read_ply, write_ply, ply_attributes, ply_splat_count, nullptr, false},
+    {"gltf", read_gltf_splats, nullptr, gltf_splat_attributes, nullptr, may_hold_gltf_splats, false},
+    {"usda", read_usda_splats, nullptr, usda_splat_attributes, usda_splat_count, may_hold_usda_splats, false},
     {"splats", [](const auto& file, const auto& progress) { return read_native(file, progress); },
      [](const auto& file, const auto& set, const auto& progress) { write_native(file, set, progress); },
-     native_attributes, native_splat_count, true},
+     native_attributes, native_splat_count, nullptr, true},
 }};
 
 const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file,
@@ -68,6 +71,13 @@ std::int64_t splat_count(const std::filesystem::path& file) {
     const Functions& functions = functions_of(format_of_file(file), file);
     assert(functions.count);
     return functions.count(file);
+}
+
+bool may_hold_splats(const std::filesystem::path& file) {
+    const FileFormat* const format = format_of_file(file);
+    if (kind_of(format) != FileKind::splats) return false;
+    const auto may_hold = functions_of(format, file).may_hold;
+    return !may_hold || may_hold(file);
 }
 
 void write_splats(const WriteTarget& target, const SplatSet& set, const Progress& progress) {

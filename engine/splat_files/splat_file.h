@@ -1,5 +1,5 @@
-// Splat files of any format: .pda (Maya ASCII particles), .ply, .splats (native), glTF (read only). One
-// reader/writer a file: pda.*, ply.*, native.*, gltf_splats.*; this is the front door.
+// Splat files of any format: .pda (Maya ASCII particles), .ply, .splats (native), glTF and USD (read only).
+// One reader/writer a file: pda.*, ply.*, native.*, gltf_splats.*, usda_splats.*; this is the front door.
 #pragma once
 
 #include <filesystem>
@@ -20,8 +20,12 @@ SplatSet read_splats(const std::filesystem::path& file, const Progress& progress
 /// normal, mesh, scale, rotation, harmonics, id. Throws InputError.
 std::vector<std::string> splat_attributes(const std::filesystem::path& file);
 
-/// How many splats a PDA, PLY or native file says that it holds. Throws InputError.
+/// How many splats a PDA, PLY, USD or native file says that it holds. Throws InputError.
 std::int64_t splat_count(const std::filesystem::path& file);
+
+/// Whether a file is of such a format, and no glTF or USD that at its beginning does not speak of Gaussians:
+/// those may hold cameras.
+bool may_hold_splats(const std::filesystem::path& file);
 
 /// In the format of the ending. Writes to a temporary name, then renames: the file appears whole or not at
 /// all. Throws OutputError.

@@ -10,6 +10,7 @@
 #include "fuzz/targets.h"
 #include "splat_files/gltf_splats.h"
 #include "splat_files/ply.h"
+#include "splat_files/usda_splats.h"
 #include "support/capture.h"
 
 namespace astrosplat::fuzz {
@@ -75,8 +76,22 @@ std::vector<std::string> gltf_seeds() {
     return {glb_of(capture(3, 0), 0), turned, text_of_glb(turned)};
 }
 
+std::vector<std::string> usda_seeds() {
+    using namespace astrosplat::test;
+    return {
+        usda_of(capture(3, 0), 0),
+        usda_of(capture(2, 1), 1,
+                "        quatf xformOp:orient = (0.8, 0, 0.6, 0)\n        float3 xformOp:scale = (2, 2, 2)\n"
+                "        uniform token[] xformOpOrder = [\"xformOp:orient\", \"xformOp:scale\"]\n",
+                "    upAxis = \"Z\"\n")};
+}
+
 void read_gaussian_ply_bytes(std::string_view bytes) {
     check_capture(read_ply(CaptureFile(bytes, ".ply").path));
+}
+
+void read_usda_bytes(std::string_view bytes) {
+    check_capture(read_usda_splats(CaptureFile(bytes, ".usda").path));
 }
 
 void read_gltf_bytes(std::string_view bytes) {

@@ -7,12 +7,14 @@
 
 namespace astrosplat::fuzz {
 
-/// PLY files of Gaussians; glTF files of them, binary and as text.
+/// PLY files of Gaussians; glTF files of them, binary and as text; USD.
 std::vector<std::string> gaussian_ply_seeds();
 std::vector<std::string> gltf_seeds();
+std::vector<std::string> usda_seeds();
 
 /// Reads the bytes as a file; throws InputError for bad input.
 void read_gaussian_ply_bytes(std::string_view bytes);
 void read_gltf_bytes(std::string_view bytes);
+void read_usda_bytes(std::string_view bytes);
 
 }  // namespace astrosplat::fuzz

@@ -44,7 +44,7 @@ TEST_P(Replay, DamageIsAnsweredWithOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(Readers, Replay,
                          testing::Values("pda", "ply", "splats", "obj", "toml", "fits", "stars", "cameras",
-                                         "gaussian_ply", "gltf"),
+                                         "gaussian_ply", "gltf", "usda"),
                          [](const auto& reader) { return reader.param; });
 
 }  // namespace

@@ -239,6 +239,7 @@ const std::vector<Target>& targets() {
         {"cameras", camera_seeds(), read_camera_bytes},
         {"gaussian_ply", gaussian_ply_seeds(), read_gaussian_ply_bytes},
         {"gltf", gltf_seeds(), read_gltf_bytes},
+        {"usda", usda_seeds(), read_usda_bytes},
     };
     return all;
 }

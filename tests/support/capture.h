@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -120,6 +121,39 @@ inline std::string glb_of(const std::vector<Trained>& all, int degree, const std
     return "glTF" + little_endian(2) + little_endian(28 + json.size() + data.size()) +
            little_endian(json.size()) + "JSON" + json + little_endian(data.size()) + std::string("BIN\0", 4) +
            data;
+}
+
+/// The USD text of these; `stage` stands in the stage's metadata, `prim` before the lists. Words on their
+/// own, comments and trailing commas as its writers and people leave them.
+inline std::string usda_of(const std::vector<Trained>& all, int degree, const std::string& prim = "",
+                           const std::string& stage = "") {
+    const auto list = [&](const std::string& name, int components, int each, const auto& value) {
+        std::string text = "    " + name + " = [ # by rows\n";
+        for (const Trained& g : all)
+            for (int j = 0; j < each; ++j) {
+                text += components > 1 ? "        (" : "        ";
+                for (int k = 0; k < components; ++k) {
+                    char number[32];
+                    std::snprintf(number, sizeof number, "%.9g", double(static_cast<float>(value(g, j, k))));
+                    text += (k > 0 ? ", " : "") + std::string(number);
+                }
+                text += components > 1 ? "),\n" : ",\n";
+            }
+        return text + "    ]\n";
+    };
+    const int each = (degree + 1) * (degree + 1);
+    return "#usda 1.0\n(\n" + stage + ")\ndef Xform \"World\"\n{\n" +
+           "    def ParticleField3DGaussianSplat \"Splats\" (\n        kind = \"component\"\n    )\n    {\n" +
+           prim +
+           list("point3f[] positions", 3, 1, [](const Trained& g, int, int k) { return g.position[k]; }) +
+           list("float3[] scales", 3, 1, [](const Trained& g, int, int k) { return g.scale[k]; }) +
+           list("quatf[] orientations", 4, 1,
+                [](const Trained& g, int, int k) { return 2.5 * g.rotation[(k + 3) % 4]; }) +
+           list("float[] opacities", 1, 1, [](const Trained& g, int, int) { return g.opacity; }) +
+           "    uniform int radiance:sphericalHarmonicsDegree = " + std::to_string(degree) + "\n" +
+           list("float3[] radiance:sphericalHarmonicsCoefficients", 3, each,
+                [](const Trained& g, int j, int k) { return g.harmonics[static_cast<std::size_t>(j)][k]; }) +
+           "    }\n}\n";
 }
 
 }  // namespace astrosplat::test

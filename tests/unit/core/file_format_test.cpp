@@ -48,12 +48,12 @@ TEST(FileFormat, RowsDoNotContradictEachOther) {
 
 TEST(FileFormat, ListsForDialogsAndMessages) {
     EXPECT_EQ(endings_of({FileKind::splats}),
-              (std::vector<std::string>{".pda", ".ply", ".glb", ".gltf", ".splats"}));
+              (std::vector<std::string>{".pda", ".ply", ".glb", ".gltf", ".usda", ".usd", ".splats"}));
     EXPECT_EQ(endings_of({FileKind::splats}, FileUse::written),
               (std::vector<std::string>{".pda", ".ply", ".splats"}));
     EXPECT_EQ(endings_of({FileKind::picture}, FileUse::written),
               (std::vector<std::string>{".exr", ".tif", ".tiff", ".png"}));
-    EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY, glTF or SPLATS");
+    EXPECT_EQ(names_of(FileKind::splats), "PDA, PLY, glTF, USD or SPLATS");
     EXPECT_EQ(names_of(FileKind::mesh), "OBJ");
 }
 

@@ -68,6 +68,8 @@ TEST(GaussianFile, ThatWereReadComeOutAsTheyAre) {
     write_gaussian_glb(folder / "b.glb", gaussians, true);
     expect_same_gaussians(read_splats(folder / "b.ply"), shown.set, 3e-6);
     expect_same_gaussians(read_splats(folder / "b.glb"), shown.set, 3e-6);
+    write_gaussian_usda(folder / "b.usda", gaussians);
+    expect_same_gaussians(read_splats(folder / "b.usda"), shown.set, 3e-6);
     // A turned and doubled layer turns and doubles them.
     shown.layer.world_from_layer = rotation_from_degrees({20.0, 30.0, 40.0});
     shown.layer.scale = 2.0;
@@ -114,7 +116,7 @@ TEST(GaussianFile, FlatOnesAndNeedlesKeepTheirDirections) {
     }
 }
 
-// Field by field as text: there is no reader of USD beside it.
+// Field by field as text, for other readers than ours.
 TEST(GaussianFile, UsdTextSaysWhatTheyAre) {
     const TempFolder folder;
     Gaussians g;

@@ -12,6 +12,7 @@
 #include "core/real.h"
 #include "core/rotation.h"
 #include "gaussians/gaussian_file.h"
+#include "gaussians/gaussian_usda.h"
 #include "gaussians/harmonics_export.h"
 #include "splat_files/splat_file.h"
 #include "splats/harmonics.h"
@@ -74,10 +75,12 @@ struct SeenCapture {
         finish_harmonics(gaussians, camera, encoded);
         return gaussians;
     }
-    SplatSet again(const Gaussians& gaussians, bool ply, bool encoded) {
-        const std::filesystem::path file = folder / (ply ? "out.ply" : "out.glb");
-        if (ply)
+    SplatSet again(const Gaussians& gaussians, const std::string& name, bool encoded) {
+        const std::filesystem::path file = folder / name;
+        if (name.ends_with(".ply"))
             write_gaussian_ply({file, Existing::replace}, gaussians);
+        else if (name.ends_with(".usda"))
+            write_gaussian_usda({file, Existing::replace}, gaussians);
         else
             write_gaussian_glb({file, Existing::replace}, gaussians, encoded);
         return read_splats(file);
@@ -125,11 +128,11 @@ TEST(HarmonicsExport, CapturesComeOutWithTheColoursThatTheyCameWith) {
         capture.layer.scale = 2.0;
         const Gaussians gaussians = capture.baked(true);
         EXPECT_EQ(gaussians.degree, degree);
-        for (const bool ply : {true, false}) {
-            const SplatSet found = capture.again(gaussians, ply, true);
+        for (const char* name : {"out.ply", "out.glb", "out.usda"}) {
+            const SplatSet found = capture.again(gaussians, name, true);
             ASSERT_EQ(found.position.size(), 51u);
             EXPECT_EQ(found.harmonics.empty(), degree == 0);
-            EXPECT_LT(differences(capture, found).largest, 1e-4) << degree << " " << ply;
+            EXPECT_LT(differences(capture, found).largest, 1e-4) << degree << " " << name;
         }
         std::ifstream in(capture.folder / "out.ply");
         const std::string header{std::istreambuf_iterator<char>(in), {}};
@@ -146,12 +149,12 @@ TEST(HarmonicsExport, CapturesComeOutWithTheColoursThatTheyCameWith) {
 TEST(HarmonicsExport, WhatTheLookDoesIsDoneToAllDirections) {
     SeenCapture linear_one("in.glb", glb_of(test::capture(60, 3), 3, "", "lin_rec709_display"));
     linear_one.factor = {0.5f, 0.25f, 0.8f};
-    const SplatSet linear_found = linear_one.again(linear_one.baked(false), false, false);
+    const SplatSet linear_found = linear_one.again(linear_one.baked(false), "out.glb", false);
     EXPECT_LT(differences(linear_one, linear_found, 0.05).largest, 1e-3);
 
     SeenCapture capture("in.ply", ply_of(test::capture(60, 3), 3));
     capture.factor = {0.5f, 0.25f, 0.8f};
-    const SplatSet found = capture.again(capture.baked(true), true, true);
+    const SplatSet found = capture.again(capture.baked(true), "out.ply", true);
     for (std::size_t i = 0; i < found.position.size(); ++i) {
         const glm::dvec3 seen = capture.to_camera(capture.row(i));
         const glm::vec3 wanted = capture.factor * light_of(capture.set, capture.row(i), seen),
@@ -163,7 +166,7 @@ TEST(HarmonicsExport, WhatTheLookDoesIsDoneToAllDirections) {
 
 TEST(HarmonicsExport, DisplayValuesBecomeLinearLight) {
     SeenCapture capture("in.ply", ply_of(test::capture(60, 3), 3));
-    const SplatSet found = capture.again(capture.baked(false), false, false);
+    const SplatSet found = capture.again(capture.baked(false), "out.glb", false);
     EXPECT_FALSE(found.display_harmonics);
     EXPECT_LT(differences(capture, found).mean, 0.05);
 }
@@ -186,7 +189,7 @@ TEST(HarmonicsExport, OthersKeepTheirColour) {
     bake_layer(capture.layer, capture.camera, 1.0, gaussians, counts);
     bake_layer(plain, capture.camera, 1.0, gaussians, counts);
     finish_harmonics(gaussians, capture.camera, false);
-    const SplatSet found = capture.again(gaussians, false, false);
+    const SplatSet found = capture.again(gaussians, "out.glb", false);
     ASSERT_EQ(found.position.size(), 53u);
     for (const std::size_t i : {std::size_t{0}, std::size_t{52}})
         for (int n = 0; n < directions; ++n)

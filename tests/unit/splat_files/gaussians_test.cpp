@@ -6,39 +6,16 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "core/color.h"
 #include "core/log.h"
-#include "core/quaternion.h"
-#include "core/rotation.h"
 #include "splat_files/finish_gaussians.h"
-#include "splat_files/gltf_splats.h"
 #include "splat_files/native.h"
 #include "splat_files/ply.h"
-#include "splat_files/splat_file.h"
-#include "support/capture.h"
-#include "unit/splat_files/file_support.h"
+#include "unit/splat_files/gaussian_files.h"
 
 namespace astrosplat {
 namespace {
 
 using namespace astrosplat::test;
-
-class GaussianFiles : public SplatFileTest {
-  protected:
-    SplatSet read(const std::string& bytes, const char* name = "a.ply") {
-        return read_splats(write(name, bytes));
-    }
-    std::string error(const std::string& bytes, const char* name = "a.ply") {
-        return error_of(write(name, bytes), [](const auto& file) { read_splats(file); });
-    }
-    std::string error_glb(const std::string& bytes) { return error(bytes, "a.glb"); }
-};
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const std::size_t at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return text.replace(at, from.size(), to);
-}
 
 /// As `replaced`, in the JSON of a .glb, whose length changes with it.
 std::string replaced_json(const std::string& glb, const std::string& from, const std::string& to) {
@@ -47,26 +24,6 @@ std::string replaced_json(const std::string& glb, const std::string& from, const
     while (json.size() % 4) json += ' ';
     return "glTF" + little_endian(2) + little_endian(20 + json.size() + glb.size() - binary) +
            little_endian(json.size()) + "JSON" + json + glb.substr(binary);
-}
-
-void expect_near(const SplatSet& set, const std::vector<Trained>& all, int degree) {
-    ASSERT_EQ(set.size(), std::int64_t(all.size()));
-    EXPECT_NO_THROW(check_consistent(set));
-    ASSERT_EQ(set.harmonics.empty(), degree == 0);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const Trained& g = all[i];
-        EXPECT_EQ(set.id[i], i);
-        EXPECT_NEAR(set.alpha[i], g.opacity, 1e-6);
-        for (int k = 0; k < 3; ++k) {
-            EXPECT_NEAR(set.position[i][k], g.position[k], 1e-6);
-            EXPECT_NEAR(set.scale[i][k] / g.scale[k], 1.0, 1e-6);
-            const double color = std::max(0.0, 0.5 + 0.28209479177387814 * g.harmonics[0][k]);
-            EXPECT_NEAR(set.color[i][k], real::srgb_to_linear(color), 1e-5);
-            for (std::size_t j = 0; j < 16 && degree > 0; ++j)
-                EXPECT_NEAR(set.harmonics[i].c[j][k], g.harmonics[j][k], 1e-6) << j;
-        }
-        EXPECT_NEAR(std::fabs(glm::dot(glm::dvec4(set.rotation[i]), g.rotation)), 1.0, 1e-6);
-    }
 }
 
 TEST_F(GaussianFiles, PlyOfEveryDegree) {
@@ -158,53 +115,12 @@ TEST_F(GaussianFiles, GlbOfEveryDegree) {
     EXPECT_EQ(
         splat_attributes(path("a.glb")),
         (std::vector<std::string>{"position", "color", "alpha", "radius", "scale", "rotation", "harmonics"}));
-    EXPECT_TRUE(may_hold_gltf_splats(path("a.glb")));
-    EXPECT_FALSE(may_hold_gltf_splats(write("b.gltf", "{}")));
+    EXPECT_TRUE(may_hold_splats(path("a.glb")));
+    EXPECT_FALSE(may_hold_splats(write("b.gltf", "{}")));
     const SplatSet linear = read(glb_of(capture(3, 0), 0, "", "lin_rec709_display"), "a.glb");
     EXPECT_FALSE(linear.display_harmonics);
     EXPECT_NEAR(linear.color[0].x, std::max(0.0, 0.5 + 0.28209479177387814 * capture(1, 0)[0].harmonics[0].x),
                 1e-6);
-}
-
-// A node's turn moves places, shapes and colours together; mirrors too.
-TEST_F(GaussianFiles, NodesPlaceTheirGaussians) {
-    const std::vector<Trained> all = capture(12, 3);
-    const glm::dmat3 turn = rotation_from_degrees({30.0, -50.0, 200.0});
-    for (const double sign : {1.0, -1.0}) {
-        std::string matrix;
-        for (int column = 0; column < 4; ++column)
-            for (int row = 0; row < 4; ++row) {
-                const double value = column == 3 ? (row == 3 ? 1.0 : row + 4.0)
-                                     : row == 3  ? 0.0
-                                                 : 2.0 * turn[column][row] * (column == 0 ? sign : 1.0);
-                matrix += fmt::format("{}{}", matrix.empty() ? "" : ",", value);
-            }
-        const SplatSet set = read(glb_of(all, 3, R"(,"matrix":[)" + matrix + "]"), "a.glb");
-        const glm::dmat3 whole(sign * turn[0], turn[1], turn[2]);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            const glm::dvec3 p = 2.0 * (whole * all[i].position) + glm::dvec3(4.0, 5.0, 6.0);
-            EXPECT_LT(glm::distance(glm::dvec3(set.position[i]), p), 1e-5);
-            // The covariance, entry by entry.
-            const auto spread = [](const glm::dmat3& axes, const glm::dvec3& scale, int a, int b) {
-                double sum = 0.0;
-                for (int k = 0; k < 3; ++k) sum += axes[k][a] * axes[k][b] * scale[k] * scale[k];
-                return sum;
-            };
-            const glm::dmat3 wanted = whole * matrix_of_quaternion(all[i].rotation),
-                             found = matrix_of_quaternion(glm::dvec4(set.rotation[i]));
-            for (int a = 0; a < 3; ++a)
-                for (int b = 0; b < 3; ++b)
-                    EXPECT_NEAR(spread(found, glm::dvec3(set.scale[i]), a, b),
-                                4.0 * spread(wanted, all[i].scale, a, b), 1e-5);
-            // Seen from the turned direction the colour is that of the file from the first.
-            Harmonics own;
-            for (std::size_t j = 0; j < 16; ++j) own.c[j] = glm::vec3(all[i].harmonics[j]);
-            const glm::vec3 d = glm::normalize(glm::vec3(0.3f, -0.7f, 0.2f + float(i)));
-            const glm::vec3 then = color_towards(own, d),
-                            now = color_towards(set.harmonics[i], glm::vec3(whole * glm::dvec3(d)));
-            for (int k = 0; k < 3; ++k) EXPECT_NEAR(now[k], then[k], 1e-5);
-        }
-    }
 }
 
 TEST_F(GaussianFiles, WrongGlb) {

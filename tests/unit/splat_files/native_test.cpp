@@ -322,12 +322,12 @@ using SplatFile = SplatFileTest;
 
 TEST_F(SplatFile, UnknownEndingsNameTheKnownOnes) {
     const std::string expected =
-        "a.xyz: expected one of the endings .pda .ply .glb .gltf .splats, found .xyz";
+        "a.xyz: expected one of the endings .pda .ply .glb .gltf .usda .usd .splats, found .xyz";
     EXPECT_EQ(error_of(write("a.xyz", "x"), [](const auto& file) { read_splats(file); }), expected);
     EXPECT_EQ(error_of(path("a.xyz"), [](const auto& file) { write_splats(file, SplatSet{}); }),
               "a.xyz: expected one of the endings .pda .ply .splats, found .xyz");
     EXPECT_EQ(error_of(write("a", "x"), [](const auto& file) { read_splats(file); }),
-              "a: expected one of the endings .pda .ply .glb .gltf .splats, found none");
+              "a: expected one of the endings .pda .ply .glb .gltf .usda .usd .splats, found none");
     EXPECT_EQ(error_of(path("none.xyz"), [](const auto& file) { read_splats(file); }),
               "none.xyz: cannot be read: No such file or directory");
 }

@@ -1,4 +1,4 @@
-#include "camera_files/usda_transform.h"
+#include "usd/usda_transform.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "camera/camera.h"
 #include "core/error.h"
+#include "core/quaternion.h"
 #include "core/real.h"
 #include "core/text.h"
 
@@ -52,7 +52,8 @@ glm::dmat4 op_matrix(const std::string& kind, const std::vector<double>& v) {
     } else if (kind == "transform") {
         for (std::size_t i = 0; i < 16; ++i) m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = v[i];
     } else if (kind == "orient") {
-        m = from_axes(rotation_from_quaternion({v[1], v[2], v[3], v[0]}));
+        const glm::dvec4 q(v[1], v[2], v[3], v[0]);
+        m = from_axes(matrix_of_quaternion(q / glm::length(q)));
     } else if (kind.size() == 7) {
         m = turn(kind[6], v[0]);
     } else {

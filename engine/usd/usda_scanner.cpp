@@ -1,13 +1,13 @@
-#include "camera_files/usda_scanner.h"
+#include "usd/usda_scanner.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "camera_files/text_rows.h"
 #include "core/error.h"
+#include "core/shown.h"
 
-namespace astrosplat::camera_files {
+namespace astrosplat {
 namespace {
 
 bool in_word(char c) {
@@ -82,6 +82,13 @@ std::string UsdScanner::quoted(char mark) {
     fail(fmt::format("a closing {}", mark));
 }
 
+std::string_view UsdScanner::numbers() {
+    const std::size_t begin = at_;
+    at_ = std::min(text_.find(']', at_), text_.size());
+    require(']');
+    return text_.substr(begin, at_ - begin);
+}
+
 void UsdScanner::skip_path() {
     at_ = std::min(text_.find('>', at_), text_.size());
     require('>');
@@ -114,4 +121,4 @@ void UsdScanner::skip_statement() {
     }
 }
 
-}  // namespace astrosplat::camera_files
+}  // namespace astrosplat

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace astrosplat::camera_files {
+namespace astrosplat {
 
 inline constexpr int deepest_usd = 64;  // prims and brackets within each other
 
@@ -33,6 +33,8 @@ class UsdScanner {
     std::string next_word();
     /// Between `mark`s, each once or three times; a backslash takes the next character.
     std::string quoted(char mark);
+    /// [...] from the bracket here on, unread: a list of numbers has no other brackets of its kind.
+    std::string_view numbers();
     /// <...>
     void skip_path();
     /// What stands between the bracket here and its end, whatever it is.
@@ -48,4 +50,4 @@ class UsdScanner {
     std::size_t at_ = 0;
 };
 
-}  // namespace astrosplat::camera_files
+}  // namespace astrosplat

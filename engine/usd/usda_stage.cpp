@@ -1,6 +1,6 @@
 // A recursive descent that needs no list of types: a statement begins with words, an = and a value may
 // follow.
-#include "camera_files/usda_stage.h"
+#include "usd/usda_stage.h"
 
 #include <fmt/format.h>
 
@@ -8,15 +8,25 @@
 #include <array>
 #include <optional>
 
-#include "camera_files/usda_scanner.h"
+#include "core/error.h"
 #include "core/text.h"
+#include "usd/usda_scanner.h"
 
 namespace astrosplat {
 namespace {
 
 bool is_kept(std::string_view name) {
-    constexpr std::array lens{"focalLength", "horizontalAperture", "verticalAperture", "projection"};
-    return name.starts_with("xformOp") || std::ranges::find(lens, name) != lens.end();
+    constexpr std::array others{"focalLength", "horizontalAperture", "verticalAperture", "projection",
+                                "radiance:sphericalHarmonicsDegree"};
+    return name.starts_with("xformOp") || std::ranges::find(others, name) != others.end();
+}
+
+/// Of Gaussians, in floats or halves.
+bool is_list(std::string_view name) {
+    constexpr std::array lists{"positions", "orientations", "scales", "opacities",
+                               "radiance:sphericalHarmonicsCoefficients"};
+    if (name.ends_with('h')) name.remove_suffix(1);
+    return std::ranges::find(lists, name) != lists.end();
 }
 
 class Parser {
@@ -46,8 +56,8 @@ class Parser {
     }
     // Adds to `value`, which may be null.
     void read_value(UsdValue* value, int depth) {
-        if (depth > camera_files::deepest_usd)
-            scan_.fail(fmt::format("at most {} brackets within each other", camera_files::deepest_usd));
+        if (depth > deepest_usd)
+            scan_.fail(fmt::format("at most {} brackets within each other", deepest_usd));
         const char c = scan_.peek();
         if (c == '(' || c == '[') {
             scan_.take(c);
@@ -75,7 +85,7 @@ class Parser {
                 value->words.push_back(word);
             if (value->numbers.size() > most_numbers) {
                 scan_.go_back(begin);
-                scan_.fail(fmt::format("at most {} numbers of a camera's attribute", most_numbers));
+                scan_.fail(fmt::format("at most {} numbers of an attribute", most_numbers));
             }
         }
     }
@@ -137,8 +147,7 @@ class Parser {
     }
 
     UsdPrim prim(const std::string& specifier, int depth) {
-        if (depth > camera_files::deepest_usd)
-            scan_.fail(fmt::format("at most {} prims within each other", camera_files::deepest_usd));
+        if (depth > deepest_usd) scan_.fail(fmt::format("at most {} prims within each other", deepest_usd));
         UsdPrim prim;
         prim.defined = specifier == "def";
         if (scan_.peek() != '"' && scan_.peek() != '\'') prim.type = scan_.next_word();
@@ -190,8 +199,13 @@ class Parser {
         constexpr std::string_view sampled = ".timeSamples";
         const bool samples = name.ends_with(sampled);
         if (samples) name.resize(name.size() - sampled.size());
-        UsdAttribute* const attribute = is_kept(name) ? &prim.attributes[name] : nullptr;
-        if (samples) {
+        const bool list = prim.type == usd_gaussians && is_list(name);
+        UsdAttribute* const attribute = is_kept(name) || list ? &prim.attributes[name] : nullptr;
+        if (list && !samples && scan_.peek() == '[') {
+            attribute->list = scan_.numbers();
+        } else if (list) {
+            samples ? read_samples(nullptr) : read_value(nullptr, 0);
+        } else if (samples) {
             if (attribute) attribute->samples.clear();
             read_samples(attribute);
         } else {
@@ -207,13 +221,17 @@ class Parser {
 
     static constexpr std::size_t most_numbers = 1024;
 
-    camera_files::UsdScanner scan_;
+    UsdScanner scan_;
     bool is_usda_;
     UsdStage stage_;
 };
 
 }  // namespace
 
-UsdStage parse_usda(std::string_view text, const std::string& file) { return Parser(text, file).stage(); }
+UsdStage parse_usda(std::string_view text, const std::string& file) {
+    if (text.starts_with("PXR-USDC") || text.starts_with("PK\x03\x04"))
+        bad_input(file, "", "USD as text (usdcat FILE -o FILE.usda makes it)", "a binary file");
+    return Parser(text, file).stage();
+}
 
 }  // namespace astrosplat

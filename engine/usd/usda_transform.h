@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "camera_files/usda_stage.h"
+#include "usd/usda_stage.h"
 
 namespace astrosplat {
 

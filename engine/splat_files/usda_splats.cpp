@@ -1,0 +1,257 @@
+#include "splat_files/usda_splats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/mat4x4.hpp>
+
+#include "core/error.h"
+#include "core/file.h"
+#include "core/shown.h"
+#include "core/text.h"
+#include "splat_files/finish_gaussians.h"
+#include "splat_files/gaussian_rows.h"
+#include "splat_files/mapped_file.h"
+#include "splat_files/number_scan.h"
+#include "usd/usda_stage.h"
+#include "usd/usda_transform.h"
+
+namespace astrosplat {
+namespace {
+
+/// A .usda's text, and the file for messages.
+struct UsdText {
+    std::string_view text;
+    std::string file;
+
+    /// At a place within the text.
+    [[noreturn]] void fail(const char* place, const std::string& expected, const std::string& found) const {
+        bad_input(file, std::to_string(1 + std::count(text.data(), place, '\n')), expected, found);
+    }
+};
+
+/// The numbers of a list, whatever tuples they stand in.
+class NumberList {
+  public:
+    NumberList(const UsdText& text, std::string_view list)
+        : text_(text), at_(list.data() + 1), end_(list.data() + list.size() - 1) {}
+
+    /// False at the end.
+    bool next(float& value) {
+        while (at_ < end_ &&
+               (scan::is_space(*at_) || *at_ == ',' || *at_ == '(' || *at_ == ')' || *at_ == '#'))
+            at_ = *at_ == '#' ? std::find(at_, end_, '\n') : at_ + 1;
+        if (at_ == end_) return false;
+        const char* const after = scan::scan_float(at_, end_, value);
+        if (!after) text_.fail(at_, "a number", shown({at_, std::find(at_, end_, '\n')}));
+        at_ = after;
+        return true;
+    }
+
+  private:
+    const UsdText& text_;
+    const char *at_, *end_;
+};
+
+constexpr const char* positions = "positions";
+constexpr const char* coefficients = "radiance:sphericalHarmonicsCoefficients";
+
+/// A prim that holds Gaussians.
+struct GaussianPrim {
+    const UsdPrim* prim = nullptr;
+    GaussianPlacement placement;
+    std::int64_t count = 0;
+    int degree = 0;
+    bool has_harmonics = false;  // else middle grey
+};
+
+/// Empty where the prim does not have it. Floats go before halves, whose names end in an h.
+std::string_view list_of(const UsdPrim& prim, const std::string& name) {
+    for (const std::string& each : {name, name + "h"}) {
+        const auto found = prim.attributes.find(each);
+        if (found != prim.attributes.end() && !found->second.list.empty()) return found->second.list;
+    }
+    return {};
+}
+
+std::int64_t tuples_in(const UsdText& text, std::string_view list, int components) {
+    std::int64_t count = 0;
+    NumberList numbers(text, list);
+    for (float ignored; numbers.next(ignored);) ++count;
+    if (count % components != 0)
+        text.fail(list.data(), fmt::format("tuples of {} numbers", components), counted(count, "number"));
+    return count / components;
+}
+
+/// What the prim says, else what its coefficients are enough for.
+int degree_of(const UsdText& text, const GaussianPrim& own, std::string_view list) {
+    const auto told = own.prim->attributes.find("radiance:sphericalHarmonicsDegree");
+    if (told != own.prim->attributes.end() && told->second.value.numbers.size() == 1) {
+        const double degree = told->second.value.numbers[0];
+        if (degree == 0.0 || degree == 1.0 || degree == 2.0 || degree == 3.0) return static_cast<int>(degree);
+        text.fail(list.data(), "harmonics of degree 0 to 3", shortest(degree));
+    }
+    const std::int64_t each = own.count > 0 ? tuples_in(text, list, 3) / own.count : 0;
+    return each >= 16 ? 3 : each >= 9 ? 2 : each >= 4 ? 1 : 0;
+}
+
+GaussianPrim prim_of(const UsdText& text, const UsdPrim& prim, const glm::dmat4& world) {
+    GaussianPrim own;
+    own.prim = &prim;
+    const std::optional<GaussianPlacement> placement = gaussian_placement(world);
+    if (!placement)
+        bad_input(text.file, "", "prims that scale Gaussians alike along all axes",
+                  fmt::format("others above '{}'", printable(prim.name)));
+    own.placement = *placement;
+    const std::string_view list = list_of(prim, positions);
+    if (list.empty())
+        bad_input(text.file, "", fmt::format("positions of '{}' (no time samples)", printable(prim.name)),
+                  "none");
+    own.count = tuples_in(text, list, 3);
+    const std::string_view harmonics = list_of(prim, coefficients);
+    own.has_harmonics = !harmonics.empty();
+    if (own.has_harmonics) own.degree = degree_of(text, own, harmonics);
+    return own;
+}
+
+/// Those below a prim that are defined, with `chain` from the stage's root to it.
+void add_prims(const UsdText& text, const std::vector<UsdPrim>& prims, std::vector<const UsdPrim*>& chain,
+               const glm::dmat4& above, std::vector<GaussianPrim>& all) {
+    for (const UsdPrim& prim : prims) {
+        if (!prim.defined) continue;
+        chain.push_back(&prim);
+        if (prim.type == usd_gaussians)
+            all.push_back(prim_of(text, prim, above * world_from_prim(chain, 0.0, text.file)));
+        add_prims(text, prim.children, chain, above, all);
+        chain.pop_back();
+    }
+}
+
+glm::dmat4 y_up_from(const UsdStage& stage) {
+    const auto up = stage.metadata.find("upAxis");
+    glm::dmat4 m(1.0);
+    if (up == stage.metadata.end() || up->second.words != std::vector<std::string>{"Z"}) return m;
+    m[1] = {0.0, 0.0, -1.0, 0.0};
+    m[2] = {0.0, 1.0, 0.0, 0.0};
+    return m;
+}
+
+std::vector<GaussianPrim> prims_of(const UsdText& text, const UsdStage& stage) {
+    std::vector<GaussianPrim> all;
+    std::vector<const UsdPrim*> chain;
+    add_prims(text, stage.prims, chain, y_up_from(stage), all);
+    if (all.empty())
+        bad_input(
+            text.file, "", fmt::format("Gaussians ({})", usd_gaussians),
+            stage.refers_elsewhere ? "none but what other files may hold, which are not opened" : "none");
+    return all;
+}
+
+/// Hands on each Gaussian's numbers; none where the prim has no such list. More than it has are left.
+template <std::size_t kCount, class Take>
+void read_list(const UsdText& text, const GaussianPrim& own, const std::string& name, const Take& take) {
+    const std::string_view list = list_of(*own.prim, name);
+    if (list.empty()) return;
+    NumberList numbers(text, list);
+    std::array<float, kCount> row;
+    for (std::int64_t i = 0; i < own.count; ++i) {
+        for (float& value : row)
+            if (!numbers.next(value))
+                text.fail(list.data(), fmt::format("{} of {}", own.count, name), std::to_string(i));
+        take(static_cast<std::size_t>(i), row);
+    }
+}
+
+void read_harmonics(const UsdText& text, const GaussianPrim& own, std::size_t first, SplatSet& set) {
+    const std::string_view list = list_of(*own.prim, coefficients);
+    NumberList numbers(text, list);
+    const auto each = static_cast<std::size_t>((own.degree + 1) * (own.degree + 1));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(own.count); ++i)
+        for (std::size_t j = 0; j < each; ++j) {
+            glm::vec3 c;
+            for (int k = 0; k < 3; ++k)
+                if (!numbers.next(c[k]))
+                    text.fail(list.data(),
+                              fmt::format("{} harmonics of each of {}", each, counted(own.count, "Gaussian")),
+                              std::to_string(each * i + j));
+            (set.harmonics.empty() ? set.color[first + i] : set.harmonics[first + i].c[j]) = c;
+        }
+}
+
+void read_prim(const UsdText& text, const GaussianPrim& own, std::size_t first, SplatSet& set) {
+    const std::size_t end = first + static_cast<std::size_t>(own.count);
+    std::fill(set.scale.begin() + first, set.scale.begin() + end, glm::vec3(1.0f));
+    std::fill(set.rotation.begin() + first, set.rotation.begin() + end, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
+    std::fill(set.alpha.begin() + first, set.alpha.begin() + end, 1.0f);
+    std::fill(set.color.begin() + first, set.color.begin() + end, glm::vec3(0.0f));
+    read_list<3>(text, own, positions, [&](std::size_t i, const auto& v) {
+        set.position[first + i] = {v[0], v[1], v[2]};
+    });
+    read_list<3>(text, own, "scales", [&](std::size_t i, const auto& v) {
+        set.scale[first + i] = {v[0], v[1], v[2]};
+    });
+    read_list<4>(text, own, "orientations", [&](std::size_t i, const auto& v) {
+        set.rotation[first + i] = {v[1], v[2], v[3], v[0]};
+    });
+    read_list<1>(text, own, "opacities", [&](std::size_t i, const auto& v) { set.alpha[first + i] = v[0]; });
+    if (own.has_harmonics) read_harmonics(text, own, first, set);
+    place_gaussians(set, first, end, own.placement);
+}
+
+bool is_directional(const std::vector<GaussianPrim>& all) {
+    return std::ranges::any_of(all, [](const GaussianPrim& own) { return own.degree > 0; });
+}
+
+std::int64_t count_of(const std::vector<GaussianPrim>& all) {
+    std::int64_t count = 0;
+    for (const GaussianPrim& own : all) count += own.count;
+    return count;
+}
+
+/// What read(text, all) makes of a file.
+template <class Read>
+auto read_prims(const std::filesystem::path& file, const Read& read) {
+    return read_mapped(file, [&](std::string_view bytes) {
+        const UsdText text{bytes, file.string()};
+        const UsdStage stage = parse_usda(bytes, text.file);
+        return read(text, prims_of(text, stage));
+    });
+}
+
+}  // namespace
+
+SplatSet read_usda_splats(const std::filesystem::path& file, const Progress& progress) {
+    return read_prims(file, [&](const UsdText& text, const std::vector<GaussianPrim>& all) {
+        SplatSet set = room_for_gaussians(count_of(all), is_directional(all), "splats of " + text.file);
+        std::size_t first = 0;
+        for (const GaussianPrim& own : all) {
+            progress.check();
+            read_prim(text, own, first, set);
+            first += static_cast<std::size_t>(own.count);
+        }
+        return finish_gaussians(std::move(set), {.trained = false, .display = true}, file);
+    });
+}
+
+std::vector<std::string> usda_splat_attributes(const std::filesystem::path& file) {
+    return read_prims(file, [](const UsdText&, const std::vector<GaussianPrim>& all) {
+        std::vector<std::string> names = {"position", "color", "alpha", "radius", "scale", "rotation"};
+        if (is_directional(all)) names.emplace_back("harmonics");
+        return names;
+    });
+}
+
+std::int64_t usda_splat_count(const std::filesystem::path& file) {
+    return read_prims(file,
+                      [](const UsdText&, const std::vector<GaussianPrim>& all) { return count_of(all); });
+}
+
+bool may_hold_usda_splats(const std::filesystem::path& file) {
+    constexpr std::size_t beginning = std::size_t{1} << 20;
+    const std::string text = read_beginning(file, beginning);
+    return text.empty() || text.find(usd_gaussians) != std::string::npos;
+}
+
+}  // namespace astrosplat
