@@ -138,8 +138,12 @@ Footprint sphere_footprint_at(const FootprintTable& table, const Lens& lens, flo
             glm::normalize(exact::ray_through(exact_lens(lens), double(x_px), double(y_px)));
         if (is_near_rim(lens, toward, double(f.support_px) + near_rim_px))
             return set_counted([&](const auto& weight) {
-                return rim_sum(lens, toward, f.support_px,
-                               [&](const glm::dvec3& away) { return weight(glm::dot(away, away)); });
+                const auto near = [&](const glm::dvec3& away, double px) {
+                    const double reach = double(f.support_px) + px;
+                    return glm::dot(away, away) <= reach * reach;
+                };
+                const auto at = [&](const glm::dvec3& away) { return weight(glm::dot(away, away)); };
+                return RimPixels(lens, toward, f.support_px, near, at).sum();
             });
     }
     if (lens.projection == shared::PROJECTION_EQUIRECTANGULAR) {

@@ -91,7 +91,10 @@ class ShapeOnMap {
     StretchedSums sums() const {
         const bool small = along_ * across_ < small_px;
         if (is_at_rim())
-            return both([&](const auto& weight) { return rim_sum(lens_, axes_.toward, support_, weight); });
+            return both([&](const auto& weight) {
+                const auto near = [&](const glm::dvec3& away, double px) { return is_near(away, px); };
+                return RimPixels(lens_, axes_.toward, support_, near, weight).sum();
+            });
         if (!is_counted()) return straight_sums();
         if (small) return both([&](const auto& weight) { return rows(weight).sum(); });
         const StretchedSums all = straight_sums(),
@@ -118,6 +121,13 @@ class ShapeOnMap {
         const double half_cosine = 1.0 - glm::dot(away, away) / (4.0 * focal * focal);  // squared
         const double squared = (x * x + y * y) / std::fmax(half_cosine, 1e-6);
         return double(footprint_weight(table_, plain_, static_cast<float>(std::sqrt(squared))));
+    }
+
+    /// Whether any place so near to one has weight.
+    bool is_near(const glm::dvec3& away, double within_px) const {
+        const double x = std::fmax(0.0, std::fabs(glm::dot(rows_[0], away)) - within_px / stretch_),
+                     y = std::fmax(0.0, std::fabs(glm::dot(rows_[1], away)) - within_px);
+        return x * x + y * y <= double(plain_.support_px) * double(plain_.support_px);
     }
 
     /// A sum of P and, where it is asked for, of P (1 - P).

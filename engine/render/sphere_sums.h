@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <vector>
 
 #include "camera/projection.h"
 #include "core/quadrature.h"
@@ -35,39 +36,87 @@ inline bool is_near_rim(const Lens& lens, const glm::dvec3& toward, double withi
     return focal_angle(lens, toward) > real::pi * double(lens.focal_px) - within_px;
 }
 
-/// Over the pixels near the rim of such a fisheye: weight(from `toward` to the pixel, px of the middle).
-template <class Weight>
-double rim_sum(const Lens& lens, const glm::dvec3& toward, double support_px, const Weight& weight) {
-    const ExactLens exact_one = exact_lens(lens);
-    const double focal = lens.focal_px, rim = real::pi * focal;
-    const double inner = std::fmax(0.0, focal_angle(lens, toward) - support_px - 1.0);
-    const auto middles_from = [](double px) { return std::ceil(px - 0.5) + 0.5; };
-    const double sine = std::sqrt(toward.x * toward.x + toward.y * toward.y);
-    double sum = 0.0;
-    const auto add = [&](double from_px, double to_px, double y_px) {
-        for (double x_px = middles_from(from_px); x_px <= to_px; x_px += 1.0) {
-            const double x = x_px - double(lens.center_x_px), y = y_px - double(lens.center_y_px);
-            const double angle = std::sqrt(x * x + y * y) / focal;
-            // Too far around the axis, for which no angle has to be known: the chord's square is no less than
-            // 2 (1 - cosine) of the turn times both sines, and a sine than its own chord.
-            const double least_sine = 2.0 / real::pi * std::fmin(angle, std::fmax(real::pi - angle, 0.0));
-            const double cosine = sine > 0.0 ? (x * toward.x - y * toward.y) / (angle * focal * sine) : 1.0;
-            if (focal * focal * 2.0 * (1.0 - cosine) * sine * least_sine > support_px * support_px) continue;
-            if (!exact::shows(exact_one, x_px, y_px)) continue;
-            const glm::dvec3 ray = exact::ray_through(exact_one, x_px, y_px), away = focal * (ray - toward);
-            sum += weight(away) * real::sin(angle) / angle;
+/// Over the pixels near the rim of such a fisheye, a share of which a needle crosses: its pole is all around.
+/// `near`(from `toward`, within_px) is false only where weights are 0 at all places so close to that one;
+/// `weight`(from `toward` to the pixel, px of the middle).
+template <class Near, class Weight>
+class RimPixels {
+  public:
+    RimPixels(const Lens& lens, const glm::dvec3& toward, double support_px, const Near& near,
+              const Weight& weight)
+        : lens_(exact_lens(lens)),
+          toward_(toward),
+          near_(near),
+          weight_(weight),
+          focal_(lens.focal_px),
+          rim_(real::pi * focal_),
+          inner_(std::fmax(0.0, focal_angle(lens, toward) - support_px - 1.0)) {}
+
+    /// Row by row; blocks that nothing reaches would add zeros.
+    double sum() {
+        const double first = first_middle(double(lens_.center_y_px) - rim_);
+        for (double top = first; top <= double(lens_.center_y_px) + rim_; top += block_px) {
+            const std::vector<double> blocks = blocks_of(top);
+            for (double y = top; y < top + block_px; y += 1.0)
+                for (const double left : blocks) add_row(left, y);
         }
-    };
-    for (double y_px = middles_from(double(lens.center_y_px) - rim); y_px <= double(lens.center_y_px) + rim;
-         y_px += 1.0) {
-        const double y = y_px - double(lens.center_y_px);
-        const double outside = std::sqrt(std::fmax(0.0, rim * rim - y * y)),
-                     inside = std::sqrt(std::fmax(0.0, inner * inner - y * y));
-        add(double(lens.center_x_px) - outside, double(lens.center_x_px) - inside, y_px);
-        add(double(lens.center_x_px) + std::fmax(inside, 1e-9), double(lens.center_x_px) + outside, y_px);
+        return sum_;
     }
-    return sum;
-}
+
+  private:
+    static constexpr double block_px = 16.0;
+
+    static double first_middle(double px) { return std::ceil(px - 0.5) + 0.5; }
+
+    /// From `toward` to what a fisheye shows there, within its rim.
+    glm::dvec3 away(double x, double y) const {
+        const double px = std::sqrt(x * x + y * y), angle = std::fmin(px / focal_, real::pi);
+        const double across = px > 0.0 ? real::sin(angle) / px : 0.0;
+        return focal_ * (glm::dvec3(across * x, -across * y, -real::cos(angle)) - toward_);
+    }
+
+    /// The left middles of those in the band below `top` that may have weight. What is nearer on the frame is
+    /// no farther on the sphere, so half a diagonal is enough.
+    std::vector<double> blocks_of(double top) const {
+        constexpr double half = 0.5 * (block_px - 1.0), reach_px = 1.5 * half + 0.1;
+        std::vector<double> blocks;
+        const double y = top + half - double(lens_.center_y_px);
+        for (double left = first_middle(double(lens_.center_x_px) - rim_);
+             left <= double(lens_.center_x_px) + rim_; left += block_px) {
+            const double x = left + half - double(lens_.center_x_px), px = std::sqrt(x * x + y * y);
+            if (px + reach_px < inner_ || px - reach_px > rim_) continue;
+            if (near_(away(x, y), reach_px)) blocks.push_back(left);
+        }
+        return blocks;
+    }
+
+    /// The same from the rim, with which a series is good enough to see what is far.
+    bool is_near(double x, double y, double px) const {
+        const double e = real::pi - px / focal_;
+        if (!(e < 0.5)) return true;
+        const double q = e * e, sine = e * (1.0 - q * (1.0 / 6.0 - q / 120.0));
+        const double cosine = 1.0 - q * (0.5 - q * (1.0 / 24.0 - q / 720.0));
+        return near_(focal_ * (glm::dvec3(sine * x / px, -sine * y / px, cosine) - toward_), 0.05);
+    }
+
+    void add_row(double left, double y_px) {
+        const double y = y_px - double(lens_.center_y_px);
+        for (double x_px = left; x_px < left + block_px; x_px += 1.0) {
+            const double x = x_px - double(lens_.center_x_px), px = std::sqrt(x * x + y * y);
+            if (px < inner_ || px > rim_ || !(px > 0.0) || !is_near(x, y, px)) continue;
+            if (!exact::shows(lens_, x_px, y_px)) continue;
+            const glm::dvec3 ray = exact::ray_through(lens_, x_px, y_px);
+            const double angle = px / focal_;
+            sum_ += weight_(focal_ * (ray - toward_)) * real::sin(angle) / angle;
+        }
+    }
+
+    ExactLens lens_;
+    glm::dvec3 toward_;
+    const Near& near_;
+    const Weight& weight_;
+    double focal_, rim_, inner_, sum_ = 0.0;
+};
 
 /// The pole of an equirectangular frame that is nearer to a row.
 struct NearPole {
