@@ -10,16 +10,15 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
-// The one that the line of names holds most of.
+// The one that the line of names holds most of; blanks where it has no other.
 char separator_of(std::string_view header) {
     char best = ',';
     for (const char c : {';', '\t'})
         if (std::ranges::count(header, c) > std::ranges::count(header, best)) best = c;
-    return best;
+    return header.find(best) == header.npos ? ' ' : best;
 }
 
 std::string_view without_quotes(std::string_view field) {
-    field = trim(field);
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"')
         field = trim(field.substr(1, field.size() - 2));
     return field;
@@ -47,13 +46,16 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
     fields.clear();
     bool quoted = false;
     std::size_t begin = 0;
+    const auto add = [&](std::size_t end) {
+        const std::string_view field = trim(line.substr(begin, end - begin));
+        if (separator != ' ' || !field.empty()) fields.push_back(without_quotes(field));
+        begin = end + 1;
+    };
     for (std::size_t i = 0; i < line.size(); ++i) {
         if (line[i] == '"') quoted = !quoted;
-        if (line[i] != separator || quoted) continue;
-        fields.push_back(without_quotes(line.substr(begin, i - begin)));
-        begin = i + 1;
+        if (line[i] == separator && !quoted) add(i);
     }
-    fields.push_back(without_quotes(line.substr(begin)));
+    add(line.size());
 }
 
 bool read_number(std::string_view field, std::optional<double>& number) {

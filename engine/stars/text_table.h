@@ -1,6 +1,6 @@
-// A table in text, line by line. In: text whose first line names the columns, separated by commas, semicolons
-// or tabs; fields may stand in quotes. Out: the fields of one row after the other, found by their columns'
-// names. Rows are not kept.
+// A table in text, line by line. In: text whose first line names the columns, separated by commas,
+// semicolons, tabs or blanks; fields may stand in quotes. Out: the fields of one row after the other, found
+// by their columns' names. Rows are not kept.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ class TextLines {
 };
 
 /// Fields between separators, without blanks and quotes around them. A separator inside quotes separates
-/// nothing.
+/// nothing. Of blanks many are as one, so that no field is empty.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
 
 /// Whether a field is a finite number, or says that there is none: nothing, "-", "~", "null", "nan".

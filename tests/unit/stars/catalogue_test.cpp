@@ -117,6 +117,7 @@ TEST(NamedColumns, ParallaxServesWhereTheDistanceIsMissing) {
 TEST(NamedColumns, OtherSeparatorsLineEndsAndMarks) {
     expect_star(parse("ra;dec;mag\n10;20;3\n").stars.at(0), 10, 20, 0, 3);
     expect_star(parse("ra\tdec\tmag\n10\t20\t3\n").stars.at(0), 10, 20, 0, 3);
+    expect_star(parse("  ra dec   distance mag bv\n 10  20 5    3   0.5\r\n").stars.at(0), 10, 20, 5, 3);
     expect_star(parse("\xef\xbb\xbfra,dec,mag\r\n10,20,3\r\n").stars.at(0), 10, 20, 0, 3);
     expect_star(parse("# by hand\n\n\"ra\",\"dec\",\"mag\"\n# more\n\"10\",\"20\",\" 3 \"").stars.at(0), 10,
                 20, 0, 3);
