@@ -42,7 +42,8 @@ constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splat
 // A projected splat lies in so many tiles, where nothing is known of the splats' places; and its place in a
 // bin. A twentieth of the memory for those that are known stays unused, at the end of blocks.
 constexpr double usual_records = 1.4, record_bytes = 44.0, fold_bytes = 56.0, unused_share = 1.05;
-constexpr double split_records = 4.0;  // where large ones are split, in a pass close by
+constexpr double split_records = 4.0;        // where large ones are split, in a pass close by
+constexpr double shape_record_bytes = 40.0;  // outlines of those that are not round, while they are joined
 constexpr std::int64_t shaded_bytes = 40;
 // Of captures: a row of a file with normals; and beside what all have shape and radius, harmonics and colours
 // by direction.
@@ -60,6 +61,7 @@ struct Expected {
     std::int64_t making_bytes = 0;  // while the set is made or read; 0: what it takes then
     std::shared_ptr<const NativeBlocks> file = nullptr;  // of kind splats, where it is .splats
     bool has_radius = false;
+    bool has_shapes = false;      // captures: their look leaves the set whole, as it has the shapes
     std::int64_t held_bytes = 0;  // by the set and by what is shaded, beyond what all have
 };
 
@@ -91,7 +93,8 @@ Expected expected_file(const std::filesystem::path& path) try {
         expected.splats = splat_count(path);
     }
     expected.has_radius = has("radius") || has("scale");
-    if (has("scale"))
+    expected.has_shapes = has("scale");
+    if (expected.has_shapes)
         expected.held_bytes = expected.splats * (shape_bytes + (has("harmonics") ? harmonics_bytes : 0));
     return expected;
 } catch (const InputError&) {
@@ -189,7 +192,8 @@ LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const Sampled
     const OptionalColumns wanted = columns_read(look);
     const std::int64_t row = 40 + (wanted.uv ? 8 : 0) + (wanted.mesh ? 4 : 0) + (expected.has_radius ? 4 : 0);
     need.making = std::max(expected.making_bytes, expected.splats * row);
-    need.held = expected.splats * (is_shaded_alike(plan.scene, layer.name) ? row : row + shaded_bytes);
+    const bool used_up = is_shaded_alike(plan.scene, layer.name) && !expected.has_shapes;
+    need.held = expected.splats * (used_up ? row : row + shaded_bytes);
     need.reads_pictures = !is_kept && layer.source.kind == SourceKind::mesh;
     need.making += expected.held_bytes;
     need.held += expected.held_bytes;
@@ -233,8 +237,9 @@ std::int64_t records_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& 
     const double folded = fold_bytes * std::min(1.0, 3.0 * thread_count() / std::max(1.0, tiles));
     for (const LayerNeed& need : needs)
         if (!sample.find(need.params->name))
-            unknown += (is_split(*need.params) ? split_records : usual_records) * (record_bytes + folded) *
-                       static_cast<double>(need.expected.splats);
+            unknown += static_cast<double>(need.expected.splats) *
+                       ((is_split(*need.params) ? split_records : usual_records) * (record_bytes + folded) +
+                        (need.expected.has_shapes ? shape_record_bytes : 0.0));
     return static_cast<std::int64_t>(unknown + unused_share * static_cast<double>(sample.record_bytes()));
 }
 

@@ -182,16 +182,21 @@ void TileBins::write(std::span<const Entry> entries, SplatStore& store, Writer& 
     }
 }
 
-/// Sets shapes_: each writer's after those of the writers before, with their numbers in its records.
-void TileBins::join_shapes(std::span<const Writer> writers) {
+/// Sets shapes_: each writer's, which are given back, after those of the writers before, with their numbers
+/// in its records.
+void TileBins::join_shapes(std::span<Writer> writers) {
+    std::size_t all = 0;
+    for (const Writer& writer : writers) all += writer.shapes.size();
     shapes_.clear();
-    for (const Writer& writer : writers) {
+    shapes_.reserve(all);
+    for (Writer& writer : writers) {
         const auto first = static_cast<std::uint32_t>(shapes_.size());
-        for (const Shape& shape : writer.shapes) shapes_.push_back(shape);
-        if (first == 0 || writer.shapes.empty()) continue;
-        for (const Block& block : writer.blocks)
-            for (ScreenSplat& splat : records_of(writer, block))
-                if (!is_round(splat)) set_shape_number(splat, shape_number(splat) + first);
+        shapes_.insert(shapes_.end(), writer.shapes.begin(), writer.shapes.end());
+        if (first > 0 && !writer.shapes.empty())
+            for (const Block& block : writer.blocks)
+                for (ScreenSplat& splat : records_of(writer, block))
+                    if (!is_round(splat)) set_shape_number(splat, shape_number(splat) + first);
+        writer.shapes = {};
     }
 }
 

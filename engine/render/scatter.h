@@ -157,7 +157,7 @@ class TileBins {
     std::span<const Entry> list_entries(const LayerProjection& layer, int group, Writer& writer) const;
     void begin_block(std::uint32_t bin, SplatStore& store, Writer& writer) const;
     void write(std::span<const Entry> entries, SplatStore& store, Writer& writer) const;
-    void join_shapes(std::span<const Writer> writers);
+    void join_shapes(std::span<Writer> writers);
     std::span<ScreenSplat> records_of(const Writer& writer, const Block& block) const;
     void sort_blocks(std::span<const Writer> writers);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "scene_fixture.h"
+#include "support/capture.h"
 
 namespace astrosplat::test {
 namespace {
@@ -140,6 +141,29 @@ TEST_F(Memory, WhatAPassCloseByTakesIsToldFromASample) {
     ASSERT_EQ(batch({"--sets-only", "-q"}).code, 0);
     const Run run = rendered({}, true);
     EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+}
+
+// Sets of Gaussians stay whole beside what the look makes of them, as their shapes do.
+TEST_F(Memory, CapturesAreCountedWithTheirShapesAndHarmonics) {
+    make_ball(1000, "[640, 360]");
+    write_text(folder / "scene.toml", R"(astrosplat = 1
+[output]
+resolution = [640, 360]
+frames = "1"
+path = "frames/shot.####.exr"
+[camera]
+position = [0.0, 0.0, 14.0]
+[[layer]]
+name = "capture"
+[layer.source]
+kind = "splats"
+file = "capture.ply"
+)");
+    for (const int degree : {0, 3}) {
+        write_text(folder / "capture.ply", ply_of(capture(300000, degree, 0.05), degree));
+        const Run run = rendered({});
+        EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+    }
 }
 
 // Also of one that is not seen, as it is read.
