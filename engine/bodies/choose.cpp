@@ -191,6 +191,13 @@ glm::dvec2 subject_of(const Image& light) {
             (static_cast<double>(place.y) + 0.5) / static_cast<double>(small.height)};
 }
 
+double mean_light(const Image& light) {
+    const Image brightest = brightest_channel(light);
+    double sum = 0.0;
+    for (const float value : brightest.pixels) sum += std::clamp(static_cast<double>(value), 0.0, 1.0);
+    return sum / static_cast<double>(std::max<std::size_t>(1, brightest.pixels.size()));
+}
+
 double lit_share_of_rim(const Image& light) {
     const Image brightest = brightest_channel(light);
     const auto rim = static_cast<std::int64_t>(rim_share * static_cast<double>(light.width));

@@ -28,6 +28,9 @@ StructureChoice choose_structure(const Image& light, std::optional<SkyObject> sh
 /// its width and height. The middle, where it is too small to tell or dark.
 glm::dvec2 subject_of(const Image& light);
 
+/// Mean of the brightest channel, 0 to 1 of the displayed white.
+double mean_light(const Image& light);
+
 /// Share of a picture's rim, 0 to 1, that shows more than a dark sky: there what it shows goes on beyond.
 double lit_share_of_rim(const Image& light);
 

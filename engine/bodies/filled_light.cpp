@@ -19,7 +19,7 @@ constexpr double share_blur = 0.01;  // of the width; lines leave straight edges
 constexpr int directions = 12;
 constexpr double share_from = 0.15, share_to = 0.45;  // that the opening takes away
 constexpr double least_light = 0.5;                   // of what is bright, that a core has
-constexpr float most_share = 0.94f;                   // the shell goes on before and behind a core
+constexpr double rim = 0.015;                         // of the width; a core's steep edges are its own
 constexpr float roundness = 0.9f;                     // depth of a core over its width
 
 // Values along lines, each the least or the greatest of those within `half` steps. Beyond the edges: as
@@ -58,6 +58,20 @@ Image opened_by_lines(const Image& image) {
     return opened[0];
 }
 
+// The greatest of the pixels at most `reach` px away.
+Image grown(const Image& image, std::int64_t reach) {
+    Image out = image;
+    for (std::int64_t y = 0; y < image.height; ++y)
+        for (std::int64_t x = 0; x < image.width; ++x)
+            for (std::int64_t v = std::max<std::int64_t>(0, y - reach);
+                 v <= std::min(image.height - 1, y + reach); ++v)
+                for (std::int64_t u = std::max<std::int64_t>(0, x - reach);
+                     u <= std::min(image.width - 1, x + reach); ++u)
+                    if ((u - x) * (u - x) + (v - y) * (v - y) <= reach * reach + 1)
+                        *out.at(x, y) = std::max(*out.at(x, y), *image.at(u, v));
+    return out;
+}
+
 double smooth(double from, double to, double value) {
     const double t = std::clamp((value - from) / (to - from), 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -77,12 +91,12 @@ FilledLight find_filled_light(const Image& brightest) {
         share.pixels[i] = static_cast<float>(smooth(share_from, share_to, away) *
                                              smooth(0.5 * least_light, least_light, light / bright));
     }
-    share = gaussian_blur(share, share_blur * static_cast<double>(share.width));
-    Image reach = blown_up(share);
+    const auto width = static_cast<double>(share.width);
+    Image reach = blown_up(gaussian_blur(share, share_blur * width));
+    share = gaussian_blur(grown(share, std::llround(rim * width)), share_blur * width);
     const float texels = static_cast<float>(brightest.width) / static_cast<float>(share.width);
     for (float& value : reach.pixels) value = roundness * 2.0f * texels * std::sqrt(std::max(0.0f, value));
     limit_slope(reach, static_cast<double>(texels));  // or a core would have a cliff all around
-    for (float& value : share.pixels) value *= most_share;
     for (float& value : sky.pixels) value = 1.0f - value;
     return {to_field_size(share, grid), to_field_size(sky, grid), to_field_size(reach, grid)};
 }

@@ -61,6 +61,8 @@ struct Surroundings {
     float brightest = 0.0f;  // of `local` along the rim, as light
     glm::vec2 middle{0.0f};  // of the picture, px
     float margin_px = 0.0f;
+    float least_reach = 0.0f;        // share of the margin that light goes on at least
+    float nearer_at_corners = 0.0f;  // times; 0: corners are round
 
     glm::vec3 light_at(std::int64_t x, std::int64_t y) const {
         const LinearSample near(local, (static_cast<float>(x) + 0.5f) * to_local,
@@ -72,8 +74,11 @@ struct Surroundings {
 
 float brightest_of(const glm::vec3& light) { return std::max({light.r, light.g, light.b}); }
 
-Surroundings surroundings_of(const Image& image, std::int64_t margin_px) {
+Surroundings surroundings_of(const Image& image, std::int64_t margin_px, StructureKind kind) {
     Surroundings around;
+    const bool disk = kind == StructureKind::disk;
+    around.least_reach = disk ? 0.2f : 0.6f;
+    around.nearer_at_corners = disk ? 1.0f : 0.0f;
     around.local = local_brightness(image);
     around.to_local = static_cast<float>(around.local.width) / static_cast<float>(image.width);
     around.middle = 0.5f * glm::vec2(static_cast<float>(image.width), static_cast<float>(image.height));
@@ -89,8 +94,7 @@ Surroundings surroundings_of(const Image& image, std::int64_t margin_px) {
 
 // How far light goes on from a place on the rim, as a share of the margin: as far as a disk whose light falls
 // exponentially takes to grow dark, so that outlines follow the galaxy and not the frame of its picture.
-float reach_of(float rim_light, float brightest_rim) {
-    constexpr float least = 0.2f;
+float reach_of(float rim_light, float brightest_rim, float least) {
     const float dark = std::min(0.004f, 0.1f * brightest_rim);
     if (dark <= 0.0f) return least;
     const float share =
@@ -108,7 +112,8 @@ float fade_at(const Surroundings& around, glm::vec2 px, float away_px, float rea
             bays[octave] * shared::as_noise(px.x * frequency, px.y * frequency, 0.5f, outline_seed + octave);
     const glm::vec2 from_middle = px / around.middle - 1.0f;
     const float corner = std::fabs(from_middle.x * from_middle.y), way = away_px / reach_px;
-    const float ragged = way * (steepness + corner * corner + raggedness * std::clamp(noise, -1.0f, 1.0f));
+    const float ragged = way * (steepness + around.nearer_at_corners * corner * corner +
+                                raggedness * std::clamp(noise, -1.0f, 1.0f));
     return smooth_step(1.0f - std::clamp(ragged, 0.0f, 1.0f)) * smooth_step(1.0f - std::min(way, 1.0f));
 }
 
@@ -122,7 +127,8 @@ void continue_texel(const Surroundings& around, const Image& image, std::int64_t
     const glm::vec3 rim = around.light_at(std::clamp<std::int64_t>(x, 0, image.width - 1),
                                           std::clamp<std::int64_t>(y, 0, image.height - 1));
     const glm::vec3 near = around.light_at(from_x, from_y);
-    const float reach_px = around.margin_px * reach_of(brightest_of(rim), around.brightest);
+    const float reach_px =
+        around.margin_px * reach_of(brightest_of(rim), around.brightest, around.least_reach);
     const glm::vec2 px(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
     const float fade = fade_at(around, px, std::sqrt(dx * dx + dy * dy), reach_px);
     for (int c = 0; c < 3; ++c) {
@@ -132,9 +138,9 @@ void continue_texel(const Surroundings& around, const Image& image, std::int64_t
     to[3] *= fade;
 }
 
-Image continued(const Texture& texture, std::int64_t margin_px) {
+Image continued(const Texture& texture, std::int64_t margin_px, StructureKind kind) {
     const Image& image = texture.image;
-    const Surroundings around = surroundings_of(image, margin_px);
+    const Surroundings around = surroundings_of(image, margin_px, kind);
     Image out = unfilled_image(image.width + 2 * margin_px, image.height + 2 * margin_px, image.channels);
     parallel_chunks(out.height, margin_rows, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t row = begin; row < end; ++row) {
@@ -152,13 +158,13 @@ Image continued(const Texture& texture, std::int64_t margin_px) {
     return out;
 }
 
-glm::dvec2 add_margin(TexturedMesh& mesh, double margin) {
+glm::dvec2 add_margin(TexturedMesh& mesh, double margin, StructureKind kind) {
     Texture& texture = mesh.textures.front();
     const auto width = static_cast<double>(texture.image.width),
                height = static_cast<double>(texture.image.height);
     const std::int64_t margin_px = std::llround(margin * width);
     if (margin_px == 0) return {1.0, 1.0};
-    texture.image = continued(texture, margin_px);
+    texture.image = continued(texture, margin_px, kind);
     texture.alpha_from_light = false;
     const glm::dvec2 times(static_cast<double>(texture.image.width) / width,
                            static_cast<double>(texture.image.height) / height);
@@ -185,13 +191,13 @@ Image mirrored_margin(const Image& image, double margin) {
     return out;
 }
 
-std::vector<glm::dvec2> add_margins(std::vector<TexturedMesh>& meshes, double margin,
+std::vector<glm::dvec2> add_margins(std::vector<TexturedMesh>& meshes, double margin, StructureKind kind,
                                     const std::string& layer_name) {
     std::vector<glm::dvec2> times(meshes.size(), glm::dvec2(1.0));
     if (margin <= 0.0) return times;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (meshes[i].mesh.name == "plane")
-            times[i] = add_margin(meshes[i], margin);
+            times[i] = add_margin(meshes[i], margin, kind);
         else
             log_warning(fmt::format("layer '{}': source.structure.margin acts on planes only, not on '{}'",
                                     layer_name, meshes[i].mesh.name));

@@ -65,6 +65,15 @@ void set_heights(const Placement& placement, const BandDots& dots, DepthBlock& b
     }
 }
 
+// How deep the sky around a shell is, of its greatest: like a cushion, or the picture's straight edges would
+// be seen from aslant as those of a slab.
+float sky_cushion(const Placement& placement, float x, float y) {
+    constexpr float thinnest = 0.15f;
+    const float u = 2.0f * x / static_cast<float>(placement.picture_width) - 1.0f,
+                v = 2.0f * y / static_cast<float>(placement.picture_height) - 1.0f;
+    return std::max(thinnest, std::sqrt(std::max(0.0f, 1.0f - u * u * u * u - v * v * v * v)));
+}
+
 float logistic(float u, float height) {
     const float inside = std::clamp(u, 1e-5f, 1.0f - 1e-5f);
     return 0.5f * height * as_log(inside / (1.0f - inside));
@@ -193,13 +202,16 @@ float Placement::relief_at(float x, float y) const {
     return bilinear(relief, 0, x * share, y * share);
 }
 
-DepthReach Placement::reach_at(float x, float y, std::uint32_t random) const {
+DepthReach Placement::reach_at(float x, float y, std::uint32_t random, bool glow) const {
+    constexpr float glow_in_cores = 0.94f;  // the shell's goes on; details are the core's own
     if (filled.core_share.pixels.empty()) return {DepthReach::Of::walls, relief_at(x, y)};
     const float share = 1.0f / static_cast<float>(1 << field_halvings);
     const auto of = [&](const Image& field) { return bilinear(field, 0, x * share, y * share); };
     const float u = as_uniform(as_mix(random ^ 0x94d049bbu));
-    if (u < of(filled.core_share)) return {DepthReach::Of::core, of(filled.core_reach)};
-    if (u >= 1.0f - of(filled.sky_share)) return {DepthReach::Of::sky, sky_reach * static_cast<float>(depth)};
+    if (u < (glow ? glow_in_cores : 1.0f) * of(filled.core_share))
+        return {DepthReach::Of::core, of(filled.core_reach)};
+    if (u >= 1.0f - of(filled.sky_share))
+        return {DepthReach::Of::sky, sky_reach * static_cast<float>(depth) * sky_cushion(*this, x, y)};
     return {DepthReach::Of::walls, relief_at(x, y)};
 }
 
@@ -235,7 +247,7 @@ std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement
         BandDots dots;
         dots.index = band.index;
         dots.feature = static_cast<float>(band.feature);
-        dots.spread = 0.5f * dots.feature;
+        dots.spread = 0.25f * dots.feature;
         dots.glow = glow;
         dots.sigma = band.index == 0 ? least_sigma : std::max(least_sigma, static_cast<float>(sigma));
         const double s = static_cast<double>(dots.sigma), area = 2.0 * real::pi * s * s;

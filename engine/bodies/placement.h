@@ -53,8 +53,8 @@ struct Placement {
     float relief_at(float x, float y) const;
     /// H(x, y) over H and without its flare: more than 1 where a disk is a bulge.
     float thickness_at(float x, float y) const;
-    /// Of a dot, by the shares of its column's light.
-    DepthReach reach_at(float x, float y, std::uint32_t random) const;
+    /// Of a dot, by the shares of its column's light; `glow`: of the light between the walls, not of details.
+    DepthReach reach_at(float x, float y, std::uint32_t random, bool glow) const;
 };
 
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its

@@ -87,7 +87,7 @@ void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
                                                    1u, shared::PURPOSE_KNOT);
         const bool in_front = as_uniform(as_mix(random ^ 0x5bd1e995u)) < front;
         const float anywhere = 2.0f * as_uniform(as_mix(random ^ 0x27d4eb2fu)) - 1.0f;
-        reaches[i] = placement.reach_at(bend.x[i], bend.y[i], random);
+        reaches[i] = placement.reach_at(bend.x[i], bend.y[i], random, false);
         const float at = reaches[i].of == DepthReach::Of::walls  ? (in_front ? 1.0f : -1.0f)
                          : reaches[i].of == DepthReach::Of::core ? between(within.z[i])
                                                                  : anywhere;
@@ -98,8 +98,8 @@ void add_walls(const Placement& placement, double feature, PlacedBlock& block) {
 
 void fill_between_walls(const Placement& placement, double feature, PlacedBlock& block) {
     for (int i = 0; i < block.count; ++i)
-        block.height[i] =
-            std::max(block.height[i], placement.reach_at(block.x[i], block.y[i], block.random[i]).texels);
+        block.height[i] = std::max(block.height[i],
+                                   placement.reach_at(block.x[i], block.y[i], block.random[i], true).texels);
     spread_in_clouds(placement, feature, block);
 }
 

@@ -104,24 +104,33 @@ void tilt(double distance, double exposure, std::vector<CameraKeyframe>& keyfram
 // The close pass of a flight, seen from what it passes by, and what comes after it.
 struct CloseViews {
     glm::dvec3 close, leaving;
-    double away_height;  // scene units
-    double darker;       // stops, at the most
+    glm::dvec3 away;
+    double darker;  // stops, at the most
 };
 
-// Over a disk low along its plane, over a cloud higher, and around a shell, which is thick. The more aslant a
+// Over a disk low along its plane, over a cloud higher, and around a shell, which is thick. A cloud goes on
+// to its picture's edges: the flight ends so near that they stay out of sight. The more aslant a
 // disk or a shell is seen the more of it shines in each pixel: the exposure goes down with the camera, or it
-// would burn out.
-CloseViews close_views(double distance, StructureKind kind) {
-    if (kind == StructureKind::disk) return {{1.0, 1.0, 2.7}, {-1.2, 0.5, 0.55 * distance}, 0.35, -1.0};
+// would burn out. A shell that is mostly dark would not.
+CloseViews close_views(double distance, StructureKind kind, double mean_light) {
+    constexpr double dark = 0.06, bright = 0.2;  // mean light of pictures
+    if (kind == StructureKind::disk)
+        return {{1.0, 1.0, 2.7}, {-1.2, 0.5, 0.55 * distance}, {-2.4, 0.35, 0.9 * distance}, -1.0};
     if (kind == StructureKind::walls)
-        return {{1.4, 2.3, 3.1}, {-1.2, 2.2, 0.6 * distance}, 0.3 * distance, -0.6};
-    return {{0.9, 1.9, 2.2}, {-1.6, 0.3 * distance, 0.34 * distance}, 0.66 * distance, 0.0};
+        return {{1.4, 2.3, 3.1},
+                {-1.2, 2.2, 0.6 * distance},
+                {-2.4, 0.3 * distance, 0.9 * distance},
+                -0.6 * std::clamp((mean_light - dark) / (bright - dark), 0.0, 1.0)};
+    return {{0.9, 1.9, 2.2},
+            {-1.6, 0.3 * distance, 0.34 * distance},
+            {-0.8, 0.63 * distance, 0.45 * distance},
+            0.0};
 }
 
 // Ten seconds at 24 frames/s: the front, a slow tilt, a pass close by the subject, and on: to the edge of a
 // disk, else up and away.
-std::vector<CameraKeyframe> flight(double distance, StructureKind kind, const glm::dvec3& subject) {
-    const CloseViews views = close_views(distance, kind);
+std::vector<CameraKeyframe> flight(double distance, const PictureScene& scene, const glm::dvec3& subject) {
+    const CloseViews views = close_views(distance, scene.structure, scene.mean_light);
     const glm::dvec3 middle(0.0), above(0.0, 1.0, 0.0);
     std::vector<CameraKeyframe> keyframes;
     tilt(distance, 0.4 * views.darker, keyframes);
@@ -129,7 +138,7 @@ std::vector<CameraKeyframe> flight(double distance, StructureKind kind, const gl
     keyframes.front().frame = 1;
     keyframes.push_back({160, subject + views.close, subject, above, 1.1 * views.darker});
     keyframes.push_back({205, 0.5 * subject + views.leaving, 0.5 * subject, above, 0.9 * views.darker});
-    keyframes.push_back({240, {-2.4, views.away_height, 0.9 * distance}, middle, above, 0.5 * views.darker});
+    keyframes.push_back({240, views.away, middle, above, 0.5 * views.darker});
     return keyframes;
 }
 
@@ -230,7 +239,7 @@ double margin_of(const PictureScene& scene) {
     constexpr std::int64_t most_px = std::int64_t{24} << 20;
     constexpr double lit = 0.1;
     if (scene.lit_rim <= lit || scene.width_px * scene.height_px > most_px) return 0.0;
-    return 0.08;
+    return scene.structure == StructureKind::disk ? 0.08 : 0.16;  // a cloud does not grow dim outward
 }
 
 }  // namespace
@@ -246,6 +255,7 @@ PictureScene picture_scene(const std::filesystem::path& image, std::optional<Sky
     const Image light = picture_light(texture, 0.0).light;
     scene.lit_rim = lit_share_of_rim(light);
     find_stars(scene, progress);
+    scene.mean_light = mean_light(light);
     scene.subject = subject_of(light);
     choice = choose_structure(light, shown);
     scene.structure = choice.kind;
@@ -278,9 +288,8 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         const double frame_px = static_cast<double>(side_px(longest, longest));
         text += stars_text(scene, name, frame_px / static_cast<double>(longest), file);
     }
-    return scene.film
-               ? text + animation_text(flight(distance, scene.structure, subject_in_scene(scene, height)))
-               : text;
+    return scene.film ? text + animation_text(flight(distance, scene, subject_in_scene(scene, height)))
+                      : text;
 }
 
 }  // namespace astrosplat

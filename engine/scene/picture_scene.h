@@ -18,8 +18,9 @@ struct PictureScene {
     std::filesystem::path image;
     std::int64_t width_px = 0, height_px = 0;  // the picture's
     StructureKind structure = StructureKind::disk;
-    double lit_rim = 0.0;  // share of its rim beyond which what it shows goes on, as far as one can see
-    bool film = false;     // with a camera move of ten seconds
+    double lit_rim = 0.0;     // share of its rim beyond which what it shows goes on, as far as one can see
+    double mean_light = 0.0;  // 0..1 of the displayed white
+    bool film = false;        // with a camera move of ten seconds
     glm::dvec2 subject{
         0.5};  // that it passes close by, from the top left corner in shares of width and height
     std::filesystem::path stars = {};  // the table of those that `prepare` took away; empty: there is none

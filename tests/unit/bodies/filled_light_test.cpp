@@ -114,15 +114,26 @@ TEST(FilledLight, ACoreIsABallInsideOfItsShell) {
     }
 }
 
-// Four fifths of a wall's greatest distance, to both sides.
-TEST(FilledLight, TheSkyIsNoSheet) {
+// Four fifths of a wall's greatest distance, to both sides, and thinner towards the picture's edges, which
+// would be those of a slab: the root of 1 - u^4 - v^4.
+TEST(FilledLight, TheSkyIsACushionAndNoSheet) {
     for (const bool fine : {true, false}) {
-        const Depths sky = depths_about(560.0, 60.0, fine);
-        EXPECT_NEAR(sky.deviation, 102.4 / std::sqrt(3.0), 20.0) << fine;
-        EXPECT_LT(sky.farthest, 110.0) << fine;
-        EXPECT_GT(sky.farthest, 95.0) << fine;
-        EXPECT_LT(std::fabs(sky.mean), 25.0) << fine;
+        for (const double y : {200.0, 100.0, 60.0}) {
+            const Depths sky = depths_about(560.0, y, fine);
+            const double u = 0.75, v = y / 200.0 - 1.0;
+            const double reach = 102.4 * std::sqrt(1.0 - std::pow(u, 4.0) - std::pow(v, 4.0));
+            EXPECT_NEAR(sky.deviation, reach / std::sqrt(3.0), 0.2 * reach) << fine << ' ' << y;
+            EXPECT_LT(sky.farthest, 1.15 * reach) << fine << ' ' << y;
+            EXPECT_GT(sky.farthest, 0.92 * reach) << fine << ' ' << y;
+            EXPECT_LT(std::fabs(sky.mean), 0.25 * reach) << fine << ' ' << y;
+        }
     }
+}
+
+// On the walls they would be seen again, before and behind, in the core's own colours.
+TEST(FilledLight, DetailsOfACoreAreItsOwnUpToItsEdge) {
+    for (const double x : {0.0, 20.0, 27.0})
+        EXPECT_LT(depths_about(shell_x + x, shell_y, true, 0.0, 3.0f).deviation, 30.0) << x;
 }
 
 // Spread evenly in every column, what is small and bright there would be a needle.

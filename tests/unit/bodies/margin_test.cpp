@@ -29,9 +29,9 @@ TexturedMesh lit_plane(const Image& rgb) {
 
 Image even_light() { return make_image(picture_width, picture_height, 3, 0.2f); }
 
-std::vector<TexturedMesh> continued(const Image& rgb) {
+std::vector<TexturedMesh> continued(const Image& rgb, StructureKind kind = StructureKind::disk) {
     std::vector<TexturedMesh> meshes{lit_plane(rgb)};
-    const std::vector<glm::dvec2> times = add_margins(meshes, 0.1, "a");
+    const std::vector<glm::dvec2> times = add_margins(meshes, 0.1, kind, "a");
     EXPECT_EQ(times.size(), 1u);
     EXPECT_DOUBLE_EQ(times[0].x, 1.2);
     EXPECT_DOUBLE_EQ(times[0].y, 160.0 / 120.0);
@@ -99,6 +99,23 @@ TEST(Margin, ReachesFartherWhereTheRimIsBrighter) {
     EXPECT_GT(share_left(20, 80, 0.2f), 3.0 * share_left(120, 180, 0.01f));
 }
 
+// Of a cloud, which does not grow dim outward, a dim rim would else end straight, and so would corners.
+TEST(Margin, CloudsGoOnAllAroundAndHaveRoundCorners) {
+    Image light = make_image(picture_width, picture_height, 3, 0.01f);
+    for (int c = 0; c < 3; ++c) light.at(100, 0)[c] = light.at(101, 0)[c] = 9.0f;
+    const auto lit = [&](StructureKind kind, std::int64_t x_begin, std::int64_t x_end) {
+        const Texture texture = continued(light, kind)[0].textures[0];
+        double sum = 0.0;
+        for (std::int64_t x = x_begin; x < x_end; ++x)
+            for (std::int64_t y = 0; y < margin_px; ++y) sum += texture.image.at(x, y)[1] / 0.01;
+        return sum / static_cast<double>((x_end - x_begin) * margin_px);
+    };
+    const double disk = lit(StructureKind::disk, 40, 100),
+                 disk_corner = lit(StructureKind::disk, 0, margin_px);
+    EXPECT_GT(lit(StructureKind::sheet, 40, 100), 1.7 * disk);
+    EXPECT_GT(lit(StructureKind::walls, 0, margin_px), 5.0 * disk_corner);
+}
+
 // What is mirrored is brighter again towards the middle.
 TEST(Margin, DoesNotGrowBrighterBeyondADimEdge) {
     Image light = make_image(picture_width, picture_height, 3, 0.0f);
@@ -137,7 +154,7 @@ TEST(Margin, ACameraSeesThePictureWhereItWas) {
     const Camera before = picture_camera(params, 200.0 / 120.0);
     meshes[0].camera = before;
     apply_camera_uv(meshes[0].mesh, before);
-    const glm::dvec2 times = add_margins(meshes, 0.1, "a")[0];
+    const glm::dvec2 times = add_margins(meshes, 0.1, StructureKind::disk, "a")[0];
     for (const glm::dvec3& point : {glm::dvec3(0, 0, 0), {4.9, 0, -2.9}, {-2, 1, 1}}) {
         const glm::dvec2 was = place_in_picture(before, point)->uv;
         const glm::dvec2 is = place_in_picture(*meshes[0].camera, point)->uv;
@@ -149,10 +166,10 @@ TEST(Margin, ACameraSeesThePictureWhereItWas) {
 TEST(Margin, OtherMeshesStay) {
     std::vector<TexturedMesh> meshes{lit_plane(even_light())};
     meshes[0].mesh = builtin_mesh("sphere", 1.0);
-    EXPECT_EQ(add_margins(meshes, 0.1, "a")[0], glm::dvec2(1.0));
+    EXPECT_EQ(add_margins(meshes, 0.1, StructureKind::disk, "a")[0], glm::dvec2(1.0));
     EXPECT_EQ(meshes[0].textures[0].image.width, picture_width);
     meshes[0].mesh = builtin_mesh("plane", 1.0);
-    EXPECT_EQ(add_margins(meshes, 0.0, "a")[0], glm::dvec2(1.0));
+    EXPECT_EQ(add_margins(meshes, 0.0, StructureKind::disk, "a")[0], glm::dvec2(1.0));
     EXPECT_EQ(meshes[0].textures[0].image.width, picture_width);
 }
 

@@ -8,6 +8,7 @@
 #include "scene/animate.h"
 #include "scene/load.h"
 #include "scene/save.h"
+#include "source/picture_camera.h"
 
 namespace astrosplat {
 namespace {
@@ -64,6 +65,7 @@ TEST(PictureScene, StarsThatWereTakenOutAreALayerOfTheirOwn) {
 TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
     for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet, StructureKind::walls}) {
         PictureScene picture{"a.png", 1600, 1000, kind};
+        picture.mean_light = 0.25;
         const Scene still = parsed(picture);
         EXPECT_EQ(still.layers.at(0).source.structure.warp > 0.0, kind == StructureKind::disk);
         EXPECT_EQ(still.layers.at(0).source.structure.flare > 0.0, kind == StructureKind::disk);
@@ -99,6 +101,33 @@ TEST(PictureScene, FilmsHoldThePictureAndThenFly) {
     }
 }
 
+TEST(PictureScene, TheApertureOfDarkShellsStaysOpen) {
+    PictureScene picture{"a.png", 1600, 1000, StructureKind::walls};
+    picture.film = true;
+    const auto close_by = [&](double mean_light) {
+        picture.mean_light = mean_light;
+        return scene_at(parsed(picture), 160.0).output.exposure;
+    };
+    EXPECT_EQ(close_by(0.02), 0.0);
+    EXPECT_NEAR(close_by(0.13), -0.33, 0.01);
+    EXPECT_NEAR(close_by(0.25), -0.66, 0.01);
+}
+
+// Of a cloud, which goes on to its picture's edges, these stay out of the last frame.
+TEST(PictureScene, FilmsOfCloudsEndNearThem) {
+    PictureScene picture{"a.png", 1600, 1000, StructureKind::sheet};
+    picture.film = true;
+    const Scene last = scene_at(parsed(picture), 240.0);
+    const Camera camera = make_camera(last.camera, 1600.0, 1000.0, {});
+    for (const double x : {-5.0, 5.0})
+        for (const double z : {-3.125, 3.125}) {
+            const auto seen = place_in_picture(camera, {x, 0.0, z});
+            const bool outside =
+                !seen || std::max(std::fabs(seen->uv.x - 0.5), std::fabs(seen->uv.y - 0.5)) > 0.5;
+            EXPECT_TRUE(outside) << x << ' ' << z;
+        }
+}
+
 TEST(PictureScene, FilmsPassByTheirSubject) {
     PictureScene picture{"a.png", 1600, 1000, StructureKind::sheet};
     picture.film = true;
@@ -120,7 +149,10 @@ TEST(PictureScene, PicturesThatGoOnAreContinued) {
     picture.lit_rim = 0.05;
     EXPECT_EQ(structure().margin, 0.0) << "alone on its sky";
     picture.lit_rim = 0.2;
-    EXPECT_GT(structure().margin, 0.0) << "what leaves the picture would be cut off";
+    EXPECT_GT(structure().margin, 0.1) << "what leaves the picture would be cut off";
+    picture.structure = StructureKind::disk;
+    EXPECT_EQ(structure().margin, 0.08) << "grows dim outward";
+    picture.structure = StructureKind::sheet;
     EXPECT_EQ(structure().border, 0.0) << "all of the picture is seen";
     picture.width_px = picture.height_px = 8192;
     EXPECT_EQ(structure().margin, 0.0) << "no room";
