@@ -156,6 +156,7 @@ void make_dome_master(GuiFrame& f, std::int64_t side_px) {
         scene.camera.projection = Projection::fisheye;
         scene.camera.fisheye_fov = 180.0;
     });
+    f.view.safe_areas = true;  // a master has its zone to keep titles in
 }
 
 void set_camera_keyframe_here(GuiFrame& f) {

@@ -152,6 +152,7 @@ TEST(Menus, ADomeMasterIsASquareFisheye) {
     EXPECT_EQ(scene.camera.projection, Projection::fisheye);
     EXPECT_EQ(scene.camera.fisheye_fov, 180.0);
     EXPECT_EQ(window.document.undo_name(), "Dome master of 4096 px");
+    EXPECT_TRUE(window.view.safe_areas);
 }
 
 TEST(Menus, CameraMoves) {
