@@ -31,11 +31,13 @@ class DepthTable {
 
 /// What a layer's dots have in common.
 struct DotSettings {
-    explicit DotSettings(const LayerRender& render);
+    /// `lattice`: the set's splats are on one.
+    explicit DotSettings(const LayerRender& render, bool lattice = false);
 
     LayerRender render;
     DepthTable depths;
     double variance;  // of the falloff, square radii
+    double overlap;   // of dots: their variance over that of the centres they stand for
 };
 
 struct Dot {
