@@ -76,16 +76,15 @@ double DepthTable::alpha(double depth) const {
     return x * interpolated(alpha_, x * steps);
 }
 
-/// A row of dots with the moments of what they stand for has dips between them; somewhat wider ones have few.
-/// Cells of a lattice are all alike and in line, so that what dips are left add up to stripes: for a bell of
-/// variance s^2 every a they are 2 e^(-2 pi^2 s^2 / a^2) deep, 28 % for 1.2 times the a^2 / 12 of a cell, 12
-/// % for 1.7. Other sets are not as even; and the wider dots are, the less they hide each other.
-DotSettings::DotSettings(const LayerRender& r, bool lattice)
-    : render(r), depths(r.falloff), variance(falloff_variance(r.falloff)), overlap(lattice ? 1.7 : 1.2) {}
+DotSettings::DotSettings(const LayerRender& r)
+    : render(r), depths(r.falloff), variance(falloff_variance(r.falloff)) {}
 
 Dot make_dot(const DotSettings& settings, const NodeSums& sums, double spread, float hybrid) {
     const LayerRender& render = settings.render;
-    const double square = double(sums.own) + settings.overlap * spread / settings.variance;
+    // A row of dots with the moments of what they stand for has dips between them; somewhat wider ones have
+    // few.
+    constexpr double overlap = 1.2;
+    const double square = double(sums.own) + overlap * spread / settings.variance;
     const double cover = double(sums.cover) * double(render.opacity) / square;  // of the disc
     const double n = double(sums.cover) * double(sums.cover) / double(sums.squares);
     Dot dot;

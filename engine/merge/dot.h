@@ -31,13 +31,11 @@ class DepthTable {
 
 /// What a layer's dots have in common.
 struct DotSettings {
-    /// `lattice`: the set's splats are on one.
-    explicit DotSettings(const LayerRender& render, bool lattice = false);
+    explicit DotSettings(const LayerRender& render);
 
     LayerRender render;
     DepthTable depths;
     double variance;  // of the falloff, square radii
-    double overlap;   // of dots: their variance over that of the centres they stand for
 };
 
 struct Dot {
