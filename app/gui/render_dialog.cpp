@@ -160,6 +160,7 @@ void machine_row(GuiFrame& frame) {
     if (!render.by_slurm) return;
     const auto word = [](const char* text) {
         ImGui::SameLine(0, px(row_gap));
+        ImGui::AlignTextToFramePadding();
         ImGui::TextColored(color4(color::dim), "%s", text);
         ImGui::SameLine(0, px(row_gap));
     };

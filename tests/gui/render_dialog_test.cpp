@@ -83,6 +83,7 @@ TEST(RenderDialog, AFarmIsOfferedWhereThereIsOne) {
     EXPECT_FALSE(window.has("render/Render again")) << "finished frames always stay there";
     window.type_into("render/chunk", "25");
     window.type_into("render/partition", "long");
+    window.keep_screen("slurm");
     const RenderTask& task = window.view.render;
     EXPECT_TRUE(renders_by_slurm(task));
     EXPECT_EQ(task.chunk, 25);
@@ -141,6 +142,7 @@ TEST(Queue, AFarmsJobIsCancelledAndLeavesTheStatusBarAlone) {
     window.status.jobs = {running_job_of("3 of 12 done, in the queue: 2 running", 0.25f)};
     window.status.jobs[0].state = QueuedJob::State::submitted;
     window.frame(2);
+    window.keep_screen("farm_queue");
     EXPECT_EQ(running_job(window.status), nullptr);
     EXPECT_FALSE(window.has("cancel job"));
     window.click("queue/end 1");
