@@ -228,7 +228,7 @@ const Action table[] = {
 bool pressed(const Shortcut& s, bool repeats) {
     const ImGuiIO& io = ImGui::GetIO();
     if (s.code == 0 || io.KeyAlt || io.KeyCtrl != s.ctrl || io.KeyShift != s.shift) return false;
-    return ImGui::IsKeyPressed(s.code, repeats);
+    return key_pressed(s.code, repeats);
 }
 
 bool pressed(const Action& action) {

@@ -19,7 +19,7 @@ float button_width(const char* label) {
 }
 
 // The key press that opened a dialog does not answer it.
-bool pressed(int code) { return !ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(code, false); }
+bool pressed(int code) { return !ImGui::IsWindowAppearing() && key_pressed(code); }
 
 }  // namespace
 

@@ -72,7 +72,7 @@ void Handles::read(GuiFrame& frame, const glm::dvec2& mouse_px, bool dragged) {
         drag_.grip = Grip::none;
         return;
     }
-    if (ImGui::IsKeyPressed(key_code::escape, false)) {
+    if (key_pressed(key_code::escape)) {
         try_edit([&] {
             frame.document.edit(
                 "Drag taken back", [&](Scene& scene) { scene = pressed_; }, gesture_);

@@ -1,9 +1,15 @@
 // Key codes to the words on keycaps.
 #include "gui/key_codes.h"
 
+#include <imgui.h>
+
 #include <map>
 
 namespace astrosplat {
+
+bool key_pressed(int code, bool repeats) { return ImGui::IsKeyPressed(static_cast<ImGuiKey>(code), repeats); }
+
+bool key_down(int code) { return ImGui::IsKeyDown(static_cast<ImGuiKey>(code)); }
 
 std::string key_name(int code) {
     using namespace key_code;

@@ -1,5 +1,6 @@
-// Codes of the keyboard's keys that ImGui does not name itself, as they index ImGuiIO::KeysDown. They are
-// GLFW's: letters and digits are their ASCII codes. Written out so that the widgets need no window library.
+// Codes of the keyboard's keys that ImGui does not name itself, as they index ImGuiIO::KeysDown, also in
+// versions that have an enumeration of their own (1.87). They are GLFW's: letters and digits are their ASCII
+// codes. Written out so that the widgets need no window library.
 #pragma once
 
 #include <string>
@@ -14,6 +15,10 @@ inline constexpr int page_up = 266, page_down = 267, home = 268, end = 269;
 inline constexpr int f1 = 290, f11 = 300, f12 = 301;
 inline constexpr int pad_enter = 335;
 }  // namespace key_code
+
+/// Whether the key went down in this frame, also by holding it where that `repeats`; whether it is down.
+bool key_pressed(int code, bool repeats = false);
+bool key_down(int code);
 
 /// What is written on the key, for menus and the sheet of shortcuts; "" for 0.
 std::string key_name(int code);

@@ -99,7 +99,7 @@ bool PathPoints::press(GuiFrame& frame, const Rect& area) {
 
 void PathPoints::drag(GuiFrame& frame) {
     if (!held_) return;
-    if (ImGui::IsKeyPressed(key_code::escape, false)) {
+    if (key_pressed(key_code::escape)) {
         held_.reset();
         if (std::exchange(edited_, false)) frame.document.undo();
         return;

@@ -112,7 +112,7 @@ void draw_shortcut_sheet(GuiFrame& frame) {
     ImGui::PopStyleVar();
     ImGui::SetCursorPosY(ImGui::GetWindowHeight() - px(44));
     if (dialog_buttons(frame, "shortcuts", {"Close"}, true) == 0 || dialog_escape() ||
-        (ImGui::IsKeyPressed(key_code::f1, false) && !ImGui::IsWindowAppearing())) {
+        (key_pressed(key_code::f1) && !ImGui::IsWindowAppearing())) {
         open = false;
         ImGui::CloseCurrentPopup();
     }

@@ -79,7 +79,7 @@ void sample_graph(TimelineState& t, const Track& track, const ParameterSpec& spe
 /// One undo step a drag; Escape takes it back.
 void edit_by_drag(TimelineState& t, GuiFrame& frame, const std::string& name,
                   const std::function<void(Scene&)>& change) {
-    if (ImGui::IsKeyPressed(key_code::escape, false)) {
+    if (key_pressed(key_code::escape)) {
         if (std::exchange(t.graph.edited, false)) frame.document.undo();
         t.drag = TimelineState::Drag::none;
         return;

@@ -52,7 +52,7 @@ void range_entry(TimelineState& t, GuiFrame& frame) {
     ImGui::PopStyleVar();
     note_item(frame, "range");
     tooltip("Frames of the scene: 1-240, 1-240x10 or 1,5,9");
-    const bool done = ImGui::IsItemDeactivatedAfterEdit() && !ImGui::IsKeyPressed(key_code::escape, false);
+    const bool done = ImGui::IsItemDeactivatedAfterEdit() && !key_pressed(key_code::escape);
     t.typing_frames = ImGui::IsItemActive();
     t.typed_frames = text.data();
     if (done && t.typed_frames != frames)

@@ -247,8 +247,7 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     }
     if (!tracks.empty()) draw_playhead_line(t, frame, area);
     const bool here = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
-    if (here && !ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(key_code::del, false))
-        remove_selected(t, frame);
+    if (here && !ImGui::GetIO().WantTextInput && key_pressed(key_code::del)) remove_selected(t, frame);
     draw_keyframe_menu(t, frame);
     ImGui::EndChild();
 }

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "gui/badge.h"
+#include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/view_marks.h"
 #include "gui/viewport_overlay.h"
@@ -39,7 +40,7 @@ void draw_frame_in_view(const GuiFrame& frame, const Rect& area) {
 
 glm::dvec3 fly_direction() {
     const auto axis = [](int plus, int minus) {
-        return (ImGui::IsKeyDown(plus) ? 1.0 : 0.0) - (ImGui::IsKeyDown(minus) ? 1.0 : 0.0);
+        return (key_down(plus) ? 1.0 : 0.0) - (key_down(minus) ? 1.0 : 0.0);
     };
     return {axis('D', 'A'), axis('E', 'Q'), axis('W', 'S')};
 }

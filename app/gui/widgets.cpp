@@ -96,7 +96,7 @@ bool drag_field(const char* id, float& value, float speed, float lo, float hi, c
 }
 
 void close_on_escape() {
-    if (ImGui::IsKeyPressed(key_code::escape, false)) ImGui::CloseCurrentPopup();
+    if (key_pressed(key_code::escape)) ImGui::CloseCurrentPopup();
 }
 
 void row_text(const std::string& text, float row_height, ImU32 text_color) {

@@ -73,6 +73,7 @@ Description describe_preparation(TextureSettings& t) {
 }
 
 std::string prepare_option(const ParameterKey& key) {
+    if (key == "q") return "--lupton-q";  // newer CLI11 takes --q for -q
     std::string option = "--" + key.text();
     std::ranges::replace(option, '_', '-');
     return option;

@@ -117,10 +117,10 @@ TEST_F(PrepareCommand, BringsThreeFiltersTogether) {
     ASSERT_EQ(three("r.fits", "r.fits", {"-o", "gray", "--stars", "keep"}).code, 0);
     ASSERT_EQ(three("g.fits", "r.fits", {"-o", "scaled", "--stars", "keep"}).code, 0);
     EXPECT_EQ(run({"compare", "gray/picture.exr", "scaled/picture.exr", "--max-difference", "0.05"}).code, 3);
-    ASSERT_EQ(
-        three("r.fits", "r.fits", {"-o", "bent", "--stars", "keep", "--q", "20", "--lupton-stretch", "0.5"})
-            .code,
-        0);
+    ASSERT_EQ(three("r.fits", "r.fits",
+                    {"-o", "bent", "--stars", "keep", "--lupton-q", "20", "--lupton-stretch", "0.5"})
+                  .code,
+              0);
     EXPECT_EQ(run({"compare", "gray/picture.exr", "bent/picture.exr", "--max-difference", "0.01"}).code, 3);
     expect_one_line(three("small.ppm", "r.fits", {"-o", "out"}), 2, "expected 96x64 px like r.fits");
     expect_one_line(three("r.fits", "r.fits", {"r.fits", "-o", "out"}), 2, "all three and no other picture");
@@ -147,8 +147,8 @@ TEST_F(PrepareCommand, RefusesWhatItShould) {
     refused({"--threshold", "3", "--stars", "keep"},
             "--threshold: expected --stars \"remove\" beside it, found none");
     refused({"--alpha", "0.5,0.5"}, "--alpha: expected the lower end first, found 0.5 and 0.5");
-    refused({"--q", "-1"}, "--q: expected a number from 1e-06 to 1000000, found -1");
-    refused({"--q", "1"}, "--q: expected --lupton true beside it, found none");
+    refused({"--lupton-q", "-1"}, "--lupton-q: expected a number from 1e-06 to 1000000, found -1");
+    refused({"--lupton-q", "1"}, "--lupton-q: expected --lupton true beside it, found none");
     refused({"--align", "stars.ppm"}, "stars.ppm: expected a FITS picture whose header tells the sky");
     write_text(folder / "small.ppm", "P6\n16 16\n255\n" + std::string(16 * 16 * 3, 'x'));
     for (const char* option : {"--mask", "--fill", "--split"})

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/key_codes.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 
@@ -31,10 +32,10 @@ BoxEvent type_value(Context& context, const char* id, const Area& area) {
     ImGui::InputText("##entry", &touch.text, ImGuiInputTextFlags_AutoSelectAll);
     ImGui::PopID();
     ImGui::PopStyleVar();
-    const bool tab = ImGui::IsItemActive() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Tab));
+    const bool tab = ImGui::IsItemActive() && key_pressed(key_code::tab, true);
     if (tab) ImGui::ClearActiveID();
     const bool left = tab || ImGui::IsItemDeactivated();
-    const bool dropped = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    const bool dropped = key_pressed(key_code::escape, true);
     const bool never_active = !ImGui::IsItemActive() && ++touch.entry_frames > 4;
     if (ImGui::IsItemActive()) touch.entry_frames = 1;
     if (!left && !never_active) {

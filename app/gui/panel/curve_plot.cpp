@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gui/key_codes.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
@@ -95,9 +96,9 @@ void nudge(Context& context, const ParameterKey& key, const Chart& chart, Points
     const int index = context.memory.selected_point;
     if (context.memory.selected_curve != key || index < 0 || index >= static_cast<int>(points.size())) return;
     if (!ImGui::IsWindowFocused() || ImGui::GetIO().WantTextInput) return;
-    const auto pressed = [](ImGuiKey_ k) { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(k)) ? 1.0f : 0.0f; };
-    const glm::vec2 steps{pressed(ImGuiKey_RightArrow) - pressed(ImGuiKey_LeftArrow),
-                          pressed(ImGuiKey_UpArrow) - pressed(ImGuiKey_DownArrow)};
+    const auto pressed = [](int code) { return key_pressed(code, true) ? 1.0f : 0.0f; };
+    const glm::vec2 steps{pressed(key_code::right) - pressed(key_code::left),
+                          pressed(key_code::up) - pressed(key_code::down)};
     if (steps == glm::vec2(0.0f)) return;
     const float size = ImGui::GetIO().KeyShift ? 0.1f : 0.01f;
     place(points, index, points[static_cast<std::size_t>(index)] + steps * glm::vec2(1.0f, chart.top) * size);

@@ -13,6 +13,7 @@
 #include "edit/layers.h"
 #include "edit/new_from_file.h"
 #include "gui/icons.h"
+#include "gui/key_codes.h"
 #include "gui/panel/row.h"
 #include "gui/panel/section.h"
 #include "gui/panel/whole_look.h"
@@ -132,7 +133,7 @@ void name_entry(Context& context, std::size_t i, const Area& area) {
     ++touch.entry_frames;
     const bool done = ImGui::IsItemDeactivated();
     const bool lost = !done && touch.entry_frames > 4 && !ImGui::IsItemActive();
-    const bool dropped = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    const bool dropped = key_pressed(key_code::escape, true);
     if (done || lost) finish_renaming(context, i, !dropped && !lost, touch.text);
 }
 
