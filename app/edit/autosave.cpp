@@ -158,9 +158,7 @@ void Autosave::remove() {
 
 std::vector<Recovery> recoveries(const fs::path& folder) {
     std::vector<Recovery> found;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        const fs::path file = entry->path();
+    for (const fs::path& file : entries_of(folder)) {
         if (file.extension() != ".toml" || file.filename().string().rfind(".", 0) == 0) continue;
         const std::optional<Recovery> recovery = read_header(file);
         if (recovery && is_abandoned(file)) found.push_back(*recovery);

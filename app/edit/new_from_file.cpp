@@ -81,11 +81,8 @@ bool has_own_pictures(const Mesh& mesh) {
 /// "disk.png" beside "disk.obj", else the only picture of the folder; empty when there is none.
 fs::path picture_beside(const fs::path& mesh) {
     std::vector<fs::path> pictures;
-    std::error_code error;
-    const fs::path folder = fs::absolute(mesh).parent_path();
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (kind_of_file(entry->path()) == FileKind::picture) pictures.push_back(entry->path());
-    std::sort(pictures.begin(), pictures.end());
+    for (const fs::path& entry : entries_of(fs::absolute(mesh).parent_path()))
+        if (kind_of_file(entry) == FileKind::picture) pictures.push_back(entry);
     for (const fs::path& picture : pictures)
         if (picture.stem() == mesh.stem()) return picture;
     return pictures.size() == 1 ? pictures[0] : fs::path();

@@ -54,9 +54,8 @@ std::int64_t number_of_file(const fs::path& file) {
 
 std::vector<fs::path> numbered_files(const fs::path& folder) {
     std::vector<fs::path> files;
-    std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (number_of_file(entry->path()) > 0) files.push_back(entry->path());
+    for (const fs::path& entry : entries_of(folder))
+        if (number_of_file(entry) > 0) files.push_back(entry);
     std::ranges::sort(files, {}, number_of_file);
     return files;
 }

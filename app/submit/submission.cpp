@@ -98,8 +98,8 @@ std::vector<Submission> submissions_of(const std::string& output) {
     const std::string wanted = as_utf8(comparable_output(output));
     std::set<fs::path> folders;
     std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-        if (fs::exists(entry->path() / record_name, error)) folders.insert(entry->path());
+    for (const fs::path& entry : entries_of(folder))
+        if (fs::exists(entry / record_name, error)) folders.insert(entry);
     std::vector<Submission> submissions;
     for (const fs::path& one : folders) {
         try {

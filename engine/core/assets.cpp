@@ -3,6 +3,7 @@
 #include <set>
 #include <system_error>
 
+#include "core/file.h"
 #include "core/user_folders.h"
 
 namespace astrosplat {
@@ -33,11 +34,9 @@ fs::path find_by_name(const std::string& folder, const fs::path& wanted) {
 
 std::vector<std::string> names_in(const std::string& folder) {
     std::set<std::string> names;
-    for (const fs::path& place : {own_assets_folder(folder), assets_folder(folder)}) {
-        std::error_code ignored;
-        for (const auto& entry : fs::directory_iterator(place, ignored))
-            if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
-    }
+    for (const fs::path& place : {own_assets_folder(folder), assets_folder(folder)})
+        for (const fs::path& entry : entries_of(place))
+            if (entry.extension() == ".toml") names.insert(entry.stem().string());
     return {names.begin(), names.end()};
 }
 

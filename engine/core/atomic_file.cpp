@@ -20,6 +20,8 @@
 #include <string>
 #include <utility>
 
+#include "core/file.h"
+
 namespace astrosplat {
 namespace {
 
@@ -85,11 +87,8 @@ void remove_leftovers(const fs::path& folder) {
         std::error_code ignored;
         if (!seen.insert(fs::absolute(folder, ignored)).second) return;
     }
-    std::error_code error;
-    for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-        if (is_temporary_name(entry->path().filename().string())) remove_if_nobodys(entry->path());
-    }
+    for (const fs::path& entry : entries_of(folder.empty() ? "." : folder))
+        if (is_temporary_name(entry.filename().string())) remove_if_nobodys(entry);
 }
 
 // Where writing goes: the links' end, whether or not a file is there.

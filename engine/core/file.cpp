@@ -1,6 +1,7 @@
 // POSIX calls, because the C and C++ streams would wait for a writer at the end of a pipe.
 #include "core/file.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -9,6 +10,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/memory.h"
@@ -63,6 +66,18 @@ std::string read_file(const fs::path& file, const Progress& progress) {
         text.resize(have + got);
     }
     return text;
+}
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+    std::vector<fs::path> entries;
+    const std::unique_ptr<DIR, int (*)(DIR*)> open(::opendir(folder.c_str()), ::closedir);
+    if (!open) return entries;
+    while (const dirent* entry = ::readdir(open.get())) {
+        const std::string_view name = entry->d_name;
+        if (name != "." && name != "..") entries.push_back(folder / name);
+    }
+    std::ranges::sort(entries);
+    return entries;
 }
 
 FileStamp stamp_of(const fs::path& file) {

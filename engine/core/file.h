@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
 
@@ -36,6 +37,10 @@ void require_readable(const std::filesystem::path& file);
 /// All bytes of a file. Throws InputError as InputFile does, and when it is larger than the
 /// memory left; Cancelled.
 std::string read_file(const std::filesystem::path& file, const Progress& progress = {});
+
+/// What lies in a folder, sorted by name; nothing where it cannot be read. (libstdc++'s own iterator ends the
+/// program where memory runs out.)
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
 /// When and how large a file was, and which one has the name: replacing it by renaming another changes that
 /// alone. All 0 where there is no file, or none that may be looked at.

@@ -8,6 +8,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/file.h"
 #include "core/log.h"
 #include "core/user_folders.h"
 
@@ -23,14 +24,6 @@ constexpr std::int64_t largest_limit = std::int64_t{20} << 30;  // bytes
 fs::path default_cache_folder() {
     const char* folder = std::getenv("ASTROSPLAT_CACHE");
     return folder && *folder ? fs::path(folder) : cache_folder();
-}
-
-std::vector<fs::path> files_in(const fs::path& folder) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-        files.push_back(at->path());
-    return files;
 }
 
 std::int64_t limit_bytes(const SetCache& cache) {
@@ -50,7 +43,7 @@ void shrink_cache(const SetCache& cache, std::int64_t bytes) {
     std::vector<Entry> entries;
     std::int64_t total = 0;
     std::error_code error;
-    for (const fs::path& file : files_in(cache.folder)) {
+    for (const fs::path& file : entries_of(cache.folder)) {
         constexpr std::array endings = {".splats", ".texels", ".tree", ".exr"};
         const std::string ending = file.extension().string();
         const bool entry = std::ranges::any_of(endings, [&](const char* own) { return ending == own; });

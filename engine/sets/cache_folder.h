@@ -1,11 +1,10 @@
-// The folder in which sets and prepared pictures are kept from run to run. In: its name and limit. Out: what
-// is in it, and room for more.
+// The folder in which sets and prepared pictures are kept from run to run. In: its name and limit. Out: room
+// for more.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace astrosplat {
 
@@ -18,9 +17,6 @@ struct SetCache {
 
 /// $ASTROSPLAT_CACHE, else $XDG_CACHE_HOME/astrosplat, else ~/.cache/astrosplat; empty without a home.
 std::filesystem::path default_cache_folder();
-
-/// All names in a folder; empty where it cannot be read.
-std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder);
 
 /// What the limit 0 means for this folder, or the limit.
 std::int64_t limit_bytes(const SetCache& cache);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/file_lock.h"
 #include "core/log.h"
 #include "core/memory.h"
@@ -40,7 +41,7 @@ bool serves(const SetCache& cache, const SourceParams& source) {
 /// held by the caller.
 void remove_leftovers(const fs::path& folder, const std::string& own_name) {
     constexpr std::size_t name_length = 64;
-    for (const fs::path& file : files_in(folder)) {
+    for (const fs::path& file : entries_of(folder)) {
         const std::string name = file.stem().string();
         const bool is_name =
             name.size() == name_length && name.find_first_not_of("0123456789abcdef") == name.npos;

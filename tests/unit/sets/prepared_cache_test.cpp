@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/log.h"
 #include "sets/load_source.h"
 #include "sets/recipe.h"
@@ -48,7 +49,7 @@ class PreparedSource : public testing::Test {
     }
 
     std::vector<fs::path> pictures() const {
-        std::vector<fs::path> files = files_in(cache_.folder);
+        std::vector<fs::path> files = entries_of(cache_.folder);
         std::erase_if(files, [](const fs::path& file) { return file.extension() != ".exr"; });
         return files;
     }

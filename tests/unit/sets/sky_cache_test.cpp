@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/file.h"
 #include "core/log.h"
 #include "sets/recipe.h"
 #include "support/starry_picture.h"
@@ -54,18 +55,18 @@ TEST_F(KeptSky, IsTheOneThatWasMadeToTheBit) {
     EXPECT_FALSE(kept());
     expect_same(sky(), made());
     EXPECT_TRUE(kept());
-    ASSERT_EQ(files_in(cache_.folder).size(), 1u);
+    ASSERT_EQ(entries_of(cache_.folder).size(), 1u);
     expect_same(sky(), made());
     EXPECT_TRUE(warnings_.empty());
 }
 
 TEST_F(KeptSky, IsReadAndNotMadeAgain) {
     sky();
-    const std::vector<fs::path> first = files_in(cache_.folder);
+    const std::vector<fs::path> first = entries_of(cache_.folder);
     SkyTiling other = tiling_;
     other.seed = 2;
     kept_skies(cache_)(folder_ / "p.ppm", other, {});
-    std::vector<fs::path> second = files_in(cache_.folder);
+    std::vector<fs::path> second = entries_of(cache_.folder);
     std::erase(second, first.at(0));
     // Another sky under the first one's name: what is read is what lies there.
     fs::copy_file(second.at(0), first.at(0), fs::copy_options::overwrite_existing);
@@ -93,7 +94,7 @@ TEST_F(KeptSky, EverythingThatMakesItIsInItsName) {
 
 TEST_F(KeptSky, ThatIsDamagedIsMadeAgain) {
     sky();
-    const fs::path file = files_in(cache_.folder).at(0);
+    const fs::path file = entries_of(cache_.folder).at(0);
     fs::resize_file(file, fs::file_size(file) / 2);
     expect_same(sky(), made());
     ASSERT_EQ(warnings_.size(), 1u);

@@ -10,6 +10,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/file.h"
 #include "core/log.h"
 #include "core/shared_noise.h"
 #include "support/temp_folder.h"
@@ -61,7 +62,7 @@ class KeptTreesTest : public testing::Test {
     }
     std::vector<fs::path> trees() const {
         std::vector<fs::path> found;
-        for (const fs::path& file : files_in(cache_.folder))
+        for (const fs::path& file : entries_of(cache_.folder))
             if (file.extension() == ".tree") found.push_back(file);
         return found;
     }
