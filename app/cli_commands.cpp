@@ -66,7 +66,8 @@ void add_generate(CLI::App& app, Invocation& call) {
         ->required();
     add_assignments(command, call.generate.assignments);
     add_value(command, "--memory", call.generate.memory_gib, "GiB",
-              "Limit of what bodies are made in: pictures that would take more are reduced");
+              "Limit of what is taken: pictures of bodies that would take more are reduced, columns written "
+              "in parts");
     command.add_flag("--overwrite", call.generate.overwrite, "Replaces the file");
     add_progress(command, call.generate.progress);
 }

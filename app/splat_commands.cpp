@@ -8,6 +8,8 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/file_format.h"
+#include "core/log.h"
+#include "core/memory.h"
 #include "core/text.h"
 #include "estimate.h"
 #include "interrupt.h"
@@ -16,6 +18,7 @@
 #include "scene/layer_source.h"
 #include "scene/load.h"
 #include "scene/suggest.h"
+#include "sets/load_source.h"
 #include "splat_files/splat_file.h"
 
 namespace astrosplat {
@@ -44,9 +47,23 @@ void check_splat_output(const std::filesystem::path& file, bool overwrite) {
     prove_writable(folder_of(file));
 }
 
+void report_file(const std::filesystem::path& file, std::int64_t splats) {
+    fmt::print("{}: {}\n", printable(file.string()), counted(splats, "splat"));
+}
+
 void write_and_report(const WriteTarget& target, const SplatSet& set, ProgressReport& report) {
     write_splats(target, set, report.begin_step("writing"));
-    fmt::print("{}: {}\n", printable(target.file.string()), counted(set.size(), "splat"));
+    report_file(target.file, set.size());
+}
+
+/// What a set is that was made in parts because memory would not hold it; it is not kept in the cache.
+void write_in_parts(const WriteTarget& target, const SourceParams& source, const std::string& layer_name,
+                    ProgressReport& report) {
+    log_info(fmt::format(
+        "layer '{}': more than memory holds; written in parts, which takes about twice as long", layer_name));
+    const Progress progress = report.begin_step("generating " + layer_name);
+    report_file(target.file,
+                write_columns(target, plan_columns(source, layer_name, progress), layer_name, progress));
 }
 
 }  // namespace
@@ -60,10 +77,18 @@ int run_generate(const GenerateOptions& options) {
     check_splat_output(options.output, options.overwrite);
     ProgressReport report(options.progress);
     if (most_bytes > 0) limit_bodies(layer, most_bytes, options.cache);
-    const SplatSet set = load_source(options.cache, source_of(scene, layer), layer.name,
-                                     report.begin_step("generating " + layer.name))
-                             .set;
-    write_and_report({options.output, existing_of(options.overwrite)}, set, report);
+    const SourceParams source = source_of(scene, layer);
+    const WriteTarget target{options.output, existing_of(options.overwrite)};
+    const bool columns = makes_columns(source);
+    if (columns && most_bytes > 0) limit_memory(most_bytes);
+    try {
+        const SplatSet set =
+            load_source(options.cache, source, layer.name, report.begin_step("generating " + layer.name)).set;
+        write_and_report(target, set, report);
+    } catch (const NotEnoughMemory&) {
+        if (!columns || format_by_name(options.output)->id != "splats") throw;
+        write_in_parts(target, source, layer.name, report);
+    }
     return exit_done;
 }
 

@@ -14,6 +14,11 @@ struct InputError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// What was asked for takes more memory than there is (core/memory).
+struct NotEnoughMemory : InputError {
+    using InputError::InputError;
+};
+
 /// An output could not be written (folder read-only, disk full). `what()` is one line.
 struct OutputError : std::runtime_error {
     using std::runtime_error::runtime_error;

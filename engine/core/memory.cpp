@@ -144,7 +144,7 @@ void claim_memory(std::int64_t bytes, const std::string& what) {
     const std::int64_t available = available_memory_bytes(), limit = own_limit;
     if (bytes > available) {
         const bool own = limit > 0 && available >= room_in_own_limit();
-        throw InputError(
+        throw NotEnoughMemory(
             fmt::format("{} needs {} of memory, but only {} are available{}", what, need, text(available),
                         own ? fmt::format(" of the {} that {} allows; this takes {} in all", text(limit),
                                           own_limit_name.load(), text(resident_memory_bytes() + bytes))

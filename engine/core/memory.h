@@ -30,7 +30,7 @@ std::int64_t peak_memory_bytes();
 /// Resident size of this process now, without what was freed and is lent to the system (core/buffer).
 std::int64_t resident_memory_bytes();
 
-/// Announces `bytes` for `what` (at detail level), and throws InputError with one line that states both
+/// Announces `bytes` for `what` (at detail level), and throws NotEnoughMemory with one line that states both
 /// figures when they exceed available_memory_bytes(), and with a limit of its own what that would have to be.
 void claim_memory(std::int64_t bytes, const std::string& what);
 

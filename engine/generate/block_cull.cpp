@@ -11,17 +11,20 @@
 namespace astrosplat {
 namespace {
 
-// Blocks of the next finer level that begin inside the lattice; corners reach one cell further than centres.
+// Blocks of the next finer level that begin inside the lattice and reach into the range; corners reach one
+// cell further than centres.
 std::vector<LatticeBlock> split(const std::vector<LatticeBlock>& parents, const Lattice& lattice,
-                                std::int64_t child_cells) {
-    const glm::i64vec3 last = lattice.n / child_cells;
+                                const CellRange& range, std::int64_t child_cells) {
+    const glm::i64vec3 first = range.lo / child_cells;
+    const glm::i64vec3 last = glm::min(lattice.n, range.hi - std::int64_t{1}) / child_cells;
     std::vector<LatticeBlock> children;
     children.reserve(parents.size() * 8);
     for (const LatticeBlock& parent : parents) {
         for (int child = 0; child < 8; ++child) {
             const glm::i64vec3 at =
                 parent.at * std::int64_t{2} + glm::i64vec3(child & 1, child >> 1 & 1, child >> 2);
-            if (at.x <= last.x && at.y <= last.y && at.z <= last.z)
+            if (at.x >= first.x && at.y >= first.y && at.z >= first.z && at.x <= last.x && at.y <= last.y &&
+                at.z <= last.z)
                 children.push_back({at, parent.near_slot});
         }
     }
@@ -55,7 +58,8 @@ BlockBall block_ball(const Lattice& lattice, double jitter, const glm::i64vec3& 
 }
 
 std::vector<LatticeBlock> blocks_near(const TriangleTree& tree, const Lattice& lattice,
-                                      const CullSettings& settings, const Progress& progress) {
+                                      const CullSettings& settings, const Progress& progress,
+                                      const CellRange& range) {
     std::int64_t cells = block_cells;
     while (cells <= std::max({lattice.n.x, lattice.n.y, lattice.n.z})) cells *= 2;
     std::vector<LatticeBlock> blocks{{glm::i64vec3(0), ClosestPoint::none}};
@@ -64,7 +68,7 @@ std::vector<LatticeBlock> blocks_near(const TriangleTree& tree, const Lattice& l
         drop_far(blocks, cells, tree, lattice, settings);
         if (cells == block_cells) break;
         cells /= 2;
-        blocks = split(blocks, lattice, cells);
+        blocks = split(blocks, lattice, range, cells);
     }
     std::ranges::sort(blocks, [](const LatticeBlock& a, const LatticeBlock& b) {
         return std::tie(a.at.z, a.at.y, a.at.x) < std::tie(b.at.z, b.at.y, b.at.x);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include "core/progress.h"
@@ -35,9 +36,15 @@ struct BlockBall {
 };
 BlockBall block_ball(const Lattice& lattice, double jitter, const glm::i64vec3& first, std::int64_t cells);
 
-/// The blocks that may hold positions within max_distance, ordered by (z, y, x). Costs time and memory in
-/// proportion to their number.
+/// Cells lo .. hi-1 of each axis; by default all.
+struct CellRange {
+    glm::i64vec3 lo{0}, hi{std::numeric_limits<std::int64_t>::max()};
+};
+
+/// The blocks that hold cells of `range` and may hold positions within max_distance, ordered by (z, y, x).
+/// Costs time and memory in proportion to their number.
 std::vector<LatticeBlock> blocks_near(const TriangleTree& tree, const Lattice& lattice,
-                                      const CullSettings& settings, const Progress& progress);
+                                      const CullSettings& settings, const Progress& progress,
+                                      const CellRange& range = {});
 
 }  // namespace astrosplat

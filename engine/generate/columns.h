@@ -21,6 +21,10 @@ struct Columns {
     SplatSet splats;
 };
 
+/// What is known of columns before any of them is made: zero_alpha is 0.
+SplatSetFacts facts_of_columns(std::span<const TexturedMesh> meshes, const Lattice& lattice,
+                               double max_distance);
+
 /// Bytes that make_columns() will take at its peak, about.
 std::int64_t columns_memory_bytes(std::span<const TexturedMesh> meshes, const Lattice& lattice,
                                   double max_distance);

@@ -14,6 +14,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "generate/generate.h"
+#include "generate/write_columns.h"
 #include "sets/flat_start.h"
 #include "sets/star_source.h"
 #include "splat_files/splat_file.h"
@@ -134,6 +135,16 @@ Columns make_columns(const ColumnPlan& plan, const std::string& layer_name, cons
     log_detail(fmt::format("layer '{}': kept {} of {} positions", layer_name, columns.splats.size(),
                            columns.splats.test_positions));
     return columns;
+} catch (const NotEnoughMemory& error) {
+    throw NotEnoughMemory(fmt::format("layer '{}': {}", layer_name, error.what()));
+} catch (const InputError& error) {
+    fail(layer_name, error);
+}
+
+std::int64_t write_columns(const WriteTarget& target, const ColumnPlan& plan, const std::string& layer_name,
+                           const Progress& progress) try {
+    return write_columns(target, plan.meshes, plan.lattice, plan.max_distance, plan.jitter, plan.seed,
+                         available_memory_bytes() / 4 * 3, progress);
 } catch (const InputError& error) {
     fail(layer_name, error);
 }

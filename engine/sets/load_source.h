@@ -2,6 +2,7 @@
 // and pictures or read from a splat file; of columns also the steps on the way to it.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "source/prepared_picture.h"
 #include "source/source.h"
 #include "source/textured_mesh.h"
+#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -65,5 +67,10 @@ ColumnPlan plan_columns(const SourceParams& source, const std::string& layer_nam
 /// Searches for the closest points. Throws as load_source does.
 Columns make_columns(const ColumnPlan& plan, const std::string& layer_name, const Progress& progress,
                      KeptWatcher* watcher = nullptr);
+
+/// The set of columns into a .splats file, without ever having it in memory (write_columns.h). Returns how
+/// many splats it has. Throws as load_source does, and OutputError.
+std::int64_t write_columns(const WriteTarget& target, const ColumnPlan& plan, const std::string& layer_name,
+                           const Progress& progress);
 
 }  // namespace astrosplat

@@ -167,6 +167,19 @@ file = "capture.ply"
 }
 
 // Also of one that is not seen, as it is read.
+TEST_F(Memory, ColumnsThatMemoryDoesNotHoldAreWrittenInParts) {
+    make_ball(1'500'000, "[64, 36]");
+    const RunResult parts = run({"generate", "mesh.toml", "--layer", "ball", "-o", "parts.splats", "--memory",
+                                 "0.2", "--no-cache", "-t", "1"});
+    ASSERT_EQ(parts.code, 0) << parts.err;
+    EXPECT_NE(parts.err.find("written in parts"), std::string::npos) << parts.err;
+    EXPECT_TRUE(text_of(folder / "parts.splats") == text_of(folder / "ball.splats"));
+    // Other formats have no parts.
+    expect_one_line(run({"generate", "mesh.toml", "--layer", "ball", "-o", "x.ply", "--memory", "0.2",
+                         "--no-cache", "-q"}),
+                    2, "of memory, but only");
+}
+
 TEST_F(Memory, TheSkyIsCounted) {
     std::string sky = "P6\n3000 1500\n255\n";
     sky.append(3000 * 1500 * 3, '\x30');

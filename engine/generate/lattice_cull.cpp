@@ -1,0 +1,180 @@
+// Threads take short rows of blocks; what they write depends on the row alone.
+#include "generate/lattice_cull.h"
+
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "core/parallel.h"
+#include "generate/block_query.h"
+#include "source/sample.h"
+
+namespace astrosplat {
+namespace {
+
+constexpr std::size_t longest_row = 64;  // blocks: their answers stay in the second-level cache
+constexpr std::size_t batch_blocks = LatticeCull::batch_blocks;
+
+/// Blocks begin .. end-1: a row has the same (y, z) and ascending x, a batch is whole layers of the same z.
+struct BlockRange {
+    std::size_t begin, end;
+};
+
+std::vector<BlockRange> rows_of(const std::vector<LatticeBlock>& blocks, const BlockRange& batch) {
+    std::vector<BlockRange> rows;
+    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+        const bool joins = !rows.empty() && i - rows.back().begin < longest_row &&
+                           blocks[i - 1].at.y == blocks[i].at.y && blocks[i - 1].at.z == blocks[i].at.z;
+        if (!joins) rows.push_back({i, i});
+        rows.back().end = i + 1;
+    }
+    return rows;
+}
+
+// Ids of one batch come before those of the next, because a batch ends where a layer of blocks does.
+std::vector<BlockRange> batches_of(const std::vector<LatticeBlock>& blocks) {
+    std::vector<BlockRange> batches;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const bool new_layer = i == 0 || blocks[i - 1].at.z != blocks[i].at.z;
+        if (batches.empty() || (new_layer && i - batches.back().begin >= batch_blocks))
+            batches.push_back({i, i});
+        batches.back().end = i + 1;
+    }
+    return batches;
+}
+
+/// What one thread works with and what it finds.
+struct Worker {
+    std::vector<BlockAnswers> answers;
+    std::vector<std::uint32_t> scratch;
+    KeptStore kept;
+    std::int64_t unseen = 0;  // positions that no picture shows, whatever it is
+};
+
+// All corners, then all centres, as their ids ask for; each time batch by batch, so that little is stored
+// twice.
+class BlockRun {
+  public:
+    BlockRun(const TriangleTree& tree, const Buffer<SurfaceTriangle>& surface, const Lattice& lattice,
+             const CullSettings& settings, const Progress& progress, KeptWatcher* watcher)
+        : tree_(tree),
+          surface_(surface),
+          lattice_(lattice),
+          settings_(settings),
+          progress_(progress),
+          watcher_(watcher),
+          workers_(static_cast<std::size_t>(thread_count())) {}
+
+    std::int64_t run(const std::vector<LatticeBlock>& blocks, const TakeKept& take) {
+        const std::vector<BlockRange> batches = batches_of(blocks);
+        for (const Positions kind : {Positions::corners, Positions::centres}) {
+            for (const BlockRange& batch : batches) {
+                run_batch(blocks, batch, kind);
+                hand_over(take);
+            }
+        }
+        std::int64_t unseen = 0;
+        for (const Worker& worker : workers_) unseen += worker.unseen;
+        return unseen;
+    }
+
+  private:
+    void run_batch(const std::vector<LatticeBlock>& blocks, const BlockRange& batch, Positions kind) {
+        const std::vector<BlockRange> rows = rows_of(blocks, batch);
+        parallel_for(static_cast<std::int64_t>(rows.size()), [&](std::int64_t row, int number) {
+            progress_.check();
+            const BlockRange& range = rows[row];
+            const std::size_t count = range.end - range.begin;
+            Worker& worker = workers_[number];
+            const std::size_t runs = worker.kept.runs().size();
+            run_row({&blocks[range.begin], count}, kind, worker);
+            if (watcher_) watcher_->keeps(std::span(worker.kept.runs()).subspan(runs));
+            progress_.at(0.5 * static_cast<double>(done_ += count) / static_cast<double>(blocks.size()));
+        });
+    }
+
+    // The answers in order of id: each lattice row across all blocks, which is a run of the store.
+    void run_row(std::span<const LatticeBlock> row, Positions kind, Worker& worker) const {
+        worker.answers.resize(longest_row);
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            query_block(tree_, lattice_, settings_, row[i], kind, worker.scratch, worker.answers[i]);
+        }
+        for (std::size_t k = 0; k < block_cells; ++k) {
+            for (std::size_t j = 0; j < block_cells; ++j) {
+                worker.kept.begin_run();
+                for (std::size_t b = 0; b < row.size(); ++b)
+                    keep_row_of_block(row[b], kind, j, k, worker.answers[b], worker);
+            }
+        }
+    }
+
+    void keep_row_of_block(const LatticeBlock& block, Positions kind, std::size_t j, std::size_t k,
+                           const BlockAnswers& answers, Worker& worker) const {
+        const glm::i64vec3 at = block.at * block_cells + glm::i64vec3(0, j, k);
+        const std::uint64_t id =
+            kind == Positions::centres ? centre_id(lattice_, at) : corner_id(lattice_, at);
+        for (std::size_t i = 0; i < block_cells; ++i) {
+            const std::size_t slot = block_slot(i, j, k);
+            if (answers.triangle[slot] != ClosestPoint::none) keep(answers, slot, id + i, worker);
+        }
+    }
+
+    void keep(const BlockAnswers& answers, std::size_t slot, std::uint64_t id, Worker& worker) const {
+        const SurfaceTriangle& surface = surface_[answers.triangle[slot]];
+        const glm::dvec3 place(answers.x[slot], answers.y[slot], answers.z[slot]);
+        const std::optional<glm::vec2> uv = uv_of(surface, {answers.v[slot], answers.w[slot]}, place);
+        if (!uv) {
+            ++worker.unseen;
+            return;
+        }
+        const TextureSample picture = sample(*surface.texture, *uv, surface.box_texels);
+        const glm::vec3 position(place);
+        const auto distance = static_cast<float>(std::sqrt(answers.distance_squared[slot]));
+        worker.kept.add({position, picture.color, picture.alpha, distance, id, *uv, surface.normal,
+                         surface.mesh, answers.triangle[slot]});
+    }
+
+    void hand_over(const TakeKept& take) {
+        std::vector<KeptStore::Run> runs;
+        for (const Worker& worker : workers_)
+            runs.insert(runs.end(), worker.kept.runs().begin(), worker.kept.runs().end());
+        take(runs);
+        for (Worker& worker : workers_) worker.kept.clear();
+    }
+
+    const TriangleTree& tree_;
+    const Buffer<SurfaceTriangle>& surface_;
+    const Lattice& lattice_;
+    const CullSettings& settings_;
+    const Progress& progress_;
+    KeptWatcher* watcher_;
+    std::vector<Worker> workers_;
+    std::atomic<std::size_t> done_{0};  // blocks, each once for either kind
+};
+
+TriangleTree tree_of(std::span<const TexturedMesh> meshes) {
+    std::vector<const Mesh*> shapes;
+    for (const TexturedMesh& m : meshes) shapes.push_back(&m.mesh);
+    return make_triangle_tree(shapes);
+}
+
+}  // namespace
+
+LatticeCull::LatticeCull(std::span<const TexturedMesh> meshes, const Lattice& lattice,
+                         const CullSettings& settings)
+    : lattice_(lattice),
+      settings_(settings),
+      tree_(tree_of(meshes)),
+      surface_(surface_triangles(meshes, lattice.spacing())) {}
+
+std::vector<LatticeBlock> LatticeCull::blocks(const CellRange& range, const Progress& progress) const {
+    return blocks_near(tree_, lattice_, settings_, progress, range);
+}
+
+std::int64_t LatticeCull::run(const std::vector<LatticeBlock>& blocks, const Progress& progress,
+                              const TakeKept& take, KeptWatcher* watcher) const {
+    return BlockRun(tree_, surface_, lattice_, settings_, progress, watcher).run(blocks, take);
+}
+
+}  // namespace astrosplat
