@@ -60,7 +60,8 @@ void write_and_report(const WriteTarget& target, const SplatSet& set, ProgressRe
 void write_in_parts(const WriteTarget& target, const SourceParams& source, const std::string& layer_name,
                     ProgressReport& report) {
     log_info(fmt::format(
-        "layer '{}': more than memory holds; written in parts, which takes about twice as long", layer_name));
+        "layer '{}': more than memory holds; it is written in parts, for which space is searched twice",
+        layer_name));
     const Progress progress = report.begin_step("generating " + layer_name);
     report_file(target.file,
                 write_columns(target, plan_columns(source, layer_name, progress), layer_name, progress));

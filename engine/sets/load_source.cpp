@@ -136,7 +136,9 @@ Columns make_columns(const ColumnPlan& plan, const std::string& layer_name, cons
                            columns.splats.test_positions));
     return columns;
 } catch (const NotEnoughMemory& error) {
-    throw NotEnoughMemory(fmt::format("layer '{}': {}", layer_name, error.what()));
+    throw NotEnoughMemory(
+        fmt::format("layer '{}': {}; in a .splats file, which generate writes in parts, it need not fit",
+                    layer_name, error.what()));
 } catch (const InputError& error) {
     fail(layer_name, error);
 }
