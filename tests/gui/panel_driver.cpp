@@ -5,6 +5,7 @@
 #include <imgui_internal.h>
 
 #include "gui/gui.h"
+#include "gui/key_map.h"
 #include "gui/theme.h"
 #include "scene/describe.h"
 
@@ -18,7 +19,7 @@ ImGuiContext* make_context(glm::vec2 size) {
     io.DisplaySize = {size.x, size.y};
     io.DeltaTime = 1.0f / 60.0f;
     io.LogFilename = nullptr;
-    for (int key = 0; key < ImGuiKey_COUNT; ++key) io.KeyMap[key] = key;
+    set_key_map();
     apply_theme(1.0f);
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
@@ -100,9 +101,10 @@ void PanelDriver::type(const std::string& text) {
 }
 
 void PanelDriver::tap(ImGuiKey_ key) {
-    ImGui::GetIO().KeysDown[key] = true;
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeysDown[io.KeyMap[key]] = true;
     frames();
-    ImGui::GetIO().KeysDown[key] = false;
+    io.KeysDown[io.KeyMap[key]] = false;
     frames(2);
 }
 
