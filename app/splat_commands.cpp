@@ -56,7 +56,7 @@ void write_and_report(const WriteTarget& target, const SplatSet& set, ProgressRe
     report_file(target.file, set.size());
 }
 
-/// What a set is that was made in parts because memory would not hold it; it is not kept in the cache.
+/// The set of columns that memory does not hold, of which nothing is kept in the cache.
 void write_in_parts(const WriteTarget& target, const SourceParams& source, const std::string& layer_name,
                     ProgressReport& report) {
     log_info(fmt::format(

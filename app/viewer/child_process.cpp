@@ -24,6 +24,11 @@ int as_exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 
 
 }  // namespace
 
+std::string without_prefix(const std::string& line) {
+    constexpr std::string_view prefix = "astrosplat: ";
+    return line.starts_with(prefix) ? line.substr(prefix.size()) : line;
+}
+
 bool has_program(const std::string& name) {
     const char* path = std::getenv("PATH");
     std::string_view rest = path ? path : "/usr/bin:/bin";

@@ -13,6 +13,9 @@ namespace astrosplat {
 /// A program of this name is on the PATH.
 bool has_program(const std::string& name);
 
+/// A line of this program's own messages without "astrosplat: "; other lines as they are.
+std::string without_prefix(const std::string& line);
+
 class ChildProcess {
   public:
     /// Starts arguments[0] (found on the PATH) with stdout and stderr read by output().

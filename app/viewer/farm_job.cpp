@@ -19,9 +19,7 @@ constexpr double pause_share = 5.0;  // times what the last question took
 std::string last_line(const std::string& text) {
     const std::string whole(trim(text));
     const std::size_t end = whole.rfind('\n');
-    const std::string line = end == std::string::npos ? whole : whole.substr(end + 1);
-    constexpr std::string_view prefix = "astrosplat: ";
-    return line.rfind(prefix, 0) == 0 ? line.substr(prefix.size()) : line;
+    return without_prefix(end == std::string::npos ? whole : whole.substr(end + 1));
 }
 
 std::vector<fs::path> files_of(const std::string& pattern, const std::vector<std::int64_t>& frames) {

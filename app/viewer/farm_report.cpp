@@ -3,23 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
 namespace {
 
 using Json = nlohmann::json;
-
-// As a person says it: "3 running" of Slurm's RUNNING.
-std::string lower(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
 
 void add_eye(const Json& eye, FarmReport& report) {
     report.frames += eye.at("frames").get<std::int64_t>();
@@ -36,9 +30,9 @@ std::string queue_text(const Json& status) {
     for (const Json& submission : status.at("queue")) {
         if (!submission.at("active")) continue;
         const std::string sets = submission.at("sets");
-        if (!sets.empty() && sets != "COMPLETED") parts.push_back("the sets " + lower(sets));
+        if (!sets.empty() && sets != "COMPLETED") parts.push_back("the sets " + lower_case(sets));
         for (const auto& [state, count] : submission.at("tasks").items())
-            parts.push_back(fmt::format("{} {}", count.get<std::int64_t>(), lower(state)));
+            parts.push_back(fmt::format("{} {}", count.get<std::int64_t>(), lower_case(state)));
     }
     return parts.empty() ? "" : fmt::format(", in the queue: {}", fmt::join(parts, ", "));
 }

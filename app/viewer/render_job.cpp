@@ -17,11 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* busy_message = "a rendering is under way: cancel it first, or wait";
 
-std::string without_prefix(const std::string& line) {
-    constexpr std::string_view prefix = "astrosplat: ";
-    return line.rfind(prefix, 0) == 0 ? line.substr(prefix.size()) : line;
-}
-
 // "frame 12 (3/10)" of "frame 12 (3/10) 37% eta 00:04:10".
 std::string without_share(const std::string& line) {
     const std::size_t percent = line.find("% eta ");

@@ -21,13 +21,14 @@ namespace native {
 namespace {
 
 std::uint32_t flags_of_set(const SplatSet& set, RowOrder order, NativePart part) {
-    std::uint32_t there = 0;
-    for_each_column([&](auto column, SplatColumn which) {
-        if (!(set.*column).empty()) there |= 1u << static_cast<unsigned>(which);
-    });
-    return flags_of(
-        set, [there](SplatColumn which) { return (there >> static_cast<unsigned>(which) & 1u) != 0; }, order,
-        part);
+    const auto holds = [&](SplatColumn wanted) {
+        bool there = false;
+        for_each_column([&](auto column, SplatColumn which) {
+            if (which == wanted) there = !(set.*column).empty();
+        });
+        return there;
+    };
+    return flags_of(set, holds, order, part);
 }
 
 /// Rows [begin, end) of every array that the flags name.

@@ -10,6 +10,26 @@ namespace {
 
 class Memory : public SceneTest {
   protected:
+    /// scene.toml draws a splat file; `more` belongs to its layer, or follows it.
+    void make_scene_of(const std::string& file, const std::string& resolution, const std::string& position,
+                       const std::string& more = "") const {
+        write_text(folder / "scene.toml", fmt::format(R"(astrosplat = 1
+[output]
+resolution = {}
+frames = "1"
+path = "frames/shot.####.exr"
+[camera]
+position = {}
+[[layer]]
+name = "ball"
+[layer.source]
+kind = "splats"
+file = "{}"
+{}
+)",
+                                                      resolution, position, file, more));
+    }
+
     /// A ball of so many splats in ball.splats, drawn by scene.toml.
     void make_ball(int splats, const std::string& resolution, const std::string& more = "") {
         write_text(folder / "ball.ppm", small_picture());
@@ -24,21 +44,7 @@ splats = {}
         ASSERT_EQ(
             run({"generate", "mesh.toml", "--layer", "ball", "-o", "ball.splats", "-q", "--no-cache"}).code,
             0);
-        write_text(folder / "scene.toml", fmt::format(R"(astrosplat = 1
-[output]
-resolution = {}
-frames = "1"
-path = "frames/shot.####.exr"
-[camera]
-position = [3.0, 6.0, 13.0]
-[[layer]]
-name = "ball"
-[layer.source]
-kind = "splats"
-file = "ball.splats"
-{}
-)",
-                                                      resolution, more));
+        make_scene_of("ball.splats", resolution, "[3.0, 6.0, 13.0]", more);
     }
 
     /// The same ball, which scene.toml generates, seen from a place; `more` belongs to its layer.
@@ -145,20 +151,7 @@ TEST_F(Memory, WhatAPassCloseByTakesIsToldFromASample) {
 
 // Sets of Gaussians stay whole beside what the look makes of them, as their shapes do.
 TEST_F(Memory, CapturesAreCountedWithTheirShapesAndHarmonics) {
-    make_ball(1000, "[640, 360]");
-    write_text(folder / "scene.toml", R"(astrosplat = 1
-[output]
-resolution = [640, 360]
-frames = "1"
-path = "frames/shot.####.exr"
-[camera]
-position = [0.0, 0.0, 14.0]
-[[layer]]
-name = "capture"
-[layer.source]
-kind = "splats"
-file = "capture.ply"
-)");
+    make_scene_of("capture.ply", "[640, 360]", "[0.0, 0.0, 14.0]");
     for (const int degree : {0, 3}) {
         write_text(folder / "capture.ply", ply_of(capture(300000, degree, 0.05), degree));
         const Run run = rendered({});
@@ -166,7 +159,6 @@ file = "capture.ply"
     }
 }
 
-// Also of one that is not seen, as it is read.
 TEST_F(Memory, ColumnsThatMemoryDoesNotHoldAreWrittenInParts) {
     make_ball(1'500'000, "[64, 36]");
     const RunResult parts = run({"generate", "mesh.toml", "--layer", "ball", "-o", "parts.splats", "--memory",
@@ -180,6 +172,7 @@ TEST_F(Memory, ColumnsThatMemoryDoesNotHoldAreWrittenInParts) {
                     2, "which generate writes in parts");
 }
 
+// Also of one that is not seen, as it is read.
 TEST_F(Memory, TheSkyIsCounted) {
     std::string sky = "P6\n3000 1500\n255\n";
     sky.append(3000 * 1500 * 3, '\x30');
