@@ -34,24 +34,24 @@ void FileDialog::open(const FileQuery& query) {
     query_ = query;
     open_ = true;
     all_files_ = replaces_ = false;
-    go_to(query.folder, home_folder());
+    go_to(query.folder, query.otherwise.empty() ? home_folder() : query.otherwise);
     typed_ = query.name;
 }
 
 void FileDialog::go_to(const fs::path& folder, const fs::path& otherwise) {
+    name_.forget();
     folder_ = folder.lexically_normal();
     list_entries(otherwise);
     complaint_.clear();
-    if (!query_.saving) typed_.clear();
+    if (!query_.saving) retype("");
     focus_path_ = awaits_typing_ = true;  // the name comes next
 }
 
 void FileDialog::list_entries(const fs::path& otherwise) {
-    constexpr std::chrono::milliseconds moment(200);  // in which most disks answer: the list does not flash
     reader_.begin(folder_, otherwise, all_files_ ? std::vector<std::string>{} : query_.extensions);
     entries_.clear();
     folders_ = 0;
-    take_entries(moment);
+    take_entries(disk_moment);
 }
 
 void FileDialog::take_entries(std::chrono::milliseconds at_most) {
@@ -85,14 +85,21 @@ void FileDialog::draw_places(GuiFrame& frame) {
 
 // In the path: Tab lengthens what is typed, Up and Down go through the list.
 int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
-    const auto& dialog = *static_cast<const FileDialog*>(data->UserData);
+    auto& dialog = *static_cast<FileDialog*>(data->UserData);
     std::string typed(data->Buf, data->Buf + data->BufTextLen);
     if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory) {
         const int step = data->EventKey == ImGuiKey_UpArrow ? -1 : 1;
-        if (const auto entry = entry_beside(dialog.entries_, typed, step))
-            typed = dialog.entries_[*entry].name;
-    } else if (!dialog.reader_.reading()) {
-        typed = complete_path(typed, dialog.folder_);
+        const auto entry = entry_beside(dialog.entries_, typed, step);
+        if (!entry) return 0;
+        typed = dialog.entries_[*entry].name;
+    } else if (const auto text = std::exchange(dialog.retyped_, {})) {
+        typed = *text;
+    } else {
+        if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion)
+            dialog.name_.complete(typed, dialog.folder_);
+        const std::optional<std::string> completed = dialog.name_.completed(typed);
+        if (!completed) return 0;
+        typed = *completed;
     }
     data->DeleteChars(0, data->BufTextLen);
     data->InsertChars(0, typed.c_str());
@@ -111,12 +118,15 @@ void FileDialog::draw_path(GuiFrame& frame) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(8), px(6)));
     const std::string before = typed_;
     ImGui::InputTextWithHint("##path", "File, or a path; Tab completes it, Up and Down choose", &typed_,
-                             ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackHistory,
+                             ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackHistory |
+                                 ImGuiInputTextFlags_CallbackAlways,
                              on_key, this);
     ImGui::PopStyleVar();
+    retyped_.reset();  // where it was not active, it shows typed_
     if (ImGui::IsItemActive()) awaits_typing_ = false;
     note_item(frame, "file/path");
     if (typed_ != before) {
+        name_.forget();
         replaces_ = false;
         complaint_.clear();
         typed_anew_ = true;
@@ -172,6 +182,7 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
                 if (entry.folder && click.once) enter = folder_ / entry.name;
                 if (!entry.folder && click.once) {
                     typed_ = entry.name;
+                    name_.forget();
                     replaces_ = false;
                 }
                 if (!entry.folder && click.twice) chosen = true;
@@ -193,26 +204,29 @@ bool FileDialog::draw_entries(GuiFrame& frame) {
     return chosen;
 }
 
-std::optional<fs::path> FileDialog::accept() {
-    if (typed_.empty()) return std::nullopt;
-    fs::path file = typed_path(typed_, folder_).lexically_normal();
-    std::error_code ignored;
-    if (fs::is_directory(file, ignored)) {
-        typed_.clear();
+void FileDialog::look() {
+    if (typed_.empty()) return;
+    const bool adds = query_.saving && !query_.extensions.empty();
+    name_.look(typed_path(typed_, folder_).lexically_normal(), adds ? query_.extensions.front() : "");
+}
+
+std::optional<fs::path> FileDialog::accept(const TypedFile& typed) {
+    const fs::path& file = typed.file;
+    if (typed.is_folder) {
+        retype("");
         go_to(file);
         return std::nullopt;
     }
     if (!query_.saving) {
-        if (fs::exists(file, ignored)) return file;
+        if (typed.exists) return file;
         complaint_ = "There is no file of this name.";
         return std::nullopt;
     }
-    if (!file.has_extension() && !query_.extensions.empty()) file += query_.extensions.front();
-    if (!fs::is_directory(file.parent_path(), ignored)) {
+    if (!typed.has_folder) {
         complaint_ = "There is no folder " + file.parent_path().string() + ".";
         return std::nullopt;
     }
-    if (fs::exists(file, ignored) && !replaces_) {
+    if (typed.exists && !replaces_) {
         complaint_ = file.filename().string() + " exists already.";
         replaces_ = true;
         return std::nullopt;
@@ -223,7 +237,9 @@ std::optional<fs::path> FileDialog::accept() {
 FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
     ImGui::Dummy({0, px(4)});
     const float y = ImGui::GetCursorPosY();
-    if (!complaint_.empty())
+    if (name_.looks())
+        row_text("Waiting for the disk...", px(28), color::dim);
+    else if (!complaint_.empty())
         row_text(fitting(complaint_, px(400)), px(28), color::attention);
     else if (!query_.extensions.empty()) {
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(4), px(4)));
@@ -236,8 +252,12 @@ FileDialog::Answer FileDialog::draw_bottom(GuiFrame& frame, bool chosen) {
     const char* does = replaces_ ? "Replace" : query_.saving ? "Save" : "Open";
     const int button = dialog_buttons(frame, "file", {"Cancel", does}, true);
     if (button == 0 || dialog_escape()) return {true, std::nullopt};
-    if (button != 1 && !chosen) return {};
-    const std::optional<fs::path> file = accept();
+    if (button == 1 || chosen) {
+        look();
+        focus_path_ = name_.looks();  // another name may be meant, should that take long
+    }
+    const std::optional<TypedFile> found = name_.found();
+    const std::optional<fs::path> file = found ? accept(*found) : std::nullopt;
     return {file.has_value(), file};
 }
 
@@ -268,6 +288,7 @@ FileDialog::Answer FileDialog::draw(GuiFrame& frame) {
     if (answer.file) add_recent_folder(frame.view, answer.file->parent_path());
     if (answer.done) {
         open_ = false;
+        name_.forget();
         ImGui::CloseCurrentPopup();
     }
     end_dialog();

@@ -14,6 +14,7 @@
 #include "gui/file_rows.h"
 #include "gui/folder_reader.h"
 #include "gui/gui_frame.h"
+#include "gui/name_questions.h"
 
 struct ImGuiInputTextCallbackData;
 
@@ -24,7 +25,7 @@ class FileDialog {
     void open(const FileQuery& query);
     bool is_open() const { return open_; }
     /// The path is about to take what is typed.
-    bool awaits_typing() const { return open_ && awaits_typing_; }
+    bool awaits_typing() const { return open_ && (awaits_typing_ || name_.keys_wait()); }
 
     struct Answer {
         bool done = false;  // the dialog has closed
@@ -37,6 +38,7 @@ class FileDialog {
     /// `otherwise`: where there is no such folder.
     void go_to(const std::filesystem::path& folder, const std::filesystem::path& otherwise);
     void go_to(const std::filesystem::path& folder) { go_to(folder, folder); }
+    void retype(const std::string& text) { retyped_ = typed_ = text; }
     void draw_places(GuiFrame& frame);
     void draw_path(GuiFrame& frame);
     void scroll_to_typed();
@@ -46,21 +48,24 @@ class FileDialog {
     FileClick draw_entry(GuiFrame& frame, const FileEntry& entry);
     bool draw_entries(GuiFrame& frame);
     Answer draw_bottom(GuiFrame& frame, bool chosen);
-    std::optional<std::filesystem::path> accept();
+    void look();
+    std::optional<std::filesystem::path> accept(const TypedFile& typed);
 
     FileQuery query_;
     bool open_ = false, all_files_ = false, focus_path_ = false, awaits_typing_ = false;
     bool replaces_ = false;  // the file exists and the person was told
     std::filesystem::path folder_;
     FolderReader reader_;
+    NameQuestions name_;  // about what is typed
     std::string typed_, complaint_;
-    double entered_ = -1e9;              // when the click began that went into the folder, s
-    bool typed_anew_ = false;            // the list has not followed yet
-    std::vector<FileEntry> entries_;     // folders first
-    std::size_t folders_ = 0;            // of these
-    bool pictures_ = false;              // some of the files are
-    float rows_px_ = 0.0f;               // width of the rows drawn last: less beside a scroll bar
-    FileOrder order_ = FileOrder::name;  // stays for the next file
+    std::optional<std::string> retyped_;  // for the field, which has its own text while keys go there
+    double entered_ = -1e9;               // when the click began that went into the folder, s
+    bool typed_anew_ = false;             // the list has not followed yet
+    std::vector<FileEntry> entries_;      // folders first
+    std::size_t folders_ = 0;             // of these
+    bool pictures_ = false;               // some of the files are
+    float rows_px_ = 0.0f;                // width of the rows drawn last: less beside a scroll bar
+    FileOrder order_ = FileOrder::name;   // stays for the next file
     bool backwards_ = false;
 };
 

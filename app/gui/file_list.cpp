@@ -1,12 +1,15 @@
 // Folders read and paths completed.
 #include "gui/file_list.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <utility>
 
+#include "core/file.h"
 #include "core/text.h"
 
 namespace astrosplat {
@@ -18,6 +21,20 @@ bool wanted(const FileEntry& entry, const std::vector<std::string>& extensions) 
     const std::string name = lower_case(entry.name);
     return std::any_of(extensions.begin(), extensions.end(),
                        [&](const std::string& ending) { return name.ends_with(ending); });
+}
+
+/// All but the name is missing where it may not be looked at.
+FileEntry entry_at(const fs::path& path) {
+    FileEntry entry{path.filename().string()};
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return entry;
+    entry.folder = S_ISDIR(status.st_mode);
+    if (!entry.folder) entry.bytes = static_cast<std::uintmax_t>(status.st_size);
+    const auto since_1970 =
+        std::chrono::seconds(status.st_mtim.tv_sec) + std::chrono::nanoseconds(status.st_mtim.tv_nsec);
+    entry.changed =
+        std::chrono::file_clock::from_sys(std::chrono::sys_time<std::chrono::nanoseconds>(since_1970));
+    return entry;
 }
 
 std::size_t common_length(const std::string& a, const std::string& b) {
@@ -65,18 +82,10 @@ bool comes_before(const std::string& a, const std::string& b) {
 std::vector<FileEntry> list_folder(const fs::path& folder, const std::vector<std::string>& extensions,
                                    const std::atomic<bool>* cancelled) {
     std::vector<FileEntry> entries;
-    std::error_code error;
-    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    for (const fs::path& path : entries_of(folder)) {
         if (cancelled && *cancelled) break;
-        std::error_code ignored;
-        FileEntry entry{it->path().filename().string(), it->is_directory(ignored), 0};
-        if (entry.name.empty() || entry.name[0] == '.' || !wanted(entry, extensions)) continue;
-        if (!entry.folder) {
-            entry.bytes = it->file_size(ignored);
-            if (ignored) entry.bytes = 0;
-        }
-        entry.changed = it->last_write_time(ignored);
-        entries.push_back(std::move(entry));
+        FileEntry entry = entry_at(path);
+        if (entry.name[0] != '.' && wanted(entry, extensions)) entries.push_back(std::move(entry));
     }
     sort_entries(entries, FileOrder::name, false);
     return entries;
@@ -142,6 +151,19 @@ fs::path typed_path(const std::string& typed, const fs::path& folder) {
     if (typed == "~") return home_folder();
     if (typed.rfind("~/", 0) == 0) return home_folder() / typed.substr(2);
     return folder / typed;  // an absolute path stays as it is
+}
+
+TypedFile look_at(const fs::path& typed, const std::string& ending) {
+    std::error_code ignored;
+    TypedFile found{typed};
+    if (fs::is_directory(typed, ignored)) {
+        found.is_folder = true;
+        return found;
+    }
+    if (!found.file.has_extension()) found.file += ending;
+    found.exists = fs::exists(found.file, ignored);
+    found.has_folder = fs::is_directory(found.file.parent_path(), ignored);
+    return found;
 }
 
 std::string complete_path(const std::string& typed, const fs::path& folder) {

@@ -45,6 +45,16 @@ std::string time_text(std::filesystem::file_time_type time);
 /// `typed` as a path: "~/x" in the home folder, relative ones in `folder`.
 std::filesystem::path typed_path(const std::string& typed, const std::filesystem::path& folder);
 
+/// What a path leads to.
+struct TypedFile {
+    std::filesystem::path file;
+    bool is_folder = false;
+    bool exists = false;      // a file
+    bool has_folder = false;  // that it lies in, or would
+};
+/// `ending` (".toml"; may be empty) is added where `typed` has none and is no folder.
+TypedFile look_at(const std::filesystem::path& typed, const std::string& ending);
+
 /// `typed` lengthened as far as the files there leave no choice; a folder that is the only choice gets its
 /// "/".
 std::string complete_path(const std::string& typed, const std::filesystem::path& folder);

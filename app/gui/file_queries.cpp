@@ -67,14 +67,12 @@ constexpr FileWish wishes[] = {{"layer.source.meshes.texture", "pictures", all_o
                                {"output.preset", "presets", all_of<FileKind::scene>},
                                {"camera.file", "cameras", all_camera_endings}};
 
-/// That of the file which is there now; empty where there is none.
+/// That of the file which is there now; empty where none is.
 fs::path folder_of_value(const Value& value, const fs::path& scene_folder) {
     const bool listed = value.list() && !value.list()->empty();
     const std::string* const text = listed ? value.list()->front().text() : value.text();
     if (!text || text->empty()) return {};
-    const fs::path file = scene_folder / *text;
-    std::error_code ignored;
-    return fs::exists(file, ignored) ? file.parent_path().lexically_normal() : fs::path();
+    return (scene_folder / *text).parent_path().lexically_normal();
 }
 
 }  // namespace
@@ -134,7 +132,8 @@ FileQuery query_for(const ParameterKey& key, const Document& document) {
         query.extensions = wish->extensions();
     }
     query.folder = parameter ? folder_of_value(parameter->get(), scene.file.parent_path()) : fs::path();
-    if (query.folder.empty()) query.folder = folder_of_document(document);
+    query.otherwise = folder_of_document(document);
+    if (query.folder.empty()) query.folder = query.otherwise;
     return query;
 }
 

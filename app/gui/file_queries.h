@@ -20,6 +20,7 @@ struct FileQuery {
     std::vector<std::string> extensions;  // ".toml", lower case; empty: any
     std::filesystem::path folder;         // to begin in
     std::string name;                     // suggested, when saving
+    std::filesystem::path otherwise{};    // to begin in where there is no such folder; empty: home
 };
 
 /// What to ask for where `kind` needs a path; nothing where it needs none.

@@ -1,14 +1,13 @@
-// Folders listed beside the window, which a disk far away must not stop. In: a folder. Out: what is in it,
-// when that is known.
+// Folders listed beside the window (disk_question.h). In: a folder. Out: what is in it, when that is known.
 #pragma once
 
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "gui/disk_question.h"
 #include "gui/file_list.h"
 
 namespace astrosplat {
@@ -20,21 +19,19 @@ struct FolderContents {
 
 class FolderReader {
   public:
-    ~FolderReader();  // does not wait for a disk that does not answer
-
     /// Begins; what was asked for before is forgotten. `otherwise` is read where there is no such folder.
     /// `extensions` as list_folder has them.
     void begin(const std::filesystem::path& folder, const std::filesystem::path& otherwise,
                const std::vector<std::string>& extensions);
     /// What begin() asked for is not known yet.
-    bool reading() const { return job_ != nullptr; }
+    bool reading() const { return question_.is_open(); }
     /// What was found, once; waits for it up to this long.
-    std::optional<FolderContents> take(std::chrono::milliseconds at_most = {});
+    std::optional<FolderContents> take(std::chrono::milliseconds at_most = {}) {
+        return question_.take(at_most);
+    }
 
   private:
-    struct Job;
-    void forget();
-    std::shared_ptr<Job> job_;  // null: nothing is asked for
+    DiskQuestion<FolderContents> question_;
 };
 
 }  // namespace astrosplat

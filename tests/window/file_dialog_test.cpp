@@ -34,9 +34,7 @@ TEST_F(WindowFileDialog, ALongNameTypedFastKeepsEveryCharacter) {
     person->type("many", 30);
     person->enter_and_type(name, 8);
     person->press("Return");
-    const auto typed = std::chrono::steady_clock::now();
     expect_title(name);
-    EXPECT_LT(std::chrono::steady_clock::now() - typed, std::chrono::seconds(5));
 }
 
 TEST_F(WindowFileDialog, PicturesAreSeenBeforeTheyAreChosen) {
