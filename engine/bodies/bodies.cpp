@@ -15,8 +15,8 @@
 #include "bodies/front_fit.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
+#include "bodies/picture_stars.h"
 #include "bodies/placement.h"
-#include "bodies/stars.h"
 #include "bodies/uv_surface.h"
 #include "core/error.h"
 #include "core/log.h"
@@ -72,13 +72,12 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
               std::uint32_t seed, const std::string& layer_name, const Progress& progress,
               PictureSplats& dots) {
     Image rest = picture.light;
-    const std::vector<Star> stars =
-        params.stars != StructureParams::Stars::no ? take_stars(rest) : std::vector<Star>{};
+    const PictureStars stars = take_picture_stars(rest, params);
     progress.check();
     progress.at(0.1);
     const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
     const Placement placement =
-        make_placement(without_stars, params, surface.texels_per_unit(), surface.flat(), seed);
+        make_placement(without_stars, params, surface.texels_per_unit(), surface.flat(), seed, stars.all);
     const Opacity opacity{static_cast<float>(params.opacity), static_cast<float>(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
@@ -93,10 +92,9 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
         progress.at(0.2 + 0.7 * (band.index + 1.0) / static_cast<double>(bands.size()));
     });
     if (dust > 0.0) add_dust(transmittance_of(without_stars, emission, picture.alpha), dust, placement, dots);
-    add_stars(stars, placement, opacity, dots);
+    add_picture_stars(stars, placement, opacity, dots);
     log_detail(fmt::format("layer '{}': {} dots and {} in {}", layer_name,
-                           human_count(static_cast<double>(dots.splats.size())),
-                           counted(static_cast<std::int64_t>(stars.size()), "star"),
+                           human_count(static_cast<double>(dots.splats.size())), counted(stars.count, "star"),
                            counted(static_cast<std::int64_t>(bands.size()), "band")));
 }
 

@@ -25,6 +25,7 @@ constexpr float largest_factor = 3.0f;
 constexpr double fine_sigma = 1.5;            // texels, up to which dots are sharpened
 constexpr double around = 16.0;               // times the variance of what a dot sees
 constexpr double narrowest_halved_px = 1.25;  // its profile need not be exact
+constexpr double same_sigma = 0.01;           // share that sigmas of one range differ by
 constexpr double narrowest_blur_px = 0.4;     // a narrower one leaves 97 % of a pixel where it is
 
 float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, largest_factor); }
@@ -67,8 +68,11 @@ FlatLight::FlatLight(PictureSplats& dots, std::int64_t width, std::int64_t heigh
 }
 
 void FlatLight::add_range(const DotRange& dots) {
-    Range& range = ranges_.emplace_back();
-    range.sigma = static_cast<double>(dots.sigma);
+    const auto sigma = static_cast<double>(dots.sigma);
+    auto same = std::ranges::find_if(
+        ranges_, [&](const Range& range) { return std::fabs(range.sigma - sigma) < same_sigma * sigma; });
+    if (same == ranges_.end()) same = ranges_.insert(ranges_.end(), {sigma, {}});
+    Range& range = *same;
     const auto end = static_cast<std::size_t>(dots.end);
     for (auto i = static_cast<std::size_t>(dots.begin); i < end; i += dots_per_chunk)
         range.chunks.push_back({i, std::min(i + dots_per_chunk, end), texel(i).y, texel(i).y});

@@ -102,7 +102,7 @@ void claim(const Knot& knot, std::int32_t index, const Image& image, Knots& out)
 
 }  // namespace
 
-Knots find_knots(const Image& brightest) {
+Knots find_knots(const Image& brightest, const std::vector<Knot>& given) {
     std::vector<Peak> peaks_found;
     double sigma = finest_sigma_px;
     Image finer = gaussian_blur(brightest, sigma);
@@ -123,6 +123,10 @@ Knots find_knots(const Image& brightest) {
         result.owner[i] = -1;
         result.weight[i] = 0.0f;
     });
+    for (const Knot& knot : given) {
+        claim(knot, static_cast<std::int32_t>(result.knots.size()), brightest, result);
+        result.knots.push_back(knot);
+    }
     for (const Peak& peak : peaks_found) {
         const Knot& knot = peak.knot;
         const auto at = static_cast<std::size_t>(static_cast<std::int64_t>(knot.y) * brightest.width +

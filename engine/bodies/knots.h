@@ -24,7 +24,8 @@ struct Knots {
 
 /// Peaks of the differences of neighbouring Gaussians (1.6 px and on, each 1.6 times the last) that stand out
 /// of what is common around them. Each owns a disk of three times its sigma, less and less towards its rim; a
-/// peak inside the inner part of another one's disk is part of that one.
-Knots find_knots(const Image& brightest);
+/// peak inside the inner part of another one's disk is part of that one. `given` are knots that are known
+/// before, and come first.
+Knots find_knots(const Image& brightest, const std::vector<Knot>& given = {});
 
 }  // namespace astrosplat

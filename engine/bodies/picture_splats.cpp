@@ -179,8 +179,8 @@ void add_band(const Image& band, const BandDots& dots, const Image& brightest, c
     out.ranges.push_back(DotsOfBand(band, dots, brightest, alpha, placement, opacity).add_to(out));
 }
 
-void add_stars(const std::vector<Star>& stars, const Placement& placement, const Opacity& opacity,
-               PictureSplats& out) {
+void add_stars(std::span<const Star> stars, std::uint32_t first_number, const Placement& placement,
+               const Opacity& opacity, PictureSplats& out) {
     const std::int64_t begin = out.splats.size();
     resize_dots(out, begin + static_cast<std::int64_t>(stars.size()));
     const float middle_x = 0.5f * static_cast<float>(placement.picture_width),
@@ -189,10 +189,7 @@ void add_stars(const std::vector<Star>& stars, const Placement& placement, const
     for (std::size_t i = 0; i < stars.size(); ++i) {
         const Star& star = stars[i];
         const std::size_t at = static_cast<std::size_t>(begin) + i;
-        const auto low = static_cast<std::uint32_t>(i);
-        const float u = as_uniform(
-            as_hash(placement.seed, low, static_cast<std::uint32_t>(star_band), shared::PURPOSE_DEPTH));
-        const float spread = star_height(placement, star.x, star.y, u);
+        const float spread = star_height(placement, star);
         const float peak = std::max({star.peak.x, star.peak.y, star.peak.z, 1e-6f});
         const float alpha =
             std::clamp(star_opacity * opacity.depth_of(peak, 1.0f) / footprint_share, 1e-3f, 1.0f);
@@ -201,7 +198,7 @@ void add_stars(const std::vector<Star>& stars, const Placement& placement, const
         out.splats.color[at] = star.peak / alpha;
         out.splats.alpha[at] = alpha;
         out.splats.radius[at] = radius_sigmas * star.sigma;
-        out.splats.id[at] = star_band << 48 | low;
+        out.splats.id[at] = star_band << 48 | (first_number + i);
         out.distance[at] = std::fabs(spread);
         sigmas += static_cast<double>(star.sigma);
     }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bodies/bands.h"
@@ -56,8 +57,8 @@ float kept_share(float amplitude, float brightest, const BandDots& dots);
 void add_band(const Image& band, const BandDots& dots, const Image& brightest, const Image& alpha,
               const Placement& placement, const Opacity& opacity, PictureSplats& out);
 
-/// Adds one dot a star, at a depth of the layer's own distribution.
-void add_stars(const std::vector<Star>& stars, const Placement& placement, const Opacity& opacity,
-               PictureSplats& out);
+/// Adds one dot a star of about one size, at a depth of the layer's own distribution. `first_number`: in ids.
+void add_stars(std::span<const Star> stars, std::uint32_t first_number, const Placement& placement,
+               const Opacity& opacity, PictureSplats& out);
 
 }  // namespace astrosplat

@@ -95,7 +95,21 @@ void place_freely(const Placement& placement, const BandDots& dots, PlacedBlock&
     for (int i = 0; i < block.count; ++i) block.z[i] += middle_plane(placement, block.x[i], block.y[i]);
 }
 
-void set_knot_depths(Placement& placement) {
+// The surroundings of stars that are theirs, by their bodies.
+std::vector<Knot> around_stars(std::span<const Star> stars) {
+    constexpr float sigmas = 2.0f, wider_px = 3.0f, knot_reach = 3.0f;
+    std::vector<Knot> knots;
+    for (const Star& star : stars) {
+        if (star.body >= knots.size()) knots.resize(star.body + 1);
+        Knot& knot = knots[star.body];
+        knot.x = star.x;
+        knot.y = star.y;
+        knot.sigma = std::max(knot.sigma, (sigmas * star.sigma + wider_px) / knot_reach);
+    }
+    return knots;
+}
+
+void set_knot_depths(Placement& placement, std::span<const Star> stars) {
     BandDots like;
     like.index = 1;
     like.sigma = like.spacing = 1.0f;
@@ -115,6 +129,8 @@ void set_knot_depths(Placement& placement) {
         place_freely(placement, like, block);
         std::copy_n(block.z, block.count, placement.knot_z.data() + begin);
     });
+    for (const Star& star : stars)
+        placement.knot_z[star.body] = star_height(placement, star) + middle_plane(placement, star.x, star.y);
 }
 
 // On walls pieces of filaments are no knots, or these would be strings of beads.
@@ -160,7 +176,7 @@ Placement placement_without_fields(std::int64_t width, std::int64_t height, cons
 }
 
 Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
-                         bool flat, std::uint32_t seed) {
+                         bool flat, std::uint32_t seed, std::span<const Star> stars) {
     Placement placement =
         placement_without_fields(brightest.width, brightest.height, params, texels_per_unit);
     placement.field_halvings = field_halvings(brightest);
@@ -187,8 +203,9 @@ Placement make_placement(const Image& brightest, const StructureParams& params, 
     }
     if (params.kind == StructureKind::sheet && flat)
         placement.relief = relief_field(shown, placement.depth, 0.6);  // counts twice
-    placement.knots = find_knots(brightest);
-    set_knot_depths(placement);
+    if (params.kind != StructureKind::disk) stars = {};
+    placement.knots = find_knots(brightest, around_stars(stars));
+    set_knot_depths(placement, stars);
     return placement;
 }
 
@@ -233,6 +250,12 @@ float middle_plane(const Placement& placement, float x, float y) {
 float star_height(const Placement& placement, float x, float y, float u) {
     if (placement.kind != StructureKind::disk) return (2.0f * u - 1.0f) * static_cast<float>(placement.depth);
     return logistic(u, placement.scale_height(x, y));
+}
+
+float star_height(const Placement& placement, const Star& star) {
+    const std::uint32_t random = as_hash(placement.seed, static_cast<std::uint32_t>(star.x),
+                                         static_cast<std::uint32_t>(star.y), shared::PURPOSE_DEPTH);
+    return star_height(placement, star.x, star.y, as_uniform(random));
 }
 
 std::vector<BandDots> band_dots(const Band& band, bool coarsest, const Placement& placement) {

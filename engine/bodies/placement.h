@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "bodies/bands.h"
 #include "bodies/depth_kernel.h"
 #include "bodies/filled_light.h"
 #include "bodies/knots.h"
+#include "bodies/stars.h"
 #include "core/image.h"
 #include "source/source.h"
 
@@ -45,7 +47,7 @@ struct Placement {
     Image thickness;                                     // H(x, y), texels
     Image relief;        // how far the middle of a sheet or a wall stands out, texels; empty: not at all
     FilledLight filled;  // of what has walls; empty: none
-    Knots knots;         // each at one depth
+    Knots knots;         // each at one depth; first those around stars, by their bodies
     std::vector<float> knot_z;  // theirs, texels
 
     /// Values of the fields at a place of the picture.
@@ -58,9 +60,10 @@ struct Placement {
 };
 
 /// `texels_per_unit`: of the surface that carries the picture; `flat`: it is a plane, so a sheet takes its
-/// relief from the picture instead.
+/// relief from the picture instead. What `stars` of a disk leave around themselves stays at their depth: a
+/// profile is never quite that of their Gaussians, and would be a row of dots in depth.
 Placement make_placement(const Image& brightest, const StructureParams& params, double texels_per_unit,
-                         bool flat, std::uint32_t seed);
+                         bool flat, std::uint32_t seed, std::span<const Star> stars = {});
 
 /// The part of it that no picture has to be looked at for.
 Placement placement_without_fields(std::int64_t width, std::int64_t height, const StructureParams& params,
@@ -73,6 +76,8 @@ float middle_plane(const Placement& placement, float x, float y);
 /// Height over the middle plane below which the share `u` (0..1) of the layer's stars lies, texels: of a disk
 /// from sech^2(z / H), of others even over the whole depth.
 float star_height(const Placement& placement, float x, float y, float u);
+/// The same of a star of the picture; its share is a random number of the pixel that it is in.
+float star_height(const Placement& placement, const Star& star);
 
 /// How the dots of one band are made (DEPTH 3), lengths in texels.
 struct BandDots {

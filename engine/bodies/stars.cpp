@@ -27,6 +27,7 @@ constexpr float noise_factor = 4.5f;
 constexpr double widest_sigma = 2.2, narrowest_sigma = 0.6;
 constexpr float wing_share = 0.5f;    // of the peak, that the light at 2 to 3 px must stay below
 constexpr float least_level = 0.01f;  // of the displayed white, below which a pixel is left as it is
+constexpr float least_left = 0.9f;    // of the light around a star, down to which it is taken out
 constexpr float uneven_share = 0.3f;  // of the peak, that this light may differ by around the star
 
 constexpr std::size_t window_px = (2 * median_reach + 1) * (2 * median_reach + 1);
@@ -101,14 +102,15 @@ const std::array<Direction, 8>& directions() {
     return all;
 }
 
-// Its wings are below half of its peak, and even all around.
-bool is_round(const Image& brightest, std::int64_t x, std::int64_t y, float sky, float excess) {
+// Its wings are below half of its peak, and even all around. A flat top has its peak on one side: the middle
+// of its light counts.
+bool is_round(const Image& brightest, double x, double y, float sky, float excess) {
     float lo = 1e30f, hi = -1e30f;
     for (const Direction& direction : directions()) {
         float wing = 0.0f;
         for (const double r : {2.0, 2.5, 3.0})
-            wing += bilinear(brightest, 0, static_cast<float>(static_cast<double>(x) + 0.5 + r * direction.x),
-                             static_cast<float>(static_cast<double>(y) + 0.5 + r * direction.y)) /
+            wing += bilinear(brightest, 0, static_cast<float>(x + r * direction.x),
+                             static_cast<float>(y + r * direction.y)) /
                     3.0f;
         lo = std::min(lo, wing - sky);
         hi = std::max(hi, wing - sky);
@@ -128,31 +130,55 @@ float ring_median(const Image& light, std::int64_t x, std::int64_t y, int channe
     return *middle;
 }
 
-std::optional<Star> star_at(const Image& light, const Image& brightest, std::int64_t x, std::int64_t y,
-                            float noise) {
+// The light over the sky within 2 px of a pixel, and where its middle is, px.
+struct PointLight {
+    double sum = 0.0, x = 0.0, y = 0.0;
+};
+
+PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, float sky) {
+    PointLight point;
+    for (std::int64_t j = y - 2; j <= y + 2; ++j) {
+        for (std::int64_t i = x - 2; i <= x + 2; ++i) {
+            const double light = std::max(0.0f, *brightest.at(i, j) - sky);
+            point.sum += light;
+            point.x += light * (static_cast<double>(i) + 0.5);
+            point.y += light * (static_cast<double>(j) + 0.5);
+        }
+    }
+    point.x /= point.sum;
+    point.y /= point.sum;
+    return point;
+}
+
+// A star and the light on the ring around it.
+struct StarInSky {
+    Star star;
+    glm::vec3 around{0.0f};
+};
+
+std::optional<StarInSky> star_at(const Image& light, const Image& brightest, std::int64_t x, std::int64_t y,
+                                 float noise) {
     const float least = std::max(least_excess, noise_factor * noise);
     if (*brightest.at(x, y) < least || !is_brightest(brightest, x, y)) return {};
     const float sky = background(brightest, x, y);
     const float excess = *brightest.at(x, y) - sky;
     if (excess < least) return {};
-    double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
-    for (std::int64_t j = -2; j <= 2; ++j) {
-        for (std::int64_t i = -2; i <= 2; ++i) {
-            const double weight = std::max(0.0f, *brightest.at(x + i, y + j) - sky);
-            sum += weight;
-            sum_x += weight * static_cast<double>(i);
-            sum_y += weight * static_cast<double>(j);
-        }
-    }
-    const double sigma = std::sqrt(sum / (2.0 * real::pi * static_cast<double>(excess)));
-    if (sigma > widest_sigma || !is_round(brightest, x, y, sky, excess)) return {};
-    Star star;
-    star.x = static_cast<float>(static_cast<double>(x) + 0.5 + sum_x / sum);
-    star.y = static_cast<float>(static_cast<double>(y) + 0.5 + sum_y / sum);
+    PointLight point = light_about(brightest, x, y, sky);
+    if (const auto column = static_cast<std::int64_t>(point.x), row = static_cast<std::int64_t>(point.y);
+        column != x || row != y)
+        point = light_about(brightest, column, row, sky);
+    const double sigma = std::sqrt(point.sum / (2.0 * real::pi * static_cast<double>(excess)));
+    if (sigma > widest_sigma || !is_round(brightest, point.x, point.y, sky, excess)) return {};
+    StarInSky found;
+    Star& star = found.star;
+    star.x = static_cast<float>(point.x);
+    star.y = static_cast<float>(point.y);
     star.sigma = static_cast<float>(std::max(sigma, narrowest_sigma));
-    for (int c = 0; c < 3; ++c)
-        star.peak[c] = std::max(0.0f, light.at(x, y)[c] - ring_median(light, x, y, c));
-    return star;
+    for (int c = 0; c < 3; ++c) {
+        found.around[c] = ring_median(light, x, y, c);
+        star.peak[c] = std::max(0.0f, light.at(x, y)[c] - found.around[c]);
+    }
+    return found;
 }
 
 // Calls visit(pixel, x, y) for the pixels of rows [begin, end) within `reach` px of the star.
@@ -166,18 +192,23 @@ void for_each_pixel(Image& image, const Star& star, std::int64_t reach, std::int
             visit(image.at(x, y), x, y);
 }
 
-void subtract(Image& light, const Star& star, std::int64_t begin, std::int64_t end) {
+// Where the Gaussian is wider than the star, a little less than what is around is left: a hole would be dust.
+void subtract(Image& light, const StarInSky& found, std::int64_t begin, std::int64_t end) {
+    const Star& star = found.star;
     for_each_pixel(light, star, 6, begin, end, [&](float* pixel, std::int64_t x, std::int64_t y) {
         const double dx = static_cast<double>(x) + 0.5 - static_cast<double>(star.x);
         const double dy = static_cast<double>(y) + 0.5 - static_cast<double>(star.y);
         const double width = 2.0 * static_cast<double>(star.sigma) * static_cast<double>(star.sigma);
         const auto g = static_cast<float>(real::exp(-(dx * dx + dy * dy) / width));
-        for (int c = 0; c < 3; ++c) pixel[c] = std::max(0.0f, pixel[c] - star.peak[c] * g);
+        for (int c = 0; c < 3; ++c)
+            pixel[c] =
+                std::max(pixel[c] - star.peak[c] * g, std::min(pixel[c], least_left * found.around[c]));
     });
 }
 
 // What a Gaussian does not describe, wings and diffraction, is cut to a little above the background.
-void level(Image& light, const Image& before, const Star& star, std::int64_t begin, std::int64_t end) {
+void level(Image& light, const Image& before, const StarInSky& found, std::int64_t begin, std::int64_t end) {
+    const Star& star = found.star;
     const auto reach = static_cast<std::int64_t>(3.0f * star.sigma + 1.0f);
     const float most =
         1.15f * background(before, static_cast<std::int64_t>(star.x), static_cast<std::int64_t>(star.y)) +
@@ -191,13 +222,14 @@ void level(Image& light, const Image& before, const Star& star, std::int64_t beg
 
 // change(star, first row, end row) for the stars near every strip of rows, in their order.
 template <class Change>
-void for_each_strip(const Image& light, const std::vector<Star>& stars, const Change& change) {
+void for_each_strip(const Image& light, const std::vector<StarInSky>& stars, const Change& change) {
     constexpr std::int64_t rows = 64;
     constexpr float farthest = 12.0f;  // px that a change reaches
     parallel_chunks(light.height, rows, [&](std::int64_t begin, std::int64_t end, int) {
-        for (const Star& star : stars)
-            if (star.y > static_cast<float>(begin) - farthest && star.y < static_cast<float>(end) + farthest)
-                change(star, begin, end);
+        for (const StarInSky& found : stars)
+            if (found.star.y > static_cast<float>(begin) - farthest &&
+                found.star.y < static_cast<float>(end) + farthest)
+                change(found, begin, end);
     });
 }
 
@@ -206,7 +238,7 @@ void for_each_strip(const Image& light, const std::vector<Star>& stars, const Ch
 std::vector<Star> take_stars(Image& light) {
     const Image brightest = brightest_channel(light);
     const Image noise = local_noise(brightest);
-    std::vector<std::vector<Star>> rows(static_cast<std::size_t>(light.height));
+    std::vector<std::vector<StarInSky>> rows(static_cast<std::size_t>(light.height));
     parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t y = std::max(begin, margin); y < std::min(end, light.height - margin); ++y) {
             for (std::int64_t x = margin; x < light.width - margin; ++x) {
@@ -216,15 +248,20 @@ std::vector<Star> take_stars(Image& light) {
             }
         }
     });
-    std::vector<Star> stars;
-    for (const auto& row : rows) stars.insert(stars.end(), row.begin(), row.end());
-    for_each_strip(light, stars, [&](const Star& star, std::int64_t begin, std::int64_t end) {
+    std::vector<StarInSky> found;
+    for (const auto& row : rows) found.insert(found.end(), row.begin(), row.end());
+    for_each_strip(light, found, [&](const StarInSky& star, std::int64_t begin, std::int64_t end) {
         subtract(light, star, begin, end);
     });
     const Image without = brightest_channel(light);
-    for_each_strip(light, stars, [&](const Star& star, std::int64_t begin, std::int64_t end) {
+    for_each_strip(light, found, [&](const StarInSky& star, std::int64_t begin, std::int64_t end) {
         level(light, without, star, begin, end);
     });
+    std::vector<Star> stars;
+    for (const StarInSky& each : found) {
+        stars.push_back(each.star);
+        stars.back().body = static_cast<std::uint32_t>(stars.size() - 1);
+    }
     return stars;
 }
 

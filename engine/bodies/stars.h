@@ -2,6 +2,7 @@
 // points: left in, each would become a needle in depth.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -13,11 +14,12 @@ struct Star {
     float x = 0.0f, y = 0.0f;  // px from the top left corner
     float sigma = 0.0f;        // px, of the Gaussian that stands for it
     glm::vec3 peak{0.0f};      // linear light of its middle above the background
+    std::uint32_t body = 0;    // Gaussians of one star have one depth
 };
 
 /// Finds the round points that stand out of their surroundings, takes a Gaussian for each out of `light` and
-/// fills what is left of it up to 1.15 times the background. In order of rows. The same bits with any number
-/// of threads.
+/// fills what is left of it up to 1.15 times the background. In order of rows, each
+/// a body of its own. The same bits with any number of threads.
 std::vector<Star> take_stars(Image& light);
 
 }  // namespace astrosplat

@@ -7,6 +7,7 @@
 
 #include "bodies/bodies.h"
 #include "core/enum_names.h"
+#include "support/printing.h"
 
 namespace astrosplat {
 namespace {

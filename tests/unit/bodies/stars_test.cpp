@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -65,6 +66,17 @@ TEST(Stars, KnotsAndEdgesAreNone) {
     const Image before = light;
     EXPECT_TRUE(take_stars(light).empty());
     for (std::size_t i = 0; i < light.pixels.size(); ++i) ASSERT_EQ(light.pixels[i], before.pixels[i]);
+}
+
+// A flat top is narrower than the Gaussian of its peak and light: the ring around would be a hole, and so
+// dust.
+TEST(Stars, FlatOnesLeaveNoHole) {
+    Image light = make_image(128, 96, 3, 0.05f);
+    painted::add_point(light, 60.4, 50.3, 0.9, 1.6, 1.6, 1.6);
+    for (float& value : light.pixels) value = std::min(value, 1.0f);
+    ASSERT_EQ(take_stars(light).size(), 1u);
+    for (std::size_t i = 0; i < light.pixels.size(); ++i)
+        ASSERT_GE(light.pixels[i], 0.044f) << "pixel " << i / 3;
 }
 
 TEST(Stars, AreTheSameOnOneThread) {

@@ -1,0 +1,31 @@
+// All stars of a picture, ordinary and bright ones. In: linear light. Out: the light without them, and their
+// dots.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bodies/picture_splats.h"
+#include "bodies/placement.h"
+#include "bodies/stars.h"
+#include "core/image.h"
+#include "source/source.h"
+
+namespace astrosplat {
+
+struct PictureStars {
+    std::vector<Star> all;     // ordinary ones, each a Gaussian; then those of bright ones by their sigmas
+    std::size_t ordinary = 0;  // of `all`
+    std::int64_t count = 0;    // of stars, ordinary and bright
+};
+
+/// Takes the stars out of `light`, where `params` say so. Bright ones of disks only: other kinds have no one
+/// depth for what such a star leaves around itself.
+PictureStars take_picture_stars(Image& light, const StructureParams& params);
+
+/// Adds their dots.
+void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
+                       PictureSplats& out);
+
+}  // namespace astrosplat
