@@ -22,7 +22,7 @@ constexpr std::int64_t median_reach = 5;  // px: a window of 11 x 11
 constexpr std::int64_t margin = 6;        // px without stars at the picture's edges
 constexpr std::int64_t noise_step = 6;    // px between the places where the noise is measured
 constexpr double noise_blur_px = 12.0;
-constexpr float least_excess = 0.04f;  // of the displayed white
+constexpr float least_excess = 0.012f;  // of the displayed white
 constexpr float noise_factor = 4.5f;
 constexpr double widest_sigma = 2.2, narrowest_sigma = 0.6;
 constexpr float wing_share = 0.5f;    // of the peak, that the light at 2 to 3 px must stay below

@@ -79,6 +79,15 @@ TEST(Stars, FlatOnesLeaveNoHole) {
         ASSERT_GE(light.pixels[i], 0.044f) << "pixel " << i / 3;
 }
 
+// Left in, each of them would be a row of faint dots in depth.
+TEST(Stars, FaintOnesInADarkSkyAreTaken) {
+    Image light = make_image(256, 128, 3, 0.006f);
+    for (std::uint32_t i = 0; i < 20; ++i)
+        painted::add_point(light, 20.0 + 11.3 * i, 30.0 + 61.0 * painted::random(i, 1), 0.9, 0.025, 0.02,
+                           0.02);
+    EXPECT_EQ(take_stars(light).size(), 20u);
+}
+
 TEST(Stars, AreTheSameOnOneThread) {
     Image several = painted::galaxy(240, 150), one = several;
     const std::vector<Star> a = take_stars(several);
