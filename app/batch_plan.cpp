@@ -189,7 +189,7 @@ Found found_at(const FramePlan& plan) {
     if (!fs::exists(fs::symlink_status(plan.file, ignored))) return Found::nothing;
     if (fs::exists(plan.file, ignored) && !fs::is_regular_file(plan.file, ignored)) return Found::other;
     if (!frame_is_whole(plan.file)) return Found::damaged;
-    return read_frame_hashes(plan.file).first == plan.hash ? Found::same : Found::other;
+    return read_frame_header(plan.file).frame_hash == plan.hash ? Found::same : Found::other;
 }
 
 std::int64_t count_to_render(const BatchPlan& plan) {

@@ -33,7 +33,7 @@ namespace astrosplat {
 namespace {
 
 constexpr std::int64_t program_bytes = 45'000'000;  // with its libraries, before any scene
-constexpr std::int64_t picture_bytes = 78'000'000;  // libraries that read pictures, and write all but EXR
+constexpr std::int64_t picture_bytes = 78'000'000;  // libraries that read pictures
 constexpr std::int64_t drawing_bytes = 10'000'000;  // what rendering and writing any frame adds
 constexpr std::int64_t worker_bytes = 800'000;      // a thread that renders, beside what folding takes
 constexpr std::int64_t block_bytes = 6'700'000;     // the same where sets come by the block
@@ -205,7 +205,6 @@ LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const Sampled
 bool uses_pictures(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
     const EnvironmentParams& sky = plan.scene.environment;
     return has_environment(sky) ||  // read also where it is not visible
-           !plan.scene.output.path.ends_with(".exr") ||
            std::ranges::any_of(needs, &LayerNeed::reads_pictures);
 }
 

@@ -121,10 +121,10 @@ Report describe_image(const fs::path& file) {
         report["whole_frame"] = {info.whole_width, info.whole_height};
         report["at"] = {info.x, info.y};
     }
-    const auto [frame_hash, pixel_hash] = read_frame_hashes(file);
-    if (!frame_hash.empty()) {
-        report["frame_hash"] = frame_hash;
-        report["pixel_hash"] = pixel_hash;
+    const FrameHeader header = read_frame_header(file);
+    if (!header.frame_hash.empty()) {
+        report["frame_hash"] = header.frame_hash;
+        report["pixel_hash"] = header.pixel_hash;
         report["whole"] = frame_is_whole(file);
     }
     report["metadata"] = metadata;

@@ -58,8 +58,8 @@ bool fits(const Region& r, std::int64_t width, std::int64_t height) {
 }
 
 /// What was lost in the file is to be lost in its copy too.
-void take_compression(OutputParams& output, const std::string& name) {
-    if (name == "dwaa")
+void take_compression(OutputParams& output, bool dwaa) {
+    if (dwaa)
         output.compression = Compression::dwaa;
     else if (output.compression == Compression::dwaa)
         output.compression = Compression::automatic;
@@ -135,7 +135,7 @@ class Verification {
         const Progress progress = report_.begin_frame(*header.frame, index, std::ssize(options_.files));
         pipeline.show_eye(header.eye);
         Scene now = scene_at(plan.scene, time);
-        take_compression(now.output, header.compression);
+        take_compression(now.output, header.dwaa);
         RenderSettings settings = pipeline.settings(time);
         settings.region = plan.region;
         settings.memory_limit_bytes = job_->renderer_bytes;

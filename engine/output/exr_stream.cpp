@@ -24,13 +24,8 @@ void ExrStream::seekp(std::uint64_t position) {
 }
 
 void ExrStream::flush() {
-    if (failure_) std::rethrow_exception(failure_);
-    try {
-        file_.write_at(static_cast<std::int64_t>(begin_), piece_.data(), piece_.size());
-    } catch (const OutputError&) {  // which OpenEXR swallows where it ends a file
-        failure_ = std::current_exception();
-        throw;
-    }
+    file_.write_at(static_cast<std::int64_t>(begin_), piece_.data(), piece_.size());
+    file_.rethrow_failure();  // which OpenEXR swallows where it ends a file
     begin_ += piece_.size();
     piece_.clear();
 }

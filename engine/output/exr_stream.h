@@ -5,11 +5,10 @@
 #include <ImfIO.h>
 
 #include <cstdint>
-#include <exception>
 #include <string>
 #include <vector>
 
-#include "core/atomic_file.h"
+#include "core/guarded_file.h"
 
 namespace astrosplat {
 
@@ -26,10 +25,9 @@ class ExrStream : public Imf::OStream {
     void flush();
 
   private:
-    AtomicFile& file_;
+    GuardedFile file_;
     std::vector<char> piece_;
-    std::uint64_t begin_ = 0;     // of the piece in the file
-    std::exception_ptr failure_;  // OutputError
+    std::uint64_t begin_ = 0;  // of the piece in the file
 };
 
 }  // namespace astrosplat

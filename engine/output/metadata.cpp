@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -47,15 +48,15 @@ std::string metadata_lines(const MetadataEntries& entries) {
     return lines;
 }
 
-std::string find_metadata_line(const std::string& lines, const std::string& name) {
-    std::string wanted = name + "=";
-    for (std::size_t begin = 0; begin < lines.size();) {
-        std::size_t end = std::min(lines.find('\n', begin), lines.size());
-        if (lines.compare(begin, wanted.size(), wanted) == 0)
-            return lines.substr(begin + wanted.size(), end - begin - wanted.size());
-        begin = end + 1;
+std::map<std::string, std::string> parse_metadata_lines(std::string_view lines) {
+    std::map<std::string, std::string> entries;
+    while (!lines.empty()) {
+        const std::string_view line = lines.substr(0, lines.find('\n'));
+        lines.remove_prefix(std::min(line.size() + 1, lines.size()));
+        if (const std::size_t equals = line.find('='); equals != line.npos)
+            entries.emplace(line.substr(0, equals), line.substr(equals + 1));
     }
-    return "";
+    return entries;
 }
 
 Rational rational_fps(double fps) {

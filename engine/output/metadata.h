@@ -1,7 +1,9 @@
 // The header of a frame file, as text pairs that every format can hold: no host, user or clock.
 #pragma once
 
+#include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,8 +19,8 @@ MetadataEntries metadata_entries(const FrameMetadata& metadata);
 
 /// The entries as lines "name=value" (line breaks in values become spaces): TIFF's ImageDescription.
 std::string metadata_lines(const MetadataEntries& entries);
-/// The value of `name` in such lines, "" when absent.
-std::string find_metadata_line(const std::string& lines, const std::string& name);
+/// Such lines by name; the first of those with one name.
+std::map<std::string, std::string> parse_metadata_lines(std::string_view lines);
 
 /// Frames per second as a fraction: 24 is 24/1, 23.976 is 24000/1001; others to a thousandth.
 struct Rational {

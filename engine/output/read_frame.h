@@ -31,16 +31,13 @@ struct FrameHeader {
     std::optional<std::int64_t> frame;
     std::string frame_hash, pixel_hash;  // hex
     std::string hashed_text;  // what the frame hash was made of; empty in frames that older versions wrote
-    std::string compression;  // in OpenImageIO's words
+    bool dwaa = false;        // compressed with a loss
     Eye eye = Eye::centre;
     std::int64_t whole_width = 0, whole_height = 0;  // px
     Region region{};                                 // of the whole frame; empty: all
 };
 /// Fields that are not told, or not in a readable way, are empty; all of them where the file is no picture.
 FrameHeader read_frame_header(const std::filesystem::path& file);
-
-/// frame_hash and pixel_hash stored in a frame file, empty when there are none or the file is damaged.
-std::pair<std::string, std::string> read_frame_hashes(const std::filesystem::path& file);
 
 /// True when the file can be read to its last pixel.
 bool frame_is_whole(const std::filesystem::path& file);

@@ -9,7 +9,6 @@
 #include <ImfRationalAttribute.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
-#include <ImfThreading.h>
 #include <fmt/format.h>
 #include <half.h>
 
@@ -24,6 +23,7 @@
 #include "core/primaries.h"
 #include "output/encode.h"
 #include "output/exr_stream.h"
+#include "output/exr_threads.h"
 #include "output/metadata.h"
 
 namespace astrosplat {
@@ -187,18 +187,8 @@ class Band {
     std::vector<char> bytes_;
 };
 
-/// Threads that OpenEXR may compress with; it does without where there are none to be had.
-int compressing_threads() {
-    try {
-        if (Imf::globalThreadCount() != thread_count()) Imf::setGlobalThreadCount(thread_count());
-        return Imf::globalThreadCount();
-    } catch (const std::exception&) {
-        return 0;
-    }
-}
-
 void write_rows(ExrStream& stream, const Imf::Header& header, const std::vector<Channel>& channels) {
-    Imf::OutputFile out(stream, header, compressing_threads());
+    Imf::OutputFile out(stream, header, exr_threads());
     const std::int64_t height = channels[0].image->height;
     const Imath::Box2i& window = header.dataWindow();
     Band band(channels, std::min(band_rows, height));

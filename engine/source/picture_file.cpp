@@ -11,7 +11,7 @@
 namespace astrosplat {
 
 PictureFile::Sink::Sink(const std::filesystem::path& path, Existing existing)
-    : IOProxy(path.string(), Write), file(path, existing) {}
+    : IOProxy(path.string(), Write), file(path, existing), guarded(file) {}
 
 std::size_t PictureFile::Sink::write(const void* bytes, std::size_t size) {
     const std::size_t written = pwrite(bytes, size, m_pos);
@@ -20,14 +20,7 @@ std::size_t PictureFile::Sink::write(const void* bytes, std::size_t size) {
 }
 
 std::size_t PictureFile::Sink::pwrite(const void* bytes, std::size_t size, std::int64_t offset) {
-    if (failure) return 0;
-    try {
-        file.write_at(offset, bytes, size);
-        return size;
-    } catch (const OutputError&) {  // must not pass through the C code of libpng and libtiff
-        failure = std::current_exception();
-        return 0;
-    }
+    return guarded.write_at(offset, bytes, size) ? size : 0;
 }
 
 PictureFile::PictureFile(const std::filesystem::path& file, const std::string& format,
@@ -50,14 +43,14 @@ void PictureFile::commit() {
 }
 
 void PictureFile::check(bool done) {
-    if (done && !sink_.failure) return;
+    if (done && !sink_.guarded.failed()) return;
     std::string reason = out_ ? out_->geterror() : OIIO::geterror();
     if (out_) {
         const QuietStderr quiet;  // libpng says that pixels are missing
         out_->close();
         (void)out_->geterror();  // a message left behind would be printed
     }
-    if (sink_.failure) std::rethrow_exception(sink_.failure);
+    sink_.guarded.rethrow_failure();
     std::ranges::replace(reason, '\n', ' ');
     if (reason.empty()) reason = "unknown reason";
     throw OutputError(fmt::format("{}: cannot be written: {}", sink_.file.target().string(), reason));

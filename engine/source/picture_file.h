@@ -6,12 +6,11 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <string>
 
-#include "core/atomic_file.h"
+#include "core/guarded_file.h"
 
 namespace astrosplat {
 
@@ -40,7 +39,7 @@ class PictureFile {
         std::size_t size() const override { return static_cast<std::size_t>(file.size()); }
 
         AtomicFile file;
-        std::exception_ptr failure;  // the first OutputError
+        GuardedFile guarded;
     };
     /// Throws the sink's failure, else the plug-in's where it is not `done`.
     void check(bool done);

@@ -119,11 +119,23 @@ TEST_F(Memory, ARunTakesWhatItAnnounces) {
     EXPECT_NEAR(nothing.told_mib, nothing.taken_mib, 0.15 * nothing.taken_mib) << nothing.err;
 }
 
-// What writes PNG and reads pictures is more than what a small frame takes.
-TEST_F(Memory, LibrariesThatAreNeededAreCounted) {
-    make_ball(1000, "[640, 360]");
-    const Run run = rendered({"--set", "output.path=frames/shot.####.png"});
+// More than what a small frame takes.
+TEST_F(Memory, LibrariesThatReadPicturesAreCounted) {
+    make_ball_to_generate(1000, "[3.0, 6.0, 13.0]");
+    const Run run = rendered({});
+    EXPECT_GT(run.told_mib, 100.0);
     EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+}
+
+TEST_F(Memory, EveryFormatOfFramesIsCounted) {
+    make_ball(1000, "[640, 360]");
+    for (const char* ending : {"exr", "png", "tif"}) {
+        for (const char* size : {"640x360", "1920x1080"}) {
+            const Run run = rendered(
+                {"--set", fmt::format("output.path=frames/shot.####.{}", ending), "--resolution", size});
+            EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+        }
+    }
 }
 
 // Linux hands the size of a process on to the program that it starts.

@@ -44,7 +44,8 @@ const std::vector<KindOfFault> kinds = {
     {"thread", {EAGAIN}, 9, 20},
 };
 
-const FaultScene exr{"frames/shot.###.exr", 1}, png{"frames/shot.###.png", 1};
+const FaultScene exr{"frames/shot.###.exr", 1}, png{"frames/shot.###.png", 1}, tif{"frames/shot.###.tif", 1};
+const std::vector<FaultScene> scenes = {exr, png, tif};
 
 class FaultTest : public FolderTest {
   protected:
@@ -52,7 +53,7 @@ class FaultTest : public FolderTest {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
         GTEST_SKIP() << "a sanitizer takes the memory's functions itself";
 #endif
-        for (const FaultScene& scene : {exr, png}) {
+        for (const FaultScene& scene : scenes) {
             FaultRun run(folder / "whole", scene);
             const RunResult result = run.batch({}, Fault{"write", 0, EIO, false});
             ASSERT_EQ(result.code, 0) << result.err;
@@ -68,9 +69,10 @@ class FaultTest : public FolderTest {
     std::vector<Point> points(bool nightly) {
         std::vector<Point> points;
         for (const KindOfFault& kind : kinds)
-            for (const FaultScene& scene : {exr, png}) {
+            for (const FaultScene& scene : scenes) {
                 const std::int64_t calls = counts_[scene.output][kind.kind];
-                const std::int64_t wanted = (nightly ? kind.nightly_points : kind.points) / 2;
+                const std::int64_t wanted =
+                    (nightly ? kind.nightly_points : kind.points) / std::ssize(scenes);
                 const std::int64_t count = std::min(wanted, calls);
                 for (std::int64_t i = 0; i < count; ++i) {
                     const std::int64_t begin = i * calls / count, end = (i + 1) * calls / count;
@@ -90,7 +92,7 @@ class FaultTest : public FolderTest {
     std::vector<Point> kills(int count) {
         std::vector<Point> points;
         for (int i = 0; i < count; ++i) {
-            const FaultScene& scene = i % 2 ? exr : png;
+            const FaultScene& scene = scenes[static_cast<std::size_t>(i) % scenes.size()];
             const std::int64_t calls = counts_[scene.output]["write"];
             const auto place =
                 static_cast<std::int64_t>(hashed(1000 + i) % static_cast<std::uint64_t>(calls));

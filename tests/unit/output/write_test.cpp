@@ -58,6 +58,12 @@ RawFile read_raw(const fs::path& file) {
     return raw;
 }
 
+/// Of the frame and of its pixels.
+std::pair<std::string, std::string> hashes_of(const fs::path& file) {
+    const FrameHeader header = read_frame_header(file);
+    return {header.frame_hash, header.pixel_hash};
+}
+
 std::string bytes_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -214,10 +220,13 @@ TEST_F(WriteTest, ExtraChannelsHaveTheirNamesAndPrecision) {
 TEST_F(WriteTest, TallFramesAreWrittenInBands) {
     OutputParams output;
     output.depth = Depth::float32;
-    RenderedFrame frame = soft_frame(3, 700);
-    for (std::int64_t y = 0; y < 700; ++y) frame.beauty.at(1, y)[0] = static_cast<float>(y);
-    RawFile raw = read_raw(write("a.exr", output, frame));
-    for (int y = 0; y < 700; ++y) ASSERT_EQ(raw.at(1, y, "R"), static_cast<float>(y));
+    constexpr std::int64_t height = 2100;  // more than an EXR's band, and than a TIFF's group of strips
+    RenderedFrame frame = soft_frame(3, height);
+    for (std::int64_t y = 0; y < height; ++y) frame.beauty.at(1, y)[0] = static_cast<float>(y);
+    for (const char* name : {"a.exr", "a.tif"}) {
+        RawFile raw = read_raw(write(name, output, frame));
+        for (int y = 0; y < height; ++y) ASSERT_EQ(raw.at(1, y, "R"), static_cast<float>(y)) << name;
+    }
 }
 
 TEST_F(WriteTest, RegionIsTheDataWindowOfExrAndACropElsewhere) {
@@ -363,7 +372,7 @@ TEST_F(WriteTest, FfmpegReadsExrWithLongTexts) {
         const std::string credit = read_raw(file).spec.get_string_attribute("astrosplat/credit");
         EXPECT_EQ(credit.substr(0, length), metadata_.provenance.credit);
         EXPECT_EQ(credit.find_first_not_of(' ', length), std::string::npos);
-        EXPECT_EQ(read_frame_hashes(file), std::make_pair(metadata_.frame_hash, metadata_.pixel_hash));
+        EXPECT_EQ(hashes_of(file), std::make_pair(metadata_.frame_hash, metadata_.pixel_hash));
     }
 }
 
@@ -371,16 +380,26 @@ TEST_F(WriteTest, EveryFormatTellsItsHashes) {
     RenderedFrame frame = soft_frame(5, 3);
     for (const char* name : {"a.exr", "a.tif", "a.png"}) {
         const fs::path file = write(name, {}, frame);
-        EXPECT_EQ(read_frame_hashes(file), std::make_pair(metadata_.frame_hash, metadata_.pixel_hash))
-            << name;
+        EXPECT_EQ(hashes_of(file), std::make_pair(metadata_.frame_hash, metadata_.pixel_hash)) << name;
         EXPECT_TRUE(frame_is_whole(file)) << name;
         EXPECT_EQ(read_raw(file).spec.get_string_attribute("DateTime"), "") << name;
     }
     std::ofstream(folder_ / "text.exr") << "no picture";
     for (const char* name : {"text.exr", "missing.png"}) {
-        EXPECT_EQ(read_frame_hashes(folder_ / name), std::make_pair(std::string(), std::string()));
+        EXPECT_EQ(hashes_of(folder_ / name), std::make_pair(std::string(), std::string()));
         EXPECT_FALSE(frame_is_whole(folder_ / name));
     }
+}
+
+TEST_F(WriteTest, TextsBeyondAsciiAreKept) {
+    metadata_.provenance.credit = "Überschau, Sternwarte Zürich";
+    for (const char* name : {"a.exr", "a.tif", "a.png"}) {
+        const OIIO::ImageSpec spec = read_raw(write(name, {}, soft_frame(5, 3))).spec;
+        EXPECT_EQ(spec.get_string_attribute("Copyright"), metadata_.provenance.credit) << name;
+    }
+    const std::string png = bytes_of(folder_ / "a.png");
+    EXPECT_NE(png.find("iTXtCopyright"), std::string::npos) << "tEXt would be Latin 1";
+    EXPECT_NE(png.find("tEXtastrosplat/frame"), std::string::npos);
 }
 
 TEST_F(WriteTest, TruncatedFilesAreNotWhole) {
@@ -525,9 +544,10 @@ TEST(Metadata, FramesPerSecondBecomeFractions) {
 TEST(Metadata, LinesAreFoundByTheirWholeKey) {
     const std::string lines = metadata_lines({{"a", "1"}, {"ab", "2=3"}, {"c", ""}});
     EXPECT_EQ(lines, "a=1\nab=2=3\nc=\n");
-    EXPECT_EQ(find_metadata_line(lines, "ab"), "2=3");
-    EXPECT_EQ(find_metadata_line(lines, "b"), "");
-    EXPECT_EQ(find_metadata_line("", "a"), "");
+    const std::map<std::string, std::string> entries{{"a", "1"}, {"ab", "2=3"}, {"c", ""}};
+    EXPECT_EQ(parse_metadata_lines(lines), entries);
+    EXPECT_TRUE(parse_metadata_lines("").empty());
+    EXPECT_TRUE(parse_metadata_lines("another program's words\n").empty());
 }
 
 }  // namespace

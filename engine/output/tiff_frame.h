@@ -1,0 +1,18 @@
+// TIFF frames, by libtiff; strips are deflated here, on all threads.
+#pragma once
+
+#include "output/format.h"
+#include "output/stored_header.h"
+#include "output/write.h"
+
+namespace astrosplat {
+
+/// Throws as write_frame() does.
+void write_tiff(const FrameFile& target, const FrameFormat& format, const Image& beauty,
+                const FrameMetadata& metadata);
+
+std::optional<StoredHeader> read_tiff_header(const std::filesystem::path& file);
+/// True when the file was read to its end. False says nothing of tiled ones.
+bool tiff_is_whole(const std::filesystem::path& file);
+
+}  // namespace astrosplat
