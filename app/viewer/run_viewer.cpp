@@ -82,11 +82,14 @@ class Loop {
     void wait() {
         const double due = next_due(session_, seconds_now());
         if (window_.has_input()) {
+            was_touched_ = true;
             window_.wait(0.0);
         } else if (frames_left_ > 0 || gui_.busy() || due <= 0.0) {
             window_.wait(still_ ? screen_frame_s : 0.0);  // where nothing is shown, no screen sets the pace
             frames_left_ = std::max(0, frames_left_ - 1);
         } else {
+            // Sets, frames and undone steps come and go with every touch.
+            if (due >= idle_due_s && std::exchange(was_touched_, false)) return_freed_memory();
             const double before = seconds_now();
             window_.wait(due);
             // Woken by an event rather than by the clock: let the widgets come to rest again.
@@ -150,7 +153,8 @@ class Loop {
     Gui gui_;
     std::string title_;
     int frames_left_ = frames_after_event;
-    bool still_ = false;  // the last frame looked like the one before
+    bool was_touched_ = true;  // since the window was last at rest
+    bool still_ = false;       // the last frame looked like the one before
 };
 
 }  // namespace

@@ -247,7 +247,7 @@ double next_due(const Session& session, double now) {
     if (session.view.compare == CompareMode::blink)
         return (std::floor(now * session.view.blink_hz) + 1.0) / session.view.blink_hz - now;
     if (session.front.working() || session.preparation.working() || session.finished.working()) return 0.1;
-    return 1.0;  // to look at the disk and autosave
+    return idle_due_s;  // to look at the disk and autosave
 }
 
 bool preview_exact(const Session& session) { return session.view_frame.exact() && session.sets.same_sets(); }

@@ -130,6 +130,8 @@ void carry_out(Session& session, Commands& commands);
 /// Files dropped on the window.
 void drop(Session& session, const std::vector<std::filesystem::path>& files);
 
+/// Of a session in which nothing goes on: it looks at the disk and saves by itself.
+constexpr double idle_due_s = 1.0;
 /// Seconds until something is due by itself; 0: draw again at once.
 double next_due(const Session& session, double now);
 /// The preview is that of the present camera, look and sets.

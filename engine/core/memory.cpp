@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -136,6 +137,12 @@ std::int64_t resident_memory_bytes() {
     std::int64_t size = 0, pages = 0;
     in >> size >> pages;
     return pages * sysconf(_SC_PAGESIZE);
+}
+
+void return_freed_memory() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
 }
 
 void claim_memory(std::int64_t bytes, const std::string& what) {

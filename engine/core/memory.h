@@ -30,6 +30,10 @@ std::int64_t peak_memory_bytes();
 /// Resident size of this process now, without what was freed and is lent to the system (core/buffer).
 std::int64_t resident_memory_bytes();
 
+/// Hands back to the system what the C library keeps of freed memory: its heaps, one a thread, are full of
+/// holes after a while and do not shrink by themselves. Takes some milliseconds.
+void return_freed_memory();
+
 /// Announces `bytes` for `what` (at detail level), and throws NotEnoughMemory with one line that states both
 /// figures when they exceed available_memory_bytes(), and with a limit of its own what that would have to be.
 void claim_memory(std::int64_t bytes, const std::string& what);
