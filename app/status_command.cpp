@@ -13,9 +13,9 @@
 
 #include "batch_plan.h"
 #include "core/text.h"
+#include "farm/submission.h"
 #include "report.h"
 #include "scene/frames.h"
-#include "submit/submission.h"
 
 namespace astrosplat {
 namespace {

@@ -10,9 +10,9 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/text.h"
+#include "farm/run_tool.h"
 #include "interrupt.h"
 #include "places.h"
-#include "submit/run_tool.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

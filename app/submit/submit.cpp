@@ -15,11 +15,11 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "estimate.h"
+#include "farm/submission.h"
 #include "interrupt.h"
 #include "scene/frames.h"
 #include "submit/drafts.h"
 #include "submit/slurm_script.h"
-#include "submit/submission.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

@@ -31,7 +31,11 @@ std::vector<fs::path> files_of(const std::string& pattern, const std::vector<std
 
 }  // namespace
 
-FarmJob::FarmJob(FarmCommands commands) : commands_(std::move(commands)) { begin(Task::submit, 0.0); }
+FarmJob::FarmJob(FarmCommands commands) : commands_(std::move(commands)) {
+    const bool submitted = commands_.submit.empty();
+    if (submitted) text_ = "Looking at its frames";
+    begin(submitted ? Task::watch : Task::submit, 0.0);
+}
 
 float FarmJob::progress() const {
     return report_.frames > 0 ? static_cast<float>(report_.done) / static_cast<float>(report_.frames) : 0.0f;

@@ -15,13 +15,14 @@
 namespace astrosplat {
 
 struct FarmCommands {
-    std::vector<std::string> submit, status;  // [0] is the program
+    std::vector<std::string> submit, status;  // [0] is the program; submit is empty: that was done before
     std::string pattern;                      // of the frames' files
 };
 
 class FarmJob {
   public:
-    /// Begins to submit. Throws OutputError where the program cannot be started.
+    /// Begins to submit, or to watch what was submitted. Throws OutputError where the program cannot be
+    /// started.
     explicit FarmJob(FarmCommands commands);
 
     /// Takes what came, and asks anew where it is time. Cheap; call every frame. `now` in seconds.
@@ -33,6 +34,9 @@ class FarmJob {
     State state() const { return state_; }
     const std::string& text() const { return text_; }  // one line
     float progress() const;                            // 0..1, of frames
+    const FarmCommands& commands() const { return commands_; }
+    /// At the last look a task waited or ran.
+    bool is_active() const { return report_.active; }
     /// Of frames that are there.
     const std::vector<std::filesystem::path>& files() const { return files_; }
 

@@ -32,6 +32,13 @@ void expect_no_movie(const RenderTask& task) {
         throw InputError(movie.string() + ": exists already");
 }
 
+/// What a window submits has a scene file of its own.
+bool is_same(const FarmCommands& listed, const FarmCommands& found) {
+    constexpr std::size_t scene = 2;  // behind the program and "status"
+    return listed.status == found.status ||
+           (!listed.submit.empty() && listed.status.at(scene) == found.status.at(scene));
+}
+
 void append(std::vector<std::string>& words, const std::vector<std::string>& more) {
     words.insert(words.end(), more.begin(), more.end());
 }
@@ -68,6 +75,21 @@ void RenderQueue::add_to_farm(const RenderTask& task, const Document& document) 
     job.target = render_target(task);
     Work work;
     work.farm = std::make_unique<FarmJob>(std::move(commands));
+    push(std::move(job), std::move(work));
+}
+
+void RenderQueue::add_earlier(const EarlierFarmJob& earlier, const std::string& title) {
+    const auto is_known = [&](const Work& work) {
+        return work.farm && is_same(work.farm->commands(), earlier.commands);
+    };
+    if (std::ranges::any_of(work_, is_known)) return;
+    QueuedJob job;
+    job.state = JobState::submitted;
+    job.title = title + ": Frames " + earlier.frames + ", Slurm";
+    job.target = earlier.commands.pattern;
+    Work work;
+    work.farm = std::make_unique<FarmJob>(earlier.commands);
+    work.is_news = false;
     push(std::move(job), std::move(work));
 }
 
@@ -179,18 +201,21 @@ std::optional<RenderQueue::News> RenderQueue::take_end(QueuedJob& job) {
     }
 }
 
-std::optional<RenderQueue::News> RenderQueue::poll_farm(QueuedJob& job, FarmJob& farm, double now) {
+std::optional<RenderQueue::News> RenderQueue::poll_farm(QueuedJob& job, Work& work, double now) {
+    FarmJob& farm = *work.farm;
     farm.poll(now);
+    work.is_news = work.is_news || farm.is_active();
+    const auto news = [&](News told) { return work.is_news ? std::optional(std::move(told)) : std::nullopt; };
     job.text = farm.text();
     job.progress = farm.progress();
     job.files = farm.files();
     switch (farm.state()) {
         case FarmJob::State::done:
             job.state = JobState::done;
-            return News{"Saved " + job.target.string()};
+            return news({"Saved " + job.target.string()});
         case FarmJob::State::failed:
             job.state = JobState::failed;
-            return News{job.text, true};
+            return news({job.text, true});
         case FarmJob::State::cancelled:
             job.state = JobState::cancelled;
             return News{cancelled_text};
@@ -203,7 +228,7 @@ std::optional<RenderQueue::News> RenderQueue::poll(double now) {
     constexpr float enough = 0.02f;  // of the work, to tell how long the rest takes
     for (std::size_t i = 0; i < jobs_.size(); ++i)
         if (jobs_[i].state == JobState::submitted)
-            if (auto news = poll_farm(jobs_[i], *work_[i].farm, now)) return news;
+            if (auto news = poll_farm(jobs_[i], work_[i], now)) return news;
     job_.poll();
     QueuedJob* const job = running_job();
     if (!job) {

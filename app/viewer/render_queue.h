@@ -14,6 +14,7 @@
 #include "edit/render_task.h"
 #include "edit/status.h"
 #include "sets/set_cache.h"
+#include "viewer/earlier_farm_jobs.h"
 #include "viewer/farm_job.h"
 #include "viewer/render_job.h"
 
@@ -29,6 +30,9 @@ class RenderQueue {
     void add(const RenderTask& task, const Document& document);
     /// Writes a layer's prepared picture, as the command `prepare` does. Throws InputError.
     void add_preparation(const SourceParams& source, const std::filesystem::path& folder);
+
+    /// A farm's job of before the window was opened, unless it is in the list. Throws OutputError.
+    void add_earlier(const EarlierFarmJob& earlier, const std::string& title);
 
     /// A job that waits never begins; one that runs, here or on a farm, ends, and its finished files stay.
     void cancel(std::uint64_t number);
@@ -55,6 +59,7 @@ class RenderQueue {
         std::vector<std::string> arguments;
         std::optional<ProcessStep> movie;
         std::unique_ptr<FarmJob> farm;  // null: this machine does it
+        bool is_news = true;            // what becomes of it
     };
 
     void push(QueuedJob job, Work work);
@@ -63,7 +68,7 @@ class RenderQueue {
     QueuedJob* running_job();
     std::optional<News> take_end(QueuedJob& job);
     void add_to_farm(const RenderTask& task, const Document& document);
-    std::optional<News> poll_farm(QueuedJob& job, FarmJob& farm, double now);
+    std::optional<News> poll_farm(QueuedJob& job, Work& work, double now);
 
     SetCache cache_;
     RenderJob job_;

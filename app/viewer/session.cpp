@@ -123,6 +123,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     status.recent = preferences.recent;
     if (!options.input.empty()) note_recent(*this, options.input);
     open_snapshots(*this);
+    list_earlier_jobs(*this);
 }
 
 void say(Status& status, const std::string& text, bool error) {
@@ -145,6 +146,7 @@ void take_document(Session& session, Document next) {
     view.hint_open = session.fresh_demo = false;
     view.grey_layer.clear();
     open_snapshots(session);
+    list_earlier_jobs(session);
     session.autosave.remove();
 }
 

@@ -73,9 +73,27 @@ void show_finished_frame(Session& session) {
     shown.aspect = static_cast<float>(found->image.width) / static_cast<float>(found->image.height);
 }
 
+void take_earlier_jobs(Session& session) {
+    if (session.earlier_pattern.empty()) return;
+    const auto found = session.earlier_jobs.found(session.earlier_pattern);
+    if (!found) return;
+    session.earlier_pattern.clear();
+    for (const EarlierFarmJob& job : found->jobs) session.jobs.add_earlier(job, session.document.name());
+}
+
 }  // namespace
 
+void list_earlier_jobs(Session& session) {
+    session.earlier_pattern.clear();
+    if (session.document.file().empty()) return;
+    const RenderTask all = make_render_task(session.document, RenderKind::range, session.view.frame);
+    session.earlier_pattern = render_files(all).string();
+    session.earlier_jobs.forget();
+    session.earlier_jobs.want(session.earlier_pattern);
+}
+
 void show_renderings(Session& session, double now) {
+    take_earlier_jobs(session);
     const auto news = session.jobs.poll(now);
     if (news) say(session.status, news->text, news->error);
     session.status.jobs = session.jobs.jobs();

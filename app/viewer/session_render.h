@@ -8,5 +8,8 @@ namespace astrosplat {
 /// Brings the jobs forward and fills their part of the status. `now` in seconds. Throws what a job throws
 /// that cannot begin.
 void show_renderings(Session& session, double now);
+/// The scene has been opened: what was submitted to a farm of it before comes into the queue, once it is
+/// found.
+void list_earlier_jobs(Session& session);
 
 }  // namespace astrosplat

@@ -95,6 +95,29 @@ TEST_F(WindowFarm, CancelTakesTheTasksOutOfTheQueue) {
     EXPECT_TRUE(running());
 }
 
+/// Where it can be cancelled; and what has come back meanwhile is there to be looked at.
+TEST_F(WindowFarm, WhatWasSubmittedIsListedByTheNextWindow) {
+    submit();
+    const fs::path record = folder / "frames/slurm/0001/submission.json";
+    ASSERT_TRUE(comes_true([&] { return fs::exists(record); }));
+    const auto again = [&] {
+        person->press("ctrl+q");
+        EXPECT_EQ(end().code, 0);
+        start({scene_file.string()});
+    };
+    again();
+    open_queue(QueuedJob::State::submitted, {});
+    click_when_shown("queue/end 1");
+    EXPECT_TRUE(comes_true([&] { return told("cancelled") == "1 2\n"; })) << told("cancelled");
+    work();
+    person->press("Escape");
+    same_widgets().tap(key_code::escape);
+    again();
+    open_queue(QueuedJob::State::done, {"a", "b", "c"});
+    click_when_shown("queue/play");
+    EXPECT_EQ(told("jobs"), "2\n") << "nothing is submitted again";
+}
+
 TEST_F(WindowFarm, WhatWasSubmittedOutlivesTheWindow) {
     submit();
     ASSERT_TRUE(comes_true([&] { return fs::exists(folder / "frames/slurm/0001/submission.json"); }));

@@ -1,5 +1,5 @@
 // Records are JSON; what squeue says is one task a line.
-#include "submit/submission.h"
+#include "farm/submission.h"
 
 #include <fmt/format.h>
 
@@ -13,9 +13,9 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
+#include "farm/run_tool.h"
 #include "output/frame_path.h"
 #include "scene/frames.h"
-#include "submit/run_tool.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;

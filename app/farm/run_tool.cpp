@@ -1,5 +1,5 @@
 // Both outputs are read as they come: a tool that has filled one pipe would wait for us for ever.
-#include "submit/run_tool.h"
+#include "farm/run_tool.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
