@@ -60,7 +60,12 @@ std::vector<PictureOnMesh> pictures_of(std::span<const TexturedMesh> meshes) {
     return pictures;
 }
 
+// To nothing, before the first one.
 void add(const Image& light, Image& sum) {
+    if (sum.pixels.empty()) {
+        sum = copied(light);
+        return;
+    }
     parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t i = begin * light.width * 3; i < end * light.width * 3; ++i)
             sum.pixels[static_cast<std::size_t>(i)] += light.pixels[static_cast<std::size_t>(i)];
@@ -71,7 +76,7 @@ void add(const Image& light, Image& sum) {
 void add_dots(const PictureLight& picture, const UvSurface& surface, const StructureParams& params,
               std::uint32_t seed, const std::string& layer_name, const Progress& progress,
               PictureSplats& dots) {
-    Image rest = picture.light;
+    Image rest = copied(picture.light);
     const PictureStars stars = take_picture_stars(rest, params);
     progress.check();
     progress.at(0.1);
@@ -81,7 +86,7 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
     const Opacity opacity{static_cast<float>(params.opacity), static_cast<float>(params.density)};
     const std::vector<Band> bands = make_bands(rest.width);
     const double dust = dust_of(params);
-    Image emission = make_image(dust > 0.0 ? rest.width : 0, rest.height, 3);
+    Image emission;         // of all bands, where there is dust
     release_spare_pages();  // of reading and of the fields: bands and their dots are the most there is
     split_bands(std::move(rest), bands, dust > 0.0, [&](const Band& band, const Image& light) {
         progress.check();

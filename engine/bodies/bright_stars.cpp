@@ -146,7 +146,7 @@ std::vector<Found> all_stars(const Image& light) {
     const float widest = widest_share * static_cast<float>(std::max<std::int64_t>(1920, light.width));
     std::vector<std::vector<Found>> levels;
     const Image whole = brightest_channel(light);
-    Image brightest = whole;
+    Image brightest = copied(whole);
     for (float scale = 1.0f; scale * narrowest_px < widest; scale *= 2.0f) {
         if (std::min(brightest.width, brightest.height) <= 2 * edge_px) break;
         levels.push_back(stars_of_level(brightest));

@@ -193,10 +193,10 @@ class DustDots {
 }  // namespace
 
 Image transmittance_of(const Image& brightest, const Image& emission, const Image& alpha) {
-    Image ratio = brightest;
+    Image ratio = unfilled_image(brightest.width, brightest.height, 1);
     const Image whole = brightest_channel(emission);
     parallel_each(ratio.pixels.size(), 65536, [&](std::size_t i) {
-        ratio.pixels[i] = std::clamp((ratio.pixels[i] + dark_sky) / (whole.pixels[i] + dark_sky),
+        ratio.pixels[i] = std::clamp((brightest.pixels[i] + dark_sky) / (whole.pixels[i] + dark_sky),
                                      least_transmittance, 1.0f);
     });
     parallel_each(alpha.pixels.size(), 65536, [&](std::size_t i) {

@@ -67,6 +67,14 @@ Image share_of(const Image& seen, const Image& flat) {
     return share;
 }
 
+// Texels a pixel of the rendering, whose share is taken on pixels of two anyway: its filter there is as wide
+// as halving makes that of single texels. What small pictures show of single dots' shadows is kept, they take
+// no time.
+std::int64_t rendered_step(const Image& picture) {
+    constexpr std::int64_t most_whole = std::int64_t{1} << 20;  // texels
+    return picture.width * picture.height > most_whole ? 2 : 1;
+}
+
 class FittedView {
   public:
     FittedView(PictureSplats& dots, const Image& picture)
@@ -77,16 +85,19 @@ class FittedView {
         layer_.absorbs = dots.absorbs;
         float highest = 0.0f;
         for (const glm::vec3& p : dots.splats.position) highest = std::max(highest, p.z);
+        const std::int64_t step = rendered_step(picture);
+        settings_.width = (picture.width + step - 1) / step;
+        settings_.height = (picture.height + step - 1) / step;
+        const auto width = static_cast<double>(step * settings_.width),
+                   height = static_cast<double>(step * settings_.height);  // texels
         CameraParams params;
         params.projection = Projection::orthographic;
-        params.position =
-            glm::dvec3(0.0, 0.0, 2.0 * static_cast<double>(highest) + static_cast<double>(picture.width));
-        params.target = glm::dvec3(0.0);
-        params.height = static_cast<double>(picture.height);
-        camera_ =
-            make_camera(params, static_cast<double>(picture.width), static_cast<double>(picture.height), {});
-        settings_.width = picture.width;
-        settings_.height = picture.height;
+        params.target = 0.5 * glm::dvec3(width - static_cast<double>(picture.width),
+                                         static_cast<double>(picture.height) - height, 0.0);
+        params.position = params.target + glm::dvec3(0.0, 0.0, 2.0 * static_cast<double>(highest) + width);
+        params.height = height;
+        camera_ = make_camera(params, static_cast<double>(settings_.width),
+                              static_cast<double>(settings_.height), {});
         settings_.memory_limit_bytes =
             std::max(least_projected_bytes, projected_bytes_a_texel * picture.width * picture.height);
     }
@@ -133,7 +144,8 @@ Image FittedView::rendered(const Progress& progress) {
     Image flat = flat_.sum();
     release_spare_pages();  // of the steps
     Image beauty = render({&layer_, 1}, camera_, nullptr, settings_, progress).beauty;
-    share_ = doubled(share_of(halved(beauty), halved(flat)), flat.width, flat.height);
+    if (beauty.width == flat.width && beauty.height == flat.height) beauty = halved(beauty);
+    share_ = doubled(share_of(beauty, halved(flat)), flat.width, flat.height);
     beauty = {};
     release_spare_pages();
     return shown(std::move(flat));

@@ -23,10 +23,11 @@ struct Peak {
 };
 
 Image difference(const Image& a, const Image& b) {
-    Image out = a;
+    Image out = unfilled_image(a.width, a.height, 1);
     parallel_chunks(out.height, 16, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t i = begin * out.width; i < end * out.width; ++i)
-            out.pixels[static_cast<std::size_t>(i)] -= b.pixels[static_cast<std::size_t>(i)];
+            out.pixels[static_cast<std::size_t>(i)] =
+                a.pixels[static_cast<std::size_t>(i)] - b.pixels[static_cast<std::size_t>(i)];
     });
     return out;
 }

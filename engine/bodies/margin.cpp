@@ -126,11 +126,16 @@ void continue_texel(const Surroundings& around, const Image& image, std::int64_t
                dy = static_cast<float>(beyond(y, image.height));
     const glm::vec3 rim = around.light_at(std::clamp<std::int64_t>(x, 0, image.width - 1),
                                           std::clamp<std::int64_t>(y, 0, image.height - 1));
-    const glm::vec3 near = around.light_at(from_x, from_y);
     const float reach_px =
         around.margin_px * reach_of(brightest_of(rim), around.brightest, around.least_reach);
+    const float away_px = std::sqrt(dx * dx + dy * dy);
+    if (away_px >= reach_px) {  // where fade_at() is 0
+        std::fill_n(to, 4, 0.0f);
+        return;
+    }
+    const glm::vec3 near = around.light_at(from_x, from_y);
     const glm::vec2 px(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-    const float fade = fade_at(around, px, std::sqrt(dx * dx + dy * dy), reach_px);
+    const float fade = fade_at(around, px, away_px, reach_px);
     for (int c = 0; c < 3; ++c) {
         const float level = std::min(rim[c], near[c]);
         to[c] = fade * level * std::min(to[c] / std::max(near[c], 1e-12f), brightest_detail);

@@ -6,6 +6,16 @@
 
 namespace astrosplat {
 
+Image copied(const Image& image) {
+    Image copy = unfilled_image(image.width, image.height, image.channels);
+    parallel_chunks(static_cast<std::int64_t>(image.pixels.size()), 65536,
+                    [&](std::int64_t begin, std::int64_t end, int) {
+                        std::copy(image.pixels.begin() + begin, image.pixels.begin() + end,
+                                  copy.pixels.begin() + begin);
+                    });
+    return copy;
+}
+
 Image brightest_channel(const Image& light) {
     Image brightest = unfilled_image(light.width, light.height, 1);
     parallel_chunks(light.height, 16, [&](std::int64_t begin, std::int64_t end, int) {

@@ -1,5 +1,4 @@
-// Single channels of images. In: an image in memory. Out: one channel of it, or a value between its
-// pixels.
+// Channels of images. In: an image in memory. Out: one channel of it or all, or a value between its pixels.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +6,9 @@
 #include "core/image.h"
 
 namespace astrosplat {
+
+/// A copy made by all threads: one alone would take as long to fetch its memory as to fill it.
+Image copied(const Image& image);
 
 /// max(R, G, B) of every pixel.
 Image brightest_channel(const Image& light);

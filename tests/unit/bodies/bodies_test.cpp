@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "image/blur.h"
 #include "image/channels.h"
 #include "render/render.h"
 #include "source/picture_camera.h"
@@ -393,6 +394,29 @@ TEST(FrontFit, KeepsThePicturesFlux) {
         }
     }
     EXPECT_NEAR(here / there, 1.0, 0.0005);
+}
+
+// It is rendered on pixels of two texels.
+TEST(FrontFit, OfALargePictureIsAsClose) {
+    const Image light = painted::galaxy(1301, 811);
+    const Placement placement =
+        make_placement(brightest_channel(light), of_kind(StructureKind::disk), 130.0, true, 1u);
+    PictureSplats dots = unfitted_dots(light, placement);
+    fit_front(dots, light);
+    const Image seen = view_along_z(dots, light, 3000.0), wanted = gaussian_blur(light, 0.5);
+    double here = 0.0, there = 0.0, squares = 0.0;
+    for (std::int64_t y = 0; y < light.height; ++y) {
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            const float a = seen.at(x, y)[1], b = wanted.at(x, y)[1];
+            here += static_cast<double>(a);
+            there += static_cast<double>(b);
+            const double difference =
+                static_cast<double>(display_srgb(a)) - static_cast<double>(display_srgb(b));
+            squares += difference * difference;
+        }
+    }
+    EXPECT_NEAR(here / there, 1.0, 0.001);
+    EXPECT_GT(-10.0 * std::log10(squares / static_cast<double>(light.width * light.height)), 44.0);
 }
 
 // What the back wall loses in the glow before it is not given to it many times over.
