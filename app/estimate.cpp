@@ -4,18 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 
 #include "bodies/bodies.h"
 #include "camera/aperture.h"
 #include "core/error.h"
-#include "core/file_format.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "generate/columns.h"
-#include "generate/lattice.h"
 #include "interrupt.h"
+#include "layer_need.h"
 #include "output/format.h"
 #include "output/frame_path.h"
 #include "pipeline.h"
@@ -25,9 +22,6 @@
 #include "sets/prepared_cache.h"
 #include "sets/sky_cache.h"
 #include "source/picture.h"
-#include "splat_files/native_blocks.h"
-#include "splat_files/splat_file.h"
-#include "streamed/streamed_set.h"
 
 namespace astrosplat {
 namespace {
@@ -44,83 +38,7 @@ constexpr std::int64_t least_records = 24'000'000;  // bytes for projected splat
 constexpr double usual_records = 1.4, record_bytes = 44.0, fold_bytes = 56.0, unused_share = 1.05;
 constexpr double split_records = 4.0;        // where large ones are split, in a pass close by
 constexpr double shape_record_bytes = 40.0;  // outlines of those that are not round, while they are joined
-constexpr std::int64_t shaded_bytes = 40;
-// Of captures: a row of a file with normals; and beside what all have shape and radius, harmonics and colours
-// by direction.
-constexpr std::int64_t capture_row_bytes = 68, harmonics_row_bytes = 180;
-constexpr std::int64_t shape_bytes = 68, harmonics_bytes = 204;
-constexpr std::int64_t sorting_bytes = 32;  // a row of a file whose rows are not in order of id
-constexpr std::int64_t streamed_bytes_per_block = 128 * shaded_bytes + 256;  // sample, bounds
-constexpr std::int64_t catalogue_bytes_per_star = 100;                       // HYG; Hipparcos, compressed
-
-// More than any machine holds, few enough that bytes of many layers still fit 63 bits.
-constexpr std::int64_t most_splats = 1'000'000'000'000'000;
-
-struct Expected {
-    std::int64_t splats = 0;
-    std::int64_t making_bytes = 0;  // while the set is made or read; 0: what it takes then
-    std::shared_ptr<const NativeBlocks> file = nullptr;  // of kind splats, where it is .splats
-    bool has_radius = false;
-    bool has_shapes = false;      // captures: their look leaves the set whole, as it has the shapes
-    std::int64_t held_bytes = 0;  // by the set and by what is shaded, beyond what all have
-};
-
-Expected expected_columns(const SourceParams& source, const std::vector<TexturedMesh>& meshes) {
-    Bounds box;
-    for (const TexturedMesh& textured : meshes) box.add(bounds(textured.mesh));
-    const double max_distance = resolved_max_distance(source, box);
-    const Lattice lattice = make_lattice(source, meshes, max_distance);
-    return {static_cast<std::int64_t>(expected_splats(source, lattice, meshes, max_distance)),
-            columns_memory_bytes(meshes, lattice, max_distance)};
-}
-
-/// Of a file that cannot be read nothing: the reader will say why.
-Expected expected_file(const std::filesystem::path& path) try {
-    Expected expected;
-    const std::vector<std::string> attributes = splat_attributes(path);
-    const auto has = [&](const char* name) {
-        return std::ranges::find(attributes, name) != attributes.end();
-    };
-    const std::string_view format = format_of_file(path)->id;
-    if (format == "splats") {
-        expected.file = std::make_shared<NativeBlocks>(path);
-        expected.splats = expected.file->splats();
-        expected.making_bytes = expected.file->bytes() + expected.splats * sorting_bytes;
-    } else if (format == "gltf") {
-        const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
-        expected.splats = bytes / (capture_row_bytes + (has("harmonics") ? harmonics_row_bytes : 0));
-    } else {
-        expected.splats = splat_count(path);
-    }
-    expected.has_radius = has("radius") || has("scale");
-    expected.has_shapes = has("scale");
-    if (expected.has_shapes)
-        expected.held_bytes = expected.splats * (shape_bytes + (has("harmonics") ? harmonics_bytes : 0));
-    return expected;
-} catch (const InputError&) {
-    return {};
-}
-
-Expected expected_of(const SetCache& cache, const LayerParams& layer) {
-    const SourceParams& source = layer.source;
-    if (source.kind == SourceKind::splats) return expected_file(source.file);
-    if (source.kind == SourceKind::stars) {
-        if (!source.stars.along.empty()) return {source.count};
-        std::error_code ignored;
-        const auto size = std::filesystem::file_size(source.stars.catalogue, ignored);
-        return {ignored ? 0 : static_cast<std::int64_t>(size) / catalogue_bytes_per_star};
-    }
-    const bool bodies = source.structure.kind != StructureKind::columns;
-    if (!bodies && has_automatic_voxels(source) && source.splats <= 0)
-        return {source.count, columns_memory_bytes(source.count)};
-    std::vector<TexturedMesh> meshes =
-        load_meshes(cache, source, Progress{{}, &interrupted()}, most_texels_read(source, room_for_bodies()));
-    if (!bodies) return expected_columns(source, meshes);
-    const BodiesPlan plan = plan_bodies(source, std::move(meshes), layer.name);
-    const std::int64_t dots = expected_dots(plan.meshes, plan.structure);
-    return {std::min(dots, source.splats > 0 ? source.splats : most_splats),
-            bodies_memory_bytes(plan.meshes, dots)};
-}
+constexpr std::int64_t largest_guess = 250'000'000;  // bytes, beyond which sets are made small to be sure
 
 /// Of an environment's pictures: while they are read, and from then on, with borders and mip levels.
 struct SkyBytes {
@@ -173,43 +91,10 @@ std::int64_t frame_bytes(const BatchPlan& plan) {
     return pixels * (made * std::int64_t{sizeof(float)} + (4 + 4 * layers) * written_bytes(output));
 }
 
-/// A layer of the job.
-struct LayerNeed {
-    const LayerParams* params;
-    Expected expected;
-    std::int64_t making = 0, held = 0;  // bytes while it is made, and from then on
-    bool may_stream = false, reads_pictures = false;
-};
-
-LayerNeed need_of(const BatchPlan& plan, const LayerParams& layer, const SampledRun::Layer* sampled) {
-    const bool is_kept = sampled && !sampled->is_made && layer.source.kind == SourceKind::mesh;
-    LayerNeed need{&layer, is_kept ? Expected{} : expected_of(plan.cache, layer)};
-    Expected& expected = need.expected;
-    if (sampled) expected.splats = sampled->splats;
-    if (sampled && sampled->has_radius) expected.has_radius = true;
-    expected.splats = std::min(expected.splats, most_splats);
-    const Look look = look_of(layer);
-    const OptionalColumns wanted = columns_read(look);
-    const std::int64_t row = 40 + (wanted.uv ? 8 : 0) + (wanted.mesh ? 4 : 0) + (expected.has_radius ? 4 : 0);
-    need.making = std::max(expected.making_bytes, expected.splats * row);
-    const bool used_up = is_shaded_alike(plan.scene, layer.name) && !expected.has_shapes;
-    need.held = expected.splats * (used_up ? row : row + shaded_bytes);
-    need.reads_pictures = !is_kept && layer.source.kind == SourceKind::mesh;
-    need.making += expected.held_bytes;
-    need.held += expected.held_bytes;
-    need.may_stream =
-        expected.file && !is_encoded(layer.render) && why_not_streamed(*expected.file, look).empty();
-    return need;
-}
-
 bool uses_pictures(const BatchPlan& plan, const std::vector<LayerNeed>& needs) {
     const EnvironmentParams& sky = plan.scene.environment;
     return has_environment(sky) ||  // read also where it is not visible
            std::ranges::any_of(needs, &LayerNeed::reads_pictures);
-}
-
-std::int64_t streamed_bytes(const LayerNeed& need) {
-    return static_cast<std::int64_t>(need.expected.file->size()) * streamed_bytes_per_block;
 }
 
 /// Bytes of all layers: at the most while they are made one after the other, and when all are there.
@@ -221,7 +106,7 @@ SetBytes sets_of(const std::vector<LayerNeed>& needs, const std::vector<std::str
     for (const LayerNeed& need : needs) {
         const bool on_disk = std::ranges::find(streamed, need.params->name) != streamed.end();
         if (!on_disk) bytes.making = std::max(bytes.making, bytes.held + need.making);
-        bytes.held += on_disk ? streamed_bytes(need) : need.held;
+        bytes.held += on_disk ? need.streamed : need.held;
     }
     if (!streamed.empty()) bytes.held += thread_count() * block_bytes;
     return bytes;
@@ -229,17 +114,17 @@ SetBytes sets_of(const std::vector<LayerNeed>& needs, const std::vector<std::str
 
 bool is_split(const LayerParams& layer) { return layer.render.lod.max_px > 0.0; }
 
-/// Bytes of projected splats in the fullest of some frames.
-std::int64_t records_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& needs, SampledRun& sample) {
-    double unknown = 0.0;
+/// Bytes of projected splats of the layers that are not sampled: nobody knows where they lie.
+double guessed_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& needs, const SampledRun& sample) {
+    double bytes = 0.0;
     const double tiles = static_cast<double>(plan.scene.output.width * plan.scene.output.height) / 4096.0;
     const double folded = fold_bytes * std::min(1.0, 3.0 * thread_count() / std::max(1.0, tiles));
     for (const LayerNeed& need : needs)
         if (!sample.find(need.params->name))
-            unknown += static_cast<double>(need.expected.splats) *
-                       ((is_split(*need.params) ? split_records : usual_records) * (record_bytes + folded) +
-                        (need.expected.has_shapes ? shape_record_bytes : 0.0));
-    return static_cast<std::int64_t>(unknown + unused_share * static_cast<double>(sample.record_bytes()));
+            bytes += static_cast<double>(need.splats) *
+                     ((is_split(*need.params) ? split_records : usual_records) * (record_bytes + folded) +
+                      (need.has_shapes ? shape_record_bytes : 0.0));
+    return bytes;
 }
 
 }  // namespace
@@ -266,7 +151,12 @@ void limit_bodies(LayerParams& layer, std::int64_t bytes, const SetCache& cache)
 }
 
 JobEstimate estimate(const BatchPlan& plan) {
-    SampledRun sample(plan, SampledRun::Layers::there);
+    {
+        SampledRun sample(plan, SampledRun::Layers::there);
+        JobEstimate job = estimate(plan, sample);
+        if (job.guessed_bytes <= largest_guess) return job;
+    }
+    SampledRun sample(plan, SampledRun::Layers::meshes);
     return estimate(plan, sample);
 }
 
@@ -276,15 +166,18 @@ JobEstimate estimate(const BatchPlan& plan, SampledRun& sample) {
     for (const LayerParams& layer : plan.scene.layers) {
         if (!ever_visible(plan.scene, layer)) continue;
         needs.push_back(need_of(plan, layer, sample.find(layer.name)));
-        job.layers.push_back({layer.name, needs.back().expected.splats});
-        job.splats += needs.back().expected.splats;
+        job.layers.push_back({layer.name, needs.back().splats});
+        job.splats += needs.back().splats;
     }
     const bool is_limited = plan.memory_limit_bytes > 0;
     const std::int64_t limit = is_limited ? plan.memory_limit_bytes : available_memory_bytes() / 10 * 9;
     const std::int64_t program = program_bytes + (uses_pictures(plan, needs) ? picture_bytes : 0);
     const std::int64_t working = program + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes +
                                  (is_limited ? reserve_bytes : 0);
-    const std::int64_t records = records_bytes(plan, needs, sample);
+    job.guessed_bytes = static_cast<std::int64_t>(guessed_bytes(plan, needs, sample));
+    // In the fullest of some frames.
+    const auto records = job.guessed_bytes +
+                         static_cast<std::int64_t>(unused_share * static_cast<double>(sample.record_bytes()));
     const EnvironmentParams& sky = plan.scene.environment;
     const SkyBytes skies = sky_bytes(sky);
     if (sky.visible && !sky.tile.empty())

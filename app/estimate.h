@@ -24,13 +24,14 @@ struct JobEstimate {
     std::optional<bool> sky_kept;  // of a scene whose sky is made of one picture: whether it is in the cache
     /// Layers of .splats files that stay on disk, because all in memory would be more than there may be.
     std::vector<std::string> streamed;
+    std::int64_t guessed_bytes = 0;   // of `bytes`, for layers of which nobody knows where their splats lie
     std::int64_t renderer_bytes = 0;  // what is left for RenderSettings::memory_limit_bytes; 0: any number
 };
 /// Loads meshes and pictures where `count` alone does not tell and the set is not in the cache, nothing else.
 /// Throws InputError, also where --memory is less than what the job needs.
 JobEstimate estimate(const BatchPlan& plan, SampledRun& sample);
 
-/// The same with a sample of what is there (SampledRun::Layers::there).
+/// The same with a sample of what is there, and of what is not where much would be guessed.
 JobEstimate estimate(const BatchPlan& plan);
 
 /// "--memory GiB" in bytes. Throws InputError.

@@ -47,7 +47,9 @@ std::optional<SetSample> sample_of(const BatchPlan& plan, const LayerParams& lay
                                    SampledRun::Layers layers) {
     const SourceParams source = source_of(plan.scene, layer);
     if (!ever_visible(plan.scene, layer) || is_like_a_layer(source)) return std::nullopt;
-    if (layers == SampledRun::Layers::there) return sample_there(plan.cache, source, layer.name);
+    if (layers == SampledRun::Layers::there ||
+        (layers == SampledRun::Layers::meshes && source.kind != SourceKind::mesh))
+        return sample_there(plan.cache, source, layer.name);
     return sample_set(plan.cache, source, layer.name, stoppable());
 }
 
@@ -55,7 +57,7 @@ std::optional<SetSample> sample_of(const BatchPlan& plan, const LayerParams& lay
 Scene sampled_scene(const BatchPlan& plan, SampledRun::Layers layers) {
     Scene scene = plan.scene;
     EnvironmentParams& sky = scene.environment;
-    if (layers == SampledRun::Layers::there ||
+    if (layers != SampledRun::Layers::all ||
         (!sky.tile.empty() && !is_kept(plan.cache, sky.tile, sky.tiling, stoppable())))
         sky = {};
     return scene;

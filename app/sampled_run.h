@@ -21,9 +21,10 @@ struct FrameCost {
 
 class SampledRun {
   public:
-    /// What is sampled: layers whose sets are in the cache or in .splats files, for a quick answer; or all,
-    /// for which those that are missing are made small and other inputs are read, with the environment.
-    enum class Layers { there, all };
+    /// What is sampled: layers whose sets are in the cache or in .splats files, for a quick answer; those of
+    /// meshes too, whose sets are made small where they are missing; or all, for which other inputs are read,
+    /// with the environment.
+    enum class Layers { there, meshes, all };
     /// Layers that no frame shows and stars of a picture, which are few, are left out. Throws as load_source
     /// does, Cancelled.
     SampledRun(const BatchPlan& plan, Layers layers);

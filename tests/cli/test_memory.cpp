@@ -145,6 +145,13 @@ TEST_F(Memory, TheProgramThatStartsThisOneIsNotCounted) {
     EXPECT_LT(rendered({}).taken_mib, 300.0) << much[much.size() / 2];
 }
 
+// Where its splats lie, and that none is split, only a small set made before tells.
+TEST_F(Memory, ASetThatIsNotThereIsMadeSmallToBeSure) {
+    make_ball_to_generate(2500000, "[3.0, 6.0, 13.0]", "[layer.render.lod]\nmax_px = 200.0\n");
+    const Run run = rendered({});
+    EXPECT_NEAR(run.told_mib, run.taken_mib, 0.15 * run.taken_mib) << run.err;
+}
+
 TEST_F(Memory, GeneratingTakesWhatIsAnnounced) {
     make_ball_to_generate(2500000, "[3.0, 6.0, 13.0]");
     const Run run = rendered({});
