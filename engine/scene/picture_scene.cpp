@@ -123,7 +123,7 @@ CloseViews close_views(double distance, StructureKind kind, double mean_light) {
                 -0.6 * std::clamp((mean_light - dark) / (bright - dark), 0.0, 1.0)};
     return {{0.9, 1.9, 2.2},
             {-1.6, 0.3 * distance, 0.34 * distance},
-            {-0.8, 0.63 * distance, 0.45 * distance},
+            {-0.8, 0.62 * distance, 0.44 * distance},
             0.0};
 }
 

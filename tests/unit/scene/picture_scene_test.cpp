@@ -118,7 +118,7 @@ TEST(PictureScene, FilmsOfCloudsEndNearThem) {
     PictureScene picture{"a.png", 1600, 1000, StructureKind::sheet};
     picture.film = true;
     const Scene last = scene_at(parsed(picture), 240.0);
-    const Camera camera = make_camera(last.camera, 1600.0, 1000.0, {});
+    const Camera camera = make_camera(last.camera, 1.6, 1.0, {});  // places in shares of the frame
     for (const double x : {-5.0, 5.0})
         for (const double z : {-3.125, 3.125}) {
             const auto seen = place_in_picture(camera, {x, 0.0, z});
