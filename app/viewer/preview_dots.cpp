@@ -41,6 +41,8 @@ void PreviewDots::merge(Layer& layer, const PreviewLayer& wanted) {
     if (layer.shading == shading) return;
     layer.shading.reset();  // an exception below must not leave old splats under a new look
     layer.of_whole.reset();
+    looks_changed_ = true;
+    work_.forget();
     layer.of_sample = std::make_shared<const MergedSplats>(
         merge_splats(layer.sample, apply_look(*layer.sample.set, shading.look, shading.inputs)));
     layer.shading = std::move(shading);
@@ -92,7 +94,10 @@ std::optional<SumsRequest> PreviewDots::missing() const {
     return std::nullopt;
 }
 
-bool PreviewDots::refine() {
+bool PreviewDots::refine(double now) {
+    constexpr double rest_s = 0.1;
+    if (std::exchange(looks_changed_, false)) at_rest_since_ = now;
+    if (now - at_rest_since_ < rest_s) return false;
     const std::optional<SumsRequest> wanted = missing();
     if (!wanted) return false;
     work_.want(*wanted);

@@ -46,8 +46,10 @@ class PreviewDots {
              const Camera& camera, const CutSettings& settings, float pixel_filter);
     /// The last cut was of samples where whole sets could be.
     bool lacks_sums() const { return missing().has_value(); }
-    /// Goes on making them in the background. True: there are more of them now.
-    bool refine();
+    /// Goes on making them in the background, once looks have been at rest for a while: sums of a look that
+    /// is dragged come too late, and take the processor from its preview. True: there are more of them now.
+    /// `now` in seconds.
+    bool refine(double now);
     /// What the last cut was made of, for another one of more dots.
     std::vector<CutSource> sources() const;
     /// Of each layer the share of its splats that the look keeps, 0..1.
@@ -74,6 +76,8 @@ class PreviewDots {
     std::optional<SumsRequest> missing() const;
 
     std::vector<Layer> layers_;
+    bool looks_changed_ = false;  // since refine() was called
+    double at_rest_since_ = 0.0;  // s
     LatestWork<SumsRequest, FoundSums> work_;
 };
 

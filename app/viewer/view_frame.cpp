@@ -137,9 +137,9 @@ bool ViewFrame::previews_arrived(const ViewRequest& now) const {
 }
 
 /// Sums of whole sets, while nothing more urgent needs the processor.
-bool ViewFrame::refine() {
+bool ViewFrame::refine(double now) {
     return choice_.refined && status_.state != ViewFrameState::refining && !draws_whole_sets() &&
-           dots_.refine();
+           dots_.refine(now);
 }
 
 /// The part of the frame that is seen, as a frame of its own.
@@ -270,7 +270,7 @@ void ViewFrame::begin_final() {
     status_.progress = 0.0f;
 }
 
-void ViewFrame::take_final() {
+void ViewFrame::take_final(double now) {
     FinalFrame::Outcome outcome;
     for (const Region& tile : final_.take_tiles(canvas_, outcome)) {
         canvas_texture_.upload(canvas_, tile);
@@ -283,7 +283,7 @@ void ViewFrame::take_final() {
     if (outcome.state == FinalFrame::State::done) {
         status_.state = ViewFrameState::final;
         final_s_ = outcome.seconds;
-        refine();  // for when the hand moves again
+        refine(now);  // for when the hand moves again
     }
     if (outcome.state == FinalFrame::State::failed) status_.state = ViewFrameState::failed;
 }
@@ -292,7 +292,7 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
                      bool hurry) {
     const bool changed = !request_ || !(*request_ == request) || choice_.opengl != choice.opengl ||
                          choice_.share != choice.share || environment_arrived();
-    const bool refined = request_ && refine();
+    const bool refined = request_ && refine(now);
     const bool fuller = !changed && !final_started_ && (refined || previews_arrived(request));
     if (changed || fuller || (gl_ && gl_->sorting())) {
         final_.cancel();
@@ -317,7 +317,7 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
         if (settle && !dots_.lacks_sums() && takes_steps(hurry) && step_is_due(now)) return;
         if (settle && (hurry || now - changed_at_ >= rest_s)) begin_final();
     } else if (status_.state == ViewFrameState::refining) {
-        take_final();
+        take_final(now);
     }
 }
 

@@ -93,7 +93,7 @@ class ViewFrame {
     bool draws_whole_sets() const;
     void cut(std::vector<PreviewLayer>& layers, const PreviewView& view);
     void note_time(double milliseconds, double target_ms, bool whole_sets);
-    bool refine();
+    bool refine(double now);
     bool environment_arrived();
     bool previews_arrived(const ViewRequest& now) const;
     void draw_preview(double now);
@@ -102,7 +102,7 @@ class ViewFrame {
     void begin_step(std::int64_t dots);
     bool take_step();
     void end_steps();
-    void take_final();
+    void take_final(double now);
     void begin_final();
 
     std::shared_ptr<PictureFiles> files_;

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/clock.h"
 #include "core/error.h"
 #include "output/write.h"
 #include "render/render.h"
@@ -82,7 +83,7 @@ class PreviewDotsTest : public testing::Test {
 
 void wait(PreviewDots& dots) {
     while (dots.lacks_sums()) {
-        dots.refine();
+        dots.refine(seconds_now());
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 }
@@ -118,7 +119,7 @@ TEST_F(PreviewDotsTest, StarsAreNeverMergedOrLeftOut) {
     EXPECT_EQ(seen[0].layer.splats->color[0], 2.0f * loaded[0]->set->color[0]);
     EXPECT_LE(seen[1].layer.splats->size() + seen[2].layer.splats->size(), 10);
     EXPECT_EQ(dots.kept()[0], 1.0);
-    EXPECT_FALSE(dots.refine());
+    EXPECT_FALSE(dots.refine(seconds_now()));
 }
 
 TEST_F(PreviewDotsTest, WithRoomForAllSplatsTheFrameIsTheRenderers) {
@@ -203,6 +204,28 @@ class SampledDotsTest : public PreviewDotsTest {
     }
 };
 
+/// Sums of a dragged look would come too late, and their making would slow the preview down.
+TEST_F(SampledDotsTest, WholeSetsWaitUntilALookIsAtRest) {
+    arrange();
+    budget = 3000;
+    PreviewDots dots;
+    double now = 100.0;
+    for (const float gain : {0.9f, 0.8f, 0.7f}) {
+        layers[0].look.grade.gain = gain;
+        draw(dots);
+        for (int i = 0; i < 20; ++i) {  // as long as sums take many times over, of which 60 ms are counted
+            EXPECT_FALSE(dots.refine(now += 0.003));
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        EXPECT_TRUE(dots.lacks_sums());
+    }
+    now += 0.1;
+    while (dots.lacks_sums()) {
+        dots.refine(now);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+}
+
 TEST_F(SampledDotsTest, ASampleComesFirstAndTheWholeSetOnceItsSumsAreThere) {
     ASSERT_GT(layers[0].set->size(), 1500);
     budget = 3000;
@@ -214,7 +237,7 @@ TEST_F(SampledDotsTest, ASampleComesFirstAndTheWholeSetOnceItsSumsAreThere) {
     wait(dots);
     const Image whole = draw(dots);
     EXPECT_NE(pixel_hash(whole), sampled);
-    EXPECT_FALSE(dots.refine()) << "nothing is missing";
+    EXPECT_FALSE(dots.refine(seconds_now())) << "nothing is missing";
     EXPECT_NEAR(light_of(whole) / light_of(rendered()), 1.0, 0.03);
     layers[0].look.grade.gain = 0.5f;
     const std::string edited = hash(dots);
