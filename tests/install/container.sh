@@ -1,21 +1,12 @@
 #!/usr/bin/env bash
 # Does what app/install/Containerfile says, in clean Debian roots and without a container engine: each stage in a root of
 # its own, COPY by cp, RUN in a chroot. Then the entry point renders a frame there, and its pixels have to be those of the
-# program given. In: the program, and a folder for the roots, which are removed at the end. Ends with 77 (skipped) where
-# it cannot run: it has to be root, with debootstrap and Debian's packages in reach.
+# program given. In: the program, and a folder for the roots.
 set -euo pipefail
 program=$1 roots=$2
-source="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+. "$(dirname "${BASH_SOURCE[0]}")/roots.sh"
 recipe="$source/app/install/Containerfile"
-skip() { echo "skipped: $1"; exit 77; }
-[ "$(id -u)" = 0 ] || skip "roots can only be made by root"
-command -v debootstrap >/dev/null || skip "debootstrap is not installed"
-mirror=http://deb.debian.org/debian
-rm -rf "$roots"
-mkdir -p "$roots"
-trap 'for mount in "$roots"/*/proc; do umount "$mount" 2>/dev/null || true; done; rm -rf "$roots"' EXIT
-
-debootstrap --variant=minbase bookworm "$roots/clean" $mirror >"$roots/log" 2>&1 || skip "no root could be made: $(tail -n 1 "$roots/log")"
+begin_roots
 
 stage=""
 while IFS= read -r line; do
@@ -27,35 +18,25 @@ while IFS= read -r line; do
     case "$word" in
     '' | '#'*) ;;
     FROM)
-        stage="$roots/${rest##*AS }"
-        [[ $rest == *" AS "* ]] || stage="$roots/last"
-        cp -a "$roots/clean" "$stage"
-        cp /etc/resolv.conf "$stage/etc/" 2>/dev/null || true
-        mount -t proc proc "$stage/proc" ;;
+        stage="${rest##*AS }"
+        [[ $rest == *" AS "* ]] || stage=last
+        make_root "$stage" ;;
     COPY)
-        from="" to="${rest##* }" what="${rest% *}"
+        to="${rest##* }" what="${rest% *}"
         if [[ $what == --from=* ]]; then
             from="$roots/${what#--from=}"; from="${from%% *}"; what="${what#* }"
-            (cd "$from" && cp -a ./${what#/} "$stage$to")
+            (cd "$from" && cp -a ./${what#/} "$roots/$stage$to")
         else
-            mkdir -p "$stage$to"
-            git -C "$source" ls-files -z | (cd "$source" && xargs -0 cp --parents -t "$stage$to")
+            copy_sources "$stage" "$to"
         fi ;;
-    RUN) echo "$rest"; chroot "$stage" /bin/sh -ec "$rest" >"$roots/log" 2>&1 || { tail -n 30 "$roots/log"; exit 1; } ;;
+    RUN) echo "$rest"; in_root "$stage" "$rest" ;;
     ENTRYPOINT) entry=$(tr -d '[]",' <<<"$rest") ;;
     *) echo "$recipe: '$word' is not known here"; exit 1 ;;
     esac
 done <"$recipe"
 
-depends=$(chroot "$stage" dpkg-query --show --showformat='${Depends}' astrosplat)
+depends=$(chroot "$roots/$stage" dpkg-query --show --showformat='${Depends}' astrosplat)
 ! grep -E 'libgl1|libegl1|libglfw3|libimgui' <<<"$depends" || { echo "the package asks for OpenGL"; exit 1; }
-mkdir "$stage/films"
-cp -a "$source/assets" "$stage/films/"
-arguments=(--batch assets/scenes/s106.toml --frames 1 --resolution 160x120 --overwrite --no-cache -q)
-pixels() { sed -n 's/.*"sha256": "\([0-9a-f]*\)".*/\1/p' "$1"; }
-chroot "$stage" /bin/sh -c "cd /films && $entry ${arguments[*]} --output there.exr --stats there.json"
-(cd "$stage/films" && "$program" "${arguments[@]}" --output here.exr --stats here.json)
-[ -n "$(pixels "$stage/films/here.json")" ]
-[ "$(pixels "$stage/films/there.json")" = "$(pixels "$stage/films/here.json")" ] || { echo "other pixels"; exit 1; }
-chroot "$stage" /bin/sh -c "$entry; [ \$? = 2 ]"
+check_pixels "$stage" "$program" "$entry"
+in_root "$stage" "$entry; [ \$? = 2 ]"
 echo "the container's program renders the same pixels"
