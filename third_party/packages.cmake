@@ -81,7 +81,7 @@ target_link_libraries(openvdb INTERFACE ${OPENVDB_LIBRARY} ${TBB_LIBRARY} PkgCon
 # For --version, of those that have a say in pictures or files.
 set(astrosplat_library_versions "OpenEXR ${OPENEXR_VERSION}" "OpenImageIO ${OIIO_VERSION}" "OpenColorIO ${OCIO_VERSION}"
   "CFITSIO ${CFITSIO_VERSION}" "Highway ${HWY_VERSION}" "fmt ${fmt_VERSION}" "zlib ${ZLIB_VERSION_STRING}"
-  "OpenSSL ${OPENSSL_VERSION}")
+  "libpng ${PNG_VERSION_STRING}" "libtiff ${TIFF_VERSION_STRING}" "OpenSSL ${OPENSSL_VERSION}")
 if(ASTROSPLAT_WINDOW)
   list(APPEND astrosplat_library_versions "GLFW ${glfw3_VERSION}" "Dear ImGui ${IMGUI_VERSION}")
 endif()
