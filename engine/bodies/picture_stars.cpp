@@ -12,8 +12,9 @@ PictureStars take_picture_stars(Image& light, const StructureParams& params) {
     PictureStars stars;
     if (params.stars == StructureParams::Stars::no) return stars;
     std::vector<Star> bright;
-    if (params.kind == StructureKind::disk) bright = take_bright_stars(light);
-    stars.all = take_stars(light);
+    const bool disk = params.kind == StructureKind::disk;
+    if (disk) bright = take_bright_stars(light);
+    stars.all = disk ? take_stars(light) : take_stars(light, 0.0f);  // where no dust is, fronts end nearer
     stars.ordinary = stars.all.size();
     stars.count = static_cast<std::int64_t>(stars.ordinary);
     for (Star& star : bright) {

@@ -27,7 +27,6 @@ constexpr float noise_factor = 4.5f;
 constexpr double widest_sigma = 2.2, narrowest_sigma = 0.6;
 constexpr float wing_share = 0.5f;    // of the peak, that the light at 2 to 3 px must stay below
 constexpr float least_level = 0.01f;  // of the displayed white, below which a pixel is left as it is
-constexpr float least_left = 0.9f;    // of the light around a star, down to which it is taken out
 constexpr float uneven_share = 0.3f;  // of the peak, that this light may differ by around the star
 
 constexpr std::size_t window_px = (2 * median_reach + 1) * (2 * median_reach + 1);
@@ -192,8 +191,7 @@ void for_each_pixel(Image& image, const Star& star, std::int64_t reach, std::int
             visit(image.at(x, y), x, y);
 }
 
-// Where the Gaussian is wider than the star, a little less than what is around is left: a hole would be dust.
-void subtract(Image& light, const StarInSky& found, std::int64_t begin, std::int64_t end) {
+void subtract(Image& light, const StarInSky& found, float least_left, std::int64_t begin, std::int64_t end) {
     const Star& star = found.star;
     for_each_pixel(light, star, 6, begin, end, [&](float* pixel, std::int64_t x, std::int64_t y) {
         const double dx = static_cast<double>(x) + 0.5 - static_cast<double>(star.x);
@@ -235,7 +233,7 @@ void for_each_strip(const Image& light, const std::vector<StarInSky>& stars, con
 
 }  // namespace
 
-std::vector<Star> take_stars(Image& light) {
+std::vector<Star> take_stars(Image& light, float least_left) {
     const Image brightest = brightest_channel(light);
     const Image noise = local_noise(brightest);
     std::vector<std::vector<StarInSky>> rows(static_cast<std::size_t>(light.height));
@@ -251,7 +249,7 @@ std::vector<Star> take_stars(Image& light) {
     std::vector<StarInSky> found;
     for (const auto& row : rows) found.insert(found.end(), row.begin(), row.end());
     for_each_strip(light, found, [&](const StarInSky& star, std::int64_t begin, std::int64_t end) {
-        subtract(light, star, begin, end);
+        subtract(light, star, least_left, begin, end);
     });
     const Image without = brightest_channel(light);
     for_each_strip(light, found, [&](const StarInSky& star, std::int64_t begin, std::int64_t end) {

@@ -18,8 +18,9 @@ struct Star {
 };
 
 /// Finds the round points that stand out of their surroundings, takes a Gaussian for each out of `light` and
-/// fills what is left of it up to 1.15 times the background. In order of rows, each
+/// cuts what is left of it down to 1.15 times the background. Where the Gaussian is wider than the star,
+/// `least_left` of the light around stays: a hole would become dust. In order of rows, each
 /// a body of its own. The same bits with any number of threads.
-std::vector<Star> take_stars(Image& light);
+std::vector<Star> take_stars(Image& light, float least_left = 0.9f);
 
 }  // namespace astrosplat
