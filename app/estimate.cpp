@@ -114,17 +114,13 @@ SetBytes sets_of(const std::vector<LayerNeed>& needs, const std::vector<std::str
 
 bool is_split(const LayerParams& layer) { return layer.render.lod.max_px > 0.0; }
 
-/// Bytes of projected splats of the layers that are not sampled: nobody knows where they lie.
-double guessed_bytes(const BatchPlan& plan, const std::vector<LayerNeed>& needs, const SampledRun& sample) {
-    double bytes = 0.0;
-    const double tiles = static_cast<double>(plan.scene.output.width * plan.scene.output.height) / 4096.0;
+/// Bytes of projected splats of a layer of which nobody knows where they lie.
+std::int64_t guessed_records(const OutputParams& output, const LayerNeed& need) {
+    const double tiles = static_cast<double>(output.width * output.height) / 4096.0;
     const double folded = fold_bytes * std::min(1.0, 3.0 * thread_count() / std::max(1.0, tiles));
-    for (const LayerNeed& need : needs)
-        if (!sample.find(need.params->name))
-            bytes += static_cast<double>(need.splats) *
-                     ((is_split(*need.params) ? split_records : usual_records) * (record_bytes + folded) +
-                      (need.has_shapes ? shape_record_bytes : 0.0));
-    return bytes;
+    const double each = (is_split(*need.params) ? split_records : usual_records) * (record_bytes + folded) +
+                        (need.has_shapes ? shape_record_bytes : 0.0);
+    return static_cast<std::int64_t>(each * static_cast<double>(need.splats));
 }
 
 }  // namespace
@@ -174,10 +170,13 @@ JobEstimate estimate(const BatchPlan& plan, SampledRun& sample) {
     const std::int64_t program = program_bytes + (uses_pictures(plan, needs) ? picture_bytes : 0);
     const std::int64_t working = program + drawing_bytes + frame_bytes(plan) + thread_count() * worker_bytes +
                                  (is_limited ? reserve_bytes : 0);
-    job.guessed_bytes = static_cast<std::int64_t>(guessed_bytes(plan, needs, sample));
-    // In the fullest of some frames.
-    const auto records = job.guessed_bytes +
-                         static_cast<std::int64_t>(unused_share * static_cast<double>(sample.record_bytes()));
+    auto records = static_cast<std::int64_t>(unused_share * static_cast<double>(sample.record_bytes()));
+    for (const LayerNeed& need : needs) {
+        if (sample.find(need.params->name)) continue;
+        const std::int64_t bytes = guessed_records(plan.scene.output, need);
+        records += bytes;
+        if (need.params->source.kind == SourceKind::mesh) job.guessed_bytes += bytes;
+    }
     const EnvironmentParams& sky = plan.scene.environment;
     const SkyBytes skies = sky_bytes(sky);
     if (sky.visible && !sky.tile.empty())

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "core/parallel.h"
@@ -26,7 +25,6 @@ constexpr float widest_share = 14.0f / 1920.0f;         // of the picture's widt
 constexpr float at_two = 0.25f, at_three = 0.12f;       // of the excess, at most, at such half widths
 constexpr float most_uneven = 0.25f;  // of the excess, between the quartiles of a ring within 1.5 of them
 constexpr float apart = 2.0f;         // half widths between two stars
-constexpr float least_around = 0.9f;  // of the surroundings, down to which a star is taken out
 
 struct Ring {
     float median = 0.0f, quartiles_apart = 0.0f;
@@ -56,29 +54,13 @@ struct Found {
     float half_width = 0.0f;
 };
 
-// Where the brightest channel is more than half way from `sky` to `peak`, within 4 px.
-std::pair<float, float> middle_of(const Image& brightest, std::int64_t x, std::int64_t y, float sky,
-                                  float peak) {
-    double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
-    for (std::int64_t j = -4; j <= 4; ++j)
-        for (std::int64_t i = -4; i <= 4; ++i) {
-            const double weight = std::max(0.0f, *brightest.at(x + i, y + j) - 0.5f * (sky + peak));
-            sum += weight;
-            sum_x += weight * static_cast<double>(i);
-            sum_y += weight * static_cast<double>(j);
-        }
-    const double least = std::max(sum, 1e-12);
-    return {static_cast<float>(static_cast<double>(x) + 0.5 + sum_x / least),
-            static_cast<float>(static_cast<double>(y) + 0.5 + sum_y / least)};
-}
-
 std::optional<Found> bright_star_at(const Image& brightest, std::int64_t column, std::int64_t row,
                                     float peak) {
     const auto x0 = static_cast<float>(column) + 0.5f, y0 = static_cast<float>(row) + 0.5f;
     const float far = ring_at(brightest, 0, x0, y0, static_cast<float>(rings - 1)).median;
     if (peak - far < least_bright) return {};
-    Found star;
-    std::tie(star.x, star.y) = middle_of(brightest, column, row, far, peak);
+    const PointLight above_half = light_about(brightest, column, row, 4, 0.5f * (far + peak));
+    Found star{above_half.x, above_half.y};
     std::array<Ring, rings> ring;
     float sky = peak;
     for (std::size_t r = 0; r < ring.size(); ++r) {
@@ -277,7 +259,8 @@ void take_away(const Taken& star, std::int64_t begin, std::int64_t end, Image& l
             const glm::vec3 own = light_of(star, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
             float* const pixel = light.at(x, y);
             for (int c = 0; c < 3; ++c)
-                pixel[c] = std::max(pixel[c] - own[c], std::min(pixel[c], least_around * star.around[c]));
+                pixel[c] =
+                    std::max(pixel[c] - own[c], std::min(pixel[c], least_left_in_dust * star.around[c]));
         }
 }
 

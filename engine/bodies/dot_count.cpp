@@ -12,8 +12,8 @@
 #include "bodies/dust.h"
 #include "bodies/picture_light.h"
 #include "bodies/picture_splats.h"
+#include "bodies/picture_stars.h"
 #include "bodies/placement.h"
-#include "bodies/stars.h"
 #include "core/parallel.h"
 #include "image/channels.h"
 
@@ -51,7 +51,7 @@ double dots_a_texel(const Texture& part, const StructureParams& params, const Pl
     const PictureLight picture = picture_light(part, 0.0);
     const Image brightest = brightest_channel(picture.light);
     Image rest = picture.light;
-    if (params.stars != StructureParams::Stars::no) take_stars(rest);
+    take_picture_stars(rest, params);
     const Image without_stars = brightest_channel(rest);
     Image emission = make_image(rest.width, rest.height, 3);
     const auto shows = [&](std::int64_t x, std::int64_t y) {

@@ -14,7 +14,8 @@ PictureStars take_picture_stars(Image& light, const StructureParams& params) {
     std::vector<Star> bright;
     const bool disk = params.kind == StructureKind::disk;
     if (disk) bright = take_bright_stars(light);
-    stars.all = disk ? take_stars(light) : take_stars(light, 0.0f);  // where no dust is, fronts end nearer
+    stars.all =
+        take_stars(light, disk ? least_left_in_dust : 0.0f);  // without dust a hole is nearer the front
     stars.ordinary = stars.all.size();
     stars.count = static_cast<std::int64_t>(stars.ordinary);
     for (Star& star : bright) {

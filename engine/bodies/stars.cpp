@@ -103,13 +103,13 @@ const std::array<Direction, 8>& directions() {
 
 // Its wings are below half of its peak, and even all around. A flat top has its peak on one side: the middle
 // of its light counts.
-bool is_round(const Image& brightest, double x, double y, float sky, float excess) {
+bool is_round(const Image& brightest, float x, float y, float sky, float excess) {
     float lo = 1e30f, hi = -1e30f;
     for (const Direction& direction : directions()) {
         float wing = 0.0f;
         for (const double r : {2.0, 2.5, 3.0})
-            wing += bilinear(brightest, 0, static_cast<float>(x + r * direction.x),
-                             static_cast<float>(y + r * direction.y)) /
+            wing += bilinear(brightest, 0, x + static_cast<float>(r * direction.x),
+                             y + static_cast<float>(r * direction.y)) /
                     3.0f;
         lo = std::min(lo, wing - sky);
         hi = std::max(hi, wing - sky);
@@ -129,26 +129,6 @@ float ring_median(const Image& light, std::int64_t x, std::int64_t y, int channe
     return *middle;
 }
 
-// The light over the sky within 2 px of a pixel, and where its middle is, px.
-struct PointLight {
-    double sum = 0.0, x = 0.0, y = 0.0;
-};
-
-PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, float sky) {
-    PointLight point;
-    for (std::int64_t j = y - 2; j <= y + 2; ++j) {
-        for (std::int64_t i = x - 2; i <= x + 2; ++i) {
-            const double light = std::max(0.0f, *brightest.at(i, j) - sky);
-            point.sum += light;
-            point.x += light * (static_cast<double>(i) + 0.5);
-            point.y += light * (static_cast<double>(j) + 0.5);
-        }
-    }
-    point.x /= point.sum;
-    point.y /= point.sum;
-    return point;
-}
-
 // A star and the light on the ring around it.
 struct StarInSky {
     Star star;
@@ -162,16 +142,17 @@ std::optional<StarInSky> star_at(const Image& light, const Image& brightest, std
     const float sky = background(brightest, x, y);
     const float excess = *brightest.at(x, y) - sky;
     if (excess < least) return {};
-    PointLight point = light_about(brightest, x, y, sky);
+    constexpr std::int64_t reach = 2;
+    PointLight point = light_about(brightest, x, y, reach, sky);
     if (const auto column = static_cast<std::int64_t>(point.x), row = static_cast<std::int64_t>(point.y);
         column != x || row != y)
-        point = light_about(brightest, column, row, sky);
+        point = light_about(brightest, column, row, reach, sky);
     const double sigma = std::sqrt(point.sum / (2.0 * real::pi * static_cast<double>(excess)));
     if (sigma > widest_sigma || !is_round(brightest, point.x, point.y, sky, excess)) return {};
     StarInSky found;
     Star& star = found.star;
-    star.x = static_cast<float>(point.x);
-    star.y = static_cast<float>(point.y);
+    star.x = point.x;
+    star.y = point.y;
     star.sigma = static_cast<float>(std::max(sigma, narrowest_sigma));
     for (int c = 0; c < 3; ++c) {
         found.around[c] = ring_median(light, x, y, c);
@@ -232,6 +213,22 @@ void for_each_strip(const Image& light, const std::vector<StarInSky>& stars, con
 }
 
 }  // namespace
+
+PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, std::int64_t reach,
+                       float floor) {
+    double sum = 0.0, sum_x = 0.0, sum_y = 0.0;
+    for (std::int64_t j = -reach; j <= reach; ++j) {
+        for (std::int64_t i = -reach; i <= reach; ++i) {
+            const double light = std::max(0.0f, *brightest.at(x + i, y + j) - floor);
+            sum += light;
+            sum_x += light * static_cast<double>(i);
+            sum_y += light * static_cast<double>(j);
+        }
+    }
+    const double least = std::max(sum, 1e-12);
+    return {sum, static_cast<float>(static_cast<double>(x) + 0.5 + sum_x / least),
+            static_cast<float>(static_cast<double>(y) + 0.5 + sum_y / least)};
+}
 
 std::vector<Star> take_stars(Image& light, float least_left) {
     const Image brightest = brightest_channel(light);

@@ -17,10 +17,21 @@ struct Star {
     std::uint32_t body = 0;    // Gaussians of one star have one depth
 };
 
+/// Light above `floor` within `reach` px of a pixel, and where its middle is, px.
+struct PointLight {
+    double sum = 0.0;
+    float x = 0.0f, y = 0.0f;
+};
+PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, std::int64_t reach,
+                       float floor);
+
+/// Of the light around a star, down to which it is taken out where there is dust: a hole would become some.
+inline constexpr float least_left_in_dust = 0.9f;
+
 /// Finds the round points that stand out of their surroundings, takes a Gaussian for each out of `light` and
 /// cuts what is left of it down to 1.15 times the background. Where the Gaussian is wider than the star,
-/// `least_left` of the light around stays: a hole would become dust. In order of rows, each
-/// a body of its own. The same bits with any number of threads.
-std::vector<Star> take_stars(Image& light, float least_left = 0.9f);
+/// `least_left` of the light around stays. In order of rows, each a body of its own. The same bits with any
+/// number of threads.
+std::vector<Star> take_stars(Image& light, float least_left = least_left_in_dust);
 
 }  // namespace astrosplat
