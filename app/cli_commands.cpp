@@ -16,7 +16,8 @@ void add_new(CLI::App& app, Invocation& call) {
     CLI::App& command = add_command(app, call, "new", "Writes a scene for a picture",
                                     [&call] { return run_new(call.create); });
     add_value(command, "IMAGE", call.create.image, "IMAGE", "The picture")->required();
-    add_value(command, "-o,--output", call.create.scene, "SCENE", "The scene file to write")->required();
+    add_value(command, "-o,--output", call.create.scene, "SCENE",
+              "The scene file to write (default: the picture's name with .toml, in this folder)");
     add_value(command, "--as", call.create.as, "galaxy|nebula|remnant|plane",
               "What the picture shows (default: by looking at it)");
     command.add_flag("--film", call.create.film, "With a camera move of ten seconds");

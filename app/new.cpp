@@ -64,7 +64,8 @@ std::string columns_text(const NewOptions& options) {
 
 }  // namespace
 
-int run_new(const NewOptions& options) {
+int run_new(NewOptions options) {
+    if (options.scene.empty()) options.scene = options.image.stem().string() + ".toml";
     require_picture(options.image);  // a scene around something else would fail at its first frame
     if (kind_of(format_by_name(options.scene)) != FileKind::scene) {
         bad_input(options.scene.string(), "", "a name ending in .toml",

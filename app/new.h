@@ -10,12 +10,13 @@
 namespace astrosplat {
 
 struct NewOptions {
-    std::filesystem::path image, scene;
-    std::string as;     // galaxy, nebula, remnant or plane; empty: chosen by looking at the picture
-    std::string shape;  // of a scene of columns; empty: a scene of bodies
+    std::filesystem::path image;
+    std::filesystem::path scene;  // empty: the picture's name with .toml, in the working folder
+    std::string as;               // galaxy, nebula, remnant or plane; empty: chosen by looking at the picture
+    std::string shape;            // of a scene of columns; empty: a scene of bodies
     bool film = false;
     bool overwrite = false;
 };
-int run_new(const NewOptions& options);
+int run_new(NewOptions options);
 
 }  // namespace astrosplat

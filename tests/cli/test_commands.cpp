@@ -85,6 +85,11 @@ TEST_F(Commands, NewMakesASceneThatRenders) {
     expect_one_line(run({"new", "picture.ppm", "-o", "plane.toml", "--as", "galaxy"}), 2, "--overwrite");
     expect_one_line(run({"new", "picture.ppm", "-o", "cube.toml", "--shape", "cube"}), 2, "cube");
     expect_one_line(run({"new", "missing.png", "-o", "x.toml"}), 2, "missing.png");
+    fs::create_directories(folder / "pictures");
+    fs::copy_file(folder / "picture.ppm", folder / "pictures/m 51.ppm");
+    ASSERT_EQ(run({"new", "pictures/m 51.ppm", "--as", "plane"}).out, "m 51.toml\n");
+    EXPECT_NE(text_of(folder / "m 51.toml").find("pictures/m 51.ppm"), std::string::npos);
+    expect_one_line(run({"new", "pictures/m 51.ppm", "--as", "plane"}), 2, "m 51.toml");
     expect_one_line(run({"new", ".", "-o", "x.toml"}), 2, "it is a folder");
     expect_one_line(run({"new", "plane.toml", "-o", "x.toml"}), 2, "cannot be read as a picture");
     EXPECT_FALSE(fs::exists(folder / "x.toml"));
