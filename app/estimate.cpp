@@ -47,7 +47,8 @@ struct SkyBytes {
 
 /// Nothing of files that cannot be read: their reader will say why.
 SkyBytes sky_bytes(const EnvironmentParams& sky) try {
-    constexpr std::int64_t held = 16, read = 50;  // bytes a texel, of which one picture at a time is read
+    constexpr std::int64_t held = 16, read = 16;  // bytes a texel, the latter of those read at once
+    constexpr std::int64_t most_read = std::int64_t{64} << 20;  // bytes
     if (!sky.tile.empty()) {
         const std::int64_t texels = 6 * sky.tiling.face_px * sky.tiling.face_px;
         return {36 * texels, held * texels};  // of three floats: as made or read, and with borders
@@ -58,7 +59,8 @@ SkyBytes sky_bytes(const EnvironmentParams& sky) try {
     for (const std::filesystem::path& file : files) {
         const ImageRows rows = open_picture_rows(file).rows;
         const std::int64_t texels = rows.width * rows.height;
-        bytes.making = std::max(bytes.making, bytes.held + read * texels);
+        bytes.making =
+            std::max(bytes.making, bytes.held + held * texels + std::min(read * texels, most_read));
         bytes.held += held * texels;
     }
     return bytes;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <utility>
 
 #include "camera/camera.h"
 #include "core/error.h"
@@ -111,27 +112,46 @@ void fill_cube_border(std::array<Image*, 6> level) {
     }
 }
 
+// The share that each texel of one size has in those of half the size, along one axis: of up to three from
+// `first` on.
+struct Halving {
+    std::int64_t first;
+    std::array<double, 3> shares;
+};
+std::vector<Halving> halvings(std::int64_t size, std::int64_t half) {
+    const double rate = static_cast<double>(size) / static_cast<double>(half);
+    std::vector<Halving> result(static_cast<std::size_t>(half));
+    for (std::int64_t to = 0; to < half; ++to) {
+        Halving& halving = result[static_cast<std::size_t>(to)];
+        halving.first = static_cast<std::int64_t>(rate * static_cast<double>(to));
+        for (int k = 0; k < 3; ++k) {
+            const auto from = static_cast<double>(halving.first + k);
+            const double lo = std::fmax(rate * static_cast<double>(to), from);
+            const double hi = std::fmin(rate * static_cast<double>(to + 1), from + 1.0);
+            halving.shares[k] = std::fmax(hi - lo, 0.0) / rate;
+        }
+    }
+    return result;
+}
+
 // Half the size (rounded up), each texel the mean of the area it covers.
 Image half_size(const Image& image) {
-    std::int64_t w = inner(image.width), h = inner(image.height);
-    std::int64_t half_w = (w + 1) / 2, half_h = (h + 1) / 2;
-    Image result = make_image(half_w + 2 * border, half_h + 2 * border, 3);
-    auto rate_x = static_cast<double>(w) / static_cast<double>(half_w);
-    auto rate_y = static_cast<double>(h) / static_cast<double>(half_h);
-    auto share = [](double rate, std::int64_t to,
-                    std::int64_t from) {  // of texel `from` in the span of texel `to`
-        double lo = std::fmax(rate * static_cast<double>(to), static_cast<double>(from));
-        double hi = std::fmin(rate * static_cast<double>(to + 1), static_cast<double>(from + 1));
-        return std::fmax(hi - lo, 0.0) / rate;
-    };
+    const std::int64_t w = inner(image.width), h = inner(image.height);
+    const std::int64_t half_w = (w + 1) / 2, half_h = (h + 1) / 2;
+    const std::vector<Halving> columns = halvings(w, half_w), rows = halvings(h, half_h);
+    Image result = unfilled_image(half_w + 2 * border, half_h + 2 * border, 3);
     parallel_for(half_h, [&](std::int64_t y, int) {
+        const Halving& row = rows[static_cast<std::size_t>(y)];
+        const auto high = static_cast<int>(std::min<std::int64_t>(3, h - row.first));
         for (std::int64_t x = 0; x < half_w; ++x) {
+            const Halving& column = columns[static_cast<std::size_t>(x)];
+            const auto wide = static_cast<int>(std::min<std::int64_t>(3, w - column.first));
             glm::dvec3 sum(0.0);
-            auto x0 = static_cast<std::int64_t>(rate_x * static_cast<double>(x));
-            auto y0 = static_cast<std::int64_t>(rate_y * static_cast<double>(y));
-            for (std::int64_t j = y0; j < std::min(y0 + 3, h); ++j)
-                for (std::int64_t i = x0; i < std::min(x0 + 3, w); ++i)
-                    sum += glm::dvec3(texel(image, i, j)) * (share(rate_x, x, i) * share(rate_y, y, j));
+            for (int j = 0; j < high; ++j) {
+                const float* p = image.at(column.first + border, row.first + j + border);
+                for (int i = 0; i < wide; ++i, p += 3)
+                    sum += glm::dvec3(p[0], p[1], p[2]) * (column.shares[i] * row.shares[j]);
+            }
             set_texel(result, x, y, glm::vec3(sum));
         }
     });
@@ -143,7 +163,7 @@ Image with_border(const Image& picture) {
     std::int64_t texels = (picture.width + 2 * border) * (picture.height + 2 * border);
     claim_memory(texels * 3 * static_cast<std::int64_t>(sizeof(float)) * 4 / 3,
                  "environment picture and its mip levels");
-    Image result = make_image(picture.width + 2 * border, picture.height + 2 * border, 3);
+    Image result = unfilled_image(picture.width + 2 * border, picture.height + 2 * border, 3);
     for (std::int64_t y = 0; y < picture.height; ++y)
         for (std::int64_t x = 0; x < picture.width; ++x) {
             const float* p = picture.at(x, y);
@@ -152,8 +172,15 @@ Image with_border(const Image& picture) {
     return result;
 }
 
+// Of all texels but the border's; no less than 0.
 float largest_value(const Image& image) {
-    return image.pixels.empty() ? 0.0f : *std::ranges::max_element(image.pixels);
+    std::vector<float> largest(static_cast<std::size_t>(inner(image.height)), 0.0f);
+    parallel_for(inner(image.height), [&](std::int64_t y, int) {
+        const float* const row = image.at(border, y + border);
+        float& here = largest[static_cast<std::size_t>(y)];
+        for (std::int64_t i = 0; i < 3 * inner(image.width); ++i) here = here < row[i] ? row[i] : here;
+    });
+    return largest.empty() ? 0.0f : *std::ranges::max_element(largest);
 }
 
 void fill_borders(std::vector<std::vector<Image>>& faces, std::size_t level) {
@@ -220,13 +247,13 @@ Environment load_environment(const EnvironmentParams& params, const Progress& pr
     Environment environment;
     EnvironmentFaces faces;
     for (const std::filesystem::path& file : files) {
-        const std::vector<Image> pictures = load_environment_pictures(file, progress);
+        std::vector<Image> pictures = load_environment_pictures(file, border, progress);
         if (files.size() == 6 && pictures.size() != 1)
             bad_input(file.string(), "environment.cube", "a picture of one face",
                       "a cube map, which environment.image takes");
-        for (const Image& picture : pictures) {
+        for (Image& picture : pictures) {
             faces.emplace_back();
-            faces.back().push_back(with_border(picture));
+            faces.back().push_back(std::move(picture));
             environment.largest_texel = std::max(environment.largest_texel, largest_value(faces.back()[0]));
         }
     }

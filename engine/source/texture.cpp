@@ -311,19 +311,36 @@ Image load_map(const fs::path& file, Derived derive) {
     return grey;
 }
 
-std::vector<Image> load_environment_pictures(const fs::path& file, const Progress& progress) {
-    Stored stored = read_stored(file, Settings{}, progress);
-    const bool cube = stored.picture.cube;
-    Image all = linear_image(std::move(stored), {});
+// Strip by strip: only what comes out is held as a whole.
+std::vector<Image> load_environment_pictures(const fs::path& file, int border, const Progress& progress) {
+    const StoredRows from = open_stored(file, Settings{}, progress);
+    const bool alpha = from.stored.picture.has_alpha();
+    const bool premultiplied = alpha && from.stored.picture.associated;
+    const std::int64_t width = from.rows.width;
+    const std::int64_t height = from.stored.picture.cube ? width : from.rows.height;  // of a picture
+    const double texels = static_cast<double>(width + 2 * border) * static_cast<double>(height + 2 * border);
+    const std::size_t count = from.stored.picture.cube ? 6 : 1;
+    claim_memory(static_cast<std::int64_t>(std::min(16.0 * static_cast<double>(count) * texels, 9e18)),
+                 fmt::format("{} and its mip levels", file.string()));
     std::vector<Image> pictures;
-    if (!cube) {
-        pictures.push_back(std::move(all));
-        return pictures;
-    }
-    for (std::int64_t face = 0; face < 6; ++face) {
-        pictures.push_back(make_image(all.width, all.width, all.channels));
-        std::copy_n(all.at(0, face * all.width), pictures.back().pixels.size(),
-                    pictures.back().pixels.data());
+    for (std::size_t n = 0; n < count; ++n)
+        pictures.push_back(unfilled_image(width + 2 * border, height + 2 * border, 3));
+    constexpr std::int64_t strip_rows = 64;
+    for (std::int64_t begin = 0, end = 0; begin < from.rows.height; begin = end) {
+        end = std::min(from.rows.height, begin + strip_rows);
+        Stored strip = from.stored;
+        Image& image = strip.picture.image;
+        image = unfilled_image(width, end - begin, from.rows.channels);
+        from.rows.read(begin, end, image.pixels.data());
+        make_linear(strip, {}, premultiplied);
+        parallel_each(end - begin, rows_per_chunk / 4, [&](std::int64_t row) {
+            const std::int64_t y = begin + row;
+            float* to = pictures[static_cast<std::size_t>(y / height)].at(border, y % height + border);
+            for (std::int64_t x = 0; x < width; ++x, to += 3) {
+                const float* const p = image.at(x, row);
+                for (int c = 0; c < 3; ++c) to[c] = alpha && !premultiplied ? p[c] * p[3] : p[c];
+            }
+        });
     }
     return pictures;
 }

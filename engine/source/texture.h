@@ -62,8 +62,10 @@ Image load_map(const std::filesystem::path& file, Derived derive);
 /// Reads a picture as linear light, premultiplied RGBA, for comparisons. Throws InputError, Cancelled.
 Image load_linear_image(const std::filesystem::path& file, const Progress& progress = {});
 
-/// The same for environments: one picture, or the six faces (+x -x +y -y +z -z) of an OpenEXR cube map.
-std::vector<Image> load_environment_pictures(const std::filesystem::path& file,
+/// Reads a picture for an environment, as linear light over black: RGB, with room for a border of so many
+/// texels around it. One picture, or the six faces (+x -x +y -y +z -z) of an OpenEXR cube map. Claims the
+/// memory of mip levels too. Throws InputError, Cancelled.
+std::vector<Image> load_environment_pictures(const std::filesystem::path& file, int border,
                                              const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -179,15 +179,15 @@ TEST(CubeMap, AllSixFacesOfAnExrAreRead) {
     const TempFolder folder;
     const fs::path file = folder / "sky.exr";
     write_cube_map(file, 4, [](int x, int y) { return static_cast<float>(4 * y + x); });
-    const std::vector<Image> faces = load_environment_pictures(file);
+    const std::vector<Image> faces = load_environment_pictures(file, 1);
     ASSERT_EQ(faces.size(), 6u);
     for (std::size_t face = 0; face < 6; ++face) {
-        ASSERT_EQ(faces[face].width, 4);
-        ASSERT_EQ(faces[face].height, 4);
-        EXPECT_EQ(faces[face].at(0, 0)[0], static_cast<float>(16 * face));
-        EXPECT_EQ(faces[face].at(3, 3)[2], static_cast<float>(16 * face + 15));
+        ASSERT_EQ(faces[face].width, 6);
+        ASSERT_EQ(faces[face].height, 6);
+        EXPECT_EQ(faces[face].at(1, 1)[0], static_cast<float>(16 * face));
+        EXPECT_EQ(faces[face].at(4, 4)[2], static_cast<float>(16 * face + 15));
     }
-    EXPECT_EQ(load_environment_pictures(write_noise(folder / "a.png", 4, 24)).size(), 1u);
+    EXPECT_EQ(load_environment_pictures(write_noise(folder / "a.png", 4, 24), 0).size(), 1u);
 }
 
 }  // namespace
