@@ -59,16 +59,19 @@ LoadedLayer star_layer(std::shared_ptr<const SplatSet> set, const SourceParams& 
 }
 
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
-                        const std::string& name, std::int64_t sample_limit) {
+                        const std::string& name, std::int64_t sample_limit, const MergeSource* sample) {
     if (set->stars) return star_layer(std::move(set), source, name);
     const std::int64_t splats = set->size();
-    const auto sample =
-        splats <= sample_limit ? set : std::make_shared<const SplatSet>(sample_rows(*set, sample_limit));
-    LoadedLayer layer = layer_of(source_of(sample, splats), source, name);
+    const bool is_small = splats <= sample_limit;
+    MergeSource seen =
+        is_small ? source_of(set, splats)
+        : sample ? *sample
+                 : source_of(std::make_shared<const SplatSet>(sample_rows(*set, sample_limit)), splats);
+    LoadedLayer layer = layer_of(std::move(seen), source, name);
     layer.box = bounds(*set);
     layer.radius = unset_radius(*set);
     layer.splats = splats;
-    layer.arranged = sample == set;
+    layer.arranged = is_small;
     layer.set = std::move(set);
     return layer;
 }

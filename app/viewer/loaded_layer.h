@@ -40,10 +40,12 @@ struct LoadedLayer {
 /// A set with its tree, as a sample of so many splats.
 MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_for);
 
-/// A whole set, with a sample of at most `sample_limit` splats, in no time.
+/// A whole set, with a sample of at most `sample_limit` splats, in no time; `sample`: of a larger set one
+/// that is there already, or null.
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
-                        const std::string& name, std::int64_t sample_limit);
-/// A set that is being generated.
+                        const std::string& name, std::int64_t sample_limit,
+                        const MergeSource* sample = nullptr);
+/// A set of which there is a sample as yet.
 LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& source,
                           const std::string& name);
 /// The same with the tree of the whole, and a sixteenth of it, taken evenly over space, as the sample.

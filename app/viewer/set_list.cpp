@@ -13,7 +13,7 @@
 namespace astrosplat {
 namespace {
 
-constexpr SetTask tasks[] = {SetTask::load, SetTask::arrange, SetTask::describe};
+constexpr SetTask tasks[] = {SetTask::sample, SetTask::load, SetTask::arrange, SetTask::describe};
 
 /// Progress from which a set is wherever it will be: corners, which run through the whole box, come before
 /// centres.
@@ -54,9 +54,8 @@ void SetList::stop_growing(Entry& entry) {
 
 void SetList::stop(const std::string& name) {
     for (auto& queue : queues_) queue.second.remove(name);
-    if (!job_ || job_->name != name) return;
-    job_->cancelled = true;
-    stop_growing(entries_[name]);
+    if (const auto entry = entries_.find(name); entry != entries_.end()) stop_growing(entry->second);
+    if (job_ && job_->name == name) job_->cancelled = true;
 }
 
 /// Whether the layer's set is to be loaded again.
@@ -99,6 +98,8 @@ void SetList::want(const Scene& scene) {
     for (const LayerParams& layer : scene.layers)
         if (ever_visible(scene, layer) && want_layer(scene, layer)) changed.push_back(layer.name);
     forget_layers_not_in(scene);  // after that, for a layer may have been renamed
+    for (const std::string& name : changed)
+        if (samples_ && !entries_[name].loaded) queues_[SetTask::sample].push_back(name);
     std::list<std::string>& queue = queues_[SetTask::load];
     queue.splice(queue.begin(), changed);
 }
@@ -144,7 +145,7 @@ void SetList::abandon(const std::string& name) {
 std::optional<SetTask> SetList::next_task() const {
     for (const SetTask task : tasks) {
         const auto queue = queues_.find(task);
-        if (held_ && task != SetTask::load) break;
+        if (held_ && task > SetTask::load) break;
         if (queue != queues_.end() && !queue->second.empty()) return task;
     }
     return std::nullopt;
@@ -161,6 +162,7 @@ std::shared_ptr<SetJob> SetList::begin_next() {
     job_->source = entry.source;
     job_->identity = *entry.identity;
     job_->loaded = entry.loaded;
+    job_->sampled = entry.growing;
     if (task == SetTask::load) entry.stage = Stage::loading;
     return job_;
 }
@@ -175,6 +177,12 @@ bool SetList::is_wanted(const SetJob& finished) const {
 void SetList::queue_rest(const std::string& name, const LoadedLayer& loaded) {
     if (!loaded.arranged) queues_[SetTask::arrange].push_back(name);
     if (!loaded.histograms) queues_[SetTask::describe].push_back(name);
+}
+
+void SetList::show_sample(const SetJob& finished, Layer sampled) {
+    if (!is_wanted(finished)) return;
+    entries_[finished.name].growing = std::move(sampled);
+    ++revision_;
 }
 
 SetList::Layer SetList::keep(const SetJob& finished, Layer loaded) {

@@ -20,14 +20,15 @@
 namespace astrosplat {
 
 /// What is done for a layer, the first for all layers before the second for any.
-enum class SetTask { load, arrange, describe };
+enum class SetTask { sample, load, arrange, describe };
 
 /// One task for one layer. Only the atomics and `growing` change once it has begun.
 struct SetJob {
     SetTask task = SetTask::load;
     std::string name;
     SourceParams source, identity;
-    std::shared_ptr<const LoadedLayer> loaded;  // what the layer had when it began
+    std::shared_ptr<const LoadedLayer> loaded;   // what the layer had when it began
+    std::shared_ptr<const LoadedLayer> sampled;  // and a sample of what is being loaded; null: none
     std::atomic<bool> cancelled{false};
     std::atomic<float> progress{0.0f};
     GrowingSet growing;
@@ -39,8 +40,9 @@ class SetList {
   public:
     using Layer = std::shared_ptr<const LoadedLayer>;
 
-    /// `sample_limit` as SetLoader's.
-    explicit SetList(std::int64_t sample_limit) : sample_limit_(sample_limit) {}
+    /// `sample_limit` as SetLoader's; `samples`: sets that are read are sampled first.
+    explicit SetList(std::int64_t sample_limit, bool samples = false)
+        : sample_limit_(sample_limit), samples_(samples) {}
 
     // Wishes, with SetLoader's meaning.
     void want(const Scene& scene);
@@ -60,6 +62,8 @@ class SetList {
     std::shared_ptr<SetJob> begin_next();
     void end() { job_.reset(); }
 
+    /// A sampling job's result: shown until the layer's set is there, or a part of it.
+    void show_sample(const SetJob& finished, Layer sampled);
     /// A loading job's result. Gives back what it replaces, or itself where nobody wants it any more: large,
     /// to be let go without the lock.
     Layer keep(const SetJob& finished, Layer loaded);
@@ -90,7 +94,7 @@ class SetList {
         Stage stage = Stage::waiting;
         std::string error;
         Layer loaded;
-        Layer growing;                                      // shown instead, while the next one is generated
+        Layer growing;  // shown instead, while the next one is generated or read
         std::shared_ptr<const LayerHistograms> histograms;  // the latest: the next ones come late
     };
 
@@ -103,6 +107,7 @@ class SetList {
     void queue_rest(const std::string& name, const LoadedLayer& loaded);
 
     std::int64_t sample_limit_;
+    bool samples_;
     std::map<std::string, Entry> entries_;              // by layer name
     std::map<SetTask, std::list<std::string>> queues_;  // names of layers; the next one first
     std::shared_ptr<SetJob> job_;                       // being done

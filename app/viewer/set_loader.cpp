@@ -12,6 +12,10 @@
 namespace astrosplat {
 namespace {
 
+/// A first sample is so many times smaller than those that come with the sets: all layers are to be seen at
+/// once.
+constexpr std::int64_t rows_at_first = 4;
+
 /// One line that a person can read.
 std::string reason(const std::exception& error) {
     if (dynamic_cast<const std::bad_alloc*>(&error)) return "not enough memory for this layer";
@@ -28,6 +32,7 @@ Worker::Task SetLoader::next_task() {
 
 void SetLoader::work(SetJob& job) {
     try {
+        if (job.task == SetTask::sample) sample(job);
         if (job.task == SetTask::load) load(job);
         if (job.task == SetTask::arrange) arrange(job);
         if (job.task == SetTask::describe) describe(job);
@@ -38,14 +43,32 @@ void SetLoader::work(SetJob& job) {
     }
 }
 
+/// What cannot be sampled cannot be read either: load() says why.
+void SetLoader::sample(const SetJob& job) try {
+    Progress progress;
+    progress.cancelled = &job.cancelled;
+    std::optional<SetSample> there = sample_set_(job.source, job.name, progress);
+    if (!there || there->set.size() == 0 || there->set.stars) return;
+    GrowingSet::Sample sample;
+    sample.box = bounds(there->set);
+    sample.set = std::make_shared<const SplatSet>(std::move(there->set));
+    sample.kept = there->splats;
+    auto layer = std::make_shared<const LoadedLayer>(growing_layer(sample, job.source, job.name));
+    const auto held = worker_.lock();
+    list_.show_sample(job, std::move(layer));
+} catch (const InputError&) {
+} catch (const std::bad_alloc&) {
+}
+
 /// The set, and what the preview needs to begin.
 void SetLoader::load(SetJob& job) {
     Progress progress;
     progress.cancelled = &job.cancelled;
     progress.report = [&](double fraction) { job.progress = static_cast<float>(fraction); };
     auto set = std::make_shared<const SplatSet>(load_set_(job.source, job.name, progress, job.growing));
-    auto layer =
-        std::make_shared<LoadedLayer>(whole_layer(std::move(set), job.source, job.name, sample_limit_));
+    const MergeSource* const sample = job.sampled ? &job.sampled->sample : nullptr;
+    auto layer = std::make_shared<LoadedLayer>(
+        whole_layer(std::move(set), job.source, job.name, sample_limit_, sample));
     layer->columns = job.growing.columns();
 
     SetList::Layer old;  // let go after the lock
@@ -75,11 +98,18 @@ SetLoader::SetLoader(const SetCache& cache, std::int64_t sample_limit)
     : SetLoader(
           [cache](const SourceParams& source, const std::string& name, const Progress& progress,
                   KeptWatcher& watcher) { return load_source(cache, source, name, progress, &watcher).set; },
+          [cache, rows = sample_limit / rows_at_first](const SourceParams& source, const std::string& name,
+                                                       const Progress& progress) {
+              return sample_there(cache, source, name, rows, progress);
+          },
           sample_limit) {
     trees_ = cache;
 }
-SetLoader::SetLoader(Load load, std::int64_t sample_limit)
-    : load_set_(std::move(load)), sample_limit_(sample_limit), list_(sample_limit) {}
+SetLoader::SetLoader(Load load, Sample sample, std::int64_t sample_limit)
+    : load_set_(std::move(load)),
+      sample_set_(std::move(sample)),
+      sample_limit_(sample_limit),
+      list_(sample_limit, sample_set_ != nullptr) {}
 
 SetLoader::~SetLoader() {
     const auto held = worker_.lock();

@@ -1,16 +1,20 @@
 // Loads and generates layers' sets in the background, newest wish first. In: a layer's source. Out: the set,
-// samples of it, its tree for the preview, and its histograms.
+// samples of it, its tree for the preview, and its histograms. Of sets that are kept or lie in a file samples
+// of all layers come first, in a fraction of the time.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/worker.h"
 #include "edit/status.h"
 #include "scene/scene.h"
 #include "sets/set_cache.h"
+#include "sets/set_sample.h"
 #include "viewer/loaded_layer.h"
 #include "viewer/set_list.h"
 
@@ -21,11 +25,16 @@ class SetLoader {
     /// Loads or generates a set, as load_source does, and tells the watcher of it.
     using Load = std::function<SplatSet(const SourceParams& source, const std::string& layer_name,
                                         const Progress& progress, KeptWatcher& watcher)>;
+    /// Some rows of a set that is there to be read; nothing where it is not.
+    using Sample = std::function<std::optional<SetSample>(
+        const SourceParams& source, const std::string& layer_name, const Progress& progress)>;
 
     /// `sample_limit`: splats of a layer that is shown before its tree is there.
     SetLoader(const SetCache& cache, std::int64_t sample_limit);
-    /// Sets come from `load`, called in another thread; no trees are kept.
-    SetLoader(Load load, std::int64_t sample_limit);
+    /// Sets come from `load`, and samples before them from `sample`, which may be empty; both are called in
+    /// another thread. No trees are kept.
+    SetLoader(Load load, Sample sample, std::int64_t sample_limit);
+    SetLoader(Load load, std::int64_t sample_limit) : SetLoader(std::move(load), {}, sample_limit) {}
     ~SetLoader();  // cancels and waits
 
     /// Makes sure that every layer of the scene has its set or is on its way: starts what is missing or
@@ -64,12 +73,14 @@ class SetLoader {
     Worker::Task next_task();
     // In the worker's thread:
     void work(SetJob& job);
+    void sample(const SetJob& job);
     void load(SetJob& job);
     void arrange(const SetJob& job);
     void describe(const SetJob& job);
     void replace(const SetJob& job, LoadedLayer layer);
 
     Load load_set_;
+    Sample sample_set_;
     SetCache trees_;  // where those of large sets are kept
     std::int64_t sample_limit_;
     SetList list_;  // used with the worker's lock

@@ -32,22 +32,24 @@ std::int64_t rows_of(std::int64_t all) {
     return std::min(all, std::max(enough, static_cast<std::int64_t>(share * static_cast<double>(all))));
 }
 
-SplatSet sample_file(const NativeBlocks& file) { return file.sample(rows_of(file.splats())); }
+SplatSet sample_file(const NativeBlocks& file, std::int64_t rows) {
+    return file.sample(rows > 0 ? rows : rows_of(file.splats()));
+}
 
-SetSample sample_whole(const fs::path& path) {
+SetSample sample_whole(const fs::path& path, std::int64_t rows) {
     const NativeBlocks file(path);
-    return {sample_file(file), file.splats()};
+    return {sample_file(file, rows), file.splats()};
 }
 
 /// Of geometry and texels, whose rows are the same splats'.
-SetSample sample_columns(const SetCache& cache, const Recipe& recipe) {
+SetSample sample_columns(const SetCache& cache, const Recipe& recipe, std::int64_t rows) {
     const NativeBlocks texels(texel_file(cache, recipe.name), NativePart::colors);
     const std::string beginning = texel_recipe(recipe, "");
     if (!texels.facts().recipe.starts_with(beginning)) throw InputError("made of something else");
     const NativeBlocks geometry(set_file(cache, texels.facts().recipe.substr(beginning.size())),
                                 NativePart::geometry);
     if (geometry.splats() != texels.splats()) throw InputError("not of these texels");
-    SplatSet set = sample_file(geometry), colors = sample_file(texels);
+    SplatSet set = sample_file(geometry, rows), colors = sample_file(texels, rows);
     const auto positions = static_cast<double>(set.size());
     set.color = std::move(colors.color);
     set.alpha = std::move(colors.alpha);
@@ -110,19 +112,20 @@ SetSample sample_all(SplatSet set) {
 }  // namespace
 
 std::optional<SetSample> sample_there(const SetCache& cache, const SourceParams& source,
-                                      const std::string& layer_name) try {
+                                      const std::string& layer_name, std::int64_t rows,
+                                      const Progress& progress) try {
     if (source.kind == SourceKind::splats) {
         const FileFormat* const format = format_of_file(source.file);
-        return format && format->id == std::string_view("splats") ? std::optional(sample_whole(source.file))
-                                                                  : std::nullopt;
+        if (!format || format->id != std::string_view("splats")) return std::nullopt;
+        return sample_whole(source.file, rows);
     }
     if (cache.folder.empty() || source.kind != SourceKind::mesh) return std::nullopt;
-    const Recipe recipe = recipe_of(source, layer_name);
+    const Recipe recipe = recipe_of(source, layer_name, progress);
     const bool columns = makes_columns(source);
     const fs::path file = columns ? texel_file(cache, recipe.name) : set_file(cache, recipe.name);
     std::error_code error;
     if (recipe.name.empty() || !fs::is_regular_file(file, error)) return std::nullopt;
-    return columns ? sample_columns(cache, recipe) : sample_whole(file);
+    return columns ? sample_columns(cache, recipe, rows) : sample_whole(file, rows);
 } catch (const InputError&) {
     return std::nullopt;
 }

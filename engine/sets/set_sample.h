@@ -24,11 +24,13 @@ struct SetSample {
     }
 };
 
-/// Of a set that is in the cache, or of a .splats file: at once. Of small sets more than a hundredth, up to
-/// all of them: about 100,000 splats. Nothing where the set has to be made, or its file to be read as a
-/// whole, or where it cannot be used: then load_source says why.
+/// Of a set that is in the cache, or of a .splats file: at once. About so many rows, those of splats without
+/// light counted; with 0 a hundredth, of small sets more, up to all of them: about 100,000. Nothing where the
+/// set has to be made, or its file to be read as a whole, or where it cannot be used: then load_source says
+/// why. Throws Cancelled.
 std::optional<SetSample> sample_there(const SetCache& cache, const SourceParams& source,
-                                      const std::string& layer_name);
+                                      const std::string& layer_name, std::int64_t rows = 0,
+                                      const Progress& progress = {});
 
 /// That, or else a sample that is made; of splat files of other formats and of catalogues some of all rows.
 /// Not for stars of a picture (is_like_a_layer). Nothing is kept. Throws as load_source does.

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "core/file.h"
 #include "splat_files/checksum.h"
@@ -109,6 +111,7 @@ Bounds NativeBlocks::box(std::size_t block) const {
     return {glm::dvec3(entry.lo), glm::dvec3(entry.hi)};
 }
 
+// Through a mapping: of so many small reads the calls would take longer than all else.
 SplatSet NativeBlocks::sample(std::int64_t rows_wanted) const {
     // Neighbours are alike: of longer runs a sample says less. Of single rows it takes longer to read.
     constexpr std::int64_t at_once = 4;
@@ -119,21 +122,35 @@ SplatSet NativeBlocks::sample(std::int64_t rows_wanted) const {
     const std::int64_t places = std::min((rows_wanted + at_once - 1) / at_once, all);
     const double stride = places == all ? static_cast<double>(at_once)
                                         : static_cast<double>(splats()) / static_cast<double>(places);
-    for (std::int64_t n = 0; n < places; ++n) {
-        const auto row = static_cast<std::size_t>(static_cast<double>(n) * stride);
-        const std::size_t block = row / state.layout.header.block, first = row % state.layout.header.block;
-        const std::size_t rows = state.rows(block), count = std::min<std::size_t>(at_once, rows - first);
-        std::size_t offset = state.offset(block);
-        for_each_column([&](auto column, SplatColumn which) {
-            if (!has(which)) return;
-            auto& array = out.*column;
-            const std::size_t size = sizeof array[0], end = array.size();
-            array.resize(end + count);
-            state.read_at(offset + first * size, reinterpret_cast<char*>(array.data() + end), count * size);
-            offset += rows * size;
-        });
-    }
-    return out;
+    return read_mapped(state.path, [&](std::string_view bytes) {
+        if (static_cast<std::int64_t>(bytes.size()) != state.file.size())
+            throw InputError(
+                fmt::format("{}: cannot be read: it was changed while it was read", state.path.string()));
+        std::size_t in_memory = 0;  // block
+        for (std::int64_t n = 0; n < places; ++n) {
+            const auto row = static_cast<std::size_t>(static_cast<double>(n) * stride);
+            const std::size_t block = row / state.layout.header.block,
+                              first = row % state.layout.header.block;
+            if (const std::size_t before = std::exchange(in_memory, block); before != block)
+                forget_pages(bytes.substr(state.offset(before), state.offset(block) - state.offset(before)));
+            const std::size_t rows = state.rows(block), count = std::min<std::size_t>(at_once, rows - first);
+            std::size_t offset = state.offset(block);
+            for_each_column([&](auto column, SplatColumn which) {
+                if (!has(which)) return;
+                auto& array = out.*column;
+                const std::size_t size = sizeof array[0], end = array.size();
+                array.resize(end + count);
+                std::memcpy(array.data() + end, bytes.data() + offset + first * size, count * size);
+                offset += rows * size;
+            });
+        }
+        bool finite = true;
+        for_each_column([&](auto column, SplatColumn) { finite &= all_finite(out.*column); });
+        if (!finite)
+            throw InputError(
+                fmt::format("{}: expected finite numbers, found infinity or NaN", state.path.string()));
+        return std::move(out);
+    });
 }
 
 void NativeBlocks::read(std::size_t block, const OptionalColumns& wanted, Check check, SplatSet& out) const {

@@ -33,8 +33,8 @@ class NativeBlocks {
     /// Check::all also what read_native checks. From any thread, several at a time. Throws InputError.
     void read(std::size_t block, const OptionalColumns& wanted, Check check, SplatSet& out) const;
 
-    /// About so many rows, evenly spread over the file, with all columns that are there; unchecked. All of
-    /// them where there are no more.
+    /// About so many rows, evenly spread over the file, with all columns that are there. All of them where
+    /// there are no more. Of checks only whether numbers are finite. Throws InputError.
     SplatSet sample(std::int64_t rows_wanted) const;
 
   private:

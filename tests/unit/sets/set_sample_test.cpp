@@ -79,6 +79,18 @@ TEST_F(SetSampleTest, OfWhatIsKeptItHoldsRows) {
     }
 }
 
+TEST_F(SetSampleTest, ItHasAsManyRowsAsAreAskedFor) {
+    for (const SourceParams& source : {columns_, bodies_}) {
+        load_source(cache_, source, "a");
+        const SetSample usual = sample_there(cache_, source, "a").value();
+        const SetSample small = sample_there(cache_, source, "a", 5000).value();
+        const double rows = 0.05 * static_cast<double>(usual.set.size());
+        EXPECT_NEAR(static_cast<double>(small.set.size()), rows, 0.05 * rows);
+        EXPECT_NEAR(static_cast<double>(small.splats), static_cast<double>(usual.splats),
+                    0.03 * static_cast<double>(usual.splats));
+    }
+}
+
 TEST_F(SetSampleTest, OfWhatIsNotKeptItIsMadeAsWide) {
     for (const SourceParams& source : {columns_, bodies_}) {
         const SetSample sample = sample_set(cache_, source, "a");
@@ -117,6 +129,17 @@ TEST_F(SetSampleTest, OfASplatFileItHoldsRowsWhateverItsFormat) {
 TEST_F(SetSampleTest, WhatIsDamagedIsNotThere) {
     load_source(cache_, bodies_, "a");
     fs::resize_file(cache_.folder / (recipe_of(bodies_, "a").name + ".splats"), 5000);
+    EXPECT_FALSE(sample_there(cache_, bodies_, "a"));
+}
+
+TEST_F(SetSampleTest, NumbersThatAreNoneAreNotThere) {
+    load_source(cache_, bodies_, "a");
+    const fs::path file = cache_.folder / (recipe_of(bodies_, "a").name + ".splats");
+    ASSERT_TRUE(sample_there(cache_, bodies_, "a"));
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(fs::file_size(file) / 4));
+    bytes << std::string(1 << 20, '\xff');  // as floats not a number
+    bytes.close();
     EXPECT_FALSE(sample_there(cache_, bodies_, "a"));
 }
 

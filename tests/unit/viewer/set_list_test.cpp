@@ -20,7 +20,7 @@ class SetListTest : public testing::Test {
     std::string begun() {
         if (!list.next_task()) return "";
         job = list.begin_next();
-        static constexpr const char* names[] = {"load ", "arrange ", "describe "};
+        static constexpr const char* names[] = {"sample ", "load ", "arrange ", "describe "};
         return names[static_cast<int>(job->task)] + job->name;
     }
     /// What a job would bring.
@@ -55,6 +55,55 @@ TEST_F(SetListTest, TheNewestWishComesFirst) {
     keep(true);
     EXPECT_EQ(begun(), "");
     EXPECT_TRUE(list.resting());
+}
+
+TEST_F(SetListTest, SamplesOfAllLayersComeBeforeAnySet) {
+    list = SetList(1000, true);
+    add_layer("gas");
+    add_layer("dust");
+    list.want(scene);
+    EXPECT_EQ(begun(), "sample gas");
+    const SetList::Layer sampled = result(false);
+    const std::uint64_t revision = list.revision();
+    list.show_sample(*job, sampled);
+    list.end();
+    EXPECT_GT(list.revision(), revision);
+    EXPECT_EQ(list.shown("gas"), sampled);
+    EXPECT_TRUE(list.status(scene.layers[0]).loading);
+    EXPECT_EQ(begun(), "sample dust");
+    list.end();  // of which there was none
+    EXPECT_TRUE(list.loading());
+    EXPECT_EQ(begun(), "load gas");
+    EXPECT_EQ(job->sampled, sampled);
+    keep(true);
+    EXPECT_NE(list.shown("gas"), sampled);
+    EXPECT_EQ(begun(), "load dust");
+    EXPECT_FALSE(job->sampled);
+    keep(true);
+    scene.layers[0].source.count = 7;
+    list.want(scene);
+    EXPECT_EQ(begun(), "load gas") << "the old set is shown";
+    EXPECT_FALSE(job->sampled);
+}
+
+TEST_F(SetListTest, ASampleGoesWithItsWish) {
+    for (const bool fails : {false, true}) {
+        list = SetList(1000, true);
+        scene.layers.clear();
+        add_layer("gas");
+        list.want(scene);
+        EXPECT_EQ(begun(), "sample gas");
+        list.show_sample(*job, result(false));
+        list.end();
+        EXPECT_TRUE(list.shown("gas"));
+        if (fails) {
+            EXPECT_EQ(begun(), "load gas");
+            list.fail(*job, "damaged");
+        } else {
+            list.cancel("gas");
+        }
+        EXPECT_FALSE(list.shown("gas"));
+    }
 }
 
 TEST_F(SetListTest, HowStarsLookMakesNoOtherSet) {

@@ -10,8 +10,11 @@
 #include <functional>
 #include <mutex>
 #include <numeric>
+#include <optional>
+#include <thread>
 #include <utility>
 
+#include "core/error.h"
 #include "sets/load_source.h"
 #include "splat_files/ply.h"
 #include "support/small_scene.h"
@@ -272,6 +275,54 @@ TEST_F(GrowingSetsTest, ASetIsSeenGrowingAndThenWhole) {
     EXPECT_TRUE(std::equal(wanted.id.begin(), wanted.id.end(), whole->set->id.begin(), whole->set->id.end()));
     EXPECT_TRUE(std::equal(wanted.position.begin(), wanted.position.end(), whole->set->position.begin()));
     EXPECT_NEAR(growing->radius.x, whole->radius.x, 1e-12);
+}
+
+TEST_F(GrowingSetsTest, WhatIsKeptIsSeenBeforeItIsRead) {
+    const SetCache cache{small.folder / "cache"};
+    const SplatSet wanted = load_source(cache, gas().source, gas().name).set;
+    HeldGeneration held(0.0);
+    SetLoader loader(
+        std::ref(held),
+        [&](const SourceParams& source, const std::string& name, const Progress& progress) {
+            return sample_there(cache, source, name, 20000, progress);
+        },
+        limit / 8);
+    loader.want(small.scene);
+    held.wait();
+    const auto sampled = loader.layer("gas");
+    ASSERT_TRUE(sampled);
+    EXPECT_FALSE(sampled->set) << "what is not whole is no final picture";
+    EXPECT_NEAR(static_cast<double>(sampled->sample.set->size()), 20000.0, 4.0);
+    const auto splats = static_cast<double>(wanted.size());
+    EXPECT_NEAR(static_cast<double>(sampled->splats), splats, 0.01 * splats);
+    EXPECT_NEAR(sampled->sample.weight, splats / 20000.0, 0.01 * splats / 20000.0);
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(sampled->box.hi[axis], bounds(wanted).hi[axis], 0.05) << axis;
+    EXPECT_TRUE(loader.status(gas()).loading);
+    EXPECT_FALSE(loader.sets_there());
+    loader.hold(true);
+    held.go_on();
+    while (!loader.sets_there()) std::this_thread::yield();
+    const auto whole = loader.layer("gas");
+    ASSERT_TRUE(whole && whole->set);
+    EXPECT_EQ(whole->set->size(), wanted.size());
+    EXPECT_EQ(whole->sample, sampled->sample) << "which would be looked at and merged once more";
+    EXPECT_FALSE(whole->arranged);
+    loader.hold(false);
+    loader.wait();
+    EXPECT_TRUE(loader.layer("gas")->arranged);
+}
+
+TEST_F(GrowingSetsTest, WhatCannotBeSampledIsLoadedAllTheSame) {
+    SetLoader loader([](const SourceParams& source, const std::string& name, const Progress& progress,
+                        KeptWatcher&) { return load_source(source, name, progress); },
+                     [](const SourceParams&, const std::string&,
+                        const Progress&) -> std::optional<SetSample> { throw InputError("damaged"); },
+                     limit);
+    loader.want(small.scene);
+    loader.wait();
+    EXPECT_TRUE(loader.layer("gas")->set);
+    EXPECT_EQ(loader.status(gas()).error, "");
 }
 
 TEST_F(GrowingSetsTest, WhatGrewIsGoneWhenCancelled) {
