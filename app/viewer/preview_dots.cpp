@@ -94,6 +94,12 @@ std::optional<SumsRequest> PreviewDots::missing() const {
     return std::nullopt;
 }
 
+bool PreviewDots::whole() const {
+    return std::ranges::all_of(layers_, [](const Layer& layer) {
+        return !layer.sample.tree || layer.sample.weight <= 1.0f || layer.best() != layer.of_sample;
+    });
+}
+
 bool PreviewDots::refine(double now) {
     constexpr double rest_s = 0.1;
     if (std::exchange(looks_changed_, false)) at_rest_since_ = now;

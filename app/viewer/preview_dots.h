@@ -46,6 +46,8 @@ class PreviewDots {
              const Camera& camera, const CutSettings& settings, float pixel_filter);
     /// The last cut was of samples where whole sets could be.
     bool lacks_sums() const { return missing().has_value(); }
+    /// It was of whole sets: one of more dots would show more.
+    bool whole() const;
     /// Goes on making them in the background, once looks have been at rest for a while: sums of a look that
     /// is dragged come too late, and take the processor from its preview. True: there are more of them now.
     /// `now` in seconds.

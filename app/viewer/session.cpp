@@ -99,6 +99,24 @@ Command::Kind command_for(FileKind kind, bool fresh) {
     return fresh ? Command::Kind::new_from_file : Command::Kind::import_file;
 }
 
+/// Until what is seen, or is worked out of it, may change by itself; idle_due_s: it will not.
+double due_of_view(const Session& session, double now) {
+    if (!session.status.rendered_frame.empty()) return session.rendered.working() ? 0.03 : 1.0;
+    if (session.sets.following()) return 0.004;
+    if (!session.sets.wanted(session.document.scene())) return 0.1;
+    if (!session.view_frame.exact()) return 0.02;
+    const ViewFrameState reached = session.view_frame.status().state;
+    if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;
+    if (reached == ViewFrameState::preview && session.view.settle) return session.view_frame.due(now);
+    if (session.difference.waiting() || session.comparison.reference().working() ||
+        session.alignment.working())
+        return 0.1;
+    if (session.view.compare == CompareMode::blink)
+        return (std::floor(now * session.view.blink_hz) + 1.0) / session.view.blink_hz - now;
+    if (session.front.working() || session.preparation.working() || session.finished.working()) return 0.1;
+    return idle_due_s;  // to look at the disk and autosave
+}
+
 }  // namespace
 
 Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
@@ -234,22 +252,12 @@ void drop(Session& session, const std::vector<fs::path>& files) {
 }
 
 double next_due(const Session& session, double now) {
-    if (!session.sets.loader().idle() || session.jobs.running()) return 0.1;
+    constexpr double first_picture_s = 0.02, at_work_s = 0.1;
+    const SetLoader& loader = session.sets.loader();
+    if (!loader.sets_there()) return session.view_frame.status().shown == 0 ? first_picture_s : at_work_s;
     if (session.view.playing) return 0.0;
-    if (!session.status.rendered_frame.empty()) return session.rendered.working() ? 0.03 : 1.0;
-    if (session.sets.following()) return 0.004;
-    if (!session.sets.wanted(session.document.scene())) return 0.1;
-    if (!session.view_frame.exact()) return 0.02;
-    const ViewFrameState reached = session.view_frame.status().state;
-    if (reached == ViewFrameState::refining || session.comparison.waiting()) return 0.03;
-    if (reached == ViewFrameState::preview && session.view.settle) return session.view_frame.due(now);
-    if (session.difference.waiting() || session.comparison.reference().working() ||
-        session.alignment.working())
-        return 0.1;
-    if (session.view.compare == CompareMode::blink)
-        return (std::floor(now * session.view.blink_hz) + 1.0) / session.view.blink_hz - now;
-    if (session.front.working() || session.preparation.working() || session.finished.working()) return 0.1;
-    return idle_due_s;  // to look at the disk and autosave
+    const bool at_work = !loader.idle() || session.jobs.running();
+    return std::min(at_work ? at_work_s : idle_due_s, due_of_view(session, now));
 }
 
 bool preview_exact(const Session& session) { return session.view_frame.exact() && session.sets.same_sets(); }

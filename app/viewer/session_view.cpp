@@ -255,7 +255,8 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     if (!from_disk) session.view_frame.show(session.request, choice, may_settle, now, hurry);
     if (new_sets) session.sets.drew_new_sets(thread_seconds() - start);
     const ViewFrameState reached = session.view_frame.status().state;
-    session.sets.loader().hold(reached == ViewFrameState::refining);
+    const bool settles = session.view.settle && !session.view.playing;
+    session.sets.loader().hold(settles && !from_disk && session.view_frame.final_is_next(now));
 
     session.color.update(scene.output.ocio, session.view.panels && session.view.tab == PanelTab::output);
     session.status.color = session.color.status();

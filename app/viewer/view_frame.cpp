@@ -17,7 +17,7 @@ bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr
     return (a ? set_of(*a) : nullptr) == (b ? set_of(*b) : nullptr);
 }
 
-constexpr double rest_s = 0.3;       // without a change, before the final frame begins
+constexpr double rest_s = 0.3;       // without a touch, before the final frame begins
 constexpr double step_rest_s = 0.1;  // and before the first finer preview does
 constexpr double step_s = 0.4;       // such a preview takes at most
 constexpr double quick_s = 0.3;      // final frames that take less come without
@@ -31,12 +31,14 @@ Region whole(const ViewRequest& request) {
 
 }  // namespace
 
-bool ViewRequest::operator==(const ViewRequest& other) const {
+bool ViewRequest::asks_as(const ViewRequest& other) const {
     return width == other.width && height == other.height && files == other.files && frame == other.frame &&
            region.x == other.region.x && region.y == other.region.y && region.width == other.region.width &&
-           region.height == other.region.height &&
-           std::equal(layers.begin(), layers.end(), other.layers.begin(), other.layers.end(), same_set) &&
-           scene == other.scene;
+           region.height == other.region.height && scene == other.scene;
+}
+
+bool ViewRequest::has_sets_of(const ViewRequest& other) const {
+    return std::equal(layers.begin(), layers.end(), other.layers.begin(), other.layers.end(), same_set);
 }
 
 Camera camera_of(const ViewRequest& request) {
@@ -190,12 +192,13 @@ void ViewFrame::draw_preview(double now) {
 /// Steps of finer previews come before the final frame, where that takes its time.
 bool ViewFrame::takes_steps(bool hurry) const {
     const bool quick = final_s_ >= 0.0 && final_s_ < quick_s;
-    return !hurry && !quick && !draws_by_opengl() && choice_.share == 0.0f && share_of_step(step_ + 1) > 0.0;
+    return !hurry && !quick && dots_.whole() && !draws_by_opengl() && choice_.share == 0.0f &&
+           share_of_step(step_ + 1) > 0.0;
 }
 
 /// Begins the next step, or passes it over where it would show little more. False: none is left.
 bool ViewFrame::step_is_due(double now) {
-    if (now - changed_at_ < step_rest_s) return true;
+    if (now - touched_at_ < step_rest_s) return true;
     const double most_s = choice_.splats > 0 ? 0.0 : step_s;
     for (++step_; share_of_step(step_) > 0.0; ++step_)
         if (const std::int64_t dots = dots_of_step(step_, status_.total, status_.shown, draw_s_, most_s)) {
@@ -290,15 +293,16 @@ void ViewFrame::take_final(double now) {
 
 void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
                      bool hurry) {
-    const bool changed = !request_ || !(*request_ == request) || choice_.opengl != choice.opengl ||
-                         choice_.share != choice.share || environment_arrived();
+    const bool touched = !request_ || !request_->asks_as(request) || choice_.opengl != choice.opengl ||
+                         choice_.share != choice.share;
+    const bool changed = touched || !request_->has_sets_of(request) || environment_arrived();
     const bool refined = request_ && refine(now);
     const bool fuller = !changed && !final_started_ && (refined || previews_arrived(request));
     if (changed || fuller || (gl_ && gl_->sorting())) {
         final_.cancel();
         final_started_ = false;
         end_steps();
-        if (changed) changed_at_ = now;
+        if (touched) touched_at_ = now;
         request_ = request;
         choice_ = choice;
         try {
@@ -314,8 +318,8 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
     if (!final_started_) {
         if (files_->loading()) return;
         if (stepping_ && !take_step()) return;
-        if (settle && !dots_.lacks_sums() && takes_steps(hurry) && step_is_due(now)) return;
-        if (settle && (hurry || now - changed_at_ >= rest_s)) begin_final();
+        if (settle && takes_steps(hurry) && step_is_due(now)) return;
+        if (settle && (hurry || now - touched_at_ >= rest_s)) begin_final();
     } else if (status_.state == ViewFrameState::refining) {
         take_final(now);
     }
@@ -334,7 +338,12 @@ Image ViewFrame::read() const {
 double ViewFrame::due(double now) const {
     constexpr double soon_s = 0.02;  // steps end by themselves
     if (stepping_ || takes_steps(false)) return soon_s;
-    return std::max(0.0, changed_at_ + rest_s - now);
+    return std::max(0.0, touched_at_ + rest_s - now);
+}
+
+bool ViewFrame::final_is_next(double now) const {
+    const bool waits = status_.state == ViewFrameState::loading || status_.state == ViewFrameState::preview;
+    return status_.state == ViewFrameState::refining || (waits && now - touched_at_ >= rest_s);
 }
 
 bool ViewFrame::exact() const {

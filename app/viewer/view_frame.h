@@ -25,7 +25,7 @@
 
 namespace astrosplat {
 
-/// What is to be seen. Equal requests show equal frames.
+/// What is to be seen. Requests that ask for the same and have the same sets show equal frames.
 struct ViewRequest {
     Scene scene;  // as it stands at the frame, with the view's camera; layers that are not to be seen are
                   // invisible
@@ -35,7 +35,9 @@ struct ViewRequest {
     std::uint64_t files = 0;                                 // another number: pictures were changed on disk
     double frame = 1.0;  // at which the scene's animation, if it has kept any, is evaluated
     Region region;       // the part to be seen; empty: all
-    bool operator==(const ViewRequest& other) const;
+    /// Nobody asks for anything else, whatever sets there are.
+    bool asks_as(const ViewRequest& other) const;
+    bool has_sets_of(const ViewRequest& other) const;
 };
 
 /// The camera of a request, for its whole frame. Throws InputError.
@@ -56,7 +58,7 @@ class ViewFrame {
     explicit ViewFrame(std::shared_ptr<PictureFiles> files) : files_(std::move(files)) {}
 
     /// Shows `request`: draws a preview where it differs from the last one, else goes on towards the final
-    /// frame once nothing has changed for 0.3 s (`settle`; `hurry`: at once). `now` in seconds.
+    /// frame once nobody has touched anything for 0.3 s (`settle`; `hurry`: at once). `now` in seconds.
     void show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
               bool hurry = false);
     unsigned texture() const { return texture_; }
@@ -73,6 +75,8 @@ class ViewFrame {
     const std::vector<std::int64_t>& kept() const { return kept_; }
     /// The preview is that of the present request, in order.
     bool exact() const;
+    /// The hand rests, and the final frame is being made or will be as soon as everything is there for it.
+    bool final_is_next(double now) const;
     /// Seconds until the final frame may begin.
     double due(double now) const;
     /// Linear RGBA as shown, region-sized; null while only the GPU has it.
@@ -123,7 +127,7 @@ class ViewFrame {
     double final_s_ = -1.0;       // the last final frame; below 0: there was none
     Image finer_image_;
     bool final_started_ = false;
-    double changed_at_ = 0.0;
+    double touched_at_ = 0.0;
     ImageTexture canvas_texture_;
     const Image* drawn_ = nullptr;  // the processor's preview; null while the GPU's is shown
     Image canvas_;                  // preview and tiles of the final frame, once that has begun

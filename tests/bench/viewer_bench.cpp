@@ -166,17 +166,22 @@ std::string shown_of(const ViewFrameStatus& picture) {
     return fmt::format(", {} of {} thousand splats", picture.shown / 1000, picture.total / 1000);
 }
 
+/// As the window starts: it settles by itself.
 void measure_start(Viewer& viewer, double started, double processor_started) {
-    viewer.session().view.settle = false;
-    viewer.run_until([&] { return viewer.session().status.view_frame.shown > 0; });
+    const auto print_since_start = [&](const std::string& what, const std::string& target) {
+        print_row(what, target, fmt::format("{:.2f} s", seconds_now() - started),
+                  fmt::format("processor {:.2f} s", processor_seconds() - processor_started));
+    };
+    Session& session = viewer.session();
+    viewer.run_until([&] { return session.status.view_frame.shown > 0; });
     viewer.frame();
-    print_row("start to first picture", "<= 1.5 s", fmt::format("{:.2f} s", seconds_now() - started),
-              fmt::format("processor {:.2f} s", processor_seconds() - processor_started));
-    viewer.run_until([&] {
-        return viewer.session().sets.loaded(viewer.session().document) && preview_exact(viewer.session());
-    });
-    print_row("start to all layers and environment", "", fmt::format("{:.2f} s", seconds_now() - started),
-              fmt::format("processor {:.2f} s", processor_seconds() - processor_started));
+    print_since_start("start to first picture", "<= 1.0 s");
+    viewer.run_until([&] { return session.status.view_frame.state == ViewFrameState::refining; });
+    print_since_start("start to the final frame's beginning", "");
+    viewer.settle();
+    print_since_start("start to final picture", "<= 3 s");
+    viewer.run_until([&] { return session.sets.loaded(session.document) && preview_exact(session); });
+    print_since_start("start to all that comes later: trees, histograms", "");
 }
 
 /// From the last touch, the 0.3 s of rest included.
@@ -350,7 +355,7 @@ void measure_session(const ViewerOptions& options, const GlInfo& gl, const Parts
         wanted("settle")) {
         Viewer viewer(options, gl, 960, 540, false);
         measure_start(viewer, started, processor_started);
-        measure_viewport(viewer, wanted);
+        if (wanted.names != std::vector<std::string>{"start"}) measure_viewport(viewer, wanted);
     }
     if (wanted("window") || wanted("idle")) {
         Viewer viewer(options, gl, 1600, 900, true);
