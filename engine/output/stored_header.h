@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "camera/camera.h"
+#include "core/image.h"
 
 namespace astrosplat {
 

@@ -11,6 +11,8 @@
 #include "core/log.h"
 #include "core/text.h"
 #include "scene/csv_tracks.h"
+#include "scene/parameter.h"
+#include "scene/value.h"
 
 namespace astrosplat {
 namespace {
