@@ -10,7 +10,7 @@ const Image& CpuPreview::draw(const std::vector<PreviewLayer>& layers, const Cam
     std::vector<RenderLayer> visible;
     for (const PreviewLayer& layer : layers) {
         visible.push_back(layer.layer);
-        visible.back().render.lod.max_px = 0.0f;
+        visible.back().render.lod = {};
     }
     RenderSettings settings;
     settings.width = width;

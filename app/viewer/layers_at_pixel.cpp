@@ -42,7 +42,7 @@ std::vector<float> light_of_layers(const std::vector<PreviewLayer>& layers, cons
     std::vector<RenderLayer> drawn;
     for (const PreviewLayer& layer : layers) {
         drawn.push_back(layer.layer);
-        drawn.back().render.lod.max_px = 0.0f;
+        drawn.back().render.lod = {};
     }
     RenderSettings settings = settings_at(view, x, y);
     settings.aov_layers = true;

@@ -6,9 +6,11 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "render/child_noise.h"
+#include "render/near_star.h"
 #include "render/project_stars.h"
 #include "render/shared_render.h"
 #include "render/spectrum.h"
+#include "splats/star_id.h"
 
 namespace astrosplat {
 namespace {
@@ -32,9 +34,11 @@ float largest_light(std::span<const RenderLayer> layers, const Progress& progres
     for (const RenderLayer& layer : layers) {
         if (layer.stars) continue;  // largest_star_light
         const LevelOfDetail& lod = layer.render.lod;
-        const float structure = lod.max_px > 0.0f ? largest_child_light(lod.noise) : 1.0f;
+        const float structure = lod.max_px > 0.0f ? largest_child_light(lod.noise) : 1.0f,
+                    star = stars_stay_points(layer.render) ? brightest_near_star / structure : 1.0f;
         if (layer.blocks) {
-            largest = std::max(largest, layer.blocks->largest_light() * layer.render.opacity * structure);
+            largest = std::max(largest, layer.blocks->largest_light() * layer.render.opacity * structure *
+                                            std::max(1.0f, star));
             continue;
         }
         const ShadedSplats& splats = *layer.splats;
@@ -44,7 +48,8 @@ float largest_light(std::span<const RenderLayer> layers, const Progress& progres
             float most = 0.0f;
             for (std::int64_t i = begin; i < end; ++i) {
                 const glm::vec3& c = splats.color[i];
-                most = std::max(most, splats.alpha[i] * std::max({c.x, c.y, c.z}));
+                const float nearest = is_star(splats.id[i]) ? star : 1.0f;
+                most = std::max(most, splats.alpha[i] * std::max({c.x, c.y, c.z}) * nearest);
             }
             partial[begin / chunk] = most;
         });

@@ -25,9 +25,10 @@ constexpr auto names_of(Blend) {
 }
 
 struct LevelOfDetail {
-    float max_px = 0.0f;      // projected diameter at 1080 lines above which a splat is split; 0: off
-    int max_children = 4096;  // largest number of children
-    float noise = 0.0f;       // 0..2: how much structure the children's light has; 0: none
+    float max_px = 0.0f;         // projected diameter at 1080 lines above which a splat is split; 0: off
+    int max_children = 4096;     // largest number of children
+    float noise = 0.0f;          // 0..2: how much structure the children's light has; 0: none
+    float star_distance = 0.0f;  // scene units from the camera, within which stars stay points; 0: off
     bool operator==(const LevelOfDetail&) const = default;
 };
 
@@ -48,6 +49,11 @@ struct LayerRender {
     BlendSpace space = BlendSpace::linear;
     bool operator==(const LayerRender&) const = default;
 };
+
+/// Whether lod.star_distance acts: mixed otherwise, a star that is smaller and brighter has another light.
+inline bool stars_stay_points(const LayerRender& render) {
+    return render.lod.star_distance > 0.0f && (render.blend == Blend::over || render.blend == Blend::add);
+}
 
 /// Whether the layer is composited in display values.
 inline bool is_encoded(const LayerRender& render) {

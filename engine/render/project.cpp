@@ -7,6 +7,7 @@
 
 #include "camera/projection.h"
 #include "render/child_noise.h"
+#include "render/near_star.h"
 #include "render/project_stars.h"
 #include "render/project_vector.h"
 #include "render/shape.h"
@@ -62,16 +63,25 @@ bool place_splat(const LayerProjection& layer, const CameraSplat& splat, const s
     return out.opacity > 0.0f;
 }
 
-/// Projects one ball.
+/// Projects one ball, whose image is `size` times as large as the ball.
 void project_one(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
-                 const ScreenRect& rect, Buffer<ScreenSplat>& out) {
+                 const ScreenRect& rect, Buffer<ScreenSplat>& out, float size = 1.0f) {
     const shared::Instance at = shared::instance_of(layer.lens, splat.position);
     ScreenSplat screen;
-    screen.radius_px = splat.radius * at.px_per_unit;
+    screen.radius_px = splat.radius * at.px_per_unit * size;
     const float support = shared::frame_reach_px(layer.lens, at.x_px, at.y_px,
                                                  screen.radius_px * layer.reach + layer.margin_px);
     if (place_splat(layer, splat, at, index, support, rect, screen))
         push_places(screen, shared::period_px(layer.lens), support, rect, out);
+}
+
+/// Projects a star that stays a point close by, with all the light that its ball would have.
+void project_star(const LayerProjection& layer, CameraSplat splat, std::int64_t index, const ScreenRect& rect,
+                  Buffer<ScreenSplat>& out) {
+    const float depth = std::max(shared::instance_of(layer.lens, splat.position).depth, layer.lens.near);
+    const float size = near_star_size(std::min(1.0f, depth / layer.star_distance));
+    splat.color /= size * size;
+    project_one(layer, splat, index, rect, out, size);
 }
 
 /// Where an ellipsoid's outline is on the frame.
@@ -238,6 +248,8 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
     // not split.
     if (layer.render.blend != Blend::lighten)
         p.lod_limit_px = layer.render.lod.max_px * static_cast<float>(settings.height) / 1080.0f;
+    if (stars_stay_points(layer.render) && camera.projection != Projection::orthographic)
+        p.star_distance = layer.render.lod.star_distance;
     p.seed = layer.seed;
     p.layer = number;
     p.star_pixels = layer.star_pixels;
@@ -256,13 +268,17 @@ void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
              Buffer<ScreenSplat>& out, Buffer<Shape>& shapes) {
     if (!layer.star_dots.empty()) return project_stars(layer, begin, end, rect, out, shapes);
     const ShadedSplats& splats = *layer.splats;
-    const bool balls = splats.stretch.empty();
-    if (!layer.lod && balls) begin = project_whole_blocks(layer, begin, end, rect, out);
+    const bool balls = splats.stretch.empty(), points = layer.star_distance > 0.0f;
+    if (!layer.lod && !points && balls) begin = project_whole_blocks(layer, begin, end, rect, out);
     for (std::int64_t i = begin; i < end; ++i) {
         const CameraSplat splat{to_camera(layer, splats.position[i]), splats.radius[i] * layer.radius_scale,
                                 splats.alpha[i], splats.color[i]};
         if (!balls) {
             project_stretched(layer, splat, i, rect, out, shapes);
+            continue;
+        }
+        if (points && is_star(splats.id[i])) {
+            project_star(layer, splat, i, rect, out);
             continue;
         }
         if (layer.lod && project_as_children(layer, splat, i, rect, out)) continue;

@@ -44,6 +44,7 @@ struct LayerProjection {
     float reach = 1.0f, margin_px = 2.0f;  // support = radius * reach + margin
     float variance = 0.25f;                // of the falloff, as in FootprintTable
     float lod_limit_px = 0.0f;
+    float star_distance = 0.0f;  // as lod.star_distance, where it acts
     LayerRender render;
     std::uint32_t seed = 1;
     std::uint16_t layer = 0;

@@ -162,6 +162,10 @@ void describe_render(const Describer& d, LayerRender& r) {
     detail(r.lod.noise, "lod.noise", "Noise of parts", "",
            "How strongly the parts of a dot differ in light, as clouds do; stars of pictures stay whole.",
            range(0, 2));
+    detail(r.lod.star_distance, "lod.star_distance", "Points within", "scene units",
+           "Stars of pictures that are nearer to the camera hardly grow and get brighter instead, as points "
+           "do; 0: they grow as all dots.",
+           at_least(0), slider(0, 20), zero_is("Off"), only_with("blend", {"over", "add"}));
     mixing(r.holdout, "holdout", "Holdout", "", "Hides what lies behind and shows nothing itself.");
     mixing(r.isolate, "isolate", "Isolate", "", "Rendered alone, then composited as a whole.");
     mixing(

@@ -26,6 +26,7 @@ namespace {
 constexpr double longest_side = 10.0;  // scene units, of the built-in plane
 constexpr std::int64_t longest_px = 1920;
 constexpr double field_of_view = 40.0;  // degrees
+constexpr double points_within = 0.8;   // of the distance to the picture's camera: no star is as near to it
 constexpr double wall_depth = 0.26;     // whole depth of a shell, of the picture's width
 
 constexpr const char* text_format =
@@ -63,7 +64,7 @@ grade    = {{ gain = 1.0, tint = [1.0, 1.0, 1.0], saturation = 1.0, gamma = 1.0 
 
 [layer.render]
 opacity = 1.0                     # of the whole layer
-lod     = {{ max_px = {split}, noise = 0.75 }}  # dots that look larger, close by, become clouds
+lod     = {{ max_px = {split}, noise = 0.75, star_distance = {points} }}  # dots that look larger, close by, become clouds; nearer stars stay points
 )";
 
 constexpr const char* stars_format = R"(
@@ -281,6 +282,7 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("picture", to_toml(picture_path(scene.image, file))),
         fmt::arg("kind", to_toml(std::string(name_of(scene.structure)))),
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height, margin))),
+        fmt::arg("points", fmt::format("{:.3g}", points_within * distance)),
         fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
         fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"),
         fmt::arg("extent", extent_of(scene.structure)), fmt::arg("opacity", opacity_of(scene.structure)));

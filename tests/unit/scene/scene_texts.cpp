@@ -157,7 +157,7 @@ blend = "over"
 opacity = 1.0
 hybrid = { from_deg = 30.0, to_deg = 80.0 }
 absorb = [0.8, 1.0, 1.35]
-lod = { max_px = 0.0, max_children = 4096, noise = 0.0 }
+lod = { max_px = 0.0, max_children = 4096, noise = 0.0, star_distance = 0.0 }
 holdout = false
 isolate = false
 space = "linear"
