@@ -28,6 +28,15 @@ constexpr double narrowest_halved_px = 1.25;  // its profile need not be exact
 constexpr double same_sigma = 0.01;           // share that sigmas of one range differ by
 constexpr double narrowest_blur_px = 0.4;     // a narrower one leaves 97 % of a pixel where it is
 
+// Of a Gaussian whose values at whole steps have that variance, steps^2. Those of a narrow one have less than
+// its own, so a wider one stands for it, of which the middle and its neighbours count.
+double sampled_sigma(double variance) {
+    constexpr double narrow = 0.25;
+    if (variance >= narrow) return std::sqrt(variance);
+    const double neighbour_over_middle = variance / (2.0 * (1.0 - variance));
+    return std::sqrt(-0.5 / real::log(neighbour_over_middle));
+}
+
 float clamped(float factor) { return std::clamp(factor, 1.0f / largest_factor, largest_factor); }
 
 // What dots take of a ratio: with `overshoot` its square.
@@ -124,7 +133,8 @@ Image FlatLight::sum() const {
     const auto move_to = [&](std::size_t to, double still_missing) {
         double now = missing - still_missing;
         for (std::size_t g = to; g < grid; ++g) now -= doubling_variance * grids_[g].step * grids_[g].step;
-        if (now > 0.0) sum = gaussian_blur(sum, std::sqrt(now) / grids_[grid].step);
+        const double step = grids_[grid].step;
+        if (now > 0.0) sum = gaussian_blur(sum, sampled_sigma(now / (step * step)));
         for (; grid > to; --grid) sum = doubled(sum, grids_[grid - 1].width, grids_[grid - 1].height);
         missing = still_missing;
     };

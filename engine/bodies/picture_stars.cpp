@@ -16,6 +16,7 @@ PictureStars take_picture_stars(Image& light, const StructureParams& params) {
     if (disk) bright = take_bright_stars(light);
     stars.all =
         take_stars(light, disk ? least_left_in_dust : 0.0f);  // without dust a hole is nearer the front
+    std::ranges::stable_sort(stars.all, {}, &Star::sigma);
     stars.ordinary = stars.all.size();
     stars.count = static_cast<std::int64_t>(stars.ordinary);
     for (Star& star : bright) {
@@ -29,11 +30,13 @@ PictureStars take_picture_stars(Image& light, const StructureParams& params) {
 
 void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,
                        PictureSplats& out) {
+    constexpr float about_one_size = 1.4f;  // widest over narrowest: each more takes the front's fit longer
     const std::span<const Star> all(stars.all);
-    add_stars(all.first(stars.ordinary), 0, placement, opacity, out);
-    for (std::size_t begin = stars.ordinary; begin < all.size();) {
+    for (std::size_t begin = 0; begin < all.size();) {
+        const bool ordinary = begin < stars.ordinary;
+        const float widest = ordinary ? about_one_size * all[begin].sigma : all[begin].sigma;
         std::size_t end = begin;
-        while (end < all.size() && all[end].sigma == all[begin].sigma) ++end;
+        while (end < (ordinary ? stars.ordinary : all.size()) && all[end].sigma <= widest) ++end;
         add_stars(all.subspan(begin, end - begin), static_cast<std::uint32_t>(begin), placement, opacity,
                   out);
         begin = end;

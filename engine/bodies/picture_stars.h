@@ -15,7 +15,7 @@
 namespace astrosplat {
 
 struct PictureStars {
-    std::vector<Star> all;     // ordinary ones, each a Gaussian; then those of bright ones by their sigmas
+    std::vector<Star> all;     // ordinary ones, each a Gaussian; then those of bright ones; each by sigma
     std::size_t ordinary = 0;  // of `all`
     std::int64_t count = 0;    // of stars, ordinary and bright
 };

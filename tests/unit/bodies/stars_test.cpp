@@ -8,6 +8,7 @@
 
 #include "bodies/knots.h"
 #include "bodies/picture_light.h"
+#include "bodies/picture_stars.h"
 #include "core/parallel.h"
 #include "image/channels.h"
 #include "support/painted_picture.h"
@@ -136,6 +137,26 @@ TEST(Knots, ThoseOfAFilamentAreNotRound) {
         }
     }
     EXPECT_GE(along, 3);
+}
+
+// The fit takes the dots of a range for as wide as each other.
+TEST(Stars, ThoseOfARangeAreAboutOfOneSize) {
+    Image image = sky(512, 256);
+    for (int i = 0; i < 28; ++i)
+        painted::add_point(image, 40.3 + 32.0 * (i % 14), 60.7 + 100.0 * (i / 14), 0.7 + 0.05 * i, 0.5, 0.5,
+                           0.5);
+    StructureParams params;
+    params.kind = StructureKind::sheet;
+    const PictureStars stars = take_picture_stars(image, params);
+    ASSERT_GT(stars.count, 20);
+    PictureSplats dots;
+    add_picture_stars(stars, placement_without_fields(512, 256, params, 100.0), {}, dots);
+    ASSERT_EQ(dots.splats.size(), stars.count);
+    EXPECT_GE(dots.ranges.size(), 3u);
+    for (const DotRange& range : dots.ranges)
+        for (std::int64_t i = range.begin; i < range.end; ++i)
+            EXPECT_NEAR(dots.splats.radius[static_cast<std::size_t>(i)] / radius_sigmas, range.sigma,
+                        0.25f * range.sigma);
 }
 
 TEST(Knots, ThereAreNoneInAnEvenSky) {
