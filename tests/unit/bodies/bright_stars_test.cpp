@@ -61,15 +61,29 @@ TEST(BrightStars, AreTakenWholeWithoutAHole) {
     }
 }
 
+// Light of the red channel of the star there, px^2; 0 where none is.
+double light_at(const std::vector<Star>& stars, float x, float y) {
+    double sum = 0.0;
+    for (const Star& star : stars)
+        if (std::hypot(star.x - x, star.y - y) < 0.5f)
+            sum += 6.2831853 * static_cast<double>(star.sigma * star.sigma * star.peak.x);
+    return sum;
+}
+
 TEST(BrightStars, TheirSpikesAndNeighboursDoNotHideThem) {
-    Image light = with_star(150.5, 90.5, 3.0);
+    Image light = with_star(150.5, 90.5, 3.0), alone = light;
     for (std::int64_t i = -40; i <= 40; ++i)
         for (int c = 0; c < 3; ++c) {
             light.at(150 + i, 90)[c] = std::max(light.at(150 + i, 90)[c], 0.4f);
             light.at(150, 90 + i)[c] = std::max(light.at(150, 90 + i)[c], 0.4f);
         }
-    painted::add_point(light, 163.0, 97.0, 1.2, 0.5, 0.5, 0.5);
-    EXPECT_FALSE(take_bright_stars(light).empty());
+    for (const double angle : {0.6, 2.0, 3.9, 5.2})
+        painted::add_point(light, 150.5 + 18.0 * std::cos(angle), 90.5 + 18.0 * std::sin(angle), 1.8, 2.0,
+                           2.0, 2.0);
+    light = saturated(std::move(light));
+    const double expected = light_at(take_bright_stars(alone), 150.5f, 90.5f);
+    ASSERT_GT(expected, 0.0);
+    EXPECT_NEAR(light_at(take_bright_stars(light), 150.5f, 90.5f), expected, 0.1 * expected);
 }
 
 // Of knots of nebulae and star clusters, threads, faint stars, and those that take_stars() finds.

@@ -139,6 +139,22 @@ TEST(Knots, ThoseOfAFilamentAreNotRound) {
     EXPECT_GE(along, 3);
 }
 
+// A star of one pixel is narrower than its Gaussian. Where there is dust, the hole around it would become
+// some.
+TEST(Stars, LeaveNoHolesInDisksAndNoLightInClouds) {
+    for (const StructureKind kind : {StructureKind::disk, StructureKind::sheet, StructureKind::walls}) {
+        Image light = make_image(64, 48, 3, 0.05f);
+        for (int c = 0; c < 3; ++c) light.at(30, 20)[c] = 0.6f;
+        StructureParams params;
+        params.kind = kind;
+        ASSERT_EQ(take_picture_stars(light, params).count, 1);
+        if (kind == StructureKind::disk)
+            EXPECT_NEAR(light.at(31, 20)[0], least_left_in_dust * 0.05f, 1e-6f);
+        else
+            EXPECT_EQ(light.at(31, 20)[0], 0.0f);
+    }
+}
+
 // The fit takes the dots of a range for as wide as each other.
 TEST(Stars, ThoseOfARangeAreAboutOfOneSize) {
     Image image = sky(512, 256);
