@@ -220,5 +220,34 @@ TEST(ChildNoise, AFlightIntoAKnotHasNeitherFlickerNorPops) {
         EXPECT_LE(change[t], 1.05 * 0.5 * (change[t - 1] + change[t + 1])) << "frame " << t + 1;
 }
 
+// Of many dots some split at any time, and each alone is hardly seen: one dot shows how.
+TEST(ChildNoise, ADotBecomesItsChildrenLittleByLittle) {
+    constexpr int frames = 48, side = 120;
+    const ShadedSplats splats = make_splats({{glm::vec3(0.0f), 0.5f, 0.3f, {1.5f, 0.9f, 0.5f}}});
+    RenderLayer layer = layer_of("dot", splats, Blend::over, Falloff::Shape::gaussian);
+    layer.render.lod.max_px = 300.0f;  // at 1080 lines
+    layer.render.lod.noise = 0.75f;
+    const auto view = [&](int t) {
+        CameraParams params;
+        params.projection = Projection::orthographic;
+        params.position = glm::dvec3(0.0, 0.0, 5.0);
+        params.height = 4.5 * std::pow(0.975, t);
+        return render({&layer, 1}, make_camera(params, side, side, {}), nullptr, settings_of(side, side), {})
+            .beauty;
+    };
+    std::vector<double> change;
+    Image before = view(0);
+    for (int t = 1; t < frames; ++t) {
+        Image now = view(t);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < now.pixels.size(); ++i)
+            sum += std::fabs(double(now.pixels[i]) - double(before.pixels[i]));
+        change.push_back(sum);
+        before = std::move(now);
+    }
+    for (std::size_t t = 1; t + 1 < change.size(); ++t)
+        EXPECT_LE(change[t], 1.5 * 0.5 * (change[t - 1] + change[t + 1])) << "frame " << t + 1;
+}
+
 }  // namespace
 }  // namespace astrosplat
