@@ -44,6 +44,13 @@ FinerFound draw_finer(const FinerRequest& request, CpuPreview& preview, const Pr
 
 }  // namespace
 
+StepPlan plan_steps(double final_s) {
+    constexpr double at_once_s = 0.3, quick_s = 2.5;
+    if (0.0 <= final_s && final_s < at_once_s) return {};
+    if (0.0 <= final_s && final_s < quick_s) return {1, 0.2};
+    return {2, 0.4};
+}
+
 double share_of_step(int step) {
     constexpr double shares[] = {0.05, 0.2};
     return step >= 1 && step <= static_cast<int>(std::size(shares)) ? shares[step - 1] : 0.0;

@@ -35,6 +35,15 @@ struct FinerFound {
     std::string error;
 };
 
+/// Steps before a final frame, and how long each may take, s.
+struct StepPlan {
+    int count = 0;
+    double most_s = 0.0;
+};
+/// For a final frame that is expected to take so long; below 0: not known. A quick one is not held up by more
+/// than the rest that comes before it anyway.
+StepPlan plan_steps(double final_s);
+
 /// The share of the splats that step 1, 2 .. draws; 0: there is no such step.
 double share_of_step(int step);
 

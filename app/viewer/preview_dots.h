@@ -52,6 +52,8 @@ class PreviewDots {
     /// is dragged come too late, and take the processor from its preview. True: there are more of them now.
     /// `now` in seconds.
     bool refine(double now);
+    /// Gives up what is being made, until refine() is called again.
+    void rest() { work_.forget(); }
     /// What the last cut was made of, for another one of more dots.
     std::vector<CutSource> sources() const;
     /// Of each layer the share of its splats that the look keeps, 0..1.

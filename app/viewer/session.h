@@ -112,6 +112,7 @@ struct Session {
     std::optional<std::filesystem::path> screenshot;  // asked for: the caller reads the window and saves it
     std::optional<std::string> clipboard;             // text for it
     MessageAge message_age;
+    double memory_counted_at = -1e9;    // s
     std::set<std::string> said_errors;  // of the frame and the layers, that still hold
     Commands dropped;  // from files, to be shown to the widgets, which ask about unsaved changes
 

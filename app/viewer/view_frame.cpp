@@ -19,8 +19,6 @@ bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr
 
 constexpr double rest_s = 0.3;       // without a touch, before the final frame begins
 constexpr double step_rest_s = 0.1;  // and before the first finer preview does
-constexpr double step_s = 0.4;       // such a preview takes at most
-constexpr double quick_s = 0.3;      // final frames that take less come without
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }
 
@@ -191,16 +189,16 @@ void ViewFrame::draw_preview(double now) {
 
 /// Steps of finer previews come before the final frame, where that takes its time.
 bool ViewFrame::takes_steps(bool hurry) const {
-    const bool quick = final_s_ >= 0.0 && final_s_ < quick_s;
-    return !hurry && !quick && dots_.whole() && !draws_by_opengl() && choice_.share == 0.0f &&
-           share_of_step(step_ + 1) > 0.0;
+    return !hurry && dots_.whole() && !draws_by_opengl() && choice_.share == 0.0f &&
+           step_ < plan_steps(final_s_).count;
 }
 
 /// Begins the next step, or passes it over where it would show little more. False: none is left.
 bool ViewFrame::step_is_due(double now) {
     if (now - touched_at_ < step_rest_s) return true;
-    const double most_s = choice_.splats > 0 ? 0.0 : step_s;
-    for (++step_; share_of_step(step_) > 0.0; ++step_)
+    const StepPlan plan = plan_steps(final_s_);
+    const double most_s = choice_.splats > 0 ? 0.0 : plan.most_s;
+    for (++step_; step_ <= plan.count; ++step_)
         if (const std::int64_t dots = dots_of_step(step_, status_.total, status_.shown, draw_s_, most_s)) {
             begin_step(dots);
             return true;
@@ -267,6 +265,7 @@ void ViewFrame::begin_final() {
     canvas_ = drawn_ ? *drawn_ : gl_->read();  // which the tiles replace
     if (!drawn_) canvas_texture_.upload(canvas_);
     texture_ = canvas_texture_.handle();
+    dots_.rest();
     final_.start(std::move(wanted));
     final_started_ = true;
     status_.state = ViewFrameState::refining;

@@ -26,6 +26,14 @@ TEST(FinerPreview, StepsAreSharesThatTheTimeAllows) {
     EXPECT_EQ(dots_of_step(3, galaxy, 81'000, 0.01, 0.4), 0) << "there is no such step";
 }
 
+TEST(FinerPreview, QuickFinalFramesAreNotHeldUp) {
+    EXPECT_EQ(plan_steps(-1.0).count, 2) << "nobody knows yet";
+    EXPECT_EQ(plan_steps(5.0).count, 2);
+    EXPECT_EQ(plan_steps(1.7).count, 1);
+    EXPECT_LE(plan_steps(1.7).most_s, 0.2) << "within the rest before it";
+    EXPECT_EQ(plan_steps(0.2).count, 0);
+}
+
 class FinerPreviewSession : public GlTest {
   protected:
     FinerPreviewSession() {

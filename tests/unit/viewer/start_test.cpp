@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include "gl/gl_fixture.h"
 #include "support/quiet.h"
@@ -58,6 +59,18 @@ TEST_F(Start, AMovingHandDoesNotHoldUpTheTrees) {
         draw();
         ASSERT_FALSE(settled(session));
     }
+}
+
+// Which takes the system a while.
+TEST_F(Start, MemoryIsCountedEveryFiveSeconds) {
+    advance(session, now);
+    const std::int64_t before = session.status.memory_bytes;
+    EXPECT_GT(before, 0);
+    const std::vector<char> more(std::size_t{256} << 20, 'x');
+    advance(session, now + 4.9);
+    EXPECT_EQ(session.status.memory_bytes, before);
+    advance(session, now + 5.0);
+    EXPECT_GT(session.status.memory_bytes, before + (std::int64_t{200} << 20)) << more[0];
 }
 
 }  // namespace
