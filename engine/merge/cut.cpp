@@ -68,11 +68,17 @@ class SeenLayer {
         return {mean, mean + std::sqrt(half * half + xy * xy)};
     }
 
-    /// Width of an even box with the spread of the node's splats, px.
+    /// Width of an even box with the spread of the node's splats, px; less where the splats themselves are
+    /// wider than that spread, so that their places hardly show.
     float size_px(const NodeSums& sums, const glm::vec3& p) const {
         const LayerProjection& l = layer_.projection;
         const float px_per_unit = shared::instance_of(l.lens, shared::beyond_near(l.lens, p)).px_per_unit;
-        return std::sqrt(12.0f * across(sums).largest) * l.radius_scale * px_per_unit;
+        const float spread = across(sums).largest;
+        if (!(spread > 0.0f)) return 0.0f;
+        constexpr float least = 0.01f;  // so that all are divided where nothing else limits it
+        const float own = static_cast<float>(layer_.dots->variance) * sums.own;
+        const float share = std::clamp(2.0f * spread / (spread + own), least, 1.0f);
+        return share * share * std::sqrt(12.0f * spread) * l.radius_scale * px_per_unit;
     }
 
     void put(const Piece& piece, ShadedSplats& out, std::size_t i) const {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstring>
@@ -346,6 +347,22 @@ TEST(Merge, WhatTheLookDropsIsNotThere) {
     EXPECT_EQ(cut_of(merged, 2000).size(), kept.set->size());
     cloud.splats = ShadedSplats();
     EXPECT_EQ(cut_of(cloud.merged(), 100).size(), 0);
+}
+
+// Haze whose dots are as wide as their cloud looks the same, however far it is divided.
+TEST(Merge, WhatIsFineGetsTheDotsAndNotTheHazeBesideIt) {
+    const MergedSplats fine = random_cloud(20000, glm::vec3(1.0f), 0.02f, 0.2f).merged(),
+                       haze = random_cloud(20000, glm::vec3(1.0f), 1.0f, 0.01f).merged();
+    const DotSettings dots{LayerRender()};
+    RenderSettings frame;
+    frame.width = width;
+    frame.height = height;
+    const LayerProjection seen = make_projection(RenderLayer(), 0, camera(), frame);
+    const std::array<CutLayer, 2> layers = {CutLayer{&fine, &dots, seen}, {&haze, &dots, seen}};
+    const std::vector<ShadedSplats> cut = cut_splats(layers, {2000, 1.5f, width, height});
+    EXPECT_GT(cut[0].size(), 1500);
+    EXPECT_GT(cut[1].size(), 1) << "it has a shape of its own";
+    EXPECT_LT(cut[1].size(), 200);
 }
 
 TEST(Merge, ASampleStandsForTheWhole) {
