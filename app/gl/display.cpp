@@ -84,7 +84,7 @@ struct Display::State {
     GlVertexArray nothing;
     GlTarget target;
     GlTarget values;        // of what is compared, as floats
-    int height = 0;         // of the target that is drawn into
+    int drawn_height = 0;   // of the target that is drawn into
     DisplaySettings drawn;  // what the target holds, when version is above 0
     std::uint64_t version = 0;
 
@@ -94,7 +94,7 @@ struct Display::State {
     }
 
     void begin_drawing(GlTarget& into) {
-        height = into.height();
+        drawn_height = into.height();
         into.bind();
         glDisable(GL_BLEND);
         glDisable(GL_DITHER);
@@ -103,7 +103,7 @@ struct Display::State {
 
     /// Draws or clears only this part of the target.
     bool cut(const PixelRect& r) const {
-        glScissor(r.x0, height - r.y1, std::max(0, r.x1 - r.x0), std::max(0, r.y1 - r.y0));
+        glScissor(r.x0, drawn_height - r.y1, std::max(0, r.x1 - r.x0), std::max(0, r.y1 - r.y0));
         return r.x1 > r.x0 && r.y1 > r.y0;
     }
 
@@ -128,7 +128,7 @@ struct Display::State {
     void draw(const PixelRect& r, const DisplayVariant& variant, const DisplaySettings& s) {
         if (!cut(r)) return;
         const GlProgram& p = programs.use(variant, s.ocio);
-        glUniform4f(p.uniform("place"), s.x, static_cast<float>(height) - s.y, 1.0f / s.width,
+        glUniform4f(p.uniform("place"), s.x, static_cast<float>(drawn_height) - s.y, 1.0f / s.width,
                     1.0f / s.height);
         glUniform1f(p.uniform("gain"), float(real::pow(2.0, double(s.exposure))));
         if (variant.mix != Mix::alone) set_b(p, s);

@@ -114,8 +114,8 @@ struct GlPreview::State {
 
     std::vector<FrameGroup> make_frame(const std::vector<PreviewLayer>& layers, const Camera& camera,
                                        int width, int height, float pixel_filter);
-    void update(std::vector<FrameGroup>& frame, int width, int height);
-    void wait_for_orders(std::vector<FrameGroup>& frame);
+    void update(std::vector<FrameGroup>& frame_groups, int width, int height);
+    void wait_for_orders(std::vector<FrameGroup>& frame_groups);
     void draw_group(const FrameGroup& group, GroupSplats& splats);
     void composite(const BlendGroup& group);
     void begin_frame(const Camera& camera, const Environment* sky);
@@ -130,9 +130,9 @@ std::vector<FrameGroup> GlPreview::State::make_frame(const std::vector<PreviewLa
     settings.pixel_filter = pixel_filter;
     std::vector<RenderLayer> render_layers;
     for (const PreviewLayer& layer : layers) render_layers.push_back(layer.layer);
-    std::vector<FrameGroup> frame;
+    std::vector<FrameGroup> frame_groups;
     for (const BlendGroup& group : drawable(make_groups(render_layers, false))) {
-        FrameGroup& f = frame.emplace_back();
+        FrameGroup& f = frame_groups.emplace_back();
         f.blend = group;
         f.ordered = depends_on_order(group.kind);
         for (std::size_t l : group.layers) {
@@ -142,14 +142,14 @@ std::vector<FrameGroup> GlPreview::State::make_frame(const std::vector<PreviewLa
             f.falloffs.push_back(layers[l].layer.render.falloff);
         }
     }
-    return frame;
+    return frame_groups;
 }
 
-void GlPreview::State::update(std::vector<FrameGroup>& frame, int width, int height) {
+void GlPreview::State::update(std::vector<FrameGroup>& frame_groups, int width, int height) {
     shown = 0;
-    groups.erase(groups.lower_bound(frame.size()), groups.end());
-    for (std::size_t g = 0; g < frame.size(); ++g) {
-        FrameGroup& group = frame[g];
+    groups.erase(groups.lower_bound(frame_groups.size()), groups.end());
+    for (std::size_t g = 0; g < frame_groups.size(); ++g) {
+        FrameGroup& group = frame_groups[g];
         GroupSplats& splats = groups[g];
         splats.update(group.layers, raw, look, group.ordered);
         shown += splats.shown();
@@ -171,14 +171,14 @@ void GlPreview::State::update(std::vector<FrameGroup>& frame, int width, int hei
     raw.drop_unused();
 }
 
-void GlPreview::State::wait_for_orders(std::vector<FrameGroup>& frame) {
+void GlPreview::State::wait_for_orders(std::vector<FrameGroup>& frame_groups) {
     bool missing = false;
-    for (std::size_t g = 0; g < frame.size(); ++g)
-        missing = missing || (frame[g].ordered && !groups[g].has_order());
+    for (std::size_t g = 0; g < frame_groups.size(); ++g)
+        missing = missing || (frame_groups[g].ordered && !groups[g].has_order());
     orders.wait(missing ? std::chrono::microseconds(1h) : std::chrono::microseconds(patience));
     sorting = false;
-    for (std::size_t g = 0; g < frame.size(); ++g) {
-        if (!frame[g].ordered) continue;
+    for (std::size_t g = 0; g < frame_groups.size(); ++g) {
+        if (!frame_groups[g].ordered) continue;
         groups[g].take_order(orders, g);
         sorting = sorting || !groups[g].order_is_current();
     }
@@ -220,18 +220,18 @@ GlPreview::~GlPreview() = default;
 unsigned GlPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
                          const Environment* environment, int width, int height, float pixel_filter) {
     State& state = *state_;
-    std::vector<FrameGroup> frame = state.make_frame(layers, camera, width, height, pixel_filter);
-    state.update(frame, width, height);
+    std::vector<FrameGroup> frame_groups = state.make_frame(layers, camera, width, height, pixel_filter);
+    state.update(frame_groups, width, height);
     // All falloffs at once, so that a group does not throw out another's.
     std::vector<Falloff> falloffs;
-    for (const FrameGroup& group : frame)
+    for (const FrameGroup& group : frame_groups)
         falloffs.insert(falloffs.end(), group.falloffs.begin(), group.falloffs.end());
     state.footprints.prepare(falloffs, pixel_filter);
     state.frame.resize(width, height, GL_RGBA32F);
     state.begin_frame(camera, environment);
-    state.wait_for_orders(frame);
-    for (std::size_t g = 0; g < frame.size(); ++g) {
-        const bool own = needs_own_target(frame[g].blend);
+    state.wait_for_orders(frame_groups);
+    for (std::size_t g = 0; g < frame_groups.size(); ++g) {
+        const bool own = needs_own_target(frame_groups[g].blend);
         if (own) {
             state.own_target.resize(width, height, GL_RGBA32F);
             state.own_target.bind();
@@ -240,8 +240,8 @@ unsigned GlPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& 
         } else {
             state.frame.bind();
         }
-        state.draw_group(frame[g], state.groups[g]);
-        if (own) state.composite(frame[g].blend);
+        state.draw_group(frame_groups[g], state.groups[g]);
+        if (own) state.composite(frame_groups[g].blend);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     return state.frame.texture();

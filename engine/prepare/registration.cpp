@@ -30,9 +30,9 @@ using Pyramid = std::vector<Image>;  // from large to small
 
 std::int64_t longest_side(const Image& image) { return std::max(image.width, image.height); }
 
-Pyramid pyramid_of(const Image& image, std::int64_t smallest_px) {
+Pyramid pyramid_of(const Image& image, std::int64_t least_px) {
     Pyramid levels{image};
-    while (longest_side(levels.back()) > smallest_px) levels.push_back(halved(levels.back()));
+    while (longest_side(levels.back()) > least_px) levels.push_back(halved(levels.back()));
     return levels;
 }
 

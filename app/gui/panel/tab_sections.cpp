@@ -9,6 +9,7 @@
 #include "edit/keyframes.h"
 #include "gui/panel/color_rows.h"
 #include "gui/panel/prepare.h"
+#include "gui/panel/row.h"
 #include "gui/panel/section.h"
 #include "gui/panel/whole_look.h"
 #include "gui/panel/words.h"
