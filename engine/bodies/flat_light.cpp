@@ -25,6 +25,7 @@ constexpr float largest_factor = 3.0f;
 constexpr double fine_sigma = 1.5;            // texels, up to which dots are sharpened
 constexpr double around = 16.0;               // times the variance of what a dot sees
 constexpr double narrowest_halved_px = 1.25;  // its profile need not be exact
+constexpr double few_share = 0.01;            // dots of a range, of the pixels of what they see
 constexpr double same_sigma = 0.01;           // share that sigmas of one range differ by
 constexpr double narrowest_blur_px = 0.4;     // a narrower one leaves 97 % of a pixel where it is
 
@@ -149,6 +150,13 @@ Image FlatLight::sum() const {
     return sum;
 }
 
+// They see what those of the next narrower range do: a view of their own would take as long as that of many.
+bool FlatLight::has_few(const Range& range, const Grid& seen) const {
+    std::size_t dots = 0;
+    for (const Chunk& chunk : range.chunks) dots += chunk.end - chunk.begin;
+    return static_cast<double>(dots) < few_share * static_cast<double>(seen.width * seen.height);
+}
+
 void FlatLight::multiply(const Range& range, const Image& factor, double step) {
     const auto scale = static_cast<float>(1.0 / step);
     parallel_each(range.chunks.size(), 16, [&](std::size_t c) {
@@ -167,8 +175,16 @@ void FlatLight::multiply(const Image& factor, double step) {
 void FlatLight::correct(Fraction fraction, bool overshoot) {
     std::size_t grid = 0;
     double variance = 0.0;  // texels^2, of the blur so far
+    Image factor;
+    bool sharpened = false;
     for (const Range& range : ranges_) {
         const double seen = seen_share * (range.sigma * range.sigma + filter_variance_);
+        const bool sharpens = overshoot && range.sigma <= fine_sigma;
+        const bool there = !factor.pixels.empty() && sharpens == sharpened && grid_for(seen) == grid;
+        if (there && has_few(range, grids_[grid])) {
+            multiply(range, factor, grids_[grid].step);
+            continue;
+        }
         for (const std::size_t to = grid_for(seen); grid < to; ++grid) {
             fraction.wanted = halved(fraction.wanted);
             fraction.seen = halved(fraction.seen);
@@ -181,9 +197,9 @@ void FlatLight::correct(Fraction fraction, bool overshoot) {
             fraction.seen = gaussian_blur(fraction.seen, missing_px(seen));
             variance = seen;
         }
-        const bool sharpens = overshoot && range.sigma <= fine_sigma;
-        const Image factor = sharpens ? sharpening_factor_of(fraction, missing_px(around * seen))
-                                      : factor_of(fraction, overshoot);
+        factor = sharpens ? sharpening_factor_of(fraction, missing_px(around * seen))
+                          : factor_of(fraction, overshoot);
+        sharpened = sharpens;
         multiply(range, factor, step);
     }
 }

@@ -48,6 +48,7 @@ class FlatLight {
 
     void add_range(const DotRange& dots);
     std::size_t grid_for(double variance) const;
+    bool has_few(const Range& range, const Grid& seen) const;
     glm::vec2 texel(std::size_t dot) const;
     void spread(const Range& range, double step, Image& sum) const;
     void multiply(const Range& range, const Image& factor, double step);

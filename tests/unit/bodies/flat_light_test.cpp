@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
@@ -139,6 +140,33 @@ TEST(FlatLight, FineDotsAreSharpened) {
     EXPECT_LT(coarse, 1.1f);
     EXPECT_GT(factor(0.5f, true), 1.1f * fine * fine);
     EXPECT_NEAR(factor(4.0f, true), coarse * coarse, 1e-5f);
+}
+
+// A view of their own would take as long as that of many.
+TEST(FlatLight, FewDotsSeeWhatTheNextNarrowerOnesDo) {
+    Fraction fraction = fraction_of(1.0f);
+    fraction.wanted.at(48, 32)[1] = 0.45f;
+    // Of a dot of the first size and one of the second, at the same place.
+    const auto factors = [&](float second_sigma, int of_second_size) {
+        PictureSplats dots = one_dot(0.5f, -0.5f, 0.5f);
+        for (int i = 0; i < of_second_size; ++i) {
+            dots.splats.position.emplace_back(0.5f, -0.5f, 0.0f);
+            dots.splats.color.emplace_back(0.0f, 2.0f, 0.0f);
+            dots.splats.alpha.push_back(0.25f);
+            dots.splats.radius.push_back(radius_sigmas * second_sigma);
+        }
+        dots.ranges.push_back({1, dots.splats.size(), second_sigma});
+        FlatLight(dots, width, height, filter_px).correct(fraction, true);
+        return std::pair(dots.splats.color[0].y, dots.splats.color.back().y);
+    };
+    const auto [narrow, few] = factors(0.8f, 61);
+    EXPECT_EQ(few, narrow);
+    const auto [narrow_again, many] = factors(0.8f, 62);
+    EXPECT_EQ(narrow_again, narrow);
+    EXPECT_LT(many, 0.98f * narrow);
+    const auto [as_narrow, coarse] = factors(4.0f, 1);  // is not sharpened
+    EXPECT_EQ(as_narrow, narrow);
+    EXPECT_LT(coarse, 0.9f * narrow);
 }
 
 TEST(FlatLight, MultipliesByAGridsValues) {
