@@ -57,7 +57,6 @@ void SetLoader::sample(const SetJob& job) try {
     const auto held = worker_.lock();
     list_.show_sample(job, std::move(layer));
 } catch (const InputError&) {
-    // load() finds the same, and says so
 } catch (const std::bad_alloc&) {
     // the set may still come without one
 }

@@ -3,15 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
-#include <thread>
+#include <vector>
 
-#include "gl/gl_fixture.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
-#include "viewer/session.h"
-#include "viewer/session_view.h"
+#include "unit/viewer/disk_session.h"
 
 namespace astrosplat::test {
 namespace {
@@ -34,28 +29,14 @@ TEST(FinerPreview, QuickFinalFramesAreNotHeldUp) {
     EXPECT_EQ(plan_steps(0.2).count, 0);
 }
 
-class FinerPreviewSession : public GlTest {
+class FinerPreviewSession : public DiskSession {
   protected:
-    FinerPreviewSession() {
+    FinerPreviewSession() : DiskSession(400'000, {640, 360}) {
         session.gl.software = true;
         session.fixed_splats = 3000;
         session.view.settle = false;
     }
 
-    ViewerOptions options() const {
-        ViewerOptions options;
-        options.input = folder.file("scene.toml",
-                                    "astrosplat = 1\n[camera]\nposition = [0.0, 6.0, 8.0]\n"
-                                    "[[layer]]\nname = \"disk\"\n[layer.source]\n"
-                                    "meshes = [ { mesh = \"plane\", texture = \"" ASTROSPLAT_SOURCE_DIR
-                                    "/assets/textures/spiral.jpg\" } ]\ncount = 400000\n");
-        return options;
-    }
-    void draw() {
-        advance(session, now);
-        draw_viewport(session, {640, 360}, now);
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
     std::int64_t shown() const { return session.view_frame.status().shown; }
     double distance_to(const Image& other) const {
         const Image image = session.view_frame.read();
@@ -64,11 +45,6 @@ class FinerPreviewSession : public GlTest {
             sum += std::fabs(double(image.pixels[i]) - double(other.pixels[i]));
         return sum;
     }
-
-    const Quiet quiet;
-    double now = 1000.0;  // s
-    const TempFolder folder;
-    Session session{options(), {}};
 };
 
 TEST_F(FinerPreviewSession, EveryStepIsCloserToTheFinalFrame) {

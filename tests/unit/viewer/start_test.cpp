@@ -1,41 +1,18 @@
 // From a start on, what is waited for comes first: the final picture before all that serves the next touch.
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <thread>
+#include <memory>
 #include <vector>
 
-#include "gl/gl_fixture.h"
-#include "support/quiet.h"
-#include "support/temp_folder.h"
-#include "viewer/session.h"
-#include "viewer/session_view.h"
+#include "unit/viewer/disk_session.h"
 
 namespace astrosplat::test {
 namespace {
 
-class Start : public GlTest {
+class Start : public DiskSession {
   protected:
-    ViewerOptions options() const {
-        ViewerOptions options;
-        options.input = folder.file("scene.toml",
-                                    "astrosplat = 1\n[camera]\nposition = [0.0, 6.0, 8.0]\n"
-                                    "[[layer]]\nname = \"disk\"\n[layer.source]\n"
-                                    "meshes = [ { mesh = \"plane\", texture = \"" ASTROSPLAT_SOURCE_DIR
-                                    "/assets/textures/spiral.jpg\" } ]\ncount = 1500000\n");
-        return options;
-    }
-    void draw() {
-        advance(session, now);
-        draw_viewport(session, {320, 180}, now);
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    Start() : DiskSession(1'500'000, {320, 180}) {}
     std::shared_ptr<const LoadedLayer> disk() const { return session.sets.loader().layer("disk"); }
-
-    const Quiet quiet;
-    double now = 1000.0;  // s
-    const TempFolder folder;
-    Session session{options(), {}};
 };
 
 // The clock stands: a set that arrives is no touch, after which the picture would have to rest.
