@@ -115,6 +115,7 @@ FidelityReference fidelity_reference(const Scene& now, const std::optional<std::
     reference.layer = layer.name;
     const StructureParams& structure = layer.source.structure;
     if (structure.kind != StructureKind::columns) reference.border = structure.border;
+    reference.disk = structure.kind != StructureKind::sheet && structure.kind != StructureKind::walls;
     if (file) reference.file = *file;
     if (file) reference.picture = load_linear_image(*file, progress);
     try {
@@ -159,6 +160,7 @@ FidelityReport measure_fidelity(const Scene& now, const FidelityReference& refer
     FidelityReport report;
     report.layer = reference.layer;
     report.reference = reference.file;
+    report.disk = reference.disk;
     const auto front_at = [&](std::int64_t width_px) {
         return compare_front(views, reference, now.output.pixel_filter, width_px,
                              step(fmt::format("front at {} px", width_px)));

@@ -29,6 +29,7 @@ struct FidelityReference {
     FrontFrame frame;            // world space
     Image picture;               // linear light on black, in its own resolution
     double border = 0.0;         // share of its width along every edge where light fades: not compared
+    bool disk = true;            // seen from its edge it is to look like a galaxy: not a sheet, nor walls
 
     /// Height in px of a front view so wide.
     std::int64_t height_px(std::int64_t width_px) const;
@@ -50,6 +51,7 @@ struct FidelityReport {
     Needles needles;            // from 60 degrees
     Needles flat_needles;       // of the picture, without any depth
     EdgeOnProfile edge;
+    bool disk = true;                   // FidelityReference::disk
     Image front_view, front_reference;  // of `front`: linear light on black
     Image side_view, edge_view;
 };

@@ -96,7 +96,9 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
             add_band(light, size, brightest, picture.alpha, placement, opacity, dots);
         progress.at(0.2 + 0.7 * (band.index + 1.0) / static_cast<double>(bands.size()));
     });
-    if (dust > 0.0) add_dust(transmittance_of(without_stars, emission, picture.alpha), dust, placement, dots);
+    if (dust > 0.0)
+        add_dust(transmittance_of(without_stars, emission, picture.alpha), dust,
+                 dust_exponents_of(picture.light), placement, dots);
     add_picture_stars(stars, placement, opacity, dots);
     log_detail(fmt::format("layer '{}': {} dots and {} in {}", layer_name,
                            human_count(static_cast<double>(dots.splats.size())), counted(stars.count, "star"),

@@ -94,10 +94,12 @@ float sheet_depth(float transmittance, float before) {
 
 class DustDots {
   public:
-    DustDots(const Image& transmittance, const Image& before, double amount, const Placement& placement)
+    DustDots(const Image& transmittance, const Image& before, double amount, const glm::vec3& exponents,
+             const Placement& placement)
         : transmittance_(transmittance),
           before_(before),
           amount_(static_cast<float>(amount)),
+          exponents_(exponents),
           placement_(placement),
           lattice_(transmittance.width, transmittance.height, spacing) {}
 
@@ -164,7 +166,7 @@ class DustDots {
             block.clumping[i] = 1.0f;
             block.random[i] = hash_of(dot.id, shared::PURPOSE_DEPTH);
             out.splats.alpha[first + i] = dot.alpha;
-            out.splats.color[first + i] = -dust_exponents;
+            out.splats.color[first + i] = -exponents_;
             out.splats.id[first + i] = dot.id;
         }
         NoiseStack noise;
@@ -186,11 +188,21 @@ class DustDots {
     const Image& transmittance_;
     const Image& before_;
     float amount_;
+    glm::vec3 exponents_;
     const Placement& placement_;
     DotLattice lattice_;
 };
 
 }  // namespace
+
+glm::vec3 dust_exponents_of(const Image& light) {
+    constexpr float least = 1e-3f, share = 0.02f;  // that a channel differs where there is colour
+    for (std::size_t i = 0; i + 2 < light.pixels.size(); i += 3) {
+        const auto [low, high] = std::minmax({light.pixels[i], light.pixels[i + 1], light.pixels[i + 2]});
+        if (high - low > std::max(least, share * high)) return dust_exponents;
+    }
+    return glm::vec3(1.0f);
+}
 
 Image transmittance_of(const Image& brightest, const Image& emission, const Image& alpha) {
     Image ratio = unfilled_image(brightest.width, brightest.height, 1);
@@ -215,9 +227,10 @@ float expected_dust_dots(float transmittance, double amount) {
     return dots_each_texel * kept_dust(static_cast<float>(amount) * sheet_depth(transmittance, usual_before));
 }
 
-void add_dust(const Image& transmittance, double amount, const Placement& placement, PictureSplats& out) {
+void add_dust(const Image& transmittance, double amount, const glm::vec3& exponents,
+              const Placement& placement, PictureSplats& out) {
     const Image before = light_before(placement, out);
-    DustDots(transmittance, before, amount, placement).add_to(out);
+    DustDots(transmittance, before, amount, exponents, placement).add_to(out);
     out.absorbs = true;
 }
 

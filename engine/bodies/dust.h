@@ -10,6 +10,10 @@ namespace astrosplat {
 /// Exponents of what dust lets through, r, g, b: more blue is lost.
 inline constexpr glm::vec3 dust_exponents{0.8f, 1.0f, 1.35f};
 
+/// Those of the dust of a picture: `dust_exponents`, and 1 where `light` is grey everywhere, as of a single
+/// filter: nothing of it is redder than anything else.
+glm::vec3 dust_exponents_of(const Image& light);
+
 /// What reaches the viewer of a disk that shines as `emission`, so that at most `brightest` is seen in any
 /// channel: the ratio of the brightest ones, .1 to 1; 1 where both are dark. One channel. The less, the
 /// smaller the picture's `alpha` (one channel, or without pixels): what fades towards an edge is no dust.
@@ -22,7 +26,8 @@ double dust_of(const StructureParams& params);
 float expected_dust_dots(float transmittance, double amount);
 
 /// Adds the dust that, with the light of `out` partly before it and partly behind, leaves `transmittance`
-/// of the whole. `amount`: share of its optical depth, 0 to 1.
-void add_dust(const Image& transmittance, double amount, const Placement& placement, PictureSplats& out);
+/// of the whole. `amount`: share of its optical depth, 0 to 1; `exponents`: those of the picture.
+void add_dust(const Image& transmittance, double amount, const glm::vec3& exponents,
+              const Placement& placement, PictureSplats& out);
 
 }  // namespace astrosplat

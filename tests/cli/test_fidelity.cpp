@@ -60,6 +60,20 @@ TEST_F(FidelityCommand, WritesNumbersThatReadBack) {
     EXPECT_NE(result.err.find("of memory"), std::string::npos) << result.err;
 }
 
+TEST_F(FidelityCommand, JudgesDisksAloneAsDisks) {
+    const auto told = [&](const char* kind) {
+        return fidelity({"-o", std::string(kind) + ".json", "--set",
+                         std::string("layer.picture.source.structure.kind=") + kind})
+            .out;
+    };
+    const std::string disk = told("disk"), sheet = told("sheet");
+    EXPECT_NE(disk.find("0.06 to 0.10"), std::string::npos) << disk;
+    EXPECT_NE(disk.find("at least 2.5"), std::string::npos) << disk;
+    EXPECT_EQ(sheet.find("0.06 to 0.10"), std::string::npos) << sheet;
+    EXPECT_EQ(sheet.find("at least 2.5"), std::string::npos) << sheet;
+    EXPECT_NE(sheet.find("centre over half radius"), std::string::npos) << sheet;
+}
+
 TEST_F(FidelityCommand, ThePageHoldsAllThatItShows) {
     ASSERT_EQ(fidelity({"-o", "report.HTML", "-q"}).code, 0);
     const std::string page = text_of(folder / "report.HTML");

@@ -86,7 +86,7 @@ double optical_depth(const PictureSplats& dots, std::int64_t first = 0) {
 TEST(Dust, ASheetBeforeAllLightHasTheDepthThatIsSeen) {
     for (const float seen : {0.95f, 0.6f, 0.2f}) {
         PictureSplats dots;
-        add_dust(make_image(size_px, size_px, 1, seen), 1.0, flat_placement(), dots);
+        add_dust(make_image(size_px, size_px, 1, seen), 1.0, dust_exponents, flat_placement(), dots);
         EXPECT_TRUE(dots.absorbs);
         EXPECT_TRUE(dots.ranges.empty());  // the fit leaves dust alone
         EXPECT_NEAR(optical_depth(dots), -std::log(seen), -0.03 * std::log(seen)) << seen;
@@ -95,7 +95,7 @@ TEST(Dust, ASheetBeforeAllLightHasTheDepthThatIsSeen) {
 
 TEST(Dust, AmountIsAShareOfTheDepth) {
     PictureSplats dots;
-    add_dust(make_image(size_px, size_px, 1, 0.6f), 0.5, flat_placement(), dots);
+    add_dust(make_image(size_px, size_px, 1, 0.6f), 0.5, dust_exponents, flat_placement(), dots);
     EXPECT_NEAR(optical_depth(dots), -0.5 * std::log(0.6), 0.01);
 }
 
@@ -114,13 +114,13 @@ TEST(Dust, LightBeforeTheSheetIsMadeUpFor) {
                 dots.distance.push_back(20.0f);
             }
     const std::int64_t first = dots.splats.size();
-    add_dust(make_image(size_px, size_px, 1, 0.8f), 1.0, flat_placement(), dots);
+    add_dust(make_image(size_px, size_px, 1, 0.8f), 1.0, dust_exponents, flat_placement(), dots);
     EXPECT_NEAR(optical_depth(dots, first), -std::log(0.6), 0.02);
 }
 
 TEST(Dust, LiesTornAboutASheetBeforeTheMiddle) {
     PictureSplats dots;
-    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, flat_placement(), dots);
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), dots);
     double sum = 0.0, squares = 0.0;
     for (const glm::vec3& p : dots.splats.position) {
         sum += static_cast<double>(p.z);
@@ -134,10 +134,23 @@ TEST(Dust, LiesTornAboutASheetBeforeTheMiddle) {
     for (const glm::vec3& color : dots.splats.color) ASSERT_EQ(color, -dust_exponents);
 }
 
+TEST(Dust, OfAGreyPictureIsGrey) {
+    Image light = make_image(8, 8, 3, 0.25f);
+    EXPECT_EQ(dust_exponents_of(light), glm::vec3(1.0f));
+    light.pixels[3 * 20 + 2] = 0.251f;  // noise of a conversion
+    EXPECT_EQ(dust_exponents_of(light), glm::vec3(1.0f));
+    light.pixels[3 * 63 + 2] = 0.27f;
+    EXPECT_EQ(dust_exponents_of(light), dust_exponents);
+    PictureSplats dots;
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, glm::vec3(1.0f), flat_placement(), dots);
+    ASSERT_GT(dots.splats.size(), 100);
+    for (const glm::vec3& color : dots.splats.color) ASSERT_EQ(color, glm::vec3(-1.0f));
+}
+
 // A lane stays one when a camera comes close: at every place the sheet is thin, whatever its waves.
 TEST(Dust, IsThinAtEveryPlace) {
     PictureSplats dots;
-    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, flat_placement(), dots);
+    add_dust(make_image(size_px, size_px, 1, 0.5f), 1.0, dust_exponents, flat_placement(), dots);
     constexpr std::size_t cells = size_px / 4;
     std::vector<std::array<double, 3>> sums(cells * cells);  // of 1, z, z^2
     for (const glm::vec3& p : dots.splats.position) {
