@@ -44,8 +44,8 @@ TEST(ChooseStructure, SaysWhy) {
     EXPECT_NE(choose_structure(make_image(8, 8, 3, 0.3f)).why.find("small"), std::string::npos);
 }
 
-// Grey, with a bright middle and a tail to one side; `sides` 2: to both.
-Image tailed(int sides) {
+// Grey or, with `blue` below 1, warm, with a bright middle and a tail to one side; `sides` 2: to both.
+Image tailed(int sides, float blue = 1.0f) {
     Image light = make_image(400, 250, 3);
     for (std::int64_t y = 0; y < light.height; ++y) {
         for (std::int64_t x = 0; x < light.width; ++x) {
@@ -53,6 +53,7 @@ Image tailed(int sides) {
             const bool in_tail = u > 0.0f || sides == 2;
             const float tail = in_tail ? 0.2f * std::exp(-std::fabs(u) / 50.0f - v * v / 3000.0f) : 0.0f;
             std::fill_n(light.at(x, y), 3, tail + 0.6f * std::exp(-(u * u + v * v) / 60.0f));
+            light.at(x, y)[2] *= blue;
         }
     }
     return light;
@@ -62,8 +63,53 @@ TEST(ChooseStructure, InGreyTheShapeTellsAGalaxyFromACloud) {
     EXPECT_EQ(choose_structure(tailed(2)).kind, StructureKind::disk) << choose_structure(tailed(2)).why;
     EXPECT_EQ(choose_structure(tailed(1)).kind, StructureKind::walls);
     EXPECT_EQ(choose_structure(tailed(1)).object, SkyObject::nebula);
-    EXPECT_NE(choose_structure(tailed(1)).why.find("grey"), std::string::npos)
+    EXPECT_NE(choose_structure(tailed(1)).why.find("either side"), std::string::npos)
         << choose_structure(tailed(1)).why;
+}
+
+TEST(ChooseStructure, InColourTheShapeTellsToo) {
+    EXPECT_EQ(choose_structure(tailed(2, 0.8f)).kind, StructureKind::disk);
+    EXPECT_EQ(choose_structure(tailed(1, 0.8f)).kind, StructureKind::walls);
+}
+
+// A round middle of light 1 in a wide glow of light `wide`, each of its own colour.
+Image glowing(const glm::vec3& middle, const glm::vec3& around, float wide = 0.2f) {
+    Image light = make_image(400, 250, 3);
+    for (std::int64_t y = 0; y < light.height; ++y) {
+        for (std::int64_t x = 0; x < light.width; ++x) {
+            const auto u = static_cast<float>(x - 200), v = static_cast<float>(y - 125);
+            const float near = std::exp(-(u * u + v * v) / 200.0f),
+                        far = wide * std::exp(-(u * u + v * v) / 4000.0f);
+            for (int c = 0; c < 3; ++c) light.at(x, y)[c] = near * middle[c] + far * around[c];
+        }
+    }
+    return light;
+}
+
+TEST(ChooseStructure, TellsLightOfGasFromThatOfStars) {
+    const glm::vec3 warm(1.0f, 0.85f, 0.65f), blue(0.7f, 0.85f, 1.0f), white(1.0f);
+    EXPECT_EQ(choose_structure(glowing(warm, blue)).kind, StructureKind::disk);
+    EXPECT_EQ(choose_structure(glowing(warm, warm)).kind, StructureKind::disk);
+    EXPECT_EQ(choose_structure(glowing({0.8f, 0.45f, 0.2f}, {0.8f, 0.45f, 0.25f})).kind, StructureKind::disk)
+        << "stars behind dust";
+    const glm::vec3 hydrogen(1.0f, 0.2f, 0.3f), pink(1.0f, 0.55f, 0.8f), oxygen(0.2f, 1.0f, 0.9f);
+    for (const glm::vec3& gas : {hydrogen, pink, oxygen}) {
+        const StructureChoice choice = choose_structure(glowing(gas, gas));
+        EXPECT_EQ(choice.kind, StructureKind::walls) << gas.g;
+        EXPECT_EQ(choice.object, SkyObject::nebula) << gas.g;
+        EXPECT_NE(choice.why.find("gas"), std::string::npos) << choice.why;
+    }
+    EXPECT_EQ(choose_structure(glowing(white, {1.0f, 0.8f, 0.55f})).kind, StructureKind::disk)
+        << "a round middle, burnt out to white";
+    EXPECT_EQ(choose_structure(glowing(blue, {1.0f, 0.75f, 0.3f})).kind, StructureKind::walls)
+        << "a middle that is truly bluer";
+}
+
+// Many spirals have no more than a small, dim bulge.
+TEST(ChooseStructure, TakesAnEvenDiskWithADimButRedderMiddleForAGalaxy) {
+    const glm::vec3 warm(0.6f, 0.4f, 0.2f), blue(0.75f, 0.85f, 1.0f);
+    EXPECT_EQ(choose_structure(glowing(warm, blue, 0.8f)).kind, StructureKind::disk);
+    EXPECT_EQ(choose_structure(glowing(blue * 0.5f, blue, 0.8f)).kind, StructureKind::walls);
 }
 
 StructureKind chosen(const std::filesystem::path& file) {
