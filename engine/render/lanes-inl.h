@@ -18,6 +18,7 @@ struct LaneBools {
     hn::Mask<D> m;
     HWY_INLINE LaneBools(hn::Mask<D> mask) : m(mask) {}
     HWY_INLINE friend LaneBools operator&&(LaneBools a, LaneBools b) { return hn::And(a.m, b.m); }
+    HWY_INLINE friend LaneBools operator!(LaneBools a) { return hn::Not(a.m); }
     HWY_INLINE friend LaneBools operator||(LaneBools a, LaneBools b) { return hn::Or(a.m, b.m); }
 };
 

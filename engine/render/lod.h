@@ -35,6 +35,9 @@ inline float child_radius_scale(int level) {
     return level == 0 ? 1.0f : 2.0f / static_cast<float>(1 << level);
 }
 
+/// What children may touch, parent radii.
+inline constexpr float child_reach = 1.25f;
+
 /// Child alphas and positions for one falloff. Building is lazy and not thread-safe; lookups after
 /// prepare() are.
 class LodTable {

@@ -40,6 +40,12 @@ glm::vec3 to_camera(const LayerProjection& layer, const glm::vec3& p) {
     return glm::vec3(layer.camera_from_layer * glm::dvec3(p) + layer.origin_in_camera);
 }
 
+CameraSplat splat_in_camera(const LayerProjection& layer, std::int64_t i) {
+    const ShadedSplats& splats = *layer.splats;
+    return {to_camera(layer, splats.position[i]), splats.radius[i] * layer.radius_scale, splats.alpha[i],
+            splats.color[i]};
+}
+
 void set_color(ScreenSplat& splat, const glm::vec3& color) {
     for (int k = 0; k < 3; ++k) splat.color[k] = color[k];
 }
@@ -187,7 +193,7 @@ void project_level(const LayerProjection& layer, const CameraSplat& parent, std:
 bool project_as_children(const LayerProjection& layer, const CameraSplat& splat, std::int64_t index,
                          const ScreenRect& rect, Buffer<ScreenSplat>& out) {
     const glm::vec3& p = splat.position;
-    const float near = layer.lens.near, reach = splat.radius * 1.25f;  // what children may touch
+    const float near = layer.lens.near, reach = splat.radius * child_reach;
     const float px_per_unit = shared::instance_of(layer.lens, shared::beyond_near(layer.lens, p)).px_per_unit;
     const LevelChoice choice =
         choose_levels(2.0f * splat.radius * px_per_unit, layer.lod_limit_px, layer.render.lod.max_children);
@@ -264,26 +270,34 @@ float support_px(const LayerProjection& layer, const ScreenSplat& splat, const B
     return shared::frame_reach_px(layer.lens, splat.x_px, splat.y_px, reach_px);
 }
 
+void project_most(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
+                  Buffer<ScreenSplat>& out, Buffer<Shape>& shapes, Buffer<std::int64_t>& rest) {
+    if (!layer.star_dots.empty()) return project_stars(layer, begin, end, rect, out, shapes);
+    if (!layer.splats->stretch.empty()) {
+        for (std::int64_t i = begin; i < end; ++i)
+            project_stretched(layer, splat_in_camera(layer, i), i, rect, out, shapes);
+        return;
+    }
+    begin = project_whole_blocks(layer, begin, end, rect, out, rest);
+    for (; begin < end; ++begin) rest.push_back(begin);
+}
+
+void project_rows(const LayerProjection& layer, std::span<const std::int64_t> rows, const ScreenRect& rect,
+                  Buffer<ScreenSplat>& out) {
+    for (const std::int64_t i : rows) {
+        const CameraSplat splat = splat_in_camera(layer, i);
+        if (layer.star_distance > 0.0f && is_star(layer.splats->id[i]))
+            project_star(layer, splat, i, rect, out);
+        else if (!layer.lod || !project_as_children(layer, splat, i, rect, out))
+            project_one(layer, splat, i, rect, out);
+    }
+}
+
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
              Buffer<ScreenSplat>& out, Buffer<Shape>& shapes) {
-    if (!layer.star_dots.empty()) return project_stars(layer, begin, end, rect, out, shapes);
-    const ShadedSplats& splats = *layer.splats;
-    const bool balls = splats.stretch.empty(), points = layer.star_distance > 0.0f;
-    if (!layer.lod && !points && balls) begin = project_whole_blocks(layer, begin, end, rect, out);
-    for (std::int64_t i = begin; i < end; ++i) {
-        const CameraSplat splat{to_camera(layer, splats.position[i]), splats.radius[i] * layer.radius_scale,
-                                splats.alpha[i], splats.color[i]};
-        if (!balls) {
-            project_stretched(layer, splat, i, rect, out, shapes);
-            continue;
-        }
-        if (points && is_star(splats.id[i])) {
-            project_star(layer, splat, i, rect, out);
-            continue;
-        }
-        if (layer.lod && project_as_children(layer, splat, i, rect, out)) continue;
-        project_one(layer, splat, i, rect, out);
-    }
+    Buffer<std::int64_t> rest;
+    project_most(layer, begin, end, rect, out, shapes, rest);
+    project_rows(layer, rest, rect, out);
 }
 
 }  // namespace astrosplat

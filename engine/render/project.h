@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <span>
 #include <vector>
 
 #include "camera/camera.h"
@@ -69,5 +70,12 @@ float support_px(const LayerProjection& layer, const ScreenSplat& splat, const B
 /// apart; of these the fold takes the one that is nearest to its cell.
 void project(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
              Buffer<ScreenSplat>& out, Buffer<Shape>& shapes);
+
+/// The same but for the rows that it appends to `rest`, of which level of detail may make thousands of
+/// splats: for project_rows().
+void project_most(const LayerProjection& layer, std::int64_t begin, std::int64_t end, const ScreenRect& rect,
+                  Buffer<ScreenSplat>& out, Buffer<Shape>& shapes, Buffer<std::int64_t>& rest);
+void project_rows(const LayerProjection& layer, std::span<const std::int64_t> rows, const ScreenRect& rect,
+                  Buffer<ScreenSplat>& out);
 
 }  // namespace astrosplat

@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include "render/lanes-inl.h"
+#include "splats/star_id.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {
@@ -50,9 +51,44 @@ HWY_INLINE Float camera_coordinate(const LayerProjection& layer, int k, VD x, VD
     return Float(hn::DemoteTo(D(), sum));
 }
 
-/// Projects `lanes` splats from `begin` on; bit i of the result: splat begin + i shows.
-HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_t begin,
-                                       const ScreenRect& rect, Projected& c) {
+HWY_INLINE std::uint32_t bits_of(hn::Mask<D> mask) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(D(), mask, bits);
+    return bits[0];
+}
+
+/// Which of the splats from `first` on are stars.
+HWY_INLINE std::uint32_t star_bits(const ShadedSplats& splats, std::size_t first) {
+    std::uint32_t bits = 0;
+    for (int i = 0; i < lanes; ++i) bits |= std::uint32_t{is_star(splats.id[first + i])} << i;
+    return bits;
+}
+
+/// Which splats look so large that level of detail divides them.
+HWY_INLINE Bool is_large(const LayerProjection& layer, Vec3 p, Float radius) {
+    const Float px_per_unit = instance_of(layer.lens, beyond_near(layer.lens, p)).px_per_unit;
+    return 2.0f * radius * px_per_unit > Float(layer.lod_limit_px);
+}
+
+/// Of those: neither they nor their children may show.
+HWY_INLINE Bool is_out_of_sight(const LayerProjection& layer, Vec3 p, const Instance& at, Float radius,
+                                const ScreenRect& rect) {
+    const Float reach = radius * child_reach, near = layer.lens.near;
+    const Float px = reach_px(layer.lens, p, reach, Float(layer.margin_px));
+    const Bool behind = at.depth + reach<near, in_front = at.depth - reach> near;
+    return behind || (in_front &&
+                      !appears_in_rect(layer.lens, at.x_px, at.y_px, px, rect.x0, rect.y0, rect.x1, rect.y1));
+}
+
+/// Splats of a block by their bits.
+struct Found {
+    std::uint32_t shows;
+    std::uint32_t rest;  // not projected
+};
+
+/// Projects `lanes` splats from `begin` on.
+HWY_INLINE Found project_block(const LayerProjection& layer, std::int64_t begin, const ScreenRect& rect,
+                               Projected& c) {
     const DD dd;
     const ShadedSplats& splats = *layer.splats;
     const auto first = static_cast<std::size_t>(begin);
@@ -80,13 +116,16 @@ HWY_INLINE std::uint32_t project_block(const LayerProjection& layer, std::int64_
     hn::StoreInterleaved4(x_px.v, y_px.v, radius_px.v, opacity.v, D(), c.disc[0]);
     hn::Store(sort_depth(layer.lens, p).v, D(), c.sort_depth);
     hn::Store(support_px.v, D(), c.support_px);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(D(), shows.m, bits);
-    return bits[0];
+    Found found{bits_of(shows.m), 0};
+    const std::uint32_t large = layer.lod ? bits_of(is_large(layer, p, radius).m) : 0;
+    if (large != 0) found.rest = large & ~bits_of(is_out_of_sight(layer, p, at, radius, rect).m);
+    if (layer.star_distance > 0.0f) found.rest |= star_bits(splats, first);
+    found.shows &= ~(found.rest | large);
+    return found;
 }
 
 void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
-                    const ScreenRect& rect, Buffer<ScreenSplat>& out) {
+                    const ScreenRect& rect, Buffer<ScreenSplat>& out, Buffer<std::int64_t>& rest) {
     const bool hybrid = layer.render.blend == Blend::hybrid;
     const float period = period_px(layer.lens);
     const std::size_t before = out.size();
@@ -94,7 +133,10 @@ void project_blocks(const LayerProjection& layer, std::int64_t begin, std::int64
     ScreenSplat* to = out.data() + before;
     Projected c;
     for (; begin < end; begin += lanes) {
-        for (std::uint32_t bits = project_block(layer, begin, rect, c); bits != 0; bits &= bits - 1) {
+        const Found found = project_block(layer, begin, rect, c);
+        for (std::uint32_t bits = found.rest; bits != 0; bits &= bits - 1)
+            rest.push_back(begin + std::countr_zero(bits));
+        for (std::uint32_t bits = found.shows; bits != 0; bits &= bits - 1) {
             const int i = std::countr_zero(bits);
             const std::int64_t index = begin + i;
             const glm::vec3& color = layer.splats->color[index];
@@ -128,10 +170,11 @@ HWY_EXPORT(project_blocks);
 HWY_EXPORT(block_size);
 
 std::int64_t project_whole_blocks(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
-                                  const ScreenRect& rect, Buffer<ScreenSplat>& out) {
+                                  const ScreenRect& rect, Buffer<ScreenSplat>& out,
+                                  Buffer<std::int64_t>& rest) {
     const std::int64_t size = HWY_DYNAMIC_DISPATCH(block_size)();
     const std::int64_t whole = begin + (end - begin) / size * size;
-    HWY_DYNAMIC_DISPATCH(project_blocks)(layer, begin, whole, rect, out);
+    HWY_DYNAMIC_DISPATCH(project_blocks)(layer, begin, whole, rect, out, rest);
     return whole;
 }
 

@@ -1,14 +1,16 @@
-// The projection's usual case, no level of detail, in vectors of splats: the bits of project(), which
-// it serves.
+// The projection's usual case, splats that level of detail does not divide, in vectors of them: the bits of
+// project(), which it serves.
 #pragma once
 
 #include "render/project.h"
 
 namespace astrosplat {
 
-/// Projects splats [begin, end) as far as they fill whole vectors; returns where the rest begins.
+/// Projects splats [begin, end) as far as they fill whole vectors; returns where the others begin. Those that
+/// level of detail may divide and may show, and stars that stay points close by, are left to `rest`.
 std::int64_t project_whole_blocks(const LayerProjection& layer, std::int64_t begin, std::int64_t end,
-                                  const ScreenRect& rect, Buffer<ScreenSplat>& out);
+                                  const ScreenRect& rect, Buffer<ScreenSplat>& out,
+                                  Buffer<std::int64_t>& rest);
 
 /// Appends a splat at each of the places at which the frame shows it, as far as the square of half width
 /// support_px around it touches `rect`; period_px is the lens's.

@@ -15,6 +15,7 @@ constexpr std::int64_t slab_bytes = std::int64_t{40} << 20, line_bytes = 64;
 constexpr std::int64_t chunk_splats = 8192;  // handed out to a worker
 constexpr std::int64_t least_block = 8;      // records
 constexpr std::int64_t step_splats = 512;    // projected before they are written: they stay in cache
+constexpr std::size_t step_rest = 16;        // of those that may become thousands
 
 /// Drops those that lie in other slabs, and their shapes, which begin at `first_shape`.
 void keep_in_slab(const DepthRange& slab, std::size_t first_shape, Buffer<ScreenSplat>& splats,
@@ -245,17 +246,27 @@ void TileBins::scatter_chunk(const LayerProjection& layer, int group, const Chun
                              const DepthRange& slab, Sums& sums, SplatStore& store, Writer& writer,
                              const Progress& progress) const {
     const ScreenRect rect = rect_of(grid_);
-    // Level of detail may turn a splat into thousands.
-    const std::int64_t step = layer.lod ? 16 : step_splats;
-    for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step) {
-        progress.check();
-        writer.splats.clear();
-        const std::size_t first_shape = writer.shapes.size();
-        project(layer, begin, std::min(begin + step, chunk.end), rect, writer.splats, writer.shapes);
+    const auto put_away = [&](std::size_t first_shape) {
         if (!slab.is_all()) keep_in_slab(slab, first_shape, writer.splats, writer.shapes);
         if (layer.blocks) number_by_ids(*layer.splats, chunk.slot, writer);
         sum_up(writer, sums);
         write(list_entries(layer, group, writer), store, writer);
+    };
+    for (std::int64_t begin = chunk.begin; begin < chunk.end; begin += step_splats) {
+        progress.check();
+        writer.splats.clear();
+        writer.rest.clear();
+        const std::size_t first_shape = writer.shapes.size();
+        project_most(layer, begin, std::min(begin + step_splats, chunk.end), rect, writer.splats,
+                     writer.shapes, writer.rest);
+        put_away(first_shape);
+        for (std::size_t i = 0; i < writer.rest.size(); i += step_rest) {
+            progress.check();
+            writer.splats.clear();
+            const std::span<const std::int64_t> rows(writer.rest);
+            project_rows(layer, rows.subspan(i, std::min(step_rest, rows.size() - i)), rect, writer.splats);
+            put_away(writer.shapes.size());
+        }
     }
 }
 

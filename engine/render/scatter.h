@@ -137,6 +137,7 @@ class TileBins {
         ScreenSplat* unused_end = nullptr;
         Buffer<ScreenSplat> splats;  // just projected
         Buffer<Shape> shapes;        // of all it projected
+        Buffer<std::int64_t> rest;   // rows that are projected a few at a time
         Discs discs;                 // their supports
         Buffer<BinRect> rects;
         Buffer<Entry> entries;

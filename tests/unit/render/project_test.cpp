@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
+#include "splats/star_id.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {
@@ -96,6 +99,53 @@ TEST(Project, NothingOutsideNearAndFar) {
     camera.far = 20.0;
     EXPECT_EQ(project_all(copies({{0.0f, 0.0f, -20.0f}, 0.5f}), camera).size(), 19u);
     EXPECT_EQ(project_all(copies({{0.0f, 0.0f, -20.5f}, 0.5f}), camera).size(), 0u);
+}
+
+/// Of all sizes, in front of the camera and behind it, on the frame and beside it; every fifth a star.
+ShadedSplats mixed_splats() {
+    std::vector<OneSplat> splats;
+    for (int i = 0; i < 4000; ++i) {
+        const auto part = [&](int n) { return static_cast<float>(i * n % 3989) / 3989.0f; };
+        const float size = part(1117) * part(1117) * part(1117);
+        splats.push_back({{12.0f * part(727) - 6.0f, 12.0f * part(1931) - 6.0f, 4.0f - 12.0f * part(2953)},
+                          0.01f + 1.5f * size,
+                          0.1f + 0.8f * part(331),
+                          {1.0f, part(557), 0.5f}});
+    }
+    ShadedSplats set = make_splats(splats);
+    for (std::size_t i = 0; i < set.id.size(); i += 5) set.id[i] |= star_band << 48;
+    return set;
+}
+
+bool is_before(const ScreenSplat& a, const ScreenSplat& b) { return in_front_of(a, b); }
+
+/// A row alone is no vector.
+TEST(Project, VectorsDivideWhatSingleSplatsDo) {
+    const ShadedSplats splats = mixed_splats();
+    const LodTable table = [] {
+        LodTable made({Falloff::Shape::gaussian});
+        made.prepare(4);
+        return made;
+    }();
+    for (const float noise : {0.0f, 0.5f})
+        for (const float star_distance : {0.0f, 5.0f}) {
+            RenderLayer asked = layer_of("mixed", splats, Blend::over, Falloff::Shape::gaussian);
+            asked.render.lod = {100.0f, 256, noise};
+            asked.render.lod.star_distance = star_distance;
+            LayerProjection layer = make_projection(asked, 0, perspective_camera(), settings_of(64, 64));
+            layer.lod = &table;
+            const ScreenRect rect{0.0f, 0.0f, 64.0f, 64.0f};
+            Buffer<ScreenSplat> together, single;
+            Buffer<Shape> shapes;
+            project(layer, 0, splats.size(), rect, together, shapes);
+            for (std::int64_t i = 0; i < splats.size(); ++i) project(layer, i, i + 1, rect, single, shapes);
+            std::ranges::sort(together, is_before);
+            std::ranges::sort(single, is_before);
+            ASSERT_EQ(together.size(), single.size());
+            EXPECT_GT(single.size(), 5000u) << "children";
+            EXPECT_EQ(std::memcmp(together.data(), single.data(), single.size() * sizeof(ScreenSplat)), 0)
+                << noise << " " << star_distance;
+        }
 }
 
 }  // namespace
