@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <optional>
 
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "render/plan_bands.h"
 #include "render/record_sample.h"
 #include "render/tiles.h"
 
@@ -18,47 +18,6 @@ namespace {
 
 // Of a record: itself with the unused ends of blocks, and an id where they are kept.
 constexpr double record_bytes = 1.125 * sizeof(ScreenSplat), id_bytes = sizeof(std::uint64_t);
-
-bool has_blocks(const FrameJob& job) {
-    return std::ranges::any_of(job.layers, [](const RenderLayer& layer) { return layer.blocks != nullptr; });
-}
-
-/// The frame's tiles, and the records they will take, roughly.
-struct Tiles {
-    TileGrid grid;
-    std::int64_t records = 0;
-};
-
-/// Large tiles cut fewer splats into several records; small ones keep a tile's records in a core's cache.
-Tiles choose_tiles(const FrameJob& job) {
-    constexpr int small_px = 32, large_px = 64;
-    constexpr std::int64_t records_in_cache = 16384;  // measured: up to here the larger tiles are quicker,
-    constexpr double worth_missing_it = 1.5;          // and beyond if they save so many records
-    TileGrid grid{job.region.x, job.region.y, job.region.width, job.region.height, large_px};
-    if (job.settings.tile_px > 0) {
-        grid.tile_px = job.settings.tile_px;
-        return {grid, estimate_records(job.projections, grid, {&grid.tile_px, 1}, job.progress)[0]};
-    }
-    const int sizes[] = {small_px, large_px};
-    const std::vector<std::int64_t> records = estimate_records(job.projections, grid, sizes, job.progress);
-    const bool enough_to_share = grid.tiles() >= 8 * thread_count();
-    const bool in_cache = static_cast<double>(records[1]) * job.settings.splats_each <=
-                          static_cast<double>(records_in_cache * grid.tiles());
-    const bool saves = static_cast<double>(records[0]) >= worth_missing_it * static_cast<double>(records[1]);
-    if (enough_to_share && (in_cache || saves)) return {grid, records[1]};
-    grid.tile_px = small_px;
-    return {grid, records[0]};
-}
-
-/// Tile rows of each band so that it takes no more than the limit: its records, or the pixels between slabs.
-std::int64_t rows_per_band(const FrameJob& job, const Tiles& tiles) {
-    const std::int64_t limit = job.settings.memory_limit_bytes, rows = tiles.grid.rows();
-    const std::int64_t records = tiles.records * static_cast<std::int64_t>(sizeof(ScreenSplat));
-    if (limit <= 0 || records <= limit) return rows;
-    const std::int64_t bytes = has_blocks(job) ? 4 * CarriedTiles::bytes(job, tiles.grid) : records;
-    const std::int64_t bands = std::max<std::int64_t>(1, (bytes + limit - 1) / limit);
-    return std::max<std::int64_t>(1, rows / std::min(rows, bands));
-}
 
 /// One band while it is rendered.
 class BandRun {
@@ -234,29 +193,6 @@ class BandRun {
 };
 
 }  // namespace
-
-Bands make_bands(const FrameJob& job) {
-    const Tiles tiles = choose_tiles(job);
-    const TileGrid& grid = tiles.grid;
-    const std::int64_t band_rows = rows_per_band(job, tiles);
-    Bands bands;
-    for (std::int64_t row = 0; row < grid.rows(); row += band_rows) {
-        TileGrid band = grid;
-        band.y0 = grid.y0 + row * grid.tile_px;
-        band.height = std::min(band_rows * grid.tile_px, grid.y0 + grid.height - band.y0);
-        band.first_band = row == 0;
-        band.last_band = row + band_rows >= grid.rows();
-        bands.grids.push_back(band);
-    }
-    bands.records = tiles.records / std::ssize(bands.grids);
-    if (!job.tile_done) return bands;
-    const auto from_middle = [&](const TileGrid& band) {
-        return std::abs(2 * (band.y0 - grid.y0) + band.height - grid.height);
-    };
-    std::ranges::stable_sort(
-        bands.grids, [&](const TileGrid& a, const TileGrid& b) { return from_middle(a) < from_middle(b); });
-    return bands;
-}
 
 void render_band(const FrameJob& job, const TileGrid& grid, std::int64_t records, double before,
                  RenderCache::State& cache, RenderedFrame& frame) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "render/frame.h"
 #include "render/frame_job.h"
@@ -15,14 +14,6 @@ namespace astrosplat {
 
 /// Of a record of the tile being folded, beside itself: its places in the order, and its disc.
 constexpr std::int64_t fold_bytes_per_record = SplatSorter::bytes_per_record + 6 * sizeof(float);
-
-/// The frame in bands, each of some rows of tiles, so that what they take keeps to the memory limit as far as
-/// can be told before; with tile_done those nearest to the middle first.
-struct Bands {
-    std::vector<TileGrid> grids;
-    std::int64_t records = 0;  // that each will take, roughly
-};
-Bands make_bands(const FrameJob& job);
 
 /// Bytes of all records of the frame with what folding them takes, without the memory that no record uses.
 std::int64_t scattered_bytes(const FrameJob& job, RenderCache::State& cache);

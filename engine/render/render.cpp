@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "render/bands.h"
 #include "render/frame_job.h"
+#include "render/plan_bands.h"
 
 namespace astrosplat {
 namespace {

@@ -95,5 +95,35 @@ TEST(TileDone, TheMiddleComesFirst) {
     EXPECT_TRUE(std::is_sorted(distances.begin(), distances.end()));
 }
 
+/// Its first tiles do not wait for splats far from them, and later ones use their memory again.
+TEST(TileDone, ManySplatsComeInBandsFromTheMiddle) {
+    constexpr int wide_px = 128, high_px = 256, rows = high_px / 32;
+    std::vector<OneSplat> splats(2'000'000);
+    for (std::size_t i = 0; i < splats.size(); ++i) {
+        const auto x = static_cast<float>(i % 2000), y = static_cast<float>(i / 2000);
+        splats[i] = {{0.064f * x - 64.0f, 0.256f * y - 128.0f, 0.01f * x}, 0.3f, 0.01f, {1.0f, 0.5f, 0.25f}};
+    }
+    const ShadedSplats set = make_splats(splats);
+    const RenderLayer layer = layer_of("many", set);
+    RenderSettings settings = settings_of(wide_px, high_px);
+    settings.tile_px = 32;
+    const int before = thread_count();
+    set_thread_count(1);
+    std::vector<std::int64_t> order;  // rows of tiles, as they come
+    const auto picture = [&](const TileDone& tile_done) {
+        return render({&layer, 1}, pixel_camera(wide_px, high_px), nullptr, settings, {}, nullptr, tile_done);
+    };
+    const RenderedFrame watched =
+        picture([&](const Region& t, const RenderedFrame&) { order.push_back(t.y / settings.tile_px); });
+    const RenderedFrame whole = picture({});
+    set_thread_count(before);
+    const std::size_t columns = wide_px / 32;
+    EXPECT_EQ(order.size(), columns * rows);
+    for (std::size_t i = 0; i < columns; ++i) EXPECT_EQ(order[i], order[0]) << "a band of one row";
+    EXPECT_NEAR(static_cast<double>(order[0]), 0.5 * (rows - 1), 0.5);
+    EXPECT_EQ(watched.beauty.pixels, whole.beauty.pixels);
+    EXPECT_EQ(watched.statistics.splats_drawn, whole.statistics.splats_drawn);
+}
+
 }  // namespace
 }  // namespace astrosplat
