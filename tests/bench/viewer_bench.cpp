@@ -184,7 +184,7 @@ void measure_start(Viewer& viewer, double started, double processor_started) {
     print_since_start("start to all that comes later: trees, histograms", "");
 }
 
-/// From the last touch, the 0.3 s of rest included.
+/// From the last touch, the 0.2 s of rest included.
 void measure_settling(Viewer& viewer, const std::string& what) {
     Session& session = viewer.session();
     const double touched = seconds_now(), processor = processor_seconds();
