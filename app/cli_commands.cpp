@@ -18,7 +18,7 @@ void add_new(CLI::App& app, Invocation& call) {
     add_value(command, "IMAGE", call.create.image, "IMAGE", "The picture")->required();
     add_value(command, "-o,--output", call.create.scene, "SCENE",
               "The scene file to write (default: the picture's name with .toml, in this folder)");
-    add_value(command, "--as", call.create.as, "galaxy|nebula|remnant|plane",
+    add_value(command, "--as", call.create.as, "galaxy|nebula|remnant|field|plane",
               "What the picture shows (default: by looking at it)");
     command.add_flag("--film", call.create.film, "With a camera move of ten seconds");
     add_value(command, "--shape", call.create.shape, "plane|relief|disk|sphere",

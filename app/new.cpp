@@ -26,15 +26,17 @@ struct NamedObject {
     const char* name;
     SkyObject object;
 };
-constexpr std::array<NamedObject, 3> sky_objects{
-    {{"galaxy", SkyObject::galaxy}, {"nebula", SkyObject::nebula}, {"remnant", SkyObject::remnant}}};
+constexpr std::array<NamedObject, 4> sky_objects{{{"galaxy", SkyObject::galaxy},
+                                                  {"nebula", SkyObject::nebula},
+                                                  {"remnant", SkyObject::remnant},
+                                                  {"field", SkyObject::field}}};
 
 std::optional<SkyObject> object_of(const std::string& as) {
     if (as.empty()) return {};
     for (const NamedObject& named : sky_objects)
         if (named.name == as) return named.object;
-    static const std::vector<std::string> names{"galaxy", "nebula", "remnant", "plane"};
-    throw InputError(fmt::format("--as: expected galaxy, nebula, remnant or plane, found '{}'{}", as,
+    static const std::vector<std::string> names{"galaxy", "nebula", "remnant", "field", "plane"};
+    throw InputError(fmt::format("--as: expected galaxy, nebula, remnant, field or plane, found '{}'{}", as,
                                  did_you_mean(as, names)));
 }
 

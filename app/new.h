@@ -12,7 +12,7 @@ namespace astrosplat {
 struct NewOptions {
     std::filesystem::path image;
     std::filesystem::path scene;  // empty: the picture's name with .toml, in the working folder
-    std::string as;               // galaxy, nebula, remnant or plane; empty: chosen by looking at the picture
+    std::string as;               // an object of the sky, or plane; empty: chosen by looking at the picture
     std::string shape;            // of a scene of columns; empty: a scene of bodies
     bool film = false;
     bool overwrite = false;

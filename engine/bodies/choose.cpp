@@ -20,12 +20,15 @@ namespace astrosplat {
 namespace {
 
 constexpr std::int64_t small_width = 256;
-constexpr double edge_share = 0.06;    // of the width, that counts as the picture's edge
-constexpr double bright_middle = 2.5;  // times the light at the half-light radius
-constexpr double soft_middle = 1.5;    // the same, of an even disk with a redder middle
-constexpr double even_middle = 2.2;    // of what is hollow, at most
-constexpr double dark_edge = 0.3;      // of the mean light
-constexpr double alone_edge = 0.45;    // of the same, for what has a glow around it, or is alike on all sides
+constexpr double small_things = 0.012;  // of the width: what stands out of a blur so wide is small
+constexpr double mostly_small = 0.52;   // share of the light in small things: fields have .5 to .8
+constexpr double scattered = 0.45;      // difference between opposite sides
+constexpr double edge_share = 0.06;     // of the width, that counts as the picture's edge
+constexpr double bright_middle = 2.5;   // times the light at the half-light radius
+constexpr double soft_middle = 1.5;     // the same, of an even disk with a redder middle
+constexpr double even_middle = 2.2;     // of what is hollow, at most
+constexpr double dark_edge = 0.3;       // of the mean light
+constexpr double alone_edge = 0.45;  // of the same, for what has a glow around it, or is alike on all sides
 // Red over blue, of the middle against its surroundings; a round middle may be burnt out to white.
 constexpr double as_red = 0.8, redder = 1.25, burnt_out = 0.45;
 // Differences between opposite sides: galaxies have .02 to .5, clouds .2 to .9. Grey ones have but these.
@@ -40,11 +43,12 @@ struct Pixel {
     bool edge;
 };
 
+Image of_width(const Image& image, std::int64_t width) {
+    const std::int64_t height = std::max<std::int64_t>(1, image.height * width / image.width);
+    return resampled(image, map_to_width(image, width, height), width, height, 0.5);
+}
+
 Image small_copy(const Image& light) {
-    const auto of_width = [&](const Image& image, std::int64_t width) {
-        const std::int64_t height = std::max<std::int64_t>(1, image.height * width / image.width);
-        return resampled(image, map_to_width(image, width, height), width, height, 0.5);
-    };
     Image copy = light.width > 2 * small_width ? of_width(light, 2 * small_width) : light;
     take_stars(copy);
     return gaussian_blur(of_width(copy, small_width), 1.0);
@@ -125,6 +129,21 @@ double lopsidedness(const Image& light, double half) {
     return sum > 0.0 ? difference / sum : 1.0;
 }
 
+// Share of the light above the sky that is in small things, stars among them.
+double small_share(const Image& light) {
+    const std::int64_t width = std::min(light.width, 2 * small_width);
+    Image above = brightest_channel(of_width(light, width));
+    const auto sky = static_cast<float>(sky_of(above));
+    for (float& value : above.pixels) value = std::max(0.0f, value - sky);
+    const Image wide = gaussian_blur(above, small_things * static_cast<double>(width));
+    double small = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < above.pixels.size(); ++i) {
+        small += static_cast<double>(std::max(0.0f, above.pixels[i] - wide.pixels[i]));
+        all += static_cast<double>(above.pixels[i]);
+    }
+    return all > 0.0 ? small / all : 0.0;
+}
+
 // Means over the pixels for which `wanted` holds.
 struct Part {
     double light = 0.0, redness = 1.0;
@@ -171,6 +190,8 @@ StructureChoice by_looking(const Image& light) {
     const double peak = middle.light / std::max(1e-12, ring.light);
     const double redness = middle.redness / std::max(1e-12, outside.redness);
     const double sides = lopsidedness(small, half);
+    if (sides > scattered && small_share(light) > mostly_small)
+        return {StructureKind::sheet, SkyObject::field, "its light is in many small things, here and there"};
     const bool grey = is_grey(pixels), even = sides < even_sides;
     const bool one_sided = sides > (grey ? lopsided_grey : lopsided);
     const bool gathers = peak >= (even && redness >= redder ? soft_middle : bright_middle);
@@ -209,6 +230,7 @@ StructureChoice choose_structure(const Image& light, std::optional<SkyObject> sh
     if (!shown) return by_looking(light);
     if (*shown == SkyObject::galaxy) return {StructureKind::disk, *shown, ""};
     if (*shown == SkyObject::remnant) return {StructureKind::walls, *shown, ""};
+    if (*shown == SkyObject::field) return {StructureKind::sheet, *shown, ""};
     return {of_nebula(light), *shown, ""};
 }
 

@@ -10,7 +10,12 @@
 
 namespace astrosplat {
 
-enum class SkyObject { galaxy, nebula, remnant };
+enum class SkyObject {
+    galaxy,
+    nebula,
+    remnant,
+    field,  // of many small things: a cluster of stars or of galaxies, a deep field
+};
 
 struct StructureChoice {
     StructureKind kind = StructureKind::sheet;
@@ -18,10 +23,10 @@ struct StructureChoice {
     std::string why;  // "its light goes on to the picture's edges"; empty where the object was given
 };
 
-/// disk for what has a bright middle that is at least as red as its surroundings (in a grey picture: with
-/// light all around it), walls for what stands alone on a dark sky, sheet for what goes on to the
-/// picture's edges. `light`: RGB, linear, >= 0. `shown`: what it is known to show; a nebula may be either of
-/// the latter.
+/// disk for what has a bright middle that is at least as red as its surroundings and has the colours of stars
+/// (in a grey picture: with light all around it), walls for what stands alone on a dark sky, sheet for a
+/// field and for what goes on to the picture's edges. `light`: RGB, linear, >= 0. `shown`: what it is known
+/// to show; a nebula may be either of the latter.
 StructureChoice choose_structure(const Image& light, std::optional<SkyObject> shown = {});
 
 /// Where a picture is brightest over wide areas, its stars left out: from the top left corner, in shares of

@@ -207,10 +207,12 @@ std::string_view opacity_of(StructureKind structure) {
     return structure == StructureKind::disk ? "opacity = 0.42, density = 0.8" : "opacity = 0.55";
 }
 
-// How far bodies reach along the line of sight.
-std::string extent_of(StructureKind structure) {
-    if (structure == StructureKind::disk) return "flare = 0.35, warp = 0.01";
-    return structure == StructureKind::walls ? fmt::format("depth = {}", wall_depth) : "depth = 0.15";
+// How far bodies reach along the line of sight. What lies between the things of a field is a thin, flat
+// sheet: folds of it would be drawn as lines across the sky.
+std::string extent_of(const PictureScene& scene) {
+    if (scene.structure == StructureKind::disk) return "flare = 0.35, warp = 0.01";
+    if (scene.structure == StructureKind::walls) return fmt::format("depth = {}", wall_depth);
+    return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";
 }
 
 // What `prepare` writes beside a picture that it took stars from.
@@ -260,6 +262,7 @@ PictureScene picture_scene(const std::filesystem::path& image, std::optional<Sky
     scene.subject = subject_of(light);
     choice = choose_structure(light, shown);
     scene.structure = choice.kind;
+    scene.object = choice.object;
     return scene;
 }
 
@@ -284,8 +287,8 @@ std::string picture_scene_text(const PictureScene& scene, const std::filesystem:
         fmt::arg("split", std::lround(split_above_px(scene.structure, longest_side / height, margin))),
         fmt::arg("points", fmt::format("{:.3g}", points_within * distance)),
         fmt::arg("edges", margin > 0.0 ? fmt::format("margin = {}", margin) : "border = 0.03"),
-        fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"),
-        fmt::arg("extent", extent_of(scene.structure)), fmt::arg("opacity", opacity_of(scene.structure)));
+        fmt::arg("stars", scene.stars.empty() ? "" : ", stars = false"), fmt::arg("extent", extent_of(scene)),
+        fmt::arg("opacity", opacity_of(scene.structure)));
     if (!scene.stars.empty()) {
         const double frame_px = static_cast<double>(side_px(longest, longest));
         text += stars_text(scene, name, frame_px / static_cast<double>(longest), file);

@@ -18,6 +18,7 @@ struct PictureScene {
     std::filesystem::path image;
     std::int64_t width_px = 0, height_px = 0;  // the picture's
     StructureKind structure = StructureKind::disk;
+    SkyObject object = SkyObject::galaxy;
     double lit_rim = 0.0;     // share of its rim beyond which what it shows goes on, as far as one can see
     double mean_light = 0.0;  // 0..1 of the displayed white
     bool film = false;        // with a camera move of ten seconds

@@ -101,8 +101,8 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
     const RunResult chosen = run({"new", "picture.ppm", "-o", "chosen.toml"});
     ASSERT_EQ(chosen.code, 0) << chosen.err;
     EXPECT_NE(chosen.err.find("--as chooses another"), std::string::npos) << chosen.err;
-    for (const auto& [as, kind] :
-         {std::pair("galaxy", "disk"), std::pair("nebula", "sheet"), std::pair("remnant", "walls")}) {
+    for (const auto& [as, kind] : {std::pair("galaxy", "disk"), std::pair("nebula", "sheet"),
+                                   std::pair("remnant", "walls"), std::pair("field", "sheet")}) {
         const std::string scene = std::string(as) + ".toml";
         const RunResult made = run({"new", "picture.ppm", "-o", scene, "--as", as, "--film"});
         ASSERT_EQ(made.code, 0) << made.err;
@@ -114,6 +114,8 @@ TEST_F(Commands, NewMakesBodiesOfAPicture) {
             {"--batch", scene, "-f", "1,160", "-o", std::string(as) + ".####.png", "--resolution", "48x32"});
         EXPECT_EQ(rendered.code, 0) << rendered.err;
     }
+    EXPECT_NE(text_of(folder / "field.toml").find("height = 0.05, depth = 0.01"), std::string::npos);
+    EXPECT_EQ(text_of(folder / "nebula.toml").find("height"), std::string::npos);
     EXPECT_EQ(text_of(folder / "chosen.toml").find("[animation]"), std::string::npos);
     ASSERT_EQ(run({"new", "picture.ppm", "-o", "columns.toml", "--as", "plane"}).code, 0);
     EXPECT_EQ(text_of(folder / "columns.toml").find("structure"), std::string::npos);

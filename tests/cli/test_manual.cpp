@@ -101,7 +101,7 @@ TEST_F(Manual, BashCompletes) {
     using Offers = std::vector<std::string>;
     write_text(folder / "zwei worte.toml", "");
     EXPECT_EQ(completed({"ver"}), Offers{"verify"});
-    EXPECT_EQ(completed({"new", "--as", ""}), (Offers{"galaxy", "nebula", "remnant", "plane"}));
+    EXPECT_EQ(completed({"new", "--as", ""}), (Offers{"galaxy", "nebula", "remnant", "field", "plane"}));
     EXPECT_EQ(completed({"--progress", "p"}), Offers{"plain"});
     EXPECT_EQ(completed({"--batch", "zwei"}), Offers{"zwei worte.toml"});
     EXPECT_EQ(completed({"--set", "output.fp"}), Offers{"output.fps="});

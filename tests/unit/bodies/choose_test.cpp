@@ -112,10 +112,30 @@ TEST(ChooseStructure, TakesAnEvenDiskWithADimButRedderMiddleForAGalaxy) {
     EXPECT_EQ(choose_structure(glowing(blue * 0.5f, blue, 0.8f)).kind, StructureKind::walls);
 }
 
-StructureKind chosen(const std::filesystem::path& file) {
-    const Texture texture = load_texture({file}, {}, TextureSettings::Wrap::clamp);
-    return choose_structure(picture_light(texture, 0.0).light).kind;
+// Galaxies and stars on a dark sky; as one cloud of wide light they would be none.
+TEST(ChooseStructure, TellsAFieldOfManyThings) {
+    const auto strewn = [](double sigma) {
+        Image light = make_image(600, 400, 3, 0.004f);
+        for (std::uint32_t i = 0; i < 160; ++i)
+            painted::add_point(light, painted::random(i, 1) * 600.0, painted::random(i, 2) * 400.0,
+                               sigma * (0.5 + painted::random(i, 3)), 0.1 + 0.3 * painted::random(i, 4), 0.25,
+                               0.3);
+        return light;
+    };
+    const StructureChoice field = choose_structure(strewn(2.5));
+    EXPECT_EQ(field.object, SkyObject::field) << field.why;
+    EXPECT_EQ(field.kind, StructureKind::sheet);
+    EXPECT_NE(choose_structure(strewn(25.0)).object, SkyObject::field);
+    EXPECT_NE(choose_structure(painted::galaxy(600, 400)).object, SkyObject::field);
+    EXPECT_EQ(choose_structure(painted::galaxy(600, 400), SkyObject::field).kind, StructureKind::sheet);
 }
+
+StructureChoice choice_of(const std::filesystem::path& file) {
+    const Texture texture = load_texture({file}, {}, TextureSettings::Wrap::clamp);
+    return choose_structure(picture_light(texture, 0.0).light);
+}
+StructureKind chosen(const std::filesystem::path& file) { return choice_of(file).kind; }
+SkyObject object_in(const std::filesystem::path& file) { return choice_of(file).object; }
 
 TEST(ChooseStructure, TellsRealGreyObjectsApart) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(fits, "fits");
@@ -125,6 +145,8 @@ TEST(ChooseStructure, TellsRealGreyObjectsApart) {
 
 TEST(ChooseStructure, TellsRealObjectsApart) {
     ASTROSPLAT_TEST_DATA_OR_SKIP(images, "images");
+    EXPECT_EQ(object_in(images / "hubble_deep_field.jpg"), SkyObject::field);
+    EXPECT_EQ(object_in(images / "m42.png"), SkyObject::nebula);
     EXPECT_EQ(chosen(images / "m101_heic0602a.jpg"), StructureKind::disk);
     EXPECT_EQ(chosen(images / "heic0706a.jpg"), StructureKind::disk);
     EXPECT_EQ(chosen(images / "heic1305a.jpg"), StructureKind::disk);
