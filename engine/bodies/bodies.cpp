@@ -77,7 +77,7 @@ void add_dots(const PictureLight& picture, const UvSurface& surface, const Struc
               std::uint32_t seed, const std::string& layer_name, const Progress& progress,
               PictureSplats& dots) {
     Image rest = copied(picture.light);
-    const PictureStars stars = take_picture_stars(rest, params);
+    const PictureStars stars = take_picture_stars(rest, params, picture.enlarged);
     progress.check();
     progress.at(0.1);
     const Image brightest = brightest_channel(picture.light), without_stars = brightest_channel(rest);
@@ -419,7 +419,8 @@ SplatSet bodies_of(const PictureOnMesh& picture, std::size_t number, Texture& te
         }
         texture.image.pixels = {};
         release_spare_pages();  // of the bands
-        const FrontFit fit = fit_front(made.dots, std::move(made.light), progress.part(made_share, 1.0));
+        const FrontFit fit =
+            fit_front(made.dots, std::move(made.light), texture.times > 1, progress.part(made_share, 1.0));
         release_spare_pages();  // of the fit
         log_detail(fmt::format("layer '{}': front view {:.1f} dB after {} steps of the fit", layer_name,
                                fit.psnr_db, fit.steps));

@@ -29,6 +29,7 @@ Texture part_of(const Texture& whole, std::int64_t x, std::int64_t y, std::int64
                 std::int64_t height) {
     Texture part;
     part.alpha_from_light = whole.alpha_from_light;
+    part.times = whole.times;
     part.image = make_image(width, height, whole.image.channels);
     for (std::int64_t row = 0; row < height; ++row)
         std::copy_n(whole.image.at(x, y + row), width * whole.image.channels, part.image.at(0, row));
@@ -51,7 +52,7 @@ double dots_a_texel(const Texture& part, const StructureParams& params, const Pl
     const PictureLight picture = picture_light(part, 0.0);
     const Image brightest = brightest_channel(picture.light);
     Image rest = picture.light;
-    take_picture_stars(rest, params);
+    take_picture_stars(rest, params, picture.enlarged);
     const Image without_stars = brightest_channel(rest);
     Image emission = make_image(rest.width, rest.height, 3);
     const auto shows = [&](std::int64_t x, std::int64_t y) {

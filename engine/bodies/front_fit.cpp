@@ -25,6 +25,7 @@ namespace {
 constexpr double filter_px = 0.5;               // of the output's pixels, as scenes have it
 constexpr float sky = 0.002f;                   // added to both sides of a ratio
 constexpr int first_steps = 4, last_steps = 3;  // before the rendering and after it
+constexpr int last_steps_of_small = 6;          // pictures, which are all detail, and take no time
 constexpr double share_blur_px = 2.0;           // coarse pixels, of the share that is supposed
 constexpr std::int64_t flux_cell_px = 32;
 // Of the rendering's records; with more it takes its picture in parts.
@@ -67,17 +68,17 @@ Image share_of(const Image& seen, const Image& flat) {
     return share;
 }
 
-// Texels a pixel of the rendering, whose share is taken on pixels of two anyway: its filter there is as wide
-// as halving makes that of single texels. What small pictures show of single dots' shadows is kept, they take
-// no time.
-std::int64_t rendered_step(const Image& picture) {
+// Texels a pixel of the rendering. Of two, the filter there is as wide as halving, for the share, makes that
+// of single texels; but a small picture's points hide less of themselves then than they do where they are
+// seen.
+std::int64_t rendered_step(const Image& picture, bool small) {
     constexpr std::int64_t most_whole = std::int64_t{1} << 20;  // texels
-    return picture.width * picture.height > most_whole ? 2 : 1;
+    return small || picture.width * picture.height <= most_whole ? 1 : 2;
 }
 
 class FittedView {
   public:
-    FittedView(PictureSplats& dots, const Image& picture)
+    FittedView(PictureSplats& dots, const Image& picture, bool small)
         : target_(gaussian_blur(picture, filter_px)), flat_(dots, picture.width, picture.height, filter_px) {
         settings_.pixel_filter = static_cast<float>(filter_px);
         layer_.name = "front";
@@ -85,7 +86,7 @@ class FittedView {
         layer_.absorbs = dots.absorbs;
         float highest = 0.0f;
         for (const glm::vec3& p : dots.splats.position) highest = std::max(highest, p.z);
-        const std::int64_t step = rendered_step(picture);
+        const std::int64_t step = rendered_step(picture, small);
         settings_.width = (picture.width + step - 1) / step;
         settings_.height = (picture.height + step - 1) / step;
         const auto width = static_cast<double>(step * settings_.width),
@@ -190,8 +191,9 @@ double FittedView::psnr_db(const Image& seen) const {
 
 }  // namespace
 
-FrontFit fit_front(PictureSplats& dots, Image light, const Progress& progress) {
-    FittedView view(dots, light);
+FrontFit fit_front(PictureSplats& dots, Image light, bool small, const Progress& progress) {
+    FittedView view(dots, light, small);
+    const int steps_after = small ? last_steps_of_small : last_steps;
     light = {};
     Image seen = view.supposed();
     for (int step = 0; step < first_steps; ++step) {
@@ -200,15 +202,15 @@ FrontFit fit_front(PictureSplats& dots, Image light, const Progress& progress) {
         progress.at(0.3 * (step + 1) / first_steps);
     }
     seen = view.rendered(progress.part(0.3, 0.7));
-    for (int step = 0; step < last_steps; ++step) {
+    for (int step = 0; step < steps_after; ++step) {
         progress.check();
-        view.step_from(std::move(seen), step + 1 < last_steps);
-        progress.at(0.7 + 0.3 * (step + 1) / last_steps);
+        view.step_from(std::move(seen), step + 1 < steps_after);
+        progress.at(0.7 + 0.3 * (step + 1) / steps_after);
         seen = view.seen();  // after the last step the light of wide areas is right, too
     }
     view.match_cells(seen);
     view.match_cells(view.seen());  // between the cells' middles a factor is that of neither
-    return {first_steps + last_steps, view.psnr_db(seen)};
+    return {first_steps + steps_after, view.psnr_db(seen)};
 }
 
 }  // namespace astrosplat

@@ -14,8 +14,9 @@ struct FrontFit {
 };
 
 /// Multiplies colours until the orthographic front view is the picture as the default pixel filter shows it;
-/// last, cells of 32 px get the picture's flux. The same bits with any number of threads. Throws Cancelled;
-/// InputError where memory does not suffice.
-FrontFit fit_front(PictureSplats& dots, Image light, const Progress& progress = {});
+/// last, cells of 32 px get the picture's flux. `small`: the picture was enlarged, its own texels are several
+/// of these. The same bits with any number of threads. Throws Cancelled; InputError where memory does not
+/// suffice.
+FrontFit fit_front(PictureSplats& dots, Image light, bool small = false, const Progress& progress = {});
 
 }  // namespace astrosplat

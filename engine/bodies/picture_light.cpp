@@ -26,7 +26,7 @@ PictureLight picture_light(const Texture& texture, double border) {
     const Image& image = texture.image;
     const double width_px = border * static_cast<double>(image.width);
     PictureLight result{unfilled_image(image.width, image.height, 3),
-                        unfilled_image(image.width, image.height, 1)};
+                        unfilled_image(image.width, image.height, 1), texture.times > 1};
     parallel_chunks(image.height, rows_per_chunk, [&](std::int64_t begin, std::int64_t end, int) {
         for (std::int64_t y = begin; y < end; ++y) {
             const float fade_y = edge_fade(y, image.height, width_px);

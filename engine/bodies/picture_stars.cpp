@@ -8,14 +8,14 @@
 
 namespace astrosplat {
 
-PictureStars take_picture_stars(Image& light, const StructureParams& params) {
+PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged) {
     PictureStars stars;
     if (params.stars == StructureParams::Stars::no) return stars;
     std::vector<Star> bright;
     const bool disk = params.kind == StructureKind::disk;
     if (disk) bright = take_bright_stars(light);
-    stars.all =
-        take_stars(light, disk ? least_left_in_dust : 0.0f);  // without dust a hole is nearer the front
+    const float least_left = disk ? least_left_in_dust : 0.0f;  // without dust a hole is nearer the front
+    stars.all = take_stars(light, least_left, enlarged ? StarsTaken::explained : StarsTaken::round);
     std::ranges::stable_sort(stars.all, {}, &Star::sigma);
     stars.ordinary = stars.all.size();
     stars.count = static_cast<std::int64_t>(stars.ordinary);

@@ -21,8 +21,9 @@ struct PictureStars {
 };
 
 /// Takes the stars out of `light`, where `params` say so. Bright ones of disks only: other kinds have no one
-/// depth for what such a star leaves around itself.
-PictureStars take_picture_stars(Image& light, const StructureParams& params);
+/// depth for what such a star leaves around itself. Where the picture was `enlarged`, a star is some texels
+/// with flat light between them; only what a Gaussian explains is one then.
+PictureStars take_picture_stars(Image& light, const StructureParams& params, bool enlarged = false);
 
 /// Adds their dots.
 void add_picture_stars(const PictureStars& stars, const Placement& placement, const Opacity& opacity,

@@ -28,6 +28,8 @@ constexpr double widest_sigma = 2.2, narrowest_sigma = 0.6;
 constexpr float wing_share = 0.5f;    // of the peak, that the light at 2 to 3 px must stay below
 constexpr float least_level = 0.01f;  // of the displayed white, below which a pixel is left as it is
 constexpr float uneven_share = 0.3f;  // of the peak, that this light may differ by around the star
+constexpr double explained_sigmas = 2.5;
+constexpr double most_unseen = 0.1;  // share of a star's light that the picture may not have
 
 constexpr std::size_t window_px = (2 * median_reach + 1) * (2 * median_reach + 1);
 
@@ -127,6 +129,34 @@ float ring_median(const Image& light, std::int64_t x, std::int64_t y, int channe
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
     std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
     return *middle;
+}
+
+// Whether the picture has the light that the star's Gaussian gives it. Among crowded stars a Gaussian may be
+// brighter beside its middle than all that is there: no fit of colours mends that.
+bool is_explained(const Image& light, const Star& star) {
+    const double reach = explained_sigmas * static_cast<double>(star.sigma);
+    const double width = 2.0 * static_cast<double>(star.sigma) * static_cast<double>(star.sigma);
+    const auto first = [&](float middle) {
+        return std::max<std::int64_t>(0, static_cast<std::int64_t>(static_cast<double>(middle) - reach));
+    };
+    const auto last = [&](float middle, std::int64_t size) {
+        return std::min(size - 1, static_cast<std::int64_t>(static_cast<double>(middle) + reach));
+    };
+    double own = 0.0, unseen = 0.0;
+    for (std::int64_t y = first(star.y); y <= last(star.y, light.height); ++y) {
+        for (std::int64_t x = first(star.x); x <= last(star.x, light.width); ++x) {
+            const double dx = static_cast<double>(x) + 0.5 - static_cast<double>(star.x);
+            const double dy = static_cast<double>(y) + 0.5 - static_cast<double>(star.y);
+            if (dx * dx + dy * dy > reach * reach) continue;
+            const double g = real::exp(-(dx * dx + dy * dy) / width);
+            for (int c = 0; c < 3; ++c) {
+                const double here = g * static_cast<double>(star.peak[c]);
+                own += here;
+                unseen += std::max(0.0, here - static_cast<double>(light.at(x, y)[c]));
+            }
+        }
+    }
+    return unseen <= most_unseen * own;
 }
 
 // A star and the light on the ring around it.
@@ -230,7 +260,7 @@ PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, s
             static_cast<float>(static_cast<double>(y) + 0.5 + sum_y / least)};
 }
 
-std::vector<Star> take_stars(Image& light, float least_left) {
+std::vector<Star> take_stars(Image& light, float least_left, StarsTaken taken) {
     const Image brightest = brightest_channel(light);
     const Image noise = local_noise(brightest);
     std::vector<std::vector<StarInSky>> rows(static_cast<std::size_t>(light.height));
@@ -244,7 +274,9 @@ std::vector<Star> take_stars(Image& light, float least_left) {
         }
     });
     std::vector<StarInSky> found;
-    for (const auto& row : rows) found.insert(found.end(), row.begin(), row.end());
+    for (const auto& row : rows)
+        for (const StarInSky& each : row)
+            if (taken == StarsTaken::round || is_explained(light, each.star)) found.push_back(each);
     for_each_strip(light, found, [&](const StarInSky& star, std::int64_t begin, std::int64_t end) {
         subtract(light, star, least_left, begin, end);
     });

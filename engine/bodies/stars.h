@@ -28,10 +28,14 @@ PointLight light_about(const Image& brightest, std::int64_t x, std::int64_t y, s
 /// Of the light around a star, down to which it is taken out where there is dust: a hole would become some.
 inline constexpr float least_left_in_dust = 0.9f;
 
+/// Which points are taken for stars: all round ones; or those whose Gaussians the picture has the light of.
+enum class StarsTaken { round, explained };
+
 /// Finds the round points that stand out of their surroundings, takes a Gaussian for each out of `light` and
 /// cuts what is left of it down to 1.15 times the background. Where the Gaussian is wider than the star,
 /// `least_left` of the light around stays. In order of rows, each a body of its own. The same bits with any
 /// number of threads.
-std::vector<Star> take_stars(Image& light, float least_left = least_left_in_dust);
+std::vector<Star> take_stars(Image& light, float least_left = least_left_in_dust,
+                             StarsTaken taken = StarsTaken::round);
 
 }  // namespace astrosplat

@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "image/area.h"
 #include "image/blur.h"
 #include "image/channels.h"
 #include "render/render.h"
@@ -417,6 +418,29 @@ TEST(FrontFit, OfALargePictureIsAsClose) {
     }
     EXPECT_NEAR(here / there, 1.0, 0.001);
     EXPECT_GT(-10.0 * std::log10(squares / static_cast<double>(light.width * light.height)), 44.0);
+}
+
+// Seen on pixels of two texels, crowded points hide less of themselves: fitted so, their light is 1.3 % too
+// little.
+TEST(FrontFit, OfASmallPictureHasTheLightOfItsPoints) {
+    Image points = make_image(560, 480, 3, 0.01f);
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+        const double light = 0.8 * std::pow(painted::random(i, 3), 6.0);
+        painted::add_point(points, 560.0 * painted::random(i, 1), 480.0 * painted::random(i, 2), 0.8, light,
+                           light, light);
+    }
+    const Image light = enlarged(points, 2);
+    const Placement placement =
+        make_placement(brightest_channel(light), of_kind(StructureKind::sheet), 112.0, true, 1u);
+    PictureSplats dots = unfitted_dots(light, placement);
+    fit_front(dots, light, true);
+    const Image seen = view_along_z(dots, light, 3000.0);
+    double here = 0.0, there = 0.0;
+    for (std::size_t i = 0; i < light.pixels.size() / 3; ++i) {
+        here += static_cast<double>(seen.pixels[static_cast<std::size_t>(seen.channels) * i + 1]);
+        there += static_cast<double>(light.pixels[3 * i + 1]);
+    }
+    EXPECT_NEAR(here / there, 1.0, 0.001);
 }
 
 // What the back wall loses in the glow before it is not given to it many times over.

@@ -89,6 +89,20 @@ TEST(Stars, FaintOnesInADarkSkyAreTaken) {
     EXPECT_EQ(take_stars(light).size(), 20u);
 }
 
+// The narrowest Gaussian of a single pixel has most of its light beside it, where the picture has none.
+TEST(Stars, OfEnlargedPicturesAreOnlyWhatHasTheLightOfOne) {
+    Image light = sky(256, 128);
+    for (const Planted& p : planted)
+        painted::add_point(light, p.x, p.y, p.sigma, p.light, 0.8 * p.light, 0.6 * p.light);
+    for (int c = 0; c < 3; ++c) light.at(120, 30)[c] += 0.5f;
+    StructureParams params;
+    params.kind = StructureKind::sheet;
+    Image whole = light, enlarged = light;
+    EXPECT_EQ(take_picture_stars(whole, params).all.size(), planted.size() + 1);
+    EXPECT_EQ(take_picture_stars(enlarged, params, true).all.size(), planted.size());
+    EXPECT_EQ(enlarged.at(120, 30)[0], light.at(120, 30)[0]);
+}
+
 TEST(Stars, AreTheSameOnOneThread) {
     Image several = painted::galaxy(240, 150), one = several;
     const std::vector<Star> a = take_stars(several);
