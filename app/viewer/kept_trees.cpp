@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view magic = "\x89TREE\r\n\x1a";
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 constexpr std::int64_t rows_a_chunk = 1 << 16;
 constexpr std::int64_t largest_share =
     8;  // of the cache a tree takes at most an eighth: none drives out its set
@@ -60,9 +60,11 @@ std::string name_of(const SplatSet& set, const Progress& progress) {
         sums[3 * c + 2] = xxh64(absorbing);
     });
     const std::int64_t size = set.size();
+    const bool lattice = set.spacing.x > 0.0;
     return Sha256()
         .add(&version, sizeof version)
         .add(&size, sizeof size)
+        .add(&lattice, sizeof lattice)
         .add(bytes_of(std::span<const std::uint64_t>(sums)))
         .hex();
 }

@@ -29,11 +29,6 @@ struct Piece {
     bool is_splat;
 };
 
-/// Square scene units of the layer across the line of sight.
-struct Across {
-    float mean, largest;
-};
-
 /// A layer seen by the camera.
 class SeenLayer {
   public:
@@ -99,7 +94,7 @@ class SeenLayer {
             const float cosine = shared::axis_cosine(l.lens, l.axis_in_camera, to_camera(sums.centre));
             const LayerRender& r = layer_.dots->render;
             const float hybrid = shared::hybrid_amount(cosine, r.hybrid_from_deg, r.hybrid_to_deg);
-            const Dot dot = make_dot(*layer_.dots, sums, std::max(0.0f, across(sums).mean), hybrid);
+            const Dot dot = make_dot(*layer_.dots, sums, across(sums), hybrid);
             out.position[i] = sums.centre;
             out.color[i] = dot.color;
             out.alpha[i] = dot.alpha;

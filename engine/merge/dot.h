@@ -31,11 +31,13 @@ class DepthTable {
 
 /// What a layer's dots have in common.
 struct DotSettings {
-    explicit DotSettings(const LayerRender& render);
+    /// `lattice`: the set's splats are on one.
+    explicit DotSettings(const LayerRender& render, bool lattice = false);
 
     LayerRender render;
     DepthTable depths;
     double variance;  // of the falloff, square radii
+    double overlap;   // variance of a dot over that of what it stands for, where that is as wide as high
 };
 
 struct Dot {
@@ -44,10 +46,15 @@ struct Dot {
     glm::vec3 color{0.0f};
 };
 
-/// `spread` is the mean variance of the splats' centres across the line of sight, square scene units;
-/// `hybrid` the share of screen (blend hybrid). Add keeps the light exactly. Where splats hide each other, n
-/// of them spread over the dot's disc at random let through what the dot does: its depth is n times that of
+/// Variances of the splats' centres across the line of sight, square scene units: their mean over directions,
+/// and that along the longer axis.
+struct Across {
+    float mean, largest;
+};
+
+/// `hybrid` is the share of screen (blend hybrid). Add keeps the light exactly. Where splats hide each other,
+/// n of them spread over the dot's disc at random let through what the dot does: its depth is n times that of
 /// one splat thinned to the disc.
-Dot make_dot(const DotSettings& settings, const NodeSums& sums, double spread, float hybrid);
+Dot make_dot(const DotSettings& settings, const NodeSums& sums, const Across& across, float hybrid);
 
 }  // namespace astrosplat

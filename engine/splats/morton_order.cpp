@@ -22,7 +22,9 @@ constexpr unsigned part_bits =
 constexpr std::size_t parts = std::size_t{1} << part_bits;
 constexpr std::int64_t rows_a_chunk = 1 << 16;
 
-/// Cells are cubes, so that a thin disk is sampled evenly over its face before its thickness matters.
+/// Cells are cubes, so that a thin disk is sampled evenly over its face before its thickness matters. On a
+/// lattice, which is as deep before its surface as behind it, the first boundary across a side of the box is
+/// in its middle.
 class MortonCodes {
   public:
     explicit MortonCodes(const SplatSet& set) : set_(set) {
@@ -31,10 +33,17 @@ class MortonCodes {
         const glm::dvec3 extent = box.extent();
         const double edge = std::max({extent.x, extent.y, extent.z});
         cells_per_unit_ = edge > 0.0 ? static_cast<double>(last_cell) / edge : 0.0;
+        if (!(set.spacing.x > 0.0)) return;
+        for (int k = 0; k < 3; ++k) {
+            const double cells = extent[k] * cells_per_unit_;
+            double half = static_cast<double>(last_cell / 2 + 1);  // of the power of two that holds them
+            while (half > 1.0 && cells <= half) half *= 0.5;
+            shift_[k] = half - 0.5 * cells;
+        }
     }
 
     MortonRow operator()(std::int64_t row) const {
-        const glm::dvec3 p = (glm::dvec3(set_.position[row]) - lo_) * cells_per_unit_;
+        const glm::dvec3 p = (glm::dvec3(set_.position[row]) - lo_) * cells_per_unit_ + shift_;
         const std::uint64_t place = morton_place(cell(p.x), cell(p.y), cell(p.z));
         return {set_.absorbs && set_.color[row].x < 0.0f ? place | morton_absorbs : place, row};
     }
@@ -48,6 +57,7 @@ class MortonCodes {
     const SplatSet& set_;
     glm::dvec3 lo_{0.0};
     double cells_per_unit_ = 0.0;
+    glm::dvec3 shift_{0.0};  // cells
 };
 
 std::size_t part_of(std::uint64_t code) { return static_cast<std::size_t>(code >> (code_bits - part_bits)); }

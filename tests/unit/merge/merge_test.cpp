@@ -269,7 +269,8 @@ TEST(Merge, OneSplatIsItsOwnDotUnderEveryBlend) {
         for (const float alpha : {0.01f, 0.5f, 0.97f}) {
             Cloud cloud;
             cloud.add({0.2f, 0.1f, 0.0f}, {0.9f, 0.4f, 0.1f}, alpha, 0.25f);
-            const Dot dot = make_dot(DotSettings(render_as(blend)), cloud.merged().sums[0], 0.0, 0.3f);
+            const Dot dot =
+                make_dot(DotSettings(render_as(blend)), cloud.merged().sums[0], {0.0f, 0.0f}, 0.3f);
             EXPECT_NEAR(dot.radius, 0.25, 1e-6);
             EXPECT_NEAR(dot.alpha, alpha, 2e-4);
             EXPECT_NEAR(dot.color.x * dot.alpha, 0.9f * alpha, 3e-4);

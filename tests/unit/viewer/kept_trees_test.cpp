@@ -98,13 +98,15 @@ TEST_F(KeptTreesTest, ATreeIsOfPositionsAndOfWhatAbsorbs) {
     set.id[2998] = 2999;
     set.id[2999] = 2998;
     EXPECT_FALSE(begin(set).cached) << "ids order what lies at one place";
+    set.spacing = glm::dvec3(0.1);
+    EXPECT_FALSE(begin(set).cached) << "a lattice is halved in its middle";
     set.position.pop_back();
     set.color.pop_back();
     set.alpha.pop_back();
     set.distance.pop_back();
     set.id.pop_back();
     EXPECT_FALSE(begin(set).cached);
-    EXPECT_EQ(trees().size(), 5u);
+    EXPECT_EQ(trees().size(), 6u);
 }
 
 TEST_F(KeptTreesTest, WhatIsDamagedIsBuiltAgainWithoutAWord) {
