@@ -58,7 +58,7 @@ void add_parts(std::int64_t rows, int parts, std::vector<std::int64_t>& heights)
 std::vector<std::int64_t> watched_rows(const FrameJob& job, const Tiles& tiles) {
     const std::int64_t rows = tiles.grid.rows(), columns = tiles.grid.columns();
     const std::int64_t to_share = (4 * thread_count() + columns - 1) / columns;
-    const std::int64_t middle = std::max(rows / 6, to_share);
+    const std::int64_t middle = std::max(rows / 12, to_share);
     const int parts = has_blocks(job) ? 0 : watched_parts(job, tiles);
     if (parts == 0 || 3 * middle > rows) return {rows};
     std::vector<std::int64_t> heights;

@@ -203,7 +203,7 @@ void measure_settling(Viewer& viewer, const std::string& what) {
     });
     print_row("settled: " + what, "first tiles <= 0.5 s, all <= 2 s",
               fmt::format("{:.2f} s, {:.2f} s", first - touched, seconds_now() - touched),
-              fmt::format("from the last touch, 0.3 s of rest included; processor {:.2f} s",
+              fmt::format("from the last touch, 0.2 s of rest included; processor {:.2f} s",
                           processor_seconds() - processor));
 }
 
