@@ -20,8 +20,10 @@ namespace {
 
 using shared::as_hash, shared::as_log, shared::as_mix, shared::as_uniform;
 
-constexpr float least_sigma = 0.45f;      // texels; .62 as published ends 2 dB below
-constexpr float knot_depth = 0.6f;        // scale height of a knot, of its sigma
+constexpr float least_sigma = 0.45f;  // texels; .62 as published ends 2 dB below
+// Scale height of a knot, of its sigma. On a sheet those along a rim that runs up the picture lie one before
+// the other from aslant: each taller, they are one needle.
+constexpr float knot_depth = 0.6f, knot_depth_on_sheets = 0.35f;
 constexpr float widest_in_knots = 5.0f;   // texels, sigma of the largest dots that follow their knot
 constexpr double widest_filament = 45.0;  // texels at a width of 1920; what is wider is glow
 
@@ -136,6 +138,7 @@ void set_knot_depths(Placement& placement, std::span<const Star> stars) {
 // On walls pieces of filaments are no knots, or these would be strings of beads.
 void follow_knots(const Placement& placement, PlacedBlock& block) {
     const bool walls = placement.kind == StructureKind::walls;
+    const float depth = placement.kind == StructureKind::sheet ? knot_depth_on_sheets : knot_depth;
     for (int i = 0; i < block.count; ++i) {
         const auto x = std::min(static_cast<std::int64_t>(block.x[i]), placement.picture_width - 1);
         const auto y = std::min(static_cast<std::int64_t>(block.y[i]), placement.picture_height - 1);
@@ -149,7 +152,7 @@ void follow_knots(const Placement& placement, PlacedBlock& block) {
         if (as_uniform(random) >= weight) continue;
         block.knot[i] = owner;
         block.z[i] = placement.knot_z[knot] +
-                     logistic(as_uniform(as_mix(random)), knot_depth * placement.knots.knots[knot].sigma);
+                     logistic(as_uniform(as_mix(random)), depth * placement.knots.knots[knot].sigma);
     }
 }
 
