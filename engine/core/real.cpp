@@ -207,6 +207,20 @@ double tan(double x) {
     return r.quadrant & 1 ? -quotient(c, s) : quotient(s, c);
 }
 
+OnCircle on_circle(float turns) {
+    static constexpr auto sines = inverse_factorials<6>(3, 2, -1.0);
+    static constexpr auto cosines = inverse_factorials<7>(4, 2, -1.0);
+    const double quarters = 4.0 * static_cast<double>(turns);
+    const int quadrant = static_cast<int>(quarters + 0.5);           // 0..4
+    const double x = (quarters - quadrant) * half_pi.hi, z = x * x;  // |x| <= pi / 4
+    const double part[2] = {1.0 - 0.5 * z + z * z * polynomial(cosines, z), x - x * z * polynomial(sines, z)};
+    static constexpr double cosine_sign[] = {1.0, -1.0, -1.0, 1.0, 1.0},
+                            sine_sign[] = {1.0, 1.0, -1.0, -1.0, 1.0};
+    const int odd = quadrant & 1;
+    return {static_cast<float>(cosine_sign[quadrant] * part[odd]),
+            static_cast<float>(sine_sign[quadrant] * part[1 - odd])};
+}
+
 double atan2(double y, double x) {
     if (std::isnan(x) || std::isnan(y)) return nan;
     double ax = std::fabs(x), ay = std::fabs(y);

@@ -215,9 +215,8 @@ glm::vec3 LodTable::child_offset(int level, std::int64_t child, std::uint32_t se
     const float r = lerp(radius[i], radius[i + 1], x - static_cast<float>(i));
     const float z = 1.0f - 2.0f * uniform(1);
     const float ring = std::sqrt(std::max(0.0f, 1.0f - z * z));
-    const double phi = 2.0 * real::pi * uniform(2);
-    return r *
-           glm::vec3(ring * static_cast<float>(real::cos(phi)), ring * static_cast<float>(real::sin(phi)), z);
+    const real::OnCircle around = real::on_circle(uniform(2));
+    return r * glm::vec3(ring * around.cosine, ring * around.sine, z);
 }
 
 }  // namespace astrosplat

@@ -50,6 +50,24 @@ TEST(Real, SinAndCosNextToMultiplesOfHalfPi) {
     }
 }
 
+// Every value there is: what children of splats look like hangs on the bits.
+TEST(Real, OnACircleTheBitsAreThoseOfCosAndSin) {
+    constexpr int turn = 1 << 24;
+    for (int i = 0; i < turn; ++i) {
+        const float turns = static_cast<float>(i) / turn;
+        const real::OnCircle at = real::on_circle(turns);
+        if (i % (turn / 4) == 0) continue;  // exact: see below
+        const double angle = 2.0 * real::pi * static_cast<double>(turns);
+        ASSERT_EQ(at.cosine, static_cast<float>(real::cos(angle))) << i;
+        ASSERT_EQ(at.sine, static_cast<float>(real::sin(angle))) << i;
+    }
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const real::OnCircle at = real::on_circle(0.25f * static_cast<float>(quarter));
+        EXPECT_EQ(at.cosine, quarter == 0 ? 1.0f : quarter == 2 ? -1.0f : 0.0f) << quarter;
+        EXPECT_EQ(at.sine, quarter == 1 ? 1.0f : quarter == 3 ? -1.0f : 0.0f) << quarter;
+    }
+}
+
 TEST(Real, InverseFunctionsWithinTwoUlps) {
     EXPECT_LE(worst(-1.0, 1.0, real::asin, [](L x) { return std::asin(x); }), 2.0);
     EXPECT_LE(worst(-1.0, 1.0, real::acos, [](L x) { return std::acos(x); }), 2.0);
