@@ -84,6 +84,7 @@ double DepthTable::alpha(double depth) const {
 
 DotSettings::DotSettings(const LayerRender& r, bool lattice)
     : render(r),
+      lattice(lattice),
       depths(r.falloff),
       variance(falloff_variance(r.falloff)),
       overlap(lattice ? 1.5 : least_overlap) {}

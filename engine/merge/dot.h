@@ -35,6 +35,7 @@ struct DotSettings {
     explicit DotSettings(const LayerRender& render, bool lattice = false);
 
     LayerRender render;
+    bool lattice;
     DepthTable depths;
     double variance;  // of the falloff, square radii
     double overlap;   // variance of a dot over that of what it stands for, where that is as wide as high

@@ -12,16 +12,22 @@
 namespace astrosplat {
 namespace {
 
-/// Standard deviation over mean of the light of the middle of a block of 48^3 splats, seen from the front
-/// through dots that stand for 64 each.
-double unevenness(bool lattice) {
+struct Seen {
+    double unevenness;  // standard deviation over mean of the light of its middle
+    double cover;       // of the dots, over that of the splats
+    std::size_t dots;
+};
+
+/// A block of 48 x 48 x `deep` splats through dots that stand for 64 each, seen from so far beside its front.
+Seen seen_through_dots(bool lattice, int deep = 48, double degrees = 0.0) {
     constexpr int splats_a_side = 48, side = 256, first = 96, end = 160;  // px
     auto set = std::make_shared<SplatSet>();
     ShadedSplats splats;
     const auto at = [](int i) { return (static_cast<float>(i) + 0.5f) / splats_a_side * 2.0f - 1.0f; };
-    for (int i = 0; i < splats_a_side * splats_a_side * splats_a_side; ++i) {
-        const glm::vec3 p(at(i % splats_a_side), at(i / splats_a_side % splats_a_side),
-                          at(i / splats_a_side / splats_a_side));
+    const int count = splats_a_side * splats_a_side * deep;
+    for (int i = 0; i < count; ++i) {
+        const int slice = i / splats_a_side / splats_a_side + (splats_a_side - deep) / 2;
+        const glm::vec3 p(at(i % splats_a_side), at(i / splats_a_side % splats_a_side), at(slice));
         const auto id = static_cast<std::uint64_t>(i);
         set->position.push_back(p);
         set->color.push_back(glm::vec3(0.5f));
@@ -38,7 +44,8 @@ double unevenness(bool lattice) {
     layer.render.blend = Blend::add;
     CameraParams params;
     params.projection = Projection::orthographic;
-    params.position = glm::dvec3(0.0, 0.0, 10.0);
+    const double angle = degrees * 3.14159265358979 / 180.0;
+    params.position = glm::dvec3(0.0, -10.0 * std::sin(angle), 10.0 * std::cos(angle));
     params.height = 3.0;
     const Camera camera = make_camera(params, side, side, {});
     RenderSettings frame;
@@ -47,25 +54,49 @@ double unevenness(bool lattice) {
     const MergedSplats merged = merge_splats({set, tree, 1.0f}, splats);
     const DotSettings dots(layer.render, lattice);
     const CutLayer source{&merged, &dots, make_projection(layer, 0, camera, frame)};
-    const std::vector<ShadedSplats> cut = cut_splats(
-        std::span(&source, 1), {splats_a_side * splats_a_side * splats_a_side / 64, 0.0f, side, side});
+    const std::vector<ShadedSplats> cut = cut_splats(std::span(&source, 1), {count / 64, 0.0f, side, side});
     layer.splats = &cut[0];
     const Image image = render(std::span(&layer, 1), camera, nullptr, frame).beauty;
-    double sum = 0.0, squares = 0.0;
-    for (int y = first; y < end; ++y)
+    double sum = 0.0, squares = 0.0, cover = 0.0;
+    const int rows = degrees > 0.0 ? (end - first) / 4 : (end - first) / 2;  // aslant it is lower
+    for (int y = side / 2 - rows; y < side / 2 + rows; ++y)
         for (int x = first; x < end; ++x) {
             const double light = double(image.at(x, y)[0]);
             sum += light;
             squares += light * light;
         }
-    const double count = (end - first) * (end - first), mean = sum / count;
-    return std::sqrt(squares / count - mean * mean) / mean;
+    for (std::size_t i = 0; i < cut[0].radius.size(); ++i)
+        cover += double(cut[0].alpha[i]) * double(cut[0].radius[i]) * double(cut[0].radius[i]);
+    const double pixels = 2.0 * rows * (end - first), mean = sum / pixels;
+    const double whole = count * 0.01 * (2.0 / splats_a_side) * (2.0 / splats_a_side);
+    return {std::sqrt(squares / pixels - mean * mean) / mean, cover / whole, cut[0].radius.size()};
 }
 
 TEST(MergedLattice, HasNoStripes) {
-    const double even = unevenness(true);
+    const double even = seen_through_dots(true).unevenness;
     EXPECT_LT(even, 0.14) << "waves 17 % high along either axis; the root mean square of both";
-    EXPECT_GT(unevenness(false), 1.6 * even) << "as other sets' dots would look";
+    EXPECT_GT(seen_through_dots(false).unevenness, 1.6 * even) << "as other sets' dots would look";
+}
+
+// Its cells look wider than high: each becomes several dots, which lie side by side and share its light.
+TEST(MergedLattice, HasNoStripesAslantEither) {
+    constexpr int deep = 8;
+    for (const double degrees : {60.0, 72.0}) {
+        const Seen seen = seen_through_dots(true, deep, degrees);
+        EXPECT_LT(seen.unevenness, 0.16) << degrees;
+        EXPECT_GT(seen_through_dots(false, deep, degrees).unevenness, 2.0 * seen.unevenness) << degrees;
+        EXPECT_NEAR(seen.cover, 1.0, 1e-4) << degrees;
+        EXPECT_LE(seen.dots, 48u * 48u * deep / 64u) << degrees;
+        EXPECT_GT(seen.dots, 48u * 48u * deep / 192u) << degrees;
+    }
+}
+
+TEST(MergedLattice, KeepsToItsBudgetFromEverySide) {
+    for (const int deep : {2, 8, 48})
+        for (double degrees = 0.0; degrees < 90.0; degrees += 5.0)
+            EXPECT_LE(seen_through_dots(true, deep, degrees).dots,
+                      48u * 48u * static_cast<unsigned>(deep) / 64u)
+                << deep << " deep, from " << degrees;
 }
 
 /// Leaves of the tree over a disk that have splats from above its middle and from below it.
