@@ -210,7 +210,7 @@ std::string_view opacity_of(StructureKind structure) {
 // How far bodies reach along the line of sight. What lies between the things of a field is a thin, flat
 // sheet: folds of it would be drawn as lines across the sky.
 std::string extent_of(const PictureScene& scene) {
-    if (scene.structure == StructureKind::disk) return "flare = 0.35, warp = 0.01";
+    if (scene.structure == StructureKind::disk) return "flare = 0.25, warp = 0.01";
     if (scene.structure == StructureKind::walls) return fmt::format("depth = {}", wall_depth);
     return scene.object == SkyObject::field ? "height = 0.05, depth = 0.01" : "depth = 0.15";
 }
