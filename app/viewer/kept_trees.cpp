@@ -60,7 +60,7 @@ std::string name_of(const SplatSet& set, const Progress& progress) {
         sums[3 * c + 2] = xxh64(absorbing);
     });
     const std::int64_t size = set.size();
-    const bool lattice = set.spacing.x > 0.0;
+    const bool lattice = set.is_on_lattice();
     return Sha256()
         .add(&version, sizeof version)
         .add(&size, sizeof size)

@@ -36,7 +36,7 @@ PreviewDots::Layer& PreviewDots::layer_at(std::size_t index, const LoadedLayer& 
 
 void PreviewDots::merge(Layer& layer, const PreviewLayer& wanted) {
     if (!layer.dots || !(layer.dots->render == wanted.layer.render))
-        layer.dots = std::make_shared<const DotSettings>(wanted.layer.render, wanted.set->spacing.x > 0.0);
+        layer.dots = std::make_shared<const DotSettings>(wanted.layer.render, wanted.set->is_on_lattice());
     Shading shading = shading_of(wanted);
     if (layer.shading == shading) return;
     layer.shading.reset();  // an exception below must not leave old splats under a new look

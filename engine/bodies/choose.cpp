@@ -172,56 +172,80 @@ bool of_stars(const glm::dvec3& color) {
     return red >= 0.58 && red <= reddest && pink >= 0.42 && pink <= 2.3;
 }
 
-StructureChoice by_looking(const Image& light) {
-    if (light.width < 16 || light.height < 16)
-        return {StructureKind::sheet, SkyObject::nebula, "it is too small to tell"};
+bool is_too_small(const Image& light) { return light.width < 16 || light.height < 16; }
+
+// What a picture looks like.
+struct Impression {
+    bool lit = false;                  // anywhere above its sky
+    double peak = 0.0;                 // light in the middle over that at the half-light radius
+    double redness = 1.0;              // red over blue, of the middle against its surroundings
+    double edge = 0.0;                 // light at the picture's edges over the mean
+    double sides = 1.0;                // difference between opposite sides, 0 alike .. 1
+    bool grey = false, stars = false;  // has no colours; has those of stars
+};
+Impression impression_of(const Image& light) {
     const Image small = small_copy(light);
     const std::vector<Pixel> pixels = by_radius(small);
     const double half = half_light_radius(pixels);
+    const auto within = [&](double from, double to) {
+        return part_of(pixels,
+                       [&](const Pixel& p) { return p.radius >= from * half && p.radius <= to * half; });
+    };
     const Part all = part_of(pixels, [](const Pixel&) { return true; });
     const Part edge = part_of(pixels, [](const Pixel& p) { return p.edge; });
-    const Part middle = part_of(pixels, [&](const Pixel& p) { return p.radius <= 0.35 * half; });
-    const Part ring =
-        part_of(pixels, [&](const Pixel& p) { return p.radius > 0.8 * half && p.radius < 1.2 * half; });
-    const Part outside =
-        part_of(pixels, [&](const Pixel& p) { return p.radius > 0.9 * half && p.radius < 1.6 * half; });
-    if (!(all.light > 0.0)) return {StructureKind::sheet, SkyObject::nebula, "it is even up to its edges"};
-    const Part whole = part_of(pixels, [&](const Pixel& p) { return p.radius <= 1.6 * half; });
-    const double peak = middle.light / std::max(1e-12, ring.light);
-    const double redness = middle.redness / std::max(1e-12, outside.redness);
-    const double sides = lopsidedness(small, half);
-    if (sides > scattered && small_share(light) > mostly_small)
+    const Part middle = within(0.0, 0.35), ring = within(0.8, 1.2), outside = within(0.9, 1.6);
+    Impression seen;
+    seen.lit = all.light > 0.0;
+    if (!seen.lit) return seen;
+    seen.peak = middle.light / std::max(1e-12, ring.light);
+    seen.redness = middle.redness / std::max(1e-12, outside.redness);
+    seen.edge = edge.light / all.light;
+    seen.sides = lopsidedness(small, half);
+    seen.grey = is_grey(pixels);
+    seen.stars = of_stars(within(0.0, 1.6).above_sky);
+    return seen;
+}
+
+bool is_one_sided(const Impression& seen) { return seen.sides > (seen.grey ? lopsided_grey : lopsided); }
+
+bool is_galaxy(const Impression& seen) {
+    const bool even = seen.sides < even_sides;
+    const bool gathers = seen.peak >= (even && seen.redness >= redder ? soft_middle : bright_middle);
+    const bool red = seen.redness >= (seen.sides < round ? burnt_out : as_red);
+    const bool ends = seen.edge <= (even ? alone_edge : dark_edge);
+    return gathers && red && ends && seen.stars && !is_one_sided(seen);
+}
+
+StructureChoice by_looking(const Image& light) {
+    if (is_too_small(light)) return {StructureKind::sheet, SkyObject::nebula, "it is too small to tell"};
+    const Impression seen = impression_of(light);
+    if (!seen.lit) return {StructureKind::sheet, SkyObject::nebula, "it is even up to its edges"};
+    if (seen.sides > scattered && small_share(light) > mostly_small)
         return {StructureKind::sheet, SkyObject::field, "its light is in many small things, here and there"};
-    const bool grey = is_grey(pixels), even = sides < even_sides;
-    const bool one_sided = sides > (grey ? lopsided_grey : lopsided);
-    const bool gathers = peak >= (even && redness >= redder ? soft_middle : bright_middle);
-    const bool red = redness >= (sides < round ? burnt_out : as_red);
-    const bool ends = edge.light <= (even ? alone_edge : dark_edge) * all.light;
-    const bool stars = of_stars(whole.above_sky);
-    if (gathers && red && ends && stars && !one_sided)
+    if (is_galaxy(seen))
         return {StructureKind::disk, SkyObject::galaxy,
-                grey ? "its light gathers in its middle and is alike on either side"
-                     : "its light has the colours of stars and gathers in a middle that is as red as what is "
-                       "around it, or redder"};
-    if (peak < even_middle && edge.light <= alone_edge * all.light)
+                seen.grey ? "its light gathers in its middle and is alike on either side"
+                          : "its light has the colours of stars and gathers in a middle that is as red as "
+                            "what is around it, or redder"};
+    if (seen.peak < even_middle && seen.edge <= alone_edge)
         return {StructureKind::walls, SkyObject::remnant,
                 "it stands alone on a dark sky and is not much brighter in the middle"};
-    if (edge.light <= dark_edge * all.light)
-        return {StructureKind::walls, SkyObject::nebula,
-                !stars      ? "it stands on a dark sky and has the colours of gas, not of stars"
-                : one_sided ? "it stands on a dark sky, and its middle has different light on either side"
-                : red       ? "it stands on a dark sky, and its light does not gather in its middle"
-                      : "it stands on a dark sky, and its bright middle is bluer than what is around it"};
-    return {StructureKind::sheet, SkyObject::nebula, "its light goes on to the picture's edges"};
+    if (seen.edge > dark_edge)
+        return {StructureKind::sheet, SkyObject::nebula, "its light goes on to the picture's edges"};
+    const char* why = "it stands on a dark sky, and its light does not gather in its middle";
+    if (!seen.stars)
+        why = "it stands on a dark sky and has the colours of gas, not of stars";
+    else if (is_one_sided(seen))
+        why = "it stands on a dark sky, and its middle has different light on either side";
+    else if (seen.redness < as_red)
+        why = "it stands on a dark sky, and its bright middle is bluer than what is around it";
+    return {StructureKind::walls, SkyObject::nebula, why};
 }
 
 StructureKind of_nebula(const Image& light) {
-    if (light.width < 16 || light.height < 16) return StructureKind::sheet;
-    const std::vector<Pixel> pixels = by_radius(small_copy(light));
-    const Part all = part_of(pixels, [](const Pixel&) { return true; });
-    const Part edge = part_of(pixels, [](const Pixel& p) { return p.edge; });
-    const bool alone = all.light > 0.0 && edge.light <= dark_edge * all.light;
-    return alone ? StructureKind::walls : StructureKind::sheet;
+    if (is_too_small(light)) return StructureKind::sheet;
+    const Impression seen = impression_of(light);
+    return seen.lit && seen.edge <= dark_edge ? StructureKind::walls : StructureKind::sheet;
 }
 
 }  // namespace
@@ -236,7 +260,7 @@ StructureChoice choose_structure(const Image& light, std::optional<SkyObject> sh
 
 glm::dvec2 subject_of(const Image& light) {
     const glm::dvec2 middle(0.5);
-    if (light.width < 16 || light.height < 16) return middle;
+    if (is_too_small(light)) return middle;
     const Image small = small_copy(light);
     const Image brightest = brightest_channel(small);
     if (!(*std::max_element(brightest.pixels.begin(), brightest.pixels.end()) > 0.0f)) return middle;

@@ -33,7 +33,7 @@ class MortonCodes {
         const glm::dvec3 extent = box.extent();
         const double edge = std::max({extent.x, extent.y, extent.z});
         cells_per_unit_ = edge > 0.0 ? static_cast<double>(last_cell) / edge : 0.0;
-        if (!(set.spacing.x > 0.0)) return;
+        if (!set.is_on_lattice()) return;
         for (int k = 0; k < 3; ++k) {
             const double cells = extent[k] * cells_per_unit_;
             double half = static_cast<double>(last_cell / 2 + 1);  // of the power of two that holds them

@@ -18,7 +18,7 @@ struct MortonRow {
     std::int64_t row;
 };
 
-/// Cells are cubes, the longest side of the set's box 2^21 of them; on a lattice (SplatSetFacts::spacing) the
+/// Cells are cubes, the longest side of the set's box 2^21 of them; on a lattice (SplatSetFacts) the
 /// first boundary across each side is in the middle of the box. Rows of equal code in order of id. The
 /// same for any thread count. Throws Cancelled.
 Buffer<MortonRow> morton_order(const SplatSet& set, const Progress& progress = {});

@@ -17,7 +17,7 @@ namespace astrosplat {
 
 /// What is known of a set as a whole.
 struct SplatSetFacts {
-    glm::dvec3 spacing{0.0};    // scene units between lattice neighbours per axis; 0: unknown
+    glm::dvec3 spacing{0.0};    // scene units between lattice neighbours per axis; 0: on none, or unknown
     double max_distance = 0.0;  // scene units; x = 1 by default: the source's, or a file's largest distance
     bool generated = false;     // from meshes; else from a file
     bool divided = false;       // colours were divided by alpha by the source
@@ -31,6 +31,8 @@ struct SplatSetFacts {
     std::string credit;              // from the inputs' metadata
     bool of_this_machine = false;    // pictures were reduced for want of free memory: not to be kept
     std::string recipe;              // of an entry of the cache: what made it (sets/recipe.h)
+
+    bool is_on_lattice() const { return spacing.x > 0.0; }
 };
 
 /// Arrays either have size() entries or are empty ("not known"); position, color, alpha, distance and id are

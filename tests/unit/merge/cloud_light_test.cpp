@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/shared_maths.h"
-#include "merge/cut.h"
 #include "render/child_noise.h"
 #include "render/render.h"
 #include "splats/star_id.h"
+#include "unit/merge/cloud.h"
 
 namespace astrosplat {
 namespace {
@@ -22,8 +22,7 @@ struct CloseBy {
     static constexpr int side = 256;  // px of the frame
 
     RenderLayer layer;
-    std::shared_ptr<SplatSet> set = std::make_shared<SplatSet>();
-    ShadedSplats splats;
+    test::Cloud cloud;
     Camera camera;
     RenderSettings frame;
 
@@ -31,7 +30,7 @@ struct CloseBy {
         layer.render.blend = Blend::add;
         layer.render.lod = {20.0f * 1080.0f / side, 64, 1.0f};
         layer.seed = 5;
-        layer.splats = &splats;
+        layer.splats = &cloud.splats;
         CameraParams params;
         params.projection = Projection::orthographic;
         params.position = glm::dvec3(0.0, 0.0, 10.0);
@@ -41,16 +40,7 @@ struct CloseBy {
         frame.height = side;
     }
     void add(const glm::vec3& position, float radius, std::uint64_t id) {
-        set->position.push_back(position);
-        set->color.push_back(glm::vec3(0.5f));
-        set->alpha.push_back(0.05f);
-        set->distance.push_back(0.0f);
-        set->id.push_back(id);
-        splats.position.push_back(position);
-        splats.color.push_back(glm::vec3(0.5f));
-        splats.alpha.push_back(0.05f);
-        splats.radius.push_back(radius);
-        splats.id.push_back(id);
+        cloud.add(position, glm::vec3(0.5f), 0.05f, radius, id);
     }
     void fill(std::uint32_t count, float radius) {
         for (std::uint32_t i = 0; i < count; ++i) {
@@ -61,11 +51,8 @@ struct CloseBy {
         }
     }
     ShadedSplats cut(std::int64_t budget) const {
-        const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
-        const MergedSplats merged = merge_splats({set, tree, 1.0f}, splats);
-        const DotSettings dots(layer.render);
-        const CutLayer source{&merged, &dots, make_projection(layer, 0, camera, frame)};
-        return std::move(cut_splats(std::span(&source, 1), {budget, 0.0f, side, side})[0]);
+        return test::cut_of(cloud.merged(), DotSettings(layer.render),
+                            make_projection(layer, 0, camera, frame), {budget, 0.0f, side, side});
     }
     /// Light of blocks of 32 px.
     std::vector<double> blocks(const ShadedSplats& shown, bool children) const {
@@ -98,8 +85,8 @@ double total(const std::vector<double>& blocks) {
 TEST(CloudLight, DotsAreBrightWhereTheirChildrenAre) {
     CloseBy scene;
     scene.fill(3000, 0.3f);
-    const std::vector<double> final = scene.blocks(scene.splats, true);
-    const double unlit = difference(scene.blocks(scene.splats, false), final);
+    const std::vector<double> final = scene.blocks(scene.cloud.splats, true);
+    const double unlit = difference(scene.blocks(scene.cloud.splats, false), final);
     EXPECT_GT(unlit, 0.1) << "there is structure";
     for (const auto& [budget, share] :
          {std::pair{3000, 0.5}, {1000, 0.75}}) {  // of the splats; merged ones blur

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/real.h"
 #include "core/shared_maths.h"
-#include "merge/cut.h"
 #include "render/render.h"
+#include "unit/merge/cloud.h"
 
 namespace astrosplat {
 namespace {
@@ -21,41 +22,28 @@ struct Seen {
 /// A block of 48 x 48 x `deep` splats through dots that stand for 64 each, seen from so far beside its front.
 Seen seen_through_dots(bool lattice, int deep = 48, double degrees = 0.0) {
     constexpr int splats_a_side = 48, side = 256, first = 96, end = 160;  // px
-    auto set = std::make_shared<SplatSet>();
-    ShadedSplats splats;
+    test::Cloud cloud;
     const auto at = [](int i) { return (static_cast<float>(i) + 0.5f) / splats_a_side * 2.0f - 1.0f; };
     const int count = splats_a_side * splats_a_side * deep;
     for (int i = 0; i < count; ++i) {
         const int slice = i / splats_a_side / splats_a_side + (splats_a_side - deep) / 2;
-        const glm::vec3 p(at(i % splats_a_side), at(i / splats_a_side % splats_a_side), at(slice));
-        const auto id = static_cast<std::uint64_t>(i);
-        set->position.push_back(p);
-        set->color.push_back(glm::vec3(0.5f));
-        set->alpha.push_back(0.01f);
-        set->distance.push_back(0.0f);
-        set->id.push_back(id);
-        splats.position.push_back(p);
-        splats.color.push_back(glm::vec3(0.5f));
-        splats.alpha.push_back(0.01f);
-        splats.radius.push_back(2.0f / splats_a_side);
-        splats.id.push_back(id);
+        cloud.add({at(i % splats_a_side), at(i / splats_a_side % splats_a_side), at(slice)}, glm::vec3(0.5f),
+                  0.01f, 2.0f / splats_a_side);
     }
     RenderLayer layer;
     layer.render.blend = Blend::add;
     CameraParams params;
     params.projection = Projection::orthographic;
-    const double angle = degrees * 3.14159265358979 / 180.0;
+    const double angle = real::radians(degrees);
     params.position = glm::dvec3(0.0, -10.0 * std::sin(angle), 10.0 * std::cos(angle));
     params.height = 3.0;
     const Camera camera = make_camera(params, side, side, {});
     RenderSettings frame;
     frame.width = frame.height = side;
-    const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
-    const MergedSplats merged = merge_splats({set, tree, 1.0f}, splats);
-    const DotSettings dots(layer.render, lattice);
-    const CutLayer source{&merged, &dots, make_projection(layer, 0, camera, frame)};
-    const std::vector<ShadedSplats> cut = cut_splats(std::span(&source, 1), {count / 64, 0.0f, side, side});
-    layer.splats = &cut[0];
+    const ShadedSplats cut =
+        test::cut_of(cloud.merged(), DotSettings(layer.render, lattice),
+                     make_projection(layer, 0, camera, frame), {count / 64, 0.0f, side, side});
+    layer.splats = &cut;
     const Image image = render(std::span(&layer, 1), camera, nullptr, frame).beauty;
     double sum = 0.0, squares = 0.0, cover = 0.0;
     const int rows = degrees > 0.0 ? (end - first) / 4 : (end - first) / 2;  // aslant it is lower
@@ -65,11 +53,11 @@ Seen seen_through_dots(bool lattice, int deep = 48, double degrees = 0.0) {
             sum += light;
             squares += light * light;
         }
-    for (std::size_t i = 0; i < cut[0].radius.size(); ++i)
-        cover += double(cut[0].alpha[i]) * double(cut[0].radius[i]) * double(cut[0].radius[i]);
+    for (std::size_t i = 0; i < cut.radius.size(); ++i)
+        cover += double(cut.alpha[i]) * double(cut.radius[i]) * double(cut.radius[i]);
     const double pixels = 2.0 * rows * (end - first), mean = sum / pixels;
     const double whole = count * 0.01 * (2.0 / splats_a_side) * (2.0 / splats_a_side);
-    return {std::sqrt(squares / pixels - mean * mean) / mean, cover / whole, cut[0].radius.size()};
+    return {std::sqrt(squares / pixels - mean * mean) / mean, cover / whole, cut.radius.size()};
 }
 
 TEST(MergedLattice, HasNoStripes) {

@@ -12,42 +12,20 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
-#include "merge/cut.h"
 #include "render/falloff.h"
 #include "render/render.h"
+#include "unit/merge/cloud.h"
 
 namespace astrosplat {
 namespace {
+
+using test::Cloud;
 
 constexpr int width = 256, height = 256;
 
 float uniform(std::uint32_t i, std::uint32_t which) {
     return shared::as_uniform(shared::as_hash(7u, i, 0u, which));
 }
-
-/// A set and its splats, which are the same: the look that changes nothing.
-struct Cloud {
-    std::shared_ptr<SplatSet> set = std::make_shared<SplatSet>();
-    ShadedSplats splats;
-
-    void add(const glm::vec3& position, const glm::vec3& color, float alpha, float radius) {
-        const auto id = static_cast<std::uint64_t>(set->size());
-        set->position.push_back(position);
-        set->color.push_back(color);
-        set->alpha.push_back(alpha);
-        set->distance.push_back(0.0f);
-        set->id.push_back(id);
-        splats.position.push_back(position);
-        splats.color.push_back(color);
-        splats.alpha.push_back(alpha);
-        splats.radius.push_back(radius);
-        splats.id.push_back(id);
-    }
-    MergedSplats merged(float weight = 1.0f) const {
-        const auto tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
-        return merge_splats({set, tree, weight}, splats);
-    }
-};
 
 /// In [-1, 1]^3 scaled by `extent`.
 Cloud random_cloud(std::uint32_t count, const glm::vec3& extent, float radius, float alpha) {
@@ -81,9 +59,8 @@ ShadedSplats cut_of(const MergedSplats& merged, std::int64_t budget, const Layer
     RenderSettings frame;
     frame.width = width;
     frame.height = height;
-    const DotSettings dots(render);
-    const CutLayer cut{&merged, &dots, make_projection(layer, 0, seen_by, frame)};
-    return std::move(cut_splats(std::span(&cut, 1), {budget, least_px, width, height})[0]);
+    return test::cut_of(merged, DotSettings(render), make_projection(layer, 0, seen_by, frame),
+                        {budget, least_px, width, height});
 }
 
 Image picture_of(const ShadedSplats& splats, Blend blend) {
