@@ -91,13 +91,19 @@ class SeenLayer {
     /// One of its splats, as row i.
     void put_splat(std::int64_t index, ShadedSplats& out, std::size_t i) const {
         const ShadedSplats& splats = merged().splats;
-        CloudPlace place;
-        place.radius = is_star(splats.id[index]) ? 0.0f : splats.radius[index];
-        place.spread = glm::vec3(child_spread * place.radius);
         out.position[i] = splats.position[index];
         out.color[i] = splats.color[index];
         out.alpha[i] = splats.alpha[index] * layer_.dots->render.opacity;
         out.radius[i] = splats.radius[index];
+        CloudPlace place;
+        if (is_star(splats.id[index])) {
+            const float size = near_star_size(layer_.projection, to_camera(out.position[i]));
+            out.color[i] /= size * size;
+            out.radius[i] *= size;
+        } else {
+            place.radius = splats.radius[index];
+            place.spread = glm::vec3(child_spread * place.radius);
+        }
         light_as_cloud(place, out, i);
     }
 

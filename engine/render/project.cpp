@@ -84,8 +84,7 @@ void project_one(const LayerProjection& layer, const CameraSplat& splat, std::in
 /// Projects a star that stays a point close by, with all the light that its ball would have.
 void project_star(const LayerProjection& layer, CameraSplat splat, std::int64_t index, const ScreenRect& rect,
                   Buffer<ScreenSplat>& out) {
-    const float depth = std::max(shared::instance_of(layer.lens, splat.position).depth, layer.lens.near);
-    const float size = near_star_size(std::min(1.0f, depth / layer.star_distance));
+    const float size = near_star_size(layer, splat.position);
     splat.color /= size * size;
     project_one(layer, splat, index, rect, out, size);
 }
@@ -260,6 +259,12 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
     p.layer = number;
     p.star_pixels = layer.star_pixels;
     return p;
+}
+
+float near_star_size(const LayerProjection& layer, const glm::vec3& p) {
+    if (!(layer.star_distance > 0.0f)) return 1.0f;
+    const float depth = std::max(shared::instance_of(layer.lens, p).depth, layer.lens.near);
+    return near_star_size(std::min(1.0f, depth / layer.star_distance));
 }
 
 float support_px(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes) {

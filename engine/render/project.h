@@ -62,6 +62,10 @@ LayerProjection make_projection(const RenderLayer& layer, std::uint16_t number, 
 float structure_of(const LayerProjection& layer, const glm::vec3& position, const glm::vec3& color,
                    float alpha);
 
+/// Radius of the image of a star at `position` in camera space over that of its dot: less than 1 within
+/// lod.star_distance (render/near_star.h). Its colour is divided by the square.
+float near_star_size(const LayerProjection& layer, const glm::vec3& position);
+
 /// Half the width of the square around a splat's place on the frame outside of which all its weights are 0.
 float support_px(const LayerProjection& layer, const ScreenSplat& splat, const Buffer<Shape>& shapes);
 

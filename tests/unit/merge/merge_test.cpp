@@ -14,6 +14,7 @@
 #include "core/shared_maths.h"
 #include "render/falloff.h"
 #include "render/render.h"
+#include "splats/star_id.h"
 #include "unit/merge/cloud.h"
 
 namespace astrosplat {
@@ -63,14 +64,14 @@ ShadedSplats cut_of(const MergedSplats& merged, std::int64_t budget, const Layer
                         {budget, least_px, width, height});
 }
 
-Image picture_of(const ShadedSplats& splats, Blend blend) {
+Image picture_of(const ShadedSplats& splats, const LayerRender& as, const Camera& seen_by = camera()) {
     RenderLayer layer;
     layer.splats = &splats;
-    layer.render.blend = blend;
+    layer.render = as;
     RenderSettings settings;
     settings.width = width;
     settings.height = height;
-    return render(std::span(&layer, 1), camera(), nullptr, settings).beauty;
+    return render(std::span(&layer, 1), seen_by, nullptr, settings).beauty;
 }
 
 glm::dvec3 light_of(const ShadedSplats& splats) {
@@ -231,8 +232,8 @@ TEST(Merge, AColumnLetsThroughWhatItDidUnderEveryBlend) {
         const MergedSplats merged = cloud.merged();
         for (const Blend blend : {Blend::over, Blend::add, Blend::screen, Blend::hybrid, Blend::absorb}) {
             SCOPED_TRACE(testing::Message() << "alpha " << alpha << ", blend " << static_cast<int>(blend));
-            const Image whole = picture_of(cloud.splats, blend);
-            const Image cut = picture_of(cut_of(merged, 1500, render_as(blend)), blend);
+            const Image whole = picture_of(cloud.splats, render_as(blend));
+            const Image cut = picture_of(cut_of(merged, 1500, render_as(blend)), render_as(blend));
             for (int k = 0; k < 4; ++k) {
                 const double wanted = mean_of_middle(whole, k);
                 EXPECT_NEAR(mean_of_middle(cut, k), wanted, 0.03 * wanted) << k;
@@ -254,6 +255,25 @@ TEST(Merge, OneSplatIsItsOwnDotUnderEveryBlend) {
             EXPECT_NEAR(dot.color.z * dot.alpha, 0.1f * alpha, 3e-4);
         }
     }
+}
+
+TEST(Merge, StarsCloseByAreThePointsOfTheFinalFrame) {
+    Cloud cloud;
+    for (const float x : {-0.1f, 0.1f})
+        cloud.add({x, 0.0f, 0.0f}, {1.0f, 0.8f, 0.6f}, 0.3f, 0.05f, std::uint64_t{star_band} << 48);
+    CameraParams params;
+    params.position = {0.0, 0.0, 2.0};
+    params.fov = 10.0;
+    const Camera near_by = make_camera(params, width, height, {});
+    LayerRender as_dot, as_point;
+    as_point.lod.star_distance = 8.0f;
+    const Image preview = picture_of(cut_of(cloud.merged(), 10, as_point, near_by), as_dot, near_by),
+                final = picture_of(cloud.splats, as_point, near_by),
+                dot = picture_of(cloud.splats, as_dot, near_by);
+    const float brightest = *std::ranges::max_element(final.pixels);
+    EXPECT_GT(brightest, 2.0f * *std::ranges::max_element(dot.pixels));
+    for (std::size_t i = 0; i < final.pixels.size(); ++i)
+        ASSERT_NEAR(preview.pixels[i], final.pixels[i], 1e-3f * brightest);
 }
 
 TEST(Merge, OpacityOfTheLayerIsInTheDots) {
