@@ -160,6 +160,7 @@ class Loop {
 }  // namespace
 
 int run_viewer(const ViewerOptions& options, const std::atomic<bool>& interrupted) {
+    keep_little_freed_memory();
     const Preferences preferences = load_preferences();
     const Settings& settings = preferences.settings;
     if (settings.threads > 0 && !options.threads_given) set_thread_count(settings.threads);

@@ -145,6 +145,14 @@ void return_freed_memory() {
 #endif
 }
 
+void keep_little_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int most = 4 << 20;
+    mallopt(M_TRIM_THRESHOLD, most);
+    mallopt(M_MMAP_THRESHOLD, most);  // what is larger goes back at once
+#endif
+}
+
 void claim_memory(std::int64_t bytes, const std::string& what) {
     const auto text = [](std::int64_t n) { return human_bytes(static_cast<double>(n)); };
     const std::string need = text(bytes);

@@ -34,6 +34,11 @@ std::int64_t resident_memory_bytes();
 /// holes after a while and do not shrink by themselves. Takes some milliseconds.
 void return_freed_memory();
 
+/// From now on the C library keeps no more than some MB of freed memory at the end of each heap. By itself it
+/// comes to keep up to 64 MB there, once large blocks were freed, which return_freed_memory() cannot hand
+/// back. For programs that run for hours.
+void keep_little_freed_memory();
+
 /// Announces `bytes` for `what` (at detail level), and throws NotEnoughMemory with one line that states both
 /// figures when they exceed available_memory_bytes(), and with a limit of its own what that would have to be.
 void claim_memory(std::int64_t bytes, const std::string& what);

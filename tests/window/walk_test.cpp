@@ -44,11 +44,11 @@ class WindowWalk : public WindowTest {
             expect_title("scene.toml");
             last = memory_at_rest();
             if (round == 0) first = last;
+            std::printf("round %d: %.0f MB\n", round, 1e-6 * double(last));
+            std::fflush(stdout);
         }
         EXPECT_GT(first, 0);
         EXPECT_LT(last - first, 100'000'000);
-        std::printf("memory after the first round %.0f MB, after the last of %d %.0f MB\n",
-                    1e-6 * double(first), round, 1e-6 * double(last));
         person->press("ctrl+q");
         EXPECT_EQ(end().code, 0);
     }

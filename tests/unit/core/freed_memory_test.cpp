@@ -34,5 +34,27 @@ TEST(FreedMemory, GoesBackToTheSystem) {
     EXPECT_LT(resident_memory_bytes(), before - static_cast<std::int64_t>(block * count / 2));
 }
 
+/// Resident memory before and after many blocks of another thread, once a large one was freed.
+std::int64_t growth_by_freed_blocks() {
+    constexpr std::size_t large = 30 << 20, block = 16 << 10, count = 3000;
+    const std::int64_t before = resident_memory_bytes();
+    std::thread([&] {
+        std::make_unique<char[]>(large);
+        std::vector<std::unique_ptr<char[]>> blocks;
+        for (std::size_t i = 0; i < count; ++i) blocks.push_back(std::make_unique<char[]>(block));
+        blocks.clear();
+        return_freed_memory();
+    }).join();
+    return resident_memory_bytes() - before;
+}
+
+// The ends of other threads' heaps cannot be asked for.
+TEST(FreedMemory, IsNotKeptAtTheEndsOfHeaps) {
+    if (has_own_heap || !std::ifstream("/proc/self/smaps_rollup"))
+        GTEST_SKIP() << "the C library's heap is not in use, or cannot be measured";
+    keep_little_freed_memory();
+    EXPECT_LT(growth_by_freed_blocks(), 10'000'000);
+}
+
 }  // namespace
 }  // namespace astrosplat
