@@ -9,12 +9,15 @@
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <optional>
 #include <set>
+#include <span>
 
 #include "core/real.h"
 #include "core/rotation.h"
 #include "edit/fit_path.h"
 #include "edit/keyframes.h"
+#include "edit/rounding.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
@@ -26,10 +29,12 @@ namespace {
 constexpr double move_seconds = 10.0;
 constexpr double tolerance = 8e-4;        // of the distance to the middle
 constexpr double fly_in_share = 0.15;     // of the distance that is left at the end
-constexpr double face_on_tilt_deg = 0.1;  // exactly face-on, "up" would be undefined
+constexpr double face_on_tilt_deg = 0.1;  // exactly face-on, an up along the axis would be undefined
+constexpr double least_share = 1e-7;      // of the distance to the middle: finer digits say nothing
 
 const char* const position_key = "camera.position";
 const char* const target_key = "camera.target";
+const char* const up_key = "camera.up";
 const char* const rotation_key = "camera.rotation";
 
 Value vector_value(const glm::dvec3& v) { return Value::List{v.x, v.y, v.z}; }
@@ -54,8 +59,12 @@ void set_orientation_keyframe(Scene& scene, const CameraParams& camera, double f
     set_keyframe(scene, rotation_key, frame, Value::List{q.x, q.y, q.z, q.w});
 }
 
-/// A place on the way, of the share 0..1 of the move that is done.
-using Path = std::function<glm::dvec3(double)>;
+/// A move around `middle`.
+struct Move {
+    glm::dvec3 middle;
+    std::function<glm::dvec3(double)> place;   // on the way, of the share 0..1 that is done
+    std::optional<glm::dvec3> up_at_end = {};  // where the camera's up turns, too
+};
 
 double ease(double t) { return t * t * (3.0 - 2.0 * t); }
 
@@ -72,9 +81,10 @@ void remove_empty_tracks(Scene& scene) {
 
 bool is_camera_track(const Track& track) { return track.key.is_below("camera"); }
 
-/// Makes room for a move of `frames` frames from `frame` on. What is animated only later stays as it was at
-/// `frame`.
-void make_room(Scene& scene, double frame, double frames, LaterKeys later) {
+/// Makes room for a move of `frames` frames from `frame` on, in `keys`. What is animated only later stays as
+/// it was at `frame`.
+void make_room(Scene& scene, std::span<const char* const> keys, double frame, double frames,
+               LaterKeys later) {
     const Scene now = scene_at(scene, frame);
     for (Track& track : scene.animation) {
         if (!is_camera_track(track)) continue;
@@ -85,9 +95,13 @@ void make_room(Scene& scene, double frame, double frames, LaterKeys later) {
                 if (keyframe.frame > frame) keyframe.frame += frames;
         if (track.keyframes.empty()) scene.camera = now.camera;
     }
-    for (const char* key : {position_key, target_key})
+    for (const char* key : keys)
         remove_keyframes(scene, key, [&](double at) { return at >= frame && at <= frame + frames; });
     remove_empty_tracks(scene);
+}
+
+glm::dvec3 rounded(const glm::dvec3& v, double step) {
+    return {rounded_to_step(v.x, step), rounded_to_step(v.y, step), rounded_to_step(v.z, step)};
 }
 
 void set_smooth_keyframe(Scene& scene, const char* key, double frame, const glm::dvec3& value) {
@@ -95,8 +109,9 @@ void set_smooth_keyframe(Scene& scene, const char* key, double frame, const glm:
     set_interpolation(scene, key, frame, Interpolation::smooth);
 }
 
-/// In order, where no keyframe of that time is left.
-void insert_positions(Scene& scene, const std::vector<Keyframe<glm::dvec3>>& keyframes) {
+/// In order, where no keyframe of that time is left; places to `step` scene units.
+void insert_positions(Scene& scene, const std::vector<Keyframe<glm::dvec3>>& keyframes, double step) {
+    constexpr double frame_step = 1e-3;
     set_smooth_keyframe(scene, position_key, keyframes.front().frame, keyframes.front().value);
     for (Track& track : scene.animation) {
         if (track.key != position_key) continue;
@@ -105,10 +120,14 @@ void insert_positions(Scene& scene, const std::vector<Keyframe<glm::dvec3>>& key
                                     &Keyframe<std::vector<double>>::frame);
         at = track.keyframes.erase(at);
         for (const Keyframe<glm::dvec3>& k : keyframes) {
-            const auto numbers = [](const glm::dvec3& v) { return std::vector<double>{v.x, v.y, v.z}; };
+            const auto numbers = [&](const glm::dvec3& v) {
+                const glm::dvec3 r = rounded(v, step);
+                return std::vector<double>{r.x, r.y, r.z};
+            };
             const auto handle = [&](const Handle<glm::dvec3>& h) {
                 return h.kind == HandleKind::free
-                           ? Handle<std::vector<double>>{h.kind, h.frames, numbers(h.value)}
+                           ? Handle<std::vector<double>>{h.kind, rounded_to_step(h.frames, frame_step),
+                                                         numbers(h.value)}
                            : Handle<std::vector<double>>{};
             };
             at = track.keyframes.insert(
@@ -130,44 +149,76 @@ void extend_frames(Scene& scene, std::int64_t first, std::int64_t last) {
         scene.output.frames += fmt::format(",{}-{}", first, last);
 }
 
-void add_path(Scene& scene, const Path& path, const glm::dvec3& target, double frame, LaterKeys later) {
+/// Frames after `frame` at which the camera has keyframes.
+std::set<double> later_frames(const Scene& scene, double frame) {
+    std::set<double> frames;
+    for (const Track& track : scene.animation)
+        if (is_camera_track(track))
+            for (const auto& keyframe : track.keyframes)
+                if (keyframe.frame > frame) frames.insert(keyframe.frame);
+    return frames;
+}
+
+/// Over the move from what it is to `up`; keyframes after the move were made with what it is.
+void turn_up(Scene& scene, const glm::dvec3& up, double frame, double end) {
+    const glm::dvec3 before = scene_at(scene, frame).camera.up;
+    const bool is_new = !is_animated(scene, up_key);
+    set_smooth_keyframe(scene, up_key, frame, before);
+    set_smooth_keyframe(scene, up_key, end, up);
+    const std::set<double> later = later_frames(scene, end);
+    if (is_new && !later.empty()) set_smooth_keyframe(scene, up_key, *later.begin(), before);
+}
+
+void add_path(Scene& scene, const Move& move, double frame, LaterKeys later) {
     const double frames = std::fmax(1.0, std::floor(move_seconds * scene.output.fps + 0.5));
-    const bool shifts = later == LaterKeys::shift && camera_keyframes_after(scene, frame) > 0;
+    const bool shifts = later == LaterKeys::shift && !later_frames(scene, frame).empty();
     const double end =
         shifts ? static_cast<double>(parse_frames(scene.output.frames, "output.frames").back()) + frames
                : frame + frames - 1.0;
     remove_track(scene, rotation_key);  // it would replace the target
     scene.camera.rotation.reset();
-    make_room(scene, frame, frames, later);
-    const auto place = [&](double at) { return path(ease((at - frame) / frames)); };
-    const double distance = glm::distance(path(0.0), target);
-    insert_positions(scene, fit_path(place, frame, frame + frames, tolerance * std::fmax(distance, 1e-9)));
-    set_smooth_keyframe(scene, target_key, frame, target);
-    set_smooth_keyframe(scene, target_key, frame + frames, target);
+    const char* const keys[] = {position_key, target_key, up_key};
+    make_room(scene, std::span(keys).first(move.up_at_end ? 3 : 2), frame, frames, later);
+    const double distance = std::fmax(glm::distance(move.place(0.0), move.middle), 1e-9);
+    const auto place = [&](double at) { return move.place(ease((at - frame) / frames)); };
+    const double step = least_share * distance;
+    insert_positions(scene, fit_path(place, frame, frame + frames, tolerance * distance), step);
+    for (const double at : {frame, frame + frames})
+        set_smooth_keyframe(scene, target_key, at, rounded(move.middle, step));
+    if (move.up_at_end) turn_up(scene, *move.up_at_end, frame, frame + frames);
     extend_frames(scene, std::llround(frame), std::llround(end));
 }
 
-/// Where the camera is at a frame; a camera without a position frames the box.
-glm::dvec3 camera_place(const Scene& scene, const Bounds& box, double frame) {
-    const CameraParams camera = scene_at(scene, frame).camera;
+/// A camera without a position frames the box.
+glm::dvec3 place_of(const CameraParams& camera, const Scene& scene, const Bounds& box) {
     return camera.position ? *camera.position : make_camera(camera, aspect_of(scene.output), 1.0, box).eye;
 }
 
-Path orbit_path(const glm::dvec3& middle, const glm::dvec3& start) {
-    glm::dvec3 arm = start - middle;
-    const glm::dvec3 height(0.0, arm.y, 0.0);
-    arm.y = 0.0;
-    if (glm::length(arm) == 0.0) arm.z = std::fmax(std::fabs(height.y), 1e-6);
-    const glm::dvec3 across(arm.z, 0.0, -arm.x);  // towards +x from +z
-    return [=](double share) {
-        const double angle = share * 2.0 * real::pi;
-        return middle + height + arm * real::cos(angle) + across * real::sin(angle);
-    };
+/// What the camera looks at, where that is within the box; else the box's centre.
+glm::dvec3 middle_of(const CameraParams& camera, const Bounds& box) {
+    const bool looks_there = camera.position && !camera.rotation;
+    return looks_there && box.contains(camera.target) ? camera.target : box.center();
+}
+
+/// A circle around the camera's up, which stays upright; at its height.
+Move orbit(const CameraParams& camera, const glm::dvec3& middle, const glm::dvec3& start) {
+    const glm::dvec3 up = glm::normalize(camera.up), height = up * glm::dot(start - middle, up);
+    glm::dvec3 arm = start - middle - height;
+    if (!(glm::length(arm) > 0.0)) {  // it looks along its up
+        const glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0);
+        arm = glm::normalize(glm::cross(std::fabs(up.x) < 0.9 ? x : y, up)) *
+              std::fmax(glm::length(height), 1e-6);
+    }
+    const glm::dvec3 across = glm::cross(up, arm);  // towards +x from +z
+    return {middle, [=](double share) {
+                const double angle = share * 2.0 * real::pi;
+                return middle + height + arm * real::cos(angle) + across * real::sin(angle);
+            }};
 }
 
 /// The distance shrinks by the same factor at every step of the share: the frame fills evenly.
-Path fly_in_path(const glm::dvec3& middle, const glm::dvec3& start) {
-    return [=](double share) { return middle + (start - middle) * real::pow(fly_in_share, share); };
+Move fly_in(const glm::dvec3& middle, const glm::dvec3& start) {
+    return {middle, [=](double share) { return middle + (start - middle) * real::pow(fly_in_share, share); }};
 }
 
 /// The thin direction of what is seen: the first visible layer's axis.
@@ -177,21 +228,41 @@ glm::dvec3 thin_direction(const Scene& scene) {
     return {0.0, 1.0, 0.0};
 }
 
-/// From above the thin direction to the side on which the camera is, at a distance that holds the whole box.
-Path face_on_path(const Scene& scene, const Bounds& box, const glm::dvec3& start) {
-    const glm::dvec3 middle = box.center(), axis = thin_direction(scene);
-    glm::dvec3 side = start - middle;
-    side -= axis * glm::dot(side, axis);
-    if (!(glm::length(side) > 1e-9 * glm::length(start - middle))) side = glm::dvec3(0.0, 0.0, 1.0);
-    side -= axis * glm::dot(side, axis);
-    if (!(glm::length(side) > 0.0)) side = glm::dvec3(1.0, 0.0, 0.0);
-    side = glm::normalize(side);
-    const Framing framing = frame_box(box, scene.camera.fov, aspect_of(scene.output));
-    const double distance = glm::length(framing.position - framing.target);
-    return [=](double share) {
-        const double angle = real::radians(face_on_tilt_deg + share * (90.0 - face_on_tilt_deg));
-        return middle + (axis * real::cos(angle) + side * real::sin(angle)) * distance;
-    };
+glm::dvec3 across(const glm::dvec3& v, const glm::dvec3& axis) { return v - axis * glm::dot(v, axis); }
+
+/// To the side on which the camera is; its up is the axis.
+glm::dvec3 side_of_camera(const glm::dvec3& arm, const glm::dvec3& axis) {
+    glm::dvec3 side = across(arm, axis);
+    if (!(glm::length(side) > 1e-9 * glm::length(arm))) side = across({0.0, 0.0, 1.0}, axis);
+    if (!(glm::length(side) > 0.0)) side = across({1.0, 0.0, 0.0}, axis);
+    return glm::normalize(side);
+}
+
+/// From above the thin direction to its side. Begins where the camera is, if that is face-on already; else at
+/// a distance that holds the whole box. What is up in the picture stays up in every frame of it, and in the
+/// last one the axis is, so that a disk lies in the frame: an up across the axis, as of a picture's own
+/// camera, turns to it on the way.
+Move face_on_to_edge_on(const Scene& scene, const CameraParams& camera, const Bounds& box,
+                        const glm::dvec3& middle, const glm::dvec3& start) {
+    constexpr double least_across = 0.1;
+    constexpr double face_on_cosine = 0.9998;  // within a degree
+    const glm::dvec3 arm = start - middle, up = glm::normalize(camera.up);
+    glm::dvec3 axis = thin_direction(scene);
+    if (glm::dot(arm, axis) < 0.0) axis = -axis;
+    const Framing framing = frame_box(box, camera.fov, aspect_of(scene.output));
+    const bool is_there = glm::dot(arm, axis) > face_on_cosine * glm::length(arm);
+    const double distance = is_there ? glm::length(arm) : glm::length(framing.position - framing.target);
+    const double along_up = glm::dot(up, axis);
+    const bool turns = glm::length(across(up, axis)) > least_across;
+    const double away = along_up < 0.0 ? 1.0 : -1.0;  // down the picture, or up where the axis points down
+    const glm::dvec3 side = turns ? away * glm::normalize(across(up, axis)) : side_of_camera(arm, axis);
+    const double from_deg = turns ? 0.0 : face_on_tilt_deg;
+    Move move{middle, [=](double share) {
+                  const double angle = real::radians(from_deg + share * (90.0 - from_deg));
+                  return middle + (axis * real::cos(angle) + side * real::sin(angle)) * distance;
+              }};
+    if (turns) move.up_at_end = -away * axis;
+    return move;
 }
 
 }  // namespace
@@ -216,22 +287,26 @@ void set_keyframe_of_seen_camera(Scene& scene, const ViewState& view, const Stat
 }
 
 std::size_t camera_keyframes_after(const Scene& scene, double frame) {
-    std::set<double> frames;
-    for (const Track& track : scene.animation)
-        if (is_camera_track(track))
-            for (const auto& keyframe : track.keyframes)
-                if (keyframe.frame > frame) frames.insert(keyframe.frame);
-    return frames.size();
+    return later_frames(scene, frame).size();
 }
 
 void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame, LaterKeys later) {
     Bounds seen = box;
     if (seen.empty()) seen.add(glm::dvec3(0.0));
-    const glm::dvec3 middle = seen.center(), start = camera_place(scene, seen, frame);
-    const Path path = move == CameraMove::orbit    ? orbit_path(middle, start)
-                      : move == CameraMove::fly_in ? fly_in_path(middle, start)
-                                                   : face_on_path(scene, seen, start);
-    add_path(scene, path, middle, frame, later);
+    const CameraParams camera = scene_at(scene, frame).camera;
+    const glm::dvec3 middle = middle_of(camera, seen), start = place_of(camera, scene, seen);
+    const auto path = [&] {
+        switch (move) {
+            case CameraMove::orbit:
+                return orbit(camera, middle, start);
+            case CameraMove::fly_in:
+                return fly_in(middle, start);
+            case CameraMove::face_on_to_edge_on:
+                break;
+        }
+        return face_on_to_edge_on(scene, camera, seen, middle, start);
+    };
+    add_path(scene, path(), frame, later);
 }
 
 }  // namespace astrosplat

@@ -22,9 +22,10 @@ void set_camera_keyframe(Scene& scene, const CameraParams& camera, double frame)
 void set_keyframe_of_seen_camera(Scene& scene, const ViewState& view, const Status& status);
 
 inline constexpr std::array<const char*, 3> camera_move_names{"Orbit", "Fly in", "Face-on to edge-on"};
-/// Ten seconds of an eased move around `box` (the visible layers' bounds in world space), beginning at
-/// `frame`; takes the place of the camera's position and target over that time, and lets [output] frames
-/// reach to its end.
+/// Ten seconds of an eased move, beginning at `frame`, around what the camera looks at, or the middle of
+/// `box` (the visible layers' bounds in world space) where it looks elsewhere. An orbit goes around the
+/// camera's up. Takes the place of the camera's position and target over that time, from face-on to edge-on
+/// of its up, too, where that has to turn, and lets [output] frames reach to its end.
 void add_camera_move(Scene& scene, CameraMove move, const Bounds& box, double frame,
                      LaterKeys later = LaterKeys::keep);
 /// How many frames after `frame` have keyframes of the camera.
