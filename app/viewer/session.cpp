@@ -35,9 +35,11 @@ Document document_for(const fs::path& file, std::span<const Assignment> assignme
     return Document::untitled(scene_text_for(file, place), place, assignments);
 }
 
-/// A picture is first seen from the front, as it was before it had depth.
-void choose_first_view(ViewState& view, const fs::path& file) {
-    if (kind_of_file(file) == FileKind::picture) view.view = ViewKind::top;
+/// A picture is first seen from the front, as it was before it had depth: by its own camera, where it has
+/// one.
+void choose_first_view(ViewState& view, const Document& document, const fs::path& file) {
+    if (kind_of_file(file) == FileKind::picture && !document.scene().camera.position)
+        view.view = ViewKind::top;
 }
 
 /// Does it, or says in the message line why not: nothing that a person asks for ends the window.
@@ -140,7 +142,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
     view.settle = view.settings.settles != 0;
     view.engine = static_cast<PreviewEngine>(view.settings.engine);
     view.frame = first_frame(document.scene());
-    if (!options.input.empty()) choose_first_view(view, options.input);
+    if (!options.input.empty()) choose_first_view(view, document, options.input);
     if (!options.input.empty() && kind_of_file(options.input) == FileKind::mesh) offer_picture(*this, 0);
     find_recoveries(status);
     status.has_ffmpeg = has_program("ffmpeg");
@@ -183,7 +185,7 @@ void note_recent(Session& session, const fs::path& file) {
 void open_file(Session& session, const fs::path& file) {
     take_document(session, document_for(file));
     note_recent(session, file);
-    choose_first_view(session.view, file);
+    choose_first_view(session.view, session.document, file);
     if (kind_of_file(file) == FileKind::mesh) offer_picture(session, 0);
 }
 
