@@ -17,7 +17,7 @@ bool same_set(const std::shared_ptr<const LoadedLayer>& a, const std::shared_ptr
     return (a ? set_of(*a) : nullptr) == (b ? set_of(*b) : nullptr);
 }
 
-constexpr double rest_s = 0.2;        // without a touch, before the final frame begins
+constexpr double rest_s = 0.15;       // without a touch, before the final frame begins
 constexpr double step_rest_s = 0.06;  // and before the first finer preview does
 
 double milliseconds_since(Clock::time_point start) { return 1e3 * seconds_since(start); }

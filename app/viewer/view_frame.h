@@ -58,7 +58,7 @@ class ViewFrame {
     explicit ViewFrame(std::shared_ptr<PictureFiles> files) : files_(std::move(files)) {}
 
     /// Shows `request`: draws a preview where it differs from the last one, else goes on towards the final
-    /// frame once nobody has touched anything for 0.2 s (`settle`; `hurry`: at once). `now` in seconds.
+    /// frame once nobody has touched anything for 0.15 s (`settle`; `hurry`: at once). `now` in seconds.
     void show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
               bool hurry = false);
     unsigned texture() const { return texture_; }
