@@ -26,7 +26,11 @@ fs::path folder_of_document(const Document& document) {
     return fs::current_path(ignored);
 }
 
-std::string stem(const Document& document) { return fs::path(document.name()).stem().string(); }
+/// What files of it are called: an untitled scene is called as what it was made of.
+std::string stem(const Document& document) {
+    const fs::path& file = document.file().empty() ? document.scene().file : document.file();
+    return file.stem().string();
+}
 
 FileQuery reading(const char* title, const char* kind, const Extensions& extensions,
                   const Document& document) {

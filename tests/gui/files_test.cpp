@@ -126,6 +126,15 @@ TEST(FileList, TypedPathsKnowHome) {
     EXPECT_EQ(typed_path("/a", "/x"), "/a");
 }
 
+TEST(FileQueries, ANewSceneIsCalledAsWhatItWasMadeOf) {
+    const TempFolder folder;
+    const Document document = Document::untitled("astrosplat = 1\n", folder / "M 51.toml");
+    EXPECT_EQ(query_for(Command::Kind::save_as, document)->name, "M 51.toml");
+    EXPECT_EQ(query_for(Command::Kind::save_view, document)->name, "M 51.png");
+    const fs::path file = folder.file("ä.toml", "astrosplat = 1\n");
+    EXPECT_EQ(query_for(Command::Kind::save_as, Document::open(file))->name, "ä.toml");
+}
+
 /// A file of the scene is asked for in plain words, where it lies now, among files of its kind.
 TEST(FileQueries, AFileOfTheSceneIsSoughtWhereItIs) {
     const TempFolder folder;
