@@ -15,6 +15,7 @@
 
 #include "core/real.h"
 #include "core/rotation.h"
+#include "edit/film.h"
 #include "edit/fit_path.h"
 #include "edit/keyframes.h"
 #include "edit/rounding.h"
@@ -26,7 +27,6 @@
 namespace astrosplat {
 namespace {
 
-constexpr double move_seconds = 10.0;
 constexpr double tolerance = 8e-4;        // of the distance to the middle
 constexpr double fly_in_share = 0.15;     // of the distance that is left at the end
 constexpr double face_on_tilt_deg = 0.1;  // exactly face-on, an up along the axis would be undefined
@@ -170,7 +170,7 @@ void turn_up(Scene& scene, const glm::dvec3& up, double frame, double end) {
 }
 
 void add_path(Scene& scene, const Move& move, double frame, LaterKeys later) {
-    const double frames = std::fmax(1.0, std::floor(move_seconds * scene.output.fps + 0.5));
+    const double frames = film_frames(scene.output);
     const bool shifts = later == LaterKeys::shift && !later_frames(scene, frame).empty();
     const double end =
         shifts ? static_cast<double>(parse_frames(scene.output.frames, "output.frames").back()) + frames

@@ -13,6 +13,7 @@
 #include "core/file.h"
 #include "edit/check_edit.h"
 #include "edit/disk_file.h"
+#include "edit/film.h"
 #include "edit/keyframes.h"
 #include "edit/layers.h"
 #include "edit/output_preset.h"
@@ -266,6 +267,7 @@ void Document::take(Scene edited, const std::string& edit_name, Gesture gesture)
     check_edited_scene(edited, name());
     check_new_presets(scene(), edited);
     if (edited == scene()) return;  // its tracks were of nothing
+    film_still(scene(), edited);
     state_->record({std::make_shared<const Scene>(std::move(edited)), edit_name, gesture});
 }
 

@@ -27,7 +27,7 @@ void say(GuiFrame& f, std::string text) {
 }
 
 void go_to(GuiFrame& f, double frame) {
-    const FrameRange range = frame_range(f.document.scene());
+    const FrameRange range = shown_range(f.document.scene());
     f.view.frame = std::clamp(frame, range.first, range.last);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "edit/film.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/frames.h"
@@ -63,6 +64,12 @@ FrameRange frame_range(const Scene& scene) {
         // Said where it is typed; the timeline shows one frame meanwhile.
     }
     return {};
+}
+
+FrameRange shown_range(const Scene& scene) {
+    FrameRange range = frame_range(scene);
+    if (range.first == range.last) range.last += film_frames(scene.output) - 1.0;
+    return range;
 }
 
 }  // namespace astrosplat

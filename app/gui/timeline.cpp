@@ -22,13 +22,15 @@ constexpr float header_height = 36, ruler_height = 22;
 constexpr float point_half = 3, point_reach = 5;  // tabs of in and out points
 constexpr double zoom_step = 1.25;
 
-void refresh(TimelineState& t, const Document& document) {
-    const FrameRange range = frame_range(document.scene());
+/// Where the range has changed, the playhead comes along: undo may have taken its frame away.
+void refresh(TimelineState& t, const Document& document, ViewState& view) {
+    const FrameRange range = shown_range(document.scene());
     if (!t.zoomed || range.first != t.fitted.first || range.last != t.fitted.last) {
         t.fitted = range;
         t.zoomed = false;
         t.scale.first = range.first;
         t.scale.last = std::max(range.last, range.first + 1.0);
+        view.frame = std::clamp(view.frame, range.first, range.last);
     }
     if (document.revision() == t.revision && !t.specs.empty()) return;
     t.revision = document.revision();
@@ -187,7 +189,7 @@ std::string track_label(const std::string& key, const ParameterSpec& spec) {
 void Timeline::draw(GuiFrame& frame, const Rect& area) {
     constexpr ImGuiWindowFlags still = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
     if (!begin_part("timeline", area, still)) return;
-    refresh(state_, frame.document);
+    refresh(state_, frame.document, frame.view);
     end_drag(state_);
     draw_timeline_header(state_, frame, area);
     const Rect ruler{area.x, area.y + px(header_height), area.width, px(ruler_height)};

@@ -29,7 +29,7 @@ std::string seconds_text(const Scene& scene, double frame) {
 }
 
 void frame_entry(GuiFrame& frame) {
-    const FrameRange range = frame_range(frame.document.scene());
+    const FrameRange range = shown_range(frame.document.scene());
     auto value = static_cast<float>(frame.view.frame);
     push_entry_padding();
     const bool changed = drag_field("##frame", value, 0.25f, static_cast<float>(range.first),

@@ -30,6 +30,30 @@ TEST(Timeline, AFrameIsTyped) {
     EXPECT_EQ(window.view.frame, 137.0);
 }
 
+TEST(Timeline, AStillIsAsLongAsTheFilmThatItMayBecome) {
+    TestWindow window(Document::untitled("astrosplat = 1\n[output]\nframes = \"1\"\n", "/scene.toml"));
+    window.view.view = ViewKind::free;
+    const glm::vec2 ruler = window.at("ruler");
+    window.drag(ruler, {2000, 0});
+    EXPECT_EQ(window.view.frame, 240.0);
+    window.tap('K');
+    window.frame(2);
+    EXPECT_EQ(window.document.scene().output.frames, "1-240");
+    window.drag(ruler, {-2000, 0});
+    EXPECT_EQ(window.view.frame, 1.0);
+}
+
+TEST(Timeline, ThePlayheadComesAlongWhereUndoTakesItsFrameAway) {
+    TestWindow window(example_document());
+    window.document.edit("Longer", [](Scene& scene) { scene.output.frames = "1-400"; });
+    window.frame(2);
+    window.view.frame = 390.0;
+    window.frame(2);
+    window.tap('Z', true);
+    window.frame(2);
+    EXPECT_EQ(window.view.frame, 240.0);
+}
+
 TEST(Timeline, AKeyframeMovesWithTheMouse) {
     TestWindow window(example_document());
     const std::string power = "layer.dust.look.alpha.power";
