@@ -1,6 +1,8 @@
 #include "viewer/front_check.h"
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "fidelity/signed_difference.h"
@@ -21,6 +23,17 @@ FrontFound compared(const FrontRequest& request, std::int64_t width_px, const Se
     return found;
 }
 
+/// Its picture faces the front, along y; the surface of a sculpted mesh with texture coordinates of its own
+/// has no picture that it could look like.
+bool shows_a_picture(const SourceParams& source) {
+    constexpr std::string_view flat[] = {"plane", "relief", "sheet", "disk"};
+    if (source.kind != SourceKind::mesh) return false;
+    if (source.uv == UvMode::camera || source.uv == UvMode::planar_xz) return true;
+    return source.uv == UvMode::mesh && std::ranges::all_of(source.meshes, [&](const auto& part) {
+               return std::ranges::find(flat, part.mesh.generic_string()) != std::end(flat);
+           });
+}
+
 }  // namespace
 
 FrontRequest front_request(Scene now, std::vector<std::shared_ptr<const SplatSet>> sets,
@@ -35,9 +48,8 @@ FrontRequest front_request(Scene now, std::vector<std::shared_ptr<const SplatSet
 }
 
 bool has_front_picture(const Scene& now) {
-    return std::ranges::any_of(now.layers, [](const LayerParams& layer) {
-        return layer.visible && layer.source.kind == SourceKind::mesh;
-    });
+    return std::ranges::any_of(
+        now.layers, [](const LayerParams& layer) { return layer.visible && shows_a_picture(layer.source); });
 }
 
 bool front_changed_by_look(const Scene& now) {

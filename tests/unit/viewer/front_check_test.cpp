@@ -113,5 +113,17 @@ TEST_F(FrontCheckTest, KnowsLooksThatChangeTheFront) {
     EXPECT_FALSE(has_front_picture(scene));
 }
 
+TEST_F(FrontCheckTest, OnlyPicturesHaveAFront) {
+    scene.layers[0].source.meshes[0].mesh = "plane";
+    EXPECT_TRUE(has_front_picture(scene));
+    scene.layers[0].source.meshes[0].mesh = "/meshes/cow.obj";
+    scene.layers[0].source.uv = UvMode::mesh;
+    EXPECT_FALSE(has_front_picture(scene)) << "it has texture coordinates of its own";
+    for (const UvMode onto : {UvMode::planar_xz, UvMode::camera}) {
+        scene.layers[0].source.uv = onto;
+        EXPECT_TRUE(has_front_picture(scene));
+    }
+}
+
 }  // namespace
 }  // namespace astrosplat
