@@ -48,6 +48,18 @@ TEST(PanelWords, SetOptionsAreOneWordOfAShell) {
     EXPECT_EQ(set_option("provenance.title", "it's"), "--set 'provenance.title=\"it'\\''s\"'");
 }
 
+TEST(PanelWords, ADefaultOfZeroThatIsNoAmountSaysWhatItMeans) {
+    ParameterSpec spec;
+    spec.zero = "Auto";
+    const auto has = [&](const Value& standard, const char* text) {
+        return tooltip_text(spec, standard).find(text) != std::string::npos;
+    };
+    EXPECT_TRUE(has(0.0, "; default Auto (0.0)"));
+    EXPECT_TRUE(has(0.5, "; default 0.5"));
+    spec.zero = {};
+    EXPECT_TRUE(has(0.0, "; default 0.0"));
+}
+
 TEST(PanelWords, DraggingRoundsToCleanNumbers) {
     ParameterSpec spec;
     spec.min = 0.0, spec.max = 1.0;

@@ -103,7 +103,9 @@ std::string tooltip_text(const ParameterSpec& spec, const Value& standard) {
     std::string text = spec.label + ": " + spec.help + "\n" + spec.key.text();
     text += "\nTakes " + expectation(spec);
     if (!spec.unit.empty()) text += ", " + spec.unit;
-    text += "; default " + to_toml(standard);
+    const bool says_nothing = standard.is_number() && standard.number() == 0.0 && !spec.zero.empty();
+    text += "; default " +
+            (says_nothing ? fmt::format("{} ({})", spec.zero, to_toml(standard)) : to_toml(standard));
     if (spec.animation == Animation::steps) text += "; animated in steps";
     return text;
 }
