@@ -47,7 +47,7 @@ FinerFound draw_finer(const FinerRequest& request, CpuPreview& preview, const Pr
 StepPlan plan_steps(double final_s) {
     constexpr double at_once_s = 0.3, quick_s = 2.5;
     if (0.0 <= final_s && final_s < at_once_s) return {};
-    if (0.0 <= final_s && final_s < quick_s) return {1, 0.15};
+    if (0.0 <= final_s && final_s < quick_s) return {1, 0.08};
     return {2, 0.4};
 }
 

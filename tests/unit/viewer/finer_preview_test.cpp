@@ -25,7 +25,7 @@ TEST(FinerPreview, QuickFinalFramesAreNotHeldUp) {
     EXPECT_EQ(plan_steps(-1.0).count, 2) << "nobody knows yet";
     EXPECT_EQ(plan_steps(5.0).count, 2);
     EXPECT_EQ(plan_steps(1.7).count, 1);
-    EXPECT_LE(plan_steps(1.7).most_s, 0.15) << "within the rest before it";
+    EXPECT_LE(plan_steps(1.7).most_s, 0.09) << "within the rest before it";
     EXPECT_EQ(plan_steps(0.2).count, 0);
 }
 
@@ -57,7 +57,7 @@ TEST_F(FinerPreviewSession, EveryStepIsCloserToTheFinalFrame) {
     session.view.settle = true;
     draw();
     EXPECT_EQ(shown(), dots.back()) << "the hand may still move";
-    now += 0.15;  // less than the final frame waits for
+    now += 0.1;  // less than the final frame waits for
     while (seen.size() < 3) {
         draw();
         ASSERT_EQ(session.view_frame.status().state, ViewFrameState::preview);
