@@ -29,6 +29,17 @@ TEST_F(Start, TheFinalPictureComesBeforeTheTreesOfLaterPreviews) {
     EXPECT_TRUE(settled(session)) << "what came later changed nothing";
 }
 
+// From elsewhere bodies with depth along its rays look cut off.
+TEST_F(Start, APictureIsSeenByItsOwnCamera) {
+    ASSERT_EQ(session.view.view, ViewKind::camera);
+    session.view.view = ViewKind::free;
+    open_file(session, ASTROSPLAT_SOURCE_DIR "/assets/textures/spiral.jpg");
+    EXPECT_EQ(session.view.view, ViewKind::camera);
+    ASSERT_TRUE(session.document.scene().camera.position);
+    EXPECT_EQ(*session.document.scene().camera.position,
+              session.document.scene().layers[0].source.uv_camera.position);
+}
+
 // Whoever moves needs them at once.
 TEST_F(Start, AMovingHandDoesNotHoldUpTheTrees) {
     int moves = 0;
