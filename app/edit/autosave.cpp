@@ -156,6 +156,10 @@ void Autosave::remove() {
     written_ = 0;
 }
 
+std::string Recovery::name() const {
+    return titled ? original.filename().string() : original.stem().string() + " (never saved)";
+}
+
 std::vector<Recovery> recoveries(const fs::path& folder) {
     std::vector<Recovery> found;
     for (const fs::path& file : entries_of(folder)) {

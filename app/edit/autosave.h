@@ -56,6 +56,8 @@ struct Recovery {
     std::filesystem::path original;  // the scene's file, or where an untitled one was
     bool titled = true;
     std::string time;  // UTC, "2026-05-01 12:30:00"
+
+    std::string name() const;  // "whirlpool.toml", "m51 (never saved)"
 };
 
 /// Newest first. Never throws: a folder that cannot be read holds none.

@@ -200,19 +200,25 @@ glm::dvec3 middle_of(const CameraParams& camera, const Bounds& box) {
     return looks_there && box.contains(camera.target) ? camera.target : box.center();
 }
 
+glm::dvec3 across(const glm::dvec3& v, const glm::dvec3& axis) { return v - axis * glm::dot(v, axis); }
+
+/// The direction across the axis in which `arm` goes; any where it goes along the axis.
+glm::dvec3 side_of(const glm::dvec3& arm, const glm::dvec3& axis) {
+    glm::dvec3 side = across(arm, axis);
+    if (!(glm::length(side) > 1e-9 * glm::length(arm))) side = across({0.0, 0.0, 1.0}, axis);
+    if (!(glm::length(side) > 0.0)) side = across({1.0, 0.0, 0.0}, axis);
+    return glm::normalize(side);
+}
+
 /// A circle around the camera's up, which stays upright; at its height.
 Move orbit(const CameraParams& camera, const glm::dvec3& middle, const glm::dvec3& start) {
-    const glm::dvec3 up = glm::normalize(camera.up), height = up * glm::dot(start - middle, up);
-    glm::dvec3 arm = start - middle - height;
-    if (!(glm::length(arm) > 0.0)) {  // it looks along its up
-        const glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0);
-        arm = glm::normalize(glm::cross(std::fabs(up.x) < 0.9 ? x : y, up)) *
-              std::fmax(glm::length(height), 1e-6);
-    }
-    const glm::dvec3 across = glm::cross(up, arm);  // towards +x from +z
+    const glm::dvec3 up = glm::normalize(camera.up), arm = start - middle;
+    const double height = glm::dot(arm, up), distance = glm::length(across(arm, up));
+    const double radius = distance > 0.0 ? distance : std::fmax(std::fabs(height), 1e-6);
+    const glm::dvec3 from = side_of(arm, up), towards = glm::cross(up, from);  // +x from +z
     return {middle, [=](double share) {
                 const double angle = share * 2.0 * real::pi;
-                return middle + height + arm * real::cos(angle) + across * real::sin(angle);
+                return middle + up * height + radius * (from * real::cos(angle) + towards * real::sin(angle));
             }};
 }
 
@@ -228,16 +234,6 @@ glm::dvec3 thin_direction(const Scene& scene) {
     return {0.0, 1.0, 0.0};
 }
 
-glm::dvec3 across(const glm::dvec3& v, const glm::dvec3& axis) { return v - axis * glm::dot(v, axis); }
-
-/// To the side on which the camera is; its up is the axis.
-glm::dvec3 side_of_camera(const glm::dvec3& arm, const glm::dvec3& axis) {
-    glm::dvec3 side = across(arm, axis);
-    if (!(glm::length(side) > 1e-9 * glm::length(arm))) side = across({0.0, 0.0, 1.0}, axis);
-    if (!(glm::length(side) > 0.0)) side = across({1.0, 0.0, 0.0}, axis);
-    return glm::normalize(side);
-}
-
 /// From above the thin direction to its side. Begins where the camera is, if that is face-on already; else at
 /// a distance that holds the whole box. What is up in the picture stays up in every frame of it, and in the
 /// last one the axis is, so that a disk lies in the frame: an up across the axis, as of a picture's own
@@ -250,18 +246,17 @@ Move face_on_to_edge_on(const Scene& scene, const CameraParams& camera, const Bo
     glm::dvec3 axis = thin_direction(scene);
     if (glm::dot(arm, axis) < 0.0) axis = -axis;
     const Framing framing = frame_box(box, camera.fov, aspect_of(scene.output));
-    const bool is_there = glm::dot(arm, axis) > face_on_cosine * glm::length(arm);
-    const double distance = is_there ? glm::length(arm) : glm::length(framing.position - framing.target);
-    const double along_up = glm::dot(up, axis);
+    const bool is_face_on = glm::dot(arm, axis) > face_on_cosine * glm::length(arm);
+    const double distance = is_face_on ? glm::length(arm) : glm::length(framing.position - framing.target);
     const bool turns = glm::length(across(up, axis)) > least_across;
-    const double away = along_up < 0.0 ? 1.0 : -1.0;  // down the picture, or up where the axis points down
-    const glm::dvec3 side = turns ? away * glm::normalize(across(up, axis)) : side_of_camera(arm, axis);
+    const double sign = glm::dot(up, axis) < 0.0 ? -1.0 : 1.0;  // of the axis that is up in the end
+    const glm::dvec3 side = turns ? -sign * side_of(up, axis) : side_of(arm, axis);
     const double from_deg = turns ? 0.0 : face_on_tilt_deg;
     Move move{middle, [=](double share) {
                   const double angle = real::radians(from_deg + share * (90.0 - from_deg));
                   return middle + (axis * real::cos(angle) + side * real::sin(angle)) * distance;
               }};
-    if (turns) move.up_at_end = -away * axis;
+    if (turns) move.up_at_end = sign * axis;
     return move;
 }
 

@@ -197,13 +197,8 @@ void offer_picture(Session& session, std::size_t layer) {
 
 void find_recoveries(Status& status) {
     status.recoveries.clear();
-    for (const Recovery& recovery : recoveries()) {
-        const fs::path& file = recovery.original;
-        status.recoveries.push_back(
-            {recovery.autosave,
-             recovery.titled ? file.filename().string() : file.stem().string() + " (never saved)",
-             recovery.time + " UTC"});
-    }
+    for (const Recovery& recovery : recoveries())
+        status.recoveries.push_back({recovery.autosave, recovery.name(), recovery.time + " UTC"});
 }
 
 Document demo_document(std::span<const Assignment> assignments) {

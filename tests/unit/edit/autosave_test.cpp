@@ -175,6 +175,7 @@ TEST_F(AutosaveTest, AKilledProcessIsRecovered) {
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].original, f.file);
     EXPECT_TRUE(found[0].titled);
+    EXPECT_EQ(found[0].name(), "szene ä.toml");
     EXPECT_EQ(found[0].time.size(), 19u);
 
     Document document = recover(found[0].autosave);
@@ -197,7 +198,7 @@ TEST_F(AutosaveTest, AKilledProcessIsRecovered) {
 }
 
 TEST_F(AutosaveTest, AnUntitledSceneIsRecoveredUntitled) {
-    const fs::path place = f.folder / "untitled.toml";
+    const fs::path place = f.folder / "m 51 ä.toml";
     killed_process([&](const auto& ready) {
         Document document = Document::untitled(test::edit_scene, place);
         document.set(opacity, 0.25, 1.0);
@@ -207,6 +208,7 @@ TEST_F(AutosaveTest, AnUntitledSceneIsRecoveredUntitled) {
     const std::vector<Recovery> found = recoveries(folder);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_FALSE(found[0].titled);
+    EXPECT_EQ(found[0].name(), "m 51 ä (never saved)");
     Document document = recover(found[0].autosave);
     EXPECT_EQ(document.name(), "Untitled");
     EXPECT_EQ(document.scene().file, place);
