@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "camera/projection.h"
-#include "core/radix_sort.h"
+#include "core/sorting.h"
 
 namespace astrosplat {
 namespace {

@@ -11,9 +11,9 @@
 
 #include "bodies/picture_light.h"
 #include "bodies/stars.h"
+#include "core/sorting.h"
 #include "image/blur.h"
 #include "image/channels.h"
-#include "image/percentile.h"
 #include "image/resample.h"
 
 namespace astrosplat {

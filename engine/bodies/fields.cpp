@@ -6,8 +6,8 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/sorting.h"
 #include "image/blur.h"
-#include "image/percentile.h"
 
 namespace astrosplat {
 namespace {

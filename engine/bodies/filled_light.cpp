@@ -8,8 +8,8 @@
 #include "bodies/shell.h"
 #include "core/parallel.h"
 #include "core/real.h"
+#include "core/sorting.h"
 #include "image/blur.h"
-#include "image/percentile.h"
 
 namespace astrosplat {
 namespace {

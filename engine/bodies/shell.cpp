@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bodies/fields.h"
+#include "core/sorting.h"
 #include "image/blur.h"
-#include "image/percentile.h"
 
 namespace astrosplat {
 namespace {

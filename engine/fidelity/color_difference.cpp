@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
-#include "image/percentile.h"
+#include "core/sorting.h"
 
 namespace astrosplat {
 namespace {

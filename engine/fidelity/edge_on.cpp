@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/color.h"
+#include "core/sorting.h"
 #include "image/blur.h"
 #include "image/channels.h"
-#include "image/percentile.h"
 #include "image/row_sums.h"
 
 namespace astrosplat {

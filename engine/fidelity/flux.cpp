@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "image/percentile.h"
+#include "core/sorting.h"
 
 namespace astrosplat {
 namespace {

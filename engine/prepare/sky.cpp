@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "image/percentile.h"
+#include "core/sorting.h"
 #include "prepare/cells.h"
 #include "prepare/least_squares.h"
 

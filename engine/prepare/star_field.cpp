@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/real.h"
-#include "image/percentile.h"
+#include "core/sorting.h"
 #include "prepare/saturated_stars.h"
 #include "prepare/star_finder.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/radix_sort.h"
+#include "core/sorting.h"
 
 namespace astrosplat {
 namespace {

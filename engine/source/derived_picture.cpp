@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/sorting.h"
 #include "image/blur.h"
-#include "image/percentile.h"
 
 namespace astrosplat {
 namespace {

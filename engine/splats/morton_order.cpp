@@ -10,7 +10,7 @@
 
 #include "core/morton.h"
 #include "core/parallel.h"
-#include "core/radix_sort.h"
+#include "core/sorting.h"
 #include "splats/row_order.h"
 
 namespace astrosplat {

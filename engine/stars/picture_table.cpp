@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/sorting.h"
 #include "core/text.h"
 #include "stars/catalogue_text.h"
 #include "stars/text_table.h"
@@ -86,10 +87,7 @@ double median_sigma_px(const PictureTable& table) {
     std::vector<double> widths;
     for (const TableStar& star : table.stars)
         if (star.sigma_px > 0.0) widths.push_back(star.sigma_px);
-    if (widths.empty()) return 0.0;
-    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-    std::nth_element(widths.begin(), middle, widths.end());
-    return *middle;
+    return widths.empty() ? 0.0 : median(widths);
 }
 
 }  // namespace astrosplat

@@ -13,7 +13,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "core/radix_sort.h"
+#include "core/sorting.h"
 #include "volumes/voxel_body.h"
 
 namespace astrosplat {

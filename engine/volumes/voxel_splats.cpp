@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/real.h"
+#include "core/sorting.h"
 #include "gaussians/appearance.h"
 
 namespace astrosplat {
@@ -73,10 +74,8 @@ double default_voxel_size(const std::vector<VoxelSplat>& splats) {
         lo = glm::min(lo, splat.place - reach * deviation);
         hi = glm::max(hi, splat.place + reach * deviation);
     }
-    const auto middle = deviations.begin() + static_cast<std::ptrdiff_t>(deviations.size() / 2);
-    std::nth_element(deviations.begin(), middle, deviations.end());
     const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
-    return std::clamp(double(*middle), longest / 512.0, longest / 128.0);
+    return std::clamp(double(median(deviations)), longest / 512.0, longest / 128.0);
 }
 
 }  // namespace astrosplat

@@ -1,14 +1,17 @@
-// Radix sort against std::stable_sort, and the Morton curve's closed form.
+// Radix sort against std::stable_sort, medians, percentiles as numpy defines them, and the Morton curve's
+// closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "core/morton.h"
-#include "core/radix_sort.h"
+#include "core/sorting.h"
 
 namespace astrosplat {
 namespace {
@@ -62,6 +65,25 @@ TEST(Morton, InterleavesTheBitsOfTheCoordinates) {
         EXPECT_EQ(spread_bits(std::uint64_t{1} << bit), std::uint64_t{1} << 3 * bit) << bit;
     const std::uint64_t most = (std::uint64_t{1} << morton_axis_bits) - 1;
     EXPECT_EQ(morton_place(most, most, most), (std::uint64_t{1} << 63) - 1);
+}
+
+TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
+    EXPECT_EQ(median(std::vector{5.0f, 1.0f, 4.0f}), 4.0f);
+    EXPECT_EQ(median(std::vector{5, 1, 4, 2}), 4);
+    EXPECT_EQ(median(std::array{7.5}), 7.5);
+    std::vector parts{9, 1, 2, 3, 9};
+    EXPECT_EQ(median(std::span(parts).subspan(1, 3)), 2);
+    EXPECT_EQ(parts.front(), 9);
+}
+
+TEST(Percentile, IsLinearBetweenNeighbours) {
+    const std::vector<double> values{5.0, 1.0, 4.0, 2.0};
+    EXPECT_EQ(percentile(values, 0.0), 1.0);
+    EXPECT_EQ(percentile(values, 1.0), 5.0);
+    EXPECT_EQ(percentile(values, 0.5), 3.0);
+    EXPECT_NEAR(percentile(values, 0.9), 4.7, 1e-12);
+    EXPECT_EQ(percentile({7.0}, 0.3), 7.0);
+    EXPECT_EQ(percentile({}, 0.5), 0.0);
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
-// Pictures at another size: closed forms for what a pixel shows, and percentiles as numpy defines them.
+// Pictures at another size: closed forms for what a pixel shows.
 #include "image/resample.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "image/percentile.h"
 
 namespace astrosplat {
 namespace {
@@ -63,16 +61,6 @@ TEST(Resample, TheFilterIsOfOutputPixels) {
     const double peak = 1.0 / (2.0 * 3.14159265358979 * 2.25);
     EXPECT_NEAR(*small.at(49, 49), peak, 1e-4 * peak);
     EXPECT_NEAR(*small.at(50, 49), peak * std::exp(-2.0), 1e-3 * peak);
-}
-
-TEST(Percentile, IsLinearBetweenNeighbours) {
-    const std::vector<double> values{5.0, 1.0, 4.0, 2.0};
-    EXPECT_EQ(percentile(values, 0.0), 1.0);
-    EXPECT_EQ(percentile(values, 1.0), 5.0);
-    EXPECT_EQ(percentile(values, 0.5), 3.0);
-    EXPECT_NEAR(percentile(values, 0.9), 4.7, 1e-12);
-    EXPECT_EQ(percentile({7.0}, 0.3), 7.0);
-    EXPECT_EQ(percentile({}, 0.5), 0.0);
 }
 
 }  // namespace

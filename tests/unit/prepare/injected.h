@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "image/percentile.h"
+#include "core/sorting.h"
 #include "prepare/star_finder.h"
 #include "prepare/star_removal.h"
 #include "unit/prepare/painted.h"

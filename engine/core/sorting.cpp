@@ -1,4 +1,4 @@
-#include "image/percentile.h"
+#include "core/sorting.h"
 
 #include <algorithm>
 #include <cmath>

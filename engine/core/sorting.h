@@ -1,13 +1,16 @@
-// Sorting by some bits of each value, on one thread: stable, in linear time. In: values, scratch of the same
-// size and which bits count. Out: where the sorted values lie.
+// Values in order, on one thread: a stable radix sort in linear time, medians and percentiles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
+#include <ranges>
 #include <utility>
+#include <vector>
 
 namespace astrosplat {
 
@@ -36,5 +39,19 @@ T* radix_sort(T* values, T* scratch, std::size_t count, unsigned begin_bit, unsi
     }
     return values;
 }
+
+/// The value with half of the others below it, the upper one of two: one that occurs, never a mean of two.
+/// The values are left in another order; there is to be at least one, and no NaN.
+template <std::ranges::random_access_range Values>
+auto median(Values&& values) {
+    assert(!std::ranges::empty(values));
+    const auto middle = std::ranges::begin(values) + std::ranges::ssize(values) / 2;
+    std::ranges::nth_element(values, middle);
+    return std::ranges::range_value_t<Values>(*middle);
+}
+
+/// The value below which the given share (0..1) of the numbers lies, linear between neighbours: 0 gives the
+/// least, 1 the greatest, 1/2 the mean of the two in the middle. 0 for an empty list; NaN must not occur.
+double percentile(std::vector<double> values, double share);
 
 }  // namespace astrosplat
