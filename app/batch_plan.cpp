@@ -12,7 +12,6 @@
 #include "estimate.h"
 #include "output/format.h"
 #include "output/frame_hash.h"
-#include "output/frame_path.h"
 #include "output/read_frame.h"
 #include "output/write.h"
 #include "pipeline.h"
@@ -111,8 +110,7 @@ Scene batch_scene(const BatchOptions& options) {
     for (const std::string& text : options.assignments) assignments.push_back(parse_assignment(text));
     auto [scene, places] = load_placed(options.scene, assignments);
     if (options.frames) scene.output.frames = *options.frames;
-    const fs::path base = options.output ? fs::current_path() : fs::absolute(scene.file).parent_path();
-    scene.output.path = (base / options.output.value_or(scene.output.path)).string();
+    scene.output.path = options.output.value_or(scene.output.path);
     if (options.resolution) apply_resolution(scene.output, *options.resolution);
     if (options.layers) apply_layers(scene, *options.layers);
     check_renderable(scene, places);
@@ -133,27 +131,16 @@ void check_inputs(Scene scene) {
     }
 }
 
-std::vector<std::int64_t> frame_numbers(const Scene& scene, bool from_command_line) {
-    const std::string place = from_command_line ? "--frames" : scene.file.string() + ": output.frames";
-    std::vector<std::int64_t> frames = parse_frames(scene.output.frames, place);
-    if (frames.size() > 1 && !has_frame_token(scene.output.path)) {
+std::vector<std::int64_t> frame_numbers(const BatchPlan& plan, bool from_command_line) {
+    const std::string place = from_command_line ? "--frames" : plan.scene.file.string() + ": output.frames";
+    std::vector<std::int64_t> frames = parse_frames(plan.scene.output.frames, place);
+    if (frames.size() > 1 && !plan.output.is_numbered()) {
         bad_input(
-            scene.output.path, "",
+            plan.output.text(), "",
             fmt::format("a frame number such as #### in the name, as there are {} frames", frames.size()),
             "none");
     }
     return frames;
-}
-
-/// Those that every frame is rendered for.
-std::vector<Eye> eyes(const Scene& scene) {
-    if (!has_eye_token(scene.output.path)) return {scene.camera.eye};
-    if (!has_two_eyes(scene.camera.projection))
-        bad_input(scene.output.path, "",
-                  "no %V, for only perspective, equirectangular and cylindrical cameras have a left and a "
-                  "right eye",
-                  std::string(name_of(scene.camera.projection)));
-    return {Eye::left, Eye::right};
 }
 
 /// Decides what becomes of files that lie where frames go (DESIGN 8).
@@ -201,6 +188,9 @@ std::int64_t count_to_render(const BatchPlan& plan) {
 BatchPlan plan_scene(const BatchOptions& options) {
     BatchPlan plan;
     plan.scene = batch_scene(options);
+    const fs::path scene_folder = fs::absolute(plan.scene.file).parent_path();
+    plan.output = output_pattern(options.output ? fs::current_path() : scene_folder, plan.scene.output.path);
+    plan.scene.output.path = plan.output.text();
     if (options.region) plan.region = parse_region(*options.region, plan.scene.output);
     if (options.memory_gib) plan.memory_limit_bytes = parse_memory(*options.memory_gib);
     plan.cache = options.cache;
@@ -215,11 +205,12 @@ BatchPlan plan_scene(const BatchOptions& options) {
 
 BatchPlan plan_frames(const BatchOptions& options) {
     BatchPlan plan = plan_scene(options);
-    for (const std::int64_t frame : frame_numbers(plan.scene, options.frames.has_value()))
-        for (const Eye eye : eyes(plan.scene)) {
+    const std::vector<Eye> eyes = eyes_of(plan.output, plan.scene.camera);
+    for (const std::int64_t frame : frame_numbers(plan, options.frames.has_value()))
+        for (const Eye eye : eyes) {
             plan.hasher.show_eye(eye);
             plan.frames.push_back(
-                {frame, eye, frame_file(plan.scene.output.path, frame, eye), plan.hasher.frame_hash(frame)});
+                {frame, eye, plan.output.resolve(frame, eye), plan.hasher.frame_hash(frame)});
         }
     return plan;
 }

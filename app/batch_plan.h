@@ -10,6 +10,7 @@
 #include "batch.h"
 #include "core/atomic_file.h"
 #include "core/image.h"
+#include "frame/output_pattern.h"
 #include "output/frame_hash.h"
 #include "scene/scene.h"
 
@@ -25,7 +26,8 @@ struct FramePlan {
 };
 
 struct BatchPlan {
-    Scene scene;  // with the command line applied
+    Scene scene;           // with the command line applied
+    OutputPattern output;  // scene.output.path as a pattern
     Region region;
     std::int64_t memory_limit_bytes = 0;  // 0: none
     SetCache cache;

@@ -14,7 +14,6 @@
 #include "interrupt.h"
 #include "layer_need.h"
 #include "output/format.h"
-#include "output/frame_path.h"
 #include "pipeline.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
@@ -70,7 +69,7 @@ SkyBytes sky_bytes(const EnvironmentParams& sky) try {
 
 /// Of a sample while it is written: EXR takes floats.
 std::int64_t written_bytes(const OutputParams& output) {
-    switch (resolve_format(output, frame_file(output.path, 1)).depth) {
+    switch (resolve_format(output, output.path).depth) {
         case OutputParams::Depth::uint8:
             return 1;
         case OutputParams::Depth::uint16:

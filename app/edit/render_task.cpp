@@ -9,33 +9,25 @@
 
 #include "core/error.h"
 #include "core/file_format.h"
-#include "output/frame_path.h"
+#include "frame/output_pattern.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
-// The pattern of [output] path as an absolute path.
-fs::path absolute_pattern(const Document& document) {
+/// Of [output] path, with an absolute folder.
+OutputPattern pattern_of(const Document& document) {
     std::error_code ignored;
     const fs::path folder = document.file().empty() ? fs::current_path(ignored)
                                                     : fs::absolute(document.file(), ignored).parent_path();
-    return (folder / document.scene().output.path).lexically_normal();
-}
-
-// "galaxy" of "galaxy.####.exr".
-std::string name_without_frame(const fs::path& pattern) {
-    std::string stem = pattern.stem().string();
-    stem.erase(stem.find('#') == std::string::npos ? stem.size() : stem.find('#'));
-    while (!stem.empty() && (stem.back() == '.' || stem.back() == '_' || stem.back() == '-')) stem.pop_back();
-    return stem.empty() ? "frame" : stem;
+    return output_pattern(folder, document.scene().output.path);
 }
 
 std::string frame_problem(const RenderTask& task) {
     try {
         const std::size_t count = parse_frames(task.frames, "frames").size();
-        const bool numbered = has_frame_token(render_target(task).string());
+        const bool numbered = OutputPattern{task.folder, task.name}.is_numbered();
         if (task.kind == RenderKind::range && count > 1 && !numbered)
             return "the name needs #### where the number of the frame goes";
     } catch (const InputError& error) {
@@ -58,15 +50,15 @@ std::string literal_in_glob(const std::string& text) {
 
 RenderTask make_render_task(const Document& document, RenderKind kind, double frame) {
     const OutputParams& output = document.scene().output;
-    const fs::path pattern = absolute_pattern(document);
+    const OutputPattern pattern = pattern_of(document);
+    const fs::path name(pattern.name);
     RenderTask task;
     task.kind = kind;
     task.frames = kind == RenderKind::frame ? fmt::format("{}", std::lround(frame)) : output.frames;
     task.width = output.width;
     task.height = output.height;
-    task.folder = pattern.parent_path();
-    task.name = pattern.filename().string();
-    if (kind == RenderKind::movie) task.name = name_without_frame(pattern) + ".mp4";
+    task.folder = (pattern.folder / name.parent_path()).lexically_normal();
+    task.name = kind == RenderKind::movie ? pattern.stem() + ".mp4" : name.filename().string();
     return task;
 }
 

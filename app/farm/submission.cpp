@@ -14,7 +14,7 @@
 #include "core/log.h"
 #include "core/text.h"
 #include "farm/run_tool.h"
-#include "output/frame_path.h"
+#include "frame/output_pattern.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
@@ -66,12 +66,7 @@ void add_line(const std::string& line, const std::vector<Submission>& submission
 }  // namespace
 
 fs::path submissions_folder(const std::string& output) {
-    fs::path shared;
-    for (const fs::path& part : fs::path(comparable_output(output)).parent_path()) {
-        if (has_frame_token(part.string()) || has_eye_token(part.string())) break;
-        shared /= part;
-    }
-    return shared / "slurm";
+    return output_pattern({}, comparable_output(output)).common_folder() / "slurm";
 }
 
 std::string comparable_output(const std::string& output) {

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "output/frame_path.h"
+#include "frame/output_pattern.h"
 
 namespace astrosplat {
 namespace {
@@ -22,10 +22,11 @@ std::string last_line(const std::string& text) {
     return without_prefix(end == std::string::npos ? whole : whole.substr(end + 1));
 }
 
-std::vector<fs::path> files_of(const std::string& pattern, const std::vector<std::int64_t>& frames) {
+std::vector<fs::path> files_of(const std::string& output, const std::vector<std::int64_t>& frames) {
+    const OutputPattern pattern = output_pattern({}, output);
     std::vector<fs::path> files;
-    if (has_eye_token(pattern)) return files;
-    for (const std::int64_t frame : frames) files.emplace_back(frame_file(pattern, frame));
+    if (pattern.is_stereo()) return files;
+    for (const std::int64_t frame : frames) files.push_back(pattern.resolve(frame));
     return files;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "output/frame_path.h"
+#include "frame/output_pattern.h"
 #include "scene/frames.h"
 
 namespace astrosplat {
@@ -18,9 +18,9 @@ constexpr double read_ahead = 24.0;  // frames
 fs::path file_of_frame(const Session& session, double frame) {
     const Scene& scene = session.document.scene();
     try {
-        if (!has_frame_token(scene.output.path)) return {};
-        return scene.file.parent_path() /
-               frame_file(scene.output.path, std::llround(frame), scene.camera.eye);
+        const OutputPattern pattern = output_pattern(scene.file.parent_path(), scene.output.path);
+        if (!pattern.is_numbered()) return {};
+        return pattern.resolve(std::llround(frame), eyes_of(pattern, scene.camera).front());
     } catch (const InputError&) {
         return {};
     }

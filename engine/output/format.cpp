@@ -12,7 +12,6 @@
 #include "core/error.h"
 #include "core/file_format.h"
 #include "core/text.h"
-#include "output/frame_path.h"
 
 namespace astrosplat {
 namespace {
@@ -124,7 +123,7 @@ void check_output(const OutputParams& output, const Places& places) {
         throw InputError(fmt::format("output.resolution: expected at least 1 x 1 px, found {} x {}",
                                      output.width, output.height));
     try {
-        resolve_format(output, frame_file(output.path, 1));
+        resolve_format(output, output.path);
     } catch (const OcioError& error) {
         const auto found = places.find(error.key);
         if (found == places.end()) throw;

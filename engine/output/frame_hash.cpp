@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/sha256.h"
 #include "output/format.h"
-#include "output/frame_path.h"
 #include "scene/animate.h"
 #include "scene/describe.h"
 #include "scene/input_files.h"
@@ -97,9 +96,9 @@ bool is_mixed_as_ever(const ParameterSpec& spec, const Scene& now) {
 }
 
 /// Whether its frames are written through OpenColorIO; then to whom.
-std::shared_ptr<const DisplayTransform> managed_view(const Scene& now, std::int64_t frame) {
+std::shared_ptr<const DisplayTransform> managed_view(const Scene& now) {
     if (!now.output.ocio.wanted()) return {};
-    return resolve_format(now.output, frame_file(now.output.path, frame)).ocio;
+    return resolve_format(now.output, now.output.path).ocio;
 }
 
 bool is_hidden(const ParameterSpec& spec, const Scene& now) {
@@ -185,7 +184,7 @@ std::string FrameHasher::canonical_text(std::int64_t frame) {
     std::string text = fmt::format("pixels = {}\n", pixel_version);
     if (region_.width > 0 && region_.height > 0)
         text += fmt::format("region = {} {} {} {}\n", region_.x, region_.y, region_.width, region_.height);
-    const std::shared_ptr<const DisplayTransform> ocio = managed_view(now, frame);
+    const std::shared_ptr<const DisplayTransform> ocio = managed_view(now);
     for (const Parameter& parameter : describe(now).parameters) {
         const ParameterSpec& spec = parameter.spec;
         if (is_elsewhere(spec) || is_hidden(spec, now)) continue;

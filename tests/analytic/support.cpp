@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "output/frame_path.h"
+#include "frame/output_pattern.h"
 #include "output/write.h"
 #include "scene/load.h"
 
@@ -81,7 +81,7 @@ std::filesystem::path write_text(const TempFolder& folder, const std::string& to
     const Scene scene = scene_of(folder, toml);
     Pipeline pipeline(scene);
     const RenderedFrame frame = render_frame(pipeline);
-    const std::filesystem::path file = folder / frame_file(scene.output.path, 1);
+    const std::filesystem::path file = OutputPattern{folder, scene.output.path}.resolve(1);
     const OutputParams& output = scene.output;
     write_frame({file, output, output.width, output.height, {}, pipeline.layer_names(1.0)}, frame, {});
     return file;

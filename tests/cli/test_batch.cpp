@@ -141,6 +141,28 @@ TEST_F(Batch, PathsMayHoldSpacesAndUmlauts) {
     EXPECT_TRUE(fs::exists(odd / "Bilder/ä ö.0001.exr"));
 }
 
+// Of the folders that a scene lies in, or that a name goes to, nobody asks for frame numbers or eyes.
+TEST_F(Batch, FoldersMayBeNamedLikePatterns) {
+    const fs::path odd = folder / "C#1 100%v {frame}";
+    fs::create_directories(odd);
+    for (const char* name : {"scene.toml", "stars.pda", "dust.pda"}) fs::copy(folder / name, odd / name);
+    RunOptions here;
+    here.folder = odd;
+    const auto expect_file = [&](std::vector<std::string> words, const fs::path& file) {
+        words.insert(words.begin(), {"--batch", (odd / "scene.toml").string(), "-q", "-f", "5"});
+        const RunResult result = run(words, here);
+        EXPECT_EQ(result.code, 0) << result.err;
+        EXPECT_TRUE(fs::exists(file)) << file;
+    };
+    expect_file({}, odd / "frames/shot.0005.exr");
+    expect_file({"-o", "out.png"}, odd / "out.png");
+    expect_file({"-o", "%V/a.##.png"}, odd / "right/a.05.png");
+    expect_file({"-o", (odd / "b.##.png").string()}, odd / "b.05.png");
+    expect_file({"--set", "output.path=set.exr"}, odd / "set.exr");
+    EXPECT_EQ(names_in("."),
+              (std::set<std::string>{odd.filename().string(), "dust.pda", "scene.toml", "stars.pda"}));
+}
+
 TEST_F(Batch, NeedsNoDisplay) {
     RunOptions bare;
     bare.without = {"DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR", "HOME", "LANG"};

@@ -93,7 +93,7 @@ TEST(Format, EveryGoodCombinationPasses) {
 
 TEST(Format, EachMisfitHasItsMessage) {
     EXPECT_EQ(error_of(to("a.####.jpg")),
-              "output.path: expected a file ending in .exr, .tif or .png, found 'a.0001.jpg'");
+              "output.path: expected a file ending in .exr, .tif or .png, found 'a.####.jpg'");
     EXPECT_EQ(error_of(to("frames")),
               "output.path: expected a file ending in .exr, .tif or .png, found 'frames'");
     OutputParams png = to("a.png");

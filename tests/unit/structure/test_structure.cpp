@@ -100,9 +100,11 @@ TEST(Structure, EngineIncludesPointOneWay) {
         {"output",
          {"core", "source", "splats", "splat_files", "generate", "sets", "look", "camera", "render", "scene",
           "ocio", "output"}},
+        {"frame",
+         {"core", "source", "splats", "look", "camera", "render", "scene", "output", "ocio", "frame"}},
         {"",
          {"core", "source", "splats", "splat_files", "generate", "sets", "look", "camera", "render", "scene",
-          "output", "image", "fidelity", "streamed", ""}},  // pipeline, measure_fidelity
+          "output", "frame", "image", "fidelity", "streamed", ""}},  // pipeline, measure_fidelity
     };
     const std::vector<Include> includes = includes_below("engine");
     ASSERT_GT(includes.size(), 100u);
