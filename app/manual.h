@@ -1,5 +1,5 @@
 // manual: the manual pages astrosplat(1) and astrosplat-scene(5) as troff with the man macros, from the
-// descriptions of the command line and of the scene file's keys.
+// descriptions of the command line and of the scene file's keys, and from the chapters in app/manual.
 #pragma once
 
 #include <string>

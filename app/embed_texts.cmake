@@ -1,0 +1,20 @@
+# Writes OUTPUT, a C++ file with `std::string FUNCTION(const std::string& name)`, which returns the text of the file of
+# that name out of TEXTS; another name is our own mistake (std::logic_error). The texts are split into pieces, because a
+# compiler need not take string literals of more than 64 KiB.
+set(code "// Written by embed_texts.cmake.\n#include <stdexcept>\n#include <string>\n\nnamespace astrosplat {\n\n")
+string(APPEND code "std::string ${FUNCTION}(const std::string& name) {\n")
+foreach(file ${TEXTS})
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} text)
+  string(APPEND code "    if (name == \"${name}\")\n        return std::string()")
+  string(LENGTH "${text}" length)
+  set(begin 0)
+  while(begin LESS length)
+    string(SUBSTRING "${text}" ${begin} 8000 piece)
+    string(APPEND code "\n            .append(R\"text(${piece})text\")")
+    math(EXPR begin "${begin} + 8000")
+  endwhile()
+  string(APPEND code ";\n")
+endforeach()
+string(APPEND code "    throw std::logic_error(\"no text \" + name);\n}\n\n}  // namespace astrosplat\n")
+file(WRITE ${OUTPUT} "${code}")
