@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "gui/icons.h"
+#include "gui/drawing.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "gui/panel/panel.h"
+#include "gui/software_draw.h"
 
 namespace astrosplat {
 
@@ -49,6 +50,7 @@ class PanelDriver {
   private:
     glm::vec2 size_;
     ImGuiContext* context_;
+    Picture8 font_;
 };
 
 }  // namespace astrosplat
