@@ -9,10 +9,10 @@ namespace {
 
 /// No splat of the set is larger, whatever its random numbers and alpha are.
 float radius_bound(const SplatSet& set, const LookUniforms& u) {
-    float radius = std::max(u.radius_min, u.radius_max);
-    if (u.own_radius)
+    float radius = std::max(u.radius.smallest, u.radius.largest);
+    if (u.radius.own)
         for (const float own : set.radius) radius = std::max(radius, own);
-    return radius * std::max(1.0f, u.horizontal_scale) * std::max(1.0f, u.vertical_scale);
+    return radius * std::max(1.0f, u.radius.horizontal_scale) * std::max(1.0f, u.radius.vertical_scale);
 }
 
 }  // namespace

@@ -16,17 +16,16 @@ namespace {
 
 // --- 4, 5: alpha ---
 
-ASTROSPLAT_LOOP horizontal_power(Block& b, float threshold, float power, float gain) {
-    for (int i = 0; i < b.count; ++i) b.alpha[i] = look_horizontal(b.alpha[i], threshold, power, gain);
+ASTROSPLAT_LOOP horizontal_power(Block& b, LookAlpha step) {
+    for (int i = 0; i < b.count; ++i) b.alpha[i] = look_horizontal(b.alpha[i], step);
 }
 
-ASTROSPLAT_LOOP horizontal_gain(Block& b, float gain) {
-    for (int i = 0; i < b.count; ++i) b.alpha[i] = clamp(b.alpha[i] * gain, 0.0f, 1.0f);
+ASTROSPLAT_LOOP horizontal_gain(Block& b, LookAlpha step) {
+    for (int i = 0; i < b.count; ++i) b.alpha[i] = look_gain(b.alpha[i], step);
 }
 
-ASTROSPLAT_LOOP horizontal_radius(Block& b, float horizontal_scale) {
-    for (int i = 0; i < b.count; ++i)
-        b.radius_factor[i] = look_horizontal_radius(b.alpha[i], horizontal_scale);
+ASTROSPLAT_LOOP horizontal_radius(Block& b, LookRadius step) {
+    for (int i = 0; i < b.count; ++i) b.radius_factor[i] = look_horizontal_radius(b.alpha[i], step);
 }
 
 ASTROSPLAT_LOOP own_vertical_x(const Block& b, float reach, float* HWY_RESTRICT x) {
@@ -46,12 +45,12 @@ ASTROSPLAT_LOOP finish_alpha(const Block& b, float* HWY_RESTRICT out) {
 }
 
 void alphas(const LookUniforms& u, Block& b, float* out) {
-    if (u.alpha_power != 1.0f) {
-        horizontal_power(b, u.alpha_threshold, u.alpha_power, u.alpha_gain);
+    if (u.alpha.power != 1.0f) {
+        horizontal_power(b, u.alpha);
     } else {
-        horizontal_gain(b, u.alpha_gain);
+        horizontal_gain(b, u.alpha);
     }
-    horizontal_radius(b, u.horizontal_scale);
+    horizontal_radius(b, u.radius);
     if (u.vertical_reach > 0.0f) {
         own_vertical_x(b, u.vertical_reach, b.sum);
         profile(u.vertical, b.sum, b.f, b.count);
@@ -76,60 +75,60 @@ ASTROSPLAT_LOOP fade_at_crops(const Block& b, float* HWY_RESTRICT alpha) {
 
 // --- 6: radius ---
 
-ASTROSPLAT_LOOP uniform_radii(Block& b, float radius_min, float radius_max, uint seed) {
+ASTROSPLAT_LOOP uniform_radii(Block& b, LookRadius step, uint seed) {
     for (int i = 0; i < b.count; ++i)
-        b.radius[i] = look_uniform_radius(radius_min, radius_max, seed, b.id_low[i], b.id_high[i]);
+        b.radius[i] = look_uniform_radius(step, seed, b.id_low[i], b.id_high[i]);
 }
 
-ASTROSPLAT_LOOP finish_radii(const Block& b, float vertical_scale, float* HWY_RESTRICT out) {
+ASTROSPLAT_LOOP finish_radii(const Block& b, LookRadius step, float* HWY_RESTRICT out) {
     for (int i = 0; i < b.count; ++i)
-        out[i] = b.radius[i] * b.radius_factor[i] * look_vertical_radius(b.x[i], vertical_scale);
+        out[i] = b.radius[i] * b.radius_factor[i] * look_vertical_radius(b.x[i], step);
 }
 
 void radii(const LookRun& run, std::int64_t begin, Block& b, float* out) {
     const LookUniforms& u = run.uniforms;
-    if (u.own_radius) {
+    if (u.radius.own) {
         for (int i = 0; i < b.count; ++i) b.radius[i] = run.in.radius[begin + b.from[i]];
-    } else if (u.radius_min == u.radius_max) {
-        fill(b.radius, u.radius_min, b.count);
+    } else if (u.radius.smallest == u.radius.largest) {
+        fill(b.radius, u.radius.smallest, b.count);
     } else {
-        uniform_radii(b, u.radius_min, u.radius_max, u.seed);
+        uniform_radii(b, u.radius, u.seed);
     }
-    finish_radii(b, u.vertical_scale, out);
+    finish_radii(b, u.radius, out);
 }
 
 // --- 7: colour ---
 
-ASTROSPLAT_LOOP unpremultiply(Block& b, float threshold) {
+ASTROSPLAT_LOOP unpremultiply(Block& b, LookAlpha step) {
     for (int i = 0; i < b.count; ++i) {
-        const float undo = look_unpremultiply(b.alpha[i], threshold);
+        const float undo = look_unpremultiply(b.alpha[i], step);
         b.r[i] = b.r[i] * undo;
         b.g[i] = b.g[i] * undo;
         b.b[i] = b.b[i] * undo;
     }
 }
 
-ASTROSPLAT_LOOP levels(Block& b, float black, vec3 tint) {
+ASTROSPLAT_LOOP levels(Block& b, LookGrade step) {
     for (int i = 0; i < b.count; ++i) {
-        b.r[i] = look_levels(b.r[i] * b.color_factor[i], black) * tint.x;
-        b.g[i] = look_levels(b.g[i] * b.color_factor[i], black) * tint.y;
-        b.b[i] = look_levels(b.b[i] * b.color_factor[i], black) * tint.z;
+        b.r[i] = look_levels(b.r[i] * b.color_factor[i], step) * step.tint.x;
+        b.g[i] = look_levels(b.g[i] * b.color_factor[i], step) * step.tint.y;
+        b.b[i] = look_levels(b.b[i] * b.color_factor[i], step) * step.tint.z;
     }
 }
 
-ASTROSPLAT_LOOP saturate_and_bend(Block& b, float saturation, float inverse_gamma) {
+ASTROSPLAT_LOOP saturate_and_bend(Block& b, LookGrade step) {
     for (int i = 0; i < b.count; ++i) {
         const float luminance = look_luminance(b.r[i], b.g[i], b.b[i]);
-        b.r[i] = look_finish(b.r[i], luminance, saturation, inverse_gamma);
-        b.g[i] = look_finish(b.g[i], luminance, saturation, inverse_gamma);
-        b.b[i] = look_finish(b.b[i], luminance, saturation, inverse_gamma);
+        b.r[i] = look_finish(b.r[i], luminance, step);
+        b.g[i] = look_finish(b.g[i], luminance, step);
+        b.b[i] = look_finish(b.b[i], luminance, step);
     }
 }
 
 // Of alphas before step 4.
-ASTROSPLAT_LOOP screened(Block& b, float threshold, float power, float gain) {
+ASTROSPLAT_LOOP screened(Block& b, LookAlpha step) {
     for (int i = 0; i < b.count; ++i) {
-        const float alpha = look_horizontal(b.alpha[i], threshold, power, gain);
+        const float alpha = look_horizontal(b.alpha[i], step);
         b.r[i] = look_screened(alpha, b.r[i]);
         b.g[i] = look_screened(alpha, b.g[i]);
         b.b[i] = look_screened(alpha, b.b[i]);
@@ -181,13 +180,13 @@ void restore(const Absorbers& absorbers, glm::vec3* color, float* alpha) {
 }
 
 void colors(const LookUniforms& u, Block& b, glm::vec3* out) {
-    if (u.unpremultiply) unpremultiply(b, u.alpha_threshold);
+    if (u.alpha.unpremultiply) unpremultiply(b, u.alpha);
     fill(b.color_factor, 1.0f, b.count);
     for (int j = 0; j < u.noise_count; ++j)
         if (u.noises[j].brightness != 0.0f) vary(u.noises[j].brightness, b.n[j], b.color_factor, b.count);
-    levels(b, u.black, u.tint);
-    if (u.saturation != 1.0f || u.inverse_gamma != 1.0f) saturate_and_bend(b, u.saturation, u.inverse_gamma);
-    if (u.match == MATCH_SCREEN) screened(b, u.alpha_threshold, u.alpha_power, u.alpha_gain);
+    levels(b, u.grade);
+    if (u.grade.saturation != 1.0f || u.grade.inverse_gamma != 1.0f) saturate_and_bend(b, u.grade);
+    if (u.match == MATCH_SCREEN) screened(b, u.alpha);
     write_colors(b, out);
 }
 

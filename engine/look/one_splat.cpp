@@ -32,7 +32,7 @@ OneSplat look_at(const LookRun& run, const LookUniforms& uniforms, std::int64_t 
     s.color = in.color[i];
     s.alpha = in.alpha[i];
     s.from_surface = in.distance[i];
-    s.radius = uniforms.own_radius ? in.radius[i] : 0.0f;
+    s.radius = uniforms.radius.own ? in.radius[i] : 0.0f;
     s.map_value = uniforms.stop_count > 1 ? map_value(*run.map, in.uv[i]) : glm::vec3(0.0f);
     s.id_low = static_cast<std::uint32_t>(in.id[i]);
     s.id_high = static_cast<std::uint32_t>(in.id[i] >> 32);

@@ -92,8 +92,7 @@ void CellSums::add(std::int64_t i, std::size_t cell, std::size_t block) {
     const bool beyond = PictureChart::on_edge(set_, i);
     const std::uint32_t kept_in = beyond ? beyond_cells : static_cast<std::uint32_t>(cell);
     cells_.cell_of[static_cast<std::size_t>(i)] = look.keep ? kept_in : no_cell;
-    const float alpha =
-        shared::look_horizontal(run_.in.alpha[i], u.alpha_threshold, u.alpha_power, u.alpha_gain);
+    const float alpha = shared::look_horizontal(run_.in.alpha[i], u.alpha);
     const bool sums = u.match == shared_types::MATCH_LIGHT;
     const double depth = static_cast<double>(sums ? alpha : shared::look_small_depth(alpha));
     if (!(depth > 0.0) || beyond) return;

@@ -142,35 +142,32 @@ void prepare_crops(const Look& look, LookUniforms& u) {
 }
 
 void prepare_alpha(const SplatSet& set, const Look& look, LookUniforms& u) {
-    u.unpremultiply = look.alpha.unpremultiply ? 1 : 0;
+    u.alpha = horizontal_step(look.alpha);
     u.absorbs = set.absorbs ? 1 : 0;
-    u.alpha_threshold = look.alpha.threshold;
-    u.alpha_power = look.alpha.power;
-    u.alpha_gain = look.alpha.gain;
     if (look.alpha.unpremultiply && set.divided)
         log_warning(
             "look.alpha.unpremultiply: the source has divided the colours by alpha; they are divided again");
 }
 
 void prepare_radius(const SplatSet& set, const Radius& radius, LookUniforms& u) {
-    u.horizontal_scale = radius.horizontal_scale;
-    u.vertical_scale = radius.vertical_scale;
-    u.radius_min = radius.min;
-    u.radius_max = radius.max;
+    u.radius.horizontal_scale = radius.horizontal_scale;
+    u.radius.vertical_scale = radius.vertical_scale;
+    u.radius.smallest = radius.min;
+    u.radius.largest = radius.max;
     if (radius.min != 0.0f || radius.max != 0.0f) return;
-    u.own_radius = set.radius.empty() ? 0 : 1;
-    if (u.own_radius) return;
+    u.radius.own = set.radius.empty() ? 0 : 1;
+    if (u.radius.own) return;
     if (!set.generated && set.size() > 0)
         bad_input("look.radius", "", "min and max, since the splat file holds no radius", "0 and 0");
     const glm::dvec3 s = set.spacing;
-    u.radius_min = u.radius_max = float(0.6 * std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z));
+    u.radius.smallest = u.radius.largest = float(0.6 * std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z));
 }
 
 void prepare_grade(const Grade& grade, LookUniforms& u) {
-    u.black = grade.black;
-    u.tint = grade.tint * grade.gain;
-    u.saturation = grade.saturation;
-    u.inverse_gamma = float(1.0 / std::max(double(grade.gamma), 1e-6));
+    u.grade.black = grade.black;
+    u.grade.tint = grade.tint * grade.gain;
+    u.grade.saturation = grade.saturation;
+    u.grade.inverse_gamma = float(1.0 / std::max(double(grade.gamma), 1e-6));
 }
 
 // Mean square of the set's own radii, summed in fixed chunks so that threads do not show.
@@ -204,8 +201,8 @@ double column_factor(const SplatSet& set, const LookInputs& inputs, const LookUn
         const glm::dvec3 step = a * s;
         return 2.0 / std::sqrt(step.x * step.x + step.y * step.y + step.z * step.z);
     }
-    const double area =
-        u.own_radius ? own_mean_square(set.radius) : mean_square(double(u.radius_min), double(u.radius_max));
+    const double area = u.radius.own ? own_mean_square(set.radius)
+                                     : mean_square(double(u.radius.smallest), double(u.radius.largest));
     return 2.0 * (2.0 / (s.x * s.y * s.z)) * inputs.falloff_integral * area;
 }
 
@@ -219,7 +216,7 @@ void prepare_match(const SplatSet& set, const Look& look, const LookInputs& inpu
                   "none, since the spacing of the splat file's lattice is not known",
                   std::string(name_of(resolved_match(set, look.vertical))));
     const double factor = column_factor(set, inputs, u);
-    const double vertical_scale = u.match == MATCH_PLANES ? 1.0 : double(u.vertical_scale);
+    const double vertical_scale = u.match == MATCH_PLANES ? 1.0 : double(u.radius.vertical_scale);
     for (int k = 0; k < u.stop_count; ++k) {
         const double reach = double(u.reach) * double(u.stops[k].scale);
         if (!(reach > 0.0)) continue;
@@ -250,6 +247,10 @@ LookProfile vertical_profile(const VerticalAlpha& vertical) {
     profile.rate = vertical.rate;
     profile.curve = make_curve(vertical.points, "look.vertical.points");
     return profile;
+}
+
+LookAlpha horizontal_step(const HorizontalAlpha& alpha) {
+    return {alpha.threshold, alpha.power, alpha.gain, alpha.unpremultiply ? 1 : 0};
 }
 
 VerticalAlpha::Match resolved_match(const SplatSet& set, const VerticalAlpha& vertical) {

@@ -15,13 +15,15 @@ using namespace astrosplat::glsl;
 template <class T>
 inline constexpr bool has_whole_rows = sizeof(T) % 16 == 0;
 static_assert(has_whole_rows<LookCurve> && has_whole_rows<LookProfile> && has_whole_rows<LookStop> &&
-              has_whole_rows<LookNoise> && has_whole_rows<LookCrop> && has_whole_rows<LookUniforms>);
-static_assert(offsetof(LookStop, pdf) % 16 == 0 && offsetof(LookUniforms, tint) % 16 == 0 &&
+              has_whole_rows<LookNoise> && has_whole_rows<LookCrop> && has_whole_rows<LookAlpha> &&
+              has_whole_rows<LookRadius> && has_whole_rows<LookGrade> && has_whole_rows<LookUniforms>);
+static_assert(offsetof(LookStop, pdf) % 16 == 0 && offsetof(LookUniforms, alpha) % 16 == 0 &&
               offsetof(LookUniforms, vertical) % 16 == 0 && offsetof(LookUniforms, stops) % 16 == 0 &&
               offsetof(LookUniforms, noises) % 16 == 0 && offsetof(LookUniforms, crops) % 16 == 0);
 }  // namespace astrosplat::shared_types
 
 namespace astrosplat {
+using shared_types::LookAlpha;
 using shared_types::LookCurve;
 using shared_types::LookProfile;
 using shared_types::LookUniforms;

@@ -120,13 +120,14 @@ float look_crop(LookCrop crop, float px, float py, float pz) {
 // --- 4: horizontal alpha ---
 
 // What the colour is multiplied by: 1 / alpha where the step applies and there is an alpha to divide by.
-float look_unpremultiply(float alpha, float threshold) {
-    return alpha < threshold && alpha > 0.0f ? 1.0f / alpha : 1.0f;
+float look_unpremultiply(float alpha, LookAlpha step) {
+    return alpha < step.threshold && alpha > 0.0f ? 1.0f / alpha : 1.0f;
 }
 
-float look_horizontal(float alpha, float threshold, float power, float gain) {
-    float a = alpha < threshold ? as_pow(alpha, power) : alpha;
-    return clamp(a * gain, 0.0f, 1.0f);
+float look_gain(float alpha, LookAlpha step) { return clamp(alpha * step.gain, 0.0f, 1.0f); }
+
+float look_horizontal(float alpha, LookAlpha step) {
+    return look_gain(alpha < step.threshold ? as_pow(alpha, step.power) : alpha, step);
 }
 
 // --- 5: vertical alpha ---
@@ -140,8 +141,8 @@ float look_depth(float alpha) {
 }
 
 // Factor of the radius by the alpha of step 4.
-float look_horizontal_radius(float alpha, float horizontal_scale) {
-    return 1.0f + (horizontal_scale - 1.0f) * (1.0f - alpha);
+float look_horizontal_radius(float alpha, LookRadius step) {
+    return 1.0f + (step.horizontal_scale - 1.0f) * (1.0f - alpha);
 }
 
 // The mean of a column of splats whose alpha would be f alone; 0 where nothing can be matched.
@@ -159,22 +160,25 @@ float look_matched(int match, float alpha, float f, float column) {
 
 // --- 6: radius ---
 
-float look_uniform_radius(float radius_min, float radius_max, uint seed, uint id_low, uint id_high) {
-    return radius_min + (radius_max - radius_min) * as_uniform(as_hash(seed, id_low, id_high, PURPOSE_RADIUS));
+float look_uniform_radius(LookRadius step, uint seed, uint id_low, uint id_high) {
+    return step.smallest +
+           (step.largest - step.smallest) * as_uniform(as_hash(seed, id_low, id_high, PURPOSE_RADIUS));
 }
 
-float look_vertical_radius(float x, float vertical_scale) { return 1.0f + (vertical_scale - 1.0f) * x; }
+float look_vertical_radius(float x, LookRadius step) { return 1.0f + (step.vertical_scale - 1.0f) * x; }
 
 // --- 7: variation and grade ---
 
 float look_vary(float amount, float n) { return max(0.0f, 1.0f + amount * n); }
 
-float look_levels(float c, float black) { return max(0.0f, (c - black) / max(1.0f - black, 1.0e-6f)); }
+float look_levels(float c, LookGrade step) {
+    return max(0.0f, (c - step.black) / max(1.0f - step.black, 1.0e-6f));
+}
 
 float look_luminance(float r, float g, float b) { return 0.2126f * r + 0.7152f * g + 0.0722f * b; }
 
-float look_finish(float c, float luminance, float saturation, float inverse_gamma) {
-    return as_pow(max(0.0f, c * saturation + luminance * (1.0f - saturation)), inverse_gamma);
+float look_finish(float c, float luminance, LookGrade step) {
+    return as_pow(max(0.0f, c * step.saturation + luminance * (1.0f - step.saturation)), step.inverse_gamma);
 }
 
 // look_depth by its series where it is small: shader compilers may cancel 1 - (1 - m), which costs its last digits.
@@ -274,9 +278,9 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     result.probability = x <= 1.0f ? clamp(probability, 0.0f, 1.0f) : 0.0f;
     result.position = s.position + u.axis * along;
 
-    float undo = u.unpremultiply != 0 ? look_unpremultiply(s.alpha, u.alpha_threshold) : 1.0f;
-    float alpha = look_horizontal(s.alpha, u.alpha_threshold, u.alpha_power, u.alpha_gain);
-    float radius_factor = look_horizontal_radius(alpha, u.horizontal_scale);
+    float undo = u.alpha.unpremultiply != 0 ? look_unpremultiply(s.alpha, u.alpha) : 1.0f;
+    float alpha = look_horizontal(s.alpha, u.alpha);
+    float radius_factor = look_horizontal_radius(alpha, u.radius);
     float vertical_x = u.vertical_reach > 0.0f ? s.from_surface / u.vertical_reach : x;
     float f = look_profile(u.vertical, vertical_x);
     float mean = look_column(u.match, column, reach, radius_factor);
@@ -284,17 +288,17 @@ LookOutput look_splat(LookUniforms u, LookInput s) {
     result.alpha = absorbs ? s.alpha : clamp(look_matched(u.match, alpha, f, mean) * alpha_factor, 0.0f, 1.0f);
     result.alpha = result.alpha * cropped;
 
-    float radius = look_uniform_radius(u.radius_min, u.radius_max, u.seed, s.id_low, s.id_high);
-    radius = u.own_radius != 0 ? s.radius : radius;
-    result.radius = radius * radius_factor * look_vertical_radius(x, u.vertical_scale);
+    float radius = look_uniform_radius(u.radius, u.seed, s.id_low, s.id_high);
+    radius = u.radius.own != 0 ? s.radius : radius;
+    result.radius = radius * radius_factor * look_vertical_radius(x, u.radius);
 
-    float r = look_levels(s.color.x * undo * color_factor, u.black) * u.tint.x;
-    float g = look_levels(s.color.y * undo * color_factor, u.black) * u.tint.y;
-    float b = look_levels(s.color.z * undo * color_factor, u.black) * u.tint.z;
+    float r = look_levels(s.color.x * undo * color_factor, u.grade) * u.grade.tint.x;
+    float g = look_levels(s.color.y * undo * color_factor, u.grade) * u.grade.tint.y;
+    float b = look_levels(s.color.z * undo * color_factor, u.grade) * u.grade.tint.z;
     float luminance = look_luminance(r, g, b);
-    result.color = vec3(absorbs ? s.color.x : look_finish(r, luminance, u.saturation, u.inverse_gamma),
-                        absorbs ? s.color.y : look_finish(g, luminance, u.saturation, u.inverse_gamma),
-                        absorbs ? s.color.z : look_finish(b, luminance, u.saturation, u.inverse_gamma));
+    result.color = vec3(absorbs ? s.color.x : look_finish(r, luminance, u.grade),
+                        absorbs ? s.color.y : look_finish(g, luminance, u.grade),
+                        absorbs ? s.color.z : look_finish(b, luminance, u.grade));
     if (u.match == MATCH_SCREEN && !absorbs)
         result.color = vec3(look_screened(alpha, result.color.x), look_screened(alpha, result.color.y),
                             look_screened(alpha, result.color.z));

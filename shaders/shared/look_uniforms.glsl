@@ -89,38 +89,55 @@ struct LookCrop {
     int unused_1;
 };
 
+// Step 4.
+struct LookAlpha {
+    float threshold;
+    float power;
+    float gain;
+    int unpremultiply;  // 0 or 1
+};
+
+// Step 6.
+struct LookRadius {
+    float smallest;  // scene units; uniform between the two
+    float largest;
+    float horizontal_scale;
+    float vertical_scale;
+
+    int own;  // 1: the splat's own radius instead
+    int unused_0;
+    int unused_1;
+    int unused_2;
+};
+
+// Step 7.
+struct LookGrade {
+    vec3 tint;  // gain * tint
+    float black;
+
+    float saturation;
+    float inverse_gamma;
+    int unused_0;
+    int unused_1;
+};
+
 struct LookUniforms {
     vec3 axis;    // unit vector
     float reach;  // scene units
 
-    vec3 tint;  // gain * tint
     float density;
-
     uint seed;
     int stop_count;  // at least 1; weights come from the map where it is more
     int noise_count;
-    int unpremultiply;  // 0 or 1
 
-    float alpha_threshold;
-    float alpha_power;
-    float alpha_gain;
+    int crop_count;
+    int absorbs;  // 1: colours below 0 mean splats that absorb, whose colour and alpha stay
+    int match;
     float vertical_reach;  // scene units; 0: as the layer's
 
-    int match;
-    int own_radius;  // 1: the splat's own radius, 0: uniform between the two
-    float radius_min;
-    float radius_max;
-
-    float horizontal_scale;
-    float vertical_scale;
-    float black;
-    float saturation;
-
-    float inverse_gamma;
-    int absorbs;  // 1: colours below 0 mean splats that absorb, whose colour and alpha stay
-    int crop_count;
-    int unused_2;
-
+    LookAlpha alpha;
+    LookRadius radius;
+    LookGrade grade;
     LookProfile vertical;
     LookStop stops[LOOK_MAX_STOPS];
     LookNoise noises[LOOK_MAX_NOISES];

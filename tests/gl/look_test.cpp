@@ -257,14 +257,15 @@ std::map<std::string, std::vector<std::uint32_t>> members_of(const LookUniforms&
         put_numbers(names, std::string("look.") + name, member);
     };
     put("seed", u.seed), put("axis", u.axis), put("reach", u.reach), put("density", u.density);
-    put("stop_count", u.stop_count), put("noise_count", u.noise_count), put("unpremultiply", u.unpremultiply);
-    put("alpha_threshold", u.alpha_threshold), put("alpha_power", u.alpha_power),
-        put("alpha_gain", u.alpha_gain);
-    put("vertical_reach", u.vertical_reach), put("match", u.match), put("own_radius", u.own_radius);
-    put("radius_min", u.radius_min), put("radius_max", u.radius_max);
-    put("horizontal_scale", u.horizontal_scale), put("vertical_scale", u.vertical_scale);
-    put("black", u.black), put("tint", u.tint), put("saturation", u.saturation);
-    put("inverse_gamma", u.inverse_gamma);
+    put("stop_count", u.stop_count), put("noise_count", u.noise_count), put("crop_count", u.crop_count);
+    put("absorbs", u.absorbs), put("match", u.match), put("vertical_reach", u.vertical_reach);
+    put("alpha.threshold", u.alpha.threshold), put("alpha.power", u.alpha.power);
+    put("alpha.gain", u.alpha.gain), put("alpha.unpremultiply", u.alpha.unpremultiply);
+    put("radius.smallest", u.radius.smallest), put("radius.largest", u.radius.largest);
+    put("radius.horizontal_scale", u.radius.horizontal_scale);
+    put("radius.vertical_scale", u.radius.vertical_scale), put("radius.own", u.radius.own);
+    put("grade.tint", u.grade.tint), put("grade.black", u.grade.black);
+    put("grade.saturation", u.grade.saturation), put("grade.inverse_gamma", u.grade.inverse_gamma);
     put_profile(names, "look.vertical", u.vertical);
     for (int k = 0; k < shared_types::LOOK_MAX_STOPS; ++k) {
         const std::string stop = "stops[" + std::to_string(k) + "]";

@@ -83,8 +83,8 @@ std::vector<float> vertical_samples(const VerticalAlpha& vertical) {
 }
 
 std::vector<float> alpha_samples(const HorizontalAlpha& alpha) {
-    return sampled(
-        [&](float x) { return shared::look_horizontal(x, alpha.threshold, alpha.power, alpha.gain); });
+    const LookAlpha step = horizontal_step(alpha);
+    return sampled([&](float x) { return shared::look_horizontal(x, step); });
 }
 
 std::vector<float> falloff_samples(const Falloff& falloff) {
