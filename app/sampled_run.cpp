@@ -16,7 +16,7 @@
 #include "sets/set_sample.h"
 #include "sets/sky_cache.h"
 #include "sets/star_source.h"
-#include "splats/take_rows.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

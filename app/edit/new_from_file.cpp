@@ -21,7 +21,7 @@
 #include "source/obj.h"
 #include "source/picture.h"
 #include "splat_files/splat_file.h"
-#include "splats/take_rows.h"
+#include "splats/splat_set.h"
 #include "stars/catalogue_kind.h"
 
 namespace astrosplat {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 

@@ -12,7 +12,7 @@
 #include "core/file_format.h"
 #include "edit/preferences.h"
 #include "gui/dialog.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"

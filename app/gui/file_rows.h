@@ -6,9 +6,9 @@
 #include <string>
 
 #include "edit/status.h"
-#include "gui/drawing.h"
 #include "gui/file_list.h"
 #include "gui/gui_frame.h"
+#include "gui/icons.h"
 
 namespace astrosplat {
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "edit/project_line.h"
-#include "gui/drawing.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/view_marks.h"
@@ -30,7 +29,7 @@ Scene scene_now(const GuiFrame& frame) { return scene_at(frame.document.scene(),
 
 /// The parts of a line that are seen, with a small square at the far end where that is grabbed.
 void draw_handle(const Camera& camera, const Rect& area, const std::vector<glm::dvec3>& line, ImU32 ink,
-                 bool has_square) {
+                 bool square) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     ImVec2 end{};
     for (const auto& part : project_line(camera, line))
@@ -38,7 +37,8 @@ void draw_handle(const Camera& camera, const Rect& area, const std::vector<glm::
             for (const glm::vec2& p : part) list->PathLineTo(end = {area.x + p.x, area.y + p.y});
             list->PathStroke(own, ImDrawFlags_None, width);
         }
-    if (has_square) square(list, end, px(4), ink);
+    const float half = px(4);
+    if (square) list->AddRectFilled({end.x - half, end.y - half}, {end.x + half, end.y + half}, ink);
 }
 
 void draw_crop(const GuiFrame& frame, const Rect& area, const Scene& now) {

@@ -105,7 +105,7 @@ void draw_title(const GuiFrame& frame, const Rect& area) {
 }  // namespace
 
 void draw_menu_bar(GuiFrame& frame, const Rect& area) {
-    const float padding = std::floor((area.height - ImGui::GetFontSize()) * 0.5f);
+    const float padding = (area.height - ImGui::GetFontSize()) * 0.5f;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(px(8), padding));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(px(16), px(4)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(px(8), 0));

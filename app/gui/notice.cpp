@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 

@@ -10,7 +10,6 @@
 #include "camera/handles.h"
 #include "edit/keyframes.h"
 #include "edit/project_line.h"
-#include "gui/drawing.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
@@ -148,9 +147,10 @@ void PathPoints::draw(GuiFrame& frame, const Rect& area) const {
             continue;
         }
         const bool now = place.grip.frame == frame.view.frame;
-        const float half = px(lit ? 6 : 4.5f);
-        square(list, at, half + px(1), color::line);
-        square(list, at, half, now || lit ? color::text : color::attention);
+        const float half = px(lit ? 6 : 4.5f), edge = half + px(1);
+        list->AddRectFilled({at.x - edge, at.y - edge}, {at.x + edge, at.y + edge}, color::line);
+        list->AddRectFilled({at.x - half, at.y - half}, {at.x + half, at.y + half},
+                            now || lit ? color::text : color::attention);
     }
     if (under && !ImGui::IsAnyItemActive() && !under->grip.side)
         tooltip(fmt::format("Frame {:g}. Drag moves it in the plane of the view, Shift along its axis",

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "gui/dialog.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
@@ -58,8 +58,8 @@ void draw_card_text(const QueuedJob& job, ImVec2 corner, float width) {
     ImGui::PopFont();
     if (job.state != JobState::running && job.state != JobState::submitted) return;
     const float y = corner.y + px(job_height) - px(8), end = x + room * std::clamp(job.progress, 0.0f, 1.0f);
-    filled(list, {x, y}, {x + room, y + px(4)}, color::field, px(2));
-    filled(list, {x, y}, {end, y + px(4)}, color::accent, px(2));
+    list->AddRectFilled({x, y}, {x + room, y + px(4)}, color::field, px(2));
+    list->AddRectFilled({x, y}, {end, y + px(4)}, color::accent, px(2));
 }
 
 void card_button(GuiFrame& frame, const QueuedJob& job, ImVec2 corner, float width) {

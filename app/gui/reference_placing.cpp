@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "gui/drawing.h"
 #include "gui/theme.h"
 
 namespace astrosplat {
@@ -71,8 +70,10 @@ void draw_placing(const GuiFrame& frame, const FrameOnScreen& frame_px) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     for (const glm::dvec2& c : corners) list->PathLineTo({static_cast<float>(c.x), static_cast<float>(c.y)});
     list->PathStroke(color::attention, ImDrawFlags_Closed, px(1.5f));
-    for (const glm::dvec2& c : corners)
-        square(list, {static_cast<float>(c.x), static_cast<float>(c.y)}, px(corner_half), color::attention);
+    for (const glm::dvec2& c : corners) {
+        const auto x = static_cast<float>(c.x), y = static_cast<float>(c.y), half = px(corner_half);
+        list->AddRectFilled({x - half, y - half}, {x + half, y + half}, color::attention);
+    }
 }
 
 }  // namespace astrosplat

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "gui/dialog.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 #include "scene/frames.h"

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
@@ -89,7 +89,7 @@ void draw_card(GuiFrame& frame, std::size_t index) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     draw_thumbnail(list, snapshot, corner);
     const ImVec2 end{corner.x + px(thumbnail_width), corner.y + px(thumbnail_height)};
-    if (is_b || hovered) outlined(list, corner, end, is_b ? color::accent : color::dim, px(3), px(1.5f));
+    if (is_b || hovered) list->AddRect(corner, end, is_b ? color::accent : color::dim, px(3), 0, px(1.5f));
     ImGui::PushFont(small_font());
     const bool is_renamed = frame.view.renamed_snapshot == static_cast<int>(index);
     const std::string name = (is_b ? "B  " : "") + snapshot.name;
@@ -110,7 +110,7 @@ void draw_take_button(GuiFrame& frame) {
                     "Keep the look and the view as they are now"))
         request(frame, Command::Kind::take_snapshot);
     note_item(frame, "take snapshot");
-    outlined(ImGui::GetWindowDrawList(), corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3));
+    ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + size.x, corner.y + size.y}, color::hover, px(3));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "gui/drawing.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
@@ -42,11 +41,12 @@ void draw_splitter(GuiFrame& frame, const Edge& edge, float& size) {
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) size = edge.standard;
     const float x = edge.zone.x + edge.zone.width * 0.5f, y = edge.zone.y + edge.zone.height * 0.5f;
     const ImU32 c = active ? color::accent : color::line;
-    ImDrawList* const list = ImGui::GetWindowDrawList();
     if (edge.vertical)
-        line_down(list, x - 0.5f * px(1), edge.zone.y, edge.zone.y + edge.zone.height, c, px(1));
+        ImGui::GetWindowDrawList()->AddRectFilled({x - px(1), edge.zone.y},
+                                                  {x, edge.zone.y + edge.zone.height}, c);
     else
-        line_across(list, edge.zone.x, edge.zone.x + edge.zone.width, y - 0.5f * px(1), c, px(1));
+        ImGui::GetWindowDrawList()->AddRectFilled({edge.zone.x, y - px(1)},
+                                                  {edge.zone.x + edge.zone.width, y}, c);
     ImGui::EndChild();
 }
 

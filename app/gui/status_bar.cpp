@@ -8,7 +8,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/queue_dialog.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
@@ -57,8 +57,8 @@ float draw_job(GuiFrame& frame, float right, const Rect& area) {
     const float x1 = right - side - px(4), x0 = x1 - px(bar_width);
     const float y0 = std::floor(area.y + area.height * 0.5f - px(2)), y1 = y0 + px(4);
     const float done = x0 + (x1 - x0) * std::clamp(job->progress, 0.0f, 1.0f);
-    filled(list, {x0, y0}, {x1, y1}, color::field, px(2));
-    filled(list, {x0, y0}, {done, y1}, color::accent, px(2));
+    list->AddRectFilled({x0, y0}, {x1, y1}, color::field, px(2));
+    list->AddRectFilled({x0, y0}, {done, y1}, color::accent, px(2));
     const std::string left = job->seconds_left ? ", " + duration_text(*job->seconds_left) + " left" : "";
     const float x = right_text(job->text + left, x0 - px(8), area, color::text);
     ImGui::SetCursorScreenPos({x, area.y});

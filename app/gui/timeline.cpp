@@ -8,7 +8,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/timeline_header.h"
 #include "gui/timeline_rows.h"
@@ -83,10 +83,10 @@ void draw_in_and_out(const TimelineState& t, GuiFrame& frame, const Rect& area) 
     ImDrawList* const list = ImGui::GetWindowDrawList();
     const float bottom = area.y + area.height;
     const float first = t.scale.x_of(first_played(t, view)), last = t.scale.x_of(last_played(t, view));
-    filled(list, {first, bottom - px(3)}, {last, bottom}, color::with_opacity(color::good, 0.8f));
+    list->AddRectFilled({first, bottom - px(3)}, {last, bottom}, color::with_opacity(color::good, 0.8f));
     const auto tab = [&](const char* name, float x, float side) {
-        filled(list, {std::min(x, x + side), area.y + px(3)}, {std::max(x, x + side), bottom}, color::good,
-               px(2));
+        list->AddRectFilled({std::min(x, x + side), area.y + px(3)}, {std::max(x, x + side), bottom},
+                            color::good, px(2));
         note_item(frame, name, {x + 0.5f * side, area.y + 0.5f * area.height});
     };
     if (view.play_first) tab("in point", first, -px(2 * point_half));
@@ -110,13 +110,13 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
     ImGui::PushFont(small_font());
     const double step = ruler_step(t.scale, px(56)), small = ruler_step(t.scale, px(8));
     for (double f = std::ceil(t.scale.first / small) * small; f <= t.scale.last; f += small) {
-        const float x = t.scale.x_of(f), bottom = area.y + area.height;
-        line_down(list, x, bottom - px(4), bottom, color::hover);
+        const float x = std::floor(t.scale.x_of(f)) + 0.5f;
+        list->AddLine({x, area.y + area.height - px(4)}, {x, area.y + area.height}, color::hover);
     }
     for (double f = std::ceil(t.scale.first / step) * step; f <= t.scale.last; f += step) {
-        const float x = std::floor(t.scale.x_of(f)), bottom = area.y + area.height;
+        const float x = std::floor(t.scale.x_of(f)) + 0.5f;
         const std::string text = fmt::format("{:.0f}", f);
-        line_down(list, x, bottom - px(7), bottom, color::dim);
+        list->AddLine({x, area.y + area.height - px(7)}, {x, area.y + area.height}, color::dim);
         list->AddText({x - std::floor(ImGui::CalcTextSize(text.c_str()).x * 0.5f), area.y + px(1)},
                       color::dim, text.c_str());
     }
@@ -125,16 +125,16 @@ void draw_ruler(TimelineState& t, GuiFrame& frame, const Rect& area) {
 }
 
 void draw_playhead(const TimelineState& t, const GuiFrame& frame, const Rect& ruler) {
-    const float x = std::floor(t.scale.x_of(frame.view.frame));
+    const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
     if (x < t.scale.x0 - px(timeline_margin) || x > t.scale.x1 + px(timeline_margin)) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
     ImGui::PushFont(small_font());
     const std::string text = fmt::format("{:g}", std::round(frame.view.frame * 100.0) / 100.0);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float half = std::floor(size.x * 0.5f + px(6));
-    filled(list, {x - half, ruler.y + px(1)}, {x + half + 1.0f, ruler.y + ruler.height - px(2)},
-           color::accent, px(3));
-    list->AddText({std::floor(x + 0.5f - size.x * 0.5f), ruler.y + px(2)}, IM_COL32(0x10, 0x14, 0x1A, 255),
+    list->AddRectFilled({x - half, ruler.y + px(1)}, {x + half, ruler.y + ruler.height - px(2)},
+                        color::accent, px(3));
+    list->AddText({std::floor(x - size.x * 0.5f), ruler.y + px(2)}, IM_COL32(0x10, 0x14, 0x1A, 255),
                   text.c_str());
     ImGui::PopFont();
 }

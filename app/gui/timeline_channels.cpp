@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "gui/drawing.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 
@@ -74,7 +73,9 @@ void draw_channels(GuiFrame& frame, const Track& track, const ParameterSpec& spe
         const ImU32 shade = channel_color(c, count);
         ImDrawList* const list = ImGui::GetWindowDrawList();
         list->AddText(at, hidden ? color::with_opacity(shade, 0.35f) : shade, name.c_str());
-        if (hidden) line_across(list, at.x - px(2), at.x + size.x + px(2), at.y + 0.5f * size.y, color::dim);
+        if (hidden)
+            list->AddLine({at.x - px(2), at.y + 0.5f * size.y}, {at.x + size.x + px(2), at.y + 0.5f * size.y},
+                          color::dim);
     }
 }
 

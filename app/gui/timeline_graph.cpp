@@ -11,7 +11,6 @@
 
 #include "edit/keyframe_handles.h"
 #include "edit/keyframes.h"
-#include "gui/drawing.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/timeline_channels.h"
@@ -155,7 +154,8 @@ void draw_handles(TimelineState& t, GuiFrame& frame, const Track& track, const R
                                 y_of(t, keyframe.value[c] + h.value[c], area)};
                 const bool near = hovered && is_near(at);
                 list->AddLine(from, at, color::with_opacity(color::text, 0.55f), px(1));
-                square(list, at, px(3), near ? color::attention : color::text);
+                list->AddRectFilled({at.x - px(3), at.y - px(3)}, {at.x + px(3), at.y + px(3)},
+                                    near ? color::attention : color::text);
                 note_item(frame,
                           fmt::format("handle {} {:g} {} {}", track.key, keyframe.frame, c,
                                       side == HandleSide::in ? "in" : "out"),
@@ -249,10 +249,10 @@ void draw_graph(TimelineState& t, GuiFrame& frame, const Rect& area) {
     list->AddRectFilled(low, high, color::window);
     ImGui::PushFont(small_font());
     for (const double value : {t.graph.low, 0.5 * (t.graph.low + t.graph.high), t.graph.high}) {
-        const float y = y_of(t, value, area);
+        const float y = std::floor(y_of(t, value, area)) + 0.5f;
         const std::string text = axis_text(value, t.graph.high - t.graph.low);
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-        line_across(list, area.x, high.x, y, color::with_opacity(color::field, 0.8f));
+        list->AddLine({area.x, y}, {high.x, y}, color::with_opacity(color::field, 0.8f));
         list->AddText({area.x - px(8) - size.x, std::floor(y - size.y * 0.5f)}, color::dim, text.c_str());
     }
     ImGui::PopFont();

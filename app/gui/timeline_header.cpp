@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "edit/keyframes.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/theme.h"
 #include "gui/timeline.h"
@@ -33,7 +33,8 @@ void draw_keyframe_mark(ImDrawList* list, ImVec2 at, Interpolation interpolation
                 list->AddTriangleFilled({at.x - side * 0.2f, at.y}, {at.x + side * size, at.y - size},
                                         {at.x + side * size, at.y + size}, c);
         else if (interpolation == Interpolation::step)
-            square(list, at, size * 0.8f, c);
+            list->AddRectFilled({at.x - size * 0.8f, at.y - size * 0.8f},
+                                {at.x + size * 0.8f, at.y + size * 0.8f}, c);
         else
             list->AddQuadFilled({at.x, at.y - size * 1.1f}, {at.x + size * 1.1f, at.y},
                                 {at.x, at.y + size * 1.1f}, {at.x - size * 1.1f, at.y}, c);
@@ -116,8 +117,8 @@ void select_in_box(TimelineState& t, const Scene& scene, float rows_y) {
         }
     }
     ImDrawList* list = ImGui::GetWindowDrawList();
-    filled(list, low, high, color::with_opacity(color::accent, 0.12f));
-    outlined(list, low, high, color::with_opacity(color::accent, 0.6f));
+    list->AddRectFilled(low, high, color::with_opacity(color::accent, 0.12f));
+    list->AddRect(low, high, color::with_opacity(color::accent, 0.6f));
 }
 
 void draw_name(TimelineState& t, GuiFrame& frame, const Track& track, float x, float y, float width) {
@@ -150,9 +151,9 @@ void draw_keyframes(TimelineState& t, GuiFrame& frame, const Track& track, float
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float middle = std::floor(y + px(row_height) * 0.5f) + 0.5f;
     if (track.keyframes.size() > 1)
-        line_across(list, t.scale.x_of(track.keyframes.front().frame),
-                    t.scale.x_of(track.keyframes.back().frame), middle,
-                    color::with_opacity(color::attention, 0.35f), px(2));
+        list->AddLine({t.scale.x_of(track.keyframes.front().frame), middle},
+                      {t.scale.x_of(track.keyframes.back().frame), middle},
+                      color::with_opacity(color::attention, 0.35f), px(2));
     for (const auto& keyframe : track.keyframes) {
         const ImVec2 at{t.scale.x_of(keyframe.frame), middle};
         draw_keyframe_mark(list, at, keyframe.interpolation, is_selected(t, {track.key, keyframe.frame}));
@@ -196,9 +197,9 @@ void handle_rows_mouse(TimelineState& t, GuiFrame& frame, const Rect& area) {
 }
 
 void draw_playhead_line(const TimelineState& t, const GuiFrame& frame, const Rect& area) {
-    const float x = t.scale.x_of(frame.view.frame);
+    const float x = std::floor(t.scale.x_of(frame.view.frame)) + 0.5f;
     if (x >= t.scale.x0 - px(timeline_margin) && x <= t.scale.x1 + px(timeline_margin))
-        line_down(ImGui::GetWindowDrawList(), x, area.y, area.y + area.height, color::accent);
+        ImGui::GetWindowDrawList()->AddLine({x, area.y}, {x, area.y + area.height}, color::accent);
 }
 
 }  // namespace
@@ -234,8 +235,9 @@ void draw_rows(TimelineState& t, GuiFrame& frame, const Rect& area) {
     for (const Track& track : tracks) {
         draw_name(t, frame, track, origin.x, y, px(name_width));
         if (!frame.view.graph_open) {
-            line_across(list, origin.x, origin.x + area.width, y + px(row_height) - 0.5f,
-                        color::with_opacity(color::line, 0.6f));
+            list->AddLine({origin.x, y + px(row_height) - 0.5f},
+                          {origin.x + area.width, y + px(row_height) - 0.5f},
+                          color::with_opacity(color::line, 0.6f));
             ImGui::PushClipRect({origin.x + names, area.y}, {area.x + area.width, area.y + area.height},
                                 true);
             draw_keyframes(t, frame, track, y);

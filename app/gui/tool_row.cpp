@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "gui/action_functions.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "gui/widgets.h"
 

@@ -10,7 +10,7 @@
 
 #include "edit/scene_marks.h"
 #include "edit/view_camera.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/theme.h"
 #include "scene/animate.h"
 
@@ -40,9 +40,9 @@ Rect gate_of(const Scene& scene, const Rect& frame_area) {
 // Dims the frame at the left and right of the gate.
 void dim_outside(ImDrawList* list, const Rect& area, const Rect& gate) {
     const ImU32 shade = color::with_opacity(IM_COL32_BLACK, 0.55f);
-    if (gate.x > area.x) filled(list, lo(area), {gate.x, area.y + area.height}, shade);
+    if (gate.x > area.x) list->AddRectFilled(lo(area), {gate.x, area.y + area.height}, shade);
     if (gate.x + gate.width < area.x + area.width)
-        filled(list, {gate.x + gate.width, area.y}, hi(area), shade);
+        list->AddRectFilled({gate.x + gate.width, area.y}, hi(area), shade);
 }
 
 // Text that can be read over black and over white.
@@ -88,7 +88,7 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
     const ImU32 grey = color::with_opacity(color::dim, 0.7f);
     if (view.gate) {
         dim_outside(list, area, gate);
-        outlined(list, lo(gate), hi(gate), grey);
+        list->AddRect(lo(gate), hi(gate), grey);
     }
     const CameraParams camera = scene_at(frame.document.scene(), view.frame).camera;
     const bool dome = camera.projection == Projection::fisheye;
@@ -105,7 +105,7 @@ void draw_gate(const GuiFrame& frame, const Rect& area, const Rect& frame_area) 
         if (dome)
             circle(share, ink);
         else
-            outlined(list, lo(safe), hi(safe), ink);
+            list->AddRect(lo(safe), hi(safe), ink);
     }
 }
 
@@ -120,10 +120,11 @@ void draw_overlay_lines(const GuiFrame& frame, const Rect& area) {
 void draw_wipe(const GuiFrame& frame, const Rect& area, const Rect& frame_area) {
     if (frame.view.compare != CompareMode::wipe) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const float x = std::round(frame_area.x + frame_area.width * frame.view.wipe);
-    line_down(list, x, area.y, area.y + area.height, color::with_opacity(color::text, 0.8f));
-    const float middle = area.y + area.height * 0.5f;
-    filled(list, {x - px(3), middle - px(18)}, {x + px(3) + 1.0f, middle + px(18)}, color::text, px(3));
+    const float x = std::round(frame_area.x + frame_area.width * frame.view.wipe) + 0.5f;
+    list->AddLine({x, area.y}, {x, area.y + area.height}, color::with_opacity(color::text, 0.8f));
+    const ImVec2 grip{x, area.y + area.height * 0.5f};
+    list->AddRectFilled({grip.x - px(3), grip.y - px(18)}, {grip.x + px(3), grip.y + px(18)}, color::text,
+                        px(3));
     ImGui::PushFont(small_font());
     const std::string b = name_of_other(frame);
     const float y = area.y + px(inset);

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "scene/input_files.h"
-#include "splats/take_rows.h"
+#include "splats/splat_set.h"
 #include "viewer/histograms.h"
 
 namespace astrosplat {

@@ -15,7 +15,7 @@
 #include "core/shared_maths.h"
 #include "image/blur.h"
 #include "image/channels.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/real.h"
 #include "core/shared_maths.h"
 #include "image/channels.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

@@ -12,7 +12,7 @@
 #include <limits>
 #include <string_view>
 
-#include "splat_files/float_text.h"
+#include "splat_files/number_text.h"
 #include "splat_files/ordered_writer.h"
 #include "splats/harmonics.h"
 

@@ -8,7 +8,7 @@
 #include "generate/kept_store.h"
 #include "generate/surface.h"
 #include "source/sample.h"
-#include "splats/take_rows.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

@@ -17,9 +17,8 @@
 #include "generate/block_places.h"
 #include "generate/columns.h"
 #include "generate/lattice_cull.h"
-#include "splat_files/native_stream.h"
+#include "splat_files/native_blocks.h"
 #include "splats/row_order.h"
-#include "splats/spatial_order.h"
 
 namespace astrosplat {
 namespace {
@@ -165,8 +164,14 @@ void write_part(const LatticeCull& cull, const Lattice& lattice, const SpatialCe
     file.append(set, std::span(rows).first(rows.size() - others));
 }
 
-constexpr bool is_written(SplatColumn column) { return is_generated(column) && column != SplatColumn::face; }
-constexpr bool none(SplatColumn) { return false; }
+// Without splats none.
+SplatColumns written_columns(std::int64_t splats) {
+    SplatColumns columns;
+    for_each_column([&](auto, SplatColumn column) {
+        columns.set(index_of(column), splats > 0 && is_generated(column) && column != SplatColumn::face);
+    });
+    return columns;
+}
 
 }  // namespace
 
@@ -183,7 +188,7 @@ std::int64_t write_columns(const WriteTarget& target, std::span<const TexturedMe
 
     SplatSetFacts facts = facts_of_columns(meshes, lattice, max_distance);
     facts.zero_alpha = survey.dark + survey.unseen;
-    NativeStream file(target, facts, survey.lit > 0 ? is_written : none, survey.lit);
+    NativeStream file(target, facts, written_columns(survey.lit), survey.lit);
     if (survey.lit > 0) {
         const std::int64_t bytes_per_row = static_cast<std::int64_t>(bytes_per_splat(is_generated)) +
                                            2 * sizeof(std::uint32_t) + sizeof(LatticeBlock);

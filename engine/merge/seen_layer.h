@@ -12,7 +12,7 @@
 #include "merge/cloud_light.h"
 #include "merge/cut.h"
 #include "render/shared_render.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 

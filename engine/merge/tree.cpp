@@ -7,8 +7,8 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "splats/morton_order.h"
-#include "splats/take_rows.h"
+#include "splats/row_order.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

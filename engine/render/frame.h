@@ -12,9 +12,8 @@
 #include "core/image.h"
 #include "render/layer_render.h"
 #include "render/star_psf.h"
-#include "splats/shaded_blocks.h"
 #include "splats/shaded_splats.h"
-#include "splats/star_pixels.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 

@@ -10,7 +10,7 @@
 #include "render/project_stars.h"
 #include "render/shared_render.h"
 #include "render/spectrum.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

@@ -13,7 +13,7 @@
 #include "render/shape.h"
 #include "render/shared_render.h"
 #include "render/sphere_shape.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 

@@ -9,7 +9,7 @@
 #include <hwy/highway.h>
 
 #include "render/lanes-inl.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace astrosplat::HWY_NAMESPACE {

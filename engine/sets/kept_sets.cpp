@@ -10,8 +10,8 @@
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/sha256.h"
-#include "splat_files/native_read.h"
-#include "splats/take_rows.h"
+#include "splat_files/native.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

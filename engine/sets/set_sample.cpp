@@ -18,7 +18,7 @@
 #include "sets/recipe.h"
 #include "sets/set_cache.h"
 #include "splat_files/native_blocks.h"
-#include "splats/take_rows.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 namespace {

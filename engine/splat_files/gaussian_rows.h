@@ -1,8 +1,9 @@
-// Rows of Gaussians while files that place them in nodes are read. In: how many, and a node's matrix. Out: a
-// set with room for them, and rows that stand where the node puts them.
+// Gaussians of all file formats: room for them, where a file's nodes place them, and what makes of their
+// stored numbers those that the program draws.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <optional>
@@ -11,6 +12,9 @@
 #include "splats/splat_set.h"
 
 namespace astrosplat {
+
+/// What a set of Gaussians has; harmonics where they are `directional`.
+SplatColumns gaussian_set_columns(bool directional);
 
 /// Room for `count` Gaussians, with harmonics of 0 where they are `directional`; distance is 0, id the row.
 /// Throws InputError where the memory of `what` is not there.
@@ -30,5 +34,20 @@ std::optional<GaussianPlacement> gaussian_placement(const glm::dmat4& world);
 /// Moves rows [begin, end), whose numbers are a file's: positions, scales (not their logarithms), rotations
 /// and harmonics.
 void place_gaussians(SplatSet& set, std::size_t begin, std::size_t end, const GaussianPlacement& placement);
+
+/// How a file stores its numbers.
+struct GaussianNumbers {
+    bool trained = false;  // scales as logarithms, opacities as logits: what training works with
+    bool display = true;   // harmonics give display values (sRGB); else linear light
+};
+
+/// `set` has position, alpha, scale, rotation of any length, id, distance, and harmonics or, where the file
+/// has none but degree 0, its coefficients in color. Turns stored numbers into those that a SplatSet has, and
+/// makes radius and color. Rows with numbers that are not finite, or without a rotation, are left out and
+/// counted in a warning; opacities are clamped to 0..1.
+SplatSet finish_gaussians(SplatSet set, const GaussianNumbers& numbers, const std::filesystem::path& file);
+
+/// Radius of a Gaussian, as SplatSet::scale says.
+float gaussian_radius(const glm::vec3& scale);
 
 }  // namespace astrosplat

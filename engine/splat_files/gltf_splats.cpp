@@ -1,4 +1,4 @@
-#include "splat_files/gltf_splats.h"
+#include "splat_files/formats.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "core/quaternion.h"
 #include "core/text.h"
 #include "gltf/gltf_file.h"
-#include "splat_files/finish_gaussians.h"
 #include "splat_files/gaussian_rows.h"
 #include "splats/harmonics.h"
 
@@ -20,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::string extension = "KHR_gaussian_splatting";
+const std::string extension(gltf_gaussians);
 
 /// Some Gaussians and where their node puts them.
 struct Part {
@@ -232,20 +231,12 @@ SplatSet read_gltf_splats(const std::filesystem::path& file, const Progress& pro
     return read_json(file, [&](GltfFile& gltf) { return read_parts(gltf, progress); });
 }
 
-std::vector<std::string> gltf_splat_attributes(const std::filesystem::path& file) {
+SplatColumns gltf_splat_columns(const std::filesystem::path& file) {
     return read_json(file, [](GltfFile& gltf) {
-        std::vector<std::string> names = {"position", "color", "alpha", "radius", "scale", "rotation"};
         const std::vector<Part> parts = parts_of(gltf);
-        if (std::ranges::any_of(parts, [](const Part& part) { return part.degree > 0; }))
-            names.emplace_back("harmonics");
-        return names;
+        return gaussian_set_columns(
+            std::ranges::any_of(parts, [](const Part& part) { return part.degree > 0; }));
     });
-}
-
-bool may_hold_gltf_splats(const std::filesystem::path& file) {
-    constexpr std::size_t beginning = std::size_t{1} << 20;
-    const std::string text = read_beginning(file, beginning);
-    return text.empty() || text.find(extension) != std::string::npos;
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,6 @@
-// The program's own splat files (.splats): everything a SplatSet holds, bit for bit. In and out: SplatSet.
-// Memory mapped, checked by block, and in an order that keeps neighbours together.
+// The program's own splat files (.splats): everything a SplatSet holds, bit for bit. In and out: SplatSet, or
+// some of its rows, for a cache that keeps more than is to be seen. Memory mapped, checked by block, and in
+// an order that keeps neighbours together.
 //
 // Format version 1, all little-endian, checksums XXH64 (checksum.h):
 //   header   0  8 bytes  89 'S' 'P' 'L' 'A' 'T' 0d 0a
@@ -13,32 +14,31 @@
 //           24  u32      splats in a block (the last block may hold fewer)
 //           28  u32      bytes of the credit, and of a zero and the recipe where that is present
 //           32  3 f64    spacing             56  f64  max_distance
-//           64  i64      test positions      72  i64  positions dropped for zero alpha; of colours those that
-//           are 0 80           credit (UTF-8), 0, recipe, zeros up to 8 bytes before a multiple of 64, u64
-//           checksum of all before it
-//   blocks  one after the other, in each: position 3 f32, colour 3 f32, alpha f32, distance f32, id u64, and
-//   where
-//           present uv 2 f32, normal 3 f32, mesh u32, radius f32, face u32, scale 3 f32, rotation 4 f32,
-//           harmonics 48 f32 (16 of red, green, blue), every array whole before the next
-//   table   for each block: lowest and highest x y z of its positions (6 f32; 0 without positions), u64
-//   checksum
-//           of its bytes
-//           then u64 checksum of the table
+//           64  i64      test positions
+//           72  i64      positions dropped for zero alpha; of colours those that are 0
+//           80           credit (UTF-8), 0, recipe, zeros up to 8 bytes before a multiple of 64,
+//                        u64 checksum of all before it
+//   blocks  one after the other, in each: position 3 f32, colour 3 f32, alpha f32, distance f32, id u64,
+//           and where present uv 2 f32, normal 3 f32, mesh u32, radius f32, face u32, scale 3 f32,
+//           rotation 4 f32, harmonics 48 f32 (16 of red, green, blue), every array whole before the next
+//   table   for each block: lowest and highest x y z of its positions (6 f32; 0 without positions),
+//           u64 checksum of its bytes; then u64 checksum of the table
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
+#include <span>
 #include <vector>
 
+#include "core/buffer.h"
 #include "core/progress.h"
 #include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
 
-/// space: neighbours share blocks (spatial_order.h), for files that travel. id: as the set has them, so that
-/// nothing is sorted when it is read again.
+/// space: neighbours share blocks (splats/row_order.h), for files that travel. id: as the set has them, so
+/// that nothing is sorted when it is read again.
 enum class RowOrder { space, id };
 
 /// What of a set a file holds. Sets travel whole; a cache keeps geometry, which is all but colour and alpha,
@@ -62,7 +62,25 @@ void write_native(const WriteTarget& target, const SplatSet& set, const Progress
 /// Length of the file that write_native makes of a set.
 std::int64_t native_file_bytes(const SplatSet& set, NativePart part = NativePart::whole);
 
-/// splat_attributes() of a .splats file.
-std::vector<std::string> native_attributes(const std::filesystem::path& file);
+/// What of a set a file holds.
+SplatColumns native_columns(const std::filesystem::path& file);
+
+/// Some rows of a file, ascending, and what of them is wanted.
+struct NativeRows {
+    std::span<const std::int64_t> rows;
+    OptionalColumns wanted;
+};
+
+/// Several choices of rows of one file, which is read and checked once, as by read_native().
+std::vector<SplatSet> read_native_rows(const std::filesystem::path& file, NativePart part,
+                                       std::span<const NativeRows> choices, const Progress& progress = {});
+
+/// The rows of a file of colours whose alpha is not 0, and how many rows it has. Its blocks are not checked.
+/// Throws InputError.
+struct LitRows {
+    Buffer<std::int64_t> rows;
+    std::int64_t of = 0;
+};
+LitRows native_lit_rows(const std::filesystem::path& file, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -1,10 +1,13 @@
-// Columns are read one by one straight into the set's arrays: those that nobody wants are not read at all.
+// Reading: columns one by one straight into the set's arrays, so that those that nobody wants are not read at
+// all. Writing: one block at a time; every column has its place in the block as if it was full, rows are put
+// there as they come, and a full block goes to the file.
 #include "splat_files/native_blocks.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cfloat>
 #include <cmath>
@@ -12,11 +15,15 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "core/atomic_file.h"
 #include "core/file.h"
+#include "core/parallel.h"
 #include "splat_files/checksum.h"
 #include "splat_files/mapped_file.h"
 #include "splat_files/native_layout.h"
+#include "splats/row_order.h"
 
 namespace astrosplat {
 
@@ -59,39 +66,6 @@ void NativeBlocks::State::read_at(std::size_t offset, char* out, std::size_t byt
         bytes -= static_cast<std::size_t>(got);
     }
 }
-
-namespace {
-
-bool all_finite(const float* values, std::size_t count) {
-    bool finite = true;
-    for (std::size_t i = 0; i < count; ++i) finite &= std::fabs(values[i]) <= FLT_MAX;
-    return finite;
-}
-template <class T>
-bool all_finite(const Buffer<T>& array) {
-    if constexpr (std::is_integral_v<T>)
-        return true;
-    else
-        return all_finite(reinterpret_cast<const float*>(array.data()),
-                          array.size() * sizeof(T) / sizeof(float));
-}
-
-bool is_wanted(SplatColumn column, const OptionalColumns& wanted) {
-    switch (column) {
-        case SplatColumn::uv:
-            return wanted.uv;
-        case SplatColumn::normal:
-            return wanted.normal;
-        case SplatColumn::mesh:
-            return wanted.mesh;
-        case SplatColumn::face:
-            return wanted.face;
-        default:
-            return true;
-    }
-}
-
-}  // namespace
 
 NativeBlocks::NativeBlocks(const std::filesystem::path& file, NativePart part)
     : state_(std::make_unique<State>(file, part)) {}
@@ -145,7 +119,9 @@ SplatSet NativeBlocks::sample(std::int64_t rows_wanted) const {
             });
         }
         bool finite = true;
-        for_each_column([&](auto column, SplatColumn) { finite &= all_finite(out.*column); });
+        for_each_column([&](auto column, SplatColumn) {
+            finite &= native::all_finite((out.*column).data(), (out.*column).size());
+        });
         if (!finite)
             throw InputError(
                 fmt::format("{}: expected finite numbers, found infinity or NaN", state.path.string()));
@@ -172,7 +148,7 @@ void NativeBlocks::read(std::size_t block, const OptionalColumns& wanted, Check 
         offset += bytes;
         if (check == Check::all) {
             checksum.add({reinterpret_cast<const char*>(array.data()), bytes});
-            if (used) finite &= all_finite(array);
+            if (used) finite &= native::all_finite(array.data(), array.size());
         }
         if (!used) array.clear();
     });
@@ -185,6 +161,91 @@ void NativeBlocks::read(std::size_t block, const OptionalColumns& wanted, Check 
     if (stored.lo != found.lo || stored.hi != found.hi)
         checker.fail(place, "positions within its bounds", "others");
     if (!finite) checker.fail(place, "finite numbers", "infinity or NaN");
+}
+
+struct NativeStream::State {
+    AtomicFile file;
+    std::uint32_t flags;
+    std::int64_t splats, written = 0;
+    std::vector<native::BlockEntry> table;
+    Buffer<char> block;
+    std::size_t filled = 0;  // rows of the block
+
+    State(const WriteTarget& target, std::uint32_t file_flags, std::int64_t count)
+        : file(target.file, target.existing),
+          flags(file_flags),
+          splats(count),
+          block(native::splats_per_block * native::row_bytes(file_flags)) {
+        table.reserve(native::block_count(static_cast<std::uint64_t>(count), native::splats_per_block));
+    }
+
+    /// Calls visit(column, place in a block of so many rows) for every column of the file.
+    template <class Visit>
+    void for_each_place(std::size_t block_rows, Visit visit) {
+        std::size_t place = 0;
+        for_each_column([&]<class T>(Buffer<T> SplatSet::*column, SplatColumn which) {
+            if (!native::has(flags, which)) return;
+            visit(column, place);
+            place += block_rows * sizeof(T);
+        });
+    }
+
+    void put(const SplatSet& part, std::span<const std::uint32_t> rows) {
+        constexpr std::int64_t rows_at_once = 4096;
+        parallel_chunks(static_cast<std::int64_t>(rows.size()), rows_at_once,
+                        [&](std::int64_t begin, std::int64_t end, int) {
+                            const auto some = rows.subspan(static_cast<std::size_t>(begin),
+                                                           static_cast<std::size_t>(end - begin));
+                            const std::size_t first = filled + static_cast<std::size_t>(begin);
+                            for_each_place(native::splats_per_block, [&]<class T>(Buffer<T> SplatSet::*column,
+                                                                                  std::size_t place) {
+                                gather((part.*column).data(), some, block.data() + place + first * sizeof(T));
+                            });
+                        });
+        filled += rows.size();
+    }
+
+    void write_block() {
+        if (filled < native::splats_per_block) close_gaps();
+        const std::string_view bytes(block.data(), filled * native::row_bytes(flags));
+        table.push_back(native::describe_block(flags, bytes, filled));
+        file.write(bytes);
+        written += static_cast<std::int64_t>(filled);
+        filled = 0;
+    }
+
+    /// The last block has fewer rows than its columns have room for.
+    void close_gaps() {
+        std::size_t to = 0;
+        for_each_place(native::splats_per_block, [&]<class T>(Buffer<T> SplatSet::*, std::size_t place) {
+            std::memmove(block.data() + to, block.data() + place, filled * sizeof(T));
+            to += filled * sizeof(T);
+        });
+    }
+};
+
+NativeStream::NativeStream(const WriteTarget& target, const SplatSetFacts& facts, const SplatColumns& held,
+                           std::int64_t splats)
+    : state_(std::make_unique<State>(
+          target, native::flags_of(facts, held, RowOrder::space, NativePart::whole), splats)) {
+    state_->file.write(native::header_bytes(facts, state_->flags, splats));
+}
+NativeStream::~NativeStream() = default;
+
+void NativeStream::append(const SplatSet& part, std::span<const std::uint32_t> rows) {
+    while (!rows.empty()) {
+        const std::size_t count = std::min(rows.size(), native::splats_per_block - state_->filled);
+        state_->put(part, rows.first(count));
+        if (state_->filled == native::splats_per_block) state_->write_block();
+        rows = rows.subspan(count);
+    }
+}
+
+void NativeStream::finish() {
+    if (state_->filled > 0) state_->write_block();
+    assert(state_->written == state_->splats);
+    state_->file.write(native::table_bytes(state_->table));
+    state_->file.commit();
 }
 
 }  // namespace astrosplat

@@ -1,15 +1,18 @@
-// A whole set's native file, block by block, for sets that are not to be in memory as a whole. In: a .splats
-// file. Out: what is known of the set, and the rows of the blocks that are asked for. Bytes are read, not
-// mapped, so that they count as this program's memory while it has them and no longer.
+// Native files (native.h) in parts, for sets that are never in memory as a whole. Reading: what is known of
+// the set, and the rows of the blocks that are asked for. Bytes are read, not mapped, so that they count as
+// this program's memory while it has them and no longer. Writing: rows part by part, in the order of the
+// file; what comes out is the file that write_native makes of the whole.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "core/bounds.h"
 #include "splat_files/native.h"
+#include "splat_files/write_target.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
@@ -40,6 +43,24 @@ class NativeBlocks {
   private:
     struct State;
     std::unique_ptr<const State> state_;
+};
+
+class NativeStream {
+  public:
+    /// A file of `splats` rows in the order of space, with the columns `held`. Throws OutputError.
+    NativeStream(const WriteTarget& target, const SplatSetFacts& facts, const SplatColumns& held,
+                 std::int64_t splats);
+    ~NativeStream();
+
+    /// Those rows of a part, which has the columns. Throws OutputError.
+    void append(const SplatSet& part, std::span<const std::uint32_t> rows);
+
+    /// All rows are there: the file appears. Throws OutputError.
+    void finish();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
 };
 
 }  // namespace astrosplat

@@ -15,37 +15,17 @@ namespace astrosplat::native {
 
 static_assert(std::endian::native == std::endian::little, "the structs are the file's bytes");
 
-std::uint32_t flag_of(SplatColumn column) {
-    switch (column) {
-        case SplatColumn::uv:
-            return has_uv;
-        case SplatColumn::normal:
-            return has_normal;
-        case SplatColumn::mesh:
-            return has_mesh;
-        case SplatColumn::radius:
-            return has_radius;
-        case SplatColumn::face:
-            return has_face;
-        case SplatColumn::scale:
-            return has_scale;
-        case SplatColumn::rotation:
-            return has_rotation;
-        case SplatColumn::harmonics:
-            return has_harmonics;
-        default:
-            return 0;
-    }
-}
-
 bool has(std::uint32_t flags, SplatColumn column) {
     const bool is_color = column == SplatColumn::color || column == SplatColumn::alpha;
     if (flags & (is_color ? only_geometry : only_colors)) return false;
-    return (flags & flag_of(column)) == flag_of(column);
+    const std::uint32_t own = column_flags[index_of(column)];
+    return (flags & own) == own;
 }
 
-std::uint32_t flag_of(NativePart part) {
-    return part == NativePart::geometry ? only_geometry : part == NativePart::colors ? only_colors : 0u;
+SplatColumns columns_of(std::uint32_t flags) {
+    SplatColumns columns;
+    for_each_column([&](auto, SplatColumn column) { columns.set(index_of(column), has(flags, column)); });
+    return columns;
 }
 
 std::size_t row_bytes(std::uint32_t flags) {
@@ -66,8 +46,7 @@ BlockEntry describe_block(std::uint32_t flags, std::string_view bytes, std::size
     for (std::size_t i = 0; i < rows; ++i) {
         glm::vec3 p;
         std::memcpy(&p, bytes.data() + i * sizeof p, sizeof p);
-        entry.lo = glm::min(entry.lo, p);
-        entry.hi = glm::max(entry.hi, p);
+        add_to_box({&p, 1}, entry);
     }
     return entry;
 }
@@ -185,6 +164,57 @@ Block block_at(const Layout& layout, std::size_t number) {
     const std::size_t rows = std::min<std::size_t>(layout.header.block, layout.header.splats - first);
     const std::size_t per_splat = row_bytes(layout.header.flags);
     return {first, rows, layout.blocks.substr(first * per_splat, rows * per_splat)};
+}
+
+namespace {
+
+template <class T>
+std::string& append_bytes(const T& value, std::string& bytes) {
+    return bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+}  // namespace
+
+std::uint32_t flags_of(const SplatSetFacts& facts, const SplatColumns& held, RowOrder order,
+                       NativePart part) {
+    std::uint32_t flags =
+        (facts.recipe.empty() ? 0u : has_recipe) | (facts.generated ? generated : 0u) |
+        (facts.divided ? divided : 0u) | (facts.absorbs ? absorbs : 0u) |
+        (facts.display_harmonics ? display_harmonics : 0u) | (order == RowOrder::id ? by_id : 0u) |
+        (part == NativePart::geometry ? only_geometry : 0u) | (part == NativePart::colors ? only_colors : 0u);
+    for_each_column([&](auto, SplatColumn column) {
+        const std::uint32_t own = column_flags[index_of(column)];
+        if (held[index_of(column)] && has(flags | own, column)) flags |= own;
+    });
+    return flags;
+}
+
+std::string text_of(const SplatSetFacts& facts) {
+    return facts.recipe.empty() ? facts.credit : facts.credit + '\0' + facts.recipe;
+}
+
+std::string header_bytes(const SplatSetFacts& facts, std::uint32_t flags, std::int64_t splats) {
+    const std::string text = text_of(facts);
+    Header header{};
+    std::memcpy(header.magic, magic.data(), sizeof header.magic);
+    header.version = version;
+    header.flags = flags;
+    header.splats = static_cast<std::uint64_t>(splats);
+    header.block = splats_per_block;
+    header.credit_bytes = static_cast<std::uint32_t>(text.size());
+    header.spacing = facts.spacing;
+    header.max_distance = facts.max_distance;
+    header.test_positions = facts.test_positions;
+    header.zero_alpha = facts.zero_alpha;
+    std::string bytes;
+    append_bytes(header, bytes) += text;
+    bytes.resize(data_offset(text.size()) - sizeof(std::uint64_t), '\0');
+    return append_bytes(xxh64(bytes), bytes);
+}
+
+std::string table_bytes(const std::vector<BlockEntry>& table) {
+    std::string bytes(reinterpret_cast<const char*>(table.data()), table.size() * sizeof(BlockEntry));
+    return append_bytes(xxh64(bytes), bytes);
 }
 
 }  // namespace astrosplat::native

@@ -1,7 +1,11 @@
-// The format of native.h as structs: header, blocks and table. In: bytes of a file. Out: a Layout whose
-// lengths and checksums are known to be right. For the reader and the writer alone.
+// The format of native.h as structs and bytes: header, blocks and table. Reading: bytes of a file become a
+// Layout whose lengths and checksums are known to be right. Writing: what is known of a set becomes flags,
+// header and table. For the readers and the writers alone.
 #pragma once
 
+#include <array>
+#include <cfloat>
+#include <cmath>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
@@ -53,10 +57,23 @@ struct BlockEntry {
 };
 static_assert(sizeof(BlockEntry) == 32);
 
-std::uint32_t flag_of(NativePart part);
-/// What says in the flags that a file has a column; 0: every file has it.
-std::uint32_t flag_of(SplatColumn column);
+/// What says in the flags that a file has a column, by index_of(); 0: every file has it.
+inline constexpr std::array<std::uint32_t, splat_column_count> column_flags = {0,
+                                                                               0,
+                                                                               0,
+                                                                               0,
+                                                                               0,
+                                                                               has_uv,
+                                                                               has_normal,
+                                                                               has_mesh,
+                                                                               has_radius,
+                                                                               has_face,
+                                                                               has_scale,
+                                                                               has_rotation,
+                                                                               has_harmonics};
+static_assert(column_flags.back() == has_harmonics);
 bool has(std::uint32_t flags, SplatColumn column);
+SplatColumns columns_of(std::uint32_t flags);
 std::size_t row_bytes(std::uint32_t flags);
 
 /// Where the blocks begin, behind header, credit, padding and checksum.
@@ -99,5 +116,29 @@ struct Block {
     std::string_view bytes;
 };
 Block block_at(const Layout& layout, std::size_t number);
+
+/// `held`: the columns that the set has.
+std::uint32_t flags_of(const SplatSetFacts& facts, const SplatColumns& held, RowOrder order, NativePart part);
+
+/// What stands behind the header: the credit, and behind a zero the recipe.
+std::string text_of(const SplatSetFacts& facts);
+
+/// Header, texts, padding and their checksum, of a file of so many splats.
+std::string header_bytes(const SplatSetFacts& facts, std::uint32_t flags, std::int64_t splats);
+
+/// The table and its checksum.
+std::string table_bytes(const std::vector<BlockEntry>& table);
+
+/// Whether there is neither infinity nor NaN among values of any column.
+template <class T>
+bool all_finite(const T* values, std::size_t count) {
+    bool finite = true;
+    if constexpr (!std::is_integral_v<T>) {
+        const float* const numbers = reinterpret_cast<const float*>(values);
+        for (std::size_t i = 0; i < count * sizeof(T) / sizeof(float); ++i)
+            finite &= std::fabs(numbers[i]) <= FLT_MAX;
+    }
+    return finite;
+}
 
 }  // namespace astrosplat::native

@@ -1,6 +1,6 @@
 // See pda.h. The header is read word by word, so line breaks and blanks in it do not matter; the data line by
 // line.
-#include "splat_files/pda.h"
+#include "splat_files/formats.h"
 
 #include <fmt/format.h>
 
@@ -13,12 +13,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "splat_files/float_text.h"
 #include "splat_files/mapped_file.h"
-#include "splat_files/number_scan.h"
+#include "splat_files/number_text.h"
 #include "splat_files/ordered_writer.h"
 #include "splat_files/splat_table.h"
-#include "splat_files/text_rows.h"
 
 namespace astrosplat {
 
@@ -73,31 +71,22 @@ struct PdaHeader {
     std::int64_t data_line = 0;  // the file's line where data begins
 };
 
-/// An attribute that becomes a field of the SplatSet; V fields are three columns.
+/// An attribute that becomes a column of the SplatSet.
 struct KnownAttribute {
     std::string_view name;
     std::string_view types;
-    std::vector<Field> fields;
+    SplatColumn column;
+};
+constexpr KnownAttribute known_attributes[] = {
+    {"position", "V", SplatColumn::position}, {"rgbPP", "V", SplatColumn::color},
+    {"opacityPP", "R", SplatColumn::alpha},   {"DistanceFromSurfaceMeshPP", "R", SplatColumn::distance},
+    {"radiusPP", "R", SplatColumn::radius},   {"whichMeshPP", "IR", SplatColumn::mesh},
+    {"particleId", "IR", SplatColumn::id},    {"id", "IR", SplatColumn::id},
 };
 
-const std::vector<KnownAttribute>& known_attributes() {
-    static const std::vector<KnownAttribute> known = {
-        {"position", "V", {Field::x, Field::y, Field::z}},
-        {"rgbPP", "V", {Field::red, Field::green, Field::blue}},
-        {"opacityPP", "R", {Field::alpha}},
-        {"DistanceFromSurfaceMeshPP", "R", {Field::distance}},
-        {"radiusPP", "R", {Field::radius}},
-        {"whichMeshPP", "IR", {Field::mesh}},
-        {"particleId", "IR", {Field::id}},
-        {"id", "IR", {Field::id}},
-    };
-    return known;
-}
-
 const KnownAttribute* find_known(std::string_view name) {
-    const auto& known = known_attributes();
-    const auto found = std::ranges::find_if(known, [&](const auto& k) { return k.name == name; });
-    return found == known.end() ? nullptr : &*found;
+    const auto* const found = std::ranges::find(known_attributes, name, &KnownAttribute::name);
+    return found == std::end(known_attributes) ? nullptr : found;
 }
 
 bool has_attribute(const std::vector<Attribute>& attributes, std::string_view name) {
@@ -166,7 +155,7 @@ std::vector<Column> columns_of(const std::vector<Attribute>& attributes) {
         for (int component = 0; component < (attribute.type == 'V' ? 3 : 1); ++component) {
             Column column;
             column.name = attribute.name;
-            if (known) column.field = known->fields[component];
+            if (known) column.field = Field{known->column, component};
             columns.push_back(column);
         }
     }
@@ -228,9 +217,9 @@ SplatSet read_pda_bytes(const std::filesystem::path& file, std::string_view byte
 
 }  // namespace
 
-std::vector<std::string> pda_attributes(const std::filesystem::path& file) {
+SplatColumns pda_columns(const std::filesystem::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
-        return attribute_names(columns_of(read_header(file, bytes).attributes));
+        return columns_held(columns_of(read_header(file, bytes).attributes));
     });
 }
 

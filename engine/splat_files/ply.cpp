@@ -1,6 +1,6 @@
-// See ply.h. Which property is which field, and writing; rows are read by text_rows, which PDA shares, and by
-// ply_binary.
-#include "splat_files/ply.h"
+// Which property of a PLY file is which field, of plain splats and of Gaussians; and writing. Rows are read
+// by splat_table, which PDA shares, and by ply_bytes.
+#include "splat_files/formats.h"
 
 #include <fmt/format.h>
 
@@ -15,14 +15,12 @@
 
 #include "core/color.h"
 #include "core/error.h"
-#include "splat_files/finish_gaussians.h"
+#include "core/text.h"
+#include "splat_files/gaussian_rows.h"
 #include "splat_files/mapped_file.h"
 #include "splat_files/ordered_writer.h"
-#include "splat_files/ply_binary.h"
-#include "splat_files/ply_gaussians.h"
-#include "splat_files/ply_header.h"
+#include "splat_files/ply_bytes.h"
 #include "splat_files/splat_table.h"
-#include "splat_files/text_rows.h"
 
 namespace astrosplat {
 
@@ -37,17 +35,17 @@ struct KnownProperty {
     Field field;
 };
 constexpr KnownProperty known_properties[] = {
-    {"x", Field::x},           {"y", Field::y},
-    {"z", Field::z},           {"red", Field::red},
-    {"green", Field::green},   {"blue", Field::blue},
-    {"alpha", Field::alpha},   {"distance", Field::distance},
-    {"radius", Field::radius}, {"s", Field::s},
-    {"t", Field::t},           {"mesh", Field::mesh},
-    {"id", Field::id},         {"id_high", Field::id_high},
-    {"r", Field::red},         {"diffuse_red", Field::red},
-    {"g", Field::green},       {"diffuse_green", Field::green},
-    {"b", Field::blue},        {"diffuse_blue", Field::blue},
-    {"a", Field::alpha},       {"diffuse_alpha", Field::alpha},
+    {"x", {SplatColumn::position, 0}},  {"y", {SplatColumn::position, 1}},
+    {"z", {SplatColumn::position, 2}},  {"red", {SplatColumn::color, 0}},
+    {"green", {SplatColumn::color, 1}}, {"blue", {SplatColumn::color, 2}},
+    {"alpha", {SplatColumn::alpha}},    {"distance", {SplatColumn::distance}},
+    {"radius", {SplatColumn::radius}},  {"s", {SplatColumn::uv, 0}},
+    {"t", {SplatColumn::uv, 1}},        {"mesh", {SplatColumn::mesh}},
+    {"id", {SplatColumn::id, 0}},       {"id_high", {SplatColumn::id, 1}},
+    {"r", {SplatColumn::color, 0}},     {"diffuse_red", {SplatColumn::color, 0}},
+    {"g", {SplatColumn::color, 1}},     {"diffuse_green", {SplatColumn::color, 1}},
+    {"b", {SplatColumn::color, 2}},     {"diffuse_blue", {SplatColumn::color, 2}},
+    {"a", {SplatColumn::alpha}},        {"diffuse_alpha", {SplatColumn::alpha}},
 };
 
 /// Properties that mean something only together. Of the colours the first that are complete are read.
@@ -97,8 +95,8 @@ std::vector<float> code_table(std::size_t codes, bool srgb) {
     return values;
 }
 
-std::span<const float> codes_for(Field field, NumberType type) {
-    const bool srgb = field != Field::alpha;
+std::span<const float> codes_for(SplatColumn column, NumberType type) {
+    const bool srgb = column != SplatColumn::alpha;
     if (type == NumberType::u8) {
         static const std::vector<float> light = code_table(256, true), fraction = code_table(256, false);
         return srgb ? light : fraction;
@@ -114,14 +112,79 @@ void assign_field(Column& column, const PlyElement& vertex, const std::filesyste
         std::ranges::find_if(known_properties, [&](const KnownProperty& k) { return k.name == column.name; });
     if (known == std::end(known_properties) || column.list || !is_read(vertex, column.name)) return;
     column.field = known->field;
-    const bool light = column.field == Field::red || column.field == Field::green ||
-                       column.field == Field::blue || column.field == Field::alpha;
-    if (!light || is_float(column.type)) return;
+    const SplatColumn to = known->field.column;
+    if ((to != SplatColumn::color && to != SplatColumn::alpha) || is_float(column.type)) return;
     if (column.type != NumberType::u8 && column.type != NumberType::u16)
         bad_input(file.string(), "", fmt::format("{} as float, double, uchar or ushort", column.name),
                   "another type");
-    column.codes = codes_for(column.field, column.type);
+    column.codes = codes_for(to, column.type);
 }
+
+// ---- Gaussians
+
+constexpr KnownProperty gaussian_properties[] = {
+    {"x", {SplatColumn::position, 0}},     {"y", {SplatColumn::position, 1}},
+    {"z", {SplatColumn::position, 2}},     {"opacity", {SplatColumn::alpha}},
+    {"scale_0", {SplatColumn::scale, 0}},  {"scale_1", {SplatColumn::scale, 1}},
+    {"scale_2", {SplatColumn::scale, 2}},  {"rot_0", {SplatColumn::rotation, 3}},
+    {"rot_1", {SplatColumn::rotation, 0}}, {"rot_2", {SplatColumn::rotation, 1}},
+    {"rot_3", {SplatColumn::rotation, 2}},
+};
+constexpr std::string_view mean_names[] = {"f_dc_0", "f_dc_1", "f_dc_2"};
+constexpr std::string_view rest_prefix = "f_rest_";
+
+/// Their names are numbered from 0 on.
+int rest_count(const PlyElement& vertex, const std::filesystem::path& file) {
+    const auto found = std::ranges::count_if(
+        vertex.properties, [](const Column& c) { return c.name.starts_with(rest_prefix) && !c.list; });
+    if (found != 0 && found != 9 && found != 24 && found != 45)
+        bad_input(file.string(), "", "0, 9, 24 or 45 properties f_rest_*", std::to_string(found));
+    for (int i = 0; i < found; ++i)
+        if (!has_scalar(vertex, fmt::format("{}{}", rest_prefix, i)))
+            bad_input(file.string(), "", fmt::format("properties f_rest_0 to f_rest_{}", found - 1),
+                      fmt::format("no {}{}", rest_prefix, i));
+    return static_cast<int>(found) / 3;
+}
+
+/// `rest`: coefficients beyond degree 0 that the vertex has a channel.
+void assign_gaussian(Column& column, int rest) {
+    if (column.list) return;
+    const auto set = [&](const Field& field) {
+        column.field = field;
+        column.any_number = true;
+    };
+    for (const auto& [name, field] : gaussian_properties)
+        if (column.name == name) set(field);
+    for (int k = 0; k < 3; ++k)
+        if (column.name == mean_names[k]) set({rest == 0 ? SplatColumn::color : SplatColumn::harmonics, k});
+    if (!column.name.starts_with(rest_prefix)) return;
+    const auto number = static_cast<int>(parse_int64(column.name.substr(rest_prefix.size())).value_or(0));
+    set({SplatColumn::harmonics, 3 * (1 + number % rest) + number / rest});
+}
+
+/// Whether the vertices are Gaussians as training stores them.
+bool holds_gaussians(const PlyElement& vertex) {
+    return has_scalar(vertex, mean_names[0]) &&
+           (has_scalar(vertex, "scale_0") || has_scalar(vertex, "rot_0"));
+}
+
+/// The columns of such a vertex. Throws InputError where some of them are missing.
+std::vector<Column> gaussian_columns(const PlyElement& vertex, const std::filesystem::path& file) {
+    const auto require = [&](std::string_view name) {
+        if (!has_scalar(vertex, name))
+            bad_input(file.string(), "",
+                      "Gaussians with x y z, f_dc_0 to 2, opacity, scale_0 to 2 and rot_0 to 3",
+                      fmt::format("no {}", name));
+    };
+    for (const auto& [name, field] : gaussian_properties) require(name);
+    for (const std::string_view name : mean_names) require(name);
+    const int rest = rest_count(vertex, file);
+    std::vector<Column> columns = vertex.properties;
+    for (Column& column : columns) assign_gaussian(column, rest);
+    return columns;
+}
+
+// ---- reading
 
 std::vector<Column> columns_of(const PlyElement& vertex, const std::filesystem::path& file) {
     if (holds_gaussians(vertex)) return gaussian_columns(vertex, file);
@@ -208,7 +271,7 @@ SplatSet read_ply_bytes(const std::filesystem::path& file, std::string_view byte
         read_ascii(header, vertex, table, file, progress);
     else
         read_binary_rows(header, vertex, table, file, progress);
-    const bool gaussians = table.has(Field::scale_x);
+    const bool gaussians = table.has(SplatColumn::scale);
     SplatSet set = finish_table(table, file);
     set.credit = header.credit;
     return gaussians ? finish_gaussians(std::move(set), {.trained = true, .display = true}, file)
@@ -217,16 +280,12 @@ SplatSet read_ply_bytes(const std::filesystem::path& file, std::string_view byte
 
 }  // namespace
 
-std::vector<std::string> ply_attributes(const std::filesystem::path& file) {
+SplatColumns ply_columns(const std::filesystem::path& file) {
     return read_mapped(file, [&](std::string_view bytes) {
         const PlyHeader header = read_ply_header(file, bytes);
         const PlyElement& vertex = header.elements[find_vertex(header, file)];
-        std::vector<std::string> names = attribute_names(columns_of(vertex, file));
-        if (holds_gaussians(vertex)) {
-            if (std::ranges::find(names, "color") == names.end()) names.emplace_back("color");
-            names.emplace_back("radius");
-        }
-        return names;
+        const SplatColumns columns = columns_held(columns_of(vertex, file));
+        return holds_gaussians(vertex) ? columns | gaussian_set_columns(false) : columns;
     });
 }
 

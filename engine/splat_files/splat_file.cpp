@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <string>
 #include <string_view>
@@ -14,11 +13,9 @@
 #include "core/file_format.h"
 #include "core/log.h"
 #include "core/text.h"
-#include "splat_files/gltf_splats.h"
+#include "splat_files/formats.h"
 #include "splat_files/native.h"
-#include "splat_files/pda.h"
-#include "splat_files/ply.h"
-#include "splat_files/usda_splats.h"
+#include "usd/usda_stage.h"
 
 namespace astrosplat {
 
@@ -28,21 +25,21 @@ struct Functions {
     std::string_view format;
     SplatSet (*read)(const std::filesystem::path&, const Progress&);
     void (*write)(const WriteTarget&, const SplatSet&, const Progress&);
-    std::vector<std::string> (*attributes)(const std::filesystem::path&);
+    SplatColumns (*columns)(const std::filesystem::path&);
     std::int64_t (*count)(const std::filesystem::path&);
-    bool (*may_hold)(const std::filesystem::path&);  // null: such a file holds nothing else
-    bool keeps_all;  // splats that absorb are told from those that shine; shapes of Gaussians
+    std::string_view word;   // that files with splats have near their beginning; empty: all hold splats
+    bool keeps_all = false;  // splats that absorb are told from those that shine; shapes of Gaussians
 };
 
-constexpr std::array<Functions, 5> functions = {{
-    {"pda", read_pda, write_pda, pda_attributes, pda_splat_count, nullptr, false},
-    {"ply", read_ply, write_ply, ply_attributes, ply_splat_count, nullptr, false},
-    {"gltf", read_gltf_splats, nullptr, gltf_splat_attributes, nullptr, may_hold_gltf_splats, false},
-    {"usda", read_usda_splats, nullptr, usda_splat_attributes, usda_splat_count, may_hold_usda_splats, false},
+constexpr Functions functions[] = {
+    {"pda", read_pda, write_pda, pda_columns, pda_splat_count, ""},
+    {"ply", read_ply, write_ply, ply_columns, ply_splat_count, ""},
+    {"gltf", read_gltf_splats, nullptr, gltf_splat_columns, nullptr, gltf_gaussians},
+    {"usda", read_usda_splats, nullptr, usda_splat_columns, usda_splat_count, usd_gaussians},
     {"splats", [](const auto& file, const auto& progress) { return read_native(file, progress); },
      [](const auto& file, const auto& set, const auto& progress) { write_native(file, set, progress); },
-     native_attributes, native_splat_count, nullptr, true},
-}};
+     native_columns, native_splat_count, "", true},
+};
 
 const Functions& functions_of(const FileFormat* format, const std::filesystem::path& file,
                               FileUse use = FileUse::read) {
@@ -63,7 +60,7 @@ SplatSet read_splats(const std::filesystem::path& file, const Progress& progress
 
 std::vector<std::string> splat_attributes(const std::filesystem::path& file) {
     require_readable(file);
-    return functions_of(format_of_file(file), file).attributes(file);
+    return column_names(functions_of(format_of_file(file), file).columns(file));
 }
 
 std::int64_t splat_count(const std::filesystem::path& file) {
@@ -76,8 +73,10 @@ std::int64_t splat_count(const std::filesystem::path& file) {
 bool may_hold_splats(const std::filesystem::path& file) {
     const FileFormat* const format = format_of_file(file);
     if (kind_of(format) != FileKind::splats) return false;
-    const auto may_hold = functions_of(format, file).may_hold;
-    return !may_hold || may_hold(file);
+    constexpr std::size_t beginning = std::size_t{1} << 20;
+    const std::string_view word = functions_of(format, file).word;
+    const std::string text = word.empty() ? "" : read_beginning(file, beginning);
+    return text.empty() || text.find(word) != std::string::npos;
 }
 
 void write_splats(const WriteTarget& target, const SplatSet& set, const Progress& progress) {

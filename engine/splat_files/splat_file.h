@@ -1,5 +1,5 @@
 // Splat files of any format: .pda (Maya ASCII particles), .ply, .splats (native), glTF and USD (read only).
-// One reader/writer a file: pda.*, ply.*, native.*, gltf_splats.*, usda_splats.*; this is the front door.
+// This is the front door; formats.h and native.h have the readers and writers.
 #pragma once
 
 #include <filesystem>

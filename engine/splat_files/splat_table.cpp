@@ -1,16 +1,21 @@
-// Allocation, defaults and checks that PDA and PLY share.
+// Allocation, defaults and checks that PDA and PLY share, and rows of text. A chunk of text is about a MiB:
+// large enough to be cheap to hand out, small enough for the cache.
 #include "splat_files/splat_table.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 #include <utility>
 
+#include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "splat_files/mapped_file.h"
+#include "splat_files/number_text.h"
 
 namespace astrosplat {
 
@@ -27,96 +32,52 @@ void fill(Buffer<T>& array, std::size_t rows, const T& value) {
                     });
 }
 
-std::int64_t bytes_per_row(const SplatTable& table) {
-    std::size_t bytes = bytes_per_splat([&](SplatColumn column) {
-        return !is_optional(column) || (column == SplatColumn::radius && table.has(Field::radius)) ||
-               (column == SplatColumn::uv && table.has(Field::s)) ||
-               (column == SplatColumn::mesh && table.has(Field::mesh)) ||
-               (table.has(Field::scale_x) &&
-                (column == SplatColumn::scale || column == SplatColumn::rotation ||
-                 column == SplatColumn::radius)) ||
-               (column == SplatColumn::harmonics && table.has(Field::harmonic));
+bool has_upper_ids(const SplatTable& table) {
+    return std::ranges::any_of(table.columns, [](const Column& c) {
+        return c.field && c.field->column == SplatColumn::id && c.field->component == 1;
     });
-    if (table.has(Field::id_high)) bytes += sizeof(std::uint32_t);
-    return static_cast<std::int64_t>(bytes);
+}
+
+std::int64_t bytes_per_row(const SplatTable& table) {
+    const std::size_t bytes = bytes_per_splat([&](SplatColumn column) {
+        const bool of_gaussians = column == SplatColumn::radius && table.has(SplatColumn::scale);
+        return !is_optional(column) || table.has(column) || of_gaussians;
+    });
+    return static_cast<std::int64_t>(bytes + (has_upper_ids(table) ? sizeof(std::uint32_t) : 0));
 }
 
 void allocate(SplatTable& table, std::size_t rows) {
-    SplatSet& set = table.set;
-    set.position.resize(rows);
-    set.id.resize(rows);
-    if (table.has(Field::red)) set.color.resize(rows);
-    if (table.has(Field::alpha)) set.alpha.resize(rows);
-    if (table.has(Field::distance)) set.distance.resize(rows);
-    if (table.has(Field::radius)) set.radius.resize(rows);
-    if (table.has(Field::s)) set.uv.resize(rows);
-    if (table.has(Field::mesh)) set.mesh.resize(rows);
-    if (table.has(Field::id_high)) table.id_high.resize(rows);
-    if (table.has(Field::scale_x)) set.scale.resize(rows);
-    if (table.has(Field::rotation_x)) set.rotation.resize(rows);
-    if (table.has(Field::harmonic)) fill(set.harmonics, rows, Harmonics{});
+    for_each_column([&](auto array, SplatColumn column) {
+        if (column == SplatColumn::position || column == SplatColumn::id || table.has(column))
+            (table.set.*array).resize(rows);
+    });
+    if (table.has(SplatColumn::harmonics)) fill(table.set.harmonics, rows, Harmonics{});
+    if (has_upper_ids(table)) table.id_high.resize(rows);
 }
 
 void bind(Column& column, SplatTable& table) {
-    SplatSet& set = table.set;
-    const auto point_at = [&](float* array, Field first, std::size_t stride) {
-        column.out = array + (static_cast<std::size_t>(column.field) - static_cast<std::size_t>(first));
-        column.stride = stride;
-    };
-    switch (column.field) {
-        case Field::skip:
-            break;
-        case Field::x:
-        case Field::y:
-        case Field::z:
-            point_at(&set.position.data()->x, Field::x, 3);
-            break;
-        case Field::red:
-        case Field::green:
-        case Field::blue:
-            point_at(&set.color.data()->x, Field::red, 3);
-            break;
-        case Field::s:
-        case Field::t:
-            point_at(&set.uv.data()->x, Field::s, 2);
-            break;
-        case Field::alpha:
-            point_at(set.alpha.data(), Field::alpha, 1);
-            if (column.any_number) break;
-            column.lowest = 0.0f;
-            column.highest = 1.0f;
-            column.clamped = &table.clamped;
-            break;
-        case Field::distance:
-        case Field::radius:
-            column.out = (column.field == Field::radius ? set.radius : set.distance).data();
-            column.lowest = 0.0f;
-            break;
-        case Field::mesh:
-            column.whole = set.mesh.data();
-            break;
-        case Field::id:
-            column.id = set.id.data();
-            break;
-        case Field::id_high:
-            column.whole = table.id_high.data();
-            break;
-        case Field::scale_x:
-        case Field::scale_y:
-        case Field::scale_z:
-            point_at(&set.scale.data()->x, Field::scale_x, 3);
-            break;
-        case Field::rotation_x:
-        case Field::rotation_y:
-        case Field::rotation_z:
-        case Field::rotation_w:
-            point_at(&set.rotation.data()->x, Field::rotation_x, 4);
-            break;
-        case Field::harmonic:
-            column.out = &set.harmonics.data()->c[0].x + column.component;
-            column.stride = 3 * Harmonics::count;
-            break;
-    }
+    if (!column.field) return;
+    const Field field = *column.field;
+    for_each_column([&]<class T>(Buffer<T> SplatSet::*array, SplatColumn which) {
+        if (which != field.column) return;
+        T* const values = (table.set.*array).data();
+        if constexpr (std::is_same_v<T, std::uint64_t>) {
+            if (field.component == 0)
+                column.id = values;
+            else
+                column.whole = table.id_high.data();
+        } else if constexpr (std::is_same_v<T, std::uint32_t>) {
+            column.whole = values;
+        } else {
+            column.out = reinterpret_cast<float*>(values) + field.component;
+            column.stride = sizeof(T) / sizeof(float);
+        }
+    });
+    if (column.any_number) return;
+    const bool is_alpha = field.column == SplatColumn::alpha;
+    if (is_alpha) column.highest = 1.0f, column.clamped = &table.clamped;
+    if (is_alpha || field.column == SplatColumn::distance || field.column == SplatColumn::radius)
+        column.lowest = 0.0f;
 }
 
 float largest(const Buffer<float>& values) {
@@ -131,7 +92,7 @@ float largest(const Buffer<float>& values) {
 
 void finish_ids(SplatTable& table) {
     Buffer<std::uint64_t>& id = table.set.id;
-    const bool numbered = table.has(Field::id);
+    const bool numbered = table.has(SplatColumn::id);
     if (numbered && table.id_high.empty()) return;
     parallel_each(id.size(), rows_per_chunk, [&](std::size_t i) {
         id[i] = numbered ? id[i] | std::uint64_t{table.id_high[i]} << 32 : i;
@@ -140,27 +101,13 @@ void finish_ids(SplatTable& table) {
 
 }  // namespace
 
-bool SplatTable::has(Field field) const {
-    return std::ranges::any_of(columns, [&](const Column& c) { return c.field == field; });
-}
+bool SplatTable::has(SplatColumn column) const { return columns_held(columns)[index_of(column)]; }
 
-std::vector<std::string> attribute_names(const std::vector<Column>& columns) {
-    constexpr std::array<std::pair<Field, const char*>, 11> names = {{{Field::x, "position"},
-                                                                      {Field::red, "color"},
-                                                                      {Field::alpha, "alpha"},
-                                                                      {Field::distance, "distance"},
-                                                                      {Field::radius, "radius"},
-                                                                      {Field::s, "uv"},
-                                                                      {Field::mesh, "mesh"},
-                                                                      {Field::scale_x, "scale"},
-                                                                      {Field::rotation_x, "rotation"},
-                                                                      {Field::harmonic, "harmonics"},
-                                                                      {Field::id, "id"}}};
-    std::vector<std::string> present;
-    for (const auto& [field, name] : names)
-        if (std::ranges::any_of(columns, [f = field](const Column& c) { return c.field == f; }))
-            present.emplace_back(name);
-    return present;
+SplatColumns columns_held(const std::vector<Column>& columns) {
+    SplatColumns held;
+    for (const Column& column : columns)
+        if (column.field) held.set(index_of(column.field->column));
+    return held;
 }
 
 void open_table(SplatTable& table, std::int64_t rows, const std::filesystem::path& file) {
@@ -185,7 +132,7 @@ SplatSet finish_table(SplatTable& table, const std::filesystem::path& file) {
 }
 
 std::string expectation(const Column& column) {
-    if (is_whole(column.field))
+    if (is_whole(column))
         return fmt::format("a whole number >= 0{} for {}", column.id ? "" : " and < 2^32", column.name);
     if (!column.codes.empty())
         return fmt::format("a whole number 0..{} for {}", column.codes.size() - 1, column.name);
@@ -203,6 +150,171 @@ bool store_outside(const Column& column, std::size_t row, float value) {
     column.out[row * column.stride] = std::clamp(value, column.lowest, column.highest);
     column.clamped->fetch_add(1, std::memory_order_relaxed);
     return true;
+}
+
+namespace {
+
+constexpr std::size_t chunk_bytes = std::size_t{1} << 20;
+
+/// One line of the file while it is read.
+struct Line {
+    const char* begin;
+    std::int64_t number;  // from 1
+};
+
+const char* line_end(const char* p, const char* end) {
+    const void* newline = p < end ? std::memchr(p, '\n', static_cast<std::size_t>(end - p)) : nullptr;
+    return newline ? static_cast<const char*>(newline) : end;
+}
+
+std::vector<TextChunk> cut(std::string_view text) {
+    std::vector<TextChunk> chunks;
+    while (!text.empty()) {
+        const std::size_t newline = text.size() <= chunk_bytes ? text.npos : text.find('\n', chunk_bytes);
+        const std::size_t size = newline == text.npos ? text.size() : newline + 1;
+        chunks.push_back({text.substr(0, size), 0, 0});
+        text.remove_prefix(size);
+    }
+    return chunks;
+}
+
+/// Counts a chunk's rows and lines into its own first_row and first_line; split_rows turns them into running
+/// sums.
+void count(TextChunk& chunk) {
+    const char* p = chunk.text.data();
+    const char* const end = p + chunk.text.size();
+    while (p < end) {
+        const char* const newline = line_end(p, end);
+        if (scan::skip_blanks(p, newline) != newline) ++chunk.first_row;
+        ++chunk.first_line;
+        p = newline + 1;
+    }
+    forget_pages(chunk.text);
+}
+
+std::string describe(const SplatTable& table) {
+    std::string names;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        const Column& column = table.columns[i];
+        if (i > 0 && column.name == table.columns[i - 1].name) continue;  // components of one vector
+        names += (names.empty() ? "" : " ") + column.name;
+    }
+    return names;
+}
+
+[[noreturn]] void wrong_length(const SplatTable& table, const std::filesystem::path& file, const Line& line,
+                               const char* end) {
+    std::size_t found = 0;
+    const char* const stop = line_end(line.begin, end);
+    for (const char* p = scan::skip_blanks(line.begin, stop); p < stop; ++found)
+        p = scan::skip_blanks(scan::token_end(p, stop), stop);
+    const bool lists = std::ranges::any_of(table.columns, [](const Column& c) { return c.list; });
+    bad_input(
+        file.string(), std::to_string(line.number),
+        fmt::format("{}{} numbers ({})", lists ? "at least " : "", table.columns.size(), describe(table)),
+        std::to_string(found));
+}
+
+/// Reads one number of a column that is no list; nullptr when it is bad.
+const char* read_value(const Column& column, std::size_t row, const char* p, const char* end) {
+    if (!column.field) return scan::token_end(p, end);
+    bool good = false;
+    if (is_whole(column)) {
+        std::uint64_t value = 0;
+        p = scan::scan_whole(p, end, value);
+        good = p && store_whole(column, row, value);
+    } else {
+        float value = 0.0f;
+        p = scan::scan_float(p, end, value);
+        good = p && store(column, row, value);
+    }
+    return good && (p == end || scan::is_space(*p)) ? p : nullptr;
+}
+
+/// Skips a list: its count, then so many tokens, as far as the line has them; nullptr when the count is bad
+/// or the line ends too early.
+const char* skip_list(const char* p, const char* end) {
+    std::uint64_t left = 0;
+    p = scan::scan_whole(p, end, left);
+    for (; p && left > 0; --left) {
+        p = scan::skip_blanks(p, end);
+        if (p == end || *p == '\n') return nullptr;
+        p = scan::token_end(p, end);
+    }
+    return p;
+}
+
+/// Reads the row that begins at line.begin; returns the end of its line.
+const char* read_row(const SplatTable& table, std::size_t row, const Line& line, const char* end,
+                     const std::filesystem::path& file) {
+    const char* p = line.begin;
+    for (const Column& column : table.columns) {
+        p = scan::skip_blanks(p, end);
+        if (p == end || *p == '\n') wrong_length(table, file, line, end);
+        const char* const token = p;
+        p = column.list ? skip_list(p, end) : read_value(column, row, p, end);
+        if (p) continue;
+        if (column.list) wrong_length(table, file, line, end);
+        const char* const stop = scan::token_end(token, end);
+        bad_input(file.string(), std::to_string(line.number), expectation(column),
+                  quoted({token, static_cast<std::size_t>(stop - token)}));
+    }
+    p = scan::skip_blanks(p, end);
+    if (p < end && *p != '\n') wrong_length(table, file, line, end);
+    return p;
+}
+
+/// Reads the rows of one chunk that lie in [begin, end).
+void read_chunk(const TextChunk& chunk, std::int64_t begin, std::int64_t end, const SplatTable& table,
+                const std::filesystem::path& file) {
+    Line line{chunk.text.data(), chunk.first_line};
+    const char* const stop = line.begin + chunk.text.size();
+    for (std::int64_t row = chunk.first_row; line.begin < stop && row < end; ++line.number) {
+        const char* const first = scan::skip_blanks(line.begin, stop);
+        const bool blank = first == stop || *first == '\n';
+        const bool wanted = !blank && row >= begin;
+        const char* const after =
+            wanted ? read_row(table, static_cast<std::size_t>(row - begin), line, stop, file)
+                   : line_end(first, stop);
+        if (!blank) ++row;
+        line.begin = after + 1;
+    }
+}
+
+}  // namespace
+
+TextRows split_rows(std::string_view text, std::int64_t first_line) {
+    TextRows result{cut(text), 0};
+    parallel_for(static_cast<std::int64_t>(result.chunks.size()),
+                 [&](std::int64_t i, int) { count(result.chunks[i]); });
+    for (TextChunk& chunk : result.chunks) {
+        const TextChunk counted = chunk;
+        chunk.first_row = result.rows;
+        chunk.first_line = first_line;
+        result.rows += counted.first_row;
+        first_line += counted.first_line;
+    }
+    return result;
+}
+
+void read_text_rows(const TextRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
+                    const std::filesystem::path& file, const Progress& progress) {
+    parallel_parts(rows.chunks.size(), progress, [&](std::size_t chunk) {
+        read_chunk(rows.chunks[chunk], begin, end, table, file);
+        forget_pages(rows.chunks[chunk].text);
+    });
+}
+
+std::string quoted(std::string_view text) {
+    constexpr std::size_t longest = 32;
+    std::string result = "'";
+    for (const char c : text.substr(0, longest)) {
+        if (c >= ' ' && c <= '~')
+            result += c;
+        else
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+    return result + (text.size() > longest ? "...'" : "'");
 }
 
 }  // namespace astrosplat

@@ -1,44 +1,29 @@
-// Row-wise files (PDA, PLY) to a SplatSet. The reader says which column of a row holds which field; this
-// allocates the arrays, checks and stores each number where it belongs, and fills in what the file does not
-// say.
+// Row-wise files (PDA, PLY) to a SplatSet. The reader says which number of a row goes into which column of
+// the set; this allocates the arrays, checks and stores each number where it belongs, and fills in what the
+// file does not say. Rows of text, one a line, are read here in parallel: the text is cut at line ends into
+// chunks whose rows are counted first, so that a wrong count is answered before any memory is taken.
 #pragma once
 
 #include <atomic>
 #include <cfloat>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/progress.h"
 #include "splats/splat_set.h"
 
 namespace astrosplat {
 
-enum class Field : std::uint8_t {
-    skip,
-    x,
-    y,
-    z,
-    red,
-    green,
-    blue,
-    alpha,
-    distance,
-    radius,
-    s,
-    t,
-    mesh,
-    id,
-    id_high,
-    scale_x,
-    scale_y,
-    scale_z,
-    rotation_x,
-    rotation_y,
-    rotation_z,
-    rotation_w,
-    harmonic  // number Column::component of the 48
+/// Where numbers of a file go.
+struct Field {
+    SplatColumn column;
+    /// Of its vector; of harmonics 3 times the coefficient, and the channel; of the id 1: its upper half.
+    int component = 0;
 };
 
 /// How a file stores a number of a binary row (PLY); text files leave it alone.
@@ -46,10 +31,9 @@ enum class NumberType : std::uint8_t { i8, u8, i16, u16, i32, u32, i64, u64, f32
 
 /// One column of a row: what it is, and where its numbers go (set by open_table).
 struct Column {
-    std::string name;  // as in the file, for messages
-    Field field = Field::skip;
-    int component = 0;        // Field::harmonic: 3 times the coefficient, and the channel
-    bool any_number = false;  // also those that are not finite
+    std::string name;            // as in the file, for messages
+    std::optional<Field> field;  // empty: skipped
+    bool any_number = false;     // also those that are not finite
     NumberType type = NumberType::f32;
     bool list = false;  // a count (of list_count type), then so many numbers: always skipped
     NumberType list_count = NumberType::u8;
@@ -60,7 +44,7 @@ struct Column {
     float lowest = -FLT_MAX, highest = FLT_MAX;  // outside: an error, or clamped where `clamped` counts
     std::atomic<std::int64_t>* clamped = nullptr;
     std::uint64_t* id = nullptr;
-    std::uint32_t* whole = nullptr;  // mesh, id_high
+    std::uint32_t* whole = nullptr;  // the mesh, or the upper half of an id
 };
 
 struct SplatTable {
@@ -68,11 +52,11 @@ struct SplatTable {
     SplatSet set;
     Buffer<std::uint32_t> id_high;         // upper halves of ids, where a column holds them
     std::atomic<std::int64_t> clamped{0};  // opacities outside of 0..1
-    bool has(Field field) const;
+    bool has(SplatColumn column) const;
 };
 
-/// What columns hold, as splat_attributes() of splat_file.h names it.
-std::vector<std::string> attribute_names(const std::vector<Column>& columns);
+/// What of a set these columns hold.
+SplatColumns columns_held(const std::vector<Column>& columns);
 
 /// Allocates the arrays for `rows` rows (memory is claimed first) and points the columns at them.
 void open_table(SplatTable& table, std::int64_t rows, const std::filesystem::path& file);
@@ -100,7 +84,7 @@ inline bool store(const Column& column, std::size_t row, float value) {
     return true;
 }
 
-/// Stores a whole field: id, id_high or mesh. False when the value does not fit.
+/// Stores a whole field: id, its upper half or mesh. False when the value does not fit.
 inline bool store_whole(const Column& column, std::size_t row, std::uint64_t value) {
     if (column.id) {
         column.id[row] = value;
@@ -111,8 +95,34 @@ inline bool store_whole(const Column& column, std::size_t row, std::uint64_t val
     return true;
 }
 
-inline bool is_whole(Field field) {
-    return field == Field::mesh || field == Field::id || field == Field::id_high;
+inline bool is_whole(const Column& column) {
+    return column.field &&
+           (column.field->column == SplatColumn::mesh || column.field->column == SplatColumn::id);
 }
+
+/// A run of whole lines.
+struct TextChunk {
+    std::string_view text;
+    std::int64_t first_row = 0;   // blank lines are no rows
+    std::int64_t first_line = 0;  // of the file, from 1
+};
+
+struct TextRows {
+    std::vector<TextChunk> chunks;
+    std::int64_t rows = 0;
+};
+
+/// Cuts and counts; `first_line` is the file's line where `text` begins. Blank lines count as lines, not as
+/// rows.
+TextRows split_rows(std::string_view text, std::int64_t first_line);
+
+/// Reads rows [begin, end) of `rows` into the table's columns as its rows 0 .. end-begin. The lowest bad row
+/// decides the InputError, whatever the threads do.
+void read_text_rows(const TextRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
+                    const std::filesystem::path& file, const Progress& progress);
+
+/// Text of a file for a message: one line, quoted, shortened to 32 characters, others than printable ASCII as
+/// \xNN.
+std::string quoted(std::string_view text);
 
 }  // namespace astrosplat

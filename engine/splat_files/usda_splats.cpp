@@ -1,4 +1,4 @@
-#include "splat_files/usda_splats.h"
+#include "splat_files/formats.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,9 @@
 #include "core/file.h"
 #include "core/shown.h"
 #include "core/text.h"
-#include "splat_files/finish_gaussians.h"
 #include "splat_files/gaussian_rows.h"
 #include "splat_files/mapped_file.h"
-#include "splat_files/number_scan.h"
+#include "splat_files/number_text.h"
 #include "usd/usda_stage.h"
 #include "usd/usda_transform.h"
 
@@ -235,23 +234,15 @@ SplatSet read_usda_splats(const std::filesystem::path& file, const Progress& pro
     });
 }
 
-std::vector<std::string> usda_splat_attributes(const std::filesystem::path& file) {
+SplatColumns usda_splat_columns(const std::filesystem::path& file) {
     return read_prims(file, [](const UsdText&, const std::vector<GaussianPrim>& all) {
-        std::vector<std::string> names = {"position", "color", "alpha", "radius", "scale", "rotation"};
-        if (is_directional(all)) names.emplace_back("harmonics");
-        return names;
+        return gaussian_set_columns(is_directional(all));
     });
 }
 
 std::int64_t usda_splat_count(const std::filesystem::path& file) {
     return read_prims(file,
                       [](const UsdText&, const std::vector<GaussianPrim>& all) { return count_of(all); });
-}
-
-bool may_hold_usda_splats(const std::filesystem::path& file) {
-    constexpr std::size_t beginning = std::size_t{1} << 20;
-    const std::string text = read_beginning(file, beginning);
-    return text.empty() || text.find(usd_gaussians) != std::string::npos;
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,6 @@
-// Rows of a splat set in another order. In: a bin for each row, and ids. Out: the rows' numbers in
-// order of bin, then id; and arrays gathered in such an order.
+// The rows of a set in other orders. In: ids, bins or positions. Out: the rows' numbers by bin, by coarse
+// cells of space (as native files store them: a block of neighbouring rows is a small region) or along a
+// Morton curve, on which neighbours mostly lie together; and arrays gathered in such an order.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,10 @@
 #include <cstring>
 #include <span>
 
+#include "core/bounds.h"
 #include "core/buffer.h"
+#include "core/progress.h"
+#include "splats/splat_set.h"
 
 namespace astrosplat {
 
@@ -34,5 +38,61 @@ char* gather(const T* from, std::span<const Row> rows, char* out) {
     }
     return out;
 }
+
+constexpr unsigned morton_axis_bits = 21;  // of each coordinate
+
+/// Moves bit i of a 21-bit number to bit 3 i.
+constexpr std::uint64_t spread_bits(std::uint64_t v) {
+    v = (v | v << 32) & 0x001f00000000ffffu;
+    v = (v | v << 16) & 0x001f0000ff0000ffu;
+    v = (v | v << 8) & 0x100f00f00f00f00fu;
+    v = (v | v << 4) & 0x10c30c30c30c30c3u;
+    return (v | v << 2) & 0x1249249249249249u;
+}
+
+/// x varies fastest. Coordinates are below 2^21.
+constexpr std::uint64_t morton_place(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+    return spread_bits(x) | spread_bits(y) << 1 | spread_bits(z) << 2;
+}
+
+/// Cubic cells, 64 along the longest side of a box of positions, numbered in Morton order (x lowest).
+class SpatialCells {
+  public:
+    static constexpr int levels = 6;  // of halvings: 2^levels cells along an axis
+    static constexpr std::uint32_t per_axis = 1u << levels, count = 1u << 3 * levels;
+
+    explicit SpatialCells(const Bounds& box);
+    /// Cells from the box's lower corner; places outside it count to the cells at its sides.
+    glm::uvec3 place_of(const glm::dvec3& position) const;
+    static std::uint32_t number_of(const glm::uvec3& place);
+    std::uint32_t of(const glm::vec3& position) const;
+    /// The cube of the 8^n cells from `first` on, which is a multiple of 8^n; scene units. All positions of
+    /// these cells lie in it, but for rounding.
+    Bounds cube(std::uint32_t first, std::uint32_t cells) const;
+    /// Whether there is more than one place.
+    bool extended() const { return edge_ > 0.0; }
+
+  private:
+    glm::dvec3 lo_;
+    double edge_;  // scene units; 0 where all positions are one
+};
+
+/// The cells of the set's box; inside a cell ascending ids, equal ids in the set's order. The same for any
+/// thread count. Row: std::uint32_t, for sets of fewer than 2^32 splats, or std::uint64_t.
+template <class Row>
+Buffer<Row> spatial_order(const SplatSet& set);
+
+/// The highest bit of a code, below which are 21 bits an axis: the splat absorbs.
+constexpr std::uint64_t morton_absorbs = std::uint64_t{1} << 63;
+
+struct MortonRow {
+    std::uint64_t code;
+    std::int64_t row;
+};
+
+/// Cells are cubes, the longest side of the set's box 2^21 of them; on a lattice (SplatSetFacts) the
+/// first boundary across each side is in the middle of the box. Rows of equal code in order of id. The
+/// same for any thread count. Throws Cancelled.
+Buffer<MortonRow> morton_order(const SplatSet& set, const Progress& progress = {});
 
 }  // namespace astrosplat

@@ -1,8 +1,9 @@
-// Bounds, order and consistency of splat sets. Rows are sorted by the upper bits of their ids, counted, and
-// then in each step by all of them.
+// Bounds, order, consistency and samples of splat sets. Rows are sorted by the upper bits of their ids,
+// counted, and then in each step by all of them.
 #include "splats/splat_set.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <limits>
@@ -11,9 +12,11 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/shared_maths.h"
 #include "splats/row_order.h"
 
 namespace astrosplat {
+
 namespace {
 
 constexpr std::int64_t splats_per_chunk = 1 << 16;
@@ -62,15 +65,25 @@ void sort_rows(SplatSet& set) {
 
 }  // namespace
 
+std::vector<std::string> column_names(const SplatColumns& columns) {
+    using enum SplatColumn;
+    constexpr std::array in_order = {position, color, alpha, distance, radius,    uv,
+                                     normal,   mesh,  scale, rotation, harmonics, id};
+    static_assert(in_order.size() + 1 == splat_column_count, "all but the face, which no file tells");
+    std::vector<std::string> names;
+    for (const SplatColumn column : in_order)
+        if (columns[index_of(column)]) names.emplace_back(name_of(column));
+    return names;
+}
+
 void drop_splats(SplatSet& set) {
     for_each_column([&](auto column, SplatColumn) { give_back(set.*column); });
 }
 
 void drop_columns(SplatSet& set, const OptionalColumns& wanted) {
-    if (!wanted.uv) give_back(set.uv);
-    if (!wanted.normal) give_back(set.normal);
-    if (!wanted.mesh) give_back(set.mesh);
-    if (!wanted.face) give_back(set.face);
+    for_each_column([&](auto column, SplatColumn which) {
+        if (!is_wanted(which, wanted)) give_back(set.*column);
+    });
 }
 
 Bounds bounds(const SplatSet& set) {
@@ -104,6 +117,47 @@ void check_consistent([[maybe_unused]] const SplatSet& set) {
     for_each_column([&]([[maybe_unused]] auto column, [[maybe_unused]] SplatColumn which) {
         assert((set.*column).size() == set.position.size() || (is_optional(which) && (set.*column).empty()));
     });
+}
+
+namespace {
+
+template <class T>
+void copy_array(const Buffer<T>& from, const Buffer<std::int64_t>& rows, Buffer<T>& to) {
+    constexpr std::int64_t rows_at_once = 1 << 16;
+    if (from.empty()) return;
+    to.resize(rows.size());
+    parallel_each(rows.size(), rows_at_once, [&](std::size_t i) { to[i] = from[rows[i]]; });
+}
+
+}  // namespace
+
+SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& rows) {
+    SplatSet taken;
+    static_cast<SplatSetFacts&>(taken) = set;
+    for_each_column([&](auto column, SplatColumn) { copy_array(set.*column, rows, taken.*column); });
+    return taken;
+}
+
+std::int64_t sampled_row(std::int64_t size, std::int64_t count, std::int64_t i) {
+    const auto begin_of = [&](std::int64_t stretch) {
+        return static_cast<std::int64_t>(static_cast<double>(stretch) * static_cast<double>(size) /
+                                         static_cast<double>(count));
+    };
+    const std::int64_t begin = begin_of(i), end = i + 1 < count ? begin_of(i + 1) : size;
+    const float chance = shared::as_uniform(shared::as_hash(1u, static_cast<std::uint32_t>(i), 0u, 0u));
+    const auto step = static_cast<std::int64_t>(chance * static_cast<float>(end - begin));
+    return std::min(begin + step, end - 1);
+}
+
+Buffer<std::int64_t> sampled_rows(std::int64_t size, std::int64_t count) {
+    Buffer<std::int64_t> rows(static_cast<std::size_t>(std::min(count, size)));
+    const auto sampled = static_cast<std::int64_t>(rows.size());
+    for (std::int64_t i = 0; i < sampled; ++i) rows[i] = sampled_row(size, sampled, i);
+    return rows;
+}
+
+SplatSet sample_rows(const SplatSet& set, std::int64_t count) {
+    return take_rows(set, sampled_rows(set.size(), count));
 }
 
 }  // namespace astrosplat

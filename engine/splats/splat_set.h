@@ -1,19 +1,35 @@
-// A layer's splats before any look: what generation or a splat file gives. Structure of arrays, layer space.
+// A layer's splats before any look: what generation or a splat file gives. Structure of arrays, layer space;
+// and sets made of some of the rows of another.
 #pragma once
 
+#include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "core/bounds.h"
 #include "core/buffer.h"
 #include "splats/harmonics.h"
-#include "splats/star_pixels.h"
 
 namespace astrosplat {
+
+/// In which pixels the light of stars was measured, where those of a picture are meant. Without either side
+/// the light of a star is that over all pixels of any frame, as seen from the layer's origin. Else it is that
+/// over the pixels of a picture, of which a frame's own may be more or fewer: they are squares of these sides
+/// at the star, as they are for the splats that the same picture was made into.
+struct StarPixels {
+    glm::dvec3 from{0.0};    // layer space: where rays meet
+    double side_at_1 = 0.0;  // scene units, at a distance of 1 from there
+    double side = 0.0;       // scene units, at any distance: rays are parallel
+    bool are_known() const { return side_at_1 > 0.0 || side > 0.0; }
+    bool operator==(const StarPixels&) const = default;
+};
 
 /// What is known of a set as a whole.
 struct SplatSetFacts {
@@ -24,8 +40,8 @@ struct SplatSetFacts {
     std::int64_t test_positions = 0;  // lattice positions looked at, 0 for files
     std::int64_t zero_alpha = 0;      // positions dropped because their alpha is exactly 0
     bool absorbs = false;             // splats of colours below 0 absorb: see color
-    bool stars =
-        false;  // colours are light summed over all pixels, as seen from the origin; see is_direction
+    /// Colours are light summed over all pixels, as seen from the origin; see is_direction.
+    bool stars = false;
     bool display_harmonics = false;  // harmonics give display values (sRGB); else linear light
     StarPixels star_pixels;          // of stars: over which pixels; else without a meaning
     std::string credit;              // from the inputs' metadata
@@ -39,10 +55,10 @@ struct SplatSetFacts {
 /// always there. Splats are in ascending order of id (see sort_by_id), so an index stands for an id in ties.
 struct SplatSet : SplatSetFacts {
     Buffer<glm::vec3> position;  // scene units, layer space
-    Buffer<glm::vec3>
-        color;               // linear light, straight; below 0 in a set that absorbs: -exponents (blend.glsl)
-    Buffer<float> alpha;     // 0..1
-    Buffer<float> distance;  // scene units from the mesh surface, >= 0; 0 where a file has none
+    /// Linear light, straight; below 0 in a set that absorbs: -exponents (blend.glsl).
+    Buffer<glm::vec3> color;
+    Buffer<float> alpha;         // 0..1
+    Buffer<float> distance;      // scene units from the mesh surface, >= 0; 0 where a file has none
     Buffer<std::uint64_t> id;    // lattice index, or row number of a file
     Buffer<glm::vec2> uv;        // of the closest point
     Buffer<glm::vec3> normal;    // unit normal of the closest face
@@ -58,7 +74,7 @@ struct SplatSet : SplatSetFacts {
     std::int64_t size() const { return static_cast<std::int64_t>(position.size()); }
 };
 
-/// The columns by number, in the order of for_each_column. Those from uv on are optional.
+/// The columns by number, in the order of splat_columns. Those from uv on are optional.
 enum class SplatColumn : std::uint8_t {
     position,
     color,
@@ -74,32 +90,59 @@ enum class SplatColumn : std::uint8_t {
     rotation,
     harmonics
 };
-constexpr const char* name_of(SplatColumn column) {
-    constexpr const char* names[] = {"position", "color",    "alpha",    "distance", "id",
-                                     "uv",       "normal",   "mesh",     "radius",   "face",
-                                     "scale",    "rotation", "harmonics"};
-    return names[static_cast<std::size_t>(column)];
-}
 constexpr bool is_optional(SplatColumn column) { return column >= SplatColumn::uv; }
 
-/// Calls visit(pointer to member, SplatColumn) for every column: the one list of them. Native files store
-/// them in this order.
+template <class T>
+struct SplatColumnRow {
+    SplatColumn column;
+    const char* name;
+    Buffer<T> SplatSet::*array;
+};
+
+/// The one list of the columns. Native files store them in this order.
+inline constexpr std::tuple splat_columns{
+    SplatColumnRow{SplatColumn::position, "position", &SplatSet::position},
+    SplatColumnRow{SplatColumn::color, "color", &SplatSet::color},
+    SplatColumnRow{SplatColumn::alpha, "alpha", &SplatSet::alpha},
+    SplatColumnRow{SplatColumn::distance, "distance", &SplatSet::distance},
+    SplatColumnRow{SplatColumn::id, "id", &SplatSet::id},
+    SplatColumnRow{SplatColumn::uv, "uv", &SplatSet::uv},
+    SplatColumnRow{SplatColumn::normal, "normal", &SplatSet::normal},
+    SplatColumnRow{SplatColumn::mesh, "mesh", &SplatSet::mesh},
+    SplatColumnRow{SplatColumn::radius, "radius", &SplatSet::radius},
+    SplatColumnRow{SplatColumn::face, "face", &SplatSet::face},
+    SplatColumnRow{SplatColumn::scale, "scale", &SplatSet::scale},
+    SplatColumnRow{SplatColumn::rotation, "rotation", &SplatSet::rotation},
+    SplatColumnRow{SplatColumn::harmonics, "harmonics", &SplatSet::harmonics}};
+inline constexpr std::size_t splat_column_count = std::tuple_size_v<decltype(splat_columns)>;
+static_assert(sizeof(SplatSet) == sizeof(SplatSetFacts) + splat_column_count * sizeof(Buffer<float>),
+              "every array of a set has its row");
+static_assert(std::apply(
+                  [](const auto&... row) {
+                      std::size_t number = 0;
+                      return ((static_cast<std::size_t>(row.column) == number++) && ...);
+                  },
+                  splat_columns),
+              "the rows are numbered as the columns are");
+
+/// Calls visit(pointer to member, SplatColumn) for every column.
 template <class Visit>
 void for_each_column(Visit visit) {
-    visit(&SplatSet::position, SplatColumn::position);
-    visit(&SplatSet::color, SplatColumn::color);
-    visit(&SplatSet::alpha, SplatColumn::alpha);
-    visit(&SplatSet::distance, SplatColumn::distance);
-    visit(&SplatSet::id, SplatColumn::id);
-    visit(&SplatSet::uv, SplatColumn::uv);
-    visit(&SplatSet::normal, SplatColumn::normal);
-    visit(&SplatSet::mesh, SplatColumn::mesh);
-    visit(&SplatSet::radius, SplatColumn::radius);
-    visit(&SplatSet::face, SplatColumn::face);
-    visit(&SplatSet::scale, SplatColumn::scale);
-    visit(&SplatSet::rotation, SplatColumn::rotation);
-    visit(&SplatSet::harmonics, SplatColumn::harmonics);
+    std::apply([&](const auto&... row) { (visit(row.array, row.column), ...); }, splat_columns);
 }
+
+constexpr std::size_t index_of(SplatColumn column) { return static_cast<std::size_t>(column); }
+
+constexpr const char* name_of(SplatColumn column) {
+    const auto names = [](const auto&... row) { return std::array{row.name...}; };
+    return std::apply(names, splat_columns)[index_of(column)];
+}
+
+/// Which columns a set or a file has.
+using SplatColumns = std::bitset<splat_column_count>;  // by index_of()
+
+/// Their names, in the order in which a person is told them: what is always there first, the id last.
+std::vector<std::string> column_names(const SplatColumns& columns);
 
 /// Bytes of one splat in the columns for which `wanted` says so.
 template <class Wanted>
@@ -116,11 +159,25 @@ struct OptionalColumns {
     bool uv = true, normal = true, mesh = true, face = false;
 };
 
+constexpr bool is_wanted(SplatColumn column, const OptionalColumns& wanted) {
+    return column == SplatColumn::uv       ? wanted.uv
+           : column == SplatColumn::normal ? wanted.normal
+           : column == SplatColumn::mesh   ? wanted.mesh
+           : column == SplatColumn::face   ? wanted.face
+                                           : true;
+}
+
 /// Gives back the memory of columns that are not wanted.
 void drop_columns(SplatSet& set, const OptionalColumns& wanted);
 
 /// Gives back the memory of all splats; what is known of the set as a whole stays.
 void drop_splats(SplatSet& set);
+
+/// Ids of sets that were made of a picture hold the number of their band in bits 48 to 55, above the place
+/// within it; ids of lattices and rows of files do not reach that far.
+inline constexpr std::uint64_t star_band = 255, dust_band = 254;
+
+constexpr bool is_star(std::uint64_t id) { return (id >> 48 & 255) == star_band; }
 
 /// Whether the position of a star stands for a direction: it is infinitely far away.
 inline bool is_direction(const glm::vec3& position) {
@@ -140,5 +197,18 @@ void sort_by_id(SplatSet& set);
 
 /// Asserts that the arrays' sizes agree.
 void check_consistent(const SplatSet& set);
+
+/// A set of these rows, in their order.
+SplatSet take_rows(const SplatSet& set, const Buffer<std::int64_t>& rows);
+
+/// Of `size` rows cut into `count` even stretches, one of the i-th by chance: every n-th row of a lattice
+/// would be a pattern. The same at every call.
+std::int64_t sampled_row(std::int64_t size, std::int64_t count, std::int64_t i);
+
+/// Those rows of all stretches, ascending; all rows where `count` is not less than `size`.
+Buffer<std::int64_t> sampled_rows(std::int64_t size, std::int64_t count);
+
+/// At most `count` rows, spread evenly over the set's own order.
+SplatSet sample_rows(const SplatSet& set, std::int64_t count);
 
 }  // namespace astrosplat

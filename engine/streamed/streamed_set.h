@@ -10,7 +10,7 @@
 #include "look/apply.h"
 #include "look/shared_uniforms.h"
 #include "splat_files/native_blocks.h"
-#include "splats/shaded_blocks.h"
+#include "splats/shaded_splats.h"
 
 namespace astrosplat {
 

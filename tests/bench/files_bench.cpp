@@ -7,9 +7,8 @@
 
 #include "inputs.h"
 #include "measure.h"
+#include "splat_files/formats.h"
 #include "splat_files/native.h"
-#include "splat_files/pda.h"
-#include "splat_files/ply.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat::bench {

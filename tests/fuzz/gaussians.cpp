@@ -8,9 +8,7 @@
 
 #include "core/base64.h"
 #include "fuzz/targets.h"
-#include "splat_files/gltf_splats.h"
-#include "splat_files/ply.h"
-#include "splat_files/usda_splats.h"
+#include "splat_files/formats.h"
 #include "support/capture.h"
 
 namespace astrosplat::fuzz {

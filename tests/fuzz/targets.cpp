@@ -21,9 +21,8 @@
 #include "source/obj.h"
 #include "source/texture.h"
 #include "splat_files/checksum.h"
+#include "splat_files/formats.h"
 #include "splat_files/native.h"
-#include "splat_files/pda.h"
-#include "splat_files/ply.h"
 
 namespace astrosplat::fuzz {
 

@@ -63,8 +63,8 @@ TEST_F(GraphTest, TheMenuTicksWhatIsSet) {
         window.move({-100, -100});
         window.frame(2);
         const glm::vec2 at = window.at(std::string("keyframe menu/") + item);
-        const Picture8 seen = cropped(window.picture(Style::schematic),
-                                      {static_cast<int>(at.x), static_cast<int>(at.y) - 8, 170, 16});
+        const Picture8 seen = cropped(window.picture(Style::schematic), static_cast<int>(at.x),
+                                      static_cast<int>(at.y) - 8, 170, 16);
         window.tap(key_code::escape);
         window.frame(2);
         return seen.pixels;

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "gui/panel/panel.h"
-#include "gui/software_draw.h"
 
 namespace astrosplat {
 
@@ -50,7 +49,6 @@ class PanelDriver {
   private:
     glm::vec2 size_;
     ImGuiContext* context_;
-    Picture8 font_;
 };
 
 }  // namespace astrosplat

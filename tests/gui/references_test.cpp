@@ -2,7 +2,7 @@
 // seen comes with new references; one that is not fails here.
 #include <gtest/gtest.h>
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/panel_driver.h"
 #include "gui/reference_screens.h"
@@ -17,7 +17,7 @@ class References : public testing::Test {
     References() : window(example_document(), 1100, 700) {}
     void expect_reference(const std::string& name) {
         window.frame(3);
-        expect_like_reference(name);
+        expect_like_reference(name, window.picture(Style::schematic));
     }
     TestWindow window;
 };
@@ -98,7 +98,8 @@ TEST_F(References, WhatTheButtonsOfANoticeDo) {
         window.move(place);
         window.frame(60);
         expect_like_reference("notice_" + button,
-                              Part{static_cast<int>(place.x) - 60, static_cast<int>(place.y) - 10, 420, 80});
+                              cropped(window.picture(Style::schematic), static_cast<int>(place.x) - 60,
+                                      static_cast<int>(place.y) - 10, 420, 80));
     }
 }
 TEST_F(References, FirstStart) {
@@ -164,7 +165,9 @@ grade = { gain = 2.0, tint = [1.0, 0.8, 0.6] }
         driver.status.layers[0].color = glm::vec3(0.8f, 0.4f, 0.2f);
         driver.show(static_cast<PanelTab>(tab));
         driver.frames(3);
-        expect_like_reference(std::string("panel_") + names[tab]);
+        Picture8 picture(360, 1400);
+        software_draw(*ImGui::GetDrawData(), picture, Style::schematic);
+        expect_like_reference(std::string("panel_") + names[tab], picture);
     }
 }
 
@@ -182,7 +185,9 @@ hybrid = { from_deg = 20.0, to_deg = 65.0 }
     driver.status = example_status();
     driver.show(PanelTab::mixing);
     driver.frames(3);
-    expect_like_reference("panel_hybrid");
+    Picture8 picture(360, 900);
+    software_draw(*ImGui::GetDrawData(), picture, Style::schematic);
+    expect_like_reference("panel_hybrid", picture);
 }
 
 TEST(IconReferences, Sheet) {
@@ -195,7 +200,7 @@ TEST(IconReferences, Sheet) {
     }
     draw_bracket(ImGui::GetForegroundDrawList(), 360.0f, 250.0f, 310.0f, color::text);
     ImGui::Render();
-    expect_like_reference("icons");
+    expect_like_reference("icons", window.picture(Style::schematic));
 }
 
 }  // namespace

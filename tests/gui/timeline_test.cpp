@@ -121,8 +121,8 @@ TEST(Timeline, EveryInterpolationHasAMarkOfItsOwn) {
                 set_interpolation(scene, opacity, 24, static_cast<Interpolation>(interpolation));
         });
         window.frame(2);
-        const Picture8 mark = cropped(window.picture(Style::schematic),
-                                      {static_cast<int>(place.x) - 4, static_cast<int>(place.y) - 4, 9, 9});
+        const Picture8 mark = cropped(window.picture(Style::schematic), static_cast<int>(place.x) - 4,
+                                      static_cast<int>(place.y) - 4, 9, 9);
         for (const auto& other : marks) EXPECT_FALSE(mark.pixels == other) << interpolation;
         marks.push_back(mark.pixels);
     }

@@ -352,8 +352,8 @@ TEST(MessageBar, AnErrorStaysUntilItIsClicked) {
     const auto seen = [&] {
         window.move({-100.0f, -100.0f});
         window.frame(2);
-        return cropped(window.picture(Style::schematic),
-                       {0, static_cast<int>(bar.y), 800, static_cast<int>(bar.height)})
+        return cropped(window.picture(Style::schematic), 0, static_cast<int>(bar.y), 800,
+                       static_cast<int>(bar.height))
             .pixels;
     };
     window.status.message = {};

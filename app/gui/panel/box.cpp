@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gui/drawing.h"
 #include "gui/key_codes.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
@@ -56,12 +55,12 @@ void draw_box(const Area& area, const BoxContent& content, bool hovered, bool ac
     const float radius = px(3);
     list->AddRectFilled(area.corner, area.end(), hovered || active ? color::hover : color::field, radius);
     if (content.fill > 0.0f) {
-        const float width = std::max(std::round(area.size.x * std::min(content.fill, 1.0f)), radius);
+        const float width = std::max(area.size.x * std::min(content.fill, 1.0f), radius);
         list->AddRectFilled(
             area.corner, {area.corner.x + width, area.end().y}, color::fill, radius,
             content.fill < 0.99f ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersAll);
     }
-    if (active) outlined(list, area.corner, area.end(), color::accent, radius);
+    if (active) list->AddRect(area.corner, area.end(), color::accent, radius);
     const float padding = padding_of(area);
     const float needed = ImGui::CalcTextSize(content.shown.c_str()).x + 2.0f * padding;
     const float unit = unit_text(list, area, content.unit, needed);

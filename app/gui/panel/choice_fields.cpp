@@ -1,7 +1,7 @@
 // A check, a list to open, small switches side by side.
 #include "gui/panel/choice_fields.h"
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
 #include "scene/field.h"
@@ -20,8 +20,7 @@ void boolean_field(Context& context, const Row& row) {
     list->AddRectFilled(box.corner, box.end(), back, px(3));
     if (*on) {
         const ImVec2 m = box.middle();
-        const ImVec2 points[3] = {
-            {m.x - px(3.8f), m.y + px(0.1f)}, {m.x - px(1), m.y + px(3)}, {m.x + px(3.8f), m.y - px(2.8f)}};
+        const ImVec2 points[3] = {{m.x - px(4), m.y}, {m.x - px(1), m.y + px(3)}, {m.x + px(4), m.y - px(3)}};
         list->AddPolyline(points, 3, color::window, ImDrawFlags_None, px(1.8f));
     }
     if (clicked) set_value(context, row.key(), !*on);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/color.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/panel/choice_fields.h"
 #include "gui/panel/color_rows.h"
 #include "gui/panel/row.h"
@@ -25,7 +25,7 @@ double highest(const ParameterSpec& spec) {
     return spec.max - (spec.max - spec.slider_max) * 0.01 - 1e-3;
 }
 
-float share_of_slider(const ParameterSpec& spec, double value) {
+float filled(const ParameterSpec& spec, double value) {
     double lo = spec.slider_min, hi = spec.slider_max;
     if (!(hi > lo) || lo < 0.0) return -1.0f;
     if (spec.scale == Scale::logarithmic && lo > 0.0) {
@@ -45,7 +45,7 @@ BoxContent number_content(const ParameterSpec& spec, double value) {
     content.step = drag_step(spec, value);
     content.min = spec.min;
     content.max = highest(spec);
-    content.fill = share_of_slider(spec, value);
+    content.fill = filled(spec, value);
     return content;
 }
 
@@ -58,7 +58,7 @@ void follow_data(const Context& context, const ParameterSpec& spec, BoxContent& 
     of_data.slider_min = histograms->values.lo;
     of_data.slider_max = histograms->values.hi;
     content.step = drag_step(of_data, content.value);
-    content.fill = share_of_slider(of_data, content.value);
+    content.fill = static_cast<float>(filled(of_data, content.value));
 }
 
 Value as_number(const ParameterSpec& spec, double value) {
@@ -106,9 +106,9 @@ void number_field(Context& context, const Row& row) {
 }
 
 Area part(const Area& area, int index, int count) {
-    const float gap = px(3), n = static_cast<float>(count), width = (area.size.x - gap * (n - 1.0f)) / n;
-    const auto left = [&](int i) { return std::round((width + gap) * static_cast<float>(i)); };
-    return {{area.corner.x + left(index), area.corner.y}, {left(index + 1) - left(index) - gap, area.size.y}};
+    const float gap = px(3);
+    const float width = (area.size.x - gap * static_cast<float>(count - 1)) / static_cast<float>(count);
+    return {{area.corner.x + (width + gap) * static_cast<float>(index), area.corner.y}, {width, area.size.y}};
 }
 
 void component_field(Context& context, const Row& row, const Area& area, std::size_t index) {

@@ -12,7 +12,7 @@
 #include "core/color.h"
 #include "edit/layers.h"
 #include "edit/new_from_file.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/key_codes.h"
 #include "gui/panel/row.h"
 #include "gui/panel/section.h"
@@ -183,8 +183,8 @@ void reorder(Context& context, const std::vector<Area>& rows) {
     const int to = row_under(rows, ImGui::GetIO().MousePos.y);
     const auto place = static_cast<std::size_t>(to);
     const float y = to > memory.dragged_layer ? rows[place].end().y : rows[place].corner.y;
-    line_across(ImGui::GetWindowDrawList(), rows[place].corner.x + px(margin),
-                rows[place].end().x - px(margin), y, color::accent, px(2));
+    ImGui::GetWindowDrawList()->AddLine({rows[place].corner.x + px(margin), y},
+                                        {rows[place].end().x - px(margin), y}, color::accent, px(2));
     if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
     const auto from = static_cast<std::size_t>(memory.dragged_layer);
     memory.dragged_layer = -1;
@@ -279,7 +279,7 @@ void draw_merge_bracket(const Context& context, const std::vector<Area>& rows) {
     const float x = rows.front().corner.x + px(6);
     const ImU32 ink = color::with_opacity(color::dim, 0.7f);
     draw_bracket(list, x, ticks.front(), ticks.back(), ink);
-    for (const float y : ticks) line_across(list, x, x + px(4), y, ink, px(1));
+    for (const float y : ticks) list->AddLine({x, y}, {x + px(4), y}, ink, px(1));
     const Area zone{{x - px(6), ticks.front()}, {px(12), ticks.back() - ticks.front()}};
     if (ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(zone.corner, zone.end()))
         ImGui::SetTooltip("Merged by depth: the order of these does not matter");

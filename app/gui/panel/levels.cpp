@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gui/drawing.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
@@ -35,8 +34,8 @@ bool handle(Context& context, const Area& area, const Values& values, const char
     if (near) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 ink = near ? color::accent : color::text;
-    line_down(list, x, area.corner.y, area.end().y, ink, px(1));
-    const float foot = std::floor(area.end().y);
+    list->AddLine({x, area.corner.y}, {x, area.end().y}, ink, px(1.5f));
+    const float foot = area.end().y;
     list->AddTriangleFilled({x, foot - px(8)}, {x + px(5), foot}, {x - px(5), foot}, ink);
     if (!active || ImGui::GetIO().MouseDelta.x == 0.0f) return false;
     const double share =

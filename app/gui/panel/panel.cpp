@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "gui/drawing.h"
 #include "gui/panel/context.h"
 #include "gui/panel/layer_list.h"
 #include "gui/panel/row.h"
@@ -57,7 +56,7 @@ void tab_row(ViewState& view) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = px(32);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    line_across(list, corner.x, corner.x + width, corner.y, color::line);
+    list->AddLine(corner, {corner.x + width, corner.y}, color::line);
     const float padding = px(12);
     float x = corner.x;
     PanelTab chosen = view.tab;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gui/drawing.h"
 #include "gui/theme.h"
 #include "look/prepare.h"
 #include "look/shared_look.h"
@@ -41,7 +40,7 @@ void draw_bars(const Area& area, std::span<const float> shares, double stretch) 
         const float gap = width >= px(4) ? 1.0f : 0.0f;
         const float right = std::min(left + width - gap, area.end().x);
         const float top = area.end().y - (area.size.y - px(4)) * std::clamp(shares[i], 0.0f, 1.0f);
-        if (shares[i] > 0.0f) filled(list, {left, top}, {right, area.end().y}, color::hover);
+        if (shares[i] > 0.0f) list->AddRectFilled({left, top}, {right, area.end().y}, color::hover);
     }
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "gui/drawing.h"
 #include "gui/panel/box.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/section.h"
@@ -48,7 +47,7 @@ void draw_both(Context& context, const PrepareStatus& status) {
     list->AddRectFilled(area.corner, area.end(), IM_COL32_BLACK);
     if (status.before) list->AddImage(status.before, area.corner, {x, area.end().y}, {0, 0}, {share, 1});
     if (status.after) list->AddImage(status.after, {x, area.corner.y}, area.end(), {share, 0}, {1, 1});
-    line_down(list, x, area.corner.y, area.end().y, color::text, px(1));
+    list->AddLine({x, area.corner.y}, {x, area.end().y}, color::text, px(1));
     captions("before", "after");
 }
 

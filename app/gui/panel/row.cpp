@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "edit/keyframes.h"
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/panel/fields.h"
 #include "gui/panel/section.h"
 #include "gui/panel/words.h"

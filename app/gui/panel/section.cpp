@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "gui/drawing.h"
+#include "gui/icons.h"
 #include "gui/panel/row.h"
 #include "gui/theme.h"
 
@@ -29,7 +29,7 @@ void head_text(const Area& area, float left, const char* title, const std::strin
 void edge_line(float y) {
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     ImGui::PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, false);
-    line_across(ImGui::GetWindowDrawList(), corner.x, corner.x + size.x, y, color::line);
+    ImGui::GetWindowDrawList()->AddLine({corner.x, y}, {corner.x + size.x, y}, color::line);
     ImGui::PopClipRect();
 }
 
@@ -125,8 +125,8 @@ bool progress_line(float width, float share, const std::string& text, const char
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(bar.corner, bar.end(), color::window, px(3));
     if (share > 0.0f)
-        filled(list, bar.corner, {corner.x + bar.size.x * std::min(share, 1.0f), bar.end().y}, color::fill,
-               px(3));
+        list->AddRectFilled(bar.corner, {corner.x + bar.size.x * std::min(share, 1.0f), bar.end().y},
+                            color::fill, px(3));
     clipped_text(list, bar, px(8), share > 0.0f ? color::text : color::attention, text);
     ImGui::SetCursorScreenPos({bar.end().x + px(4), corner.y});
     return text_button(button, button_width);

@@ -6,7 +6,6 @@
 
 #include "core/color.h"
 #include "core/real.h"
-#include "gui/drawing.h"
 #include "gui/panel/plot.h"
 #include "gui/panel/words.h"
 #include "gui/theme.h"
@@ -90,7 +89,7 @@ void draw_falloff(const Falloff& falloff) {
 void draw_hybrid(float from_deg, float to_deg) {
     const Area area = begin_plot(72.0f);
     const float radius = area.size.y - px(16);
-    const ImVec2 origin{std::floor(area.middle().x - radius * 0.5f), std::floor(area.end().y - px(8))};
+    const ImVec2 origin{area.middle().x - radius * 0.5f, area.end().y - px(8)};
     const double from = std::clamp(double(from_deg), 0.0, 90.0), to = std::clamp(double(to_deg), from, 90.0);
     sector(origin, radius, 0.0, from, color::with_opacity(color::dim, 0.35f));
     constexpr int steps = 12;
@@ -99,8 +98,8 @@ void draw_hybrid(float from_deg, float to_deg) {
         sector(origin, radius, a, b, color::with_opacity(color::accent, 0.1f + 0.5f * float(i) / steps));
     }
     sector(origin, radius, to, 90.0, color::with_opacity(color::accent, 0.65f));
-    line_across(ImGui::GetWindowDrawList(), origin.x - radius, origin.x + radius, origin.y + px(3),
-                color::text, px(2));
+    ImGui::GetWindowDrawList()->AddLine({origin.x - radius, origin.y + px(3)},
+                                        {origin.x + radius, origin.y + px(3)}, color::text, px(2));
     captions("over seen face-on", "screen seen edge-on");
 }
 

@@ -10,7 +10,7 @@
 
 #include "bodies/bodies.h"
 #include "core/parallel.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 #include "support/painted_picture.h"
 
 namespace astrosplat {

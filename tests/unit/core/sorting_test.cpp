@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/morton.h"
 #include "core/sorting.h"
 
 namespace astrosplat {
@@ -55,16 +54,6 @@ TEST(RadixSort, ACheckStopsIt) {
         radix_sort<8>(
             all.data(), scratch.data(), all.size(), 0, 64, [](const Pair& p) { return p.first; }, stop),
         std::runtime_error);
-}
-
-TEST(Morton, InterleavesTheBitsOfTheCoordinates) {
-    EXPECT_EQ(morton_place(1, 0, 0), 1u);
-    EXPECT_EQ(morton_place(0, 1, 0), 2u);
-    EXPECT_EQ(morton_place(0, 0, 1), 4u);
-    for (unsigned bit = 0; bit < morton_axis_bits; ++bit)
-        EXPECT_EQ(spread_bits(std::uint64_t{1} << bit), std::uint64_t{1} << 3 * bit) << bit;
-    const std::uint64_t most = (std::uint64_t{1} << morton_axis_bits) - 1;
-    EXPECT_EQ(morton_place(most, most, most), (std::uint64_t{1} << 63) - 1);
 }
 
 TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {

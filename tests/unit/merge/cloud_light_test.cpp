@@ -11,7 +11,7 @@
 #include "core/shared_maths.h"
 #include "render/child_noise.h"
 #include "render/render.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 #include "unit/merge/cloud.h"
 
 namespace astrosplat {

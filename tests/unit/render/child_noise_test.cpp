@@ -9,7 +9,7 @@
 
 #include "camera/camera.h"
 #include "core/shared_maths.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {

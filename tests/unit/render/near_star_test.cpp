@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "camera/camera.h"
-#include "splats/star_id.h"
+#include "splats/splat_set.h"
 #include "unit/render/scenes.h"
 
 namespace astrosplat {

@@ -1,5 +1,5 @@
 // Floats as the fast writer puts them against std::to_chars, which is the definition.
-#include "splat_files/float_text.h"
+#include "splat_files/number_text.h"
 
 #include <bit>
 #include <cfloat>

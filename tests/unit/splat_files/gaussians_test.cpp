@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "core/log.h"
-#include "splat_files/finish_gaussians.h"
+#include "splat_files/formats.h"
+#include "splat_files/gaussian_rows.h"
 #include "splat_files/native.h"
-#include "splat_files/ply.h"
 #include "unit/splat_files/gaussian_files.h"
 
 namespace astrosplat {
@@ -35,7 +35,7 @@ TEST_F(GaussianFiles, PlyOfEveryDegree) {
     }
     EXPECT_EQ(
         splat_attributes(path("a.ply")),
-        (std::vector<std::string>{"position", "alpha", "scale", "rotation", "harmonics", "color", "radius"}));
+        (std::vector<std::string>{"position", "color", "alpha", "radius", "scale", "rotation", "harmonics"}));
 }
 
 TEST_F(GaussianFiles, PlyInAnyOrderAsTextAndWithStrangers) {

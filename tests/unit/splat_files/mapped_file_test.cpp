@@ -8,9 +8,8 @@
 #include <csignal>
 #include <string>
 
+#include "splat_files/formats.h"
 #include "splat_files/native.h"
-#include "splat_files/pda.h"
-#include "splat_files/ply.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {

@@ -7,10 +7,9 @@
 #include <cmath>
 
 #include "splat_files/checksum.h"
-#include "splat_files/native_read.h"
 #include "splat_files/splat_file.h"
-#include "splats/spatial_order.h"
-#include "splats/take_rows.h"
+#include "splats/row_order.h"
+#include "splats/splat_set.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {

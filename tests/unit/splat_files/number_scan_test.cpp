@@ -1,5 +1,5 @@
 // Numbers as the fast scanner reads them against std::from_chars, which is the definition.
-#include "splat_files/number_scan.h"
+#include "splat_files/number_text.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // PDA: exact round trips, everything a header may look like, and one test for each thing that can be wrong.
-#include "splat_files/pda.h"
+#include "splat_files/formats.h"
 
 #include <sys/resource.h>
 

@@ -1,6 +1,6 @@
 // PLY: exact round trips, the three formats and their types against hand-made files, and one test for each
 // error.
-#include "splat_files/ply.h"
+#include "splat_files/formats.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/log.h"
+#include "splat_files/ply_bytes.h"
 #include "unit/splat_files/file_support.h"
 
 namespace astrosplat {
@@ -36,6 +37,23 @@ class Ply : public SplatFileTest {
     }
     static std::string xyz(bool big = false) { return raw(1.0f, big) + raw(2.0f, big) + raw(3.0f, big); }
 };
+
+TEST_F(Ply, AHeaderIsDataBeforeAnyRowIsRead) {
+    const std::string text =
+        "ply\r\nformat binary_big_endian 1.0\r\ncomment credit: NASA, ESA \nelement face 2\nproperty list "
+        "uchar int corners\nelement vertex 3\nproperty double x\nend_header\nDATA";
+    const PlyHeader header = read_ply_header("a.ply", text);
+    EXPECT_EQ(header.format, PlyFormat::big_endian);
+    EXPECT_EQ(header.credit, "NASA, ESA");
+    EXPECT_EQ(header.data, "DATA");
+    EXPECT_EQ(header.data_line, 9);
+    ASSERT_EQ(header.elements.size(), 2u);
+    EXPECT_EQ(header.elements[0].count, 2u);
+    EXPECT_TRUE(header.elements[0].properties.at(0).list);
+    EXPECT_EQ(header.elements[0].properties[0].list_count, NumberType::u8);
+    EXPECT_EQ(header.elements[1].properties.at(0).name, "x");
+    EXPECT_EQ(header.elements[1].properties[0].type, NumberType::f64);
+}
 
 TEST_F(Ply, WritesAHeaderOthersRead) {
     SplatSet set = awkward_set(1);

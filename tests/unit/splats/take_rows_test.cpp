@@ -1,5 +1,5 @@
 // Orders and samples of a set's rows: Morton codes in closed form, ties, threads, and what rows bring along.
-#include "splats/take_rows.h"
+#include "splats/splat_set.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/shared_maths.h"
-#include "splats/morton_order.h"
+#include "splats/row_order.h"
 
 namespace astrosplat {
 namespace {
@@ -43,6 +43,16 @@ std::vector<std::int64_t> order_of(const SplatSet& set) {
     std::vector<std::int64_t> rows;
     for (const MortonRow& row : morton_order(set)) rows.push_back(row.row);
     return rows;
+}
+
+TEST(Morton, InterleavesTheBitsOfTheCoordinates) {
+    EXPECT_EQ(morton_place(1, 0, 0), 1u);
+    EXPECT_EQ(morton_place(0, 1, 0), 2u);
+    EXPECT_EQ(morton_place(0, 0, 1), 4u);
+    for (unsigned bit = 0; bit < morton_axis_bits; ++bit)
+        EXPECT_EQ(spread_bits(std::uint64_t{1} << bit), std::uint64_t{1} << 3 * bit) << bit;
+    const std::uint64_t most = (std::uint64_t{1} << morton_axis_bits) - 1;
+    EXPECT_EQ(morton_place(most, most, most), (std::uint64_t{1} << 63) - 1);
 }
 
 TEST(MortonOrder, CornersOfACubeComeXFirst) {

@@ -16,7 +16,7 @@
 
 #include "core/error.h"
 #include "sets/load_source.h"
-#include "splat_files/ply.h"
+#include "splat_files/formats.h"
 #include "support/small_scene.h"
 
 namespace astrosplat {

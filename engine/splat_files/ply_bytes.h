@@ -1,13 +1,15 @@
-// The header of a PLY file as data: format, elements, properties. In: the file's bytes. Out: PlyHeader, or
-// one line that says what is wrong.
+// The bytes of a PLY file: its header as data (format, elements, properties), and binary rows into a table
+// whose columns know their fields.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/progress.h"
 #include "splat_files/splat_table.h"
 
 namespace astrosplat {
@@ -28,10 +30,12 @@ struct PlyHeader {
     std::int64_t data_line = 0;  // the file's line where data begins
 };
 
-/// Throws InputError.
+/// Throws InputError with the line.
 PlyHeader read_ply_header(const std::filesystem::path& file, std::string_view bytes);
 
-/// Bytes of one number of a binary file.
-std::size_t size_of(NumberType type);
+/// Opens the table and stores the rows of element number `vertex`, in parallel. Throws InputError with the
+/// first wrong vertex.
+void read_binary_rows(const PlyHeader& header, std::size_t vertex, SplatTable& table,
+                      const std::filesystem::path& file, const Progress& progress);
 
 }  // namespace astrosplat
