@@ -17,7 +17,7 @@
 #include "status_command.h"
 #include "submit/submit.h"
 #include "verify.h"
-#include "viewer/screenshot.h"
+#include "viewer/run_viewer.h"
 
 namespace astrosplat {
 

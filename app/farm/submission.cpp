@@ -13,7 +13,7 @@
 #include "core/file.h"
 #include "core/log.h"
 #include "core/text.h"
-#include "farm/run_tool.h"
+#include "farm/child_process.h"
 #include "frame/output_pattern.h"
 #include "scene/frames.h"
 

@@ -1,6 +1,7 @@
 // Background by clearing, then the image, or its parts on both sides of the wipe, each cut to its rectangle.
 #include "gl/display.h"
 
+#include <fmt/format.h>
 #include <glad/gl.h>
 
 #include <algorithm>
@@ -8,15 +9,160 @@
 #include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "core/real.h"
-#include "gl/display_programs.h"
 #include "gl/objects.h"
+#include "gl/program.h"
+#include "ocio/display_transform.h"
 
 namespace astrosplat {
 namespace {
 
+/// A display transform of a configuration, as the GLSL and the tables that a fragment shader needs of it.
+/// Tables are 32-bit floats: OpenGL interpolates the smooth ones.
+class OcioTables {
+  public:
+    bool holds(const std::shared_ptr<const DisplayTransform>& transform) const {
+        return transform_ == transform;
+    }
+    /// Uploads the tables of another one, by texture unit `unit`.
+    void take(std::shared_ptr<const DisplayTransform> transform, int unit);
+    /// GLSL of "vec4 ocio_display(vec4)".
+    const std::string& text() const { return text_; }
+    /// Texture units from `first` on.
+    void name_samplers(const GlProgram& program, int first) const {
+        for (const Table& table : tables_) program.set_sampler(table.sampler.c_str(), first++);
+    }
+    void bind(int first) const {
+        for (const Table& table : tables_) bind_texture(first++, table.target, table.texture.name());
+    }
+
+  private:
+    struct Table {
+        std::string sampler;
+        GLenum target;
+        GlTexture texture;
+    };
+    std::shared_ptr<const DisplayTransform> transform_;
+    std::string text_;
+    std::vector<Table> tables_;
+};
+
+GLenum target_of(const GlslTable& table) {
+    return table.dimensions == 1 ? GL_TEXTURE_1D : table.dimensions == 2 ? GL_TEXTURE_2D : GL_TEXTURE_3D;
+}
+
+void upload(GLenum target, const GlslTable& table) {
+    const GLint stored = table.channels == 1 ? GL_R32F : GL_RGB32F;
+    const GLenum given = table.channels == 1 ? GL_RED : GL_RGB;
+    const float* const values = table.values.data();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    if (target == GL_TEXTURE_1D)
+        glTexImage1D(target, 0, stored, table.width, 0, given, GL_FLOAT, values);
+    else if (target == GL_TEXTURE_2D)
+        glTexImage2D(target, 0, stored, table.width, table.height, 0, given, GL_FLOAT, values);
+    else
+        glTexImage3D(target, 0, stored, table.width, table.width, table.width, 0, given, GL_FLOAT, values);
+    set_sampling(target, table.smooth ? GL_LINEAR : GL_NEAREST);
+    if (target == GL_TEXTURE_3D) glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+}
+
+void OcioTables::take(std::shared_ptr<const DisplayTransform> transform, int unit) {
+    transform_ = std::move(transform);
+    tables_.clear();
+    text_.clear();
+    if (!transform_) return;
+    const GlslTransform glsl = transform_->glsl();
+    text_ = glsl.text;
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    for (const GlslTable& table : glsl.tables) {
+        tables_.push_back({table.sampler, target_of(table), {}});
+        glBindTexture(tables_.back().target, tables_.back().texture.get());
+        upload(tables_.back().target, table);
+    }
+    glActiveTexture(GL_TEXTURE0);
+}
+
+constexpr int view_none = 3, view_ocio = 4;  // VIEW_NONE, VIEW_OCIO of display_fragment.glsl
+constexpr int ocio_unit = 2;                 // its tables' first texture unit
+
+/// What one program of display_fragment.glsl is made for.
+struct DisplayVariant {
+    int view_a = 0, view_b = 0;  // VIEW_... of display_fragment.glsl
+    int taps_a = 1, taps_b = 1;
+    enum class Mix { alone, over, difference } mix = Mix::alone;
+    bool masked = false, dither = false;
+    auto operator<=>(const DisplayVariant&) const = default;
+    /// Shows something through OpenColorIO.
+    bool managed() const { return view_a == view_ocio || (mix != Mix::alone && view_b == view_ocio); }
+};
 using Mix = DisplayVariant::Mix;
+
+/// Of light; and of display values where `holds_display`.
+int view_number(const DisplaySettings& settings, bool holds_display) {
+    if (holds_display) return view_none;
+    // VIEW_LINEAR, VIEW_SRGB, VIEW_SOFT
+    return settings.ocio ? view_ocio : static_cast<int>(settings.view) - 1;
+}
+
+ProgramSource source_of(const DisplayVariant& v, const OcioTables& ocio) {
+    ProgramSource source{{fmt::format("VIEW {}", v.view_a), fmt::format("TAPS_A {}", v.taps_a)},
+                         {"screen_vertex.glsl"},
+                         {"display_fragment.glsl"},
+                         {}};
+    if (v.mix != Mix::alone) {
+        const char* mix = v.mix == Mix::over ? "OVER" : "DIFFERENCE";
+        source.defines.insert(source.defines.end(),
+                              {mix, fmt::format("VIEW_B {}", v.view_b), fmt::format("TAPS_B {}", v.taps_b)});
+    }
+    if (v.masked) source.defines.push_back("MASKED");
+    if (v.dither) source.defines.push_back("DITHER");
+    if (v.managed()) {
+        source.defines.push_back("WITH_OCIO");
+        source.fragment_head = ocio.text();
+    }
+    return source;
+}
+
+/// The programs, each made for exactly what it shows: a pixel costs one read and one curve. Compiled when
+/// first needed.
+class DisplayPrograms {
+  public:
+    /// In use, with its textures at units 0 and 1, and beyond these `ocio`'s.
+    const GlProgram& use(const DisplayVariant& variant, const std::shared_ptr<const DisplayTransform>& ocio);
+
+  private:
+    void use_ocio(const std::shared_ptr<const DisplayTransform>& wanted);
+
+    std::map<DisplayVariant, std::unique_ptr<GlProgram>> programs_;
+    OcioTables ocio_;
+};
+
+/// Programs of another transform go.
+void DisplayPrograms::use_ocio(const std::shared_ptr<const DisplayTransform>& wanted) {
+    if (!ocio_.holds(wanted)) {
+        std::erase_if(programs_, [](const auto& entry) { return entry.first.managed(); });
+        ocio_.take(wanted, ocio_unit);
+    }
+    ocio_.bind(ocio_unit);
+}
+
+const GlProgram& DisplayPrograms::use(const DisplayVariant& variant,
+                                      const std::shared_ptr<const DisplayTransform>& ocio) {
+    if (variant.managed()) use_ocio(ocio);
+    std::unique_ptr<GlProgram>& entry = programs_[variant];
+    if (!entry) {
+        entry = std::make_unique<GlProgram>(source_of(variant, ocio_));
+        entry->set_sampler("image_a", 0);
+        entry->set_sampler("image_b", 1);
+        if (variant.managed()) ocio_.name_samplers(*entry, ocio_unit);
+    }
+    entry->use();
+    return *entry;
+}
 
 /// A texture and how it is read: pixels one to one, or at least twice as large, as they are; else smoothed,
 /// shrunk ones with several taps.
@@ -81,7 +227,7 @@ constexpr float line_brightness = 0.85f;
 
 struct Display::State {
     DisplayPrograms programs;
-    GlVertexArray nothing;
+    WholeTarget triangle;
     GlTarget target;
     GlTarget values;        // of what is compared, as floats
     int drawn_height = 0;   // of the target that is drawn into
@@ -132,9 +278,7 @@ struct Display::State {
                     1.0f / s.height);
         glUniform1f(p.uniform("gain"), float(real::pow(2.0, double(s.exposure))));
         if (variant.mix != Mix::alone) set_b(p, s);
-        glBindVertexArray(nothing.get());
-        glDrawArrays(GL_TRIANGLES, 0, 3);
-        glBindVertexArray(0);
+        triangle.draw();
     }
 
     void draw_side(const PixelRect& r, bool b, const DisplaySettings& s) {

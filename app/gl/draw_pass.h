@@ -1,4 +1,5 @@
-// Drawing the splats of one blend group into the bound target, blended as the engine folds them.
+// Drawing the splats of one blend group into the bound target, blended as the engine folds them, with the
+// engine's footprint tables (render/footprint.h) as textures.
 #pragma once
 
 #include <map>
@@ -6,13 +7,41 @@
 #include <string>
 #include <vector>
 
-#include "gl/footprint_textures.h"
+#include "gl/objects.h"
 #include "gl/program.h"
 #include "gl/splat_buffers.h"
 #include "render/fold.h"
+#include "render/footprint.h"
 #include "render/project.h"
 
 namespace astrosplat {
+
+/// What the vertex shader needs of a table besides its textures.
+struct FootprintSlot {
+    int table = 0;  // layer of the profiles, pair of rows of the nodes
+    float reach = 1.0f;
+    float core = 0.0f;
+    bool flat_core = false;
+};
+
+/// Weight over distance for every falloff in use, and what normalises it.
+class FootprintTextures {
+  public:
+    /// One slot per falloff, in order; tables that are not there yet are made (about 30 ms each).
+    std::vector<FootprintSlot> prepare(const std::vector<Falloff>& falloffs, float pixel_filter_px);
+    /// Weights: sampler2DArray of 256 x 513, linear; nodes: sampler2D, two rows a table.
+    void bind(int profiles_unit, int nodes_unit) const;
+
+  private:
+    struct Entry {
+        Falloff falloff;
+        FootprintTable table;
+    };
+    void upload();
+    std::vector<Entry> entries_;
+    float pixel_filter_px_ = 0.0f;
+    GlTexture profiles_, nodes_;
+};
 
 /// The vertex stage of what draws splats.
 inline const std::vector<std::string> splat_vertex_files =

@@ -71,9 +71,7 @@ void EnvironmentPass::draw(const Environment& environment, const Camera& camera)
     glUniform1f(program_.uniform("coarse_share"), float(level - double(fine)));
     glUniform1f(program_.uniform("gain"), environment.gain);
     glDisable(GL_BLEND);
-    glBindVertexArray(nothing_.get());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glBindVertexArray(0);
+    triangle_.draw();
 }
 
 }  // namespace astrosplat

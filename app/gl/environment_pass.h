@@ -28,7 +28,7 @@ class EnvironmentPass {
         void hold(const Environment& environment, std::size_t level);
     };
     GlProgram program_;
-    GlVertexArray nothing_;
+    WholeTarget triangle_;
     Level fine_, coarse_;
 };
 

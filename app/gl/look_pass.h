@@ -1,14 +1,20 @@
-// The look on the GPU: raw splats through look_splat of shaders/shared into shaded buffers, by
-// transform feedback.
+// The look on the GPU: raw splats through look_splat of shaders/shared into shaded buffers, by transform
+// feedback; and the shaded splats of each blend group, kept up to date with the order in which they are
+// drawn.
 #pragma once
 
 #include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "core/image.h"
+#include "gl/draw_pass.h"
 #include "gl/objects.h"
+#include "gl/order.h"
+#include "gl/preview.h"
 #include "gl/program.h"
 #include "gl/splat_buffers.h"
 #include "look/shared_uniforms.h"
@@ -50,6 +56,82 @@ class LookPass {
     GlBuffer block_;
     GlTexture map_;
     GlTarget unused_;  // without a window OpenGL draws nothing where no target is bound
+};
+
+/// The raw splats of every set in use.
+class RawSplatStore {
+  public:
+    RawSplats& of(const std::shared_ptr<const SplatSet>& set);
+    /// Drops the sets not asked for since the last call.
+    void drop_unused();
+
+  private:
+    struct Entry {
+        std::unique_ptr<RawSplats> splats;
+        bool used = true;
+    };
+    std::map<const SplatSet*, Entry> entries_;
+};
+
+/// The shaded splats of one blend group: a look is evaluated again only where look or inputs changed, and the
+/// order only where places or camera did.
+class GroupSplats {
+  public:
+    /// Brings the shaded splats of these layers up to date. Throws InputError as prepare_look does.
+    void update(const std::vector<const PreviewLayer*>& layers, RawSplatStore& raw, LookPass& pass,
+                bool ordered);
+    /// Asks for the order seen by these projections if it is not the one there or on its way. True when it
+    /// was asked for now.
+    bool request_order(const std::vector<LayerProjection>& projections, double far_from, OrderThread& thread,
+                       std::size_t slot);
+    /// Takes the order if it has come.
+    void take_order(OrderThread& thread, std::size_t slot);
+    /// The order there is was made for these splats, perhaps seen from elsewhere.
+    bool has_order() const { return order_valid_; }
+    bool order_is_current() const { return order_version_ == requested_version_; }
+
+    std::int64_t first_of(std::size_t layer) const { return parts_[layer].first; }
+    std::int64_t shown() const { return buffers_.size(); }
+    /// Largest radius of a layer, scene units of the layer.
+    float largest_radius(std::size_t layer) const { return parts_[layer].largest_radius; }
+    ShadedBuffers& buffers() { return buffers_; }
+    std::int64_t ordered_count() const { return ordered_count_; }
+    std::int64_t far_count() const { return far_count_; }
+
+  private:
+    /// A layer's splats and what they were made from.
+    struct Part {
+        std::shared_ptr<const SplatSet> set;  // null: its splats were given
+        std::int64_t first = 0, count = 0;
+        std::optional<Shading> shading;  // none: not shaded yet
+        LookUniforms uniforms;
+        float largest_radius = 0.0f;
+    };
+    /// What an order was made from.
+    struct View {
+        std::vector<glm::dmat3> camera_from_layer;
+        std::vector<glm::dvec3> origin;
+        int projection = 0;
+        double far_from = 0.0;
+        std::uint64_t places_version = 0;
+        bool operator==(const View&) const = default;
+    };
+
+    bool lay_out(const std::vector<const PreviewLayer*>& layers);
+    void upload(Part& part, const ShadedSplats& splats);
+    bool shade(Part& part, const PreviewLayer& layer, RawSplatStore& raw, LookPass& pass);
+    void read_places();
+
+    std::vector<Part> parts_;
+    ShadedBuffers buffers_;
+    std::shared_ptr<const Buffer<glm::vec4>> places_;
+    std::uint64_t places_version_ = 0;
+    View requested_;
+    std::uint64_t requested_version_ = 0, order_version_ = 0;
+    std::uint64_t first_version_ =
+        0;  // asked for since the layout last changed; older orders are for other splats
+    bool order_valid_ = false;
+    std::int64_t ordered_count_ = 0, far_count_ = 0;
 };
 
 }  // namespace astrosplat

@@ -36,6 +36,12 @@ void GlTarget::bind() {
     glViewport(0, 0, width_, height_);
 }
 
+void WholeTarget::draw() {
+    glBindVertexArray(nothing_.get());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+}
+
 std::vector<unsigned char> read_rgba8(GLuint framebuffer, int width, int height) {
     const auto row = static_cast<std::size_t>(width) * 4, rows = static_cast<std::size_t>(height);
     std::vector<unsigned char> bottom_up(row * rows), top_down(row * rows);

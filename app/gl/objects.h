@@ -85,6 +85,15 @@ class GlTarget {
     int width_ = 0, height_ = 0;
 };
 
+/// A triangle over the whole of the bound target, as screen_vertex.glsl makes it without any array.
+class WholeTarget {
+  public:
+    void draw();
+
+  private:
+    GlVertexArray nothing_;
+};
+
 /// What a framebuffer shows as 8-bit RGBA, top row first.
 std::vector<unsigned char> read_rgba8(GLuint framebuffer, int width, int height);
 

@@ -13,8 +13,8 @@
 #include "core/log.h"
 #include "gl/draw_pass.h"
 #include "gl/environment_pass.h"
-#include "gl/group_splats.h"
 #include "gl/image_texture.h"
+#include "gl/look_pass.h"
 #include "render/resolve.h"
 
 namespace astrosplat {
@@ -84,6 +84,14 @@ std::int64_t shown_count(const PreviewLayer& layer) {
     return layer.set ? layer.set->size() : 0;
 }
 
+RenderSettings settings_of(const PreviewView& view) {
+    RenderSettings settings;
+    settings.width = view.width;
+    settings.height = view.height;
+    settings.pixel_filter = view.pixel_filter;
+    return settings;
+}
+
 Shading shading_of(const PreviewLayer& layer) {
     const Image* map = layer.inputs.thickness_map;
     return {layer.look, layer.inputs, map ? content_probe(*map) : 0.0f};
@@ -100,7 +108,7 @@ struct GlPreview::State {
     GlTarget frame, own_target;
     GlProgram composite_covering{{{"BLEND 0"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}, {}}};
     GlProgram composite_screen{{{"BLEND 2"}, {"screen_vertex.glsl"}, {"composite_fragment.glsl"}, {}}};
-    GlVertexArray nothing;
+    WholeTarget triangle;
     std::map<const SplatSet*, std::pair<std::weak_ptr<const SplatSet>, Bounds>> boxes;
     std::int64_t shown = 0;
     bool sorting = false;
@@ -112,8 +120,7 @@ struct GlPreview::State {
         return entry.second;
     }
 
-    std::vector<FrameGroup> make_frame(const std::vector<PreviewLayer>& layers, const Camera& camera,
-                                       int width, int height, float pixel_filter);
+    std::vector<FrameGroup> make_frame(const std::vector<PreviewLayer>& layers, const PreviewView& view);
     void update(std::vector<FrameGroup>& frame_groups, int width, int height);
     void wait_for_orders(std::vector<FrameGroup>& frame_groups);
     void draw_group(const FrameGroup& group, GroupSplats& splats);
@@ -122,12 +129,8 @@ struct GlPreview::State {
 };
 
 std::vector<FrameGroup> GlPreview::State::make_frame(const std::vector<PreviewLayer>& layers,
-                                                     const Camera& camera, int width, int height,
-                                                     float pixel_filter) {
-    RenderSettings settings;
-    settings.width = width;
-    settings.height = height;
-    settings.pixel_filter = pixel_filter;
+                                                     const PreviewView& view) {
+    const RenderSettings settings = settings_of(view);
     std::vector<RenderLayer> render_layers;
     for (const PreviewLayer& layer : layers) render_layers.push_back(layer.layer);
     std::vector<FrameGroup> frame_groups;
@@ -138,7 +141,7 @@ std::vector<FrameGroup> GlPreview::State::make_frame(const std::vector<PreviewLa
         for (std::size_t l : group.layers) {
             f.layers.push_back(&layers[l]);
             f.projections.push_back(
-                make_projection(render_layers[l], static_cast<std::uint16_t>(l), camera, settings));
+                make_projection(render_layers[l], static_cast<std::uint16_t>(l), view.camera, settings));
             f.falloffs.push_back(layers[l].layer.render.falloff);
         }
     }
@@ -208,27 +211,25 @@ void GlPreview::State::composite(const BlendGroup& group) {
     (group.blend == Blend::screen ? composite_screen : composite_covering).use();
     bind_texture(0, GL_TEXTURE_2D, own_target.texture());
     begin_blending(group.blend == Blend::lighten ? FoldKind::lighten : FoldKind::general);
-    glBindVertexArray(nothing.get());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glBindVertexArray(0);
+    triangle.draw();
     end_blending();
 }
 
 GlPreview::GlPreview() : state_(std::make_unique<State>()) {}
 GlPreview::~GlPreview() = default;
 
-unsigned GlPreview::draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
-                         const Environment* environment, int width, int height, float pixel_filter) {
+unsigned GlPreview::draw(const std::vector<PreviewLayer>& layers, const PreviewView& view) {
     State& state = *state_;
-    std::vector<FrameGroup> frame_groups = state.make_frame(layers, camera, width, height, pixel_filter);
+    const int width = static_cast<int>(view.width), height = static_cast<int>(view.height);
+    std::vector<FrameGroup> frame_groups = state.make_frame(layers, view);
     state.update(frame_groups, width, height);
     // All falloffs at once, so that a group does not throw out another's.
     std::vector<Falloff> falloffs;
     for (const FrameGroup& group : frame_groups)
         falloffs.insert(falloffs.end(), group.falloffs.begin(), group.falloffs.end());
-    state.footprints.prepare(falloffs, pixel_filter);
+    state.footprints.prepare(falloffs, view.pixel_filter);
     state.frame.resize(width, height, GL_RGBA32F);
-    state.begin_frame(camera, environment);
+    state.begin_frame(view.camera, view.environment);
     state.wait_for_orders(frame_groups);
     for (std::size_t g = 0; g < frame_groups.size(); ++g) {
         const bool own = needs_own_target(frame_groups[g].blend);

@@ -37,6 +37,17 @@ struct Shading {
 };
 Shading shading_of(const PreviewLayer& layer);
 
+/// A frame as previews draw it.
+struct PreviewView {
+    Camera camera;
+    const Environment* environment = nullptr;
+    std::int64_t width = 0, height = 0;  // px
+    float pixel_filter = 0.5f;           // px
+};
+
+/// For the renderer's projections.
+RenderSettings settings_of(const PreviewView& view);
+
 class GlPreview {
   public:
     /// Needs a current context of OpenGL 4.1 core or later. Throws std::runtime_error with the driver's words
@@ -44,10 +55,9 @@ class GlPreview {
     GlPreview();
     ~GlPreview();
 
-    /// Draws into its own frame of width x height px and returns the texture (RGBA32F, linear,
-    /// premultiplied, top row first). Layers in file order. Throws InputError where a look cannot be applied.
-    unsigned draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
-                  const Environment* environment, int width, int height, float pixel_filter);
+    /// Draws into its own frame and returns the texture (RGBA32F, linear, premultiplied, top row first).
+    /// Layers in file order. Throws InputError where a look cannot be applied.
+    unsigned draw(const std::vector<PreviewLayer>& layers, const PreviewView& view);
     /// The order of the last draw() was that of an older camera: draw again soon.
     bool sorting() const;
     /// For tests and screenshots: waits for the sorting, so that the next draw() is exact.

@@ -6,8 +6,6 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "gl/shader_text.h"
-
 namespace astrosplat {
 namespace {
 

@@ -10,6 +10,10 @@
 
 namespace astrosplat {
 
+/// The GLSL of shaders/ and shaders/shared, which is compiled into the program: text of "look.glsl" and the
+/// like. Asking for one that does not exist is our own mistake (std::logic_error).
+std::string shader_text(const std::string& name);
+
 /// What a program is made of. Each stage is "#version 410 core", the defines and its files one after
 /// the other.
 struct ProgramSource {

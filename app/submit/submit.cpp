@@ -7,6 +7,8 @@
 #include <cctype>
 #include <iterator>
 #include <set>
+#include <string_view>
+#include <system_error>
 
 #include "batch_plan.h"
 #include "core/atomic_file.h"
@@ -14,18 +16,193 @@
 #include "core/log.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "edit/batch_command.h"
 #include "estimate.h"
+#include "farm/child_process.h"
 #include "farm/submission.h"
 #include "interrupt.h"
+#include "places.h"
 #include "scene/frames.h"
-#include "submit/drafts.h"
-#include "submit/slurm_script.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
 namespace {
 
 using Frames = std::vector<std::int64_t>;
+
+// The two batch scripts: one that generates and keeps the sets, one whose tasks render a chunk of frames
+// each. Values go into them as words in quotes, never through #SBATCH lines, which Slurm parses its own way.
+
+struct SlurmJob {
+    std::string name;                  // letters, digits, - and _
+    std::vector<std::string> program;  // and its arguments, but for the frames
+    fs::path working_folder;           // where relative names in the arguments begin
+    fs::path log_folder;               // sbatch is called there
+    std::optional<std::string> partition;
+    int threads = 1;         // of each task
+    std::int64_t bytes = 0;  // of memory, of each task
+};
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+/// One word for bash on one line, whatever bytes it holds but 0. (shell_word() of edit/ is for any POSIX
+/// shell, where a new line can only stand for itself; sbatch refuses scripts with \r\n in them.)
+std::string bash_word(const std::string& text) {
+    if (std::ranges::none_of(text, is_control)) return shell_word(text);
+    std::string quoted = "$'";
+    for (const char c : text) {
+        if (is_control(c))
+            quoted += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+        else if (c == '\'' || c == '\\')
+            quoted += std::string("\\") + c;
+        else
+            quoted += c;
+    }
+    return quoted + "'";
+}
+
+/// The folder's name cannot be written into the name of a log, where % and \ have a meaning.
+bool is_odd_log_folder(const fs::path& folder) {
+    return folder.string().find_first_of("%\\") != std::string::npos;
+}
+
+constexpr std::int64_t mebibyte = 1 << 20;
+
+// What an estimate may be short of, and Slurm ends a task that takes more than it asked for.
+constexpr double memory_margin = 1.5;
+
+std::int64_t mebibytes(std::int64_t bytes) {
+    const auto needed = static_cast<std::int64_t>(static_cast<double>(bytes) * memory_margin);
+    return (needed / mebibyte / 64 + 1) * 64;
+}
+
+std::string head(const SlurmJob& job, const std::string& suffix, const std::string& log) {
+    std::string text = "#!/bin/bash\n";
+    const auto add = [&](const std::string& line) { text += "#SBATCH --" + line + "\n"; };
+    add("job-name=" + job.name + suffix);
+    add("nodes=1");
+    add("ntasks=1");
+    add(fmt::format("cpus-per-task={}", job.threads));
+    add(fmt::format("mem={}M", mebibytes(job.bytes)));
+    if (job.partition) add("partition=" + *job.partition);
+    add("requeue");           // of a node that fails: what is there is kept
+    add("open-mode=append");  // and so is what it said
+    add("output=" + (is_odd_log_folder(job.log_folder) ? "/dev/null" : log));
+    return text;
+}
+
+/// From here on the script's output goes to the log, where Slurm cannot be told its name.
+std::string own_log(const SlurmJob& job, const std::string& name) {
+    if (!is_odd_log_folder(job.log_folder)) return "";
+    return fmt::format("exec >> {}/{} 2>&1\n", bash_word(job.log_folder.string()), name);
+}
+
+std::string command(const SlurmJob& job, const std::string& more) {
+    std::string text = fmt::format("cd -- {} || exit 4\nexec", bash_word(job.working_folder.string()));
+    for (const std::string& word : job.program) text += " " + bash_word(word);
+    return text + more + "\n";
+}
+
+/// `frames` as --frames reads them.
+std::string sets_script(const SlurmJob& job, const std::optional<std::string>& frames) {
+    const std::string more = frames ? " --frames=" + bash_word(*frames) : "";
+    return head(job, "-sets", "%j.log") + own_log(job, "\"$SLURM_JOB_ID.log\"") +
+           command(job, more + " --sets-only");
+}
+
+/// One task for each of `chunks`, which are lists of frames.
+std::string frames_script(const SlurmJob& job, const std::vector<std::string>& chunks) {
+    std::string text = head(job, "", "%A_%a.log");
+    text += fmt::format("#SBATCH --array=0-{}\n", chunks.size() - 1);
+    text += "#SBATCH --kill-on-invalid-dep=yes\n";
+    text += own_log(job, "\"${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID.log\"");
+    text += fmt::format("frames=(\n{}\n)\n", fmt::join(chunks, "\n"));
+    return text + command(job, " --frames=\"${frames[SLURM_ARRAY_TASK_ID]}\" --resume");
+}
+
+// What a submission makes before it is whole. Destructors take it back; keep() is the last thing that is
+// called.
+
+/// A new folder, which goes with all that is in it unless it is kept.
+class DraftFolder {
+  public:
+    /// Below `parent`, which is made where it is missing. Throws OutputError.
+    explicit DraftFolder(const fs::path& parent);
+    ~DraftFolder();
+    DraftFolder(const DraftFolder&) = delete;
+    DraftFolder& operator=(const DraftFolder&) = delete;
+
+    /// The first of 0001, 0002, ... that is free.
+    static fs::path next_name(const fs::path& parent);
+
+    const fs::path& path() const { return folder_; }
+    void keep() { kept_ = true; }
+
+  private:
+    fs::path folder_;
+    bool kept_ = false;
+};
+
+DraftFolder::DraftFolder(const fs::path& parent) {
+    prove_writable(parent);
+    std::error_code error;
+    do folder_ = next_name(parent);  // somebody else may take it
+    while (!fs::create_directory(folder_, error) && !error);
+    if (error) throw OutputError(folder_.string() + ": cannot create this folder: " + error.message());
+}
+
+DraftFolder::~DraftFolder() {
+    if (kept_) return;
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    fs::remove(folder_.parent_path(), ignored);  // unless others lie in it
+}
+
+fs::path DraftFolder::next_name(const fs::path& parent) {
+    for (int number = 1;; ++number) {
+        std::error_code ignored;
+        const fs::path folder = parent / fmt::format("{:04}", number);
+        if (!fs::exists(fs::symlink_status(folder, ignored))) return folder;
+    }
+}
+
+/// Jobs in Slurm's queue, which are cancelled unless they are kept.
+class DraftJobs {
+  public:
+    DraftJobs() = default;
+    ~DraftJobs();
+    DraftJobs(const DraftJobs&) = delete;
+    DraftJobs& operator=(const DraftJobs&) = delete;
+
+    /// Calls sbatch with these words in `folder`; the job's number. Throws InputError where sbatch is missing
+    /// or refuses; Cancelled.
+    std::int64_t submit(const fs::path& folder, std::vector<std::string> words);
+    void keep() { jobs_.clear(); }
+
+  private:
+    std::vector<std::int64_t> jobs_;
+};
+
+DraftJobs::~DraftJobs() {
+    for (const std::int64_t job : jobs_) {
+        const std::optional<ToolResult> result = run_tool({"scancel", std::to_string(job)});
+        if (!result || result->code != 0)
+            log_error(fmt::format("job {0} could not be taken back; end it with scancel {0}", job));
+    }
+}
+
+std::int64_t DraftJobs::submit(const fs::path& folder, std::vector<std::string> words) {
+    words.insert(words.begin(), {"sbatch", "--parsable"});
+    const std::optional<ToolResult> result = run_tool(words, folder);
+    if (!result) throw InputError("--submit slurm: sbatch is not on the PATH");
+    if (result->code != 0) throw InputError("--submit slurm: sbatch: " + failure_of(*result));
+    // "17", and ";CLUSTER" where there are several.
+    const auto job = parse_int64(trim(std::string_view(result->out).substr(0, result->out.find(';'))));
+    if (!job) throw InputError("--submit slurm: sbatch named no job, but said: " + failure_of(*result));
+    jobs_.push_back(*job);
+    if (interrupted()) throw Cancelled();
+    return *job;
+}
 
 constexpr std::int64_t default_chunk = 10;
 constexpr const char *sets_name = "sets.sh", *frames_name = "frames.sh";
@@ -124,7 +301,7 @@ Scripts make_scripts(const BatchPlan& plan, const SubmitOptions& options, const 
                      const Submission& submission) {
     SlurmJob job;
     job.name = submission.name;
-    job.program = {fs::read_symlink("/proc/self/exe").string(), "--batch"};
+    job.program = {own_program(), "--batch"};
     job.program.insert(job.program.end(), submission.options.begin(), submission.options.end());
     job.program.push_back(fmt::format("--threads={}", thread_count()));
     job.program.push_back("--cache=" + fs::absolute(plan.cache.folder).string());

@@ -1,12 +1,117 @@
 #include "viewer/comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "core/color.h"
+#include "core/error.h"
 #include "scene/reference_place.h"
+#include "source/texture.h"
+#include "source/write_image.h"
 
 namespace astrosplat {
+
+namespace fs = std::filesystem;
+namespace {
+
+std::string png_of(const Image& rgba) {
+    std::vector<unsigned char> rgb;
+    for (std::size_t i = 0; i < rgba.pixels.size(); ++i)
+        if (i % 4 != 3)
+            rgb.push_back(
+                static_cast<unsigned char>(std::lround(255.0f * std::clamp(rgba.pixels[i], 0.0f, 1.0f))));
+    return png_bytes(rgba.width, rgba.height, rgb);
+}
+
+/// Black where it is gone: a snapshot is its scene.
+Image read_thumbnail(const fs::path& file) {
+    try {
+        const Image raw = load_raw_image(file);
+        Image rgba = make_image(raw.width, raw.height, 4, 1.0f);
+        for (std::int64_t y = 0; y < raw.height; ++y)
+            for (std::int64_t x = 0; x < raw.width; ++x)
+                for (int c = 0; c < 3; ++c) rgba.at(x, y)[c] = raw.at(x, y)[std::min(c, raw.channels - 1)];
+        return rgba;
+    } catch (const InputError&) {
+        return make_image(16, 9, 4, 0.0f);
+    }
+}
+
+}  // namespace
+
+void SnapshotList::open(const fs::path& scene_file, std::vector<std::string>& problems) {
+    snapshots_.clear();
+    folder_ = scene_file.empty() ? fs::path() : snapshot_folder(scene_file);
+    if (folder_.empty()) return;
+    for (KeptSnapshot& kept : read_snapshots(folder_, problems)) {
+        StoredView view;
+        view.look = {kept.facts.name, std::make_shared<const Scene>(std::move(kept.scene)), kept.facts.frame};
+        view.picture = read_thumbnail(snapshot_picture(kept.file));
+        view.thumbnail.upload(view.picture);
+        view.splats = kept.facts.splats;
+        view.seconds = kept.facts.seconds;
+        view.file = kept.file;
+        snapshots_.push_back(std::move(view));
+    }
+}
+
+void SnapshotList::keep(StoredView& view) const {
+    if (folder_.empty() || view.file.parent_path() == folder_) return;
+    const SnapshotFacts facts{view.look.name, view.look.frame, view.splats, view.seconds};
+    view.file = write_snapshot(folder_, facts, *view.look.scene, png_of(view.picture));
+}
+
+void SnapshotList::move_to(const fs::path& scene_file) {
+    folder_ = snapshot_folder(scene_file);
+    for (StoredView& view : snapshots_) keep(view);
+}
+
+void SnapshotList::add(StoredLook look, Image picture, std::int64_t splats, double seconds) {
+    StoredView& view = snapshots_.emplace_back();
+    view.look = std::move(look);
+    view.picture = std::move(picture);
+    view.thumbnail.upload(view.picture);
+    view.splats = splats;
+    view.seconds = seconds;
+    keep(view);
+}
+
+void SnapshotList::rename(std::size_t index, const std::string& name) {
+    if (index >= snapshots_.size() || name.empty()) return;
+    StoredView& view = snapshots_[index];
+    if (!view.file.empty()) rename_snapshot(view.file, name);
+    view.look.name = name;
+}
+
+void SnapshotList::remove(std::size_t index) {
+    if (index >= snapshots_.size()) return;
+    if (const fs::path& file = snapshots_[index].file; !file.empty()) remove_snapshot(file);
+    snapshots_.erase(snapshots_.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+std::string SnapshotList::next_name() const {
+    const auto is_taken = [&](const std::string& name) {
+        return std::ranges::any_of(snapshots_,
+                                   [&](const StoredView& view) { return view.look.name == name; });
+    };
+    std::string name;
+    for (std::size_t number = snapshots_.size() + 1; name.empty() || is_taken(name); ++number)
+        name = "Look " + std::to_string(number);
+    return name;
+}
+
+std::vector<Snapshot> SnapshotList::cards() const {
+    std::vector<Snapshot> cards;
+    for (const StoredView& view : snapshots_)
+        cards.push_back({view.look.name, to_handle(view.thumbnail.handle()),
+                         static_cast<float>(view.picture.width) / static_cast<float>(view.picture.height),
+                         view.splats, view.seconds});
+    return cards;
+}
+
 namespace {
 
 DisplaySettings::Mode mode_of(CompareMode compare, bool blink_shows_other) {
@@ -64,8 +169,7 @@ void Comparison::find_reference(const Scene& scene, const ViewState& view, Statu
     status.reference.emplace();
     status.reference->index = *index;
     status.reference->error = reference_.error();
-    if (const Image* picture = reference_.picture())
-        status.reference->aspect = static_cast<double>(picture->width) / static_cast<double>(picture->height);
+    if (reference_.picture()) status.reference->aspect = reference_.aspect();
 }
 
 void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& how, DisplaySettings& shown) {
@@ -74,12 +178,11 @@ void Comparison::show(const Scene& scene, const ViewState& view, const ViewOfB& 
     if (!comparing_) return;
     if (view.compare_with == CompareWith::reference) {
         const auto index = astrosplat::find_reference(scene, reference_view(view.view), view.frame);
-        const Image* picture = reference_.picture();
-        if (!index || !picture) return;
+        if (!index || !reference_.picture()) return;
         const ReferenceParams& reference = scene.references[*index];
         shown.b = reference_.texture();
         shown.b_is_display = true;
-        shown.b_place = place_of(reference, double(picture->width) / double(picture->height), how.frame);
+        shown.b_place = place_of(reference, reference_.aspect(), how.frame);
         shown.b_opacity = static_cast<float>(reference.opacity);
     } else {
         if (b_snapshot_ < 0) return;
@@ -101,6 +204,69 @@ void Comparison::fill(Status& status) const {
     status.snapshots = snapshots_.cards();
     status.b_snapshot = b_snapshot_;
     status.b_name = b_snapshot_ >= 0 ? snapshots_.look(static_cast<std::size_t>(b_snapshot_)).name : "";
+}
+
+namespace {
+
+/// Linear light of display values, from a table: 3e-7 of white off at most.
+class LightTable {
+  public:
+    LightTable() {
+        for (std::size_t i = 0; i < light_.size(); ++i)
+            light_[i] = real::srgb_to_linear(std::min(1.0, double(i) / steps));
+    }
+    double operator()(float displayed) const {
+        const double at = std::clamp(double(displayed), 0.0, 1.0) * steps;
+        const auto i = static_cast<std::size_t>(at);
+        return light_[i] + (light_[i + 1] - light_[i]) * (at - double(i));
+    }
+
+  private:
+    static constexpr int steps = 1024;
+    std::array<double, steps + 2> light_;
+};
+
+}  // namespace
+
+std::optional<DifferenceStatus> difference_of(const Image& a, const Image& b) {
+    static const LightTable light;
+    double sum = 0.0, squares = 0.0, light_a = 0.0, light_b = 0.0;
+    std::int64_t count = 0;
+    for (std::int64_t i = 0; i < a.width * a.height; ++i) {
+        const float *const pa = a.pixels.data() + 4 * i, *const pb = b.pixels.data() + 4 * i;
+        if (pb[3] < 1.0f) continue;
+        for (int c = 0; c < 3; ++c) {
+            const double difference = double(pa[c]) - double(pb[c]);
+            sum += difference;
+            squares += difference * difference;
+            light_a += light(pa[c]);
+            light_b += light(pb[c]);
+        }
+        count += 3;
+    }
+    if (count == 0) return std::nullopt;
+    const double mean_square = squares / double(count);
+    DifferenceStatus found;
+    found.mean = sum / double(count);
+    found.psnr_db =
+        mean_square > 0.0 ? -10.0 * std::log10(mean_square) : std::numeric_limits<double>::infinity();
+    found.light = light_b > 0.0   ? light_a / light_b
+                  : light_a > 0.0 ? std::numeric_limits<double>::infinity()
+                                  : 1.0;
+    return found;
+}
+
+void DifferenceMeter::measure(Display& display, const DisplaySettings& shown, glm::ivec2 target_px,
+                              double now) {
+    constexpr double every_s = 0.25;
+    waiting_ = !(shown == measured_ && target_px == target_px_);
+    if (!waiting_ || (measured_at_ >= 0.0 && now - measured_at_ < every_s)) return;
+    const Display::Compared sides = display.read_compared(shown, target_px.x, target_px.y);
+    found_ = difference_of(sides.a, sides.b);
+    measured_ = shown;
+    target_px_ = target_px;
+    measured_at_ = now;
+    waiting_ = false;
 }
 
 }  // namespace astrosplat

@@ -1,21 +1,63 @@
 // What the frame, A, is compared with: the look of a snapshot seen by the same camera, or a reference
 // picture. In: the looks to keep, the file to read, requests for B's frame. Out: what the display shows
-// beside A.
+// beside A, cards for the widgets, and how much both differ.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "edit/snapshot_files.h"
+#include "edit/snapshots.h"
 #include "edit/status.h"
 #include "gl/display.h"
+#include "gl/image_texture.h"
 #include "viewer/reference_picture.h"
-#include "viewer/snapshot_list.h"
 #include "viewer/view_frame.h"
 
 namespace astrosplat {
+
+/// The snapshots of the open scene: looks with a thumbnail each, kept beside the scene as soon as they are
+/// taken.
+class SnapshotList {
+  public:
+    /// Those kept beside this scene in place of all there are; none of a scene without a file. What cannot be
+    /// read becomes a line of `problems`.
+    void open(const std::filesystem::path& scene_file, std::vector<std::string>& problems);
+    /// The scene lies there from now on, and so do its snapshots. Throws OutputError; they stay in the list.
+    void move_to(const std::filesystem::path& scene_file);
+
+    /// Adds a look with its picture, RGBA of display values, top row first. Throws OutputError where it
+    /// cannot be kept; it stays in the list.
+    void add(StoredLook look, Image picture, std::int64_t splats, double seconds);
+    /// Throw InputError and OutputError; the list is then as before.
+    void rename(std::size_t index, const std::string& name);
+    void remove(std::size_t index);
+
+    std::size_t size() const { return snapshots_.size(); }
+    const StoredLook& look(std::size_t index) const { return snapshots_[index].look; }
+    /// "Look 3", which none has yet.
+    std::string next_name() const;
+    std::vector<Snapshot> cards() const;
+
+  private:
+    struct StoredView {
+        StoredLook look;
+        Image picture;
+        ImageTexture thumbnail;
+        std::int64_t splats = 0;
+        double seconds = 0.0;
+        std::filesystem::path file;  // empty: not kept
+    };
+    void keep(StoredView& view) const;
+
+    std::vector<StoredView> snapshots_;
+    std::filesystem::path folder_;  // empty: the scene has no file yet
+};
 
 /// An 8-bit picture (RGBA, top row first) as a float one of at most `most` px width, by averaging boxes.
 Image thumbnail_of(const std::vector<unsigned char>& rgba, int width, int height, int most);
@@ -68,6 +110,27 @@ class Comparison {
     bool comparing_ = false;  // the last show() showed more than A
     bool blink_shows_other_ = false;
     ReferencePicture reference_;
+};
+
+/// Of display values (RGBA of one size), where b's alpha is 1; none where that is nowhere.
+std::optional<DifferenceStatus> difference_of(const Image& a, const Image& b);
+
+/// The numbers beside a difference that is shown, measured again a few times a second while it changes.
+class DifferenceMeter {
+  public:
+    /// What `display` shows of `shown` on a target of this size; `now` in seconds.
+    void measure(Display& display, const DisplaySettings& shown, glm::ivec2 target_px, double now);
+    void clear() { *this = {}; }
+    const std::optional<DifferenceStatus>& found() const { return found_; }
+    /// What is shown has not been measured yet.
+    bool waiting() const { return waiting_; }
+
+  private:
+    DisplaySettings measured_;
+    glm::ivec2 target_px_{0};
+    double measured_at_ = -1.0;
+    bool waiting_ = false;
+    std::optional<DifferenceStatus> found_;
 };
 
 }  // namespace astrosplat

@@ -1,7 +1,9 @@
-// The frame in motion, drawn by the engine's own compositor: for machines whose OpenGL is drawn by the
-// processor anyway, where it is the faster of the two. The same splats as GlPreview draws.
+// Previews by the engine's own compositor, and what a click finds in them. In: the splats that a preview
+// draws. Out: the frame in motion, or how much of what is seen at a pixel is due to each layer.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "gl/preview.h"
@@ -9,17 +11,32 @@
 
 namespace astrosplat {
 
+/// For machines whose OpenGL is drawn by the processor anyway, where it is the faster of the two. The same
+/// splats as GlPreview draws.
 class CpuPreview {
   public:
     /// Renders the layers' splats into an image that stays valid until the next call. Splats are not split up
     /// by level of detail. Throws Cancelled.
-    const Image& draw(const std::vector<PreviewLayer>& layers, const Camera& camera,
-                      const Environment* environment, int width, int height, float pixel_filter,
+    const Image& draw(const std::vector<PreviewLayer>& layers, const PreviewView& view,
                       const Progress& progress = {});
 
   private:
     RenderCache cache_;
     Image frame_, backdrop_;
 };
+
+/// Of each of the layers, which must have their splats, the light that arrives from it within a pixel of
+/// (x, y), or where that is more the light that it keeps from arriving: dust and holdouts are seen by what
+/// they hide. 0 outside the frame.
+std::vector<float> light_of_layers(const std::vector<PreviewLayer>& layers, const PreviewView& view,
+                                   std::int64_t x, std::int64_t y);
+
+/// Places of the layers that can be told from black beside the brightest, brightest first.
+std::vector<std::size_t> seen_layers(const std::vector<float>& light);
+
+/// The layer that a click selects: the brightest, or `behind` the next one after the selected layer, after
+/// the last one the first again. None where nothing is seen.
+std::optional<std::size_t> clicked_layer(const std::vector<std::size_t>& seen, std::size_t selected,
+                                         bool behind);
 
 }  // namespace astrosplat

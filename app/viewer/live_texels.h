@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "viewer/latest_work.h"
+#include "viewer/background_work.h"
 #include "viewer/loaded_layer.h"
 
 namespace astrosplat {

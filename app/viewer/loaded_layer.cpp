@@ -1,15 +1,106 @@
 #include "viewer/loaded_layer.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <ranges>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "scene/input_files.h"
+#include "source/fits.h"
+#include "source/mesh.h"
+#include "source/obj.h"
+#include "source/picture.h"
+#include "source/stretch.h"
 #include "splats/splat_set.h"
-#include "viewer/histograms.h"
 
 namespace astrosplat {
 namespace {
+
+namespace fs = std::filesystem;
+
+using Values = LayerHistograms::Values;
+constexpr int bins = LayerHistograms::bins;
+
+/// How many of the values lie in each bin over lo .. hi, as shares of the fullest; what lies outside or is
+/// not a number is left out.
+template <class Range>
+std::array<float, bins> shares_of(const Range& values, double lo, double hi) {
+    const double bins_per_unit = hi > lo ? bins / (hi - lo) : 0.0;
+    std::array<double, bins> counts{};
+    for (const double value : values) {
+        const double bin = (value - lo) * bins_per_unit;
+        if (bin >= 0.0 && bin <= bins) ++counts[static_cast<std::size_t>(std::min(bin, bins - 1.0))];
+    }
+    const double most = *std::ranges::max_element(counts);
+    std::array<float, bins> shares{};
+    for (std::size_t i = 0; i < counts.size() && most > 0.0; ++i)
+        shares[i] = static_cast<float>(counts[i] / most);
+    return shares;
+}
+
+/// Over the range that is set.
+template <class Range>
+void count(const Range& values, Values& into) {
+    const std::array<float, bins> shares = shares_of(values, into.lo, into.hi);
+    into.share.assign(shares.begin(), shares.end());
+}
+
+/// The range of FITS data worth showing: half as much again beyond black and white, for stars and cosmic rays
+/// would squeeze everything else into one bin.
+Values fits_values(const fs::path& file, const TextureSettings& settings) {
+    const FitsPlane plane = read_fits(file, settings.hdu, settings.plane);
+    const ValueRange range = value_range(plane.values);
+    const Limits automatic = choose_limits(range, TextureSettings{}, file.string());
+    const double margin = 0.5 * (automatic.white - automatic.black);
+    Values values;
+    values.black = automatic.black;
+    values.white = automatic.white;
+    values.lo = std::max(range.min, automatic.black - margin);
+    values.hi = std::max(std::min(range.max, automatic.white + margin), automatic.white);
+    count(plane.values, values);
+    return values;
+}
+
+/// The picture is read again, because a set no longer knows its values.
+Values picture_values(const fs::path& file) {
+    const Image image = read_picture(file).image;
+    const auto largest = [&](std::int64_t i) {
+        const float* const p = image.pixels.data() + i * image.channels;
+        return static_cast<double>(std::max({p[0], p[1], p[2]}));
+    };
+    const auto all =
+        std::views::iota(std::int64_t{0}, image.width * image.height) | std::views::transform(largest);
+    Values values;
+    for (const double value : all)
+        if (std::isfinite(value)) values.hi = std::max(values.hi, value);
+    count(all, values);
+    return values;
+}
+
+/// Empty: none is named, or the mesh's own.
+fs::path first_picture(const SourceParams& source) {
+    if (source.kind != SourceKind::mesh || source.meshes.empty()) return {};
+    const MeshInput& input = source.meshes.front();
+    if (!input.texture.empty() && !input.texture.front().empty()) return input.texture.front();
+    if (is_builtin_mesh(input.mesh)) return {};
+    for (const fs::path& map : load_obj(input.mesh).maps)
+        if (!map.empty()) return map;
+    return {};
+}
+
+/// Smallest and largest radius in scene units that a look without radii gives: the file's own, or 0.6 voxel
+/// diagonals; 0, 0 where neither is known.
+glm::dvec2 unset_radius(const SplatSet& set) {
+    if (!set.radius.empty()) {
+        const auto [least, most] = std::minmax_element(set.radius.begin(), set.radius.end());
+        return {*least, *most};
+    }
+    const glm::dvec3 s = set.spacing;
+    return glm::dvec2(0.6 * std::sqrt(s.x * s.x + s.y * s.y + s.z * s.z));
+}
 
 glm::vec3 mean_color(const SplatSet& set) {
     constexpr std::int64_t sampled = 4096;
@@ -33,19 +124,7 @@ LoadedLayer layer_of(MergeSource sample, const SourceParams& source, const std::
     return layer;
 }
 
-}  // namespace
-
-MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_for) {
-    MergeSource source;
-    if (set->size() > 0)
-        source.weight =
-            static_cast<float>(static_cast<double>(stands_for) / static_cast<double>(set->size()));
-    source.tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
-    source.set = std::move(set);
-    return source;
-}
-
-// Stars are drawn as they are, however many: no dot could stand for several.
+/// Stars are drawn as they are, however many: no dot could stand for several.
 LoadedLayer star_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
                        const std::string& name) {
     MergeSource all;
@@ -56,6 +135,18 @@ LoadedLayer star_layer(std::shared_ptr<const SplatSet> set, const SourceParams& 
     layer.arranged = true;
     layer.set = std::move(set);
     return layer;
+}
+
+}  // namespace
+
+MergeSource source_of(std::shared_ptr<const SplatSet> set, std::int64_t stands_for) {
+    MergeSource source;
+    if (set->size() > 0)
+        source.weight =
+            static_cast<float>(static_cast<double>(stands_for) / static_cast<double>(set->size()));
+    source.tree = std::make_shared<const MergeTree>(build_merge_tree(*set));
+    source.set = std::move(set);
+    return source;
 }
 
 LoadedLayer whole_layer(std::shared_ptr<const SplatSet> set, const SourceParams& source,
@@ -109,6 +200,20 @@ LoadedLayer described_layer(LoadedLayer layer) {
     }
     layer.histograms = std::make_shared<const LayerHistograms>(histograms(*layer.set, layer.source));
     return layer;
+}
+
+LayerHistograms histograms(const SplatSet& set, const SourceParams& source) {
+    LayerHistograms result;
+    result.max_distance = set.max_distance;
+    result.distance = shares_of(set.distance, 0.0, set.max_distance);
+    try {
+        const fs::path file = first_picture(source);
+        if (!file.empty())
+            result.values = is_fits(file) ? fits_values(file, source.texture) : picture_values(file);
+    } catch (const InputError&) {
+        // It was readable when the set was made; the next generation will say what is wrong with it now.
+    }
+    return result;
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,5 @@
 // What the viewer keeps of one layer, from the first sample of a set that is being generated to the whole set
-// with its histograms. In: sets and samples. Out: LoadedLayer.
+// with its histograms. In: sets, samples and the source they came from. Out: LoadedLayer.
 #pragma once
 
 #include <cstdint>
@@ -52,5 +52,10 @@ LoadedLayer growing_layer(const GrowingSet::Sample& sample, const SourceParams& 
 LoadedLayer arranged_layer(LoadedLayer layer, std::shared_ptr<const MergeTree> tree);
 /// The same with histograms and files, for which meshes and pictures are read once more.
 LoadedLayer described_layer(LoadedLayer layer);
+
+/// How a set's distances spread and how its picture's values do, for the handles of the look's and the
+/// source's controls. The values are those of the first picture of the first mesh: data values for FITS, else
+/// the largest channel as stored. Without such a picture, or where it cannot be read, they are empty.
+LayerHistograms histograms(const SplatSet& set, const SourceParams& source);
 
 }  // namespace astrosplat

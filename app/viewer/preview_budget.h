@@ -1,5 +1,5 @@
-// How many splats a preview draws: a budget that follows the measured time of a frame. Plain numbers in and
-// out, no clock.
+// How many splats a preview draws: in motion a budget that follows the measured time of a frame, at rest a
+// few steps of more. Plain numbers in and out, no clock.
 #pragma once
 
 #include <cstdint>
@@ -38,5 +38,18 @@ class FramePace {
     double rests_ms_[window] = {};  // of the last frames that followed each other, the oldest overwritten
     int rests_ = 0;
 };
+
+/// Steps before a final frame, and how long each may take, s.
+struct StepPlan {
+    int count = 0;
+    double most_s = 0.0;
+};
+/// For a final frame that is expected to take so long; below 0: not known. A quick one is not held up by more
+/// than the rest that comes before it anyway.
+StepPlan plan_steps(double final_s);
+
+/// Dots of a step that are worth drawing after `shown` of `total` splats took `seconds`, within most_s; 0:
+/// none are. No limit where most_s is 0.
+std::int64_t dots_of_step(int step, std::int64_t total, std::int64_t shown, double seconds, double most_s);
 
 }  // namespace astrosplat

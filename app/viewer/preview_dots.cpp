@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/clock.h"
 #include "look/apply.h"
 #include "look/view_dependent.h"
 
@@ -15,7 +16,54 @@ FoundSums make_sums(const SumsRequest& request, const Progress& progress) {
     return {merge_splats(request.source, std::move(splats), progress), {}};
 }
 
+using SharedSplats = std::shared_ptr<const ShadedSplats>;
+
+/// Gives the layers their splats, which live in what is returned; of stars those that they have.
+std::vector<SharedSplats> cut_layers(std::vector<PreviewLayer>& layers, std::span<const CutSource> sources,
+                                     const PreviewView& view, std::int64_t budget, float least_px) {
+    const RenderSettings frame = settings_of(view);
+    std::vector<CutLayer> seen;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (const CutSource& source = sources[i]; source.merged)
+            seen.push_back(
+                {source.merged.get(), source.dots.get(),
+                 make_projection(layers[i].layer, static_cast<std::uint16_t>(i), view.camera, frame)});
+    std::vector<ShadedSplats> cut = cut_splats(seen, {budget, least_px, view.width, view.height});
+    std::vector<SharedSplats> splats;
+    for (std::size_t i = 0, next = 0; i < layers.size(); ++i) {
+        RenderLayer& layer = layers[i].layer;
+        splats.push_back(sources[i].stars);
+        if (sources[i].merged) {
+            if (is_encoded(layer.render)) encode_colors(cut[next]);
+            splats.back() = std::make_shared<const ShadedSplats>(std::move(cut[next++]));
+            layer.render.opacity = 1.0f;
+        }
+        layer.splats = splats.back().get();
+    }
+    return splats;
+}
+
+FinerFound draw_finer(const FinerRequest& request, CpuPreview& preview, const Progress& progress) {
+    const auto start = Clock::now();
+    std::vector<PreviewLayer> layers(request.layers.size());
+    for (std::size_t i = 0; i < layers.size(); ++i) layers[i].layer = request.layers[i];
+    const std::vector<SharedSplats> splats =
+        cut_layers(layers, request.sources, request.view, request.budget, CutSettings().least_px);
+    progress.check();
+    FinerFound found;
+    for (const SharedSplats& of_layer : splats) found.shown += of_layer->size();
+    found.image = preview.draw(layers, request.view, progress);
+    found.seconds = seconds_since(start);
+    return found;
+}
+
 }  // namespace
+
+FinerPreview::Work finer_preview() {
+    return [preview = std::make_shared<CpuPreview>()](const FinerRequest& request, const Progress& progress) {
+        return draw_finer(request, *preview, progress);
+    };
+}
 
 PreviewDots::PreviewDots() : work_(make_sums) {}
 
@@ -58,33 +106,15 @@ void PreviewDots::show_stars(Layer& layer, const PreviewLayer& wanted) {
 }
 
 void PreviewDots::cut(std::vector<PreviewLayer>& layers,
-                      std::span<const std::shared_ptr<const LoadedLayer>> loaded, const Camera& camera,
-                      const CutSettings& settings, float pixel_filter) {
-    RenderSettings frame;
-    frame.width = settings.width;
-    frame.height = settings.height;
-    frame.pixel_filter = pixel_filter;
+                      std::span<const std::shared_ptr<const LoadedLayer>> loaded, const PreviewView& view,
+                      std::int64_t budget, float least_px) {
     for (std::size_t i = 0; i < layers.size(); ++i) {
         Layer& layer = layer_at(i, *loaded[i]);
         layers[i].layer.stars ? show_stars(layer, layers[i]) : merge(layer, layers[i]);
     }
     layers_.resize(layers.size());
-    std::vector<CutLayer> seen;
-    std::vector<std::size_t> places;
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const Layer& layer = layers_[i];
-        if (layers[i].layer.stars) continue;
-        places.push_back(i);
-        seen.push_back({layer.best().get(), layer.dots.get(),
-                        make_projection(layers[i].layer, static_cast<std::uint16_t>(i), camera, frame)});
-    }
-    std::vector<ShadedSplats> splats = cut_splats(seen, settings);
-    for (std::size_t n = 0; n < places.size(); ++n) {
-        if (is_encoded(layers[places[n]].layer.render)) encode_colors(splats[n]);
-        layers_[places[n]].splats = std::make_shared<const ShadedSplats>(std::move(splats[n]));
-        layers[places[n]].layer.render.opacity = 1.0f;
-    }
-    for (std::size_t i = 0; i < layers.size(); ++i) layers[i].layer.splats = layers_[i].splats.get();
+    std::vector<SharedSplats> splats = cut_layers(layers, sources(), view, budget, least_px);
+    for (std::size_t i = 0; i < layers.size(); ++i) layers_[i].splats = std::move(splats[i]);
 }
 
 std::optional<SumsRequest> PreviewDots::missing() const {

@@ -1,6 +1,7 @@
 // The splats that a preview draws of each layer: a cut through its tree (merge/README.md), of the whole set
 // where its sums are there, else of a sample, whose sums take no time. In: layers, a camera and a number of
-// dots. Out: shaded splats.
+// dots. Out: shaded splats; and at rest, until the final frame comes, images of the same view with more of
+// them.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,8 @@
 
 #include "gl/preview.h"
 #include "merge/cut.h"
-#include "viewer/latest_work.h"
+#include "viewer/background_work.h"
+#include "viewer/cpu_preview.h"
 #include "viewer/loaded_layer.h"
 
 namespace astrosplat {
@@ -39,11 +41,11 @@ class PreviewDots {
   public:
     PreviewDots();
 
-    /// Gives every layer its splats, which stay until the next call, with the layer's opacity in them; of
-    /// stars all, without it.
-    /// `loaded`: what each layer is made of. Throws InputError where a look cannot be applied.
+    /// Gives every layer its splats, about `budget` in all, which stay until the next call, with the layer's
+    /// opacity in them; of stars all, without it. `loaded`: what each layer is made of; least_px: of a dot
+    /// (merge/cut.h). Throws InputError where a look cannot be applied.
     void cut(std::vector<PreviewLayer>& layers, std::span<const std::shared_ptr<const LoadedLayer>> loaded,
-             const Camera& camera, const CutSettings& settings, float pixel_filter);
+             const PreviewView& view, std::int64_t budget, float least_px = CutSettings().least_px);
     /// The last cut was of samples where whole sets could be.
     bool lacks_sums() const { return missing().has_value(); }
     /// It was of whole sets: one of more dots would show more.
@@ -84,5 +86,26 @@ class PreviewDots {
     double at_rest_since_ = 0.0;  // s
     LatestWork<SumsRequest, FoundSums> work_;
 };
+
+/// The view of a preview with more dots, drawn in the background.
+struct FinerRequest {
+    std::uint64_t number = 0;  // another one is another request
+    std::vector<RenderLayer> layers;
+    std::vector<CutSource> sources;  // of each layer
+    PreviewView view;
+    std::shared_ptr<const Environment> environment;  // of the view
+    std::int64_t budget = 0;                         // dots
+    bool operator==(const FinerRequest& other) const { return number == other.number; }
+};
+
+struct FinerFound {
+    Image image;             // RGBA, linear
+    std::int64_t shown = 0;  // dots
+    double seconds = 0.0;
+    std::string error;
+};
+
+using FinerPreview = LatestWork<FinerRequest, FinerFound>;
+FinerPreview::Work finer_preview();
 
 }  // namespace astrosplat

@@ -8,7 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "viewer/child_process.h"
+#include "farm/child_process.h"
 
 namespace astrosplat {
 namespace {
@@ -52,8 +52,6 @@ std::optional<float> share_of_line(const std::string& line) {
         done = (static_cast<double>(*index - 1) + done) / static_cast<double>(*count);
     return static_cast<float>(std::clamp(done, 0.0, 1.0));
 }
-
-std::string own_program() { return fs::read_symlink("/proc/self/exe").string(); }
 
 struct RenderJob::Impl {
     State state = State::none;

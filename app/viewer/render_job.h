@@ -18,9 +18,6 @@ struct ProcessStep {
     std::vector<std::string> arguments;  // [0] is the program
 };
 
-/// This very program's file.
-std::string own_program();
-
 /// How much of all frames is done, 0..1, by a line of --progress plain such as
 /// "astrosplat: frame 12 (3/10) 37% eta 00:04:10"; nothing for other lines.
 std::optional<float> share_of_line(const std::string& line);

@@ -14,7 +14,6 @@
 #include "edit/render_task.h"
 #include "edit/status.h"
 #include "sets/set_cache.h"
-#include "viewer/earlier_farm_jobs.h"
 #include "viewer/farm_job.h"
 #include "viewer/render_job.h"
 

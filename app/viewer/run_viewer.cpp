@@ -20,7 +20,6 @@
 #include "exit_code.h"
 #include "gui/theme.h"
 #include "viewer/session.h"
-#include "viewer/session_view.h"
 #include "viewer/window.h"
 
 namespace astrosplat {

@@ -1,6 +1,4 @@
 // One frame of what the window would show, without a display: the viewport alone, or with the panels.
-#include "viewer/screenshot.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,8 +14,7 @@
 #include "scene/check.h"
 #include "source/write_image.h"
 #include "viewer/session.h"
-#include "viewer/session_view.h"
-#include "viewer/widget_target.h"
+#include "viewer/window.h"
 
 namespace astrosplat {
 namespace {

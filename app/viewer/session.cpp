@@ -13,12 +13,7 @@
 #include "core/text.h"
 #include "edit/new_from_file.h"
 #include "source/write_image.h"
-#include "viewer/session_commands.h"
-#include "viewer/session_reference.h"
-#include "viewer/session_render.h"
-#include "viewer/session_select.h"
-#include "viewer/session_status.h"
-#include "viewer/session_thumbnails.h"
+#include "viewer/session_parts.h"
 
 namespace astrosplat {
 namespace {
@@ -134,7 +129,7 @@ Session::Session(const ViewerOptions& options, const GlInfo& gl_info)
       document(options.input.empty() ? demo_document(options.assignments)
                                      : document_for(options.input, options.assignments)),
       sets(options.cache, sample_limit),
-      front(1280, options.cache),
+      front(front_check(1280, options.cache)),
       jobs(options.cache),
       fresh_demo(options.input.empty()) {
     view.hint_open = fresh_demo;
@@ -158,6 +153,27 @@ void say(Status& status, const std::string& text, bool error) {
     status.message = {text, error, status.message.number + 1};
     status.log.push_back(status.message);
     if (status.log.size() > most) status.log.erase(status.log.begin());
+}
+
+void say_new_errors(Status& status, std::set<std::string>& said) {
+    std::set<std::string> errors;
+    if (status.view_frame.state == ViewFrameState::failed) errors.insert(status.view_frame.error);
+    for (const LayerStatus& layer : status.layers) errors.insert(layer.error);
+    if (status.reference) errors.insert(status.reference->error);
+    if (status.color) errors.insert(status.color->error);
+    errors.erase("");
+    for (const std::string& error : errors)
+        if (!said.count(error)) say(status, error, true);
+    said = std::move(errors);
+}
+
+void forget_old_message(Status& status, MessageAge& age, double now) {
+    constexpr double seen_s = 12.0;
+    Message& message = status.message;
+    if (message.number != age.number)
+        age = {message.number, now};
+    else if (!message.error && now - age.since >= seen_s)
+        message.text.clear();
 }
 
 void take_document(Session& session, Document next) {

@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,28 +18,22 @@
 #include "edit/preferences.h"
 #include "edit/status.h"
 #include "edit/view_state.h"
+#include "farm/child_process.h"
 #include "gl/context.h"
 #include "gl/display.h"
 #include "gl/image_texture.h"
 #include "gui/gui.h"
 #include "output/read_frame.h"
 #include "viewer/camera_overlay.h"
-#include "viewer/child_process.h"
-#include "viewer/color_management.h"
 #include "viewer/comparison.h"
-#include "viewer/difference_meter.h"
-#include "viewer/disk_watch.h"
-#include "viewer/finished_frames.h"
-#include "viewer/front_check.h"
+#include "viewer/file_pictures.h"
+#include "viewer/layer_picture.h"
 #include "viewer/navigator.h"
 #include "viewer/playback.h"
-#include "viewer/prepare_preview.h"
-#include "viewer/reference_alignment.h"
 #include "viewer/render_queue.h"
-#include "viewer/rendered_frames.h"
 #include "viewer/run_viewer.h"
+#include "viewer/scene_files.h"
 #include "viewer/set_wishes.h"
-#include "viewer/thumbnails.h"
 #include "viewer/view_frame.h"
 
 namespace astrosplat {
@@ -77,12 +70,9 @@ struct Session {
     DifferenceMeter difference;
     ReferenceAlignment alignment;
     FrontCheck front;
-    std::shared_ptr<const FrontFound> front_shown;  // whose difference is in the texture
-    ImageTexture front_texture;
-    std::uint64_t fronts_shown = 0;  // how many were in the texture
-    PreparePreview preparation;
-    std::shared_ptr<const PreparedView> preparation_shown;  // in the two textures
-    ImageTexture preparation_before, preparation_after;
+    ShownPicture<FrontFound> front_picture;  // the difference
+    PreparePreview preparation{prepare_preview()};
+    ShownPicture<PreparedView> preparation_before, preparation_after;
     Display display;
     ColorManagement color;
     CameraOverlay overlay;
@@ -93,14 +83,11 @@ struct Session {
     EarlierFarmJobs earlier_jobs;
     std::string earlier_pattern;  // of frames whose earlier jobs are to be listed; empty: they are
     std::optional<CommandSource> command_source;  // of the command in the status
-    FinishedFrames finished;
+    FinishedFrames finished{finished_frames()};
     std::pair<std::filesystem::path, FrameHeader> finished_header;  // of the file looked at
-    std::shared_ptr<const FinishedView> finished_shown;             // in the texture
-    ImageTexture finished_texture;
+    ShownPicture<FinishedView> finished_picture;
     RenderedFrames rendered;
-    std::shared_ptr<const FrameOnDisk> rendered_shown;  // in the texture; null: none
-    ImageTexture rendered_texture;
-    std::uint64_t rendered_uploads = 0;
+    ShownPicture<PackedPicture> rendered_picture;
     Thumbnails thumbnails;
     std::map<ListedPicture, ImageTexture> thumbnail_textures;  // of those that are seen
     std::optional<ChildProcess> file_manager;                  // that a folder was opened with
@@ -126,6 +113,9 @@ struct Session {
 
 /// Loads what the scene needs and takes what jobs have to say. `now` in seconds.
 void advance(Session& session, double now);
+/// Draws the viewport's content at its size in px into Status::viewport_texture. `hurry`: the final frame at
+/// once.
+void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry = false);
 /// What mouse and keyboard did over the viewport, after the widgets drew.
 void navigate(Session& session, const ViewportInput& input, double now);
 /// Carries them out and empties the list; errors become the message line.
@@ -145,18 +135,8 @@ std::string title(const Session& session);
 
 /// For the message line and the log.
 void say(Status& status, const std::string& text, bool error = false);
-/// Another document in place of the one that is open.
-void take_document(Session& session, Document next);
-/// Offers to choose a picture for a layer whose mesh has none; takes an older offer back.
-void offer_picture(Session& session, std::size_t layer);
-/// The first of File > Open recent.
-void note_recent(Session& session, const std::filesystem::path& file);
 /// A scene, or anything that becomes one. Throws InputError.
 void open_file(Session& session, const std::filesystem::path& file);
-/// Fills Status::recoveries.
-void find_recoveries(Status& status);
-/// The demo as an untitled scene. Throws InputError where it is not installed.
-Document demo_document(std::span<const Assignment> assignments = {});
 
 /// For screenshots: the preview draws a fixed number of splats instead of one that holds a frame rate; and
 /// where the panels are left out, the whole viewport is the frame, whatever the output's aspect.

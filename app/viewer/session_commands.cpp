@@ -1,4 +1,4 @@
-#include "viewer/session_commands.h"
+// What the menus and shortcuts ask of a session: a table from commands to what they do.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@
 #include "scene/reference_place.h"
 #include "scene/save.h"
 #include "source/write_image.h"
-#include "viewer/session_reference.h"
+#include "viewer/session_parts.h"
 
 namespace astrosplat {
 namespace {

@@ -1,4 +1,7 @@
-#include "viewer/session_view.h"
+// What the viewport shows: the view becomes a request for a frame; the frame and what it is compared with are
+// placed in the viewport, with lines of the camera over them; and what the widgets are told of it.
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,15 +11,32 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "edit/project_line.h"
 #include "edit/view_camera.h"
 #include "scene/animate.h"
 #include "scene/layer_setup.h"
-#include "viewer/session_prepare.h"
-#include "viewer/session_rendered.h"
+#include "viewer/cpu_preview.h"
+#include "viewer/session_parts.h"
 
 namespace astrosplat {
 namespace {
+
+/// Any scene as it stands at the view's frame, with solo.
+Scene evaluated(const Scene& scene, const ViewState& view) {
+    Scene now = scene_at(scene, view.frame);
+    if (!view.solo.empty())
+        for (LayerParams& layer : now.layers) layer.visible = view.solo.count(layer.name) > 0;
+    return now;
+}
+
+/// The preview is drawn by OpenGL rather than by the processor.
+bool draws_by_opengl(const Session& session) {
+    // Vertex shaders draw no discs of the sphere.
+    if (is_onto_sphere(session.request.scene.camera.projection)) return false;
+    return session.view.engine == PreviewEngine::opengl ||
+           (session.view.engine == PreviewEngine::automatic && !session.gl.software);
+}
 
 /// Whether the frame sees what is animated move: through the scene's camera, with an open shutter. Layers
 /// shown alone would come and go with their tracks.
@@ -131,63 +151,6 @@ DisplaySettings display_settings(const Session& session, const OutputParams& out
     return shown;
 }
 
-/// Of each layer what the final frame is made of; null: it is not seen.
-std::vector<std::shared_ptr<const SplatSet>> sets_of(const Session& session, const Scene& now) {
-    std::vector<std::shared_ptr<const SplatSet>> sets;
-    for (const LayerParams& layer : now.layers) {
-        const auto loaded = session.sets.loader().layer(layer.name);
-        sets.push_back(loaded && layer.visible ? loaded->set : nullptr);
-    }
-    return sets;
-}
-
-/// Compares the front with its picture while A is at rest; null: nothing is found yet.
-std::shared_ptr<const FrontFound> check_front(Session& session, const Scene& now) {
-    std::optional<FrontStatus>& status = session.status.front;
-    const bool at_rest = session.view_frame.status().state == ViewFrameState::final;
-    const bool shown = session.view.compare == CompareMode::front;
-    status.reset();
-    if (!at_rest) session.front.cancel();
-    if (session.front.asked([&](const FrontRequest& asked) { return asked.sets != sets_of(session, now); }))
-        session.front.forget();  // it would keep the sets of scenes that are closed
-    if (session.viewport_is_frame || !has_front_picture(now) || !(at_rest || shown)) return {};
-    status.emplace();
-    status->changed_by_look = front_changed_by_look(now);
-    if (status->changed_by_look && !shown) return {};
-    const FrontRequest request = front_request(now, sets_of(session, now), session.disk.changes());
-    if (at_rest) session.front.want(request);
-    const std::shared_ptr<const FrontFound> found = session.front.found(request);
-    status->working = session.front.working();
-    if (!found) return {};
-    status->error = found->error;
-    if (!found->error.empty()) return {};
-    status->measured = true;
-    status->psnr_db = found->fidelity.psnr_db;
-    status->ssim = found->fidelity.ssim;
-    status->light = found->fidelity.flux.frame;
-    return found;
-}
-
-/// The signed difference in place of all else, as large as the viewport has room for it.
-void show_front(Session& session, const std::shared_ptr<const FrontFound>& found, DisplaySettings& shown) {
-    if (session.front_shown != found) {
-        session.front_texture.upload(found->difference);
-        session.front_shown = found;
-        ++session.fronts_shown;
-    }
-    const glm::vec2 port(session.viewport_px);
-    const auto width = static_cast<float>(found->difference.width),
-               height = static_cast<float>(found->difference.height);
-    const float scale = std::min(port.x / width, port.y / height);
-    shown.b = session.front_texture.handle();
-    shown.b_is_display = true;
-    shown.mode = DisplaySettings::Mode::b;
-    shown.width = std::round(scale * width);
-    shown.height = std::round(scale * height);
-    shown.x = std::round(0.5f * (port.x - shown.width));
-    shown.y = std::round(0.5f * (port.y - shown.height));
-}
-
 void measure_difference(Session& session, const DisplaySettings& shown, double now) {
     if (session.view.compare == CompareMode::difference && shown.b != 0)
         session.difference.measure(session.display, shown, session.viewport_px, now);
@@ -205,25 +168,44 @@ std::optional<Camera> camera_in_viewport(const ViewRequest& request, const Rect&
     }
 }
 
+void fill_layers(Session& session, const Scene& now) {
+    const std::vector<std::int64_t>&shown = session.view_frame.shown(), &kept = session.view_frame.kept();
+    Status& status = session.status;
+    const SetLoader& loader = session.sets.loader();
+    status.layers.resize(now.layers.size());
+    status.box = {};
+    for (std::size_t i = 0; i < now.layers.size(); ++i) {
+        status.layers[i] = loader.status(session.document.scene().layers[i]);
+        if (i < shown.size()) status.layers[i].shown = shown[i];
+        status.layers[i].kept = i < kept.size() ? kept[i] : -1;
+        const auto loaded = loader.layer(now.layers[i].name);
+        if (!loaded) continue;
+        status.layers[i].box = loaded->box;
+        if (now.layers[i].visible)
+            status.box.add(world_bounds(loaded->box, render_layer(now, now.layers[i])));
+    }
+}
+
+/// The pixel of the whole frame at a place of the viewport, px; outside of the frame where that is.
+struct FramePixel {
+    std::int64_t x = 0, y = 0;
+};
+FramePixel frame_pixel(const Session& session, glm::dvec2 mouse_px) {
+    const ViewRequest& request = session.request;
+    const glm::vec2 port(session.viewport_px);
+    const Rect place = place_frame(session.view, {0, 0, port.x, port.y}, request.width, request.height);
+    const auto pixel = [](double px, float begin, float size, int count) {
+        return static_cast<std::int64_t>(std::floor((px - begin) / size * count));
+    };
+    return {pixel(mouse_px.x, place.x, place.width, request.width),
+            pixel(mouse_px.y, place.y, place.height, request.height)};
+}
+
 }  // namespace
 
 OutputParams::View display_view(OutputParams::View chosen, OutputParams::View of_scene) {
     const OutputParams::View view = chosen == OutputParams::View::automatic ? of_scene : chosen;
     return view == OutputParams::View::automatic ? OutputParams::View::srgb : view;
-}
-
-Scene evaluated(const Scene& scene, const ViewState& view) {
-    Scene now = scene_at(scene, view.frame);
-    if (!view.solo.empty())
-        for (LayerParams& layer : now.layers) layer.visible = view.solo.count(layer.name) > 0;
-    return now;
-}
-
-bool draws_by_opengl(const Session& session) {
-    // Vertex shaders draw no discs of the sphere.
-    if (is_onto_sphere(session.request.scene.camera.projection)) return false;
-    return session.view.engine == PreviewEngine::opengl ||
-           (session.view.engine == PreviewEngine::automatic && !session.gl.software);
 }
 
 void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hurry) {
@@ -273,8 +255,7 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
     session.comparison.show(session.document.scene(), session.view,
                             {request_for, choice, may_settle && a_is_done, now, frame_on_screen(whole)},
                             shown);
-    const std::shared_ptr<const FrontFound> front = check_front(session, scene);
-    if (front && session.view.compare == CompareMode::front) show_front(session, front, shown);
+    show_front(session, scene, shown);
     show_preparation(session);
     if (from_disk) {
         rendered.view = shown.view;
@@ -283,12 +264,71 @@ void draw_viewport(Session& session, glm::ivec2 viewport_px, double now, bool hu
         rendered.a = shown.a;
         shown = rendered;
     }
-    shown.content = 1 + session.rendered_uploads + session.view_frame.version() +
-                    session.comparison.version() + session.fronts_shown;
+    shown.content = 1 + session.rendered_picture.version() + session.view_frame.version() +
+                    session.comparison.version() + session.front_picture.version();
     measure_difference(session, shown, now);
     session.displayed = shown;
     session.status.viewport_texture =
         to_handle(session.display.draw(shown, session.viewport_px.x, session.viewport_px.y));
+}
+
+void fill_status(Session& session) {
+    fill_layers(session, evaluated(session.document.scene(), session.view));
+    const ViewFrameStatus* refining = session.comparison.refining();
+    session.status.view_frame = refining ? *refining : session.view_frame.status();
+    session.status.threads = thread_count();
+    const GlInfo& gl = session.gl;
+    session.status.engine = draws_by_opengl(session)
+                                ? fmt::format("OpenGL {}.{}, {}", gl.major, gl.minor, gl.renderer)
+                                : "processor";
+    session.comparison.fill(session.status);
+    session.status.blink_shows_other =
+        session.view.compare == CompareMode::blink && session.comparison.blink_shows_other();
+    say_new_errors(session.status, session.said_errors);
+}
+
+void probe(Session& session, glm::dvec2 mouse_px) {
+    const ViewRequest& request = session.request;
+    session.status.probe.reset();
+    if (request.width <= 0 || session.view_frame.texture() == 0) return;
+    if (!session.status.rendered_frame.empty()) return;  // another picture is seen
+    const FramePixel at = frame_pixel(session, mouse_px);
+    const Image* pixels = session.view_frame.pixels();
+    if (!pixels) return;
+    const std::shared_ptr<const RenderedFrame> final = session.view_frame.final_frame();
+    session.status.probe = probe_of(*pixels, final ? &final->depth : nullptr, request.region, at.x, at.y);
+}
+
+std::optional<PixelProbe> probe_of(const Image& pixels, const Image* depth, const Region& region,
+                                   std::int64_t x, std::int64_t y) {
+    const std::int64_t px = x - region.x, py = y - region.y;
+    if (px < 0 || py < 0 || px >= pixels.width || py >= pixels.height) return std::nullopt;
+    PixelProbe found;
+    found.x = static_cast<int>(x);
+    found.y = static_cast<int>(y);
+    std::copy_n(pixels.at(px, py), 4, found.rgba);
+    const bool has_depth = depth && depth->width == pixels.width && depth->height == pixels.height;
+    if (has_depth && *depth->at(px, py) != 0.0f) found.depth = *depth->at(px, py);
+    return found;
+}
+
+void select_layer_at(Session& session, glm::dvec2 mouse_px, bool behind) {
+    const CompareMode compare = session.view.compare;
+    if (compare == CompareMode::front || compare == CompareMode::other) return;  // no layers of A are seen
+    const FramePixel at = frame_pixel(session, mouse_px);
+    const std::vector<std::size_t> seen = seen_layers(session.view_frame.layer_light(at.x, at.y));
+    const std::optional<std::size_t> clicked = clicked_layer(seen, session.view.layer, behind);
+    const std::vector<LayerParams>& layers = session.document.scene().layers;
+    session.view.selected_box = clicked.has_value();
+    if (!clicked || *clicked >= layers.size()) return;
+    session.view.layer = *clicked;
+    session.view.handle_target = HandleTarget::layer;
+    std::string text = layers[*clicked].name + " is selected";
+    if (seen.size() > 1) {
+        const auto place = std::ranges::find(seen, *clicked) - seen.begin() + 1;
+        text += fmt::format(", {} of {} layers here; another click takes the next", place, seen.size());
+    }
+    say(session.status, text);
 }
 
 }  // namespace astrosplat

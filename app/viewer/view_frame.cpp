@@ -1,6 +1,7 @@
 #include "viewer/view_frame.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/clock.h"
@@ -41,6 +42,33 @@ bool ViewRequest::has_sets_of(const ViewRequest& other) const {
 
 Camera camera_of(const ViewRequest& request) {
     return make_camera(request.scene.camera, request.width, request.height, request.box);
+}
+
+/// Whatever is shown, something else may be to be seen, which begins with its preview or cannot be drawn.
+/// Else the stages follow each other, and finer previews may come one after the other.
+constexpr bool ViewFrame::may_follow(Stage now, Stage next) {
+    switch (next) {
+        case Stage::preview:
+        case Stage::failed:
+            return true;
+        case Stage::finer:
+        case Stage::refining:
+            return now == Stage::preview;
+        case Stage::final:
+            return now == Stage::refining;
+        case Stage::empty:
+            break;
+    }
+    return false;
+}
+
+void ViewFrame::enter(Stage next) {
+    using State = ViewFrameState;
+    constexpr State states[] = {State::loading,  State::preview, State::preview,
+                                State::refining, State::final,   State::failed};
+    assert(may_follow(stage_, next));
+    stage_ = next;
+    status_.state = states[static_cast<std::size_t>(next)];
 }
 
 std::vector<PreviewLayer> ViewFrame::preview_layers() {
@@ -95,14 +123,10 @@ bool ViewFrame::draws_whole_sets() const {
 
 /// Gives the layers their splats, and notes how many their looks keep.
 void ViewFrame::cut(std::vector<PreviewLayer>& layers, const PreviewView& view) {
-    CutSettings settings;
-    settings.budget = dots_wanted();
-    settings.width = static_cast<int>(view.width);
-    settings.height = static_cast<int>(view.height);
-    if (choice_.share >= 1.0f) settings.least_px = 0.0f;
     std::vector<std::shared_ptr<const LoadedLayer>> loaded;
     for (const std::size_t place : places_) loaded.push_back(request_->layers[place]);
-    dots_.cut(layers, loaded, view.camera, settings, view.pixel_filter);
+    const float least_px = choice_.share >= 1.0f ? 0.0f : CutSettings().least_px;
+    dots_.cut(layers, loaded, view, dots_wanted(), least_px);
     const std::vector<double> kept = dots_.kept();
     for (std::size_t n = 0; n < places_.size(); ++n)
         kept_[places_[n]] = std::llround(kept[n] * static_cast<double>(loaded[n]->splats));
@@ -116,14 +140,15 @@ void ViewFrame::note_time(double milliseconds, double target_ms, bool whole_sets
     if (slow_frames_ == patience) too_many_ = status_.total;
 }
 
-/// The environment_ of the frame shown_ has been loaded since, or could not be: then the preview says why.
+/// The environment of the frame that is shown has been loaded since, or could not be: then the preview says
+/// why.
 bool ViewFrame::environment_arrived() {
     try {
         if (!request_) return false;
         const std::shared_ptr<const Environment> now = files_->environment(request_->scene.environment);
         return (now ? now->faces : nullptr) != (environment_ ? environment_->faces : nullptr);
     } catch (const InputError&) {
-        return status_.state != ViewFrameState::failed;
+        return stage_ != Stage::failed;
     }
 }
 
@@ -138,8 +163,7 @@ bool ViewFrame::previews_arrived(const ViewRequest& now) const {
 
 /// Sums of whole sets, while nothing more urgent needs the processor.
 bool ViewFrame::refine(double now) {
-    return choice_.refined && status_.state != ViewFrameState::refining && !draws_whole_sets() &&
-           dots_.refine(now);
+    return choice_.refined && stage_ != Stage::refining && !draws_whole_sets() && dots_.refine(now);
 }
 
 /// The part of the frame that is seen, as a frame of its own.
@@ -168,20 +192,19 @@ void ViewFrame::draw_preview(double now) {
     status_.shown = 0;
     for (std::size_t n = 0; n < layers_.size(); ++n)
         status_.shown += shown_[places_[n]] = shown_count(layers_[n]);
-    const int width = static_cast<int>(view.width), height = static_cast<int>(view.height);
     if (draws_by_opengl()) {
         if (!gl_) gl_ = std::make_unique<GlPreview>();
-        texture_ = gl_->draw(layers_, view.camera, view.environment, width, height, view.pixel_filter);
+        texture_ = gl_->draw(layers_, view);
         drawn_ = nullptr;
     } else {
-        drawn_ = &cpu_.draw(layers_, view.camera, view.environment, width, height, view.pixel_filter);
+        drawn_ = &cpu_.draw(layers_, view);
         canvas_texture_.upload(*drawn_);
         texture_ = canvas_texture_.handle();
     }
     draw_s_ = seconds_since(start);
     pace_.drew(milliseconds_since(start));
     note_time(milliseconds_since(start), target_ms, whole_sets);
-    status_.state = ViewFrameState::preview;
+    enter(Stage::preview);
     status_.width = request_->width;
     status_.height = request_->height;
     status_.error.clear();
@@ -207,29 +230,24 @@ bool ViewFrame::step_is_due(double now) {
 }
 
 void ViewFrame::begin_step(std::int64_t dots) {
-    const PreviewView view = preview_view();
     FinerRequest wanted;
-    wanted.number = finer_request_.number + 1;
+    wanted.number = ++finer_request_.number;
     for (const PreviewLayer& layer : layers_) wanted.layers.push_back(layer.layer);
     for (std::size_t n = 0; n < places_.size(); ++n)
         wanted.layers[n].render = render_layer(request_->scene.layers[places_[n]]).render;
     wanted.sources = dots_.sources();
-    wanted.camera = view.camera;
+    wanted.view = preview_view();
     wanted.environment = environment_;
-    wanted.cut.budget = dots;
-    wanted.cut.width = view.width;
-    wanted.cut.height = view.height;
-    wanted.pixel_filter = view.pixel_filter;
+    wanted.budget = dots;
     finer_.want(wanted);
-    finer_request_.number = wanted.number;
-    stepping_ = true;
+    enter(Stage::finer);
 }
 
 /// False: it is still on its way.
 bool ViewFrame::take_step() {
     const std::shared_ptr<const FinerFound> found = finer_.found(finer_request_);
     if (!found) return false;
-    stepping_ = false;
+    enter(Stage::preview);
     if (!found->error.empty()) return true;
     finer_image_ = found->image;
     finer_.forget();
@@ -240,12 +258,6 @@ bool ViewFrame::take_step() {
     draw_s_ = found->seconds;
     ++version_;
     return true;
-}
-
-void ViewFrame::end_steps() {
-    if (stepping_) finer_.forget();
-    stepping_ = false;
-    step_ = 0;
 }
 
 void ViewFrame::begin_final() {
@@ -267,8 +279,7 @@ void ViewFrame::begin_final() {
     texture_ = canvas_texture_.handle();
     dots_.rest();
     final_.start(std::move(wanted));
-    final_started_ = true;
-    status_.state = ViewFrameState::refining;
+    enter(Stage::refining);
     status_.progress = 0.0f;
 }
 
@@ -283,11 +294,32 @@ void ViewFrame::take_final(double now) {
     status_.seconds = outcome.seconds;
     status_.error = outcome.error;
     if (outcome.state == FinalFrame::State::done) {
-        status_.state = ViewFrameState::final;
+        enter(Stage::final);
         final_s_ = outcome.seconds;
         refine(now);  // for when the hand moves again
     }
-    if (outcome.state == FinalFrame::State::failed) status_.state = ViewFrameState::failed;
+    if (outcome.state == FinalFrame::State::failed) enter(Stage::failed);
+}
+
+/// With the preview of what is to be seen now.
+void ViewFrame::start_over(double now) {
+    final_.cancel();
+    if (stage_ == Stage::finer) finer_.forget();
+    step_ = 0;
+    try {
+        draw_preview(now);
+    } catch (const InputError& error) {  // which the final frame would meet, too
+        enter(Stage::failed);
+        status_.error = error.what();
+    }
+}
+
+/// From the preview, towards the final frame.
+void ViewFrame::come_closer(bool settle, double now, bool hurry) {
+    if (files_->loading()) return;
+    if (stage_ == Stage::finer && !take_step()) return;
+    if (settle && takes_steps(hurry) && step_is_due(now)) return;
+    if (settle && (hurry || now - touched_at_ >= rest_s)) begin_final();
 }
 
 void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bool settle, double now,
@@ -296,36 +328,19 @@ void ViewFrame::show(const ViewRequest& request, const PreviewChoice& choice, bo
                          choice_.share != choice.share;
     const bool changed = touched || !request_->has_sets_of(request) || environment_arrived();
     const bool refined = request_ && refine(now);
-    const bool fuller = !changed && !final_started_ && (refined || previews_arrived(request));
+    const bool fuller = !changed && stage_ <= Stage::finer && (refined || previews_arrived(request));
     if (changed || fuller || (gl_ && gl_->sorting())) {
-        final_.cancel();
-        final_started_ = false;
-        end_steps();
         if (touched) touched_at_ = now;
         request_ = request;
         choice_ = choice;
-        try {
-            draw_preview(now);
-        } catch (const InputError& error) {
-            status_.state = ViewFrameState::failed;
-            status_.error = error.what();
-            final_started_ = true;  // which would meet the same
-        }
-        return;
+        return start_over(now);
     }
-    if (status_.state == ViewFrameState::failed) return;
-    if (!final_started_) {
-        if (files_->loading()) return;
-        if (stepping_ && !take_step()) return;
-        if (settle && takes_steps(hurry) && step_is_due(now)) return;
-        if (settle && (hurry || now - touched_at_ >= rest_s)) begin_final();
-    } else if (status_.state == ViewFrameState::refining) {
-        take_final(now);
-    }
+    if (stage_ == Stage::preview || stage_ == Stage::finer) return come_closer(settle, now, hurry);
+    if (stage_ == Stage::refining) take_final(now);
 }
 
 const Image* ViewFrame::pixels() const {
-    if (final_started_ && canvas_.width > 0) return &canvas_;
+    if (stage_ >= Stage::refining && canvas_.width > 0) return &canvas_;
     return drawn_;
 }
 
@@ -336,13 +351,12 @@ Image ViewFrame::read() const {
 
 double ViewFrame::due(double now) const {
     constexpr double soon_s = 0.02;  // steps end by themselves
-    if (stepping_ || takes_steps(false)) return soon_s;
+    if (stage_ == Stage::finer || takes_steps(false)) return soon_s;
     return std::max(0.0, touched_at_ + rest_s - now);
 }
 
 bool ViewFrame::final_is_next(double now) const {
-    const bool waits = status_.state == ViewFrameState::loading || status_.state == ViewFrameState::preview;
-    return status_.state == ViewFrameState::refining || (waits && now - touched_at_ >= rest_s);
+    return stage_ == Stage::refining || (stage_ <= Stage::finer && now - touched_at_ >= rest_s);
 }
 
 bool ViewFrame::exact() const {
@@ -352,7 +366,7 @@ bool ViewFrame::exact() const {
 
 std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
     std::vector<float> light(request_ ? request_->layers.size() : 0);
-    if (!request_ || status_.state == ViewFrameState::failed) return light;
+    if (!request_ || stage_ == Stage::failed) return light;
     const PreviewView view = preview_view();
     std::vector<PreviewLayer> layers = layers_;
     if (draws_whole_sets()) cut(layers, view);
@@ -363,7 +377,7 @@ std::vector<float> ViewFrame::layer_light(std::int64_t x, std::int64_t y) {
 }
 
 std::shared_ptr<const RenderedFrame> ViewFrame::final_frame() const {
-    return status_.state == ViewFrameState::final ? final_.outcome().frame : nullptr;
+    return stage_ == Stage::final ? final_.outcome().frame : nullptr;
 }
 
 }  // namespace astrosplat

@@ -14,14 +14,10 @@
 #include "gl/image_texture.h"
 #include "gl/preview.h"
 #include "scene/scene.h"
-#include "viewer/cpu_preview.h"
 #include "viewer/final_frame.h"
-#include "viewer/finer_preview.h"
-#include "viewer/layers_at_pixel.h"
-#include "viewer/picture_files.h"
 #include "viewer/preview_budget.h"
 #include "viewer/preview_dots.h"
-#include "viewer/set_loader.h"
+#include "viewer/scene_files.h"
 
 namespace astrosplat {
 
@@ -66,9 +62,7 @@ class ViewFrame {
     std::uint64_t version() const { return version_; }
     const ViewFrameStatus& status() const { return status_; }
     /// show() should be called again soon although nobody did anything.
-    bool waiting() const {
-        return status_.state == ViewFrameState::preview || status_.state == ViewFrameState::refining;
-    }
+    bool waiting() const { return Stage::preview <= stage_ && stage_ <= Stage::refining; }
     /// Preview splats of each layer in the last preview.
     const std::vector<std::int64_t>& shown() const { return shown_; }
     /// Splats of each layer that its look keeps, estimated from the last preview; below 0: not known.
@@ -90,6 +84,18 @@ class ViewFrame {
     std::shared_ptr<const RenderedFrame> final_frame() const;
 
   private:
+    /// How far the frame is; view_frame.cpp states which stage may follow which.
+    enum class Stage {
+        empty,     // nothing has been asked for
+        preview,   // drawn
+        finer,     // and one of more dots is on its way, while nobody touches anything
+        refining,  // tiles of the final frame replace the preview
+        final,     // all have
+        failed     // the status says why; until something else is to be seen
+    };
+    static constexpr bool may_follow(Stage now, Stage next);
+    void enter(Stage next);
+
     std::vector<PreviewLayer> preview_layers();
     PreviewView preview_view() const;
     std::int64_t dots_wanted() const;
@@ -105,11 +111,13 @@ class ViewFrame {
     bool step_is_due(double now);
     void begin_step(std::int64_t dots);
     bool take_step();
-    void end_steps();
-    void take_final(double now);
     void begin_final();
+    void take_final(double now);
+    void start_over(double now);
+    void come_closer(bool settle, double now, bool hurry);
 
     std::shared_ptr<PictureFiles> files_;
+    Stage stage_ = Stage::empty;
     std::optional<ViewRequest> request_;
     std::shared_ptr<const Environment> environment_;  // of the last preview
     PreviewChoice choice_;
@@ -119,14 +127,12 @@ class ViewFrame {
     PreviewBudget budget_;
     FramePace pace_;
     FinalFrame final_;
-    FinerPreview finer_;
+    FinerPreview finer_{finer_preview()};
     FinerRequest finer_request_;  // its number; the rest is with finer_
     int step_ = 0;                // of finer previews, the last one begun
-    bool stepping_ = false;       // it is on its way
     double draw_s_ = 0.0;         // the last preview or step took so long
     double final_s_ = -1.0;       // the last final frame; below 0: there was none
     Image finer_image_;
-    bool final_started_ = false;
     double touched_at_ = 0.0;
     ImageTexture canvas_texture_;
     const Image* drawn_ = nullptr;  // the processor's preview; null while the GPU's is shown

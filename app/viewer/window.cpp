@@ -1,10 +1,9 @@
 #include "viewer/window.h"
 
-#include <glad/gl.h>
-// glad before GLFW, which would bring the system's OpenGL header.
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <glad/gl.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -13,9 +12,13 @@
 #include <utility>
 
 #include "gl/objects.h"
+#include "gui/gui.h"
 #include "splat_files/checksum.h"
 
+// glad before GLFW, which would bring the system's OpenGL header.
+
 namespace astrosplat {
+
 namespace {
 
 std::string glfw_reason(const char* fallback) {
@@ -278,6 +281,39 @@ std::vector<unsigned char> Window::read(int& width, int& height) const {
     draw_widgets(width, height);  // again: not every driver lets what is shown be read
     glReadBuffer(GL_BACK);
     return read_rgba8(0, width, height);
+}
+
+WidgetTarget::WidgetTarget(int width, int height) {
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = ImVec2(static_cast<float>(width), static_cast<float>(height));
+    io.DeltaTime = 1.0f / 60.0f;
+    apply_theme(1.0f);
+    ImGui_ImplOpenGL3_Init("#version 410 core");
+    target_.resize(width, height, GL_RGBA8);
+}
+
+WidgetTarget::~WidgetTarget() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void WidgetTarget::begin() {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+}
+
+void WidgetTarget::end() {
+    ImGui::Render();
+    target_.bind();
+    glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+std::vector<unsigned char> WidgetTarget::read() const {
+    return read_rgba8(target_.framebuffer(), target_.width(), target_.height());
 }
 
 }  // namespace astrosplat

@@ -1,4 +1,5 @@
-// The window: GLFW, an OpenGL context and Dear ImGui's backends, owned for as long as the viewer runs.
+// Where the widgets are drawn: the window, or a frame of their own without one, for screenshots and
+// measurements.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +10,14 @@
 #include <vector>
 
 #include "gl/context.h"
+#include "gl/objects.h"
 #include "viewer/input_queue.h"
 
 struct GLFWwindow;
 
 namespace astrosplat {
 
+/// GLFW, an OpenGL context and Dear ImGui's backends, owned for as long as the viewer runs.
 class Window {
   public:
     /// Opens a window of about width x height (screen units). Throws std::runtime_error in one line where
@@ -77,6 +80,25 @@ class Window {
     double widget_time_s_ = 0.0, frame_began_s_ = 0.0, frame_took_s_ = 0.0;
     GlInfo gl_;
     std::vector<std::filesystem::path> dropped_;
+};
+
+/// Needs a current OpenGL context, and to be the only user of Dear ImGui.
+class WidgetTarget {
+  public:
+    /// A window of this size in px, at scale 1.
+    WidgetTarget(int width, int height);
+    ~WidgetTarget();
+    WidgetTarget(const WidgetTarget&) = delete;
+    WidgetTarget& operator=(const WidgetTarget&) = delete;
+
+    /// Between these the widgets are called.
+    void begin();
+    void end();
+    /// The frame last ended as 8-bit RGBA, top row first.
+    std::vector<unsigned char> read() const;
+
+  private:
+    GlTarget target_;
 };
 
 }  // namespace astrosplat

@@ -29,8 +29,7 @@
 #include "support/preview_views.h"
 #include "support/temp_folder.h"
 #include "viewer/session.h"
-#include "viewer/session_view.h"
-#include "viewer/widget_target.h"
+#include "viewer/window.h"
 
 namespace astrosplat::bench {
 namespace {
@@ -457,7 +456,7 @@ void measure_blend(GlPreview& preview, const std::shared_ptr<const SplatSet>& se
     for (int i = 0; i < warm_frames + orbit_frames; ++i) {
         if (i == warm_frames) times = {};
         times.measure([&] {
-            preview.draw({layer}, camera_at(0.002 * i, width, height), nullptr, width, height, 0.5f);
+            preview.draw({layer}, {camera_at(0.002 * i, width, height), nullptr, width, height});
             glFinish();
         });
     }

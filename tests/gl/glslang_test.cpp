@@ -8,7 +8,7 @@
 
 #include "gl/draw_pass.h"
 #include "gl/environment_pass.h"
-#include "gl/shader_text.h"
+#include "gl/program.h"
 #include "support/temp_folder.h"
 
 namespace astrosplat {

@@ -26,9 +26,9 @@ class PreviewPicture : public GlTest {
 
     static Image draw_with(GlPreview& preview, const std::vector<PreviewLayer>& layers, const Camera& camera,
                            const Environment* environment = nullptr) {
-        preview.draw(layers, camera, environment, width, height, 0.5f);
+        preview.draw(layers, {camera, environment, width, height});
         preview.wait_for_order();
-        preview.draw(layers, camera, environment, width, height, 0.5f);
+        preview.draw(layers, {camera, environment, width, height});
         EXPECT_FALSE(preview.sorting());
         return preview.read();
     }
@@ -255,7 +255,7 @@ TEST_F(PreviewPicture, CutsOfTwoCamerasDoNotMix) {
             test::cloud_layer(20000, 9, 0.02f, render_with(Falloff::Shape::gaussian))};
         camera.eye.x += aside;
         const CutLayers cut(layers, camera, 700);
-        preview.draw(layers, camera, nullptr, width, height, 0.5f);
+        preview.draw(layers, {camera, nullptr, width, height});
         const Image wanted = test::offline(layers, camera, nullptr, width, height);
         EXPECT_GE(test::compare_shown(preview.read(), wanted).psnr_db, 45.0) << "in the very frame";
     }

@@ -7,7 +7,6 @@
 
 #include "gl/context.h"
 #include "gl/gl_fixture.h"
-#include "gl/shader_text.h"
 
 namespace astrosplat {
 namespace {

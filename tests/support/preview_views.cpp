@@ -12,7 +12,6 @@
 #include "core/error.h"
 #include "support/temp_folder.h"
 #include "viewer/session.h"
-#include "viewer/session_view.h"
 
 namespace astrosplat::test {
 namespace {

@@ -1,5 +1,5 @@
 // Numbers of a difference that can be worked out by hand.
-#include "viewer/difference_meter.h"
+#include "viewer/comparison.h"
 
 #include <gtest/gtest.h>
 

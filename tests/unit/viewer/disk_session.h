@@ -13,7 +13,6 @@
 #include "support/quiet.h"
 #include "support/temp_folder.h"
 #include "viewer/session.h"
-#include "viewer/session_view.h"
 
 namespace astrosplat::test {
 

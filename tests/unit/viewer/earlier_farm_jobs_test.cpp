@@ -1,5 +1,5 @@
 // What the records beside the frames tell a window that was not there when they were written.
-#include "viewer/earlier_farm_jobs.h"
+#include "viewer/farm_job.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,4 @@
 // Between what moves and the final frame, the picture comes closer to it in steps.
-#include "viewer/finer_preview.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

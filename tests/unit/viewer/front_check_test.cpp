@@ -1,5 +1,5 @@
 // What the badge says of the front: the measures of the engine, of the last request and of no other.
-#include "viewer/front_check.h"
+#include "viewer/layer_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ class FrontCheckTest : public testing::Test {
 };
 
 TEST_F(FrontCheckTest, FindsWhatTheEngineMeasures) {
-    FrontCheck check;
+    FrontCheck check{front_check()};
     EXPECT_FALSE(check.working());
     check.want(request());
     wait(check);
@@ -52,7 +52,7 @@ TEST_F(FrontCheckTest, FindsWhatTheEngineMeasures) {
 }
 
 TEST_F(FrontCheckTest, WhatIsFoundBelongsToItsRequest) {
-    FrontCheck check(32);
+    FrontCheck check{front_check(32)};
     const FrontRequest before = request();
     check.want(before);
     wait(check);
@@ -73,7 +73,7 @@ TEST_F(FrontCheckTest, WhatIsFoundBelongsToItsRequest) {
 }
 
 TEST_F(FrontCheckTest, CancelledItHasFoundNothingAndCanBeAskedAgain) {
-    FrontCheck check;
+    FrontCheck check{front_check()};
     check.want(request());
     check.cancel();
     EXPECT_FALSE(check.working());
@@ -87,7 +87,7 @@ TEST_F(FrontCheckTest, CancelledItHasFoundNothingAndCanBeAskedAgain) {
 
 TEST_F(FrontCheckTest, ALayerWithoutAPictureSaysSo) {
     scene.layers[0].source.meshes[0].texture = {small.folder / "missing.ppm"};
-    FrontCheck check;
+    FrontCheck check{front_check()};
     check.want(request());
     wait(check);
     const auto found = check.found(request());

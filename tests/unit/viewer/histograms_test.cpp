@@ -1,13 +1,12 @@
 // What the controls show of a layer: histograms of its distances and of its picture's values, its mean
 // colour.
-#include "viewer/histograms.h"
+#include "viewer/loaded_layer.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "support/temp_folder.h"
-#include "viewer/loaded_layer.h"
 
 namespace astrosplat {
 namespace {

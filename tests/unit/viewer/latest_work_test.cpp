@@ -1,5 +1,5 @@
 // What was found for a request that nobody makes any more is let go, with all that the request held.
-#include "viewer/latest_work.h"
+#include "viewer/background_work.h"
 
 #include <gtest/gtest.h>
 

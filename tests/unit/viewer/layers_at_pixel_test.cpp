@@ -1,5 +1,5 @@
 // Which layer a click in the picture selects: the brightest at that pixel first, dust by what it hides.
-#include "viewer/layers_at_pixel.h"
+#include "viewer/cpu_preview.h"
 
 #include <gtest/gtest.h>
 

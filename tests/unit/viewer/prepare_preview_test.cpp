@@ -1,5 +1,5 @@
 // Before and after in the panel: what the engine prepares, small, of the last request alone.
-#include "viewer/prepare_preview.h"
+#include "viewer/layer_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ class PreparePreviewTest : public testing::Test {
 };
 
 TEST_F(PreparePreviewTest, ShowsThePictureBeforeAndAfter) {
-    PreparePreview preview;
+    PreparePreview preview{prepare_preview()};
     preview.want(request());
     wait(preview);
     const auto found = preview.found(request());
@@ -99,7 +99,7 @@ TEST_F(PreparePreviewTest, WhatComesLaterIsLeftOut) {
 }
 
 TEST_F(PreparePreviewTest, SaysWhyNothingCanBeShown) {
-    PreparePreview preview;
+    PreparePreview preview{prepare_preview()};
     layer.source.meshes[0].texture = {folder / "missing.png"};
     preview.want(request());
     wait(preview);

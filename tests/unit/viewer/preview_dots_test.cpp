@@ -48,12 +48,12 @@ class PreviewDotsTest : public testing::Test {
         box.add({5.0, 5.0, 5.0});
         return make_camera(small.scene.camera, width, height, box);
     }
-    CutSettings settings() const { return {budget, least_px, width, height}; }
+    PreviewView view() const { return {camera(), nullptr, width, height}; }
     Image draw(PreviewDots& dots) const {
         std::vector<PreviewLayer> seen = layers;
-        dots.cut(seen, loaded, camera(), settings(), 0.5f);
+        dots.cut(seen, loaded, view(), budget, least_px);
         CpuPreview preview;
-        return preview.draw(seen, camera(), nullptr, width, height, 0.5f);
+        return preview.draw(seen, view());
     }
     std::string hash(PreviewDots& dots) const { return pixel_hash(draw(dots)); }
     std::string redrawn() const {
@@ -114,7 +114,7 @@ TEST_F(PreviewDotsTest, StarsAreNeverMergedOrLeftOut) {
     budget = 10;
     std::vector<PreviewLayer> seen = layers;
     seen[0].look.grade.gain = 2.0f;
-    dots.cut(seen, loaded, camera(), settings(), 0.5f);
+    dots.cut(seen, loaded, view(), budget, least_px);
     EXPECT_EQ(seen[0].layer.splats->size(), 301);
     EXPECT_EQ(seen[0].layer.splats->color[0], 2.0f * loaded[0]->set->color[0]);
     EXPECT_LE(seen[1].layer.splats->size() + seen[2].layer.splats->size(), 10);

@@ -139,7 +139,7 @@ class Gallery {
         PreviewLayer layer;
         layer.layer.render.blend = view.blend;
         layer.layer.splats = &splats;
-        return preview_.draw({layer}, camera_at(view.eye), nullptr, frame_width, frame_height, 0.5f);
+        return preview_.draw({layer}, {camera_at(view.eye), nullptr, frame_width, frame_height});
     }
 
     /// Kept for views one after the other that have the same look.

@@ -1,7 +1,7 @@
 // What the status bar says of the pixel under the mouse, against pixels written by hand.
 #include <gtest/gtest.h>
 
-#include "viewer/session_status.h"
+#include "viewer/session_parts.h"
 
 namespace astrosplat {
 namespace {

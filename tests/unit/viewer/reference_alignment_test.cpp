@@ -1,5 +1,5 @@
 // What registration finds, as the placement of a reference over a frame.
-#include "viewer/reference_alignment.h"
+#include "viewer/reference_picture.h"
 
 #include <gtest/gtest.h>
 

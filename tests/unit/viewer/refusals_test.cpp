@@ -8,7 +8,7 @@
 #include "support/temp_folder.h"
 #include "support/variable.h"
 #include "viewer/render_queue.h"
-#include "viewer/session_status.h"
+#include "viewer/session_parts.h"
 
 namespace astrosplat {
 namespace {

@@ -1,5 +1,5 @@
 // Frames from disk for playing: read in the background, again when they change, within bounds.
-#include "viewer/rendered_frames.h"
+#include "viewer/file_pictures.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include "output/write.h"
 #include "source/write_image.h"
 #include "support/temp_folder.h"
-#include "viewer/finished_frames.h"
 
 namespace astrosplat {
 namespace {
@@ -25,7 +24,7 @@ struct RenderedFramesTest : testing::Test {
         write_image(file, side, side, rgba);
         return file;
     }
-    static std::shared_ptr<const FrameOnDisk> read(RenderedFrames& frames, const fs::path& file) {
+    static std::shared_ptr<const PackedPicture> read(RenderedFrames& frames, const fs::path& file) {
         while (frames.working()) std::this_thread::yield();
         return frames.found(file);
     }

@@ -1,24 +1,21 @@
-#include "viewer/session_render.h"
+// What the window shows of renderings to files: the jobs, the command of the dialog, a finished frame.
 
 #include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "edit/batch_command.h"
 #include "scene/animate.h"
-#include "viewer/child_process.h"
-#include "viewer/comparison.h"
-#include "viewer/session_view.h"
+#include "viewer/session_parts.h"
 
 namespace astrosplat {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A name is enough where every shell finds the program.
-std::string program_name() {
-    std::error_code failed;
-    const fs::path own = fs::read_symlink("/proc/self/exe", failed);
-    return failed || has_program("astrosplat") ? "astrosplat" : own.string();
-}
+/// A name is enough where every shell finds the program.
+std::string program_name() { return has_program("astrosplat") ? "astrosplat" : own_program(); }
 
 void fill_command(Session& session) {
     if (!session.view.render_open) return;
@@ -60,17 +57,16 @@ void show_finished_frame(Session& session) {
     }
     const auto last = static_cast<int>(job->files.size()) - 1;
     const int index = session.view.queue_frame < 0 ? last : std::min(session.view.queue_frame, last);
-    const fs::path& file = job->files[static_cast<std::size_t>(index)];
-    const FinishedRequest request = request_for(session, file);
+    const FinishedRequest request = request_for(session, job->files[static_cast<std::size_t>(index)]);
     session.finished.want(request);
     const auto found = session.finished.found(request);
-    if (!found || found == session.finished_shown) return;  // while it is read, the last one stays
-    session.finished_shown = found;
+    if (!found) return;  // while it is read, the last one stays
     shown.error = found->error;
     if (!found->error.empty()) return;
-    session.finished_texture.upload_smooth(found->image);
-    shown.texture = to_handle(session.finished_texture.handle());
-    shown.aspect = static_cast<float>(found->image.width) / static_cast<float>(found->image.height);
+    ShownPicture<FinishedView>& picture = session.finished_picture;
+    picture.show(found, [](const FinishedView& view) -> const Image& { return view.image; });
+    shown.texture = to_handle(picture.texture());
+    shown.aspect = picture.aspect();
 }
 
 void take_earlier_jobs(Session& session) {

@@ -1,13 +1,16 @@
-#include "viewer/front_check.h"
+#include "viewer/layer_picture.h"
 
 #include <algorithm>
 #include <iterator>
 #include <string_view>
 #include <utility>
 
+#include "core/color.h"
+#include "core/parallel.h"
 #include "fidelity/signed_difference.h"
 #include "measure_fidelity.h"
 #include "scene/animate.h"
+#include "source/prepared_picture.h"
 
 namespace astrosplat {
 namespace {
@@ -60,9 +63,60 @@ bool front_changed_by_look(const Scene& now) {
     });
 }
 
-FrontCheck::FrontCheck(std::int64_t width_px, const SetCache& cache)
-    : LatestWork([width_px, cache](const FrontRequest& request, const Progress& progress) {
-          return compared(request, width_px, cache, progress);
-      }) {}
+FrontCheck::Work front_check(std::int64_t width_px, const SetCache& cache) {
+    return [width_px, cache](const FrontRequest& request, const Progress& progress) {
+        return compared(request, width_px, cache, progress);
+    };
+}
+
+namespace {
+
+/// Over black, with the screen's curve.
+Image displayed(Image image) {
+    parallel_each(image.width * image.height, 1 << 14, [&](std::int64_t i) {
+        float* const p = image.pixels.data() + 4 * i;
+        for (int c = 0; c < 3; ++c) p[c] = display_srgb(p[c]);
+        p[3] = 1.0f;
+    });
+    return image;
+}
+
+/// What changes the size of the picture stays, so that before and after lie on each other.
+TextureSettings before_preparation(TextureSettings texture) {
+    PrepareParams prepare;
+    prepare.align = texture.prepare.align;
+    texture.prepare = std::move(prepare);
+    return texture;
+}
+
+}  // namespace
+
+std::optional<PrepareRequest> prepare_request(const LayerParams& layer, std::uint64_t changes) {
+    const SourceParams& source = layer.source;
+    if (source.kind != SourceKind::mesh || source.meshes.empty() || source.meshes[0].texture.empty())
+        return {};
+    TextureSettings texture = source.texture;
+    texture.mask.clear();  // these come later
+    texture.derive = Derived::none;
+    texture.smooth = texture.detail = 0.0;
+    return PrepareRequest{source.meshes[0].texture, std::move(texture), changes};
+}
+
+PreparedView prepared_view(const PrepareRequest& request, std::int64_t most_px, const Progress& progress) {
+    PreparedView view;
+    view.files = request.files;
+    view.before = displayed(
+        prepare_picture(request.files, before_preparation(request.texture), progress, most_px).image);
+    PreparedPicture after = prepare_picture(request.files, request.texture, progress, most_px);
+    view.after = displayed(std::move(after.image));
+    view.stars = static_cast<std::int64_t>(after.stars.size());
+    return view;
+}
+
+PreparePreview::Work prepare_preview(std::int64_t most_px) {
+    return [most_px](const PrepareRequest& request, const Progress& progress) {
+        return prepared_view(request, most_px, progress);
+    };
+}
 
 }  // namespace astrosplat

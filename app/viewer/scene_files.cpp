@@ -1,13 +1,26 @@
-#include "viewer/picture_files.h"
+#include "viewer/scene_files.h"
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
+#include "scene/input_files.h"
 #include "scene/layer_setup.h"
 #include "source/texture.h"
 
 namespace astrosplat {
 namespace fs = std::filesystem;
+namespace {
+
+/// Of a layer's source: what the scene names, and what was found in there.
+std::vector<fs::path> files_of(const LayerParams& layer, const SetLoader& loader) {
+    std::vector<fs::path> paths = named_files(layer.source);
+    if (const auto loaded = loader.layer(layer.name))
+        paths.insert(paths.end(), loaded->files.begin(), loaded->files.end());
+    return paths;
+}
+
+}  // namespace
 
 const Image& PictureFiles::map(const fs::path& file, Derived derive) {
     std::unique_ptr<Image>& image = maps_[{file, derive}];
@@ -99,6 +112,71 @@ void PictureFiles::load(const EnvironmentParams& params) {
     sky.loaded = std::move(loaded);
     sky.error = error;
     sky.loading = false;
+}
+
+void ColorManagement::update(const OcioParams& params, bool seen) {
+    const fs::path file = config_file(params);
+    if (!params.wanted() && (!seen || file.empty())) {
+        asked_.reset();
+        transform_.reset();
+        status_.reset();
+        return;
+    }
+    const Asked now{params, file, stamp_of(file)};
+    if (asked_ == now) return;
+    asked_ = now;
+    read(now);
+}
+
+void ColorManagement::read(const Asked& now) {
+    ColorStatus status;
+    transform_.reset();
+    try {
+        if (!now.file.empty()) status.config = read_color_config(now.file);
+        if (now.params.wanted()) transform_ = display_transform(now.params);
+    } catch (const InputError& error) {
+        status.error = error.what();
+    }
+    if (transform_) {
+        status.display = transform_->display();
+        status.view = transform_->view();
+        status.space = transform_->space();
+    }
+    status_ = std::move(status);
+}
+
+namespace fs = std::filesystem;
+
+bool DiskWatch::due(double now) {
+    constexpr double every_s = 1.0;
+    if (now - checked_at_s_ < every_s) return false;
+    checked_at_s_ = now;
+    return true;
+}
+
+void DiskWatch::watch(const Scene& scene, const SetLoader& loader, const fs::path& reference) {
+    std::vector<fs::path> paths = picture_files(scene);
+    for (const LayerParams& layer : scene.layers) {
+        const std::vector<fs::path> more = files_of(layer, loader);
+        paths.insert(paths.end(), more.begin(), more.end());
+    }
+    if (!reference.empty()) paths.push_back(reference);
+    files_.watch(paths);
+}
+
+std::vector<fs::path> DiskWatch::changed() {
+    std::vector<fs::path> files = files_.changed();
+    if (!files.empty()) ++changes_;
+    return files;
+}
+
+void outdate_layers_of(const std::vector<fs::path>& files, const Scene& scene, SetLoader& loader) {
+    for (const LayerParams& layer : scene.layers) {
+        const std::vector<fs::path> its = files_of(layer, loader);
+        if (std::find_first_of(its.begin(), its.end(), files.begin(), files.end()) != its.end())
+            loader.outdate(layer.name);
+    }
+    loader.want(scene);
 }
 
 }  // namespace astrosplat

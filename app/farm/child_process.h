@@ -1,0 +1,57 @@
+// Other programs, started without a shell: tools of the system, such as sbatch, run to their end, and
+// programs at work beside the window.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace astrosplat {
+
+/// A program of this name is on the PATH.
+bool has_program(const std::string& name);
+
+/// This very program's file.
+std::string own_program();
+/// A line of this program's own messages without "astrosplat: "; other lines as they are.
+std::string without_prefix(const std::string& line);
+
+struct ToolResult {
+    int code = 0;          // its exit code; 128 + signal where a signal ended it
+    std::string out, err;  // all it has written
+};
+
+/// Runs words[0], found on the PATH, in `folder` (empty: where we are) and waits for its end. Empty where
+/// there is no such program, or it cannot be started.
+std::optional<ToolResult> run_tool(const std::vector<std::string>& words,
+                                   const std::filesystem::path& folder = {});
+
+/// What went wrong, as one line: the first one that the tool wrote, or its exit code.
+std::string failure_of(const ToolResult& result);
+
+/// Another program at work, its output read as it comes, never waited for.
+class ChildProcess {
+  public:
+    /// Starts words[0], found on the PATH, with stdout and stderr read by output(). Throws OutputError where
+    /// it cannot be started.
+    explicit ChildProcess(const std::vector<std::string>& words);
+    ~ChildProcess();  // ends it (SIGTERM) and waits
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    /// What it has written since the last call.
+    std::string output();
+    /// Its exit code once it has ended: 128 + signal where a signal ended it. Empty while it runs.
+    std::optional<int> exit_code();
+    void terminate();
+
+  private:
+    pid_t id_ = -1;
+    int pipe_ = -1;
+    std::optional<int> exit_code_;
+};
+
+}  // namespace astrosplat

@@ -1,0 +1,248 @@
+// Pictures that a session shows besides its frame. Each is found in a thread beside the window, and goes to
+// the GPU once.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/error.h"
+#include "frame/output_pattern.h"
+#include "scene/animate.h"
+#include "scene/frames.h"
+#include "viewer/session_parts.h"
+
+namespace astrosplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// B alone, as large as `place` has room for it.
+void show_alone(unsigned texture, bool is_display, glm::vec2 size_px, const Rect& place,
+                DisplaySettings& shown) {
+    const float scale = std::min(place.width / size_px.x, place.height / size_px.y);
+    shown.b = texture;
+    shown.b_is_display = is_display;
+    shown.mode = DisplaySettings::Mode::b;
+    shown.width = scale * size_px.x;
+    shown.height = scale * size_px.y;
+    shown.x = place.x + 0.5f * (place.width - shown.width);
+    shown.y = place.y + 0.5f * (place.height - shown.height);
+}
+
+/// The file of a frame; empty where the output has one file for all frames, or a pattern that is wrong.
+fs::path file_of_frame(const Session& session, double frame) {
+    const Scene& scene = session.document.scene();
+    try {
+        const OutputPattern pattern = output_pattern(scene.file.parent_path(), scene.output.path);
+        if (!pattern.is_numbered()) return {};
+        return pattern.resolve(std::llround(frame), eyes_of(pattern, scene.camera).front());
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+/// From the frame that is looked at on, as they are played.
+std::vector<fs::path> files_ahead(const Session& session) {
+    const std::vector<std::int64_t> frames =
+        parse_frames(session.document.scene().output.frames, "output.frames");
+    const double first = session.view.play_first.value_or(static_cast<double>(frames.front())),
+                 last = session.view.play_last.value_or(static_cast<double>(frames.back()));
+    constexpr double most = 24.0;
+    std::vector<fs::path> files = {file_of_frame(session, session.view.frame)};
+    double frame = std::floor(session.view.frame);
+    for (double i = 1.0; i < std::min(most, last - first + 1.0); ++i) {
+        frame = frame + 1.0 > last ? first : frame + 1.0;
+        files.push_back(file_of_frame(session, frame));
+    }
+    std::erase(files, fs::path());
+    return files;
+}
+
+bool wants_rendered(const Session& session) {
+    const ViewState& view = session.view;
+    return view.show_rendered && view.view == ViewKind::camera && view.compare == CompareMode::a &&
+           !session.viewport_is_frame;
+}
+
+/// Of each layer what the final frame is made of; null: it is not seen.
+std::vector<std::shared_ptr<const SplatSet>> sets_of(const Session& session, const Scene& now) {
+    std::vector<std::shared_ptr<const SplatSet>> sets;
+    for (const LayerParams& layer : now.layers) {
+        const auto loaded = session.sets.loader().layer(layer.name);
+        sets.push_back(loaded && layer.visible ? loaded->set : nullptr);
+    }
+    return sets;
+}
+
+/// Null: nothing is found yet.
+std::shared_ptr<const FrontFound> check_front(Session& session, const Scene& now) {
+    std::optional<FrontStatus>& status = session.status.front;
+    const bool at_rest = session.view_frame.status().state == ViewFrameState::final;
+    const bool shown = session.view.compare == CompareMode::front;
+    status.reset();
+    if (!at_rest) session.front.cancel();
+    if (session.front.asked([&](const FrontRequest& asked) { return asked.sets != sets_of(session, now); }))
+        session.front.forget();  // it would keep the sets of scenes that are closed
+    if (session.viewport_is_frame || !has_front_picture(now) || !(at_rest || shown)) return {};
+    status.emplace();
+    status->changed_by_look = front_changed_by_look(now);
+    if (status->changed_by_look && !shown) return {};
+    const FrontRequest request = front_request(now, sets_of(session, now), session.disk.changes());
+    if (at_rest) session.front.want(request);
+    const std::shared_ptr<const FrontFound> found = session.front.found(request);
+    status->working = session.front.working();
+    if (!found) return {};
+    status->error = found->error;
+    if (!found->error.empty()) return {};
+    status->measured = true;
+    status->psnr_db = found->fidelity.psnr_db;
+    status->ssim = found->fidelity.ssim;
+    status->light = found->fidelity.flux.frame;
+    return found;
+}
+
+/// The view's part of what the display shows, without what it is compared with; top row first.
+Image view_pixels(Session& session, unsigned texture) {
+    DisplaySettings shown = session.displayed;
+    shown.b = texture;
+    Image view = session.display.read_compared(shown, session.viewport_px.x, session.viewport_px.y).a;
+    for (std::int64_t y = 0; y < view.height / 2; ++y)
+        std::swap_ranges(view.at(0, y), view.at(0, y) + view.width * 4, view.at(0, view.height - 1 - y));
+    return view;
+}
+
+}  // namespace
+
+bool show_rendered_frame(Session& session, const Rect& place, DisplaySettings& shown) {
+    Status& status = session.status;
+    ShownPicture<PackedPicture>& picture = session.rendered_picture;
+    status.rendered_frame.clear();
+    status.missing_frame.clear();
+    if (!wants_rendered(session)) {
+        session.rendered.want({});
+        picture.clear();
+        return false;
+    }
+    const fs::path file = file_of_frame(session, session.view.frame);
+    session.rendered.want(files_ahead(session));
+    std::error_code ignored;
+    if (file.empty() || !fs::exists(file, ignored)) {
+        status.missing_frame = file.empty() ? "frame" : file.filename().string();
+        picture.clear();
+        return false;
+    }
+    const std::shared_ptr<const PackedPicture> found = session.rendered.found(file);
+    if (found && !found->error.empty()) {
+        status.missing_frame = file.filename().string();
+        return false;
+    }
+    if (found) picture.show(found, to_image);
+    if (!picture.found()) return false;  // the first one is being read
+    status.rendered_frame = file.filename().string();
+    show_alone(picture.texture(), !picture.found()->is_light(), picture.size_px(), place, shown);
+    return true;
+}
+
+void show_front(Session& session, const Scene& now, DisplaySettings& shown) {
+    const std::shared_ptr<const FrontFound> found = check_front(session, now);
+    if (!found || session.view.compare != CompareMode::front) return;
+    ShownPicture<FrontFound>& picture = session.front_picture;
+    picture.show(found, [](const FrontFound& front) -> const Image& { return front.difference; });
+    const glm::vec2 port(session.viewport_px);
+    show_alone(picture.texture(), true, picture.size_px(), {0, 0, port.x, port.y}, shown);
+    shown.width = std::round(shown.width);
+    shown.height = std::round(shown.height);
+    shown.x = std::round(0.5f * (port.x - shown.width));
+    shown.y = std::round(0.5f * (port.y - shown.height));
+}
+
+void show_preparation(Session& session) {
+    std::optional<PrepareStatus>& status = session.status.preparation;
+    const std::vector<LayerParams>& layers = session.document.scene().layers;
+    status.reset();
+    if (!session.view.preparation_open || session.view.layer >= layers.size())
+        return session.preparation.cancel();
+    const auto request = prepare_request(layers[session.view.layer], session.disk.changes());
+    if (!request) return session.preparation.cancel();
+    session.preparation.want(*request);
+    status.emplace();
+    status->working = session.preparation.working();
+    ShownPicture<PreparedView>&before = session.preparation_before, &after = session.preparation_after;
+    const auto found = session.preparation.found(*request);
+    if (found) status->error = found->error;
+    if (found && found->error.empty()) {
+        before.show(found, [](const PreparedView& view) -> const Image& { return view.before; });
+        after.show(found, [](const PreparedView& view) -> const Image& { return view.after; });
+    }
+    // While another is worked out, the last one stays.
+    if (!after.found() || after.found()->files != request->files || !status->error.empty()) return;
+    status->before = to_handle(before.texture());
+    status->after = to_handle(after.texture());
+    status->aspect = after.aspect();
+    status->stars = after.found()->stars;
+}
+
+/// Textures are made of what is seen alone: a folder may hold more pictures than a GPU has memory for.
+void show_thumbnails(Session& session) {
+    const std::vector<ListedPicture>& seen = session.view.listed_pictures;
+    std::map<ListedPicture, ListedThumbnail>& shown = session.status.thumbnails;
+    session.thumbnails.want(seen);
+    const auto is_gone = [&](const auto& entry) {
+        return std::ranges::find(seen, entry.first) == seen.end();
+    };
+    std::erase_if(shown, is_gone);
+    std::erase_if(session.thumbnail_textures, is_gone);
+    for (const ListedPicture& picture : seen) {
+        if (shown.count(picture)) continue;
+        const std::shared_ptr<const PackedPicture> found = session.thumbnails.found(picture);
+        if (!found) continue;
+        ListedThumbnail& thumbnail = shown[picture];
+        if (!found->error.empty()) continue;
+        ImageTexture& texture = session.thumbnail_textures[picture];
+        texture.upload_smooth(to_image(*found));
+        thumbnail = {to_handle(texture.handle()), found->file_width, found->file_height};
+    }
+}
+
+void begin_alignment(Session& session) {
+    const ReferenceParams* reference = seen_reference(session.document.scene(), session.status);
+    const Image* picture = session.comparison.reference().picture();
+    if (!reference || !picture) throw InputError("the reference has not been read yet");
+    AlignmentRequest request;
+    request.view = view_pixels(session, session.comparison.reference().texture());
+    if (request.view.pixels.empty()) throw InputError("there is no frame to align to yet");
+    request.picture = *picture;
+    const glm::vec2 port(session.viewport_px);
+    request.frame = frame_on_screen(
+        place_frame(session.view, {0, 0, port.x, port.y}, session.request.width, session.request.height));
+    request.frame.middle -= glm::dvec2(std::max(0.0f, std::round(session.displayed.x)),
+                                       std::max(0.0f, std::round(session.displayed.y)));
+    request.reference = *reference;
+    request.camera = session.request.scene.camera;
+    session.alignment.begin(std::move(request));
+    say(session.status, "Aligning the reference to this view");
+}
+
+void take_alignment(Session& session) {
+    const std::shared_ptr<const AlignmentFound> found = session.alignment.take();
+    if (!found) return;
+    if (!found->error.empty()) return say(session.status, found->error, true);
+    const AlignmentRequest& request = session.alignment.request();
+    const std::string name = request.reference.file.filename().string();
+    if (!found->reference)
+        return say(session.status, "Nothing in the view is like " + name + ": it stays where it is", true);
+    const ReferenceParams* now = seen_reference(session.document.scene(), session.status);
+    if (!now || !(*now == request.reference) || !(session.request.scene.camera == request.camera))
+        return say(session.status, "Not aligned: the view or the reference has been changed since", true);
+    const std::size_t index = session.status.reference->index;
+    session.document.edit("Align reference",
+                          [&](Scene& scene) { scene.references[index] = *found->reference; });
+    show_reference(session.view);
+    say(session.status, fmt::format("Aligned {}, likeness {:.2f}", name, found->likeness));
+}
+
+}  // namespace astrosplat
