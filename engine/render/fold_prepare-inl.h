@@ -223,6 +223,7 @@ HWY_INLINE void prepare_screens(SplatBatch& batch, int n) {
         bright = hn::Or(bright, hn::Gt(color, all(1.0f)));
     }
     store(hn::Div(sum, all(3.0f)), batch.occlusion[3] + n);
+    store(all(1.0f), batch.shows + n);
     std::fill_n(batch.hiding + n, lanes, Hiding::proportional);
     if (hn::AllFalse(D(), bright)) return;
     alignas(64) float is_bright[lanes];

@@ -77,6 +77,28 @@ TEST(Blend, OverAddScreenLightenOfTwo) {
     EXPECT_FLOAT_EQ(middle(lighten.beauty)[3], s1 + (1.0f - s1) * s2);
 }
 
+// Also of splats that are not round, and where frames show directions.
+TEST(Blend, AScreensAlphaIsTheMeanOfItsLight) {
+    const Pair pair;
+    const ShadedSplats round = make_splats({pair.near_splat});
+    ShadedSplats flat = make_splats({pair.near_splat});
+    flat.stretch.push_back(glm::mat3(1.0f, 0.0f, 0.0f, 0.0f, 0.5f, 0.0f, 0.0f, 0.0f, 1.0f));
+    CameraParams panorama;
+    panorama.projection = Projection::equirectangular;
+    panorama.position = glm::dvec3(0.0, 0.0, 40.0);
+    const Camera plane = pixel_camera(size_px, size_px), sphere = make_camera(panorama, size_px, size_px, {});
+    for (const Camera* camera : {&plane, &sphere})
+        for (const ShadedSplats* splats : std::initializer_list<const ShadedSplats*>{&round, &flat}) {
+            const RenderLayer layer = layer_of("one", *splats, Blend::screen);
+            const Image beauty =
+                render(std::span(&layer, 1), *camera, nullptr, settings_of(size_px, size_px)).beauty;
+            EXPECT_GT(middle(beauty)[2], 0.1f);
+            for (std::size_t i = 0; i < beauty.pixels.size(); i += 4)
+                ASSERT_NEAR(beauty.pixels[i + 3],
+                            (beauty.pixels[i] + beauty.pixels[i + 1] + beauty.pixels[i + 2]) / 3.0f, 1e-6f);
+        }
+}
+
 // The near splat has no light and lets (1 - s)^a of each channel through.
 void expect_absorbed(const RenderedFrame& frame, const glm::vec3& exponents, const Pair& pair) {
     const double s1 = pair.near_splat.alpha, s2 = pair.far_splat.alpha;
