@@ -97,9 +97,9 @@ BatchCommand batch_command(const Document& document, const BatchCommandOptions& 
         const Region& r = *options.region;
         text += fmt::format(" --region {},{},{},{}", r.x, r.y, r.width, r.height);
     }
-    for (const std::string& word : options.arguments) text += " " + shell_word(word);
     for (const Assignment& a : assignments)
         text += " --set " + shell_word(fmt::format("{}={}", a.key, a.value));
+    for (const std::string& word : options.arguments) text += " " + shell_word(word);
     return {text, ""};
 }
 

@@ -27,7 +27,7 @@ OutputPattern pattern_of(const Document& document) {
 std::string frame_problem(const RenderTask& task) {
     try {
         const std::size_t count = parse_frames(task.frames, "frames").size();
-        const bool numbered = OutputPattern{task.folder, task.name}.is_numbered();
+        const bool numbered = output_pattern("/", render_target(task).string()).is_numbered();
         if (task.kind == RenderKind::range && count > 1 && !numbered)
             return "the name needs #### where the number of the frame goes";
     } catch (const InputError& error) {
@@ -57,8 +57,9 @@ RenderTask make_render_task(const Document& document, RenderKind kind, double fr
     task.frames = kind == RenderKind::frame ? fmt::format("{}", std::lround(frame)) : output.frames;
     task.width = output.width;
     task.height = output.height;
-    task.folder = (pattern.folder / name.parent_path()).lexically_normal();
-    task.name = kind == RenderKind::movie ? pattern.stem() + ".mp4" : name.filename().string();
+    const bool movie = kind == RenderKind::movie;
+    task.folder = (movie ? pattern.common_folder() : pattern.folder / name.parent_path()).lexically_normal();
+    task.name = movie ? pattern.stem() + ".mp4" : name.filename().string();
     return task;
 }
 
@@ -114,10 +115,14 @@ std::vector<std::string> submit_arguments(const RenderTask& task) {
 
 std::vector<std::string> batch_arguments(const RenderTask& task) {
     std::vector<std::string> words = frame_arguments(task);
-    // A movie's frames lie in a folder of its own, where nothing is in the way.
+    // A movie's frames lie in a folder of its own, where nothing is in the way, and are plain PNG whatever
+    // the scene's own files hold.
     const bool refuse = task.existing == ExistingFrames::refuse && task.kind != RenderKind::movie;
     if (task.existing != ExistingFrames::replace && !refuse) words.push_back("--resume");
     if (!refuse) words.push_back("--overwrite");
+    if (task.kind == RenderKind::movie)
+        for (const char* const key : {"aovs=[]", "depth=auto", "compression=auto", "alpha=auto"})
+            words.insert(words.end(), {"--set", std::string("output.") + key});
     return words;
 }
 

@@ -61,6 +61,17 @@ TEST(RenderTask, AMoviesFramesLieBesideIt) {
     EXPECT_TRUE(has(words, "/films/\\[one\\]\\*/a.mp4.frames/frame.*.png")) << "a pattern of ffmpeg";
     EXPECT_TRUE(has(words, "23.976"));
     EXPECT_EQ(words.back(), "/films/[one]*/a.mp4");
+    EXPECT_TRUE(has(batch_arguments(task), "output.aovs=[]")) << "which PNG files cannot hold";
+    EXPECT_FALSE(has(batch_arguments(task_of(RenderKind::range, "a.####.exr")), "output.aovs=[]"));
+}
+
+TEST(RenderTask, PlacesMayStandInTheNamesOfFolders) {
+    const std::string text = "astrosplat = 1\n[output]\nframes = \"1-2\"\npath = \"%V/take.####/shot.exr\"\n";
+    const Document document = Document::untitled(text, "/films/scene.toml");
+    EXPECT_EQ(render_problem(make_render_task(document, RenderKind::range, 1.0)), "");
+    const RenderTask movie = make_render_task(document, RenderKind::movie, 1.0);
+    EXPECT_EQ(render_target(movie).parent_path(), std::filesystem::current_path());
+    EXPECT_EQ(movie.name, "shot.mp4");
 }
 
 TEST(RenderTask, AnotherEndingKeepsTheName) {
