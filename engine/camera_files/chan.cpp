@@ -1,4 +1,4 @@
-#include "camera_files/chan.h"
+#include "camera_files/formats.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "camera/camera.h"
-#include "camera_files/text_rows.h"
 #include "core/file.h"
 #include "core/real.h"
 #include "core/text.h"
+#include "core/text_table.h"
 
 namespace astrosplat {
 namespace {
@@ -48,12 +48,12 @@ double unrolled(double angle, double before) {
 
 CameraTrack read_chan(const std::filesystem::path& file, const FrameRate& rate) {
     const std::string text = read_file(file);
-    camera_files::TextRows rows(file.string(), text);
+    TextRows rows(text, file.string());
     const double factor = rate.file_fps > 0.0 ? rate.output_fps / rate.file_fps : 1.0;
     CameraTrack track;
     std::size_t columns = 0;
     while (rows.next()) {
-        const auto& words = rows.words();
+        const auto& words = rows.fields();
         if (words.size() < 7 || words.size() > 8 || (columns && words.size() != columns))
             rows.fail(columns ? fmt::format("{} numbers as in the lines before", columns)
                               : "frame tx ty tz rx ry rz and perhaps fov, 7 or 8 numbers",

@@ -1,16 +1,15 @@
-#include "camera_files/gltf.h"
+#include "camera_files/formats.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 #include <optional>
 
-#include "camera/camera.h"
-#include "camera_files/gltf_curve.h"
 #include "core/base64.h"
 #include "core/error.h"
 #include "core/real.h"
@@ -22,48 +21,100 @@ namespace {
 
 using Json = nlohmann::json;
 
-struct Node {
-    std::optional<glm::dmat4> matrix;
-    glm::dvec3 translation{0.0}, scale{1.0};
-    glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};
-    std::optional<GltfCurve> translation_curve, rotation_curve, scale_curve;
+// ---- what moves: a place, a turn or a size over time
+
+/// Vectors of 3 or turns, quaternions x y z w.
+struct GltfCurve {
+    std::vector<double> frames;  // ascending, at least one
+    std::vector<float> values;   // cubic: what arrives, the value, what leaves
+    double fps = 24.0;
+    int components = 3;
+    enum class Between { linear, step, cubic } between = Between::linear;
 };
 
-glm::dvec4 numbers_of(const GltfFile& file, const Json& node, const char* name, std::size_t count,
-                      const glm::dvec4& otherwise) {
-    if (!node.contains(name)) return otherwise;
-    const auto list = node.at(name).get<std::vector<double>>();
-    if (list.size() != count)
-        file.fail(fmt::format("{} numbers as a node's {}", count, name), std::to_string(list.size()));
-    glm::dvec4 v(0.0);
-    for (std::size_t i = 0; i < count; ++i) v[static_cast<int>(i)] = list[i];
-    return v;
+/// Times are floats: what lies within a thousandth of a whole frame is meant to lie on it.
+double frame_of(double seconds, double fps) {
+    const double frame = seconds * fps, whole = std::floor(frame + 0.5);
+    return std::fabs(frame - whole) < 1e-3 ? whole : frame;
 }
 
-Node node_of(const GltfFile& file, const Json& json) {
-    Node node;
-    node.translation = glm::dvec3(numbers_of(file, json, "translation", 3, glm::dvec4(0.0)));
-    node.scale = glm::dvec3(numbers_of(file, json, "scale", 3, glm::dvec4(1.0)));
-    node.rotation = numbers_of(file, json, "rotation", 4, {0.0, 0.0, 0.0, 1.0});
-    if (!json.contains("matrix")) return node;
-    const auto list = json.at("matrix").get<std::vector<double>>();
-    if (list.size() != 16) file.fail("16 numbers as a node's matrix", std::to_string(list.size()));
-    glm::dmat4 matrix;
-    for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = list[static_cast<std::size_t>(i)];
-    node.matrix = matrix;
-    return node;
+/// Turns go the short way round, at even speed (glTF 2.0, appendix C.3).
+glm::dvec4 turned_between(const glm::dvec4& a, glm::dvec4 b, double t) {
+    double cosine = glm::dot(a, b);
+    if (cosine < 0.0) b = -b, cosine = -cosine;
+    if (cosine > 1.0 - 1e-9) return glm::normalize(a + t * (b - a));
+    const double angle = real::acos(cosine), sine = real::sin(angle);
+    return (real::sin((1.0 - t) * angle) / sine) * a + (real::sin(t * angle) / sine) * b;
 }
 
-glm::dmat4 matrix_at(const Node& node, double frame) {
-    if (node.matrix) return *node.matrix;
-    const glm::dvec3 place =
-        node.translation_curve ? glm::dvec3(value_of(*node.translation_curve, frame)) : node.translation;
-    const glm::dvec4 turn = node.rotation_curve ? value_of(*node.rotation_curve, frame) : node.rotation;
-    const glm::dvec3 scale = node.scale_curve ? glm::dvec3(value_of(*node.scale_curve, frame)) : node.scale;
-    const glm::dmat3 axes = rotation_from_quaternion(turn);
-    return {glm::dvec4(axes[0] * scale.x, 0.0), glm::dvec4(axes[1] * scale.y, 0.0),
-            glm::dvec4(axes[2] * scale.z, 0.0), glm::dvec4(place, 1.0)};
+/// Reads a sampler; a second is `fps` frames. Throws InputError and nlohmann's exceptions.
+GltfCurve gltf_curve(GltfFile& file, const nlohmann::json& sampler, int components, double fps) {
+    GltfCurve curve;
+    curve.components = components;
+    const std::string between = sampler.value("interpolation", "LINEAR");
+    if (between != "LINEAR" && between != "STEP" && between != "CUBICSPLINE")
+        file.fail("LINEAR, STEP or CUBICSPLINE", "'" + printable(between) + "'");
+    curve.between = between == "LINEAR" ? GltfCurve::Between::linear
+                    : between == "STEP" ? GltfCurve::Between::step
+                                        : GltfCurve::Between::cubic;
+    curve.fps = fps;
+    for (const float seconds : file.numbers(sampler.at("input"), 1))
+        curve.frames.push_back(frame_of(double(seconds), fps));
+    curve.values = file.numbers(sampler.at("output"), components);
+    const std::size_t each = curve.between == GltfCurve::Between::cubic ? 3 : 1;
+    if (curve.values.size() != curve.frames.size() * each * static_cast<std::size_t>(components))
+        file.fail(fmt::format("{} values for {} times", curve.frames.size() * each, curve.frames.size()),
+                  std::to_string(curve.values.size() / static_cast<std::size_t>(components)));
+    if (std::adjacent_find(curve.frames.begin(), curve.frames.end(), std::greater_equal<>()) !=
+        curve.frames.end())
+        file.fail("times that ascend", "others");
+    return curve;
 }
+
+/// Its first or last value before and after its times; turns have length 1.
+glm::dvec4 value_of(const GltfCurve& curve, double frame) {
+    const auto after = std::ranges::upper_bound(curve.frames, frame);
+    const auto next = static_cast<std::size_t>(after - curve.frames.begin());
+    const bool cubic = curve.between == GltfCurve::Between::cubic;
+    // Part 0 arrives, 1 is the value, 2 leaves.
+    const auto value = [&](std::size_t key, std::size_t part) {
+        glm::dvec4 v(0.0);
+        const std::size_t at = (cubic ? 3 * key + part : key) * static_cast<std::size_t>(curve.components);
+        for (int c = 0; c < curve.components; ++c)
+            v[c] = double(curve.values[at + static_cast<std::size_t>(c)]);
+        return v;
+    };
+    const bool turn = curve.components == 4;
+    const auto unit = [&](const glm::dvec4& v) { return turn ? glm::normalize(v) : v; };
+    if (next == 0) return unit(value(0, 1));
+    if (next == curve.frames.size() || curve.between == GltfCurve::Between::step)
+        return unit(value(next - 1, 1));
+    const double from = curve.frames[next - 1], length = curve.frames[next] - from,
+                 t = (frame - from) / length;
+    const glm::dvec4 a = value(next - 1, 1), b = value(next, 1);
+    if (!cubic) return turn ? turned_between(unit(a), unit(b), t) : a + t * (b - a);
+    const glm::dvec4 leaving = length / curve.fps * value(next - 1, 2),
+                     arriving = length / curve.fps * value(next, 0);
+    const double t2 = t * t, t3 = t2 * t;
+    return unit((2 * t3 - 3 * t2 + 1) * a + (t3 - 2 * t2 + t) * leaving + (3 * t2 - 2 * t3) * b +
+                (t3 - t2) * arriving);
+}
+
+// ---- nodes
+
+struct MovedNode {
+    GltfNode rest;
+    std::optional<GltfCurve> translation, rotation, scale;
+
+    glm::dmat4 matrix_at(double frame) const {
+        GltfNode node = rest;
+        if (translation) node.translation = glm::dvec3(value_of(*translation, frame));
+        if (rotation) node.rotation = value_of(*rotation, frame);
+        node.rotation /= glm::length(node.rotation);
+        if (scale) node.scale = glm::dvec3(value_of(*scale, frame));
+        return node.parent_from_node();
+    }
+};
 
 /// The node of the camera and its parents, from the root down, as their numbers in the file.
 std::vector<std::int64_t> way_to_camera(const GltfFile& file) {
@@ -88,7 +139,7 @@ std::vector<std::int64_t> way_to_camera(const GltfFile& file) {
 
 /// Gives the nodes of `way` the curves of the first animation that moves any of them.
 void attach_curves(GltfFile& file, const std::vector<std::int64_t>& way, double fps,
-                   std::vector<Node>& nodes) {
+                   std::vector<MovedNode>& nodes) {
     for (const Json& animation : file.json().value("animations", Json::array())) {
         bool moves = false;
         for (const Json& channel : animation.at("channels")) {
@@ -96,10 +147,10 @@ void attach_curves(GltfFile& file, const std::vector<std::int64_t>& way, double 
             const auto found = std::ranges::find(way, target.value("node", std::int64_t(-1)));
             const std::string path = target.value("path", "");
             if (found == way.end() || path == "weights") continue;
-            Node& node = nodes[static_cast<std::size_t>(found - way.begin())];
-            std::optional<GltfCurve>* const curve = path == "translation" ? &node.translation_curve
-                                                    : path == "rotation"  ? &node.rotation_curve
-                                                    : path == "scale"     ? &node.scale_curve
+            MovedNode& node = nodes[static_cast<std::size_t>(found - way.begin())];
+            std::optional<GltfCurve>* const curve = path == "translation" ? &node.translation
+                                                    : path == "rotation"  ? &node.rotation
+                                                    : path == "scale"     ? &node.scale
                                                                           : nullptr;
             if (!curve) continue;  // of an extension
             const auto sampler = channel.at("sampler").get<std::int64_t>();
@@ -108,7 +159,7 @@ void attach_curves(GltfFile& file, const std::vector<std::int64_t>& way, double 
                 file.fail("a number of one of its samplers", std::to_string(sampler));
             *curve = gltf_curve(file, samplers[static_cast<std::size_t>(sampler)], path == "rotation" ? 4 : 3,
                                 fps);
-            node.matrix.reset();
+            node.rest.matrix.reset();
             moves = true;
         }
         if (moves) return;
@@ -116,10 +167,10 @@ void attach_curves(GltfFile& file, const std::vector<std::int64_t>& way, double 
 }
 
 /// First and last frame of what moves; nothing where nothing does.
-std::optional<std::pair<double, double>> span_of(const std::vector<Node>& nodes) {
+std::optional<std::pair<double, double>> span_of(const std::vector<MovedNode>& nodes) {
     std::optional<std::pair<double, double>> span;
-    for (const Node& node : nodes)
-        for (const auto* curve : {&node.translation_curve, &node.rotation_curve, &node.scale_curve})
+    for (const MovedNode& node : nodes)
+        for (const auto* curve : {&node.translation, &node.rotation, &node.scale})
             if (*curve) {
                 const double first = (*curve)->frames.front(), last = (*curve)->frames.back();
                 span = span ? std::pair(std::min(span->first, first), std::max(span->second, last))
@@ -141,11 +192,11 @@ void set_lens(const GltfFile& file, const Json& camera, CameraTrack& track) {
             track.orthographic ? 2.0 * value : real::degrees(value);
 }
 
-CameraTrack read_checked(const std::filesystem::path& path, const FrameRate& rate) {
+CameraTrack read_checked_gltf(const std::filesystem::path& path, const FrameRate& rate) {
     GltfFile file(path);
     const std::vector<std::int64_t> way = way_to_camera(file);
-    std::vector<Node> nodes;
-    for (const std::int64_t i : way) nodes.push_back(node_of(file, file.element("nodes", i)));
+    std::vector<MovedNode> nodes;
+    for (const std::int64_t i : way) nodes.push_back({node_of(file, file.element("nodes", i)), {}, {}, {}});
     attach_curves(file, way, rate.output_fps, nodes);
     const auto span = span_of(nodes).value_or(std::pair(0.0, 0.0));
     const double first = std::floor(span.first), last = std::ceil(span.second);
@@ -155,7 +206,7 @@ CameraTrack read_checked(const std::filesystem::path& path, const FrameRate& rat
     track.fps = rate.output_fps;
     for (double frame = first; frame <= std::max(first, last); frame += 1.0) {
         glm::dmat4 world(1.0);
-        for (const Node& node : nodes) world = world * matrix_at(node, frame);
+        for (const MovedNode& node : nodes) world = world * node.matrix_at(frame);
         TrackSample sample;
         sample.frame = frame;
         sample.eye = glm::dvec3(world[3]);
@@ -180,7 +231,7 @@ void add_floats(std::string& bytes, std::initializer_list<double> values) {
 
 CameraTrack read_gltf(const std::filesystem::path& file, const FrameRate& rate) {
     try {
-        return read_checked(file, rate);
+        return read_checked_gltf(file, rate);
     } catch (const Json::exception& error) {  // a value of another type than glTF says
         bad_input(file.string(), "", "a glTF 2.0 file", printable(error.what()));
     }

@@ -2,11 +2,7 @@
 
 #include <algorithm>
 
-#include "camera_files/chan.h"
-#include "camera_files/gltf.h"
-#include "camera_files/recordings.h"
-#include "camera_files/transforms_json.h"
-#include "camera_files/usda_read.h"
+#include "camera_files/formats.h"
 #include "core/error.h"
 #include "core/text.h"
 

@@ -1,19 +1,17 @@
-#include "camera_files/recordings.h"
+#include "camera_files/formats.h"
 
 #include <fmt/format.h>
 
 #include <glm/geometric.hpp>
 
-#include "camera_files/text_rows.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/shown.h"
 #include "core/text.h"
+#include "core/text_table.h"
 
 namespace astrosplat {
 namespace {
-
-using camera_files::TextRows;
 
 constexpr double gaia_sky_fps = 60.0;
 
@@ -64,11 +62,11 @@ glm::dvec4 unit_quaternion(const TextRows& rows, const Words& words, const Colum
 
 CameraTrack read_gaia_sky(const std::filesystem::path& file, const FrameRate& rate) {
     const std::string text = read_file(file);
-    TextRows rows(file.string(), text);
+    TextRows rows(text, file.string());
     CameraTrack track;
     track.fps = rate.file_fps > 0.0 ? rate.file_fps : gaia_sky_fps;
     while (rows.next()) {
-        const Words& words = rows.words();
+        const Words& words = rows.fields();
         if (words.size() != 10)
             rows.fail("time x y z, direction and up, 10 numbers", std::to_string(words.size()));
         rows.number(words[0], "the time");
@@ -89,12 +87,12 @@ CameraTrack read_gaia_sky(const std::filesystem::path& file, const FrameRate& ra
 
 CameraTrack read_openspace(const std::filesystem::path& file, const FrameRate& rate) {
     const std::string text = read_file(file);
-    TextRows rows(file.string(), text);
+    TextRows rows(text, file.string());
     const Columns columns = columns_of(rows);
     CameraTrack track;
     std::string body;
     while (rows.next()) {
-        const Words& words = rows.words();
+        const Words& words = rows.fields();
         if (words[0] != "camera") continue;
         if (words.size() != columns.count)
             rows.fail(fmt::format("{} words in a camera's line", columns.count),

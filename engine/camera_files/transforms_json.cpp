@@ -1,4 +1,4 @@
-#include "camera_files/transforms_json.h"
+#include "camera_files/formats.h"
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ std::optional<double> vertical_fov_deg(const Json& frame, const Json& all) {
     return fov(real::tan(0.5 * *angle) * (w && h ? *h / *w : 1.0));
 }
 
-CameraTrack read_checked(const std::filesystem::path& file) {
+CameraTrack read_checked_transforms(const std::filesystem::path& file) {
     const auto fail = [&](const std::string& expected, const std::string& found) {
         bad_input(file.string(), "", expected, found);
     };
@@ -77,7 +77,7 @@ CameraTrack read_checked(const std::filesystem::path& file) {
 
 CameraTrack read_transforms_json(const std::filesystem::path& file, const FrameRate&) {
     try {
-        return read_checked(file);
+        return read_checked_transforms(file);
     } catch (const Json::exception& error) {  // a value of another type
         bad_input(file.string(), "", "a transforms.json", printable(error.what()));
     }

@@ -1,18 +1,133 @@
-#include "camera_files/usda.h"
+// Cameras of USD as text: UsdGeomCamera as Blender, Houdini and we ourselves write it.
+#include "camera_files/formats.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <set>
 
 #include "camera/camera.h"
+#include "core/error.h"
+#include "core/file.h"
 #include "core/real.h"
 #include "core/text.h"
+#include "usd/usda_stage.h"
+#include "usd/usda_transform.h"
 
 namespace astrosplat {
 namespace {
 
-constexpr double film_height = 24.0;
-constexpr double farthest = 1e9;
+// ---- reading
+
+// The schema's fallbacks, tenths of units.
+constexpr double usual_vertical_aperture = 15.2908;
+
+using Chain = std::vector<const UsdPrim*>;
+
+// The first camera, with its parents, and how many there are.
+void find_cameras(const std::vector<UsdPrim>& prims, Chain& here, Chain& first, std::int64_t& count) {
+    for (const UsdPrim& prim : prims) {
+        if (!prim.defined) continue;
+        here.push_back(&prim);
+        if (prim.type == "Camera" && count++ == 0) first = here;
+        find_cameras(prim.children, here, first, count);
+        here.pop_back();
+    }
+}
+
+double number_of(const UsdStage& stage, const char* name) {
+    const auto found = stage.metadata.find(name);
+    return found == stage.metadata.end() || found->second.numbers.size() != 1 ? 0.0
+                                                                              : found->second.numbers[0];
+}
+
+bool is_word(const std::vector<std::string>& words, const char* word) {
+    return words.size() == 1 && words[0] == word;
+}
+
+// Of every sample, and whole ones between the first and the last.
+std::vector<double> time_codes(const Chain& chain, const std::string& file) {
+    std::set<double> times;
+    for (const UsdPrim* const prim : chain) add_times(*prim, times);
+    if (times.empty()) return {0.0};
+    const double first = *times.begin(), last = *times.rbegin();
+    if (!(last - first + static_cast<double>(times.size()) <= static_cast<double>(most_camera_samples)) ||
+        !(std::fmax(std::fabs(first), std::fabs(last)) <= 1e12))
+        bad_input(file, "", fmt::format("at most {} frames, near 0", most_camera_samples),
+                  fmt::format("time codes from {} to {}", shortest(first), shortest(last)));
+    for (double time = std::ceil(first); time < last; time += 1.0) times.insert(time);
+    return {times.begin(), times.end()};
+}
+
+class CameraReader {
+  public:
+    CameraReader(const UsdStage& stage, Chain chain, std::string file, const FrameRate& rate)
+        : chain_(std::move(chain)), camera_(*chain_.back()), file_(std::move(file)) {
+        if (stage.is_z_up()) track_.up = FileUp::z;
+        track_.fps = number_of(stage, "timeCodesPerSecond");
+        if (!(track_.fps > 0.0)) track_.fps = number_of(stage, "framesPerSecond");
+        if (!(track_.fps > 0.0) || !std::isfinite(track_.fps)) track_.fps = 0.0;
+        const double own = rate.file_fps > 0.0 ? rate.file_fps : track_.fps;
+        frames_per_code_ = own > 0.0 ? rate.output_fps / own : 1.0;
+        const auto projection = camera_.attributes.find("projection");
+        track_.orthographic =
+            projection != camera_.attributes.end() && is_word(projection->second.value.words, "orthographic");
+        track_.has_fov = !track_.orthographic && camera_.attributes.count("focalLength") > 0;
+    }
+
+    CameraTrack track() {
+        for (const double time : time_codes(chain_, file_)) add_sample(time);
+        const auto is_told = [&](const char* name) { return camera_.attributes.count(name) > 0; };
+        if (track_.has_fov && is_told("horizontalAperture") && !is_told("verticalAperture"))
+            track_.warnings.push_back(fmt::format(
+                "{}: camera '{}' has no verticalAperture; USD's own, {}, is taken for its field of view",
+                file_, printable(camera_.name), usual_vertical_aperture));
+        return std::move(track_);
+    }
+
+  private:
+    double positive(const char* name, double time, double usual) const {
+        const std::vector<double> numbers = numbers_at(camera_, name, time, {usual});
+        if (numbers.size() == 1 && numbers[0] > 0.0 && std::isfinite(numbers[0])) return numbers[0];
+        bad_input(file_, "", fmt::format("{} above 0 at time code {}", name, shortest(time)),
+                  numbers.size() == 1 ? shortest(numbers[0]) : "another value");
+    }
+
+    void add_sample(double time) {
+        const glm::dmat4 world = world_from_prim(chain_, time, file_);
+        TrackSample sample;
+        sample.frame = time * frames_per_code_;
+        sample.eye = glm::dvec3(world[3]);
+        const bool placed =
+            std::isfinite(sample.eye.x) && std::isfinite(sample.eye.y) && std::isfinite(sample.eye.z);
+        if (!placed || !quaternion_from_axes(glm::dmat3(world), sample.rotation))
+            bad_input(file_, "",
+                      fmt::format("a place and axes of '{}' at time code {}", printable(camera_.name),
+                                  shortest(time)),
+                      "none");
+        if (track_.orthographic)
+            sample.height = positive("verticalAperture", time, usual_vertical_aperture) / 10.0;
+        if (track_.has_fov)
+            sample.fov_deg = 2.0 * real::degrees(real::atan2(
+                                       0.5 * positive("verticalAperture", time, usual_vertical_aperture),
+                                       positive("focalLength", time, 50.0)));
+        if (!track_.samples.empty() && !(sample.frame > track_.samples.back().frame)) return;  // rounded
+        track_.samples.push_back(sample);
+    }
+
+    Chain chain_;
+    const UsdPrim& camera_;
+    std::string file_;
+    double frames_per_code_ = 1.0;
+    CameraTrack track_;
+};
+
+// ---- writing
+
+constexpr double film_height = 24.0;  // mm
+constexpr double farthest = 1e9;      // what USD is told of a camera without a far plane
 
 std::string samples_of(const CameraTrack& track,
                        const std::function<std::string(const TrackSample&)>& value) {
@@ -34,6 +149,21 @@ std::string matrix_of(const TrackSample& sample) {
 }
 
 }  // namespace
+
+CameraTrack read_usda(const std::filesystem::path& file, const FrameRate& rate) {
+    const std::string text = read_file(file), name = file.string();
+    const UsdStage stage = parse_usda(text, name);
+    Chain here, first;
+    std::int64_t count = 0;
+    find_cameras(stage.prims, here, first, count);
+    if (count == 0) bad_input(name, "", "a camera", stage.none_found());
+    CameraReader reader(stage, first, name, rate);
+    CameraTrack track = reader.track();
+    if (count > 1)
+        track.warnings.push_back(
+            fmt::format("{}: of {} cameras '{}' is read", name, count, printable(first.back()->name)));
+    return track;
+}
 
 std::string usda_text(const CameraTrack& track, const UsdLens& lens) {
     std::string text = fmt::format(

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <optional>
 
 #include "core/base64.h"
 #include "core/error.h"
 #include "core/file.h"
+#include "core/quaternion.h"
 #include "core/text.h"
 
 namespace astrosplat {
@@ -145,6 +145,30 @@ std::vector<float> GltfFile::numbers(const Json& accessor_index, int components)
             numbers.push_back(type->read(
                 bytes.data() + view_at + at + i * stride + c * std::int64_t(type->size), normalised));
     return numbers;
+}
+
+GltfNode node_of(const GltfFile& file, const Json& json) {
+    const auto read = [&](const char* name, std::size_t count, const auto& take) {
+        if (!json.contains(name)) return;
+        const auto numbers = json.at(name).get<std::vector<double>>();
+        if (numbers.size() != count)
+            file.fail(fmt::format("{} numbers as a node's {}", count, name), std::to_string(numbers.size()));
+        for (std::size_t i = 0; i < count; ++i) take(static_cast<int>(i), numbers[i]);
+    };
+    GltfNode node;
+    read("translation", 3, [&](int i, double number) { node.translation[i] = number; });
+    read("scale", 3, [&](int i, double number) { node.scale[i] = number; });
+    read("rotation", 4, [&](int i, double number) { node.rotation[i] = number; });
+    if (json.contains("matrix")) node.matrix.emplace();
+    read("matrix", 16, [&](int i, double number) { (*node.matrix)[i / 4][i % 4] = number; });
+    return node;
+}
+
+glm::dmat4 GltfNode::parent_from_node() const {
+    if (matrix) return *matrix;
+    const glm::dmat3 axes = matrix_of_quaternion(rotation);
+    return {glm::dvec4(axes[0] * scale.x, 0.0), glm::dvec4(axes[1] * scale.y, 0.0),
+            glm::dvec4(axes[2] * scale.z, 0.0), glm::dvec4(translation, 1.0)};
 }
 
 }  // namespace astrosplat

@@ -1,10 +1,15 @@
-// The numbers of a glTF file: its JSON, and accessors into buffers that lie in it or beside it.
+// The numbers of a glTF file: its JSON, accessors into buffers that lie in it or beside it, and where its
+// nodes place what they hold.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +30,7 @@ class GltfFile {
     /// InputError.
     std::vector<float> numbers(const nlohmann::json& accessor, int components);
 
+    /// Throws InputError with the file.
     [[noreturn]] void fail(const std::string& expected, const std::string& found) const;
 
   private:
@@ -35,5 +41,17 @@ class GltfFile {
     std::string binary_;  // of a .glb
     std::map<std::int64_t, std::string> buffers_;
 };
+
+/// How a node places what it holds: a matrix, or a turn (quaternion x y z w), scale and translation.
+struct GltfNode {
+    std::optional<glm::dmat4> matrix;
+    glm::dvec3 translation{0.0}, scale{1.0};
+    glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0};
+
+    glm::dmat4 parent_from_node() const;
+};
+
+/// Throws InputError and nlohmann's exceptions.
+GltfNode node_of(const GltfFile& file, const nlohmann::json& node);
 
 }  // namespace astrosplat

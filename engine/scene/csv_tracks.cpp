@@ -7,19 +7,17 @@
 #include <cmath>
 #include <optional>
 
-#include "camera_files/text_rows.h"
 #include "core/error.h"
 #include "core/file.h"
 #include "core/shown.h"
 #include "core/text.h"
+#include "core/text_table.h"
 #include "scene/describe.h"
 #include "scene/entries.h"
 #include "scene/load.h"
 
 namespace astrosplat {
 namespace {
-
-using camera_files::TextRows;
 
 constexpr std::array<std::string_view, 2> component_names{"xyzw", "rgb"};
 
@@ -34,11 +32,6 @@ struct ColumnName {
     ParameterKey key;
     int component = -1;
 };
-
-std::string_view unquoted(std::string_view word) {
-    const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
-    return quoted ? word.substr(1, word.size() - 2) : word;
-}
 
 /// Vectors have several columns, all other parameters one.
 bool has_components(const ParameterSpec& spec) {
@@ -79,7 +72,7 @@ std::size_t component_count(const ParameterSpec& spec) {
 class CsvReader {
   public:
     CsvReader(const std::filesystem::path& file, std::string_view text, const FrameRate& rate, Scene& scene)
-        : place_(file.string()), rows_(place_, text), rate_(rate), scene_(scene) {}
+        : place_(file.string()), rows_(text, place_), rate_(rate), scene_(scene) {}
 
     std::vector<Track> read() {
         read_header();
@@ -98,10 +91,8 @@ class CsvReader {
   private:
     void read_header() {
         if (!rows_.next()) rows_.fail("a header such as frame,camera.position.x", "an empty file");
-        for (const char separator : {'\t', ';', ','})
-            if (rows_.text().find(separator) != std::string_view::npos) separator_ = separator;
-        std::vector<std::string_view> names = rows_.words(separator_);
-        for (std::string_view& name : names) name = unquoted(name);
+        separator_ = separator_of(rows_.text());
+        const std::vector<std::string_view> names = rows_.fields(separator_);
         const auto frame = std::ranges::find(names, "frame");
         if (frame == names.end())
             rows_.fail("a header with a column 'frame'", shown(names.empty() ? "" : names[0]));
@@ -155,11 +146,11 @@ class CsvReader {
     }
 
     void read_row() {
-        const std::vector<std::string_view>& words = rows_.words(separator_);
+        const std::vector<std::string_view>& words = rows_.fields(separator_);
         if (words.size() != columns_)
             rows_.fail(fmt::format("{} columns as in the header", columns_), std::to_string(words.size()));
         const double factor = rate_.file_fps > 0.0 ? rate_.output_fps / rate_.file_fps : 1.0;
-        const double frame = rows_.number(unquoted(words[frame_]), "the frame") * factor;
+        const double frame = rows_.number(words[frame_], "the frame") * factor;
         if (!std::isfinite(frame)) rows_.fail("a frame number", shown(words[frame_]));
         for (std::size_t k = 0; k < keys_.size(); ++k) {
             KeyColumns& key = keys_[k];
@@ -176,7 +167,7 @@ class CsvReader {
                                        const Parameter& parameter) const {
         try {
             if (!has_components(parameter.spec)) {
-                const std::string_view word = unquoted(words[*key.columns[0]]);
+                const std::string_view word = words[*key.columns[0]];
                 const Value value = is_numeric(parameter.spec.type)
                                         ? Value(rows_.number(word, key.track.key.text()))
                                         : typed_value(std::string(word));
@@ -188,7 +179,7 @@ class CsvReader {
             }
             std::vector<double> numbers;
             for (const std::optional<std::size_t>& column : key.columns)
-                numbers.push_back(rows_.number(unquoted(words[*column]), key.track.key.text()));
+                numbers.push_back(rows_.number(words[*column], key.track.key.text()));
             if (parameter.spec.type == ParameterType::rotation &&
                 std::ranges::all_of(numbers, [](double x) { return x == 0.0; }))
                 throw ValueError("expected a quaternion that is not zero, found 0, 0, 0, 0");

@@ -8,9 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "camera/camera.h"
-#include "camera_files/chan.h"
-#include "camera_files/gltf.h"
-#include "camera_files/usda.h"
+#include "camera_files/formats.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/real.h"

@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/file.h"
-#include "core/quaternion.h"
 #include "core/text.h"
 #include "gltf/gltf_file.h"
 #include "splat_files/gaussian_rows.h"
@@ -29,38 +28,6 @@ struct Part {
     std::int64_t count = 0;
     glm::dmat4 world{1.0};
 };
-
-template <int kCount>
-std::array<double, kCount> numbers_of(const GltfFile& file, const Json& list) {
-    const auto numbers = list.get<std::vector<double>>();
-    if (numbers.size() != kCount)
-        file.fail(fmt::format("{} numbers that place a node", kCount), std::to_string(numbers.size()));
-    std::array<double, kCount> result;
-    std::ranges::copy(numbers, result.begin());
-    return result;
-}
-
-glm::dmat4 matrix_of(const GltfFile& file, const Json& node) {
-    glm::dmat4 matrix(1.0);
-    if (node.contains("matrix")) {
-        const auto m = numbers_of<16>(file, node.at("matrix"));
-        for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
-        return matrix;
-    }
-    if (node.contains("rotation")) {
-        const auto q = numbers_of<4>(file, node.at("rotation"));
-        matrix = glm::dmat4(matrix_of_quaternion({q[0], q[1], q[2], q[3]}));
-    }
-    if (node.contains("scale")) {
-        const auto s = numbers_of<3>(file, node.at("scale"));
-        for (int k = 0; k < 3; ++k) matrix[k] *= s[static_cast<std::size_t>(k)];
-    }
-    if (node.contains("translation")) {
-        const auto t = numbers_of<3>(file, node.at("translation"));
-        matrix[3] = glm::dvec4(t[0], t[1], t[2], 1.0);
-    }
-    return matrix;
-}
 
 std::string harmonic_name(int degree, int number) {
     return fmt::format("{}:SH_DEGREE_{}_COEF_{}", extension, degree, number);
@@ -113,7 +80,7 @@ void add_parts(const GltfFile& file, const Json& index, const glm::dmat4& parent
     if (seen[i]) file.fail("nodes that are trees", fmt::format("node {} twice", i));
     if (depth > deepest) file.fail(fmt::format("at most {} nodes one below the other", deepest), "more");
     seen[i] = true;
-    const glm::dmat4 world = parent * matrix_of(file, node);
+    const glm::dmat4 world = parent * node_of(file, node).parent_from_node();
     if (node.contains("mesh")) add_parts_of_mesh(file, file.element("meshes", node.at("mesh")), world, parts);
     for (const Json& child : node.value("children", Json::array()))
         add_parts(file, child, world, depth + 1, seen, parts);

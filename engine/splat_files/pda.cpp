@@ -204,7 +204,7 @@ std::string header_text(const SplatSet& set) {
 
 SplatSet read_pda_bytes(const std::filesystem::path& file, std::string_view bytes, const Progress& progress) {
     const PdaHeader header = read_header(file, bytes);
-    const TextRows rows = split_rows(header.data, header.data_line);
+    const SplitRows rows = split_rows(header.data, header.data_line);
     if (static_cast<std::uint64_t>(rows.rows) != header.particles)
         bad_input(file.string(), "", fmt::format("{} rows, as NUMBER_OF_PARTICLES says", header.particles),
                   std::to_string(rows.rows));

@@ -206,7 +206,7 @@ std::size_t find_vertex(const PlyHeader& header, const std::filesystem::path& fi
 
 void read_ascii(const PlyHeader& header, std::size_t vertex, SplatTable& table,
                 const std::filesystem::path& file, const Progress& progress) {
-    const TextRows rows = split_rows(header.data, header.data_line);
+    const SplitRows rows = split_rows(header.data, header.data_line);
     std::uint64_t left = static_cast<std::uint64_t>(rows.rows);
     std::int64_t first = 0;
     for (std::size_t i = 0; i < header.elements.size(); ++i) {

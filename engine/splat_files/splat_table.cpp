@@ -283,8 +283,8 @@ void read_chunk(const TextChunk& chunk, std::int64_t begin, std::int64_t end, co
 
 }  // namespace
 
-TextRows split_rows(std::string_view text, std::int64_t first_line) {
-    TextRows result{cut(text), 0};
+SplitRows split_rows(std::string_view text, std::int64_t first_line) {
+    SplitRows result{cut(text), 0};
     parallel_for(static_cast<std::int64_t>(result.chunks.size()),
                  [&](std::int64_t i, int) { count(result.chunks[i]); });
     for (TextChunk& chunk : result.chunks) {
@@ -297,7 +297,7 @@ TextRows split_rows(std::string_view text, std::int64_t first_line) {
     return result;
 }
 
-void read_text_rows(const TextRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
+void read_text_rows(const SplitRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
                     const std::filesystem::path& file, const Progress& progress) {
     parallel_parts(rows.chunks.size(), progress, [&](std::size_t chunk) {
         read_chunk(rows.chunks[chunk], begin, end, table, file);

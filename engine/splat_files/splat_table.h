@@ -107,18 +107,18 @@ struct TextChunk {
     std::int64_t first_line = 0;  // of the file, from 1
 };
 
-struct TextRows {
+struct SplitRows {
     std::vector<TextChunk> chunks;
     std::int64_t rows = 0;
 };
 
 /// Cuts and counts; `first_line` is the file's line where `text` begins. Blank lines count as lines, not as
 /// rows.
-TextRows split_rows(std::string_view text, std::int64_t first_line);
+SplitRows split_rows(std::string_view text, std::int64_t first_line);
 
 /// Reads rows [begin, end) of `rows` into the table's columns as its rows 0 .. end-begin. The lowest bad row
 /// decides the InputError, whatever the threads do.
-void read_text_rows(const TextRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
+void read_text_rows(const SplitRows& rows, std::int64_t begin, std::int64_t end, const SplatTable& table,
                     const std::filesystem::path& file, const Progress& progress);
 
 /// Text of a file for a message: one line, quoted, shortened to 32 characters, others than printable ASCII as

@@ -129,9 +129,8 @@ void add_prims(const UsdText& text, const std::vector<UsdPrim>& prims, std::vect
 }
 
 glm::dmat4 y_up_from(const UsdStage& stage) {
-    const auto up = stage.metadata.find("upAxis");
     glm::dmat4 m(1.0);
-    if (up == stage.metadata.end() || up->second.words != std::vector<std::string>{"Z"}) return m;
+    if (!stage.is_z_up()) return m;
     m[1] = {0.0, 0.0, -1.0, 0.0};
     m[2] = {0.0, 1.0, 0.0, 0.0};
     return m;
@@ -142,9 +141,7 @@ std::vector<GaussianPrim> prims_of(const UsdText& text, const UsdStage& stage) {
     std::vector<const UsdPrim*> chain;
     add_prims(text, stage.prims, chain, y_up_from(stage), all);
     if (all.empty())
-        bad_input(
-            text.file, "", fmt::format("Gaussians ({})", usd_gaussians),
-            stage.refers_elsewhere ? "none but what other files may hold, which are not opened" : "none");
+        bad_input(text.file, "", fmt::format("Gaussians ({})", usd_gaussians), stage.none_found());
     return all;
 }
 

@@ -1,23 +1,21 @@
+// A row's fields become a star in the same way whatever the catalogue's format; Hipparcos has its fields
+// between | at fixed places (ESA SP-1200, volume 1, section 2.1), tables name theirs in the first line.
 #include "stars/catalogue.h"
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/error.h"
 #include "core/text.h"
+#include "core/text_table.h"
 #include "stars/catalogue_text.h"
-#include "stars/hipparcos.h"
-#include "stars/named_columns.h"
-#include "stars/text_table.h"
 
 namespace astrosplat {
-namespace {
-
-constexpr std::size_t lines_named = 3;
-
-}  // namespace
 
 void BadRows::add(std::int64_t line, const std::string& what) {
     if (count++ == 0) problem = what;
+    constexpr std::size_t lines_named = 3;
     if (lines.size() < lines_named) lines.push_back(line);
 }
 
@@ -31,11 +29,209 @@ std::string BadRows::text(std::int64_t rows) const {
                        printable(problem));
 }
 
+namespace {
+
+// ---- one row, from its fields to a star
+
+constexpr double brightest = -60.0, faintest = 60.0;  // magnitudes: beyond, a column was taken for another
+constexpr double largest_index = 20.0;                // of B-V, likewise
+constexpr double sun_magnitude = -20.0;               // brighter is nothing else
+constexpr double au_pc = 4.84813681e-6;               // an astronomical unit in parsec
+
+std::string no_number(std::string_view name, std::string_view field) {
+    return fmt::format("expected a number for {}, found '{}'", name, field);
+}
+
+std::string wrong(std::string_view name, std::string_view range, const std::optional<double>& found) {
+    return fmt::format("expected {} for {}, found {}", range, name, found ? shortest(*found) : "none");
+}
+
+bool within(const std::optional<double>& number, double lo, double hi) {
+    return number && *number >= lo && *number <= hi;
+}
+
+bool usable(const std::optional<double>& number) { return number && *number > 0.0; }
+
+enum class RowUnits { degrees, hours };  // of right ascension
+
+/// The fields as they stand; empty ones are missing.
+struct StarFields {
+    std::string_view ra, dec, magnitude, distance, parallax, color_index;
+};
+
+/// Their numbers; what is missing has none.
+struct StarRow {
+    std::optional<double> ra_deg, dec_deg, magnitude, distance_pc, parallax_mas, color_index;
+
+    /// The first field that is no number, as "expected ..., found ..."; empty where all are.
+    std::string read(const StarFields& fields, RowUnits units);
+    /// What keeps the row from being a star, likewise.
+    std::string to_star(CatalogueStar& star) const;
+};
+
+/// Counts a row and adds its star where `read_row(star)` finds no problem.
+template <class ReadRow>
+void add_row(StarCatalogue& catalogue, std::int64_t line, const Progress& progress, const ReadRow& read_row) {
+    if (catalogue.rows % 65536 == 0) progress.check();
+    CatalogueStar star;
+    star.row = catalogue.rows++;
+    const std::string problem = read_row(star);
+    if (problem.empty())
+        catalogue.stars.push_back(star);
+    else
+        catalogue.bad.add(line, problem);
+}
+
+std::string StarRow::read(const StarFields& fields, RowUnits units) {
+    if (!read_number(fields.ra, ra_deg)) return no_number("right ascension", fields.ra);
+    if (ra_deg && units == RowUnits::hours) *ra_deg *= 15.0;
+    if (!read_number(fields.dec, dec_deg)) return no_number("declination", fields.dec);
+    if (!read_number(fields.magnitude, magnitude)) return no_number("the magnitude", fields.magnitude);
+    if (!read_number(fields.distance, distance_pc)) return no_number("the distance", fields.distance);
+    if (!read_number(fields.parallax, parallax_mas)) return no_number("the parallax", fields.parallax);
+    if (!read_number(fields.color_index, color_index)) return no_number("B-V", fields.color_index);
+    return {};
+}
+
+std::string StarRow::to_star(CatalogueStar& star) const {
+    if (!within(ra_deg, -360.0, 360.0)) return wrong("right ascension", "0 to 360 degrees", ra_deg);
+    if (!within(dec_deg, -90.0, 90.0)) return wrong("declination", "-90 to 90 degrees", dec_deg);
+    if (!within(magnitude, brightest, faintest)) return wrong("the magnitude", "-60 to 60", magnitude);
+    if (color_index && !within(color_index, -largest_index, largest_index))
+        return wrong("B-V", "-20 to 20", color_index);
+    star.ra_deg = *ra_deg;
+    star.dec_deg = *dec_deg;
+    star.magnitude = *magnitude;
+    star.color_index = color_index;
+    star.distance_pc = usable(distance_pc)          ? *distance_pc
+                       : usable(parallax_mas)       ? 1000.0 / *parallax_mas
+                       : *magnitude < sun_magnitude ? au_pc
+                                                    : 0.0;
+    if (!std::isfinite(star.distance_pc)) star.distance_pc = 0.0;
+    return {};
+}
+
+// ---- Hipparcos
+
+enum HipparcosField {
+    ra_hms = 3,
+    dec_dms = 4,
+    v_magnitude = 5,
+    ra = 8,
+    dec = 9,
+    parallax = 11,
+    b_v = 37,
+    fields
+};
+
+// "00 00 12.80", "-16 42 58.0" as one number; nothing where it is no such text.
+std::optional<double> sexagesimal(std::string_view text) {
+    text = trim(text);
+    const bool negative = text.starts_with('-');
+    if (negative || text.starts_with('+')) text.remove_prefix(1);
+    double value = 0.0, share = 1.0;
+    for (int part = 0; part < 3; ++part, share /= 60.0) {
+        text = trim(text);
+        const std::size_t end = std::min(text.find(' '), text.size());
+        const std::optional<double> number = parse_double(text.substr(0, end));
+        if (!number || !(*number >= 0.0 && *number <= 360.0)) return std::nullopt;
+        value += *number * share;
+        text.remove_prefix(end);
+    }
+    if (!text.empty()) return std::nullopt;
+    return negative ? -value : value;
+}
+
+std::string read_row(const std::vector<std::string_view>& field, CatalogueStar& star) {
+    if (field.size() < fields) return fmt::format("expected {} fields, found {}", +fields, field.size());
+    StarRow row;
+    std::string problem = row.read(
+        {field[ra], field[dec], field[v_magnitude], "", field[parallax], field[b_v]}, RowUnits::degrees);
+    if (!row.ra_deg && !row.dec_deg) {
+        row.ra_deg = sexagesimal(field[ra_hms]);
+        if (row.ra_deg) *row.ra_deg *= 15.0;
+        row.dec_deg = sexagesimal(field[dec_dms]);
+    }
+    return problem.empty() ? row.to_star(star) : problem;
+}
+
+/// Fields H5 (V), H8 and H9 (right ascension and declination at J1991.25, degrees; where these are missing H3
+/// and H4, sexagesimal), H11 (parallax, milliarcseconds) and H37 (B-V). Throws Cancelled.
+StarCatalogue parse_hipparcos(std::string_view text, const Progress& progress) {
+    StarCatalogue catalogue;
+    for (TextRows rows(text); rows.next();)
+        add_row(catalogue, rows.line(), progress,
+                [&](CatalogueStar& star) { return read_row(rows.fields('|'), star); });
+    return catalogue;
+}
+
+// ---- tables whose first line names the columns
+
+constexpr double hyg_unknown_pc = 100000.0;  // how HYG writes that it knows no distance
+constexpr std::size_t most_shown = 60;       // characters of a line in a message
+
+struct Columns {
+    explicit Columns(const TextTable& table)
+        : ra(table.column({"ra"})),
+          dec(table.column({"dec"})),
+          magnitude(table.column({"mag", "vmag"})),
+          distance(table.column({"dist", "distance"})),
+          parallax(table.column({"parallax", "plx"})),
+          color_index(table.column({"bv", "b_v", "b-v", "ci"})) {
+        hyg = true;
+        for (const char* const name : {"hip", "hd", "hr", "gl", "proper"})
+            hyg = hyg && table.column({name}) != TextTable::none;
+    }
+
+    int ra, dec, magnitude, distance, parallax, color_index;
+    bool hyg;
+};
+
+std::string read_table_row(const TextTable& table, const Columns& columns, CatalogueStar& star) {
+    StarRow row;
+    std::string problem = row.read(
+        {table.field(columns.ra), table.field(columns.dec), table.field(columns.magnitude),
+         table.field(columns.distance), table.field(columns.parallax), table.field(columns.color_index)},
+        columns.hyg ? RowUnits::hours : RowUnits::degrees);
+    if (columns.hyg && row.distance_pc && *row.distance_pc >= hyg_unknown_pc) row.distance_pc.reset();
+    return problem.empty() ? row.to_star(star) : problem;
+}
+
+/// Throws InputError where the columns of ra, dec or mag are missing; Cancelled.
+StarCatalogue parse_columns(std::string_view text, const std::string& name, const Progress& progress) {
+    TextTable table(text);
+    const Columns columns(table);
+    for (const int needed : {columns.ra, columns.dec, columns.magnitude})
+        if (needed == TextTable::none)
+            bad_input(name, fmt::format("line {}", table.line()),
+                      "a Hipparcos catalogue, or names of columns with ra, dec and mag among them",
+                      fmt::format("'{}'", printable(table.header().substr(0, most_shown))));
+    StarCatalogue catalogue;
+    while (table.next())
+        add_row(catalogue, table.line(), progress,
+                [&](CatalogueStar& star) { return read_table_row(table, columns, star); });
+    return catalogue;
+}
+
+bool is_hipparcos(std::string_view first_line) {
+    const std::string_view line = trim(first_line);
+    return line.starts_with('H') && trim(line.substr(1)).starts_with('|');
+}
+
+}  // namespace
+
+bool is_catalogue(std::string_view first_line) {
+    const TextTable table(first_line);
+    return is_hipparcos(first_line) ||
+           (table.column({"ra"}) != TextTable::none && table.column({"dec"}) != TextTable::none &&
+            table.column({"mag", "vmag"}) != TextTable::none);
+}
+
 StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress) {
-    TextLines first(text);
+    TextRows first(text);
     if (!first.next()) bad_input(name, "", "a star catalogue", "an empty file");
     StarCatalogue catalogue =
-        is_hipparcos(first.line()) ? parse_hipparcos(text, progress) : parse_columns(text, name, progress);
+        is_hipparcos(first.text()) ? parse_hipparcos(text, progress) : parse_columns(text, name, progress);
     if (catalogue.stars.empty())
         bad_input(name, "", "at least one star",
                   catalogue.rows == 0 ? "none" : "none: " + catalogue.bad.text(catalogue.rows));

@@ -51,4 +51,7 @@ StarCatalogue read_catalogue(const std::filesystem::path& file, const Progress& 
 /// The same of its text; `name` begins messages.
 StarCatalogue parse_catalogue(std::string_view text, const std::string& name, const Progress& progress = {});
 
+/// Whether a first line is that of a catalogue which read_catalogue() takes.
+bool is_catalogue(std::string_view first_line);
+
 }  // namespace astrosplat

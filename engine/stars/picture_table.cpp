@@ -5,10 +5,11 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/file.h"
 #include "core/sorting.h"
 #include "core/text.h"
+#include "core/text_table.h"
 #include "stars/catalogue_text.h"
-#include "stars/text_table.h"
 
 namespace astrosplat {
 namespace {
@@ -53,9 +54,16 @@ std::string read_star(const TextTable& table, const TableColumns& columns, Table
     return problem;
 }
 
-}  // namespace
-
 bool is_picture_table(std::string_view first_line) { return TableColumns(TextTable(first_line)).complete(); }
+
+constexpr std::size_t beginning_bytes = 8192;
+
+std::string beginning_of(const std::filesystem::path& file) {
+    const std::string bytes = read_beginning(file, beginning_bytes);
+    return bytes.starts_with("\x1f\x8b") ? read_catalogue_text(file).substr(0, beginning_bytes) : bytes;
+}
+
+}  // namespace
 
 PictureTable parse_picture_table(std::string_view text, const std::string& name, const Progress& progress) {
     TextTable table(text);
@@ -88,6 +96,15 @@ double median_sigma_px(const PictureTable& table) {
     for (const TableStar& star : table.stars)
         if (star.sigma_px > 0.0) widths.push_back(star.sigma_px);
     return widths.empty() ? 0.0 : median(widths);
+}
+
+CatalogueKind kind_of_catalogue(const std::filesystem::path& file) {
+    const std::string text = beginning_of(file);
+    if (text.find('\0') != text.npos) return CatalogueKind::none;
+    TextRows rows(text);
+    if (!rows.next()) return CatalogueKind::none;
+    if (is_picture_table(rows.text())) return CatalogueKind::picture;
+    return is_catalogue(rows.text()) ? CatalogueKind::sky : CatalogueKind::none;
 }
 
 }  // namespace astrosplat

@@ -1,5 +1,6 @@
-// The stars of a picture as `prepare` lists them (prepare/star_table.h). In: the table's text. Out: places
-// and light, with the rows that cannot be used counted and named.
+// The stars of a picture as `prepare` lists them (prepare/star_table.h), and which files hold stars at all.
+// In: a table's text, or a file of any kind. Out: places and light, with the rows that cannot be used counted
+// and named; or which reader would take it.
 #pragma once
 
 #include <cstdint>
@@ -38,10 +39,17 @@ PictureTable read_picture_table(const std::filesystem::path& file, const Progres
 PictureTable parse_picture_table(std::string_view text, const std::string& name,
                                  const Progress& progress = {});
 
-/// Whether a line of names is that of such a table.
-bool is_picture_table(std::string_view first_line);
-
 /// The middle one of the stars' widths, px of the picture; 0 where none is known.
 double median_sigma_px(const PictureTable& table);
+
+enum class CatalogueKind {
+    none,
+    sky,     // read_catalogue() takes it
+    picture  // read_picture_table() does
+};
+
+/// By its first line, whatever its name. Of gzip data only where it begins as such; none for what cannot be
+/// read. Throws InputError for damaged gzip data.
+CatalogueKind kind_of_catalogue(const std::filesystem::path& file);
 
 }  // namespace astrosplat

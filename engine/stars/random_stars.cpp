@@ -10,13 +10,12 @@
 #include "core/parallel.h"
 #include "core/real.h"
 #include "core/shared_maths.h"
-#include "stars/star_color.h"
+#include "stars/star_set.h"
 
 namespace astrosplat {
 namespace {
 
 constexpr std::int64_t stars_per_task = 4096;
-constexpr double ln10 = 2.302585092994046;
 
 double log10_of(double x) { return real::log(x) / ln10; }
 

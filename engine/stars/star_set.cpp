@@ -1,13 +1,85 @@
 #include "stars/star_set.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
 #include <vector>
 
 #include "core/memory.h"
 #include "core/real.h"
-#include "stars/star_color.h"
 
 namespace astrosplat {
+
+namespace {
+
+constexpr double lowest = -0.4, highest = 5.0, step = 0.01;  // B-V
+constexpr double unknown = 0.65;
+constexpr double first_nm = 380.0, nm = 5.0;
+constexpr std::size_t wavelengths = 81;
+
+// One lobe of Wyman et al., whose width is another on either side of its peak.
+double lobe(double wavelength_nm, double peak_nm, double below, double above) {
+    const double t = (wavelength_nm - peak_nm) * (wavelength_nm < peak_nm ? below : above);
+    return real::exp(-0.5 * t * t);
+}
+
+glm::dvec3 color_matching(double w) {
+    return {0.362 * lobe(w, 442.0, 0.0624, 0.0374) + 1.056 * lobe(w, 599.8, 0.0264, 0.0323) -
+                0.065 * lobe(w, 501.1, 0.0490, 0.0382),
+            0.821 * lobe(w, 568.8, 0.0213, 0.0247) + 0.286 * lobe(w, 530.9, 0.0613, 0.0322),
+            1.217 * lobe(w, 437.0, 0.0845, 0.0278) + 0.681 * lobe(w, 459.0, 0.0385, 0.0725)};
+}
+
+using MatchingTable = std::array<glm::dvec3, wavelengths>;
+
+MatchingTable make_matching_table() {
+    MatchingTable table;
+    for (std::size_t i = 0; i < wavelengths; ++i)
+        table[i] = color_matching(first_nm + nm * static_cast<double>(i));
+    return table;
+}
+
+// Of a black body, up to a factor: 1 / (w^5 (e^(c2 / wT) - 1)), c2 in nm K (CODATA 2018).
+double planck(double wavelength_nm, double kelvin) {
+    constexpr double c2 = 1.438776877e7;
+    const double micrometre = wavelength_nm / 1000.0, square = micrometre * micrometre;
+    return 1.0 / (square * square * micrometre * (real::exp(c2 / (wavelength_nm * kelvin)) - 1.0));
+}
+
+// XYZ to linear Rec. 709 with white D65 (IEC 61966-2-1).
+glm::dvec3 rec709(const glm::dvec3& xyz) {
+    return {3.2406255 * xyz.x - 1.5372080 * xyz.y - 0.4986286 * xyz.z,
+            -0.9689307 * xyz.x + 1.8757561 * xyz.y + 0.0415175 * xyz.z,
+            0.0557101 * xyz.x - 0.2040211 * xyz.y + 1.0569959 * xyz.z};
+}
+
+}  // namespace
+
+double star_temperature(double color_index) {
+    return 4600.0 * (1.0 / (0.92 * color_index + 1.7) + 1.0 / (0.92 * color_index + 0.62));
+}
+
+glm::dvec3 black_body_color(double kelvin) {
+    glm::dvec3 xyz(0.0);
+    static const MatchingTable matching = make_matching_table();
+    for (std::size_t i = 0; i < wavelengths; ++i)
+        xyz += planck(first_nm + nm * static_cast<double>(i), kelvin) * matching[i];
+    const glm::dvec3 light = glm::max(rec709(xyz / xyz.y), glm::dvec3(0.0));
+    return light / (0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z);
+}
+
+StarColors::StarColors() {
+    const int last = static_cast<int>(std::lround((highest - lowest) / step));
+    for (int i = 0; i <= last; ++i) table_.push_back(black_body_color(star_temperature(lowest + i * step)));
+}
+
+glm::dvec3 StarColors::operator()(const std::optional<double>& color_index) const {
+    const double at = (std::clamp(color_index.value_or(unknown), lowest, highest) - lowest) / step;
+    const auto i = std::min(static_cast<std::size_t>(at), table_.size() - 2);
+    return glm::mix(table_[i], table_[i + 1], at - static_cast<double>(i));
+}
+
 namespace {
 
 constexpr double largest_flux = 1e18;  // squares and sums stay finite in 32 bits
@@ -20,7 +92,6 @@ glm::dvec3 star_direction(double ra_deg, double dec_deg) {
 }
 
 double star_flux(double magnitude, double zero_point) {
-    constexpr double ln10 = 2.302585092994046;
     return real::exp(-0.4 * ln10 * (magnitude - zero_point));
 }
 

@@ -37,6 +37,10 @@ struct UsdStage {
     std::map<std::string, UsdValue> metadata;  // upAxis, timeCodesPerSecond, ...
     std::vector<UsdPrim> prims;
     bool refers_elsewhere = false;  // to layers, references or payloads
+
+    bool is_z_up() const;
+    /// For a message: what was found where nothing was.
+    std::string none_found() const;
 };
 
 /// `text` outlives what its lists are read from. Throws InputError with `file` and the line.

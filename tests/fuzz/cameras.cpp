@@ -7,9 +7,8 @@
 #include <fstream>
 #include <glm/geometric.hpp>
 
-#include "camera_files/gltf.h"
+#include "camera_files/formats.h"
 #include "camera_files/read_camera.h"
-#include "camera_files/usda.h"
 #include "fuzz/targets.h"
 #include "scene/csv_tracks.h"
 

@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "fuzz/targets.h"
-#include "stars/catalogue_kind.h"
 #include "stars/picture_table.h"
 #include "stars/star_set.h"
 #include "unit/stars/catalogues.h"

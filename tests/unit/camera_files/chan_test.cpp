@@ -1,5 +1,5 @@
 // .chan: closed forms of its angles, every message, and the way there and back.
-#include "camera_files/chan.h"
+#include "camera_files/formats.h"
 
 #include <gtest/gtest.h>
 

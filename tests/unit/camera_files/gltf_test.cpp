@@ -1,6 +1,6 @@
 // glTF cameras: parents, curves of every kind against closed forms, binary files, and what a broken or
 // hostile file ends with.
-#include "camera_files/gltf.h"
+#include "camera_files/formats.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Recordings of Gaia Sky and OpenSpace: closed forms of their axes, every message, and real files.
-#include "camera_files/recordings.h"
+#include "camera_files/formats.h"
 
 #include <gtest/gtest.h>
 

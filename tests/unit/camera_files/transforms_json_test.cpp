@@ -1,5 +1,5 @@
 // transforms.json: its axes and fields of view in closed form, and what odd files end with.
-#include "camera_files/transforms_json.h"
+#include "camera_files/formats.h"
 
 #include <gtest/gtest.h>
 

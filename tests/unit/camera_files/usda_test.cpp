@@ -1,6 +1,6 @@
 // USD's cameras: its transforms and lenses in closed form, our own there and back, files as Blender and
 // Houdini write them, and what odd files end with.
-#include "camera_files/usda.h"
+#include "camera_files/formats.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 
 #include "camera/camera.h"
-#include "camera_files/usda_read.h"
 #include "support/camera_tracks.h"
 
 namespace astrosplat {

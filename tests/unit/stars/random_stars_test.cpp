@@ -10,7 +10,7 @@
 
 #include "catalogues.h"
 #include "core/parallel.h"
-#include "stars/star_color.h"
+#include "stars/star_set.h"
 
 namespace astrosplat {
 namespace {

@@ -1,5 +1,5 @@
 // Colours of stars against tables of black bodies.
-#include "stars/star_color.h"
+#include "stars/star_set.h"
 
 #include <gtest/gtest.h>
 
